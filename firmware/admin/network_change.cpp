@@ -117,7 +117,7 @@ api::NetworkView NetworkChange::network() const {
   }
   if (const auto waits = pending()) {
     const double left = std::chrono::duration<double>(waits->until - loop_.now()).count();
-    view.pending = {.until = loop_.stamp_now() + left,
+    view.pending = {.until = loop_.wall_now() + left,
                     .wanted = waits->wanted,
                     .previous = status_ ? status_->kept : std::nullopt,
                     .page = network::page_at(waits->wanted, settings_.team.listen)};

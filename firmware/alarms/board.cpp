@@ -87,6 +87,19 @@ std::vector<Acknowledged> Board::acknowledged() const {
   return all;
 }
 
+void Board::move(double seconds) {
+  for (auto& [id, known] : known_) {
+    known.since += seconds;
+    known.seen.at += seconds;
+  }
+  for (Acknowledged& before : before_) before.at += seconds;
+  waits_until_ += seconds;
+  for (Over& over : over_) {
+    over.since += seconds;
+    over.until += seconds;
+  }
+}
+
 std::expected<void, std::string> Board::acknowledge(const std::string& id, double now) {
   const auto found = known_.find(id);
   if (found == known_.end()) return std::unexpected("there is no such alarm any more");

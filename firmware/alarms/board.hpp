@@ -21,6 +21,8 @@ class Board {
   /// Takes note of what came and went; `now` as in Facts. To be called each second, and before
   /// acknowledge().
   void take(const std::vector<Condition>& conditions, double now);
+  /// The time of day was set ahead by so many seconds: each lasts as long as it did.
+  void move(double seconds);
   /// Quiets it until it gets worse or comes again. An error: there is none of that name.
   std::expected<void, std::string> acknowledge(const std::string& id, double now);
 

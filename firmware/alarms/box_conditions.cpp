@@ -139,7 +139,7 @@ void find_box_troubles(const Facts& facts, Found& found) {
                      .severity = Severity::Wait,
                      .side = Side::Box,
                      .what = "The box's time is not set",
-                     .why = "stamps and logs are of a wrong day",
+                     .why = "times and logs are of a wrong day: log in, or adit clock set",
                      .action = kOpenSystem});
   }
   find_change_trouble(facts.change_trouble, found);

@@ -83,7 +83,7 @@ struct UpdateFact {
 
 /// All that the rules of alarms go by, at one moment.
 struct Facts {
-  double now = 0;  // seconds since 1970, of a clock that never steps
+  double now = 0;  // seconds since 1970; Board::move() tells where that was set
   std::vector<Endpoint> endpoints = {};
   std::vector<Cable> cables = {};
   NetworkFact network = {};

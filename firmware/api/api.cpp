@@ -5,6 +5,7 @@
 
 #include "api/answers.hpp"
 #include "api/box_routes.hpp"
+#include "api/clock_routes.hpp"
 #include "api/entrance.hpp"
 #include "api/kept_runs_routes.hpp"
 #include "api/live.hpp"
@@ -57,9 +58,10 @@ class Api::Impl {
     if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
     if (served.box) box_.emplace(served.source, lists_, *served.box, entrance_, redaction_, loop);
+    if (served.clock) clock_.emplace(*served.clock, [this] { changed(); });
     if (served.runs) kept_.emplace(loop, *served.runs, served.source);
-    handlers_ = {&pages_,       &sessions_,   &run_,        &maps_,   &reports_,
-                 at(settings_), at(network_), at(updates_), at(box_), at(kept_)};
+    handlers_ = {&pages_,      &sessions_,   &run_,    &maps_,    &reports_, at(settings_),
+                 at(network_), at(updates_), at(box_), at(kept_), at(clock_)};
   }
 
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
@@ -126,6 +128,7 @@ class Api::Impl {
   std::optional<UpdateRoutes> updates_;
   std::optional<BoxRoutes> box_;
   std::optional<KeptRunsRoutes> kept_;
+  std::optional<ClockRoutes> clock_;
   Handlers handlers_;
 };
 

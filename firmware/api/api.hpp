@@ -11,6 +11,7 @@
 namespace adit::api {
 
 class Box;
+class Clock;
 class KeptRuns;
 class Keys;
 class Network;
@@ -31,6 +32,7 @@ struct Served {
   Updates* updates = nullptr;
   Box* box = nullptr;
   KeptRuns* runs = nullptr;
+  Clock* clock = nullptr;
 };
 
 /// The API of the page and of scripts, on the team's side and behind a login, and the page's own files.

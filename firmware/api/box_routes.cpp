@@ -68,7 +68,7 @@ intake::Answer BoxRoutes::log_text(const intake::RequestHead& head) const {
 
 std::string BoxRoutes::about_json() const {
   About about = box_.about();
-  about.uptime = loop_.stamp_now() - about.started;
+  about.uptime = loop_.wall_now() - about.started;
   return codec::to_json(about);
 }
 
@@ -85,7 +85,7 @@ std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
 }
 
 void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, std::string reports) {
-  const Time now = loop_.stamp_now();
+  const Time now = loop_.wall_now();
   auto files = std::make_shared<std::vector<BundleFile>>();
   files->push_back({"about.json", about_json()});
   files->push_back({"run.json", codec::to_json(source_.view())});

@@ -7,6 +7,7 @@
 #include "alarms/alarm.cpp"
 #include "alarms/verdict.cpp"
 #include "api/box.cpp"
+#include "api/clock_rows.cpp"
 #include "api/history.cpp"
 #include "api/kept_runs.cpp"
 #include "api/map_json.cpp"
@@ -30,7 +31,7 @@ constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
 constexpr codec::Schemas kSchemas({of<RunView>, of<ReportDetail>, of<MarkerChanges>, of<Tracks>, of<MapView>,
                                    of<History>, of<RunList>, of<LogPage>, of<NetworkView>, of<UpdateView>,
                                    of<SessionRow>, of<WhoAsks>, of<SetupView>, of<CheckView>, of<ChangesView>,
-                                   of<TestView>, of<About>});
+                                   of<TestView>, of<About>, of<ClockView>});
 
 [[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
 

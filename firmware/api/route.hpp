@@ -13,6 +13,7 @@
 namespace adit::api {
 
 class BoxRoutes;
+class ClockRoutes;
 class KeptRunsRoutes;
 class MapRoutes;
 class NetworkRoutes;
@@ -24,8 +25,9 @@ class SettingsRoutes;
 class UpdateRoutes;
 
 /// What answers; null: not served here.
-using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*,
-                            SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*>;
+using Handlers =
+    std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, SettingsRoutes*,
+               NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*, ClockRoutes*>;
 
 /// Who may use a route. A script that sends one of the tokens is an operator.
 enum class Who : std::uint8_t {

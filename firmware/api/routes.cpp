@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "api/box_routes.hpp"
+#include "api/clock_routes.hpp"
 #include "api/handle.hpp"
 #include "api/kept_runs_routes.hpp"
 #include "api/map_routes.hpp"
@@ -196,6 +197,11 @@ constexpr Route kRoutes[] = {
     post("/adit/update/stay", Operator, kJson<1024>, by<&UpdateRoutes::stay>(), "Nothing", "box",
          "The slot that runs is the one to keep, where another one was good last (`stray`).",
          "It is being written down.", "Update", "409 503"),
+    get("/adit/clock", Viewer, by<&ClockRoutes::shown>(), "box", "The time of day, and who set it.",
+        "The clock.", "Clock"),
+    post("/adit/clock", Operator, kJson<1024>, by<&ClockRoutes::set>(), "ClockToSet", "box",
+         "Sets the time of day, by the clock of the one who asks.", "It is about to be set.", "Clock",
+         "400 409"),
     get("/adit/test", Viewer, by<&NetworkRoutes::tested>(), "network", "The Test, step by step.",
         "As far as it is.", "Test"),
     post("/adit/test", Operator, kJson<4096>, by<&NetworkRoutes::begin_test>(), "Candidate", "network",

@@ -72,7 +72,7 @@ intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
 intake::Answer SessionRoutes::sessions(const Call& call) {
   const auto now = loop_.now();
   const auto time = [&](access::Instant at) {
-    return loop_.stamp_now() - std::chrono::duration<double>(now - at).count();
+    return loop_.wall_now() - std::chrono::duration<double>(now - at).count();
   };
   std::vector<SessionRow> rows;
   for (const access::Session& each : entrance_.sessions().all(now)) {

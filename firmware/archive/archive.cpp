@@ -111,6 +111,11 @@ void Archive::make_folder() {
       done, done);
 }
 
+void Archive::move(double seconds) {
+  samples_.move(seconds);
+  last_pose_ += seconds;
+}
+
 void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
   if (opening_) return;
   for (api::AttentionStep& step : attention_.look(sentences, now)) {

@@ -67,6 +67,8 @@ class Archive final : public api::KeptRuns {
   /// The same, without the facts: another run is about to be the present one.
   void end_run(const Seen& seen);
   void needs_attention(const std::vector<std::string>& sentences, api::Time now);
+  /// The time of day was set ahead by so many seconds. What is written stays as it is.
+  void move(double seconds);
 
   /// Why nothing is written now; or "".
   const std::string& trouble() const { return trouble_; }

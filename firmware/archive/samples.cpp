@@ -25,6 +25,11 @@ void Samples::add(api::AttentionStep step) {
   steps_.push_back(std::move(step));
 }
 
+void Samples::move(double seconds) {
+  for (Sample& sample : samples_) sample.at += seconds;
+  for (api::AttentionStep& step : steps_) step.at += seconds;
+}
+
 void Samples::thin() {
   std::deque<Sample> kept;
   std::uint64_t throttled = 0;

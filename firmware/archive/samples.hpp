@@ -26,6 +26,8 @@ class Samples {
   /// Beyond kMostSteps the oldest goes.
   void add(api::AttentionStep step);
   void clear() { *this = Samples(); }
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds);
 
   bool empty() const { return samples_.empty() && steps_.empty(); }
   api::History since(api::Time since) const;

@@ -233,7 +233,7 @@ void SelfTest::ask_token() {
 /// Adit itself asks for the run's status, too: asked too often in all, it is asked once more.
 void SelfTest::token_answered(const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
-  answered_at_ = loop_.stamp_now();
+  answered_at_ = loop_.wall_now();
   if (answer != nullptr) {
     date_ = answer->date;
     run_clock_ = run_clock_in(*answer);

@@ -28,11 +28,15 @@ api::LogRecord row_of(const host::Record& record) {
 
 ThisBox::ThisBox(const loop::Loop& loop, loop::Workers& workers, settings::Board board, std::string settings,
                  std::function<void(api::Usage&)> add_to)
-    : workers_(workers),
+    : loop_(loop),
+      workers_(workers),
       board_(std::move(board)),
       settings_(std::move(settings)),
-      add_to_(std::move(add_to)),
-      started_(loop.stamp_now() - host::process().age_seconds) {}
+      add_to_(std::move(add_to)) {}
+
+api::Time ThisBox::started() const {
+  return loop_.wall_now() - host::process().age_seconds;
+}
 
 std::vector<api::LogRecord> ThisBox::log(std::uint64_t after) const {
   std::vector<api::LogRecord> rows;
@@ -46,7 +50,7 @@ std::uint64_t ThisBox::logged() const {
 
 api::Usage ThisBox::usage() const {
   const host::Process process = host::process();
-  api::Usage usage{.started = started_,
+  api::Usage usage{.started = started(),
                    .cpu_seconds = process.cpu_seconds,
                    .resident_bytes = process.resident_bytes,
                    .open_files = process.open_files,
@@ -62,7 +66,7 @@ api::About ThisBox::about() const {
       .version = kVersion,
       .build = build_text(),
       .licence = "Apache-2.0",
-      .started = started_,
+      .started = started(),
       .kernel = host::kernel(),
       .model = host::model(),
       .board = board_.name.empty() ? std::nullopt : std::optional(api::BoardRow{board_.name, board_.title}),

@@ -13,7 +13,7 @@ namespace adit::box {
 /// What the page tells of the box: asked of the kernel, the logger and the libraries.
 class ThisBox final : public api::Box {
  public:
-  /// `add_to` adds what the gateway itself counts. `workers` outlives this.
+  /// `add_to` adds what the gateway itself counts. `loop` and `workers` outlive this.
   ThisBox(const loop::Loop& loop, loop::Workers& workers, settings::Board board, std::string settings,
           std::function<void(api::Usage&)> add_to);
 
@@ -27,11 +27,14 @@ class ThisBox final : public api::Box {
   void work(std::function<void()> work, std::function<void()> done) override;
 
  private:
+  /// Of the process, of which the gateway may not be the first; by the clock as it is set now.
+  api::Time started() const;
+
+  const loop::Loop& loop_;
   loop::Workers& workers_;
   settings::Board board_;
   std::string settings_;
   std::function<void(api::Usage&)> add_to_;
-  api::Time started_;  // the process, of which the gateway may not be the first
 };
 
 }  // namespace adit::box

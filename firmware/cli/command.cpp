@@ -4,6 +4,7 @@
 #include "cli/aside.hpp"
 #include "cli/ask.hpp"
 #include "cli/check.hpp"
+#include "cli/clock.hpp"
 #include "cli/complete.hpp"
 #include "cli/help.hpp"
 #include "cli/network.hpp"
@@ -42,6 +43,8 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
       return switch_course(*options, colour);
     case Command::Identify:
       return identify(*options);
+    case Command::Clock:
+      return clock(*options);
     case Command::Network:
       return network(*options);
     case Command::Test:

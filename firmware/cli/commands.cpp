@@ -76,6 +76,11 @@ constexpr Form kNetworkForms[] = {
      "the change is good and stays. It must be said at the new address, as what reaches Adit there shows "
      "that the address works: adit finds it by team.interface, or name it by --at"},
     {"back", Verb::Back, kNothing, "the change is taken back now"}};
+constexpr Form kClockForms[] = {
+    {"show", Verb::Show, kNothing,
+     "the box's time of day, who set it, and how far it is from this computer's", "", true},
+    {"set", Verb::Set, kNothing,
+     "to this computer's time. Nothing hangs on it: stamps, sessions and reports go on as they were"}};
 constexpr Form kTestForms[] = {
     {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
 constexpr Form kUpdateForms[] = {
@@ -203,6 +208,13 @@ constexpr CommandRow kCommands[] = {
      "a change waits; of your word: none waits, or it cannot be said there",
      "  sudo adit network\n"
      "  sudo adit network confirm --at 192.168.8.11:8000"},
+    {Command::Clock, "clock", "the box's time of day, and your word on it", kClockForms,
+     "A box without a battery begins with the last time it knew. Then the `Date` of the Command Post's "
+     "answers sets it, or a robot's stamps, or you do: here, or on the page, which asks where a browser's "
+     "time is another.",
+     "the time is set; of your word: it is being set", "it is not set, or could not be",
+     "  adit clock\n"
+     "  adit clock set --at 10.0.0.1:8000 --token-file team.token"},
     {Command::Test, "test", "tries each endpoint of the Command Post step by step, and spends no report",
      kTestForms,
      "What it tries:\n"

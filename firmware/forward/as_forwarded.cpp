@@ -26,6 +26,11 @@ void AsForwarded::begin_run(api::Time now) {
   tracks_.wipe();
 }
 
+void AsForwarded::move(double seconds) {
+  for (auto& [name, robot] : robots_) robot.at += seconds;
+  tracks_.move(seconds);
+}
+
 void AsForwarded::go_on_from(std::vector<api::Track> earlier) {
   std::erase_if(earlier, [this](const api::Track& track) {
     if (robots_.contains(track.robot)) return false;

@@ -23,6 +23,9 @@ class AsForwarded {
   /// A new run begins without tracks and markers; where each robot is, it still is.
   void begin_run(api::Time now);
 
+  /// The time of day was set ahead by so many seconds: each robot was there as long ago as it was.
+  void move(double seconds);
+
   /// Where they were in this run before a restart.
   void go_on_from(std::vector<api::Track> earlier);
 

@@ -119,10 +119,20 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   if (answered != nullptr) {
     last_status_ = answered->status;
     if (last_status_ == 429) ++throttled_;
+    if (answered->date && !foreign_now_) {
+      constexpr double kHalf = 0.5;  // it says whole seconds
+      date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
+      dated_ = heard_;
+    }
     answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - request.sent_at).count();
   }
   const bool is_well = answered != nullptr && !foreign_now_ && last_status_ < 400;
   trouble_ = is_well ? "" : forward::sentence_of(outcome);
+}
+
+std::optional<double> Channel::time_there() const {
+  if (!date_) return std::nullopt;
+  return *date_ + std::chrono::duration<double>(loop_.now() - dated_).count();
 }
 
 std::string Channel::trouble() const {

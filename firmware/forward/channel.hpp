@@ -65,6 +65,9 @@ class Channel {
   std::uint64_t ended() const { return ended_; }
   /// How many answers were 429.
   std::uint64_t throttled() const { return throttled_; }
+  /// The time of day by the Date of the last answer that had one, in seconds since 1970, now; nothing: no
+  /// answer of the Command Post's own had one.
+  std::optional<double> time_there() const;
   /// When last_status() was heard.
   loop::Instant heard() const { return heard_; }
   /// uplink::Connection::delivers(); 0 where there is no connection.
@@ -103,6 +106,8 @@ class Channel {
   bool foreign_now_ = false;
   int last_status_ = 0;
   std::optional<double> answer_ms_;
+  std::optional<double> date_;  // seconds since 1970
+  loop::Instant dated_{};
   std::string trouble_;
 };
 

@@ -7,24 +7,19 @@
 namespace adit::forward {
 
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
-  const double floor = floor_.read();
+  const StampFloor::Kept kept = floor_.read();
   carried.machine_is(boot);
   const auto& clock = carried.clock();
-  ran_before_ = clock || floor > 0;
+  ran_before_ = clock || kept.floor > 0;
   if (clock) {
-    const double due = clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count();
-    const double set_ahead = loop_.stamp_now() - due;
     senders_ = carried.senders();
-    if (set_ahead < kWasSet) {
-      loop_.set_stamp(due);
-    } else {
-      senders_.move(set_ahead);
-    }
-  } else if (floor > loop_.stamp_now()) {
-    loop_.set_stamp(floor);  // the machine has no clock that went on
+    loop_.set_stamp(clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count());
+  } else {
+    // The machine may have no clock that went on.
+    if (kept.floor > loop_.stamp_now()) loop_.set_stamp(kept.floor);
+    if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);
   }
   journal_.begin({.boot = boot, .at = loop_.now(), .stamp = loop_.stamp_now()});
-  for (const auto& [sender, its] : senders_.clocks()) journal_.sender(sender, its);  // they may have moved
 }
 
 icd::Stamp Clocks::stamped(const std::string& sender, std::optional<icd::Stamp> stamp,
@@ -53,9 +48,9 @@ void Clocks::keep(const std::string& sender) {
   if (const lanes::SenderClock* its = senders_.clock_of(sender)) journal_.sender(sender, *its);
 }
 
-void Clocks::keep_floor(loop::Writer& writer) {
-  const auto floor = floor_.due(loop_.stamp_now());
-  if (floor) writer.submit([kept = floor_, floor = *floor]() mutable { kept.write(floor); }, [] {});
+void Clocks::keep(loop::Writer& writer) {
+  const auto due = floor_.due(loop_.stamp_now(), loop_.wall_now());
+  if (due) writer.submit([floor = floor_, due = *due]() mutable { floor.write(due); }, [] {});
 }
 
 }  // namespace adit::forward

@@ -13,13 +13,10 @@
 
 namespace adit::forward {
 
-/// The gateway's clock, and the senders' clocks brought to it. All go on after a restart of the service, the
-/// gateway's also after one of the machine (promise 5).
+/// The gateway's clock for stamps, and the senders' clocks brought to it. All go on after a restart of the
+/// service, the gateway's also after one of the machine (promise 5), whatever becomes of the time of day.
 class Clocks {
  public:
-  /// Seconds by which the system's clock is ahead of what was expected: somebody has set it.
-  static constexpr double kWasSet = 1;
-
   /// `loop` and `journal` outlive this.
   Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder)
       : loop_(loop), journal_(journal), floor_(state_folder) {}
@@ -37,7 +34,11 @@ class Clocks {
   void stamp(icd::MarkersUpdate& update, const std::string& address);
 
   /// To be called now and then. Writes by the disk's own writer, because a disk may be slow.
-  void keep_floor(loop::Writer& writer);
+  void keep(loop::Writer& writer);
+  /// The time of day was set: what was kept of it is wrong.
+  void wall_was_set() { floor_.is_due(); }
+  /// The time of day by the stamps of a robot that has spoken for a while: of several, the earliest.
+  std::optional<double> told_by_robots() const { return senders_.told(loop_.stamp_now()); }
 
  private:
   void keep(const std::string& sender);

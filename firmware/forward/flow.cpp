@@ -57,7 +57,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
                {"status", std::to_string(static_cast<int>(refusal.status))},
                {"why", refusal.sentence}});
   }
-  record_.refused(uri, sender, refusal, loop_.stamp_now());
+  record_.refused(uri, sender, refusal, loop_.wall_now());
 }
 
 std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideAction action) {
@@ -91,7 +91,7 @@ void Flow::picture_the_run() {
   const bool is_here =
       reports().runs().is_at(before, post) && post == address_text(settings_.command_post.scoring);
   maps_.change_run(/*is_new=*/is_here && run > before);
-  as_forwarded_.begin_run(loop_.stamp_now());
+  as_forwarded_.begin_run(loop_.wall_now());
   picture_.begin_run();
   keep_the_run();
 }
@@ -100,7 +100,7 @@ void Flow::picture_the_run() {
 std::optional<api::Time> Flow::behind_since(const Traffic& traffic) const {
   const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
   if (!since) return std::nullopt;
-  return loop_.stamp_now() - std::chrono::duration<double>(loop_.now() - *since).count();
+  return loop_.wall_now() - std::chrono::duration<double>(loop_.now() - *since).count();
 }
 
 std::vector<api::ActivityRow> Flow::activities() const {

@@ -42,6 +42,11 @@ struct Legacy {
   icd::Stamp map_stamp = 0, state_stamp = 0, markers_stamp = 0;  // the last ones sent
 };
 
+/// What the flow hears of the time of day, in seconds since 1970, now.
+struct KnownTimes {
+  std::optional<double> command_post, robots;
+};
+
 /// The flow's tokens, and all tokens that there are: no sentence may quote one.
 struct Tokens {
   std::optional<icd::BearerToken> scoring, mapping;
@@ -73,6 +78,9 @@ class Flow final : public intake::Desk {
   void settings_changed(const settings::Restarts& restarts, Tokens tokens);
   /// Once a second. `disk`: the writer of small files of the state folder.
   void tick(loop::Writer& disk);
+  KnownTimes known_times() const;
+  /// Somebody set the time of day ahead by so many seconds.
+  void wall_was_set(double seconds);
   /// The Command Post's cable is in again: what would wait because sending failed without it need not wait.
   void link_is_back();
   /// Takes nothing new, waits for the answers under way, keeps what waits, and then calls `over`.

@@ -21,7 +21,7 @@ void Flow::keep_the_run() {
 }
 
 archive::Seen Flow::seen() const {
-  return {.now = loop_.stamp_now(),
+  return {.now = loop_.wall_now(),
           .picture = picture_.mosaic(),
           .tracks = [this](api::Time since) { return as_forwarded_.tracks().since(since); },
           .sample = [this] { return sample(); },
@@ -29,7 +29,7 @@ archive::Seen Flow::seen() const {
 }
 
 archive::Sample Flow::sample() const {
-  const double now = loop_.stamp_now();
+  const double now = loop_.wall_now();
   std::map<std::string, double> ages;
   for (const auto& [traffic, row] : record_.rows()) {
     if (!is_map(traffic.kind) || !row.last_forwarded) continue;

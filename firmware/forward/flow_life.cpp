@@ -151,8 +151,22 @@ void Flow::link_is_back() {
 void Flow::tick(loop::Writer& disk) {
   meter_.second(sent_bytes());
   scoring_.tick();
-  clocks_.keep_floor(disk);
+  clocks_.keep(disk);
   archive_->tick(seen());
+}
+
+KnownTimes Flow::known_times() const {
+  return {.command_post = scoring_.channel().time_there(), .robots = clocks_.told_by_robots()};
+}
+
+/// What is told of this life is as long ago as it was. Stamps, the ledger and what is kept of the run stay as
+/// they are.
+void Flow::wall_was_set(double seconds) {
+  clocks_.wall_was_set();
+  scoring_.move(seconds);
+  record_.move(seconds);
+  as_forwarded_.move(seconds);
+  archive_->move(seconds);
 }
 
 void Flow::end(std::function<void()> over) {

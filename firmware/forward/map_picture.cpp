@@ -40,7 +40,7 @@ void MapPicture::forwarded(icd::MapUpdate map) {
     return overtaken;
   });
   waiting_bytes_ += map.data.bytes.size();
-  waiting_.push_back({.map = std::move(map), .stamp = loop_.stamp_now()});
+  waiting_.push_back({.map = std::move(map), .stamp = loop_.wall_now()});
   while (waiting_bytes_ > kMostWaiting && waiting_.size() > 1) {
     mosaic_.missed(picture::layer_of(waiting_.front().map), waiting_.front().stamp);
     waiting_bytes_ -= waiting_.front().map.data.bytes.size();
@@ -56,7 +56,7 @@ void MapPicture::hold() {
 void MapPicture::go_on_from(picture::Mosaic earlier) {
   held_until_ = {};
   const auto before = mosaic_.version();
-  mosaic_.take_up(std::move(earlier), loop_.stamp_now());
+  mosaic_.take_up(std::move(earlier), loop_.wall_now());
   if (mosaic_.version() != before) changed_();
   pump();
 }
@@ -64,7 +64,7 @@ void MapPicture::go_on_from(picture::Mosaic earlier) {
 void MapPicture::begin_run() {
   waiting_.clear();
   waiting_bytes_ = 0;
-  mosaic_.wipe(loop_.stamp_now());
+  mosaic_.wipe(loop_.wall_now());
   changed_();
 }
 

@@ -209,7 +209,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
-  record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.stamp_now());
+  record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) record_.rounded_to(traffic_of(map), sent->packed.precision);
   points_taken(*sent);
   taken_(std::move(map));

@@ -69,7 +69,7 @@ void Maps::points_taken(Prepared& sent) {
 
 /// It was taken, but while it was under way what had been left out of it was forgotten.
 void Maps::goes_whole(const Place& sent, int status) {
-  record_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.stamp_now());
+  record_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
   again(sent);
 }
 

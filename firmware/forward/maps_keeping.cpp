@@ -40,7 +40,7 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
                 std::function<void(icd::Checked<void>)> done) {
   const bool replaces = lane_.replaces_any(update);
   if (!has_room_for(update, replaces)) {
-    record_.no_room(traffic_of(update), loop_.stamp_now());
+    record_.no_room(traffic_of(update), loop_.wall_now());
     if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
     return done(std::unexpected(
         icd::Refusal{icd::Status::TooManyRequests,
@@ -101,7 +101,7 @@ void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>&
     if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});
     return done(std::unexpected(std::move(keeping.kept.error())));
   }
-  record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.stamp_now());
+  record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.wall_now());
   forget(add(keeping.number, std::move(*keeping.kept)));
   done({});
   compare();
@@ -113,7 +113,7 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   const bool again = number < kFirstNumber;
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
-  record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.stamp_now());
+  record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.wall_now());
   const icd::Stamp stamp = stamp_of(update);
   forget(again ? lane_.put_back(waiting_again(number, std::move(update), stamp))
                : add(number, std::move(update)));

@@ -83,7 +83,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
 }
 
 bool MarkerArrivals::takes_some(Arrival& arrival) {
-  record_.no_room({Kind::Markers, ""}, loop_.stamp_now());
+  record_.no_room({Kind::Markers, ""}, loop_.wall_now());
   icd::MarkersUpdate known = lane_.those_that_wait(*arrival.update);
   if (known.markers.empty() || !lane_.has_room_for(known)) return false;
   const std::size_t taken = known.markers.size(), all = arrival.update->markers.size();
@@ -115,7 +115,7 @@ bool MarkerArrivals::keep(Arrival& arrival) {
   }
   arrival.is_kept = true;
   arrival.record = {};
-  whole(restart_, [&] { record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.stamp_now()); });
+  whole(restart_, [&] { record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now()); });
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);
   next_turn_.call_at(loop_.now());
   return false;

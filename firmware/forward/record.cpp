@@ -105,6 +105,16 @@ void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refu
   changed_();
 }
 
+void Record::move(double seconds) {
+  for (auto& [traffic, activity] : rows_) {
+    for (auto* const time : {&activity.last_accepted, &activity.last_forwarded, &activity.last_no_room}) {
+      if (*time) **time += seconds;
+    }
+  }
+  for (api::RefusalRow& refusal : refusals_) refusal.at += seconds;
+  changed_();
+}
+
 std::vector<api::RefusedCount> Record::refused_counts() const {
   std::vector<api::RefusedCount> all;
   all.reserve(refused_.size());

@@ -61,6 +61,9 @@ class Record {
 
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 
+  /// The time of day was set ahead by so many seconds: what is noted is as long ago as it was.
+  void move(double seconds);
+
   /// Without `waiting` and `behind_since`, which the lanes know.
   const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }
   /// What was ever refused, by URI and status.

@@ -308,7 +308,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   }
   if (run) {
     run_ = *run;
-    run_heard_ = loop_.stamp_now();
+    run_heard_ = loop_.wall_now();
     whole(restart_, [&] { reports_->status_heard(*run, asked, time()); });
   } else {
     const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);

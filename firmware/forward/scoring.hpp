@@ -82,6 +82,10 @@ class Scoring {
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<api::Time> run_heard() const { return run_heard_; }
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds) {
+    if (run_heard_) *run_heard_ += seconds;
+  }
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const {
@@ -95,6 +99,7 @@ class Scoring {
     loop::Instant until;  // then it is told what is known
   };
 
+  /// Reports are written down by the clock for stamps, which nobody sets: rules compare their times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   std::expected<void, std::string> open_reports();
   void endpoint_turned();

@@ -1,6 +1,8 @@
 #include "forward/stamp_floor.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <string_view>
 #include <utility>
 
 #include "host/log.hpp"
@@ -12,27 +14,39 @@ namespace {
 /// Year 2200: what is later is no stamp.
 constexpr double kLatest = 7.26e9;
 
+/// The line at the beginning of `rest`, which is taken away; -1: it is no time.
+double take_time(std::string_view& rest) {
+  double time = -1;
+  const std::string_view line = rest.substr(0, rest.find('\n'));
+  std::from_chars(line.data(), line.data() + line.size(), time);
+  rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  return time >= 0 && time < kLatest ? time : -1;
+}
+
 }  // namespace
 
-double StampFloor::read() const {
-  if (!host::may_exist(file_)) return 0;
+StampFloor::Kept StampFloor::read() const {
+  if (!host::may_exist(file_)) return {};
   const auto text = host::read_file(file_);
-  double floor = -1;
-  if (text) std::from_chars(text->data(), text->data() + text->size(), floor);
-  if (floor >= 0 && floor < kLatest) return floor;
+  std::string_view rest = text ? *text : std::string_view();
+  const double floor = take_time(rest);
+  // A release that had no second line brought the time of day to its stamps.
+  if (floor >= 0)
+    return {.floor = floor, .wall = std::max(0.0, rest.empty() ? floor - kAhead : take_time(rest))};
   host::log(host::Level::Warning, "which stamps were given out before is not known",
             {{"why", text ? file_ + ": expected seconds since 1970" : text.error()}});
-  return 0;
+  return {};
 }
 
-std::optional<double> StampFloor::due(double now) {
+std::optional<StampFloor::Kept> StampFloor::due(double now, double wall) {
   if (now < next_) return {};
   next_ = now + kEvery;
-  return now + kAhead;
+  return Kept{.floor = now + kAhead, .wall = wall};
 }
 
-void StampFloor::write(double floor) {
-  const auto written = host::write_file(file_, std::to_string(floor) + '\n', host::kOursAlone);
+void StampFloor::write(const Kept& kept) {
+  const auto written = host::write_file(
+      file_, std::to_string(kept.floor) + '\n' + std::to_string(kept.wall) + '\n', host::kOursAlone);
   const std::string why = written ? "" : written.error();
   if (std::exchange(*trouble_, why) == why || written) return;
   host::log(host::Level::Warning, "after a power cut, stamps may run backward", {{"why", written.error()}});

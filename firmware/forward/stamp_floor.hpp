@@ -10,9 +10,13 @@ namespace adit::forward {
 
 /// Keeps stamps from going back when the machine restarts (promise 5): a box without a battery-backed clock
 /// has about the same time at each start. A file in the state folder holds a bound that no stamp has passed.
-/// It is ahead of the stamps, so that it need be written only now and then, and nobody waits for it.
+/// It is ahead of the stamps, so that it need be written only now and then, and nobody waits for it. Beside
+/// it is the time of day as it was then.
 class StampFloor {
  public:
+  struct Kept {
+    double floor = 0, wall = 0;  // seconds since 1970; 0: nothing is known
+  };
   static constexpr const char* kFile = "stamps";
   static constexpr double kEvery = 10;  // seconds
   /// Stamps are up to kJump ahead of now, and a disk may be slow.
@@ -20,14 +24,16 @@ class StampFloor {
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// Seconds since 1970; 0 if nothing is known. A faulty file is logged.
-  double read() const;
+  /// A faulty file is logged.
+  Kept read() const;
 
-  /// What is to be written by now, if anything.
-  std::optional<double> due(double now);
+  /// What is to be written by now, if anything. `now`: by the clock for stamps; `wall`: the time of day.
+  std::optional<Kept> due(double now, double wall);
+  /// By the next time that this is asked.
+  void is_due() { next_ = 0; }
   /// May be called on a worker, one call after the other, and on copies. A failure to write is logged once,
   /// until a write succeeds or fails in another way.
-  void write(double floor);
+  void write(const Kept& kept);
 
  private:
   std::string file_;

@@ -62,10 +62,10 @@ void Telemetry::carry_on(const journal::Carried& carried) {
   }
   for (const auto& [name, robot] : carried.robots()) {
     state_.add({.header = {robot.stamp}, .poses = {{name, robot.pose}}}, loop_.now());
-    record_.accepted({Kind::State, name.text()}, 0, loop_.stamp_now());
+    record_.accepted({Kind::State, name.text()}, 0, loop_.wall_now());
   }
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
-    record_.accepted({Kind::Markers, ""}, 0, loop_.stamp_now());
+    record_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
     markers_.add(std::move(markers), loop_.now());
   }
 }
@@ -97,13 +97,13 @@ void Telemetry::endpoint_turned() {
 icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t bytes_received) {
   if (!state_.has_room_for(update)) {
     for (const icd::NamedPose& pose : update.poses)
-      record_.no_room({Kind::State, pose.name.text()}, loop_.stamp_now());
+      record_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
     return full("more robots than can be kept apart");
   }
   if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
   whole(restart_, [&] {
     for (const icd::NamedPose& pose : update.poses) {
-      record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.stamp_now());
+      record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
     }
     state_.add(update, loop_.now());
   });

@@ -59,7 +59,7 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std
   const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
   for (const Traffic& traffic : traffic_of(*sent)) {
     if (verdict == MappingVerdict::Taken) {
-      record_.forwarded(traffic, updates_in(*sent), bytes, status, loop_.stamp_now());
+      record_.forwarded(traffic, updates_in(*sent), bytes, status, loop_.wall_now());
     } else {
       record_.not_taken(traffic, why_not(verdict), status, sentence);
     }
@@ -106,7 +106,7 @@ void Telemetry::passed(const lanes::WaitingMarkers& markers) {
 }
 
 void Telemetry::show(const Shared<lanes::WaitingState>& state) {
-  as_forwarded_.forwarded(state->update, loop_.stamp_now());
+  as_forwarded_.forwarded(state->update, loop_.wall_now());
 }
 
 void Telemetry::show(const Shared<lanes::WaitingMarkers>& markers) {
@@ -117,7 +117,7 @@ void Telemetry::show(const Shared<lanes::WaitingMarkers>& markers) {
 bool Telemetry::show_some() {
   const std::span<const icd::Marker> all = to_show_->update.markers;
   const auto some = all.subspan(shown_, std::min(all.size() - shown_, kShown));
-  as_forwarded_.forwarded(some, loop_.stamp_now());
+  as_forwarded_.forwarded(some, loop_.wall_now());
   shown_ += some.size();
   if (shown_ == all.size()) to_show_.reset();
   return some.size() < all.size();

@@ -49,6 +49,12 @@ void Tracks::go_on_from(const std::vector<api::Track>& earlier) {
   }
 }
 
+void Tracks::move(double seconds) {
+  for (auto& [robot, track] : tracks_) {
+    for (api::TrackPose& pose : track.poses) pose.at += seconds;
+  }
+}
+
 std::vector<api::Track> Tracks::since(api::Time since) const {
   std::vector<api::Track> tracks;
   for (const auto& [robot, kept] : tracks_) {

@@ -23,6 +23,8 @@ class Tracks {
   /// Where they were before; what is here already is later.
   void go_on_from(const std::vector<api::Track>& earlier);
   void wipe() { tracks_.clear(); }
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds);
   void forget(const std::string& robot) { tracks_.erase(robot); }
 
   /// By name, the poses later than `since`; robots without any are left out.

@@ -7,6 +7,7 @@
 #include "gateway/report_rows.hpp"
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
+#include "icd/sentence.hpp"
 #include "loop/guard.hpp"
 #include "settings/written.hpp"
 
@@ -58,6 +59,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           network_requests_, network_, [this] { api_.changed(); }),
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
+      clock_(loop, parts_.state_folder, parts_.clock_folder),
       api_(loop,
            {.source = *this,
             .judge = *this,
@@ -67,7 +69,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .test = &self_test_,
             .updates = &updates_,
             .box = &box_,
-            .runs = &flow_.archive()},
+            .runs = &flow_.archive(),
+            .clock = &clock_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
       acknowledged_(parts_.state_folder, disk_writer_),
@@ -123,7 +126,7 @@ std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
   if (auto started = flow_.start(); !started) return started;
   if (auto listening = listen(settings_.team); !listening) return listening;
-  board_.remember(acknowledged_.read(), loop_.stamp_now());
+  board_.remember(acknowledged_.read(), loop_.wall_now());
   every_second();
   return {};
 }
@@ -164,7 +167,9 @@ void Gateway::note_robot(const std::string& name) {
 }
 
 std::vector<api::ReportRow> Gateway::reports(std::int64_t after, std::size_t most) const {
-  return rows_after(flow_.reports(), after, most);
+  auto rows = rows_after(flow_.reports(), after, most);
+  for (api::ReportRow& row : rows) tell_time_of_day(row, loop_);
+  return rows;
 }
 
 api::ReportCounts Gateway::report_counts() const {
@@ -172,12 +177,17 @@ api::ReportCounts Gateway::report_counts() const {
 }
 
 std::optional<api::ReportDetail> Gateway::report(std::int64_t number) const {
-  return detail_of(flow_.reports(), parts_.ledger, number);
+  auto detail = detail_of(flow_.reports(), parts_.ledger, number);
+  if (!detail) return detail;
+  tell_time_of_day(detail->row, loop_);
+  for (auto& step : detail->history) step.at = time_of_day(step.at, loop_);
+  return detail;
 }
 
 void Gateway::every_second() {
   second_.call_at(loop_.now() +
                   std::chrono::seconds(1));  // first: whatever fails below, the next second comes
+  look_at_clock();
   flow_.tick(disk_writer_);
   links_.look();
   look_for_alarms();
@@ -192,6 +202,21 @@ void Gateway::every_second() {
     host::notify_status(line);
     notified_ = std::move(line);
   }
+}
+
+/// Somebody set the time of day: whoever may, and either way. And whoever knows it better than who set it.
+void Gateway::look_at_clock() {
+  clock_.every_second();
+  const forward::KnownTimes known = flow_.known_times();
+  clock_.offered({clock::Source::LastKnown, loop_.wall_now()});
+  clock_.offered({clock::Source::CommandPost, known.command_post.value_or(0)});
+  clock_.offered({clock::Source::Robots, known.robots.value_or(0)});
+  const double step = loop_.look_at_wall();
+  if (step == 0) return;
+  host::log(host::Level::Notice, "the clock was set", {{"ahead_by_s", icd::sentence(step)}});
+  flow_.wall_was_set(step);
+  board_.move(step);
+  api_.changed();
 }
 
 /// The team's interface came back as another one.

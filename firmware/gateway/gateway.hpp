@@ -7,6 +7,7 @@
 
 #include "admin/accounts.hpp"
 #include "admin/acknowledged_file.hpp"
+#include "admin/clock_setting.hpp"
 #include "admin/network_change.hpp"
 #include "admin/network_requests.hpp"
 #include "admin/session_keeper.hpp"
@@ -58,6 +59,7 @@ struct Parts {
   std::string state_folder;
   std::string update_folder;              // where adit-update tells its status
   std::string network_folder;             // where adit-network tells its status
+  std::string clock_folder;               // where adit-clock tells its status
   std::optional<forward::Legacy> legacy;  // of the gateway before, where there was one
 };
 
@@ -109,6 +111,7 @@ class Gateway final : public api::Source, public api::Operator {
   void end();
   void finish();
   void every_second();
+  void look_at_clock();
   void keep_sessions();
   void look_at_sockets();
   void log_crowding();
@@ -157,6 +160,7 @@ class Gateway final : public api::Source, public api::Operator {
   admin::NetworkChange network_;
   box::SelfTest self_test_;
   admin::Updates updates_;
+  admin::ClockSetting clock_;
   api::Api api_;
   intake::IcdRoutes routes_;
   Crowding crowding_;

@@ -3,12 +3,11 @@
 
 #include "api/judged.hpp"
 #include "gateway/gateway.hpp"
+#include "gateway/report_rows.hpp"
 #include "host/disk.hpp"
 
 namespace adit::gateway {
 namespace {
-
-constexpr double kEarliest = 1.6e9;  // seconds since 1970, in 2020: no box is older than that
 
 /// Nothing: the operator need not know of it.
 std::optional<alarms::ReportFact> fact_of(const dispatch::Report& report) {
@@ -27,7 +26,7 @@ std::optional<alarms::ReportFact> fact_of(const dispatch::Report& report) {
 }  // namespace
 
 alarms::Facts Gateway::facts(const std::vector<api::ActivityRow>& activities) const {
-  alarms::Facts facts{.now = loop_.stamp_now()};
+  alarms::Facts facts{.now = loop_.wall_now()};
   facts.streams = api::streams_of(activities, facts.now);
   add_flow(facts);
   add_reports(facts);
@@ -36,8 +35,10 @@ alarms::Facts Gateway::facts(const std::vector<api::ActivityRow>& activities) co
 }
 
 void Gateway::add_flow(alarms::Facts& facts) const {
-  facts.endpoints = lookout_.endpoints(flow_, settings_.command_post, facts.now);
-  facts.robots = lookout_.robots(settings_.alarms, facts.now);
+  const double steady = loop_.stamp_now();
+  facts.endpoints = lookout_.endpoints(flow_, settings_.command_post, steady);
+  for (alarms::Endpoint& each : facts.endpoints) each.since += facts.now - steady;
+  facts.robots = lookout_.robots(settings_.alarms, steady);
   facts.turn = static_cast<double>(std::ranges::count_if(facts.streams, &alarms::Stream::is_map)) /
                settings_.command_post.rates.map_hz;
   facts.unknown_robots = roster_.unknown(loop_.now());
@@ -46,7 +47,7 @@ void Gateway::add_flow(alarms::Facts& facts) const {
   facts.shut_out = settings_.team.require_token && parts_.loaded.secrets.tokens.empty();
   facts.queued = flow_.maps().queued_bytes();
   facts.queue_room = settings_.queues.map_bytes;
-  facts.queue_grows = lookout_.queue_grows(facts.now);
+  facts.queue_grows = lookout_.queue_grows(steady);
 }
 
 void Gateway::add_reports(alarms::Facts& facts) const {
@@ -55,6 +56,7 @@ void Gateway::add_reports(alarms::Facts& facts) const {
     const dispatch::Report& report = reports.book().at(number);
     auto fact = fact_of(report);
     if (!fact) continue;
+    fact->since = time_of_day(fact->since, loop_);
     fact->asking = reports.is_asking(report);
     fact->of_run = report.run == reports.run().number;
     facts.reports.push_back(std::move(*fact));
@@ -74,7 +76,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.ledger_damage = parts_.ledger.damage();
   facts.disk = {flow_.archive().trouble(), flow_.maps().trouble(), flow_.journal_trouble(),
                 host::free_bytes(parts_.state_folder)};
-  if (facts.now < kEarliest) facts.time_set = false;
+  facts.time_set = clock_.is_set();
   facts.change_trouble = parts_.trouble;
   facts.settings_trouble = parts_.loaded.trouble;
   facts.board_trouble = parts_.board_trouble;

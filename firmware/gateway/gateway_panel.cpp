@@ -54,7 +54,7 @@ api::Time Gateway::identify(double seconds) {
   const auto length = std::chrono::duration_cast<loop::Duration>(std::chrono::duration<double>(seconds));
   lights_.set_for(State::Identify, length);
   api_.changed();
-  return loop_.stamp_now() + seconds;
+  return loop_.wall_now() + seconds;
 }
 
 void Gateway::pressed(panel::Press press) {

@@ -43,7 +43,7 @@ std::vector<api::EndpointRow> Gateway::endpoints() const {
 }
 
 api::RunView Gateway::view() const {
-  api::RunView view{.now = loop_.stamp_now(),
+  api::RunView view{.now = loop_.wall_now(),
                     .version = box::kVersion,
                     .run = flow_.scoring().run(),
                     .run_heard = flow_.scoring().run_heard(),
@@ -69,6 +69,7 @@ api::RunView Gateway::view() const {
                     .verdict = {},
                     .alarms = {},
                     .alarms_over = board_.over()};
+  for (api::ReportRow& row : view.reports) tell_time_of_day(row, loop_);
   judge(view);
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back({.name = std::string(panel::name_of(light)),

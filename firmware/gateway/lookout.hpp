@@ -11,7 +11,7 @@
 namespace adit::gateway {
 
 /// What of the flow means something only over time: how the endpoints answer, how often each robot speaks,
-/// whether what waits grows.
+/// whether what waits grows. `now` is seconds of the clock for stamps, which never steps.
 class Lookout {
  public:
   /// To be told each second, with the activities of the view.

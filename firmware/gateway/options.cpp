@@ -22,6 +22,7 @@ command_line::Program command_line_of(Options& options) {
             &options.state, Wanted::Always},
            {"--network", "DIR", "where adit-network tells how it stands", &options.network},
            {"--update", "DIR", "where adit-update tells how it stands", &options.update},
+           {"--clock", "DIR", "where adit-clock tells how it stands", &options.clock},
            {"--board", "FILE",
             "what the board is, and where its lights and its button are: counts before the settings' "
             "panel; may be absent",

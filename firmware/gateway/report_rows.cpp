@@ -1,6 +1,7 @@
 #include "gateway/report_rows.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <ranges>
 
@@ -72,6 +73,17 @@ std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::s
     rows.push_back(row_of(reports, *report));
   }
   return rows;
+}
+
+double time_of_day(double at, const loop::Loop& loop) {
+  const double stamp = loop.stamp_now();
+  const double machine_began = stamp - std::chrono::duration<double>(loop.now().time_since_epoch()).count();
+  return at < machine_began ? at : at + (loop.wall_now() - stamp);
+}
+
+void tell_time_of_day(api::ReportRow& row, const loop::Loop& loop) {
+  row.received = time_of_day(row.received, loop);
+  row.changed = time_of_day(row.changed, loop);
 }
 
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

@@ -5,6 +5,7 @@
 #include "api/run_view.hpp"
 #include "dispatch/reports.hpp"
 #include "ledger/ledger.hpp"
+#include "loop/loop.hpp"
 
 namespace adit::gateway {
 
@@ -18,6 +19,11 @@ api::ReportCounts counts_of(const dispatch::Reports& reports);
 /// others.
 std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book, std::size_t most);
 std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most);
+
+/// Of a time in the ledger, which is by the clock for stamps, the time of day as it is set now; one of an
+/// earlier start of the machine is as it was written.
+double time_of_day(double at, const loop::Loop& loop);
+void tell_time_of_day(api::ReportRow& row, const loop::Loop& loop);
 
 /// One report with its history, or nothing where there is none of that number.
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

@@ -81,6 +81,7 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .state_folder = options.state,
                .update_folder = options.update,
                .network_folder = options.network,
+               .clock_folder = options.clock,
                .legacy = std::nullopt};
 }
 

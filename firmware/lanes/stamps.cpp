@@ -1,6 +1,7 @@
 #include "lanes/stamps.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace adit::lanes {
 
@@ -44,13 +45,20 @@ std::vector<std::pair<std::string, SenderClock>> StampShift::clocks() const {
   return clocks;
 }
 
+std::optional<double> StampShift::told(double now) const {
+  std::optional<double> earliest;
+  for (const auto& [sender, clock] : senders_) {
+    const double silent = now - clock.latest_given();
+    if (clock.latest - clock.theirs < kSpeaks || std::abs(silent) > kSpeaks) continue;
+    const double shows = clock.latest + silent;
+    earliest = std::min(earliest.value_or(shows), shows);
+  }
+  return earliest;
+}
+
 void StampShift::carry_on(const std::string& sender, const SenderClock& clock) {
   senders_[sender] = Clock{clock, ++uses_, {}};
   if (senders_.size() > kMostSenders) forget_the_most_silent();
-}
-
-void StampShift::move(double seconds) {
-  for (auto& [sender, clock] : senders_) clock.ours += seconds;
 }
 
 void StampShift::forget_the_most_silent() {

@@ -46,10 +46,12 @@ class StampShift {
   const SenderClock* clock_of(const std::string& sender) const;
   /// All of them, the one that was silent longest first.
   std::vector<std::pair<std::string, SenderClock>> clocks() const;
+  /// What the sender's clock shows now that spoke within kSpeaks, and for as long by a clock that runs as the
+  /// gateway's does; of several, the earliest.
+  static constexpr double kSpeaks = 10;  // seconds
+  std::optional<double> told(double now) const;
   /// A clock of an earlier life goes on.
   void carry_on(const std::string& sender, const SenderClock& clock);
-  /// The gateway's clock was set ahead by so many seconds, and all stamps go with it.
-  void move(double seconds);
 
  private:
   struct Clock : SenderClock {

@@ -17,6 +17,7 @@
 
 #include "loop/file_descriptor.hpp"
 #include "loop/guard.hpp"
+#include "loop/wall_clock.hpp"
 
 namespace adit::loop {
 namespace {
@@ -31,6 +32,10 @@ void must(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "event loop: %s: %s\n", doing, std::strerror(-result));
   std::abort();
+}
+
+double system_now() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
 /// Rounded up, so that a timer never fires early.
@@ -110,6 +115,8 @@ class Loop::Impl {
 
   void set_stamp(double stamp, Instant instant) { stamp_at_start_ += stamp - stamp_at(instant); }
 
+  WallClock& wall() { return wall_; }
+
   void post(std::function<void()>&& task) {
     bool first = false;
     {
@@ -163,8 +170,8 @@ class Loop::Impl {
   }
 
   const Instant started_ = std::chrono::steady_clock::now();
-  double stamp_at_start_ =
-      std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+  double stamp_at_start_ = system_now();
+  WallClock wall_{stamp_at_start_, started_};
   FileDescriptor wake_;
   sd_event* event_ = nullptr;
   std::atomic<std::thread::id> thread_{};  // the loop's own, once it has run
@@ -186,6 +193,19 @@ double Loop::stamp_now() const {
 }
 void Loop::set_stamp(double now) {
   impl_->set_stamp(now, this->now());
+}
+
+double Loop::wall_now() const {
+  return impl_->wall().now(now());
+}
+void Loop::set_wall(double now) {
+  impl_->wall().set(now, this->now());
+}
+double Loop::wall_ahead() const {
+  return impl_->wall().ahead();
+}
+double Loop::look_at_wall() {
+  return impl_->wall().look(system_now(), now());
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

@@ -46,10 +46,20 @@ class Loop {
   /// The one way to take the time for policy: monotonic.
   Instant now() const;
   /// The gateway's clock for stamps: seconds since 1970 as of start, carried on by the monotonic clock, so
-  /// that it never steps but by set_stamp().
+  /// that it never steps but by set_stamp(), whatever becomes of the system's.
   double stamp_now() const;
   /// Sets that clock: an earlier process has given out stamps by it.
   void set_stamp(double now);
+
+  /// The time of day, for people: seconds since 1970 by the system's clock (wall_clock.hpp).
+  double wall_now() const;
+  /// Where the system's clock is known to be wrong: it is `now`, until somebody sets the system's.
+  void set_wall(double now);
+  /// By how many seconds it is ahead of the system's.
+  double wall_ahead() const;
+  /// Looks whether somebody set the system's clock, either way: by how many seconds wall_now() jumps for it.
+  /// To be called each second.
+  double look_at_wall();
 
   /// Calls `ready` with the EPOLL* events that came on `fd`, which stays the caller's.
   Source watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready);

@@ -39,6 +39,7 @@ void Mosaic::take_up(const LayerView& view) {
 
 void Mosaic::take_up(Mosaic earlier, double stamp) {
   if (earlier.layers_.empty()) return;
+  last_ = std::max(last_, earlier.last_);  // the time of day may have been set back since
   const double now = begin_change(stamp);
   spacing_ = std::max(spacing_, earlier.spacing_);
   if (!wiped_) wiped_ = earlier.wiped_;

@@ -195,5 +195,15 @@ TEST(Words, SayAgesAndThePast) {
   EXPECT_EQ(past("What answers is no Command Post"), "What answers was no Command Post");
 }
 
+TEST(Board, ShowsWhatLastsAsLongAsItDidWhereTheTimeOfDayIsSet) {
+  Board board;
+  board.take({kHeld, kFew}, 100);
+  board.take({kFew}, 110);
+  board.move(3600);
+  EXPECT_EQ(board.shown({kFew}, 3720)[0].since, 3700);
+  EXPECT_EQ(board.over().front().since, 3650);
+  EXPECT_EQ(board.over().front().until, 3710);
+}
+
 }  // namespace
 }  // namespace adit::alarms

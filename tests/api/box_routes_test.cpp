@@ -77,7 +77,7 @@ TEST_F(BoxRoutesTest, GiveTheLogAsAFile) {
 }
 
 TEST_F(BoxRoutesTest, TellWhatTheBoxIsMadeOf) {
-  box.self.started = loop.stamp_now() - 60;
+  box.self.started = loop.wall_now() - 60;
   box.self.kernel = "Linux 6.1.0 aarch64";
   box.self.parts = {{.name = "zlib", .version = "1.2.13", .licence = "Zlib"}};
   const json said = json::parse(get("/adit/about").body);

@@ -12,6 +12,7 @@
 #include "api/api.hpp"
 #include "api/doubles.hpp"
 #include "api/fake_box.hpp"
+#include "api/fake_clock.hpp"
 #include "api/fake_kept_runs.hpp"
 #include "api/fake_setup.hpp"
 #include "api/fake_updates.hpp"
@@ -77,6 +78,7 @@ struct Page {
   FakeUpdates updates;
   FakeBox box;
   FakeKeptRuns runs;
+  FakeClock clock;
   Api api{loop,
           {.source = source,
            .judge = judge,
@@ -86,7 +88,8 @@ struct Page {
            .test = &test,
            .updates = &updates,
            .box = &box,
-           .runs = &runs},
+           .runs = &runs,
+           .clock = &clock},
           {token("team-1"), token("scoring-1")},
           icd::Redaction({token("team-1"), token("scoring-1")})};
 };

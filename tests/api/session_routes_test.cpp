@@ -332,7 +332,7 @@ TEST_F(SessionRoutesTest, ShowTheOperatorAllSessionsAndEndWhichHeSays) {
   EXPECT_EQ(all[1]["role"], "viewer");
   EXPECT_EQ(all[1]["own"], false);
   EXPECT_EQ(all[1]["address"], "10.0.0.5");
-  EXPECT_NEAR(all[1]["made"], loop.stamp_now(), 5);
+  EXPECT_NEAR(all[1]["made"], loop.wall_now(), 5);
   EXPECT_EQ(all.dump().find(mine.cookie), std::string::npos);
   const std::string path = "/adit/sessions/" + all[1]["number"].dump() + "/end";
   EXPECT_EQ(post(path, json::object(), mine).status, Status::Ok);

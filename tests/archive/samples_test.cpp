@@ -63,5 +63,16 @@ TEST(Attention, ThatStoodWhenALifeEndedGoesInTheNextOne) {
   EXPECT_EQ(steps[0].sentence, "b");
 }
 
+TEST(Samples, GoOnWhereTheTimeOfDayIsSetBack) {
+  Samples samples;
+  samples.add(Sample{.at = 100});
+  samples.add(api::AttentionStep{100, true, "it"});
+  samples.move(-50);
+  EXPECT_TRUE(samples.wants(52));
+  samples.add(Sample{.at = 52});
+  EXPECT_THAT(samples.since(0).at, ElementsAre(50, 52));
+  EXPECT_EQ(samples.since(0).attention.front().at, 50);
+}
+
 }  // namespace
 }  // namespace adit::archive

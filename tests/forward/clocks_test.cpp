@@ -11,7 +11,7 @@
 namespace adit::forward {
 namespace {
 
-constexpr double kFarAhead = 1000;  // seconds
+constexpr double kFar = 1000;  // seconds
 
 class ClocksTest : public testing::Test {
  protected:
@@ -25,6 +25,11 @@ class ClocksTest : public testing::Test {
     clocks_->carry_on(carried, boot);
   }
   double now() const { return loop_.stamp_now(); }
+  void keep() {
+    clocks_->keep(disk_);
+    ASSERT_TRUE(loop::turn_until(
+        loop_, [&] { return std::filesystem::exists(folder_.path() + '/' + StampFloor::kFile); }));
+  }
 
   host::Folder folder_;
   loop::Loop loop_;
@@ -41,31 +46,47 @@ TEST_F(ClocksTest, ASenderGoesOnAsItDidInTheLifeBefore) {
   EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + 0.3, 1e-6);
 }
 
-TEST_F(ClocksTest, TheGatewaysClockDoesNotFollowTheSystemsBack) {
-  live();
-  const double before = now();
-  loop_.set_stamp(before - kFarAhead);  // as of a start with a clock that was set back
-  live();
-  EXPECT_GE(now(), before);
-}
-
-TEST_F(ClocksTest, AllSendersGoWithAClockThatWasSetAhead) {
-  live();
-  const icd::Stamp first = clocks_->stamped("10.0.0.5/state/r1", 50, 1);
-  loop_.set_stamp(now() + kFarAhead);
-  live();
-  EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + kFarAhead + 0.3, 0.1);
+TEST_F(ClocksTest, StampsGoOnInTheNextLifeWhateverTheTimeOfDayIsThen) {
+  for (const double set : {-kFar, kFar}) {
+    live();
+    const icd::Stamp first = clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+    loop_.set_stamp(now() + set);  // as of a start with a clock that was set
+    live();
+    EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + 0.3, 1e-6) << set;
+    EXPECT_NEAR(now(), first, 1) << set;
+  }
 }
 
 TEST_F(ClocksTest, AMachineWithoutAClockGoesOnFromTheFloor) {
   live();
   const double before = now();
-  clocks_->keep_floor(disk_);
-  ASSERT_TRUE(loop::turn_until(
-      loop_, [&] { return std::filesystem::exists(folder_.path() + '/' + StampFloor::kFile); }));
-  loop_.set_stamp(before - kFarAhead);
+  keep();
+  loop_.set_stamp(before - kFar);
+  loop_.set_wall(before - kFar);
   live("another start");
   EXPECT_GE(now(), before);
+  EXPECT_NEAR(loop_.wall_now(), before, 1) << "the last time known";
+  EXPECT_NEAR(loop_.wall_ahead(), 0, 1) << "of the system's own";
+}
+
+TEST_F(ClocksTest, AMachineWithAClockGoesOnByIt) {
+  live();
+  keep();
+  const double later = now() + kFar;
+  loop_.set_stamp(later);
+  loop_.set_wall(later);
+  live("another start");
+  EXPECT_NEAR(now(), later, 1);
+  EXPECT_NEAR(loop_.wall_now(), later, 1);
+}
+
+TEST_F(ClocksTest, AClockThatWasSetBackStaysSoInTheNextLife) {
+  live();
+  keep();
+  const double before = now();
+  loop_.set_wall(before - kFar);
+  live();
+  EXPECT_NEAR(loop_.wall_now(), before - kFar, 1);
 }
 
 TEST_F(ClocksTest, EachNamespaceOfMarkersHasAClockOfItsOwn) {

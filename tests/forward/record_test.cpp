@@ -104,5 +104,15 @@ TEST(Record, CountsRefusedPartsEach) {
   EXPECT_EQ(record.refusals()[0].parts, 12u);
 }
 
+TEST(Record, IsAsLongAgoAsItWasWhereTheTimeOfDayIsSet) {
+  Record record([] {});
+  record.accepted(kCloudOfR1, 1000, 10.0);
+  record.refused(icd::Uri::MapUpdate, {}, {icd::Status::UnprocessableEntity, "bad"}, 11.0);
+  record.move(3600);
+  EXPECT_EQ(record.rows().at(kCloudOfR1).last_accepted, 3610.0);
+  EXPECT_FALSE(record.rows().at(kCloudOfR1).last_forwarded);
+  EXPECT_EQ(record.refusals().front().at, 3611.0);
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -26,17 +26,34 @@ class StampFloorTest : public testing::Test {
 TEST_F(StampFloorTest, IsNeverBelowAStampThatWasGivenOutWheneverThePowerIsCut) {
   StampFloor living(folder_.string());
   for (double now = 1.7e9; now < 1.7e9 + 100; now += 1) {  // once a second
-    if (const auto floor = living.due(now)) living.write(*floor);
+    if (const auto due = living.due(now, 5)) living.write(*due);
     const double latest = now + 1 + lanes::StampShift::kJump;  // until it is asked again
-    ASSERT_GT(StampFloor(folder_.string()).read(), latest);
-    ASSERT_LT(StampFloor(folder_.string()).read(), now + 60) << "nor far ahead";
+    ASSERT_GT(StampFloor(folder_.string()).read().floor, latest);
+    ASSERT_LT(StampFloor(folder_.string()).read().floor, now + 60) << "nor far ahead";
   }
+}
+
+TEST_F(StampFloorTest, KeepsTheTimeOfDayBesideIt) {
+  StampFloor living(folder_.string());
+  living.write(*living.due(1.7e9, 1.8e9));
+  EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read().wall, 1.8e9);
+  EXPECT_FALSE(living.due(1.7e9 + 1, 1.6e9));
+  living.is_due();  // it was set
+  living.write(*living.due(1.7e9 + 1, 1.6e9));
+  EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read().wall, 1.6e9);
+}
+
+TEST_F(StampFloorTest, ReadsWhatAReleaseWroteThatKeptTheStampsAlone) {
+  std::ofstream(folder_ / StampFloor::kFile) << "1700000030.000000\n";
+  const StampFloor::Kept kept = StampFloor(folder_.string()).read();
+  EXPECT_EQ(kept.floor, 1700000030);
+  EXPECT_EQ(kept.wall, 1700000000) << "the stamps were of the time of day";
 }
 
 TEST_F(StampFloorTest, IsWrittenSeldom) {
   StampFloor floor(folder_.string());
   int written = 0;
-  for (int second = 0; second < 100; ++second) written += floor.due(1.7e9 + second) ? 1 : 0;
+  for (int second = 0; second < 100; ++second) written += floor.due(1.7e9 + second, 0) ? 1 : 0;
   EXPECT_EQ(written, 10);
 }
 
@@ -45,7 +62,7 @@ TEST_F(StampFloorTest, IsComplainedOfOnceUntilItCanBeWrittenAgain) {
   StampFloor for_the_writer = floor;
   const auto logged_by = [&](double seconds) {
     const std::uint64_t before = host::logged();
-    for_the_writer.write(seconds);
+    for_the_writer.write({.floor = seconds, .wall = seconds});
     return host::logged() - before;
   };
   fs::remove_all(folder_);
@@ -58,10 +75,12 @@ TEST_F(StampFloorTest, IsComplainedOfOnceUntilItCanBeWrittenAgain) {
 }
 
 TEST_F(StampFloorTest, SaysNothingWhereNothingIsKnown) {
-  EXPECT_EQ(StampFloor(folder_.string()).read(), 0);
+  EXPECT_EQ(StampFloor(folder_.string()).read().floor, 0);
   for (const char* text : {"", "soon", "-5", "nan", "inf", "1e300"}) {
     std::ofstream(folder_ / StampFloor::kFile) << text;
-    EXPECT_EQ(StampFloor(folder_.string()).read(), 0) << text;
+    const StampFloor::Kept kept = StampFloor(folder_.string()).read();
+    EXPECT_EQ(kept.floor, 0) << text;
+    EXPECT_EQ(kept.wall, 0) << text;
   }
 }
 

@@ -60,5 +60,13 @@ TEST(Tracks, AreBoundedAndStillBeginWhereTheRobotDid) {
   EXPECT_GT(kept.back(), 100 + 30000 - 20);
 }
 
+TEST(Tracks, GoOnWhereTheTimeOfDayIsSetBack) {
+  Tracks tracks;
+  for (int i = 0; i < 3; ++i) tracks.forwarded("r", pose(100 + i, i));
+  tracks.move(-50);
+  tracks.forwarded("r", pose(53, 9));
+  EXPECT_THAT(times(tracks), testing::ElementsAre(50, 51, 52, 53));
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -120,11 +120,16 @@ TEST(StampShift, GoesOnInTheNextLifeAsIfNothingHadBeen) {
   }
 }
 
-TEST(StampShift, MovesWithAClockThatWasSet) {
+TEST(StampShift, KnowsWhatTheClockOfARobotShowsThatSpeaksForAWhile) {
   StampShift shift;
-  shift.shift("R1", 100.0, kNow);
-  shift.move(3600);
-  EXPECT_THAT(shift.shift("R1", 100.5, kNow + 3600.5), DoubleNear(kNow + 3600.5, 1e-6));
+  EXPECT_FALSE(shift.told(kNow));
+  for (int second = 0; second <= 9; ++second) shift.shift("R1", 5000.0 + second, kNow + second);
+  EXPECT_FALSE(shift.told(kNow + 9));
+  shift.shift("R1", 5010.0, kNow + 10);
+  EXPECT_THAT(*shift.told(kNow + 12), DoubleNear(5012, 1e-6));
+  for (int second = 0; second <= 10; ++second) shift.shift("R2", 100.0 + second, kNow + second);
+  EXPECT_THAT(*shift.told(kNow + 12), DoubleNear(112, 1e-6)) << "the earliest";
+  EXPECT_FALSE(shift.told(kNow + 21)) << "they say nothing any more";
 }
 
 TEST(StampShift, ForgetsInTheNextLifeTheOneThatWasSilentLongest) {

@@ -11,6 +11,7 @@
 
 #include "api/api.hpp"
 #include "api/fake_box.hpp"
+#include "api/fake_clock.hpp"
 #include "api/fake_kept_runs.hpp"
 #include "api/fake_keys.hpp"
 #include "api/fake_network.hpp"
@@ -24,12 +25,12 @@ namespace {
 
 class Stage final : public Source, public Operator {
  public:
-  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.stamp_now()), name_(std::move(name)) {
+  Stage(loop::Loop& loop, std::string name) : loop_(loop), began_(loop.wall_now()), name_(std::move(name)) {
     draw_scene(map_, began_);
   }
 
   RunView view() const override {
-    const Time now = loop_.stamp_now();
+    const Time now = loop_.wall_now();
     RunView view = *scene(name_, now, now - began_);
     view.map_version = map().version();
     view.marker_version = markers(0).version;
@@ -66,7 +67,7 @@ class Stage final : public Source, public Operator {
   }
   std::int64_t begin_run() override { return played_.begin_run(view()); }
   Time identify(double seconds) override {
-    identify_until_ = loop_.stamp_now() + seconds;
+    identify_until_ = loop_.wall_now() + seconds;
     return identify_until_;
   }
   MarkerChanges markers(std::uint64_t) const override {
@@ -119,6 +120,8 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   FakeTest test;
   PlayedUpdates updates;
   FakeKeptRuns runs;
+  FakeClock clock;
+  clock.view = {.now = loop.wall_now() - 7200, .managed = more == "clock-behind", .why = {}, .refusal = {}};
   Api page{loop,
            {.source = stage,
             .judge = stage,
@@ -127,9 +130,10 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
             .test = &test,
             .updates = &updates,
             .box = &box,
-            .runs = &runs},
+            .runs = &runs,
+            .clock = &clock},
            {token()}};
-  furnish(box, loop.stamp_now());
+  furnish(box, loop.wall_now());
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);
   if (!server) return std::fprintf(stderr, "%s\n", server.error().c_str()), 1;
   std::printf("%d\n", (*server)->port());

@@ -152,6 +152,7 @@ void Box::one_life() {
   options.secrets = folder_ / "secrets";
   options.state = folder_ / "state";
   options.network = folder_ / "network";
+  options.clock = folder_ / "clock";
   options.update = folder_ / "update";
   options.notices = folder_ / "notices";
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
@@ -216,7 +217,7 @@ void Box::lost_power() {
   fs::remove_all(runtime);
   fs::create_directory(runtime);
   if (fs::exists(sessions)) fs::copy_file(sessions, runtime / admin::SessionKeeper::kFile);
-  if (random_.chance(0.5)) world_.set_clock_back(world_.time());
+  if (random_.chance(0.5)) world_.set_clock(-world_.time());
   boots_ = true;
 }
 

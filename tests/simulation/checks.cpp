@@ -26,11 +26,16 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
 
 }  // namespace
 
-double clock_behind(const Evidence& evidence) {
-  constexpr double kMost = 60;  // its own stamps, which are kept, bring it on
-  const bool is_set_back =
-      std::ranges::any_of(evidence.events, [](const Event& event) { return event.kind == Kind::PowerCut; });
-  return is_set_back ? kMost : 0;
+Window window_of(const Evidence& evidence, double first, double last) {
+  constexpr double kForever = 1e12;
+  /// Of each cut: the time that was kept last is that old where the disk was at fault, and then no power.
+  constexpr double kBehind = 60;
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::PowerCut) last += kBehind;
+    const bool by_a_start = event.stamp == -event.at;
+    if (event.kind == Kind::ClockSet && !by_a_start) return {0, kForever};
+  }
+  return {first, last};
 }
 
 Broken all_checks(const Evidence& evidence) {

@@ -20,8 +20,13 @@ struct Evidence {
   std::size_t most_map_bytes = 0;                // that wait at once, by the first settings
 };
 
-/// By how many seconds the box's clock may be behind: a power cut may set it back.
-double clock_behind(const Evidence& evidence);
+/// The window of the world's clock in which something was that the box has as from `first` to `last` by its
+/// own: a power cut may set that back, and if somebody else set it, nothing is known.
+struct Window {
+  double first = 0, last = 0;
+  bool has(double at) const { return at > first && at < last; }
+};
+Window window_of(const Evidence& evidence, double first, double last);
 
 /// Each adds a sentence for what it finds broken, which begins with its name. Their rules are in README.md.
 using Broken = std::vector<std::string>;

@@ -115,11 +115,10 @@ void judge_run(const Evidence& evidence, std::size_t begun, const Reading& readi
 
 /// What somebody else recorded meanwhile looks the same.
 bool is_blurred(const Evidence& evidence, const Json& row) {
-  const double behind = clock_behind(evidence);
+  const Window window =
+      window_of(evidence, row.at("received").get<double>() - kLongestDoubt, row.at("changed").get<double>());
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    const double at = World::kEpoch + event.at;
-    return event.kind == Kind::Another && at > row.at("received").get<double>() - kLongestDoubt &&
-           at < row.at("changed").get<double>() + behind;
+    return event.kind == Kind::Another && window.has(World::kEpoch + event.at);
   });
 }
 

@@ -26,10 +26,9 @@ std::map<std::int64_t, double> first_records(const Evidence& evidence) {
 
 /// What somebody else recorded while this one was in doubt looks the same; nobody could tell.
 bool is_blurred(const Evidence& evidence, const dispatch::Report& report) {
-  const double behind = clock_behind(evidence);
+  const Window window = window_of(evidence, report.sent - kLongestDoubt, report.changed);
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    const double at = World::kEpoch + event.at;
-    return event.kind == Kind::Another && at > report.sent - kLongestDoubt && at < report.changed + behind;
+    return event.kind == Kind::Another && window.has(World::kEpoch + event.at);
   });
 }
 

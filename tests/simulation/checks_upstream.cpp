@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <utility>
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
@@ -13,7 +14,7 @@ namespace {
 
 constexpr double kSpacing = 1;      // seconds between two requests of a URI: the settings' default
 constexpr double kRounding = 1e-6;  // of the history's times
-constexpr double kAhead = 5;        // seconds that a stamp may be after the box's clock
+constexpr double kAhead = 5;        // seconds that a stamp may be after the clock for stamps
 /// Seconds: a start of the machine begins where no stamp has been, so much ahead at the most; what was
 /// written of that holds so long.
 constexpr double kFloorAhead = 30, kFloorHolds = 35;
@@ -90,7 +91,12 @@ void stamps(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> last;
   DiskFaultsSeen disk;
   double ahead = kAhead, forgotten_until = 0;
+  double clock = 0;       // by which the box's is ahead of the world's
+  bool by_clock = false;  // the next life may begin where that is
   for (const Event& event : evidence.events) {
+    if (event.kind == Kind::ClockSet) clock = event.stamp;
+    by_clock = by_clock || event.kind == Kind::PowerCut || disk.forgets_at(event);
+    if (event.kind == Kind::Begins && std::exchange(by_clock, false)) ahead = std::max(ahead, kAhead + clock);
     if (disk.forgets_at(event)) {
       ahead += kFloorAhead;
       forgotten_until = event.at + kMakesWay;

@@ -33,14 +33,15 @@ enum class Kind : std::uint8_t {
   Another,    // it has recorded somebody else's report
   NewRun,
   Fault,
-  Written,  // settings are put in place; `who` stands for what they say
-  Serves,   // a life begins with those
-  Mended,   // a fault of the disk is over
-  Slow,     // the process stands still for its disk, so many seconds (as a stamp)
-  Calm,     // no fault begins any more
-  Told,     // to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"
-  Shows,    // the panel: its lights are lit as `who` says, "1000" for health alone
-  Said      // a line of the log
+  Written,   // settings are put in place; `who` stands for what they say
+  Serves,    // a life begins with those
+  Mended,    // a fault of the disk is over
+  Slow,      // the process stands still for its disk, so many seconds (as a stamp)
+  Calm,      // no fault begins any more
+  Told,      // to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"
+  ClockSet,  // the box's clock is another from now on, so many seconds ahead of the world's (as a stamp)
+  Shows,     // the panel: its lights are lit as `who` says, "1000" for health alone
+  Said       // a line of the log
 };
 
 /// What a message says beside its serial, in numbers: see messages.hpp.

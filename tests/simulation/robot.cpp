@@ -91,7 +91,7 @@ Item Robot::item(std::string who, Says says) {
   const double off = clock_ + (world_.time() > jumps_at_ ? jump_ : 0);
   return {.who = std::move(who),
           .serial = ++serial_,
-          .stamp = stamps_ ? world_.stamp() + off : 0,
+          .stamp = stamps_ ? World::kEpoch + world_.time() + off : 0,
           .says = std::move(says)};
 }
 

@@ -31,6 +31,21 @@ void plan_ends(World& world, Box& box, double trouble_for) {
   }
 }
 
+/// In three of ten runs: somebody sets the box's clock up to three times, either way, by seconds or by
+/// months.
+void plan_clock(World& world, double trouble_for) {
+  Random random = world.random("clock");
+  if (!random.chance(0.3)) return;
+  for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
+    // One that is set by less than half a second shows nowhere.
+    const double by = random.between(1, random.chance(0.5) ? 8 : 1e7);
+    const double step = random.chance(0.5) ? by : -by;
+    const auto when = seconds(random.between(0, trouble_for));
+    if (world.omits("clock")) continue;
+    world.after(when, [&world, step] { world.set_clock(world.clock_ahead() + step); });
+  }
+}
+
 std::vector<dispatch::Report> reports_in(const std::string& folder) {
   const auto ledger = ledger::Ledger::open(folder);
   if (!ledger) return {};
@@ -53,6 +68,7 @@ Outcome play(const Plan& plan) {
   const Switcher switcher(world, trouble_for);
   Reader reader(world, trouble_for);
   plan_ends(world, box, trouble_for);
+  plan_clock(world, trouble_for);
   world.disk().faults().plan(trouble_for);
   world.network().stalls().plan(trouble_for);
   world.after(seconds(trouble_for), [&] { posts.calm(); });

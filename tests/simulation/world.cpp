@@ -64,6 +64,11 @@ void World::run_for(Duration duration) {
   now_ = std::max(now_, end);
 }
 
+void World::set_clock(double seconds_ahead) {
+  clock_ahead_ = seconds_ahead;
+  note({.kind = Kind::ClockSet, .what = "", .who = "", .stamp = seconds_ahead});
+}
+
 bool World::omits(const std::string& actor) {
   return without_.has(actor, ++actions_[actor]);
 }

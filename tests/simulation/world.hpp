@@ -45,10 +45,11 @@ class World {
   Random random(std::string_view name) const { return {seed_, name}; }
   Instant now() const { return now_; }
   double time() const;  // seconds since the run began
-  /// The box's clock, as it is told at a start of the machine.
-  double stamp() const { return kEpoch + time() - clock_back_; }
-  /// The machine starts with a clock that is behind by so many seconds.
-  void set_clock_back(double seconds) { clock_back_ = seconds; }
+  /// The box's clock.
+  double stamp() const { return kEpoch + time() + clock_ahead_; }
+  double clock_ahead() const { return clock_ahead_; }
+  /// Somebody sets it, or the machine starts with another.
+  void set_clock(double seconds_ahead);
 
   void at(Instant when, std::function<void()> happen);
   void after(Duration delay, std::function<void()> happen) { at(now_ + delay, std::move(happen)); }
@@ -121,7 +122,7 @@ class World {
   Network network_;
   Door door_;
   Disk disk_;
-  double clock_back_ = 0;
+  double clock_ahead_ = 0;
   Instant stands_until_;
   bool in_worker_ = false;
   Duration worker_waited_{};

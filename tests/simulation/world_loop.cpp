@@ -10,6 +10,7 @@
 #include "loop/file_descriptor.hpp"
 #include "loop/guard.hpp"
 #include "loop/loop.hpp"
+#include "loop/wall_clock.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::loop {
@@ -100,6 +101,7 @@ class Loop::Impl {
   simulation::Random lateness = world.random("timers " + std::to_string(world.life()));
   Instant started = world.now();
   double stamp_at_start = world.stamp();
+  WallClock wall{stamp_at_start, started};
   std::vector<std::function<void()>> posted;
   bool stopping = false;
 
@@ -149,6 +151,19 @@ double Loop::stamp_now() const {
 }
 void Loop::set_stamp(double now) {
   impl_->stamp_at_start += now - stamp_now();
+}
+
+double Loop::wall_now() const {
+  return impl_->wall.now(now());
+}
+void Loop::set_wall(double now) {
+  impl_->wall.set(now, this->now());
+}
+double Loop::wall_ahead() const {
+  return impl_->wall.ahead();
+}
+double Loop::look_at_wall() {
+  return impl_->wall.look(impl_->world.stamp(), now());
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

@@ -7,6 +7,7 @@ import { showAside } from "./aside.js";
 import { say } from "./dom.js";
 import { follow } from "./live.js";
 import { showBoxActions } from "./box_actions.js";
+import { offerClock } from "./clock.js";
 import { compose, showCompose } from "./compose.js";
 import { learned, linkIs } from "./actions.js";
 import { listenToKeys } from "./keys.js";
@@ -54,6 +55,7 @@ offerRobotsList();
 followWays();
 followNetwork();
 showWho(document.getElementById("who"));
+offerClock().catch(() => {}); // the alarm says that the time is not set
 learned.then(follow("/adit/events", show));
 
 function focus(tab, selector) {

@@ -1,5 +1,6 @@
 // The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
 import "./presses.js";
+import { offerClock } from "./clock.js";
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
 import { offerBundle, offerReset, showAbout } from "./box.js";
@@ -29,6 +30,7 @@ async function begin() {
   showAbout();
   offerUpdate(operator);
   if (!operator) return;
+  offerClock().catch(() => {}); // the alarm says that the time is not set
   watchSessions();
   offerPasswords();
   offerBundle();

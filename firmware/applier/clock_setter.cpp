@@ -1,0 +1,75 @@
+#include "applier/clock_setter.hpp"
+
+#include <charconv>
+#include <cmath>
+
+#include "host/log.hpp"
+#include "host/service.hpp"
+#include "host/untrusted_folder.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::Level;
+
+constexpr double kAgrees = 5;  // seconds
+
+/// The kernel reads a clock with a battery as it starts. One that is behind what was built then does not
+/// agree with the system's.
+bool agrees(const std::string& chip, double now) {
+  const auto text = host::read_file(chip + "/since_epoch");
+  double told = 0;
+  if (text) std::from_chars(text->data(), text->data() + text->size(), told);
+  return told >= clock::kEarliest && std::abs(told - now) < kAgrees;
+}
+
+}  // namespace
+
+std::expected<void, std::string> ClockSetter::work() {
+  const auto before = host::read_file(options_.status + '/' + clock::kStatusFile);
+  const auto known = before ? clock::read<clock::Status>(*before) : std::unexpected(before.error());
+  if (known) {
+    status_ = *known;
+  } else if (agrees(options_.chip, clocks_.wall())) {
+    status_.source = clock::Source::Chip;
+  }
+  if (const auto told = file_.tell(clock::write(status_)); !told) return std::unexpected(told.error());
+  auto folder = host::UntrustedFolder::open(options_.wanted);
+  if (!folder) {
+    host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+    return {};
+  }
+  while (true) {
+    const auto text = folder->take(clock::kRequestFile);
+    if (text && !*text) return {};
+    if (!text && text.error().stays) return std::unexpected(text.error().why);
+    const auto request = text ? clock::read<clock::Request>(**text) : std::unexpected(text.error().why);
+    if (request) {
+      answer(*request);
+    } else {
+      host::log(Level::Warning, "refused what was asked for", {{"why", request.error()}});
+    }
+  }
+}
+
+void ClockSetter::answer(const clock::Request& request) {
+  const double at = clocks_.monotonic(), before = clocks_.wall();
+  status_.nonce = request.nonce;
+  status_.refusal = clock::hindrance(request, at);
+  if (status_.refusal.empty()) {
+    const auto set = clocks_.set(request.time + (at - request.at));
+    status_.refusal = set ? "" : "the clock cannot be set: " + set.error();
+  }
+  if (status_.refusal.empty()) {
+    status_.source = request.source;
+    host::log(Level::Notice, "the clock was set",
+              {{"by", std::string(clock::kSourceWords[static_cast<std::size_t>(request.source)])},
+               {"ahead_by_s", icd::sentence(request.time + (at - request.at) - before)}});
+  } else {
+    host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+  }
+  (void)file_.tell(clock::write(status_));  // logs what hinders it
+}
+
+}  // namespace adit::applier

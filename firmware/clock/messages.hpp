@@ -1,0 +1,63 @@
+#pragma once
+
+#include <expected>
+#include <string>
+#include <string_view>
+
+#include "clock/source.hpp"
+#include "codec/row_file.hpp"
+
+/// The files by which aditd, which has no privilege, and adit-clock, which runs as root, speak with each
+/// other: README.md.
+namespace adit::clock {
+
+/// What aditd asks for, in its own state folder; adit-clock takes it away. And what adit-clock tells
+/// everybody, in its runtime folder.
+inline constexpr const char* kRequestFile = "clock.json";
+inline constexpr const char* kStatusFile = "status.json";
+
+/// The words of Source, in its order.
+inline constexpr std::string_view kSourceWords[] = {"none",         "last_known", "robots",
+                                                    "command_post", "chip",       "operator"};
+
+}  // namespace adit::clock
+
+template <>
+struct adit::codec::KindOf<adit::clock::Source>
+    : adit::codec::KindOfWords<adit::clock::Source, adit::clock::kSourceWords> {};
+
+namespace adit::clock {
+
+struct Request {
+  std::string nonce = "";  // network::is_nonce()
+  Source source = Source::None;
+  double time = 0;  // seconds since 1970
+  double at = 0;    // when that was so: seconds of the machine's monotonic clock
+  static const codec::Row kRow;
+};
+
+struct Status {
+  std::string nonce = "";        // of the last request that was taken up
+  std::string refusal = "";      // why it was not done; "" where it was
+  Source source = Source::None;  // who set the time of day last, since the machine started
+  static const codec::Row kRow;
+  friend bool operator==(const Status&, const Status&) = default;
+};
+
+inline constexpr codec::FileFormat kFormat = {"format", 1};
+
+template <class Message>
+std::string write(const Message& message) {
+  return codec::write_file(message, kFormat);
+}
+
+/// Strict, as codec::read_file() is.
+template <class Message>
+std::expected<Message, std::string> read(std::string_view json) {
+  return codec::read_file<Message>(json, kFormat);
+}
+
+/// Why a request is not to be done at that instant of the monotonic clock (seconds); "": it is.
+std::string hindrance(const Request& request, double at);
+
+}  // namespace adit::clock

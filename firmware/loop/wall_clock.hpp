@@ -1,0 +1,43 @@
+#pragma once
+
+#include <chrono>
+#include <cmath>
+
+namespace adit::loop {
+
+/// The time of day as the program tells it: the system's clock, or another where that is known to be wrong.
+/// Somebody may set the system's, either way: that counts from the next look() on, so that whoever looks can
+/// bring along what he has noted of the time before. Reads no clock.
+class WallClock {
+ public:
+  using Instant = std::chrono::steady_clock::time_point;
+  static constexpr double kSet = 0.5;  // seconds at once: no clock runs so wrong, it was set
+
+  /// `system`: seconds since 1970 by the system's clock, at that instant of the monotonic one; below too.
+  WallClock(double system, Instant at) : seen_(system), seen_at_(at) {}
+
+  double now(Instant at) const { return seen_ + seconds(at) + ahead_; }
+  /// By how many seconds now() is ahead of the system's.
+  double ahead() const { return ahead_; }
+  /// It is `now`, until somebody sets the system's.
+  void set(double now, Instant at) { ahead_ += now - this->now(at); }
+
+  /// By how many seconds now() jumps for this look; 0: it does not. To be called each second.
+  double look(double system, Instant at) {
+    const double step = system - seen_ - seconds(at), before = ahead_;
+    seen_ = system;
+    seen_at_ = at;
+    if (std::abs(step) < kSet) return 0;
+    ahead_ = 0;
+    return step - before;
+  }
+
+ private:
+  double seconds(Instant at) const { return std::chrono::duration<double>(at - seen_at_).count(); }
+
+  double seen_;
+  Instant seen_at_;
+  double ahead_ = 0;
+};
+
+}  // namespace adit::loop

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "api/clock.hpp"
+
+namespace adit::api {
+
+/// Is what it is told to be, and remembers what it was set to.
+struct FakeClock final : Clock {
+  ClockView clock() const override { return view; }
+  icd::Checked<void> set_clock(double time) override {
+    if (outcome) set.push_back(time);
+    if (outcome) view.now = time;
+    return outcome;
+  }
+
+  ClockView view;
+  icd::Checked<void> outcome;
+  std::vector<double> set;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "applier/clock_setter.hpp"
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::applier {
+namespace {
+
+namespace fs = std::filesystem;
+using clock::Source;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr const char* kAsker = "0123456789abcdef0123456789abcdef";
+
+class ClockSetterTest : public testing::Test {
+ protected:
+  ClockSetterTest() {
+    for (const char* name : {"wanted", "status", "chip"}) fs::create_directory(folder / name);
+    options.wanted = folder / "wanted";
+    options.status = folder / "status";
+    options.chip = folder / "chip";
+  }
+  void ask(double time, double at, Source source = Source::Operator) {
+    folder.put("wanted/clock.json",
+               clock::write(clock::Request{.nonce = kAsker, .source = source, .time = time, .at = at}));
+  }
+  clock::Status work() {
+    const auto done = ClockSetter(options, {.wall = [] { return 1.79e9; },
+                                            .monotonic = [] { return 100.0; },
+                                            .set = [this](double time) -> std::expected<void, std::string> {
+                                              if (!trouble.empty()) return std::unexpected(trouble);
+                                              set.push_back(time);
+                                              return {};
+                                            }})
+                          .work();
+    EXPECT_TRUE(done) << done.error();
+    EXPECT_TRUE(fs::is_empty(options.wanted));
+    const auto told = clock::read<clock::Status>(*host::read_file(folder / "status/status.json"));
+    return told.value_or(clock::Status{});
+  }
+
+  host::Folder folder;
+  ClockOptions options;
+  std::string trouble;
+  std::vector<double> set;
+};
+
+TEST_F(ClockSetterTest, SetsTheTimeThatItHasBecomeSinceItWasAskedFor) {
+  ask(1.8e9, 97.5);
+  EXPECT_EQ(work(), (clock::Status{.nonce = kAsker, .refusal = "", .source = Source::Operator}));
+  EXPECT_THAT(set, ElementsAre(1.8e9 + 2.5));
+}
+
+TEST_F(ClockSetterTest, RefusesWhatIsOutOfBoundsOldOrNoRequest) {
+  ask(1e9, 97.5);
+  EXPECT_THAT(work().refusal, HasSubstr("time:"));
+  ask(1.8e9, 5);
+  EXPECT_THAT(work().refusal, HasSubstr("at:"));
+  folder.put("wanted/clock.json", "1800000000");
+  work();
+  fs::create_symlink("/dev/zero", folder / "wanted/clock.json");
+  work();
+  EXPECT_THAT(set, IsEmpty());
+}
+
+TEST_F(ClockSetterTest, TellsWhatHinderedIt) {
+  trouble = "Operation not permitted";
+  ask(1.8e9, 97.5);
+  const clock::Status told = work();
+  EXPECT_THAT(told.refusal, HasSubstr(trouble));
+  EXPECT_EQ(told.source, Source::None) << "it is not set";
+}
+
+TEST_F(ClockSetterTest, KnowsAChipThatAgreesWithTheClock) {
+  EXPECT_EQ(work().source, Source::None);
+  fs::remove(folder / "status/status.json");
+  folder.put("chip/since_epoch", "1500000000\n");
+  EXPECT_EQ(work().source, Source::None) << "its battery is empty";
+  fs::remove(folder / "status/status.json");
+  folder.put("chip/since_epoch", "1790000001\n");
+  EXPECT_EQ(work().source, Source::Chip);
+}
+
+TEST_F(ClockSetterTest, RemembersWhoSetItUntilTheMachineRestarts) {
+  ask(1.8e9, 99, Source::CommandPost);
+  work();
+  EXPECT_EQ(work().source, Source::CommandPost);
+}
+
+}  // namespace
+}  // namespace adit::applier

@@ -1,0 +1,68 @@
+#include "cli/clock.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+double time_of_here() {
+  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
+}
+
+std::string clock_view(double now, const char* source, bool is_set, const char* refusal = "") {
+  return Server::ok(R"({"now":)" + std::to_string(now) + R"(,"managed":true,"why":"","source":")" + source +
+                    R"(","is_set":)" + (is_set ? "true" : "false") + R"(,"refusal":")" + refusal + "\"}");
+}
+
+class ClockCommand : public testing::Test {
+ protected:
+  Outcome say(const Server& server, std::vector<std::string_view> words) {
+    const std::string at = server.at();
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    return run(words);
+  }
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
+};
+
+TEST_F(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
+  const Server server({{"GET /adit/clock", clock_view(time_of_here(), "command_post", true)}});
+  const Outcome outcome = say(server, {"clock"});
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_THAT(outcome.out, HasSubstr("UTC, as here\nset by the Command Post's answers\n"));
+  EXPECT_THAT(say(server, {"clock", "--json"}).out, HasSubstr("\"source\":\"command_post\""));
+}
+
+TEST_F(ClockCommand, SaysHowToSetItWhereItIsNot) {
+  const Server server({{"GET /adit/clock", clock_view(time_of_here() - 7300, "last_known", false)}});
+  const Outcome outcome = say(server, {"clock", "show"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_THAT(outcome.out, HasSubstr("behind here"));
+  EXPECT_THAT(outcome.out, HasSubstr("adit clock set"));
+}
+
+TEST_F(ClockCommand, TellsWhyItWasNotSet) {
+  const Server server(
+      {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "the clock cannot be set: no")}});
+  EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: the clock cannot be set: no"));
+}
+
+TEST_F(ClockCommand, SetsItToThisComputersTime) {
+  const Server server({{"POST /adit/clock", clock_view(time_of_here(), "operator", true)}});
+  const Outcome outcome = say(server, {"clock", "set"});
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_EQ(outcome.out, "the clock is being set\n");
+}
+
+}  // namespace
+}  // namespace adit::cli

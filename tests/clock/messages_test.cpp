@@ -1,0 +1,50 @@
+#include "clock/messages.hpp"
+
+#include <gmock/gmock.h>
+
+namespace adit::clock {
+namespace {
+
+using testing::HasSubstr;
+
+Request request() {
+  return {.nonce = "0123456789abcdef0123456789abcdef", .source = Source::Operator, .time = 1.8e9, .at = 100};
+}
+
+TEST(ClockMessages, AreReadAsTheyWereWritten) {
+  const auto read_request = read<Request>(write(request()));
+  ASSERT_TRUE(read_request) << read_request.error();
+  EXPECT_EQ(read_request->time, 1.8e9);
+  EXPECT_EQ(read_request->source, Source::Operator);
+  const Status status{.nonce = "n", .refusal = "why", .source = Source::CommandPost};
+  EXPECT_EQ(read<Status>(write(status)), status);
+}
+
+TEST(ClockMessages, ARequestThatIsNoneIsRefusedWithTheNameOfItsFault) {
+  std::string wrong = write(request());
+  wrong.replace(wrong.find("operator"), 8, "anybodys");
+  EXPECT_THAT(read<Request>(wrong).error(), HasSubstr("source"));
+  EXPECT_FALSE(read<Request>("{}"));
+  EXPECT_FALSE(read<Request>("1.8e9"));
+}
+
+TEST(ClockMessages, ARequestCountsForAMinuteOfTheSameStart) {
+  EXPECT_EQ(hindrance(request(), 100), "");
+  EXPECT_EQ(hindrance(request(), 160), "");
+  EXPECT_THAT(hindrance(request(), 161), HasSubstr("at:"));
+  EXPECT_THAT(hindrance(request(), 99), HasSubstr("at:")) << "of an earlier start";
+}
+
+TEST(ClockMessages, NoTimeOutOfBoundsIsTaken) {
+  for (const double time : {0.0, kEarliest - 1, kLatest, 1e300}) {
+    Request wrong = request();
+    wrong.time = time;
+    EXPECT_THAT(hindrance(wrong, 100), HasSubstr("time:")) << time;
+  }
+  Request chip = request();
+  chip.source = Source::Chip;
+  EXPECT_THAT(hindrance(chip, 100), HasSubstr("source:")) << "the program finds that out itself";
+}
+
+}  // namespace
+}  // namespace adit::clock

@@ -1,0 +1,63 @@
+#include "loop/wall_clock.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::loop {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr double kBegan = 1.7e9;
+
+class WallClockTest : public testing::Test {
+ protected:
+  /// Looks after a second by the monotonic clock, of which the system's makes so many.
+  double look(double seconds = 1) {
+    at_ += milliseconds(1000);
+    system_ += seconds;
+    return clock_.look(system_, at_);
+  }
+  double now() const { return clock_.now(at_); }
+
+  WallClock::Instant at_{};
+  double system_ = kBegan;
+  WallClock clock_{system_, at_};
+};
+
+TEST_F(WallClockTest, IsTheSystemsAndFollowsItsLittleCorrections) {
+  EXPECT_EQ(look(1.01), 0);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 1.01);
+  EXPECT_EQ(look(0.6), 0);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 1.61);
+}
+
+TEST_F(WallClockTest, TellsByHowMuchSomebodySetIt) {
+  EXPECT_DOUBLE_EQ(look(1 + 3600), 3600);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 3601);
+  EXPECT_DOUBLE_EQ(look(1 - 86400), -86400);
+  EXPECT_EQ(look(), 0);
+}
+
+TEST_F(WallClockTest, DoesNotJumpBetweenTwoLooks) {
+  look();
+  system_ += 3600;
+  EXPECT_DOUBLE_EQ(clock_.now(at_ + milliseconds(500)), kBegan + 1.5);
+}
+
+TEST_F(WallClockTest, IsAheadOfASystemThatIsBehindUntilThatIsSet) {
+  clock_.set(kBegan + 5000, at_);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 5000);
+  EXPECT_EQ(look(), 0);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 5001);
+  EXPECT_NEAR(look(1 + 5000), 0, 1e-6) << "to what was known: nobody need be told";
+  EXPECT_DOUBLE_EQ(now(), kBegan + 5002);
+  EXPECT_DOUBLE_EQ(look(1 + 60), 60);
+}
+
+TEST_F(WallClockTest, TellsTheRestWhereTheSystemIsSetToAnotherTimeThanWasKnown) {
+  clock_.set(kBegan + 5000, at_);
+  EXPECT_DOUBLE_EQ(look(1 + 5060), 60);
+}
+
+}  // namespace
+}  // namespace adit::loop

@@ -61,10 +61,10 @@ std::string text_of(const ToldClock& view, double here) {
       std::abs(ahead) <= kAsHere
           ? "as here"
           : icd::sentence(duration(std::abs(ahead)), ahead > 0 ? " ahead of here" : " behind here");
-  std::string out = icd::sentence(utc(view.now), ", ", apart, '\n');
+  std::string out = icd::sentence(utc(view.now), ", ", apart, "\n");
   out += view.managed ? spoken(view.source) + '\n'
-                      : icd::sentence("It cannot be set by Adit: ", host::escaped(view.why), '\n');
-  if (!view.refusal.empty()) out += icd::sentence("Not set: ", host::escaped(view.refusal), '\n');
+                      : icd::sentence("It cannot be set by Adit: ", host::escaped(view.why), "\n");
+  if (!view.refusal.empty()) out += icd::sentence("Not set: ", host::escaped(view.refusal), "\n");
   if (!view.is_set) out += "Set it by this computer's: adit clock set\n";
   return out;
 }

@@ -28,6 +28,8 @@ struct Row {
   std::string_view name;  // among OpenAPI's schemas; "": it is described where it is used
   std::span<const Member> members;
   std::string_view meaning = "";
+  std::span<const std::string_view> id =
+      {};  // the members by which one of a list is told; none: by its place
 };
 
 /// What OpenAPI says of the values of one C++ type.

@@ -12,4 +12,8 @@ const char* Value::kind() const {
   return kKinds[is.index()];
 }
 
+bool operator==(const Value& one, const Value& other) {
+  return one.is == other.is;
+}
+
 }  // namespace adit::codec

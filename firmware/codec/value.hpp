@@ -16,9 +16,12 @@ class List;
 struct Value {
   struct Bytes {  // a CBOR byte string; text where it is UTF-8 and text is asked for
     std::vector<std::uint8_t> bytes;
+    friend bool operator==(const Bytes&, const Bytes&) = default;
   };
   /// Stands where the map's `data` was split out (Document::data holds it).
-  struct SplitOut {};
+  struct SplitOut {
+    friend bool operator==(SplitOut, SplitOut) = default;
+  };
   using Array = std::vector<Value>;
   using Member = std::pair<std::string, Value>;  // CBOR keys that are no text are left out
   using Object = std::vector<Member>;
@@ -29,6 +32,9 @@ struct Value {
 
   /// "a string", "a whole number", "null", ...: for sentences.
   const char* kind() const;
+
+  /// The same kind, and the same value; lists that are left as text only where they are one.
+  friend bool operator==(const Value& one, const Value& other);
 };
 
 }  // namespace adit::codec

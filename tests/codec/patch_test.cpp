@@ -1,0 +1,196 @@
+#include "codec/patch.hpp"
+
+#include <gmock/gmock.h>
+
+#include <random>
+
+#include "codec/json.hpp"
+#include "codec/patched.hpp"
+
+namespace adit::codec {
+namespace {
+
+struct Step {
+  std::uint64_t number = 0;
+  std::string note;
+  std::optional<double> height;
+
+  static const Row kRow;
+};
+
+struct Way {
+  double now = 0;
+  std::optional<Step> top;
+  std::vector<Step> steps;
+  std::vector<std::uint64_t> marks;
+  std::vector<Step> unnamed;
+
+  static const Row kRow;
+};
+
+/// Steps that nothing tells apart but their places.
+struct Unnamed {
+  static Value write(const std::vector<Step>& steps);
+  static void read(const Field& field, std::vector<Step>& steps);
+  static const Schema schema;
+};
+
+constexpr std::string_view kByNumber[] = {"number"};
+constexpr Member kStep[] = {member<&Step::number>("number"), member<&Step::note>("note"),
+                            member<&Step::height>("height")};
+constexpr Row kUnnamed = {"", kStep};
+constexpr Row Step::kRow = {"Step", kStep, "", kByNumber};
+constexpr Schema kUnnamedStep = {.row = &kUnnamed};
+constexpr Schema Unnamed::schema = {.type = "array", .items = &kUnnamedStep};
+Value Unnamed::write(const std::vector<Step>& steps) {
+  return json(steps);
+}
+void Unnamed::read(const Field& field, std::vector<Step>& steps) {
+  KindOf<std::vector<Step>>::read(field, steps);
+}
+
+constexpr Member kWay[] = {member<&Way::now>("now"), member<&Way::top>("top"), member<&Way::steps>("steps"),
+                           member<&Way::marks>("marks"),
+                           member<&Way::unnamed>("unnamed").as(kind_as<std::vector<Step>, Unnamed>)};
+constexpr Row Way::kRow = {"Way", kWay};
+
+Way way() {
+  return {.now = 1,
+          .top = std::nullopt,
+          .steps = {{1, "a", 0.5}, {2, "b", {}}, {3, "c", {}}},
+          .marks = {7},
+          .unnamed = {}};
+}
+
+/// As JSON; "": nothing changed.
+std::string patch_text(const Way& before, const Way& now) {
+  const auto found = patch(Way::kRow, json(before), json(now));
+  return found ? write_json(*found) : "";
+}
+
+TEST(Patch, IsNothingWhereNothingChanged) {
+  EXPECT_EQ(patch_text(way(), way()), "");
+}
+
+TEST(Patch, HasTheMembersThatChanged) {
+  Way now = way();
+  now.now = 2;
+  now.marks.push_back(8);
+  now.top = Step{.number = 9, .note = "", .height = 2};
+  EXPECT_EQ(patch_text(way(), now), R"({"now":2.0,"top":{"number":9,"note":"","height":2.0},"marks":[7,8]})");
+  Way next = now;
+  next.top->height.reset();
+  EXPECT_EQ(patch_text(now, next), R"({"top":{"height":null}})");
+  EXPECT_EQ(patch_text(now, way()), R"({"now":1.0,"top":null,"marks":[7]})");
+}
+
+TEST(Patch, OfARowHasItsPlaceAndWhatChangedOfIt) {
+  Way now = way();
+  now.steps[1].note = "B";
+  EXPECT_EQ(patch_text(way(), now), R"({"steps":{"rows":{"1":{"note":"B"}}}})");
+}
+
+TEST(Patch, OfANewFirstRowLeavesTheOthersWhereTheyAre) {
+  Way now = way();
+  now.steps.insert(now.steps.begin(), Step{.number = 4, .note = "d", .height = {}});
+  EXPECT_EQ(patch_text(way(), now),
+            R"({"steps":{"length":4,"kept":[[1,0,3]],"rows":{"0":{"number":4,"note":"d","height":null}}}})");
+}
+
+TEST(Patch, OfRowsThatWentOrMovedNamesThoseThatStayed) {
+  Way now = way();
+  now.steps.erase(now.steps.begin() + 1);
+  EXPECT_EQ(patch_text(way(), now), R"({"steps":{"length":2,"kept":[[0,0,1],[1,2,1]]}})");
+  now = way();
+  now.steps.pop_back();
+  EXPECT_EQ(patch_text(way(), now), R"({"steps":{"length":2}})");
+  std::swap(now.steps[0], now.steps[1]);
+  now.steps[0].note = "B";
+  EXPECT_EQ(patch_text(way(), now),
+            R"({"steps":{"length":2,"kept":[[0,1,1],[1,0,1]],"rows":{"0":{"note":"B"}}}})");
+  now.steps.clear();
+  EXPECT_EQ(patch_text(way(), now), R"({"steps":{"length":0}})");
+}
+
+TEST(Patch, TellsRowsThatHaveNoNameByTheirPlaces) {
+  Way before = way(), now = way();
+  before.unnamed = {{1, "a", {}}, {2, "b", {}}};
+  now.unnamed = {{2, "b", {}}, {2, "b", {}}, {5, "e", {}}};
+  EXPECT_EQ(
+      patch_text(before, now),
+      R"({"unnamed":{"length":3,"rows":{"0":{"number":2,"note":"b"},"2":{"number":5,"note":"e","height":null}}}})");
+}
+
+TEST(Patch, HasNothingThatSomebodyTypedAsAName) {
+  Way now = way();
+  now.steps.insert(now.steps.begin(), Step{.number = 4, .note = "secret", .height = {}});
+  const std::string text = patch_text(way(), now);
+  EXPECT_NE(text.find(R"("secret")"), std::string::npos);
+  EXPECT_EQ(text.find(R"("secret":)"), std::string::npos);
+}
+
+using Random = std::mt19937_64;
+
+Step any_step(Random& random) {
+  return {.number = random() % 12,
+          .note = std::string(random() % 3, 'x'),
+          .height = random() % 3 == 0 ? std::nullopt : std::optional(static_cast<double>(random() % 3))};
+}
+
+/// Some of what can become of a list: rows come, go, change and move; two may even have the same number.
+void change_some(Random& random, std::vector<Step>& steps) {
+  for (std::uint64_t i = random() % 4; i > 0; --i) {
+    const auto any = steps.begin() + static_cast<std::ptrdiff_t>(random() % (steps.size() + 1));
+    const bool is_row = any != steps.end();
+    switch (random() % 5) {
+      case 0:
+        steps.insert(any, any_step(random));
+        break;
+      case 1:
+        if (is_row) steps.erase(any);
+        break;
+      case 2:
+        if (is_row) any->note += "y";
+        break;
+      case 3:
+        if (is_row) std::iter_swap(any, steps.begin());
+        break;
+      default:
+        if (is_row) *any = any_step(random);
+    }
+  }
+}
+
+void change_some(Random& random, Way& way) {
+  way.now += static_cast<double>(random() % 2);
+  if (random() % 3 == 0) way.top = random() % 3 == 0 ? std::nullopt : std::optional(any_step(random));
+  if (random() % 3 == 0) way.marks.resize(random() % 3, random() % 4);
+  change_some(random, way.steps);
+  change_some(random, way.unnamed);
+}
+
+/// As a client has it.
+Value read_again(const Value& value) {
+  return parse_json(write_json(value)).value();
+}
+
+TEST(Patch, MakesOfAnyViewTheNextOne) {
+  Random random(7);
+  for (int life = 0; life < 50; ++life) {
+    Way now = way();
+    Value told = json(now), known = read_again(told);
+    for (int step = 0; step < 100; ++step) {
+      change_some(random, now);
+      const Value next = json(now);
+      const auto change = patch(Way::kRow, told, next);
+      ASSERT_EQ(change.has_value(), told != next);
+      if (!change) continue;
+      known = test::patched(known, read_again(*change));
+      ASSERT_EQ(write_json(known), write_json(read_again(next))) << write_json(*change);
+      told = next;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace adit::codec

@@ -46,7 +46,7 @@ std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead&
 class Api::Impl {
  public:
   Impl(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens, icd::Redaction redaction)
-      : redaction_(std::make_shared<icd::Redaction>(std::move(redaction))),
+      : redaction_(std::make_shared<SharedRedaction>(shared(std::move(redaction)))),
         entrance_(loop, served.keys, std::move(tokens)),
         live_(loop, served.source),
         sessions_(loop, entrance_, served.keys, served.setup),
@@ -57,7 +57,7 @@ class Api::Impl {
     if (served.setup) settings_.emplace(*served.setup);
     if (served.network) network_.emplace(*served.network, *served.test, [this] { changed(); });
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
-    if (served.box) box_.emplace(served.source, lists_, *served.box, entrance_, redaction_, loop);
+    if (served.box) box_.emplace(served.source, lists_, *served.box, entrance_, *redaction_, loop);
     if (served.clock) clock_.emplace(*served.clock, [this] { changed(); });
     if (served.runs) kept_.emplace(loop, *served.runs, served.source);
     handlers_ = {&pages_,      &sessions_,   &run_,    &maps_,    &reports_, at(settings_),
@@ -99,10 +99,14 @@ class Api::Impl {
   void changed() { live_.changed(); }
   void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction) {
     entrance_.let_in(std::move(tokens));
-    redaction_ = std::make_shared<icd::Redaction>(std::move(redaction));
+    *redaction_ = shared(std::move(redaction));
   }
 
  private:
+  static SharedRedaction shared(icd::Redaction redaction) {
+    return std::make_shared<icd::Redaction>(std::move(redaction));
+  }
+
   std::unique_ptr<intake::BodySink> handle(const Route& route, const Call& call) const {
     if (route.handle.answer == nullptr) return route.handle.begin(handlers_, call);
     call.responder->answer(route.handle.answer(handlers_, call));
@@ -114,7 +118,7 @@ class Api::Impl {
     return routes ? &*routes : nullptr;
   }
 
-  SharedRedaction redaction_;
+  const std::shared_ptr<SharedRedaction> redaction_;
   Entrance entrance_;
   Live live_;
   PageRoutes pages_;

@@ -11,25 +11,29 @@ constexpr std::string_view kEvents = "text/event-stream";
 
 class RedactedStream final : public intake::Stream {
  public:
-  RedactedStream(std::shared_ptr<intake::Stream> stream, SharedRedaction redaction)
+  RedactedStream(std::shared_ptr<intake::Stream> stream, PresentRedaction redaction)
       : stream_(std::move(stream)), redaction_(std::move(redaction)) {}
-  bool send(std::string_view bytes) override {
-    std::string text(bytes);
-    redact(*redaction_, kEvents, text);
-    return stream_->send(text);
-  }
+  bool send(std::string_view bytes) override { return stream_->send(struck(bytes)); }
+  bool send_instead(std::string_view bytes) override { return stream_->send_instead(struck(bytes)); }
+  std::size_t waiting() const override { return stream_->waiting(); }
 
  private:
+  std::string struck(std::string_view bytes) const {
+    std::string text(bytes);
+    redact(**redaction_, kEvents, text);
+    return text;
+  }
+
   const std::shared_ptr<intake::Stream> stream_;
-  const SharedRedaction redaction_;
+  const PresentRedaction redaction_;
 };
 
 class RedactedResponder final : public intake::Responder {
  public:
-  RedactedResponder(std::shared_ptr<intake::Responder> responder, SharedRedaction redaction)
+  RedactedResponder(std::shared_ptr<intake::Responder> responder, PresentRedaction redaction)
       : responder_(std::move(responder)), redaction_(std::move(redaction)) {}
   void answer(intake::Answer answer) override {
-    if (!is_packed(answer)) redact(*redaction_, answer.content_type, answer.body);
+    if (!is_packed(answer)) redact(**redaction_, answer.content_type, answer.body);
     responder_->answer(std::move(answer));
   }
   std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
@@ -41,7 +45,7 @@ class RedactedResponder final : public intake::Responder {
 
  private:
   const std::shared_ptr<intake::Responder> responder_;
-  const SharedRedaction redaction_;
+  const PresentRedaction redaction_;
 };
 
 }  // namespace
@@ -58,7 +62,7 @@ void redact(const icd::Redaction& redaction, std::string_view content_type, std:
 }
 
 std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
-                                            SharedRedaction redaction) {
+                                            PresentRedaction redaction) {
   return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction));
 }
 

@@ -190,6 +190,13 @@ void Client::expect_reading(std::chrono::milliseconds within) {
   set_deadline(engine_.now() + within);
 }
 
+void Client::expect_stream() {
+  constexpr int kUnsent = 16 * 1024, kUntaken = static_cast<int>(kStreamWithin.count());
+  expect_nothing();
+  ::setsockopt(fd_, IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsent, sizeof kUnsent);
+  ::setsockopt(fd_, IPPROTO_TCP, TCP_USER_TIMEOUT, &kUntaken, sizeof kUntaken);
+}
+
 void Client::expect_nothing() {
   bytes_expected_ = false;
   rate_.reset();

@@ -84,6 +84,10 @@ class Client {
   void body_came(std::size_t bytes);
   /// The client has to take its answer at the least rate.
   void expect_steady_reading();
+  /// The client has to take, within kStreamWithin, what it is sent from time to time. Of that little waits in
+  /// the kernel, where it grows old.
+  void expect_stream();
+  static constexpr std::chrono::milliseconds kStreamWithin{30000};
   void expect_nothing();
   loop::Instant deadline() const { return deadline_; }
   /// The deadline has passed.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "intake/answer.hpp"
 #include "intake/client.hpp"
@@ -17,14 +18,24 @@ constexpr std::size_t kBlock = 16 * 1024;
 
 bool ReplyStream::append(std::string_view bytes) {
   if (client_ == nullptr || client_->hung_up()) return false;
-  if (waiting_.size() + bytes.size() > Stream::kLag) {
+  if (waiting() + bytes.size() > Stream::kLag) {
     client_->cut();
     detach();
     return false;
   }
-  waiting_ += bytes;
+  if (bytes.empty()) return true;
+  waiting_ += bytes.size();
+  pieces_.emplace_back(bytes);
   client_->resume();
   return true;
+}
+
+bool ReplyStream::replace(std::string_view bytes) {
+  while (pieces_.size() > (read_ > 0 ? 1 : 0)) {
+    waiting_ -= pieces_.back().size();
+    pieces_.pop_back();
+  }
+  return append(bytes);
 }
 
 void ReplyStream::end() {
@@ -34,14 +45,19 @@ void ReplyStream::end() {
 
 ssize_t ReplyStream::read(char* into, std::size_t most) {
   if (client_ == nullptr || client_->hung_up()) return MHD_CONTENT_READER_END_WITH_ERROR;
-  if (waiting_.empty()) {
+  if (pieces_.empty()) {
     if (ended_) return MHD_CONTENT_READER_END_OF_STREAM;
     client_->suspend();
     return 0;
   }
-  const std::size_t size = std::min(most, waiting_.size());
-  std::memcpy(into, waiting_.data(), size);
-  waiting_.erase(0, size);
+  const std::string& piece = pieces_.front();
+  const std::size_t size = std::min(most, piece.size() - read_);
+  std::memcpy(into, piece.data() + read_, size);
+  read_ += size;
+  if (read_ == piece.size()) {
+    waiting_ -= std::exchange(read_, 0);
+    pieces_.pop_front();
+  }
   return static_cast<ssize_t>(size);
 }
 

@@ -2,6 +2,8 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
+#include <deque>
 #include <memory>
 #include <string>
 
@@ -21,6 +23,8 @@ class ReplyStream {
     content_type_ = content_type;
   }
   bool append(std::string_view bytes);
+  bool replace(std::string_view bytes);
+  std::size_t waiting() const { return waiting_ - read_; }
   /// Nothing follows what has been appended.
   void end();
   /// The client is gone.
@@ -34,7 +38,9 @@ class ReplyStream {
 
   Client* client_ = nullptr;  // null where it is gone
   std::string content_type_;
-  std::string waiting_;
+  std::deque<std::string> pieces_;  // as they were given
+  std::size_t waiting_ = 0;         // bytes of them
+  std::size_t read_ = 0;            // of the first
   bool ended_ = false;
 };
 
@@ -46,6 +52,8 @@ class ReplyStreamEnd final : public Stream {
   ReplyStreamEnd& operator=(const ReplyStreamEnd&) = delete;
   ~ReplyStreamEnd() override { stream_->end(); }
   bool send(std::string_view bytes) override { return stream_->append(bytes); }
+  bool send_instead(std::string_view bytes) override { return stream_->replace(bytes); }
+  std::size_t waiting() const override { return stream_->waiting(); }
 
  private:
   std::shared_ptr<ReplyStream> stream_;

@@ -183,7 +183,7 @@ Next Request::hand_over() {
   if (queued != MHD_YES) return Next::Close;
   stage_ = Stage::Answering;
   if (stream_) {
-    client_->expect_nothing();
+    client_->expect_stream();
   } else {
     client_->expect_steady_reading();
   }

@@ -74,6 +74,10 @@ class Stream {
   virtual ~Stream() = default;
   /// Queues bytes; false once the client has gone, or has fallen `kLag` bytes behind (then it is cut off).
   virtual bool send(std::string_view bytes) = 0;
+  /// The same in the place of all that waits, but for what one send() gave and of which some has left.
+  virtual bool send_instead(std::string_view bytes) = 0;
+  /// Bytes that are queued.
+  virtual std::size_t waiting() const = 0;
   static constexpr std::size_t kLag = 1u << 20;
 };
 

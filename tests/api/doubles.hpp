@@ -140,7 +140,13 @@ struct FakeStream final : intake::Stream {
     if (!gone) sent.emplace_back(bytes);
     return !gone;
   }
+  bool send_instead(std::string_view bytes) override {
+    queued = 0;
+    return send(bytes);
+  }
+  std::size_t waiting() const override { return queued; }
   std::vector<std::string> sent;
+  std::size_t queued = 0;
   bool gone = false;
 };
 

@@ -204,6 +204,28 @@ TEST_F(ServerTest, StreamsAsItIsGiven) {
   EXPECT_EQ(client.reply()->status, 200);
 }
 
+TEST_F(ServerTest, ReplacesWhatWaitsInAStreamButNotWhatHasBegunToLeave) {
+  client.send(request("GET", "/stream"));
+  ASSERT_TRUE(served.eventually([&] { return handler.streams.size() == 1; }));
+  // More than the sockets take, so that some of it waits whoever is slow:
+  const std::string begun(300'000, 'a'), old(100'000, 'z'), end = "data: the end\n\n";
+  EXPECT_TRUE(served.eventually([&] {
+    EXPECT_TRUE(handler.streams[0]->send(begun));
+    return handler.streams[0]->waiting() > begun.size();
+  }));
+  served.on_loop([&] {
+    EXPECT_TRUE(handler.streams[0]->send(old));
+    EXPECT_TRUE(handler.streams[0]->send_instead(end));
+    EXPECT_LE(handler.streams[0]->waiting(), begun.size() + end.size());
+    handler.streams.clear();
+  });
+  const auto reply = client.reply(std::chrono::seconds(60));
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->body.find_first_not_of('a'), reply->body.size() - end.size())
+      << "whole, and nothing of the old";
+  EXPECT_TRUE(reply->body.ends_with(end));
+}
+
 TEST_F(ServerTest, CutsAStreamOffThatNobodyReads) {
   client.send(request("GET", "/stream"));
   ASSERT_TRUE(served.eventually([&] { return handler.streams.size() == 1; }));

@@ -38,10 +38,12 @@ constexpr Member kOver[] = {
     member<&Over::until>("until", kSeconds),
 };
 
+constexpr std::string_view kById[] = {"id"}, kByIdAndEnd[] = {"id", "until"};
+
 }  // namespace
 
 constexpr codec::Row Action::kRow = {"", kAction};
-constexpr codec::Row Alarm::kRow = {"Alarm", kAlarm, "What is not as it should be."};
-constexpr codec::Row Over::kRow = {"AlarmOver", kOver, "An alarm that went."};
+constexpr codec::Row Alarm::kRow = {"Alarm", kAlarm, "What is not as it should be.", kById};
+constexpr codec::Row Over::kRow = {"AlarmOver", kOver, "An alarm that went.", kByIdAndEnd};
 
 }  // namespace adit::alarms

@@ -1,22 +1,58 @@
 #include "api/live.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 #include <utility>
 
+#include "codec/patch.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::api {
 namespace {
 
+constexpr std::string_view kExact = "reports";  // two are the same where their coordinates are
 constexpr auto kSpacing = std::chrono::milliseconds{1000 / Live::kEventsPerSecond};
+
+/// Milliseconds, millimetres, microseconds of an answer: finer than a page shows, and half as long.
+double rounded(double number) {
+  constexpr double kSteps = 1000;
+  return std::round(number * kSteps) / kSteps + 0.0;  // no -0
+}
+
+void round_in(codec::Value& value) {
+  if (auto* const number = std::get_if<double>(&value.is)) *number = rounded(*number);
+  if (auto* const array = std::get_if<codec::Value::Array>(&value.is))
+    std::ranges::for_each(*array, round_in);
+  if (auto* const object = std::get_if<codec::Value::Object>(&value.is)) {
+    for (auto& [name, member] : *object) {
+      if (name != kExact) round_in(member);
+    }
+  }
+}
+
+/// The time goes on whatever happens.
+bool is_news(const std::optional<codec::Value>& patch) {
+  if (!patch) return false;
+  const auto& members = std::get<codec::Value::Object>(patch->is);
+  return members.size() > 1 || members.front().first != "now";
+}
 
 }  // namespace
 
 Live::Live(loop::Loop& loop, const Source& source)
-    : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(); })) {}
+    : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(false); })) {}
 
-std::string Live::event() const {
-  return "data: " + codec::to_json(source_.view()) + "\n\n";
+codec::Value Live::look() const {
+  codec::Value view = codec::json(source_.view());
+  round_in(view);
+  return view;
+}
+
+const std::string& Live::whole() {
+  if (whole_.empty()) whole_ = "data: " + codec::write_json(told_) + "\n\n";
+  whole_size_ = whole_.size();
+  return whole_;
 }
 
 void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
@@ -26,30 +62,52 @@ void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
         icd::Status::ServiceUnavailable,
         "as many pages are open as this box serves at once (" + std::to_string(kMostPages) + ")"));
   }
-  auto stream = responder.stream("text/event-stream");
-  if (!stream || !stream->send("retry: 1000\n" + event())) return;
   if (pages_.empty()) {
-    sent_ = loop_.now();
-    dirty_ = false;
-    timer_.call_at(sent_ + kHeartbeat);
+    begin();
+  } else if (loop_.now() >= looked_ + kSpacing) {
+    send_to_all(true);  // so that what is told whole is no older than that
   }
+  auto stream = responder.stream("text/event-stream");
+  if (!stream || !stream->send("retry: 1000\n" + whole())) return;
   pages_.push_back({std::move(stream), std::move(may_stay)});
+}
+
+void Live::begin() {
+  told_ = look();
+  whole_.clear();
+  looked_ = sent_ = loop_.now();
+  dirty_ = false;
+  timer_.call_at(sent_ + kHeartbeat);
 }
 
 void Live::changed() {
   if (pages_.empty() || std::exchange(dirty_, true)) return;
-  timer_.call_at(std::max(loop_.now(), sent_ + kSpacing));
+  timer_.call_at(std::max(loop_.now(), looked_ + kSpacing));
 }
 
-void Live::send_to_all() {
+void Live::send_to_all(bool in_any_case) {
   dirty_ = false;
-  sent_ = loop_.now();
-  drop_the_gone(event());
+  looked_ = loop_.now();
+  codec::Value now = look();
+  const codec::Value nothing{codec::Value::Object()};
+  const auto patch = codec::patch(RunView::kRow, told_, now);
+  if (in_any_case || is_news(patch) || looked_ >= sent_ + kHeartbeat) {
+    told_ = std::move(now);
+    whole_.clear();
+    sent_ = looked_;
+    drop_the_gone("event: patch\ndata: " + codec::write_json(patch.value_or(nothing)) + "\n\n");
+  }
   if (!pages_.empty()) timer_.call_at(sent_ + kHeartbeat);
 }
 
-void Live::drop_the_gone(std::string_view bytes) {
-  std::erase_if(pages_, [&](const OpenPage& page) { return !page.may_stay() || !page.stream->send(bytes); });
+bool Live::tell(const OpenPage& page, std::string_view event) {
+  if (!page.may_stay()) return false;
+  const bool is_slow = page.stream->waiting() + event.size() > 2 * whole_size_ + kMostPatches;
+  return is_slow ? page.stream->send_instead(whole()) : page.stream->send(event);
+}
+
+void Live::drop_the_gone(std::string_view event) {
+  std::erase_if(pages_, [&](const OpenPage& page) { return !tell(page, event); });
 }
 
 }  // namespace adit::api

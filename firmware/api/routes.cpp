@@ -69,8 +69,12 @@ constexpr Route kRoutes[] = {
          "Ends a session.", "It is done.", "SessionNumber", "404", "session"),
     get("/adit/run", Viewer, by<&RunRoutes::run>(), "run", "How all stands.", "The run.", "RunView"),
     get("/adit/events", Viewer, by<&RunRoutes::events>(), "run",
-        "The same as server-sent events: at once, then as things change, at least every 2 s.",
-        "Each event's data is a RunView.", "text/event-stream", "503"),
+        "The same as server-sent events: whole at once, then what changes, at least every 2 s.",
+        "The data of an event without a type is a RunView; that of one of type patch is what it changes by: "
+        "a "
+        "JSON merge patch in which null is a value, and a list of rows is patched by places: an object of "
+        "length, kept ([[to, from, count]]) and rows (by places: patches, and new rows).",
+        "text/event-stream", "503"),
     get("/adit/markers", Viewer, by<&MapRoutes::markers>(), "map",
         "The markers as the Command Post was last told of them.", "The markers.", "Markers", "400",
         "since_version"),

@@ -176,18 +176,23 @@ constexpr Member kView[] = {
     member<&RunView::alarms_over>("alarms_over", "the last few that went, the newest first"),
 };
 
+// By what a row of a list is told from the others.
+constexpr std::string_view kByNumber[] = {"number"}, kByName[] = {"name"}, kBySide[] = {"side"},
+                           kByTraffic[] = {"kind", "robot"}, kByMoment[] = {"at", "uri", "sender"};
+
 }  // namespace
 
-constexpr codec::Row ReportRow::kRow = {"Report", kReport};
+constexpr codec::Row ReportRow::kRow = {"Report", kReport, "", kByNumber};
 constexpr codec::Row ReportStep::kRow = {"", kStep};
 constexpr codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
-constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind."};
-constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender."};
-constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint};
-constexpr codec::Row AsideRow::kRow = {"Aside", kAside};
-constexpr codec::Row RobotRow::kRow = {"Robot", kRobot};
-constexpr codec::Row LightRow::kRow = {"Light", kLight};
-constexpr codec::Row LinkRow::kRow = {"Link", kLink};
+constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind.",
+                                          kByTraffic};
+constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender.", kByMoment};
+constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
+constexpr codec::Row AsideRow::kRow = {"Aside", kAside, "", kByNumber};
+constexpr codec::Row RobotRow::kRow = {"Robot", kRobot, "", kByName};
+constexpr codec::Row LightRow::kRow = {"Light", kLight, "", kByName};
+constexpr codec::Row LinkRow::kRow = {"Link", kLink, "", kBySide};
 constexpr codec::Row RunView::kRow = {"RunView", kView, "How all stands."};
 
 }  // namespace adit::api

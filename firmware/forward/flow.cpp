@@ -1,6 +1,7 @@
 // What the flow takes in, and what it shows. Its begin and end are in flow_life.cpp.
 #include "forward/flow.hpp"
 
+#include <cmath>
 #include <utility>
 
 #include "host/log.hpp"
@@ -96,11 +97,13 @@ void Flow::picture_the_run() {
   keep_the_run();
 }
 
-/// By the clock of the view.
+/// By the clock of the view, to the millisecond: two clocks are read for it, and what waits is to be the same
+/// each time.
 std::optional<api::Time> Flow::behind_since(const Traffic& traffic) const {
   const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
   if (!since) return std::nullopt;
-  return loop_.wall_now() - std::chrono::duration<double>(loop_.now() - *since).count();
+  const api::Time at = loop_.wall_now() - std::chrono::duration<double>(loop_.now() - *since).count();
+  return std::round(at * 1000) / 1000;
 }
 
 std::vector<api::ActivityRow> Flow::activities() const {

@@ -183,6 +183,29 @@ TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
   EXPECT_EQ(answer.body, codec::to_json(source.now));
 }
 
+/// Tokens that are set while the page is open, too.
+TEST_F(PageTest, StrikesTokensOutOfThePatchesOfAnOpenPage) {
+  source.now = *scene("calm", 1000, 0);
+  open("GET", "/adit/events", {kByToken}, std::nullopt);
+  ASSERT_TRUE(responder->streaming);
+  const auto page = responder->streaming;
+  for (const std::string typed : {"scoring-1", "rust871}backdoor"}) {
+    api.let_in({token()}, icd::Redaction({token(typed)}));
+    source.now.robots.insert(source.now.robots.begin(), RobotRow{})->name = typed;
+    source.now.verdict.why = "not " + typed;
+    source.now.alarms.emplace_back().id = "robot_silent:" + typed;
+    const std::size_t before = page->sent.size();
+    api.changed();
+    for (int i = 0; i < 1000 && page->sent.size() == before; ++i) loop.turn(std::chrono::milliseconds{10});
+    ASSERT_GT(page->sent.size(), before);
+    const std::string& event = page->sent.back();
+    EXPECT_THAT(event, StartsWith("event: patch\n"));
+    EXPECT_THAT(event, HasSubstr("not [token]"));
+    EXPECT_THAT(event, HasSubstr(R"("name":"[token]")"));
+    EXPECT_EQ(event.find(typed), std::string::npos) << event;
+  }
+}
+
 TEST(PageOnAServer, ServesABrowser) {
   std::unique_ptr<Api> api;
   Forward forward;

@@ -3,16 +3,72 @@
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
+#include <random>
 
 #include "api/doubles.hpp"
+#include "api/scenes.hpp"
+#include "codec/patched.hpp"
 
 namespace adit::api {
 namespace {
 
 using std::chrono::milliseconds;
 using testing::Each;
+using testing::HasSubstr;
 using testing::SizeIs;
 using testing::StartsWith;
+
+/// A view of so many robots and reports.
+RunView team(int robots, int reports) {
+  RunView view = *scene("calm", 1'793'000'000.5, 0);
+  view.robots.clear();
+  view.activities.clear();
+  view.reports.clear();
+  for (int i = 0; i < robots; ++i) {
+    const std::string name = "ugv" + std::to_string(i);
+    view.robots.push_back(
+        {.name = name, .position = {.x = 1.5 * i, .y = 0, .z = 0}, .heading = 0.25, .at = view.now});
+    for (const char* kind : {"grid", "cloud", "state"}) {
+      ActivityRow& row = view.activities.emplace_back();
+      row.kind = kind;
+      row.robot = name;
+      row.last_accepted = view.now;
+    }
+  }
+  for (int i = reports; i > 0; --i) {
+    ReportRow& row = view.reports.emplace_back();
+    row.number = i;
+    row.type = "Rope";
+    row.position->x = 10.25 * i;
+    row.state = "answered";
+  }
+  return view;
+}
+
+/// What happens in a run, in any order. All numbers are whole thousandths.
+void change_some(RunView& view, std::mt19937_64& random) {
+  view.now += 0.25;
+  const auto any = [&random](auto& rows) -> auto& { return rows[random() % rows.size()]; };
+  RobotRow& robot = any(view.robots);
+  robot.position.x += 0.125;
+  ActivityRow& activity = any(view.activities);
+  ++activity.accepted;
+  activity.behind_since = random() % 2 == 0 ? std::optional(view.now) : std::nullopt;
+  any(view.reports).state = "settled";
+  if (random() % 3 == 0) {
+    ReportRow report = view.reports.front();
+    ++report.number;
+    view.reports.insert(view.reports.begin(), report);
+    view.reports.pop_back();
+  }
+  if (random() % 5 == 0) std::swap(view.activities.front(), view.activities.back());
+  if (random() % 5 == 0) view.refusals.insert(view.refusals.begin(), RefusalRow{})->at = view.now;
+  if (random() % 7 == 0) view.refusals.clear();
+  if (random() % 4 == 0) view.alarms.emplace_back().id = "robot_silent:ugv" + std::to_string(random() % 4);
+  if (random() % 6 == 0) view.alarms.clear();
+  if (random() % 6 == 0) view.run.reset();
+  if (random() % 6 == 0) view.run.emplace().score = static_cast<int>(random() % 9);
+}
 
 class LiveTest : public testing::Test {
  protected:
@@ -28,6 +84,12 @@ class LiveTest : public testing::Test {
     const auto until = loop.now() + time;
     while (loop.now() < until) loop.turn(std::min<loop::Duration>(until - loop.now(), milliseconds{20}));
     loop.turn(milliseconds{0});  // what is due by then
+  }
+
+  /// Something that pages are told of.
+  void change() {
+    ++source.now.queued_bytes;
+    live.changed();
   }
 
   bool welcome = true;
@@ -52,7 +114,7 @@ TEST_F(LiveTest, SendsNoMoreEventsASecondThanAllowedHoweverMuchChanges) {
   const auto page = open();
   const auto began = loop.now();
   for (int i = 0; i < 100; ++i) {
-    live.changed();
+    change();
     pass(milliseconds{10});
   }
   const std::chrono::duration<double> passed = loop.now() - began;
@@ -63,7 +125,7 @@ TEST_F(LiveTest, SendsNoMoreEventsASecondThanAllowedHoweverMuchChanges) {
 TEST_F(LiveTest, TellsAChangeThatComesAfterAPauseWithoutDelay) {
   const auto page = open();
   pass(milliseconds{300});
-  live.changed();
+  change();
   pass(milliseconds{40});
   EXPECT_THAT(page->sent, SizeIs(2));
 }
@@ -91,7 +153,7 @@ TEST_F(LiveTest, AsksForNothingWhileNoPageIsOpen) {
   pass(milliseconds{300});
   EXPECT_EQ(source.asked, 0);
   open()->gone = true;
-  live.changed();
+  change();
   pass(milliseconds{300});
   const int asked = source.asked;
   live.changed();
@@ -102,7 +164,7 @@ TEST_F(LiveTest, AsksForNothingWhileNoPageIsOpen) {
 TEST_F(LiveTest, AsksOnceForAllPages) {
   const std::vector pages = {open(), open(), open()};
   const int asked = source.asked;
-  live.changed();
+  change();
   pass(milliseconds{400});
   EXPECT_EQ(source.asked, asked + 1);
   for (const auto& page : pages) EXPECT_THAT(page->sent, SizeIs(2));
@@ -114,6 +176,105 @@ TEST_F(LiveTest, EndsForWhoMayNotStay) {
   pass(Live::kHeartbeat + milliseconds{100});
   EXPECT_THAT(page->sent, SizeIs(1));
   EXPECT_EQ(page.use_count(), 1) << "the stream has been dropped, and so ended";
+}
+
+TEST_F(LiveTest, TellsATimeThatGoesOnByTheHeartbeatAlone) {
+  const auto page = open();
+  for (int i = 0; i < 2; ++i) {
+    source.now.now += 0.25;
+    live.changed();
+    pass(milliseconds{260});
+  }
+  EXPECT_THAT(page->sent, SizeIs(1));
+  pass(Live::kHeartbeat);
+  ASSERT_THAT(page->sent, SizeIs(testing::Ge(2)));
+  EXPECT_THAT(page->sent[1], StartsWith("event: patch\ndata: {\"now\":"));
+}
+
+TEST_F(LiveTest, TellsOfOneRobotsPoseInFewBytesWhateverTheListsLengths) {
+  source.now = team(20, 1000);
+  const auto page = open();
+  EXPECT_GT(page->sent[0].size(), 250'000);
+  RobotRow& robot = source.now.robots[7];
+  robot.position = {.x = 81.123456789, .y = -1203.987654321, .z = 0.125};
+  robot.heading = 3.0123456;
+  robot.at = source.now.now = 1'793'000'124.123456;
+  live.changed();
+  pass(milliseconds{400});
+  ASSERT_THAT(page->sent, SizeIs(2));
+  EXPECT_EQ(
+      page->sent[1],
+      "event: patch\ndata: {\"now\":1793000124.123,\"robots\":{\"rows\":{\"7\":{\"position\":{\"x\":81.123,"
+      "\"y\":-1203.988,\"z\":0.125},\"heading\":3.012,\"at\":1793000124.123}}}}\n\n");
+  EXPECT_LT(page->sent[1].size(), 180);
+}
+
+TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {
+  source.now = team(20, 1000);
+  const auto page = open();
+  ReportRow report = source.now.reports.front();
+  report.number = 1001;
+  report.state = "waiting";
+  source.now.reports.insert(source.now.reports.begin(), report);
+  source.now.reports.pop_back();
+  live.changed();
+  pass(milliseconds{300});
+  source.now.reports.front().state = "sending";
+  live.changed();
+  pass(milliseconds{300});
+  ASSERT_THAT(page->sent, SizeIs(3));
+  EXPECT_LT(page->sent[1].size(), 450);
+  EXPECT_THAT(page->sent[1], HasSubstr(R"("reports":{"kept":[[1,0,999]],"rows":{"0":{"number":1001,)"));
+  EXPECT_EQ(page->sent[2],
+            "event: patch\ndata: {\"reports\":{\"rows\":{\"0\":{\"state\":\"sending\"}}}}\n\n");
+}
+
+TEST_F(LiveTest, TellsAPageThatIsSlowTheViewAnewInThePlaceOfWhatWaits) {
+  source.now = team(6, 200);
+  const auto slow = open(), fast = open();
+  const std::size_t whole = slow->sent[0].size();
+  slow->queued = whole + 30'000;  // a view that it takes, and patches behind it
+  change();
+  pass(milliseconds{300});
+  EXPECT_THAT(slow->sent, SizeIs(2));
+  EXPECT_THAT(slow->sent[1], StartsWith("event: patch\n"));
+  slow->queued = 2 * whole + Live::kMostPatches;
+  change();
+  pass(milliseconds{300});
+  ASSERT_THAT(slow->sent, SizeIs(3));
+  EXPECT_EQ(slow->queued, 0) << "what waited has made room";
+  EXPECT_THAT(slow->sent[2], StartsWith("data: {\"now\":"));
+  EXPECT_GT(slow->sent[2].size() + 100, whole);
+  EXPECT_THAT(fast->sent[2], StartsWith("event: patch\n"));
+}
+
+/// Whoever opens when, and whoever is slow: each page has what there is.
+TEST_F(LiveTest, GivesEveryPageEveryView) {
+  struct Reader {
+    std::shared_ptr<FakeStream> stream;
+    std::size_t read = 0;
+    codec::Value view = {};
+  };
+  std::mt19937_64 random(7);
+  std::vector<Reader> readers;
+  source.now = team(4, 30);
+  for (int step = 0; step < 30; ++step) {
+    if (step % 8 == 0) readers.push_back({.stream = open()});
+    if (step % 5 == 3) readers.back().stream->queued = 1u << 20;
+    change_some(source.now, random);
+    live.changed();
+    pass(milliseconds{260});
+    for (Reader& reader : readers) {
+      for (; reader.read < reader.stream->sent.size(); ++reader.read) {
+        const std::string& event = reader.stream->sent[reader.read];
+        const std::size_t data = event.find("data: ");
+        const codec::Value told = codec::parse_json(event.substr(data + 6, event.size() - data - 8)).value();
+        reader.view = event.starts_with("event: patch") ? codec::test::patched(reader.view, told) : told;
+      }
+      const codec::Value now = codec::parse_json(codec::to_json(source.now)).value();
+      ASSERT_EQ(codec::write_json(reader.view), codec::write_json(now)) << "step " << step;
+    }
+  }
 }
 
 TEST_F(LiveTest, LeavesTheRobotsTheirConnections) {

@@ -1,6 +1,7 @@
 // What is set aside, as a phone shows it and a screen reader reads it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { retell } from "./retold.js";
 import { axeFindsNothing, openMore, text, watch } from "./watch.js";
 
 const WHY = "msg.data: expected 4800 cells for a width of 80 and a height of 60, got 4799, and the last row is cut short";
@@ -9,13 +10,9 @@ const ROWS = [7, 8, 9].map((number) =>
 
 /** A page of a box that has set `globalThis.setAside` of the page aside. */
 async function withRows(t, options) {
-  const prepare = (page) => page.addInitScript((rows) => {
+  const prepare = (page) => retell(page, (rows) => {
     globalThis.setAside = rows;
-    const { parse } = JSON;
-    JSON.parse = (...words) => {
-      const view = parse(...words);
-      return view?.endpoints && view.aside ? { ...view, aside: globalThis.setAside } : view;
-    };
+    return (view) => ({ ...view, aside: globalThis.setAside });
   }, ROWS);
   const { page } = await watch(t, "calm", { prepare, ...options });
   await openMore(page);

@@ -1,6 +1,7 @@
 // A refusal that a setting would cure leads there whoever may change it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { retell } from "./retold.js";
 import { axeFindsNothing, openMore, said, watch, withModules } from "./watch.js";
 
 const KEYS = ["rules.rewrite_frame_id", "rules.map_bytes", "msg.info", "robots[].name", "robots[].alias", "version"];
@@ -19,13 +20,9 @@ test("leads an operator from a refusal to the setting that its sentence names", 
 test("leads from a name that a robot may not have to the robots and their aliases", async (t) => {
   const prepare = async (page) => {
     await withKeys(page);
-    await page.addInitScript(() => {
-      const { parse } = JSON;
-      JSON.parse = (...words) => {
-        const view = parse(...words);
-        for (const row of view?.refusals ?? []) row.sentence = 'poses[0].name: expected 1 to 10 letters, got "husky-1" (the setting robots[].alias gives a name to whoever calls itself so)';
-        return view;
-      };
+    await retell(page, () => (view) => {
+      for (const row of view.refusals) row.sentence = 'poses[0].name: expected 1 to 10 letters, got "husky-1" (the setting robots[].alias gives a name to whoever calls itself so)';
+      return view;
     });
   };
   const { page } = await watch(t, "trouble", { prepare });

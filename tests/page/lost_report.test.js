@@ -1,22 +1,21 @@
 // A report that damage took from the ledger has no place: the list says so, the map does not draw it at the origin.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { retell } from "./retold.js";
 import { text, watch } from "./watch.js";
 
 /** The page of a box whose report 8 (in doubt) has lost its position, or has it at the origin. */
 async function withReport(t, position) {
-  const prepare = (page) => page.addInitScript((place) => {
-    const { parse } = JSON;
-    JSON.parse = (...words) => {
-      const view = parse(...words);
-      for (const report of view?.reports ?? []) if (report.number === 8) Object.assign(report, { type: "", position: place, sender: "lost" });
-      return view;
-    };
+  const prepare = (page) => retell(page, (place) => {
     globalThis.written = new Set();
     const { fillText } = CanvasRenderingContext2D.prototype;
     CanvasRenderingContext2D.prototype.fillText = function (words, ...more) {
       globalThis.written.add(String(words));
       return fillText.call(this, words, ...more);
+    };
+    return (view) => {
+      for (const report of view.reports) if (report.number === 8) Object.assign(report, { type: "", position: place, sender: "lost" });
+      return view;
     };
   }, position);
   const { page } = await watch(t, "trouble", { prepare });

@@ -1,15 +1,15 @@
 // Twenty robots, as an init script for a page that looks at a scene: each view of the run has them in the place of its own.
 
+import { retell } from "./retold.js";
+
 /** `silent`: the names of those that said nothing for 94 s; `late`: of those whose grid waits for 12 s. */
-export const twenty = (page, { silent = ["uav5"], late = ["uav6"] } = {}) => page.addInitScript(({ silent, late }) => {
+export const twenty = (page, { silent = ["uav5"], late = ["uav6"] } = {}) => retell(page, (silent, late) => {
   const names = [..."12345678"].map((n) => `ugv${n}`).concat([..."123456"].flatMap((n) => [`spot${n}`, `uav${n}`]));
   const began = Date.now() / 1000;
   globalThis.told = { silent, late }; // a test changes it
   const row = (view, kind, robot, since) => ({ ...view.activities.find((each) => each.kind === "grid" && !each.robot), kind, robot, last_forwarded: view.now - since, last_accepted: view.now - since });
-  const { parse } = JSON;
-  JSON.parse = (...words) => {
-    const view = parse(...words);
-    if (!view?.activities?.length) return view;
+  return (view) => {
+    if (!view.activities.length) return view;
     const robots = names.flatMap((name, i) => {
       const turn = 1 + (i % 9), since = (view.now - began + i) % turn;
       const [grid, cloud] = [row(view, "grid", name, since), row(view, "cloud", name, since / 2)];
@@ -19,4 +19,4 @@ export const twenty = (page, { silent = ["uav5"], late = ["uav6"] } = {}) => pag
     });
     return { ...view, activities: [...view.activities.filter(({ robot }) => !robot), ...robots] };
   };
-}, { silent, late });
+}, silent, late);

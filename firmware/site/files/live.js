@@ -1,5 +1,6 @@
 // The line to the box: server-sent events, and a watchdog that notices when they stop.
 
+import { patched } from "./patched.js";
 import { checkSession } from "./session.js";
 
 const SILENCE = 4500;  // ms; the box says something every 2 s
@@ -24,7 +25,8 @@ export function follow(url, show) {
   return again;
 }
 
-/** Calls `heard(view)` for each view that comes, and `lost(true or false)` as the line goes and comes back. */
+/** Calls `heard(view)` for each view that comes, and `lost(true or false)` as the line goes and comes back. The box tells
+ *  a view whole, and then what it changes by. */
 function listen(url, heard, lost) {
   let source = null, last = performance.now(), isLost = false;
 
@@ -34,11 +36,14 @@ function listen(url, heard, lost) {
   const open = () => {
     source?.close();
     source = new EventSource(url);
-    source.onmessage = (event) => {
+    let view = null; // nothing of an earlier connection
+    const take = (next) => {
       last = performance.now();
       set(false);
-      heard(JSON.parse(event.data));
+      heard((view = next));
     };
+    source.addEventListener("message", ({ data }) => take(JSON.parse(data)));
+    source.addEventListener("patch", ({ data }) => view && take(patched(view, JSON.parse(data))));
     source.onerror = () => {
       set(true);
       if (source.readyState === EventSource.CLOSED) checkSession(); // an error answer: perhaps the session ended

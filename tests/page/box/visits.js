@@ -4,6 +4,7 @@ import { countAwaited, launch, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
 
 export { settled, shoot } from "../stage.js";
+export { canBeDeaf } from "../retold.js";
 export { openMore } from "../parts.js";
 
 let browser;
@@ -37,16 +38,6 @@ export async function logIn(t, made, prepare) {
   await page.waitForSelector("body[data-link=live]");
   return page;
 }
-
-/** Lets a page see nothing of what others do, while `globalThis.deaf`. */
-export const canBeDeaf = (page) => page.addInitScript(() => {
-  const { set } = Object.getOwnPropertyDescriptor(EventSource.prototype, "onmessage");
-  Object.defineProperty(EventSource.prototype, "onmessage", {
-    set(heard) {
-      set.call(this, (event) => globalThis.deaf || heard(event));
-    },
-  });
-});
 
 export const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
 export const action = (page, name, number) => page.getByRole("button", { name: `${name}: report ${number}` });

@@ -1,92 +1,50 @@
-// Measures how soon the page paints over a slow link, and what an open page costs the box. It asserts nothing:
-// tests/bench/README.md has figures and how to run it.
-import { once } from "node:events";
-import { readFileSync } from "node:fs";
-import { get } from "node:http";
+// Prints, as one table, what the pages weigh, how soon they paint over a slow link, and what an open page costs the box. It asserts
+// nothing: tests/bench/README.md has figures and how to run it.
 import { launch, visit } from "../stage.js";
 import { begin, TOKENS } from "../box/box.js";
+import { eventsWith, median } from "./events.js";
 
-const PAGES = 4, LISTENERS = 20, SECONDS = Number(process.env.BENCH_SECONDS ?? 20), ROUNDS = 3, PAINTS = 9;
+const PAINTS = 9, PAGES = { "": "run", display: "display", runs: "runs", setup: "set-up", system: "system" }, TEAMS = [6, 20];
 const LINK = { offline: false, latency: 20, downloadThroughput: 20e6 / 8, uploadThroughput: 20e6 / 8 };
-const TICKS = 100; // a second: USER_HZ
-
-const sleep = (seconds) => new Promise((resolve) => setTimeout(resolve, seconds * 1000));
-const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
-
-/** CPU seconds of a process so far. */
-function cpu(pid) {
-  const fields = readFileSync(`/proc/${pid}/stat`, "utf8").split(") ")[1].split(" ");
-  return (Number(fields[11]) + Number(fields[12])) / TICKS;
-}
-
-async function share(pid) {
-  const [before, began] = [cpu(pid), performance.now()];
-  await sleep(SECONDS);
-  return (100 * (cpu(pid) - before)) / ((performance.now() - began) / 1000);
-}
 
 const token = { Authorization: `Bearer ${TOKENS.team}` };
-async function open(browser, made, path) {
-  const page = await visit(browser, made.url + path, { extraHTTPHeaders: token });
-  await page.waitForSelector("body[data-link=live]");
-  return page;
-}
+const print = (...cells) => console.log(`| ${cells.join(" | ")} |`);
 
-/** Milliseconds to the first paint with something on it, with an empty cache, over the slow link. */
+/** A visit with an empty cache over the slow link: milliseconds to the first paint with something on it, and the page's own files. */
 async function paint(browser, made, path) {
-  const context = await browser.newContext({ extraHTTPHeaders: token, viewport: { width: 1280, height: 720 } });
-  const page = await context.newPage();
-  const devtools = await context.newCDPSession(page);
+  const page = await visit(browser, "about:blank", { extraHTTPHeaders: token });
+  const devtools = await page.context().newCDPSession(page);
+  const files = new Map();
+  devtools.on("Network.responseReceived", ({ requestId, response: { url } }) => !url.includes("/adit/") && files.set(requestId, 0));
+  devtools.on("Network.loadingFinished", ({ requestId, encodedDataLength }) => files.has(requestId) && files.set(requestId, encodedDataLength));
   await devtools.send("Network.enable");
   await devtools.send("Network.emulateNetworkConditions", LINK);
-  await page.goto(made.url + path);
-  await page.waitForSelector("body[data-link=live]");
-  const [first, live] = await page.evaluate(() => [performance.getEntriesByName("first-contentful-paint")[0].startTime, performance.now()]);
-  await context.close();
-  return { first, live };
+  await page.goto(made.url + path, { waitUntil: "load" });
+  await page.waitForFunction(() => performance.getEntriesByName("first-contentful-paint").length > 0);
+  const first = await page.evaluate(() => performance.getEntriesByName("first-contentful-paint")[0].startTime);
+  await page.context().close();
+  return { first, answers: files.size, bytes: [...files.values()].reduce((sum, bytes) => sum + bytes, 0) };
 }
 
-/** Somebody who only listens to the run's events; how many bytes came. */
-async function listen(made) {
-  const request = get(`${made.url}adit/events`, { headers: token });
-  const [answer] = await once(request, "response");
-  const heard = { bytes: 0, end: () => request.destroy() };
-  answer.on("data", (piece) => (heard.bytes += piece.length)).on("error", () => {});
-  return heard;
-}
-
-const made = await begin({ robots: 5 });
+print("page", "answers", "bytes", "first paint, ms", "most");
+print("---", "---", "---", "---", "---");
 const browser = await launch();
+const made = await begin({ robots: 5 });
 try {
-  await sleep(10);
-  for (const path of ["", "display"]) {
-    const paints = [];
-    for (let i = 0; i < PAINTS; ++i) paints.push(await paint(browser, made, path));
-    const [first, live] = ["first", "live"].map((what) => paints.map((each) => each[what]));
-    console.log(`/${path}: first paint ${median(first).toFixed(0)} ms (most ${Math.max(...first).toFixed(0)}), with the run in it ${median(live).toFixed(0)} ms`);
+  for (const [path, name] of Object.entries(PAGES)) {
+    const visits = [];
+    for (let i = 0; i < PAINTS; ++i) visits.push(await paint(browser, made, path));
+    const first = visits.map((each) => each.first);
+    print(name, visits[0].answers, visits[0].bytes.toLocaleString("en"), median(first).toFixed(0), Math.max(...first).toFixed(0));
   }
-  for (const path of ["", "display"]) {
-    const each = [];
-    for (let round = 0; round < ROUNDS; ++round) {
-      const without = await share(made.pid);
-      const pages = await Promise.all(Array.from({ length: PAGES }, () => open(browser, made, path)));
-      await sleep(3);
-      const withPages = await share(made.pid);
-      const first = await Promise.all(pages.slice(1).map((page) => page.context().close())).then(() => sleep(1)).then(() => share(made.pid));
-      await pages[0].context().close();
-      each.push({ without, withPages, first });
-    }
-    const of = (what) => median(each.map((one) => one[what]));
-    console.log(`/${path}: aditd takes ${of("without").toFixed(1)} % of a core without a page, ${of("first").toFixed(1)} % with one, ${of("withPages").toFixed(1)} % with ${PAGES}: ` +
-      `${median(each.map((one) => (one.withPages - one.without) / PAGES)).toFixed(2)} % for each`);
-  }
-  const without = await share(made.pid);
-  const listeners = await Promise.all(Array.from({ length: LISTENERS }, () => listen(made)));
-  const withThem = await share(made.pid);
-  const kilobytes = listeners[0].bytes / 1000 / SECONDS;
-  for (const listener of listeners) listener.end();
-  console.log(`the events alone, ${LISTENERS} listeners: ${((withThem - without) / LISTENERS).toFixed(2)} % of a core and ${kilobytes.toFixed(0)} kB/s for each`);
 } finally {
   await browser.close();
   await made.end();
+}
+console.log();
+print("robots, 1,000 reports", "first event, bytes", "then kB/s", "events/s", "% of a core for a page");
+print("---", "---", "---", "---", "---");
+for (const robots of TEAMS) {
+  const { first, rate, events, share } = await eventsWith(robots);
+  print(robots, first.toLocaleString("en"), rate.toFixed(1), events.toFixed(1), share.toFixed(2));
 }

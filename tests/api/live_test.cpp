@@ -250,13 +250,13 @@ TEST_F(LiveTest, TellsAPageThatIsSlowTheViewAnewInThePlaceOfWhatWaits) {
 
 /// Whoever opens when, and whoever is slow: each page has what there is.
 TEST_F(LiveTest, GivesEveryPageEveryView) {
-  struct Reader {
+  struct OfPage {
     std::shared_ptr<FakeStream> stream;
     std::size_t read = 0;
     codec::Value view = {};
   };
   std::mt19937_64 random(7);
-  std::vector<Reader> readers;
+  std::vector<OfPage> readers;
   source.now = team(4, 30);
   for (int step = 0; step < 30; ++step) {
     if (step % 8 == 0) readers.push_back({.stream = open()});
@@ -264,7 +264,7 @@ TEST_F(LiveTest, GivesEveryPageEveryView) {
     change_some(source.now, random);
     live.changed();
     pass(milliseconds{260});
-    for (Reader& reader : readers) {
+    for (OfPage& reader : readers) {
       for (; reader.read < reader.stream->sent.size(); ++reader.read) {
         const std::string& event = reader.stream->sent[reader.read];
         const std::size_t data = event.find("data: ");

@@ -11,7 +11,6 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kExact = "reports";  // two are the same where their coordinates are
 constexpr auto kSpacing = std::chrono::milliseconds{1000 / Live::kEventsPerSecond};
 
 /// Milliseconds, millimetres, microseconds of an answer: finer than a page shows, and half as long.
@@ -20,13 +19,15 @@ double rounded(double number) {
   return std::round(number * kSteps) / kSteps + 0.0;  // no -0
 }
 
-void round_in(codec::Value& value) {
+/// All numbers but the places of reports: two are the same where their coordinates are.
+void round_in(codec::Value& value, bool is_report = false) {
   if (auto* const number = std::get_if<double>(&value.is)) *number = rounded(*number);
-  if (auto* const array = std::get_if<codec::Value::Array>(&value.is))
-    std::ranges::for_each(*array, round_in);
+  if (auto* const array = std::get_if<codec::Value::Array>(&value.is)) {
+    for (codec::Value& each : *array) round_in(each, is_report);
+  }
   if (auto* const object = std::get_if<codec::Value::Object>(&value.is)) {
     for (auto& [name, member] : *object) {
-      if (name != kExact) round_in(member);
+      if (!is_report || name != "position") round_in(member, is_report || name == "reports");
     }
   }
 }

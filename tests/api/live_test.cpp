@@ -41,6 +41,7 @@ RunView team(int robots, int reports) {
     row.type = "Rope";
     row.position->x = 10.25 * i;
     row.state = "answered";
+    row.received = row.changed = view.now;
   }
   return view;
 }
@@ -227,6 +228,19 @@ TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {
   EXPECT_THAT(page->sent[1], HasSubstr(R"("reports":{"kept":[[1,0,999]],"rows":{"0":{"number":1001,)"));
   EXPECT_EQ(page->sent[2],
             "event: patch\ndata: {\"reports\":{\"rows\":{\"0\":{\"state\":\"sending\"}}}}\n\n");
+}
+
+/// Times are told by another clock than they are kept by: the last digits differ each time.
+TEST_F(LiveTest, TellsNothingOfTimesThatDifferByLessThanIsTold) {
+  source.now = team(4, 20);
+  source.now.reports[3].position->x = 0.123456789;
+  const auto page = open();
+  EXPECT_THAT(page->sent[0], HasSubstr("0.123456789")) << "what makes a report the same is told exactly";
+  for (ReportRow& report : source.now.reports) report.changed += 2e-7;
+  for (RobotRow& robot : source.now.robots) robot.at += 2e-7;
+  live.changed();
+  pass(milliseconds{300});
+  EXPECT_THAT(page->sent, SizeIs(1));
 }
 
 TEST_F(LiveTest, TellsAPageThatIsSlowTheViewAnewInThePlaceOfWhatWaits) {

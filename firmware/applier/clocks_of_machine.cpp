@@ -26,7 +26,7 @@ void set_chip(const std::string& device, std::time_t now) {
   const loop::FileDescriptor chip(open(device.c_str(), O_RDONLY | O_CLOEXEC));
   if (!chip) return;
   std::tm utc{};
-  gmtime_r(&now, &utc);
+  if (gmtime_r(&now, &utc) == nullptr) return;
   const rtc_time time{.tm_sec = utc.tm_sec,
                       .tm_min = utc.tm_min,
                       .tm_hour = utc.tm_hour,

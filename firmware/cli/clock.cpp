@@ -40,10 +40,10 @@ double time_here() {
 std::string utc(double time) {
   const auto seconds = static_cast<std::time_t>(std::floor(time));
   std::tm parts{};
-  char written[64] = "no date";
-  if (gmtime_r(&seconds, &parts) != nullptr)
-    std::strftime(written, sizeof written, "%Y-%m-%d %H:%M:%S UTC", &parts);
-  return written;
+  char written[64];
+  const bool is_date = gmtime_r(&seconds, &parts) != nullptr &&
+                       std::strftime(written, sizeof written, "%Y-%m-%d %H:%M:%S UTC", &parts) > 0;
+  return is_date ? written : "no date";
 }
 
 std::string spoken(const std::string& source) {

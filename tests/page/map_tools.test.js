@@ -142,12 +142,17 @@ test("colours clouds by height or by robot, and at night all in red", async (t) 
   await until(async () => (await others()) === "none", "a map without any light but red");
 });
 
-test("is copied while it is dragged: what is on it is drawn when it has come to rest", async (t) => {
+test("is copied while it is dragged: what is on it is drawn now and then, and when it has come to rest", async (t) => {
   const prepare = (page) => page.addInitScript(() => {
-    globalThis.drawn = 0; // reports' pictures
+    globalThis.drawn = 0; // how often all reports' pictures were
+    let isDrawing = false;
     const real = CanvasRenderingContext2D.prototype.roundRect;
     CanvasRenderingContext2D.prototype.roundRect = function (...words) {
-      ++globalThis.drawn;
+      if (!isDrawing) {
+        ++globalThis.drawn;
+        queueMicrotask(() => (isDrawing = false));
+      }
+      isDrawing = true;
       return real.apply(this, words);
     };
   });
@@ -175,6 +180,6 @@ test("is copied while it is dragged: what is on it is drawn when it has come to 
     return { before, during, frames: looks.size };
   });
   assert.ok(frames >= 9, `${frames} different pictures`);
-  assert.equal(during, before);
+  assert.ok(during - before < frames / 2, `drawn ${during - before} times for ${frames} pictures`);
   await until(async () => (await drawn()) > during, "the reports to be drawn where they are now");
 });

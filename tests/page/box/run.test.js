@@ -67,12 +67,12 @@ test("shows where the robots were, by the slider", async (t) => {
     for (const key of keys) await slider.press(key);
   };
   await off(page, "Robots");
-  await press("ArrowLeft", "ArrowLeft");
+  await press("Shift+ArrowLeft", "Shift+ArrowLeft"); // seconds: the run is young
   const none = await still(page);
   await box(page, "Robots").check();
   await changed(page, none, "robots");
   const late = await still(page);
-  await press("Home", "ArrowRight", "ArrowRight");
+  await press("Home", "Shift+ArrowRight", "Shift+ArrowRight");
   await changed(page, late, "them to have been elsewhere before");
   const early = await still(page);
   assert.ok((await still(page)) === early, "and stay where they were");

@@ -10,11 +10,11 @@ namespace adit::simulation {
 namespace {
 
 /// The gateway was told to end, or restarts for another reason than settings: until it listens again,
-/// it is that which cuts.
+/// it is that which cuts; and with the process end the connections that it took meanwhile.
 bool ends_the_gateway(const Event& event) {
   const bool restarts = event.kind == Kind::Said &&
                         (event.text.contains("restarting") || event.text.contains("listening again"));
-  return event.kind == Kind::Stops || event.kind == Kind::Dies || restarts;
+  return event.kind == Kind::Stops || event.kind == Kind::Dies || event.kind == Kind::Ended || restarts;
 }
 
 /// The box cut the connection, or said that it stops; not the client.

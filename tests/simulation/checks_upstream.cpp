@@ -91,12 +91,12 @@ void stamps(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> last;
   DiskFaultsSeen disk;
   double ahead = kAhead, forgotten_until = 0;
-  double clock = 0;       // by which the box's is ahead of the world's
-  bool by_clock = false;  // the next life may begin where that is
+  double clock = 0;      // by which the box's is ahead of the world's
+  bool by_clock = true;  // the next life may begin where that is: before the first stamp none need be kept
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::ClockSet) clock = event.stamp;
     by_clock = by_clock || event.kind == Kind::PowerCut || disk.forgets_at(event);
-    if (event.kind == Kind::Begins && std::exchange(by_clock, false)) ahead = std::max(ahead, kAhead + clock);
+    if (event.kind == Kind::Begins && by_clock) ahead = std::max(ahead, kAhead + clock);
     if (disk.forgets_at(event)) {
       ahead += kFloorAhead;
       forgotten_until = event.at + kMakesWay;
@@ -108,6 +108,7 @@ void stamps(const Evidence& evidence, Broken& broken) {
       if (disk.within(kFloorHolds, event.at)) last.clear();
     }
     if (event.kind != Kind::Left || event.stamp == 0) continue;
+    by_clock = false;
     double& before = last[event.what];
     if (event.stamp < before) {
       broken.push_back(icd::sentence("Stamps: of ", event.what, " ran back by ", before - event.stamp,

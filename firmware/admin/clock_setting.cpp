@@ -6,12 +6,21 @@
 #include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::admin {
+namespace {
+
+/// chronyd asks four times in six seconds as it starts.
+constexpr std::chrono::seconds kFirstAnswer{30};
+
+}  // namespace
 
 api::ClockView ClockSetting::clock() const {
   api::ClockView view{
       .now = loop_.wall_now(), .managed = status_.has_value(), .why = {}, .refusal = not_taken_up_};
+  view.ntp = ntp_said();
+  view.is_kept = is_kept_by_ntp();
   if (!status_) {
     view.why = "adit-clock does not run here: " + status_.error();
     view.is_set = view.now >= clock::kEarliest;
@@ -19,7 +28,7 @@ api::ClockView ClockSetting::clock() const {
   }
   view.source = status_->source;
   view.is_set = clock::is_set(status_->source);
-  if (asked_.empty() && view.refusal.empty()) view.refusal = status_->refusal;
+  if (!waits_ && view.refusal.empty()) view.refusal = status_->refusal;
   return view;
 }
 
@@ -30,6 +39,9 @@ std::optional<bool> ClockSetting::is_set() const {
 
 icd::Checked<void> ClockSetting::set_clock(double time) {
   if (!status_) return refuse(icd::Status::Conflict, clock().why);
+  if (is_kept_by_ntp())
+    return refuse(icd::Status::Conflict, icd::sentence("the NTP server ", ntp_.server,
+                                                       " keeps it: clock.ntp_server in the settings"));
   if (!clock::to_be_set(status_->source, {clock::Source::Operator, time}, loop_.wall_now()))
     return refuse(icd::Status::UnprocessableEntity, "time: expected seconds since 1970, from 2026 to 2099");
   if (const auto asked = ask(clock::Source::Operator, time); !asked)
@@ -38,8 +50,9 @@ icd::Checked<void> ClockSetting::set_clock(double time) {
 }
 
 void ClockSetting::offered(const clock::Offer& offer) {
-  if (!status_ || !asked_.empty() || !not_taken_up_.empty()) return;
-  if (!status_->refusal.empty()) return;  // it would be again; the operator may insist
+  if (!status_ || waits_) return;
+  const bool came_to_nothing = !not_taken_up_.empty() || !status_->refusal.empty();
+  if (came_to_nothing && loop_.now() < asked_at_ + patience_.ask_again) return;  // the operator may insist
   const double of_the_system = loop_.wall_now() - loop_.wall_ahead();
   const auto time = clock::to_be_set(status_->source, offer, of_the_system);
   if (!time) return;
@@ -54,21 +67,77 @@ std::expected<void, std::string> ClockSetting::ask(clock::Source source, double 
   auto written = host::write_file(request_, clock::write(request), host::kOursAlone);
   if (!written) return written;
   asked_ = request.nonce;
+  waits_ = true;
   asked_at_ = loop_.now();
   not_taken_up_.clear();
   return {};
 }
 
-void ClockSetting::every_second() {
+void ClockSetting::every_second(const clock::Ntp& ntp) {
   const auto text = host::read_file(status_file_);
   status_ = text ? clock::read<clock::Status>(*text) : std::unexpected(text.error());
-  if (status_ && status_->nonce == asked_) asked_.clear();
-  if (!asked_.empty() && loop_.now() >= asked_at_ + kTakenUpWithin) give_up();
+  note_what_became_of_it();
+  if (waits_ && loop_.now() >= asked_at_ + patience_.taken_up_within) give_up();
+  if (ntp_ != ntp || ntp_since_ == loop::Instant{}) ntp_since_ = loop_.now();
+  if (std::exchange(ntp_, ntp) != ntp) ntp_asked_at_ = {};
+  watch_.every_second(status_ ? ntp_.server : "");
+  if (!status_) return;
+  if (status_->ntp != ntp_ || !status_->trouble.empty()) ask_for_ntp();
+  follow_ntp();
+}
+
+void ClockSetting::ask_for_ntp() {
+  const bool has_been = ntp_asked_at_ != loop::Instant{};
+  if (has_been && loop_.now() < ntp_asked_at_ + patience_.ask_again) return;
+  ntp_asked_at_ = loop_.now();
+  const auto written = host::write_file(ntp_request_, clock::write(ntp_), host::kOursAlone);
+  if (!written) host::log(host::Level::Error, "NTP cannot be asked for", {{"why", written.error()}});
+}
+
+/// Once its time is set, chronyd keeps it by itself.
+void ClockSetting::follow_ntp() {
+  const auto behind = watch_.behind();
+  if (!behind || status_->source == clock::Source::Ntp) return;
+  offered({clock::Source::Ntp, loop_.wall_now() - loop_.wall_ahead() + *behind});
+}
+
+bool ClockSetting::is_kept_by_ntp() const {
+  return status_ && status_->source == clock::Source::Ntp && watch_.behind();
+}
+
+std::string ClockSetting::ntp_trouble() const {
+  if (!ntp_.is_on()) return "";
+  if (!status_) return "the settings ask for NTP, but this machine keeps its time by itself";
+  if (status_->ntp == ntp_ && !status_->trouble.empty()) return status_->trouble;
+  if (ntp_.server.empty() || watch_.behind() || loop_.now() < ntp_since_ + kFirstAnswer) return "";
+  return icd::sentence(
+      "the NTP server ", ntp_.server, " does not answer",
+      status_->source == clock::Source::Ntp ? ", or its time is off by more than a minute" : "");
+}
+
+std::string ClockSetting::ntp_said() const {
+  if (auto trouble = ntp_trouble(); !trouble.empty()) return trouble;
+  std::string said;
+  if (!ntp_.server.empty())
+    said = icd::sentence("the NTP server ", ntp_.server, is_kept_by_ntp() ? " keeps it" : " is being asked");
+  if (ntp_.clients.empty()) return said;
+  if (!said.empty()) said += "; ";
+  return said +
+         (status_ && clock::is_set(status_->source) ? "given by NTP to "
+                                                    : "once it is set, given by NTP to ") +
+         ntp_.clients;
+}
+
+/// It may also come after it was given up.
+void ClockSetting::note_what_became_of_it() {
+  if (!status_ || asked_.empty() || status_->nonce != asked_) return;
+  waits_ = false;
+  not_taken_up_.clear();
 }
 
 void ClockSetting::give_up() {
   unlink(request_.c_str());
-  asked_.clear();
+  waits_ = false;
   not_taken_up_ = "adit-clock did not take it up: see journalctl -u adit-clock";
   host::log(host::Level::Error, "the clock was not set by adit-clock");
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "admin/ntp_watch.hpp"
 #include "api/clock.hpp"
 #include "clock/messages.hpp"
 #include "loop/loop.hpp"
@@ -13,32 +14,55 @@ namespace adit::admin {
 /// The time of day, as adit-clock sets it (firmware/clock/README.md).
 class ClockSetting final : public api::Clock {
  public:
-  static constexpr std::chrono::seconds kTakenUpWithin{20};
+  static constexpr std::uint16_t kChronyd = 323;  // its port on this machine
+
+  struct Patience {
+    /// A request: when it is older, adit-clock refuses it. A busy box takes half a minute.
+    loop::Duration taken_up_within = std::chrono::seconds(60);
+    /// What is not taken up, or came to nothing, is asked for again.
+    loop::Duration ask_again = std::chrono::seconds(60);
+  };
 
   /// `state_folder`: where requests are left; `status_folder`: where they are answered. `loop` outlives this.
-  ClockSetting(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder)
+  ClockSetting(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
+               std::uint16_t chronyd, Patience patience)
       : loop_(loop),
+        patience_(patience),
         request_(state_folder + '/' + clock::kRequestFile),
-        status_file_(status_folder + '/' + clock::kStatusFile) {}
+        ntp_request_(state_folder + '/' + clock::kNtpFile),
+        status_file_(status_folder + '/' + clock::kStatusFile),
+        watch_(loop, chronyd) {}
 
   api::ClockView clock() const override;
   icd::Checked<void> set_clock(double time) override;
 
-  /// Called each second.
-  void every_second();
+  /// Called each second, with what the settings ask of NTP.
+  void every_second(const clock::Ntp& ntp);
   /// That source tells that time now: it is taken where to_be_set() says so.
   void offered(const clock::Offer& offer);
   /// Nothing: it is not set here, and nobody knows.
   std::optional<bool> is_set() const;
+  /// Why NTP is not as the settings have it, a sentence; or "".
+  std::string ntp_trouble() const;
 
  private:
   std::expected<void, std::string> ask(clock::Source source, double time);
+  void note_what_became_of_it();
   void give_up();
+  void ask_for_ntp();
+  void follow_ntp();
+  bool is_kept_by_ntp() const;
+  std::string ntp_said() const;
 
   loop::Loop& loop_;
-  std::string request_, status_file_;
+  const Patience patience_;
+  std::string request_, ntp_request_, status_file_;
+  NtpWatch watch_;
+  clock::Ntp ntp_;  // as the settings have it
+  loop::Instant ntp_asked_at_{}, ntp_since_{};
   std::expected<clock::Status, std::string> status_ = std::unexpected("nobody has looked yet");
-  std::string asked_;  // the nonce of what is not in the status yet; "": nothing
+  std::string asked_;   // the nonce of what was asked for last; "": nothing
+  bool waits_ = false;  // for it to be in the status
   loop::Instant asked_at_{};
   std::string not_taken_up_;
 };

@@ -6,6 +6,7 @@
 #include "admin/accounts.hpp"
 #include "admin/acknowledged_file.hpp"
 #include "admin/network_requests.hpp"
+#include "admin/taking_over.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 
@@ -24,7 +25,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
   if (unknown) return std::unexpected(begun() + ": " + unknown.message());
   if (!is_begun) return false;
   if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
-  NetworkRequests network(state_, "");
+  NetworkRequests network(state_, "", "");
   if (const auto asked = network.ask(network::Forget{NetworkRequests::draw_nonce()}); !asked)
     return std::unexpected(asked.error());
   for (const char* kept : {"journal", "waiting", "aside"}) {
@@ -39,7 +40,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
   for (const std::string& file :
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
         state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,
-        state_ + '/' + Accounts::kFile, begun()}) {
+        state_ + '/' + Accounts::kFile, state_ + '/' + TakingOver::kFile, begun()}) {
     if (const auto done = host::remove_file(file); !done) return std::unexpected(done.error());
   }
   host::log(host::Level::Notice, "all that was set up is forgotten");

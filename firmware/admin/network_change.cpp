@@ -42,7 +42,7 @@ void NetworkChange::refresh() const {
   if (read_at_ && now < *read_at_ + kFresh) return;
   read_at_ = now;
   status_ = requests_.status();
-  probed_ = requests_.probed();
+  taken_ = requests_.taken();
 }
 
 bool NetworkChange::is_asked() const {
@@ -71,8 +71,7 @@ std::string NetworkChange::hindrance() const {
   const std::string& team = settings_.team.interface;
   const std::string& post = settings_.command_post.interface;
   if (team.empty() || post.empty()) {
-    return icd::sentence("the settings name no ", team.empty() ? "team.interface" : "command_post.interface",
-                         ": its address is set elsewhere");
+    return icd::sentence("the settings name no ", team.empty() ? "team.interface" : "command_post.interface");
   }
   if (!status_) return "adit-network does not run here: " + status_.error();
   if (status_->team_interface != team || status_->command_post_interface != post) {
@@ -223,6 +222,16 @@ icd::Checked<void> NetworkChange::say(network::Word::What what, const network::P
   return {};
 }
 
+/// The first of an interface's.
+std::optional<alarms::TakenAddress> NetworkChange::taken(const std::string& interface, bool is_team) const {
+  for (const network::TakenAddress& each : taken_.addresses) {
+    if (each.interface != interface || loop_.now() >= each.seen + network::kTakenFor) continue;
+    return alarms::TakenAddress{
+        .is_team = is_team, .interface = interface, .address = each.address, .mac = each.mac};
+  }
+  return std::nullopt;
+}
+
 alarms::NetworkFact NetworkChange::fact() const {
   alarms::NetworkFact fact;
   const auto waits = pending();
@@ -232,9 +241,9 @@ alarms::NetworkFact NetworkChange::fact() const {
     fact.confirm_within = std::chrono::duration<double>(waits->until - loop_.now()).count();
     fact.page = network::page_at(waits->wanted, settings_.team.listen);
   }
-  if (probed_ && !probed_->claimant.empty()) {
-    fact.taken_by = probed_->claimant;
-    fact.address = probed_->address;
+  for (const bool is_team : {true, false}) {
+    const std::string& interface = is_team ? settings_.team.interface : settings_.command_post.interface;
+    if (auto taken = this->taken(interface, is_team)) fact.taken.push_back(std::move(*taken));
   }
   return fact;
 }

@@ -16,7 +16,7 @@ class NetworkChange final : public api::Network {
  public:
   /// adit-network asks the network first whether an address is free, which takes some seconds.
   static constexpr std::chrono::seconds kTakenUpWithin{30};
-  /// How old what was read of its status may be.
+  /// How old what was read of its status, and of the watch, may be.
   static constexpr std::chrono::milliseconds kFresh{50};
   /// adit-network is told again where the endpoints are, where it does not know, this long after the last
   /// time.
@@ -54,6 +54,7 @@ class NetworkChange final : public api::Network {
   bool is_asked() const;
   void note_what_became_of_it();
   void lead_to_endpoints();
+  std::optional<alarms::TakenAddress> taken(const std::string& interface, bool is_team) const;
   /// Why nothing can be changed here; "" where it can.
   std::string hindrance() const;
   std::optional<network::Pending> pending() const;
@@ -66,7 +67,7 @@ class NetworkChange final : public api::Network {
   const settings::Settings& settings_;
   NetworkRequests& requests_;
   mutable std::expected<network::Status, std::string> status_;
-  mutable std::optional<network::Probed> probed_;
+  mutable network::Taken taken_;
   mutable std::optional<loop::Instant> read_at_;
   std::optional<Asked> asked_;            // its last word is had by is_asked()
   std::optional<loop::Instant> told_at_;  // where the endpoints are

@@ -22,6 +22,11 @@ std::optional<network::Probed> NetworkRequests::probed() const {
   return probed ? std::optional(std::move(*probed)) : std::nullopt;
 }
 
+network::Taken NetworkRequests::taken() const {
+  const auto text = host::read_file(watch_ + '/' + network::kTakenFile);
+  return text ? network::read<network::Taken>(*text).value_or(network::Taken{}) : network::Taken{};
+}
+
 std::expected<void, std::string> NetworkRequests::ask(const network::Wanted& wanted) {
   return host::write_file(state_ + '/' + network::kWantedFile, network::write(wanted), host::kOursAlone);
 }

@@ -78,6 +78,8 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
     }
     // So that the last of it does not wait for all the rest.
     if (error_ == 0 && fdatasync(file_.get()) != 0) error_ = errno;
+    // What still comes is thrown away: the ledger is not to wait for the room until all of it has.
+    if (error_ != 0 && ftruncate(file_.get(), 0) != 0) file_ = {};
   }
 
   void go_on() {

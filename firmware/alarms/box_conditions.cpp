@@ -27,10 +27,14 @@ void find_pending_change(const NetworkFact& network, Found& found) {
        .action = {"Confirm", left > 0 ? network.page : "/setup#network"}});
 }
 
+std::string side_of(bool is_team) {
+  return is_team ? "team" : "command_post";
+}
+
 void find_cables(const Facts& facts, Found& found) {
   for (const Cable& cable : facts.cables) {
     if (cable.carrier.value_or(false)) continue;
-    const std::string side = cable.is_team ? "team" : "command_post";
+    const std::string side = side_of(cable.is_team);
     const std::string whose = cable.is_team ? "The team's" : "The Command Post's";
     Condition condition{.id = "cable_out:" + side, .side = Side::Network, .subject = side};
     if (cable.carrier) {
@@ -54,12 +58,14 @@ void find_addresses(const Facts& facts, Found& found) {
                      .why = "set one in the Command Post's subnet",
                      .action = kOpenNetwork});
   }
-  if (!network.taken_by.empty()) {
-    found.push_back({.id = "address_taken",
+  for (const TakenAddress& taken : network.taken) {
+    const std::string side = side_of(taken.is_team);
+    found.push_back({.id = "address_taken:" + side,
                      .side = Side::Network,
-                     .subject = network.address,
+                     .subject = side,
                      .what = "Our address is taken",
-                     .why = sentence(network.address, " is also that of ", network.taken_by),
+                     .why = sentence(taken.address, " on ", taken.interface, " is also ", taken.mac,
+                                     "'s: are a box and its spare both in? unplug one, or change an address"),
                      .action = kOpenNetwork});
   }
 }
@@ -133,6 +139,10 @@ void find_network_troubles(const Facts& facts, Found& found) {
 }
 
 void find_box_troubles(const Facts& facts, Found& found) {
+  add(found, facts.rests,
+      {.id = "rests",
+       .what = "This box rests and sends nothing",
+       .action = {"Open system", "/system#spare"}});
   find_disk_troubles(facts, found);
   if (!facts.time_set.value_or(true)) {
     found.push_back({.id = "time_not_set",
@@ -142,6 +152,12 @@ void find_box_troubles(const Facts& facts, Found& found) {
                      .why = "times and logs are of a wrong day: log in, or adit clock set",
                      .action = kOpenSystem});
   }
+  add(found, facts.ntp_trouble,
+      {.id = "ntp",
+       .severity = Severity::Wait,
+       .side = Side::Box,
+       .what = "NTP does not work",
+       .action = kOpenSetUp});
   find_change_trouble(facts.change_trouble, found);
   add(found, facts.settings_trouble,
       {.id = "settings_not_used", .what = "The saved settings are not used", .action = kOpenSetUp});

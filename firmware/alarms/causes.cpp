@@ -34,8 +34,15 @@ bool is_of_maps(const Condition& condition) {
   return is(condition, "map_behind") || is(condition, "maps_behind") || condition.id.starts_with("queue_");
 }
 
+/// What is for the spare to deal with, once it took over.
+bool is_for_the_spare(const Condition& condition) {
+  return is_post(condition) || is(condition, "command_post_throttling") || is_robots_silence(condition) ||
+         is_of_maps(condition) || is(condition, "clients_refused") || condition.id.starts_with("report_");
+}
+
 /// Whether `other` follows from `cause`.
 bool explains(const Condition& cause, const Condition& other) {
+  if (cause.id == "rests") return is_for_the_spare(other);
   if (cuts_off(cause) && (is_post(other) || is(other, "command_post_throttling"))) return true;
   if (stops(cause, "mapping") && (is_of_maps(other) || is_robots_silence(other))) return true;
   if (stops(cause, "scoring") && is(other, "report_in_doubt") && other.severity == Severity::Wait)

@@ -61,12 +61,18 @@ struct Crowd {
   std::string address = {};  // of most of them
 };
 
+/// An address of the box's that another machine uses, too.
+struct TakenAddress {
+  bool is_team = false;
+  std::string interface = {}, address = {};
+  std::string mac = {};  // of the other machine
+};
+
 struct NetworkFact {
   std::optional<double> confirm_within = {};  // seconds; a change waits to be confirmed
   std::string page = {};                      // where
   bool no_address = false;                    // on the Command Post's side
-  std::string taken_by = {};                  // the hardware address of who has our address, too; "": nobody
-  std::string address = {};                   // ours, that it is
+  std::vector<TakenAddress> taken = {};       // one of a side
 };
 
 struct Disk {
@@ -107,11 +113,13 @@ struct Facts {
   std::string ledger_refusal = {}, ledger_damage = {};
   Disk disk = {};
   std::optional<bool> time_set = {};      // nothing: the box cannot tell
+  std::string ntp_trouble = {};           // why NTP is not as the settings have it; or ""
   std::string change_trouble = {};        // of the last change of the settings
   std::string settings_trouble = {};      // why the saved ones are not used
   std::string board_trouble = {};         // why the board's file is not
   std::vector<std::string> notices = {};  // of who started the box
   UpdateFact update = {};
+  std::string rests = {};  // why the box takes nothing and sends nothing; or ""
 };
 
 }  // namespace adit::alarms

@@ -31,8 +31,10 @@ void PostWatch::look(Way& way, const Seen& seen, double now) {
   }
   if (answered) begin(way.barred, is_barred(seen), now);
   if (answered && is_error(seen.status) && !seen.foreign && !way.failing) way.failing = now;
-  const bool unanswered = seen.busy || (seen.status == 0 && !seen.said.empty());
-  if (answered || moved) way.waits.reset();
+  const bool came_to_nothing = seen.status == 0 && !seen.said.empty();
+  const bool unanswered = seen.busy || came_to_nothing;
+  // Once a request came to nothing, the bytes of the next one are no sign of life.
+  if (answered || (moved && !came_to_nothing)) way.waits.reset();
   begin(way.waits, unanswered, now);
   begin(way.without, !seen.connected && seen.status == 0 && !seen.said.empty(), now);
   for (std::uint64_t i = way.seen.throttled; i < seen.throttled && i < way.seen.throttled + kThrottled; ++i)

@@ -26,7 +26,8 @@ struct Seen {
 class PostWatch {
  public:
   static constexpr double kUnreachableAfter = 3;  // seconds
-  static constexpr double kSilentAfter = 15;      // since the last byte that left
+  static constexpr double kSilentAfter =
+      15;  // since the last byte that left of the first request without an answer
   static constexpr double kFailingAfter = 5;
   static constexpr double kStillWell =
       15;  // another connection's good answer stands for the endpoint so long

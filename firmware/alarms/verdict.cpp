@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "alarms/standing.hpp"
 #include "alarms/words.hpp"
 #include "icd/sentence.hpp"
 
@@ -30,10 +31,8 @@ std::map<std::string, Maps> maps_of(const Facts& facts) {
   std::map<std::string, Maps> all;
   for (const Stream& stream : facts.streams) {
     if (!stream.is_map()) continue;
-    const auto robot = facts.robots.find(stream.robot);
-    const bool silent = robot != facts.robots.end() && robot->second.silent;
     Maps& maps = all[stream.robot];
-    const Level level = level_of(arrival_of(stream, facts.turn, silent));
+    const Level level = standing_of(stream, facts).level;
     maps.level = std::max(maps.level, level);
     if (!stream.forwarded) continue;
     maps.newest = std::min(*stream.forwarded, maps.newest.value_or(*stream.forwarded));
@@ -50,14 +49,6 @@ std::string names_of(const std::vector<std::string>& names) {
     text += names[i].empty() ? "the merged map" : names[i];
   }
   return names.size() > kMostNames ? sentence(text, " and ", names.size() - kMostNames, " more") : text;
-}
-
-/// Nothing is taken at all: since when, and why.
-const Endpoint* stopped(const Facts& facts) {
-  const auto found = std::ranges::find_if(facts.endpoints, [](const Endpoint& endpoint) {
-    return endpoint.name == "mapping" && endpoint.trouble < PostTrouble::Throttling;
-  });
-  return found == facts.endpoints.end() ? nullptr : &*found;
 }
 
 std::vector<std::string> names_at(const std::map<std::string, Maps>& all, Level level) {
@@ -84,8 +75,10 @@ constexpr codec::Row Verdict::kRow = {"Verdict", kVerdict, "Is my map arriving?"
 Verdict verdict_of(const Facts& facts) {
   const auto all = maps_of(facts);
   if (const Endpoint* endpoint = stopped(facts); endpoint != nullptr && !all.empty()) {
-    return {Level::Bad, "Nothing arrives",
-            sentence("for ", clock_text(facts.now - endpoint->since), "; the box keeps all")};
+    const std::string why = endpoint->trouble == PostTrouble::NoToken
+                                ? "no mapping token is set"
+                                : "for " + clock_text(facts.now - endpoint->since);
+    return {Level::Bad, "Nothing arrives", why + "; the box keeps all"};
   }
   if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one"};
   Level worst = Level::Quiet;

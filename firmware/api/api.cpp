@@ -20,6 +20,7 @@
 #include "api/session_routes.hpp"
 #include "api/settings_routes.hpp"
 #include "api/small_body.hpp"
+#include "api/spare_routes.hpp"
 #include "api/update_routes.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/sentence.hpp"
@@ -38,7 +39,7 @@ std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead&
     return refusal(icd::Status::UnprocessableEntity, icd::sentence("Content-Type: expected ", body.type));
   }
   if (head.content_length().value_or(0) <= body.most) return std::nullopt;
-  return SmallBody::too_long(body.most, body.as_it_comes ? "bundle" : "body");
+  return SmallBody::too_long(body.most, body.as_it_comes ? "file" : "body");
 }
 
 }  // namespace
@@ -51,7 +52,7 @@ class Api::Impl {
         live_(loop, served.source),
         sessions_(loop, entrance_, served.keys, served.setup),
         run_(served.source, served.judge, live_, entrance_),
-        maps_(served.source),
+        maps_(served.source, served.finer),
         lists_(loop, served.source),
         reports_(lists_, served.source, served.judge, [this] { changed(); }) {
     if (served.setup) settings_.emplace(*served.setup);
@@ -59,9 +60,10 @@ class Api::Impl {
     if (served.updates) updates_.emplace(*served.updates, [this] { changed(); });
     if (served.box) box_.emplace(served.source, lists_, *served.box, entrance_, *redaction_, loop);
     if (served.clock) clock_.emplace(*served.clock, [this] { changed(); });
+    if (served.spare) spare_.emplace(*served.spare, [this] { changed(); });
     if (served.runs) kept_.emplace(loop, *served.runs, served.source);
-    handlers_ = {&pages_,      &sessions_,   &run_,    &maps_,    &reports_, at(settings_),
-                 at(network_), at(updates_), at(box_), at(kept_), at(clock_)};
+    handlers_ = {&pages_,      &sessions_,   &run_,    &maps_,    &reports_,  at(settings_),
+                 at(network_), at(updates_), at(box_), at(kept_), at(clock_), at(spare_)};
   }
 
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
@@ -133,6 +135,7 @@ class Api::Impl {
   std::optional<BoxRoutes> box_;
   std::optional<KeptRunsRoutes> kept_;
   std::optional<ClockRoutes> clock_;
+  std::optional<SpareRoutes> spare_;
   Handlers handlers_;
 };
 

@@ -12,6 +12,7 @@ namespace adit::api {
 
 class Box;
 class Clock;
+class FinerMap;
 class KeptRuns;
 class Keys;
 class Network;
@@ -19,6 +20,7 @@ class Operator;
 class SelfTest;
 class Setup;
 class Source;
+class Spare;
 class Updates;
 
 /// What the API asks. A route whose member is null is not served.
@@ -33,6 +35,8 @@ struct Served {
   Box* box = nullptr;
   KeptRuns* runs = nullptr;
   Clock* clock = nullptr;
+  FinerMap* finer = nullptr;  // null: there is no finer level
+  Spare* spare = nullptr;
 };
 
 /// The API of the page and of scripts, on the team's side and behind a login, and the page's own files.

@@ -16,7 +16,9 @@ struct ClockView {
   std::string why;       // why not; "" where it can
   clock::Source source = clock::Source::None;
   bool is_set = false;
-  std::string refusal;  // why the last change came to nothing
+  std::string refusal;   // why the last change came to nothing
+  std::string ntp = "";  // what is done about NTP, or why it is not; "" where the settings do not ask for it
+  bool is_kept = false;  // an NTP server keeps it: nobody else may set it
   static const codec::Row kRow;
 };
 

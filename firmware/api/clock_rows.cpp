@@ -12,6 +12,9 @@ constexpr codec::Member kClockMembers[] = {
         .one_of(clock::kSourceWords),
     codec::member<&ClockView::is_set>("is_set", "it is known well enough"),
     codec::member<&ClockView::refusal>("refusal", "why the last change came to nothing"),
+    codec::member<&ClockView::ntp>(
+        "ntp", "what is done about NTP, or why it is not; empty where it is not asked for"),
+    codec::member<&ClockView::is_kept>("is_kept", "an NTP server keeps it, and nobody else may set it"),
 };
 
 }  // namespace

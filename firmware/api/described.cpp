@@ -17,6 +17,7 @@
 #include "api/self_test.cpp"
 #include "api/session_rows.cpp"
 #include "api/settings_rows.cpp"
+#include "api/spare_rows.cpp"
 #include "api/updates.cpp"
 #include "network/numbers_rows.cpp"
 #include "update/messages.cpp"
@@ -31,7 +32,7 @@ constexpr const codec::Schema* of = &codec::KindOf<T>::schema;
 constexpr codec::Schemas kSchemas({of<RunView>, of<ReportDetail>, of<MarkerChanges>, of<Tracks>, of<MapView>,
                                    of<History>, of<RunList>, of<LogPage>, of<NetworkView>, of<UpdateView>,
                                    of<SessionRow>, of<WhoAsks>, of<SetupView>, of<CheckView>, of<ChangesView>,
-                                   of<TestView>, of<About>, of<ClockView>});
+                                   of<TestView>, of<About>, of<ClockView>, of<SpareView>});
 
 [[gnu::used, gnu::section("schemas")]] constexpr std::array kText = kSchemas.text();
 

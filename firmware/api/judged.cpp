@@ -1,5 +1,6 @@
 #include "api/judged.hpp"
 
+#include "alarms/standing.hpp"
 #include "icd/require.hpp"
 
 namespace adit::api {
@@ -26,10 +27,9 @@ void judge(RunView& view, const alarms::Facts& facts) {
   icd::require(facts.streams.size() == view.activities.size());
   for (std::size_t i = 0; i < view.activities.size(); ++i) {
     ActivityRow& row = view.activities[i];
-    const auto robot = facts.robots.find(row.robot);
-    const bool silent = robot != facts.robots.end() && robot->second.silent;
-    row.arrival = alarms::arrival_of(facts.streams[i], facts.turn, silent);
-    row.level = alarms::level_of(row.arrival);
+    const auto [arrival, level] = alarms::standing_of(facts.streams[i], facts);
+    row.arrival = arrival;
+    row.level = level;
   }
   view.verdict = alarms::verdict_of(facts);
 }

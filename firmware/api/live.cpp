@@ -19,19 +19,6 @@ double rounded(double number) {
   return std::round(number * kSteps) / kSteps + 0.0;  // no -0
 }
 
-/// All numbers but the places of reports: two are the same where their coordinates are.
-void round_in(codec::Value& value, bool is_report = false) {
-  if (auto* const number = std::get_if<double>(&value.is)) *number = rounded(*number);
-  if (auto* const array = std::get_if<codec::Value::Array>(&value.is)) {
-    for (codec::Value& each : *array) round_in(each, is_report);
-  }
-  if (auto* const object = std::get_if<codec::Value::Object>(&value.is)) {
-    for (auto& [name, member] : *object) {
-      if (!is_report || name != "position") round_in(member, is_report || name == "reports");
-    }
-  }
-}
-
 /// The time goes on whatever happens.
 bool is_news(const std::optional<codec::Value>& patch) {
   if (!patch) return false;
@@ -44,14 +31,14 @@ bool is_news(const std::optional<codec::Value>& patch) {
 Live::Live(loop::Loop& loop, const Source& source)
     : loop_(loop), source_(source), timer_(loop.timer([this] { send_to_all(false); })) {}
 
-codec::Value Live::look() const {
-  codec::Value view = codec::json(source_.view());
-  round_in(view);
+RunView Live::look() const {
+  RunView view = source_.view();
+  codec::change_numbers(RunView::kRow, &view, rounded);
   return view;
 }
 
 const std::string& Live::whole() {
-  if (whole_.empty()) whole_ = "data: " + codec::write_json(told_) + "\n\n";
+  if (whole_.empty()) whole_ = "data: " + codec::to_json(told_) + "\n\n";
   whole_size_ = whole_.size();
   return whole_;
 }
@@ -89,9 +76,9 @@ void Live::changed() {
 void Live::send_to_all(bool in_any_case) {
   dirty_ = false;
   looked_ = loop_.now();
-  codec::Value now = look();
+  RunView now = look();
   const codec::Value nothing{codec::Value::Object()};
-  const auto patch = codec::patch(RunView::kRow, told_, now);
+  const auto patch = codec::patch(told_, now);
   if (in_any_case || is_news(patch) || looked_ >= sent_ + kHeartbeat) {
     told_ = std::move(now);
     whole_.clear();

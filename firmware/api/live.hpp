@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "api/source.hpp"
-#include "codec/value.hpp"
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
 
@@ -39,7 +38,7 @@ class Live {
     std::function<bool()> may_stay;
   };
 
-  codec::Value look() const;
+  RunView look() const;
   void begin();
   void send_to_all(bool in_any_case);
   /// All that the pages were told, as an event.
@@ -50,7 +49,7 @@ class Live {
   loop::Loop& loop_;
   const Source& source_;
   std::vector<OpenPage> pages_;
-  codec::Value told_;           // what the pages have
+  RunView told_;                // what the pages have
   std::string whole_;           // that; "": nobody needed it yet
   std::size_t whole_size_ = 0;  // when somebody last did
   loop::Source timer_;

@@ -73,6 +73,22 @@ struct KindOf<picture::Colour> : OnlyWritten {
 namespace adit::api {
 namespace {
 
+constexpr Member kFinerMembers[] = {
+    member<&picture::Finer::level>("level", "the finest: -1 or -2"),
+    member<&picture::Finer::version>("version"),
+    member<&picture::Finer::area>("area", "what of it changed"),
+};
+constexpr Row kFiner = {"", kFinerMembers, "Of what tiles can be had of now."};
+
+}  // namespace
+}  // namespace adit::api
+
+template <>
+struct adit::codec::KindOf<adit::picture::Finer> : KindOfRow<adit::picture::Finer, adit::api::kFiner> {};
+
+namespace adit::api {
+namespace {
+
 constexpr std::string_view kMapKinds[] = {"grid", "cloud"};
 
 constexpr Member kLayerMembers[] = {
@@ -85,6 +101,7 @@ constexpr Member kLayerMembers[] = {
     member<&LayerView::version>("version"),
     member<&LayerView::missed>("missed", "maps that are not in it"),
     member<&LayerView::left_out>("left_out", "of the last map, out of reach"),
+    member<&LayerView::finer>("finer", "null: nothing is finer than the base"),
     member<&LayerView::tiles>("tiles"),
 };
 constexpr Row kLayer = {"Layer", kLayerMembers};
@@ -109,6 +126,7 @@ constexpr Member kMap[] = {
     member<&MapView::version>("version"),
     member<&MapView::tile_side>("tile_side", "pixels"),
     member<&MapView::metres_per_pixel>("metres_per_pixel", "for each level, the base first"),
+    member<&MapView::finer_metres_per_pixel>("finer_metres_per_pixel", "for levels -1, -2"),
     member<&MapView::colours>("colours"),
     member<&MapView::spacing>("spacing", "seconds between the states that are kept"),
     member<&MapView::wiped>("wiped", "when the last run began, if the box saw it begin"),
@@ -123,14 +141,16 @@ constexpr Row MapView::kRow = {"Map", kMap, "The layers of the picture of the ma
 MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
   const auto grid = picture::grid_palette();
   const auto heights = picture::height_ramp();
-  return {.version = map.version(),
-          .metres_per_pixel = {picture::kMetresPerPixel.begin(), picture::kMetresPerPixel.end()},
-          .colours = {.free = grid[1],
-                      .occupied = grid[picture::kMostOccupiedIndex],
-                      .heights = {heights.begin(), heights.end()}},
-          .spacing = map.spacing(),
-          .wiped = map.wiped(),
-          .layers = map.layers(since)};
+  return {
+      .version = map.version(),
+      .metres_per_pixel = {picture::kMetresPerPixel.begin(), picture::kMetresPerPixel.end()},
+      .finer_metres_per_pixel = {picture::kFineMetresPerPixel.begin(), picture::kFineMetresPerPixel.end()},
+      .colours = {.free = grid[1],
+                  .occupied = grid[picture::kMostOccupiedIndex],
+                  .heights = {heights.begin(), heights.end()}},
+      .spacing = map.spacing(),
+      .wiped = map.wiped(),
+      .layers = map.layers(since)};
 }
 
 }  // namespace adit::api

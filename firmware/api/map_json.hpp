@@ -21,7 +21,7 @@ struct MapColours {
 struct MapView {
   std::uint64_t version = 0;
   int tile_side = picture::kSide;
-  std::vector<double> metres_per_pixel;
+  std::vector<double> metres_per_pixel, finer_metres_per_pixel;
   MapColours colours;
   double spacing = 0;
   std::optional<double> wiped;

@@ -1,23 +1,27 @@
 #pragma once
 
+#include <memory>
+
+#include "api/finer_map.hpp"
 #include "api/route.hpp"
 #include "api/source.hpp"
 
 namespace adit::api {
 
-/// The picture of the maps, the markers and the robots' tracks: README.md. Draws nothing.
+/// The picture of the maps, the markers and the robots' tracks: README.md.
 class MapRoutes {
  public:
-  /// `source` outlives this.
-  explicit MapRoutes(const Source& source) : source_(source) {}
+  /// Both outlive this; `finer` may be null.
+  MapRoutes(const Source& source, FinerMap* finer) : source_(source), finer_(finer) {}
 
   intake::Answer layers(const intake::RequestHead& head) const;
-  intake::Answer tile(const Call& call) const;
+  std::unique_ptr<intake::BodySink> tile(const Call& call) const;
   intake::Answer markers(const intake::RequestHead& head) const;
   intake::Answer tracks(const intake::RequestHead& head) const;
 
  private:
   const Source& source_;
+  FinerMap* finer_;
 };
 
 }  // namespace adit::api

@@ -52,6 +52,22 @@ std::string etag_of(const picture::Packed& tile) {
   return icd::sentence("\"", tile.crc, "-", tile.deflated.size(), "\"");
 }
 
+intake::Answer nothing_drawn() {
+  return refusal(icd::Status::NotFound, "nothing is drawn here");
+}
+
+intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std::string_view kept) {
+  intake::Answer answer{.content_type = "image/png", .body = {}, .headers = {}};
+  const std::string etag = etag_of(tile);
+  answer.headers = {{"ETag", etag}, {"Cache-Control", std::string(kept)}};
+  if (asked.has.contains(etag)) {
+    answer.status = kNotModified;
+  } else {
+    answer.body = coloured(tile, asked);
+  }
+  return answer;
+}
+
 }  // namespace
 
 std::expected<std::uint64_t, intake::Answer> version_asked(const intake::RequestHead& head) {
@@ -69,6 +85,7 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
   const AskedNumber at = asked_number(head, "at"), low = asked_number(head, "low"),
                     high = asked_number(head, "high");
   if (at.wrong) return std::unexpected(bad_tile("at: expected seconds since 1970"));
+  if (at.number && *level < 0) return std::unexpected(bad_tile("at: finer levels are of now alone"));
   if (low.wrong || high.wrong) return std::unexpected(bad_tile("low and high: expected metres"));
   const AskedColour from = asked_colour(head, "from"), to = asked_colour(head, "to");
   if (from.wrong || to.wrong || from.colour.has_value() != to.colour.has_value()) {
@@ -87,22 +104,17 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
 
 intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   const auto shown = map.tile(asked.layer, asked.at, asked.stamp);
-  if (shown.tile == nullptr) return refusal(icd::Status::NotFound, "nothing is drawn here");
-
-  intake::Answer answer{.content_type = "image/png", .body = {}, .headers = {}};
-  const std::string etag = etag_of(*shown.tile);
-  answer.headers.push_back({"ETag", etag});
+  if (shown.tile == nullptr) return nothing_drawn();
   // What was followed by another state does not change any more; the newest is asked for each time.
-  answer.headers.push_back({"Cache-Control", shown.newest ? "no-cache" : "max-age=3600"});
+  intake::Answer answer = image_of(*shown.tile, asked, shown.newest ? "no-cache" : "max-age=3600");
   // So that who plays a run asks for a tile only where it changed.
   answer.headers.push_back({"Adit-Since", icd::number_text(shown.stamp)});
   if (shown.until) answer.headers.push_back({"Adit-Until", icd::number_text(*shown.until)});
-  if (asked.has.contains(etag)) {
-    answer.status = kNotModified;
-  } else {
-    answer.body = coloured(*shown.tile, asked);
-  }
   return guarded(std::move(answer));
+}
+
+intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
+  return tile ? guarded(image_of(*tile, asked, "no-cache")) : nothing_drawn();
 }
 
 }  // namespace adit::api

@@ -27,6 +27,9 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
 /// The PNG, or why there is none.
 intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked);
 
+/// The same of a finer level, which was drawn; null: nothing is there.
+intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked);
+
 /// Of ?since=, 0 without it. An error is the answer.
 std::expected<std::uint64_t, intake::Answer> version_asked(const intake::RequestHead& head);
 

@@ -22,12 +22,13 @@ class ReportRoutes;
 class RunRoutes;
 class SessionRoutes;
 class SettingsRoutes;
+class SpareRoutes;
 class UpdateRoutes;
 
 /// What answers; null: not served here.
 using Handlers =
     std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, SettingsRoutes*,
-               NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*, ClockRoutes*>;
+               NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*, ClockRoutes*, SpareRoutes*>;
 
 /// Who may use a route. A script that sends one of the tokens is an operator.
 enum class Who : std::uint8_t {

@@ -13,7 +13,9 @@
 #include "api/run_routes.hpp"
 #include "api/session_routes.hpp"
 #include "api/settings_routes.hpp"
+#include "api/spare_routes.hpp"
 #include "api/update_routes.hpp"
+#include "spare/sealed.hpp"
 
 namespace adit::api {
 namespace {
@@ -24,6 +26,7 @@ template <std::size_t most>
 constexpr Body kJson{"application/json", most};
 /// No form of a page from elsewhere can send it without a CORS preflight, as with JSON.
 constexpr Body kBundle{"application/octet-stream", update::kLargestBundle, true};
+constexpr Body kExport{"application/octet-stream", spare::kLargestExport, true};
 
 /// What follows the handle is for describe.jq, which reads it here; the program has none of it:
 /// of the body, which of openapi.json's `bodies` it is; tag and summary; of the answer, what it means and
@@ -86,7 +89,7 @@ constexpr Route kRoutes[] = {
     get("/adit/map", Viewer, by<&MapRoutes::layers>(), "map", "The layers of the picture of the maps.",
         "The layers.", "Map", "400", "since_map_version"),
     get("/adit/map/{kind}/{robot}/{level}/{x}/{y}.png", Viewer, by<&MapRoutes::tile>(), "map",
-        "One tile; what is unknown is transparent.", "The tile.", "image/png", "400 404",
+        "One tile; what is unknown is transparent.", "The tile.", "image/png", "400 404 503",
         "kind robot level x y at low high from to"),
     get("/adit/reports", Viewer, by<&ReportRoutes::list>(), "reports",
         "Every report of every run, or of one, oldest first.", "The reports.", "[Report]", "400", "run"),
@@ -206,6 +209,36 @@ constexpr Route kRoutes[] = {
     post("/adit/clock", Operator, kJson<1024>, by<&ClockRoutes::set>(), "ClockToSet", "box",
          "Sets the time of day, by the clock of the one who asks.", "It is about to be set.", "Clock",
          "400 409"),
+    get("/adit/spare", Operator, by<&SpareRoutes::shown>(), "box",
+        "Whether the box rests, the code of its export, and what it took in of another box.", "As it is.",
+        "Spare"),
+    post("/adit/spare/rest", Operator, kJson<1024>, by<&SpareRoutes::rest>(), "Nothing", "box",
+         "From now on the box takes nothing and sends nothing, so that a spare can take over; also after a "
+         "power cut.",
+         "It is about to rest.", "Spare", "409 503"),
+    post("/adit/spare/wake", Operator, kJson<1024>, by<&SpareRoutes::wake>(), "Nothing", "box",
+         "The box goes on. Only where its spare did not take over.", "It is about to.", "Spare", "409 503"),
+    get("/adit/spare/export", Operator, by<&SpareRoutes::exported>(), "box",
+        "The export for the spare, which its code opens: ledger, settings and tokens. Only while the box "
+        "rests.",
+        "The export.", "application/octet-stream", "409 503"),
+    post("/adit/spare/to-stick", Operator, kJson<1024>, by<&SpareRoutes::to_stick>(), "Nothing", "box",
+         "Writes the export to the stick in the box. Only while the box rests.", "It is about to be written.",
+         "Spare", "409 503"),
+    post("/adit/spare/from-stick", Operator, kJson<1024>, by<&SpareRoutes::from_stick>(), "ExportOnStick",
+         "box", "Takes in another box's export that is on the stick in the box. Nothing changes yet.",
+         "It is about to be read.", "Spare", "400 409 503"),
+    post("/adit/spare/take", Operator, kExport, by<&SpareRoutes::take_in>(), "Export", "box",
+         "Takes in another box's export. Nothing changes yet.", "It waits for its code.", "Spare", "409"),
+    post("/adit/spare/open", Operator, kJson<1024>, by<&SpareRoutes::open>(), "ExportCode", "box",
+         "Opens the export that was taken in, and shows what is in it. Nothing changes yet.", "It is opened.",
+         "Spare", "400 409"),
+    post("/adit/spare/forget", Operator, kJson<1024>, by<&SpareRoutes::forget>(), "Nothing", "box",
+         "Forgets what was taken in.", "It is forgotten.", "Spare", "409"),
+    post("/adit/spare/take-over", Operator, kJson<1024>, by<&SpareRoutes::take_over>(), "TakeOver", "box",
+         "The box goes on where the one that made the export came to rest: with its reports, settings and "
+         "tokens.",
+         "It is about to.", "Spare", "400 409 503"),
     get("/adit/test", Viewer, by<&NetworkRoutes::tested>(), "network", "The Test, step by step.",
         "As far as it is.", "Test"),
     post("/adit/test", Operator, kJson<4096>, by<&NetworkRoutes::begin_test>(), "Candidate", "network",

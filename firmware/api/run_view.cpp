@@ -20,7 +20,7 @@ constexpr std::string_view kSides[] = {"team", "command_post"};
 constexpr Member kReport[] = {
     member<&ReportRow::number>("number").csv(1),
     member<&ReportRow::type>("type", "of the artifact, or what the client sent").csv(3),
-    member<&ReportRow::position>("position", "null: damage took from the ledger what it said").csv(4),
+    member<&ReportRow::position>("position", "null: damage took from the ledger what it said").exact().csv(4),
     member<&ReportRow::sender>("sender").csv(5),
     member<&ReportRow::received>("received", kWhen).csv(6, Cell::Time),
     member<&ReportRow::changed>("changed", kWhen).csv(7, Cell::Time),

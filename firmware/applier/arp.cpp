@@ -40,18 +40,23 @@ std::array<std::uint8_t, kArpBytes> arp_probe(const Mac& own, std::uint32_t addr
   return packet;
 }
 
-std::optional<Mac> claimant(std::span<const std::uint8_t> packet, std::uint32_t address, const Mac& own) {
+std::optional<ArpPacket> read_arp(std::span<const std::uint8_t> packet) {
   if (packet.size() < kArpBytes || !std::ranges::equal(packet.first(kEthernetIpv4.size()), kEthernetIpv4)) {
     return std::nullopt;
   }
   if (packet[kOperation - 1] != 0 || (packet[kOperation] != kRequest && packet[kOperation] != kReply))
     return std::nullopt;
-  Mac sender{};
-  std::ranges::copy(packet.subspan(kSender, sender.size()), sender.begin());
-  const std::uint32_t from = get(packet.subspan(kSenderAddress)), about = get(packet.subspan(kTargetAddress));
-  const bool probes = packet[kOperation] == kRequest && from == 0 && about == address;
-  if ((from != address && !probes) || sender == own) return std::nullopt;
-  return sender;
+  ArpPacket read{.asks = packet[kOperation] == kRequest,
+                 .from = get(packet.subspan(kSenderAddress)),
+                 .about = get(packet.subspan(kTargetAddress))};
+  std::ranges::copy(packet.subspan(kSender, read.sender.size()), read.sender.begin());
+  return read;
+}
+
+std::optional<Mac> claimant(std::span<const std::uint8_t> packet, std::uint32_t address, const Mac& own) {
+  const auto read = read_arp(packet);
+  if (!read || (read->from != address && !read->probes(address)) || read->sender == own) return std::nullopt;
+  return read->sender;
 }
 
 }  // namespace adit::applier

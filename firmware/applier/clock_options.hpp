@@ -12,6 +12,8 @@ struct ClockOptions {
   std::string status = "/run/adit-clock";        // where it is answered, for everybody to read
   std::string chip = "/sys/class/rtc/rtc0";      // the clock with a battery, if there is one
   std::string chip_device = "/dev/rtc0";
+  std::string team = "team0";           // the interface on which NTP is spoken
+  std::string systemctl = "systemctl";  // starts and stops chronyd
   bool help = false, version = false;
 };
 

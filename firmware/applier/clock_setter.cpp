@@ -5,7 +5,6 @@
 
 #include "host/log.hpp"
 #include "host/service.hpp"
-#include "host/untrusted_folder.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::applier {
@@ -41,16 +40,35 @@ std::expected<void, std::string> ClockSetter::work() {
     return {};
   }
   while (true) {
-    const auto text = folder->take(clock::kRequestFile);
-    if (text && !*text) return {};
-    if (!text && text.error().stays) return std::unexpected(text.error().why);
-    const auto request = text ? clock::read<clock::Request>(**text) : std::unexpected(text.error().why);
-    if (request) {
-      answer(*request);
-    } else {
-      host::log(Level::Warning, "refused what was asked for", {{"why", request.error()}});
-    }
+    const auto ntp =
+        take<clock::Ntp>(*folder, clock::kNtpFile, [this](const auto& asked) { status_.ntp = asked; });
+    const auto time =
+        take<clock::Request>(*folder, clock::kRequestFile, [this](const auto& asked) { answer(asked); });
+    if (!ntp || !time) return std::unexpected(ntp ? time.error() : ntp.error());
+    if (*ntp == Taken::Nothing && *time == Taken::Nothing) return {};
+    status_.trouble = chronyd_.run_with(status_.ntp, status_.source);
+    tell();
   }
+}
+
+template <class Asked>
+std::expected<ClockSetter::Taken, std::string> ClockSetter::take(
+    host::UntrustedFolder& folder, const char* name, const std::function<void(const Asked&)>& done) {
+  const auto text = folder.take(name);
+  if (text && !*text) return Taken::Nothing;
+  if (!text && text.error().stays) return std::unexpected(text.error().why);
+  const auto asked = text ? clock::read<Asked>(**text) : std::unexpected(text.error().why);
+  if (asked) {
+    done(*asked);
+  } else {
+    host::log(Level::Warning, "refused what was asked for", {{"why", asked.error()}});
+  }
+  return Taken::One;
+}
+
+/// What hinders it is logged.
+void ClockSetter::tell() {
+  (void)file_.tell(clock::write(status_));
 }
 
 void ClockSetter::answer(const clock::Request& request) {
@@ -69,7 +87,6 @@ void ClockSetter::answer(const clock::Request& request) {
   } else {
     host::log(Level::Warning, "refused", {{"why", status_.refusal}});
   }
-  (void)file_.tell(clock::write(status_));  // logs what hinders it
 }
 
 }  // namespace adit::applier

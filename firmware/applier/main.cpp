@@ -2,6 +2,7 @@
 
 #include <csignal>
 
+#include "applier/address_watch.hpp"
 #include "applier/applier.hpp"
 #include "applier/options.hpp"
 #include "command_line/answer.hpp"
@@ -10,12 +11,26 @@
 
 namespace {
 
+int fail(const std::string& why) {
+  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", why}});
+  return 1;
+}
+
 /// Once, as the machine starts: networkd finds its files when it comes.
 int start(const adit::applier::Options& options) {
   const auto written = adit::applier::NetworkdFiles(options).write_at_start();
-  if (written) return 0;
-  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", written.error()}});
-  return 1;
+  return written ? 0 : fail(written.error());
+}
+
+/// As long as the box is on.
+int watch(const adit::applier::Options& options) {
+  adit::loop::Loop loop;
+  adit::applier::AddressWatch watch(loop, options);
+  const auto terminated = loop.signal(SIGTERM, [&loop] { loop.stop(); });
+  const auto interrupted = loop.signal(SIGINT, [&loop] { loop.stop(); });
+  if (const auto started = watch.start(); !started) return fail(started.error());
+  loop.run();
+  return 0;
 }
 
 int run(const adit::applier::Options& options) {
@@ -23,10 +38,7 @@ int run(const adit::applier::Options& options) {
   adit::applier::Applier applier(loop, options);
   const auto terminated = loop.signal(SIGTERM, [&applier] { applier.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&applier] { applier.stop(); });
-  if (const auto started = applier.start(); !started) {
-    adit::host::log(adit::host::Level::Error, "cannot work", {{"why", started.error()}});
-    return 1;
-  }
+  if (const auto started = applier.start(); !started) return fail(started.error());
   loop.run();
   return applier.is_stuck() ? 1 : 0;
 }
@@ -37,5 +49,6 @@ int main(int argc, char** argv) {
   using adit::applier::command_line_of;
   const auto options = adit::applier::parse_options({argv + 1, argv + argc});
   if (const auto exit = adit::command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
+  if (options->watch) return watch(*options);
   return options->start ? start(*options) : run(*options);
 }

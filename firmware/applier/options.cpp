@@ -33,6 +33,9 @@ command_line::Program command_line_of(Options& options) {
                {"--networkctl", "CMD", "what makes networkd read them, called with the word reload",
                 &options.networkctl},
                {"--start", "", "only writes networkd's files: before networkd starts", &options.start},
+               {"--watch", "",
+                "only tells, in the folder of --status, which other machine uses the box's addresses",
+                &options.watch},
                {"--version", "", "prints the version", &options.version},
                {"--help", "", "prints this", &options.help}},
       .ending =
@@ -50,6 +53,8 @@ std::expected<Options, std::string> parse_options(std::span<const char* const> a
   }
   if (options->team == options->command_post)
     return std::unexpected("--team and --command-post name the same interface");
+  if (options->start && options->watch)
+    return std::unexpected("--start and --watch are two different things");
   return options;
 }
 

@@ -15,6 +15,7 @@ struct Options {
   std::string networkctl = "networkctl";
   std::string team = "team0", command_post = "darpa0";
   bool start = false;  // only writes networkd's files, before networkd is there
+  bool watch = false;  // only listens whether another machine uses the box's addresses
   bool help = false, version = false;
 };
 

@@ -1,6 +1,7 @@
 #include "archive/archive.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <utility>
 
 #include "archive/run_report.hpp"
@@ -40,6 +41,10 @@ void Archive::begin(const Head& head, GoOn go_on) {
   attention_.clear();
   lines_.clear();
   lines_bytes_ = 0;
+  moved_ = 0;
+  steps_.clear();
+  row_ = {};
+  next_facts_ = loop_.now();
   const auto opening = std::make_shared<Opening>();
   opening->head = head;
   const auto done = [this, opening, begun = begun_] {
@@ -69,6 +74,7 @@ void Archive::opened(Opening& opening) {
   head_ = opening.head;
   has_folder(opening);
   Told& told = *opening.told;
+  told.move(std::exchange(moved_, 0));
   samples_ = std::move(told.samples());
   attention_.go_on(samples_.since(0).attention);
   wiped_ = told.picture().wiped();
@@ -111,9 +117,18 @@ void Archive::make_folder() {
       done, done);
 }
 
+/// Before anything that is told by the new time: of lines that wait, only so many as go at once.
 void Archive::move(double seconds) {
   samples_.move(seconds);
   last_pose_ += seconds;
+  if (wiped_) *wiped_ += seconds;
+  due_.move(seconds);
+  if (opening_) moved_ += seconds;
+  const std::string step =
+      said(Step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()});
+  line(Kind::Moved, step);
+  keep_lines_below(kLargestRecord);
+  steps_ += framed(Kind::Moved, step);
 }
 
 void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
@@ -126,7 +141,11 @@ void Archive::needs_attention(const std::vector<std::string>& sentences, api::Ti
 
 void Archive::line(Kind kind, std::string_view said) {
   lines_bytes_ += lines_.emplace_back(framed(kind, said)).size();
-  while (lines_bytes_ > kMostWaiting) {
+  keep_lines_below(kMostWaiting);
+}
+
+void Archive::keep_lines_below(std::size_t most) {
+  while (lines_bytes_ > most) {
     lines_bytes_ -= lines_.front().size();
     lines_.pop_front();
   }
@@ -138,6 +157,18 @@ void Archive::look_at_disk() {
                  [] {});
 }
 
+namespace {
+
+/// The present run as it is now, any other as the disk has it.
+api::RunRow as_now(const api::RunRow& row, const api::RunRow& present) {
+  if (row.key != present.key) return row;
+  api::RunRow now = present;
+  now.bytes = row.bytes;
+  return now;
+}
+
+}  // namespace
+
 api::RunList Archive::list() const {
   api::RunList all{.runs = list_, .bytes = 0, .trouble = trouble_};
   // One that has just begun has nothing on the disk yet.
@@ -146,6 +177,7 @@ api::RunList Archive::list() const {
                     {.key = key_, .run = head_.run, .post = head_.post, .began = head_.began});
   }
   for (api::RunRow& row : all.runs) {
+    row = as_now(row, row_);
     row.is_present = row.key == key_;
     all.bytes += row.bytes;
   }
@@ -155,8 +187,9 @@ api::RunList Archive::list() const {
 namespace {
 
 /// For the thread that waits for the disk; null where there is no such run.
-std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
-                                       const std::function<bool()>& enough) {
+std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
+                                             const api::RunRow& present,
+                                             const std::function<bool()>& enough) {
   const auto facts = runs.facts_of(key);
   if (!facts) return nullptr;
   Told told(Archive::kLookedAt);
@@ -164,15 +197,17 @@ std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string
   std::vector<std::pair<api::Time, double>> coverage;
   for (const auto& [at, pixels] : told.known())
     coverage.emplace_back(at, static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
-  return std::make_shared<api::KeptRun>(api::KeptRun{*facts, std::move(told.picture()), told.tracks(),
-                                                     told.samples().since(0), std::move(coverage)});
+  return std::make_shared<const api::KeptRun>(api::KeptRun{as_now(*facts, present), std::move(told.picture()),
+                                                           told.tracks(), told.samples().since(0),
+                                                           std::move(coverage)});
 }
 
 }  // namespace
 
 void Archive::read(const std::string& key, std::function<void(std::shared_ptr<const api::KeptRun>)> done) {
-  const auto run = std::make_shared<std::shared_ptr<api::KeptRun>>();
-  writer_.submit([run, key, runs = runs_, enough = enough()] { *run = kept_run(runs, key, enough); },
+  const auto run = std::make_shared<std::shared_ptr<const api::KeptRun>>();
+  writer_.submit([run, key, present = row_, runs = runs_,
+                  enough = enough()] { *run = kept_run(runs, key, present, enough); },
                  [run, done] { done(*run); }, [done] { done(nullptr); });
 }
 
@@ -180,8 +215,8 @@ void Archive::report(const std::string& key, std::vector<api::ReportDetail> repo
                      std::function<void(std::string html)> done) {
   const auto html = std::make_shared<std::string>();
   writer_.submit(
-      [html, key, runs = runs_, enough = enough(), reports = std::move(reports)] {
-        if (const auto run = kept_run(runs, key, enough)) *html = run_report(*run, reports);
+      [html, key, present = row_, runs = runs_, enough = enough(), reports = std::move(reports)] {
+        if (const auto run = kept_run(runs, key, present, enough)) *html = run_report(*run, reports);
       },
       [html, done] { done(std::move(*html)); }, [done] { done(""); });
 }

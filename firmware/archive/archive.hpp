@@ -64,10 +64,12 @@ class Archive final : public api::KeptRuns {
   void tick(const Seen& seen);
   /// Writes what is due and may be written, without delay: the process may end.
   void write_now(const Seen& seen);
-  /// The same, without the facts: another run is about to be the present one.
+  /// The same, with the facts of the last tick: what is heard now may be of the run that is about to be the
+  /// present one.
   void end_run(const Seen& seen);
   void needs_attention(const std::vector<std::string>& sentences, api::Time now);
-  /// The time of day was set ahead by so many seconds. What is written stays as it is.
+  /// The time of day was set ahead by so many seconds: all that is kept of this run was as long ago as it
+  /// was.
   void move(double seconds);
 
   /// Why nothing is written now; or "".
@@ -90,14 +92,17 @@ class Archive final : public api::KeptRuns {
   /// Where the disk had no room for one.
   void make_folder();
   void line(Kind kind, std::string_view said);
+  void keep_lines_below(std::size_t most);
   void sample(const Seen& seen);
-  void write(const Seen& seen, bool with_facts = true);
+  void note(const Seen& seen);
+  void write(const Seen& seen);
   void put_lines(const Seen& seen, Batch& batch);
-  void put_facts(const Seen& seen, Batch& batch);
+  void put_facts(Batch& batch);
   void put_layers(const Seen& seen, Batch& batch);
   void put_tiles(const Seen& seen, Batch& batch, std::size_t left);
   void written(const Writing& writing);
   void look_at_disk();
+  /// The present run's as it is now, which the disk has as of up to kFactsEvery ago; bytes as in `row`.
   std::function<bool()> enough() const;
 
   loop::Loop& loop_;
@@ -114,12 +119,14 @@ class Archive final : public api::KeptRuns {
   std::uint64_t layers_seen_ = 0;  // Mosaic::version()
   std::optional<double> wiped_;    // as written
   loop::Instant next_write_{}, next_facts_{};
-  std::string facts_;                    // as written
+  api::RunRow row_;                      // the present run's as of the last tick, but for its bytes
   std::optional<std::uint64_t> leaves_;  // the file that is to go
   bool is_left_ = false;                 // it may
   std::uint64_t writes_ = 0;
   int writing_ = 0;  // writes under way
   bool opening_ = false;
+  double moved_ = 0;         // meanwhile
+  std::string steps_;        // records of the clock that was set, for the tiles
   std::uint64_t begun_ = 0;  // how often a run began here
   GoOn go_on_;
   Head head_;        // the present run's

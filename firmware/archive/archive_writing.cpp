@@ -12,6 +12,7 @@ namespace adit::archive {
 struct Archive::Writing {
   std::uint64_t number = 0, begun = 0;
   Batch batch;
+  std::string steps;  // of it
   std::shared_ptr<RunFolder> folder;
   std::uint64_t most = 0;
   std::optional<std::uint64_t> goes;  // this file
@@ -21,6 +22,7 @@ struct Archive::Writing {
 void Archive::tick(const Seen& seen) {
   if (opening_) return;
   sample(seen);
+  note(seen);
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (folder_) {
     write(seen);
@@ -30,11 +32,21 @@ void Archive::tick(const Seen& seen) {
 }
 
 void Archive::write_now(const Seen& seen) {
-  if (!opening_ && folder_) write(seen);
+  if (opening_ || !folder_) return;
+  note(seen);
+  end_run(seen);
 }
 
 void Archive::end_run(const Seen& seen) {
-  if (!opening_ && folder_) write(seen, false);
+  if (opening_ || !folder_) return;
+  next_facts_ = loop_.now();
+  write(seen);
+}
+
+void Archive::note(const Seen& seen) {
+  row_ = seen.facts();
+  row_.key = key_;
+  row_.last = seen.now;
 }
 
 void Archive::sample(const Seen& seen) {
@@ -47,15 +59,17 @@ void Archive::sample(const Seen& seen) {
 }
 
 /// Lines first: they are small, and there is no newer state of them that could be written instead.
-void Archive::write(const Seen& seen, bool with_facts) {
+void Archive::write(const Seen& seen) {
   next_write_ = loop_.now() + kWriteEvery;
   const std::size_t may = allowance_.at(loop_.now());
   const auto writing = std::make_shared<Writing>();
   Batch& batch = writing->batch;
   writing->number = ++writes_;
   writing->begun = begun_;
-  if (with_facts) put_facts(seen, batch);
+  put_facts(batch);
   put_lines(seen, batch);
+  writing->steps = std::exchange(steps_, "");
+  batch.beside = writing->steps;
   put_layers(seen, batch);
   const std::size_t taken = batch.facts.size() + batch.lines.size() + batch.beside.size();
   put_tiles(seen, batch, may - std::min(may, taken));
@@ -74,14 +88,10 @@ void Archive::write(const Seen& seen, bool with_facts) {
       done, done);
 }
 
-void Archive::put_facts(const Seen& seen, Batch& batch) {
-  if (loop_.now() < next_facts_ && !facts_.empty()) return;
+void Archive::put_facts(Batch& batch) {
+  if (row_.key.empty() || loop_.now() < next_facts_) return;
   next_facts_ = loop_.now() + kFactsEvery;
-  api::RunRow facts = seen.facts();
-  facts.key = key_;
-  facts.last = seen.now;
-  batch.facts = codec::write_file(facts, kFactsFormat);
-  facts_ = batch.facts;
+  batch.facts = codec::write_file(row_, kFactsFormat);
   allowance_.spend(batch.facts.size());
 }
 
@@ -140,7 +150,8 @@ void Archive::written(const Writing& writing) {
   if (std::exchange(trouble_, why) != why && !why.empty())
     host::log(host::Level::Warning, "the run's map and tracks are not kept", {{"why", why}});
   if (!outcome) {
-    facts_.clear();
+    next_facts_ = loop_.now();
+    steps_.insert(0, writing.steps);
     if (!writing.batch.lines.empty()) lines_bytes_ += lines_.emplace_front(writing.batch.lines).size();
     return;
   }

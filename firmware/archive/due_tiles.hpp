@@ -33,6 +33,12 @@ class DueTiles {
   /// That write is done: what it wrote is in that file; nothing: it failed, and is due again.
   void done(std::uint64_t write, std::optional<std::uint64_t> file);
 
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds) {
+    for (auto& [at, tile] : tiles_) {
+      if (tile.written != 0) tile.written += seconds;
+    }
+  }
   /// The states in that file are to be written again, so that it may go. True: it holds no newest state.
   bool leave(std::uint64_t file);
   /// Of the picture, these tiles are written, in these files.

@@ -17,6 +17,7 @@ enum class Kind : std::uint8_t {
   Poses = 5,      // of one robot
   Sample = 6,     // of the plots
   Attention = 7,  // something that needs the operator came, or went
+  Moved = 8,      // the time of day was set: all that such files told before is of so many seconds later
 };
 
 /// The largest that is written: a tile that nothing makes smaller.

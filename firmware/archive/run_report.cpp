@@ -8,6 +8,7 @@
 #include "archive/html.hpp"
 #include "icd/in_html.hpp"
 #include "icd/sentence.hpp"
+#include "icd/utc.hpp"
 
 namespace adit::archive {
 namespace {
@@ -56,15 +57,15 @@ std::string facts(const api::KeptRun& kept) {
   const double began = run.began > 0 || kept.history.at.empty() ? run.began : kept.history.at.front();
   return "<dl>\n" + fact("Score", number(run.score)) + fact("Reports left", number(run.remaining_reports)) +
          fact("Team", run.team) + fact("Course", run.course) + fact("Command Post", run.post) +
-         fact("Its name of the run", run.id) + fact("Began (UTC)", utc(began)) +
-         fact("Last written (UTC)", utc(run.last)) +
+         fact("Its name of the run", run.id) + fact("Began (UTC)", icd::utc(began)) +
+         fact("Last written (UTC)", icd::utc(run.last)) +
          fact("Lasted", began > 0 ? lasted(run.last - began) : "") + "</dl>\n";
 }
 
 std::string life_of(const api::ReportDetail& report) {
   std::string steps;
   for (const api::ReportStep& step : report.history) {
-    steps += icd::sentence("<li>", icd::in_html(utc(step.at)), " ", icd::in_html(step.state),
+    steps += icd::sentence("<li>", icd::in_html(icd::utc(step.at)), " ", icd::in_html(step.state),
                            step.note.empty() ? "" : ": ", icd::in_html(step.note), "</li>");
   }
   return "<td><ol>" + steps + "</ol></td>";
@@ -125,7 +126,8 @@ std::string attention_table(const api::KeptRun& run) {
   if (run.history.attention.empty()) return "<p>Nothing needed the operator.</p>\n";
   std::string rows;
   for (const api::AttentionStep& step : run.history.attention)
-    rows += "<tr>" + cell(utc(step.at)) + cell(step.came ? "came" : "went") + cell(step.sentence) + "</tr>\n";
+    rows += "<tr>" + cell(icd::utc(step.at)) + cell(step.came ? "came" : "went") + cell(step.sentence) +
+            "</tr>\n";
   return "<table><thead><tr><th>UTC</th><th></th><th>What</th></tr></thead><tbody>\n" + rows +
          "</tbody></table>\n";
 }

@@ -5,8 +5,10 @@
 
 #include "archive/html.hpp"
 #include "archive/run_report.hpp"
+#include "codec/base64.hpp"
 #include "icd/in_html.hpp"
 #include "icd/sentence.hpp"
+#include "icd/utc.hpp"
 #include "picture/palette.hpp"
 #include "picture/png.hpp"
 
@@ -40,7 +42,7 @@ std::string image(const picture::Packed& tile, picture::Kind kind, const picture
   return icd::sentence("<image x=\"", fixed(at.x * side, 2), "\" y=\"", fixed(-(at.y + 1) * side, 2),
                        "\" width=\"", fixed(side, 2), "\" height=\"", fixed(side, 2),
                        "\" image-rendering=\"pixelated\" href=\"data:image/png;base64,",
-                       base64_of({bytes, png.size()}), "\"/>\n");
+                       codec::base64_of({bytes, png.size()}), "\"/>\n");
 }
 
 /// All layers' tiles of one level, clouds below grids.
@@ -155,8 +157,8 @@ std::string drawn_coverage(const api::KeptRun& run) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"Coverage over time\" "
       "viewBox=\"-4 -4 608 168\"><polyline fill=\"none\" stroke=\"#000\" stroke-width=\"1.5\" points=\"",
       points, "\"/></svg>\n<p>From 0 to ", fixed(most, 0),
-      " m\u00b2, as known by each robot's grids and clouds, each counted by itself; from ", utc(first),
-      " to ", utc(last), " (UTC).</p>\n");
+      " m\u00b2, as known by each robot's grids and clouds, each counted by itself; from ", icd::utc(first),
+      " to ", icd::utc(last), " (UTC).</p>\n");
 }
 
 }  // namespace adit::archive

@@ -181,6 +181,18 @@ std::optional<double> read_time(std::string_view said) {
   return whole(in, ok, stamp);
 }
 
+std::string said(const Step& step) {
+  return Writer().real(step.seconds).real(step.when).finish();
+}
+
+std::optional<Step> read_step(std::string_view said) {
+  Reader in(said);
+  bool ok = true;
+  const Step step{.seconds = real_in(in, ok), .when = real_in(in, ok)};
+  ok = ok && std::abs(step.seconds) < kLatest;
+  return whole(in, ok, step);
+}
+
 std::string said(const std::string& robot, std::span<const api::TrackPose> poses) {
   Writer out;
   put_text(out, robot);

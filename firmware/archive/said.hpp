@@ -45,6 +45,14 @@ std::optional<picture::LayerView> read_layer(std::string_view said);
 
 std::string said_time(double stamp);
 std::optional<double> read_time(std::string_view said);
+/// The time of day was set.
+struct Step {
+  double seconds = 0;  // ahead; less than 0: back
+  double when = 0;     // by a clock that nobody sets: a step that is told twice is one
+  bool operator==(const Step&) const = default;
+};
+std::string said(const Step& step);
+std::optional<Step> read_step(std::string_view said);
 
 std::string said(const std::string& robot, std::span<const api::TrackPose> poses);
 std::optional<api::Track> read_poses(std::string_view said);

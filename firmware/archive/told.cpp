@@ -27,19 +27,49 @@ void Told::tell(Kind kind, std::string_view said, std::uint64_t file) {
       return;
     case Kind::Sample:
       if (auto sample = read_sample(said)) {
-        heard(sample->at);
+        last_line_ = std::max(last_line_, sample->at);
         samples_.add(std::move(*sample));
       }
       return;
     case Kind::Attention:
       if (auto step = read_attention(said)) {
-        heard(step->at);
+        last_line_ = std::max(last_line_, step->at);
         samples_.add(std::move(*step));
       }
+      return;
+    case Kind::Moved:
+      if (const auto step = read_step(said)) tell(*step, file != 0);
       return;
     case Kind::Head:
       return;
   }
+}
+
+/// The files of lines and those of tiles are read apart, so each tells it. What a write that failed had told
+/// is told again.
+void Told::tell(const Step& step, bool of_tiles) {
+  if (std::exchange(of_tiles ? tile_step_ : line_step_, step) == step) return;
+  if (of_tiles) return move_tiles(step.seconds);
+  move_lines(step.seconds);
+}
+
+void Told::move(double seconds) {
+  move_lines(seconds);
+  move_tiles(seconds);
+}
+
+void Told::move_lines(double seconds) {
+  samples_.move(seconds);
+  for (auto& [robot, poses] : tracks_) {
+    for (api::TrackPose& pose : poses) pose.at += seconds;
+  }
+  last_line_ += seconds;
+}
+
+void Told::move_tiles(double seconds) {
+  picture_.move(seconds);
+  for (auto& [at, pixels] : known_) at += seconds;
+  last_tile_ += seconds;
 }
 
 /// The first one says whose run it is. Files of another one, which somebody put there, are not told. A file
@@ -55,7 +85,7 @@ void Told::tell_head(std::string_view said) {
 void Told::tell(TileState state, std::uint64_t file) {
   const auto known = state.tile ? packer_.known_in(*state.tile) : 0;
   if (!tiles_fit_ || !known || !picture_.take_up(state.layer, state.at, state.tile, state.stamp)) return;
-  heard(state.stamp);
+  last_tile_ = std::max(last_tile_, state.stamp);
   const TileKey key{state.layer, state.at};
   files_[key] = file;
   if (state.at.level > 0) return;
@@ -71,7 +101,7 @@ void Told::tell(const api::Track& track) {
   for (const api::TrackPose& pose : track.poses) {
     if (poses_ == kMostPoses || (!poses.empty() && pose.at <= poses.back().at)) continue;
     poses.push_back(pose);
-    heard(pose.at);
+    last_line_ = std::max(last_line_, pose.at);
     ++poses_;
   }
 }

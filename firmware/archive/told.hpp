@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -28,6 +29,8 @@ class Told {
 
   /// The content of one file, which has that number.
   void tell(std::string_view bytes, std::uint64_t file);
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds);
 
   const std::optional<Head>& head() const { return head_; }
   picture::Mosaic& picture() { return picture_; }
@@ -37,14 +40,16 @@ class Told {
   std::map<TileKey, std::uint64_t>& files() { return files_; }
   /// How much of the finest tiles was known over time: pixels of all layers.
   const std::vector<std::pair<double, std::uint64_t>>& known() const { return known_; }
-  double last() const { return last_; }  // of what is told of
+  double last() const { return std::max(last_line_, last_tile_); }  // of what is told of
 
  private:
   void tell(Kind kind, std::string_view said, std::uint64_t file);
   void tell(TileState state, std::uint64_t file);
   void tell(const api::Track& track);
+  void tell(const Step& step, bool of_tiles);
   void tell_head(std::string_view said);
-  void heard(double at) { last_ = at > last_ ? at : last_; }
+  void move_lines(double seconds);
+  void move_tiles(double seconds);
 
   picture::Mosaic picture_;
   picture::Packer packer_;
@@ -58,7 +63,8 @@ class Told {
   std::map<TileKey, std::size_t> known_of_;
   std::uint64_t known_now_ = 0;
   std::vector<std::pair<double, std::uint64_t>> known_;
-  double last_ = 0;
+  double last_line_ = 0, last_tile_ = 0;
+  std::optional<Step> line_step_, tile_step_;  // the last one that was told
 };
 
 }  // namespace adit::archive

@@ -46,9 +46,10 @@ KnownBoard read_board(const std::string& file) {
   return {{}, std::move(trouble)};
 }
 
-OpenPanel open_panel(const settings::Panel& settings, const PanelPlace& place) {
+OpenPanel open_panel(const settings::Panel& settings, const PanelPlace& place,
+                     loop::FileDescriptor announced) {
   if (!place.socket.empty()) {
-    auto held = panel::remote(place.socket, settings);
+    auto held = panel::remote(place.socket, settings, std::move(announced));
     if (held) return {std::move(held->lines), std::move(held->button)};
     host::log(host::Level::Error, "the panel is simulated: adit-panel cannot be had",
               {{"why", held.error()}});

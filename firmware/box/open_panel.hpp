@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "loop/file_descriptor.hpp"
 #include "panel/lines.hpp"
 #include "settings/board.hpp"
 
@@ -27,6 +28,8 @@ struct PanelPlace {
 };
 /// The panel that adit-panel holds. Where nobody does, its lines, or a simulated panel in the folder: the
 /// file `panel`, and where no line is named at all the FIFO `panel.button`. What cannot be had is logged.
-OpenPanel open_panel(const settings::Panel& settings, const PanelPlace& place);
+/// `announced`: panel::announce(), or empty.
+OpenPanel open_panel(const settings::Panel& settings, const PanelPlace& place,
+                     loop::FileDescriptor announced = {});
 
 }  // namespace adit::box

@@ -5,6 +5,7 @@
 #include <gnu/libc-version.h>
 #include <libdeflate.h>
 #include <microhttpd.h>
+#include <sodium.h>
 #include <sqlite3.h>
 #include <zlib.h>
 
@@ -39,6 +40,7 @@ std::vector<api::PartRow> parts() {
           {.name = "libsystemd", .version = kSystemdVersion, .licence = kLesserGpl},
           {.name = "libgpiod", .version = panel::gpiod_version(), .licence = kLesserGpl},
           {.name = "libcrypt", .version = XCRYPT_VERSION_STR, .licence = kLesserGpl},
+          {.name = "libsodium", .version = sodium_version_string(), .licence = "ISC"},
           {.name = "glibc", .version = gnu_get_libc_version(), .licence = kLesserGpl}};
 }
 

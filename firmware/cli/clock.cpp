@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <ctime>
 
 #include "cli/ask.hpp"
 #include "cli/reading.hpp"
@@ -10,6 +9,7 @@
 #include "cli/words.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/utc.hpp"
 
 namespace adit::cli {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kAsHere = 2;  // seconds
 struct ToldClock {
   double now = 0;
   bool managed = false, is_set = false;
-  std::string why, source, refusal;
+  std::string why, source, refusal, ntp;
 };
 
 ToldClock read_clock(const codec::Field& root) {
@@ -29,21 +29,12 @@ ToldClock read_clock(const codec::Field& root) {
           .is_set = root.member("is_set").truth(),
           .why = text(root, "why"),
           .source = text(root, "source"),
-          .refusal = text(root, "refusal")};
+          .refusal = text(root, "refusal"),
+          .ntp = text(root, "ntp")};
 }
 
 double time_here() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
-/// "2026-11-23 08:15:00 UTC"
-std::string utc(double time) {
-  const auto seconds = static_cast<std::time_t>(std::floor(time));
-  std::tm parts{};
-  char written[64];
-  const bool is_date = gmtime_r(&seconds, &parts) != nullptr &&
-                       std::strftime(written, sizeof written, "%Y-%m-%d %H:%M:%S UTC", &parts) > 0;
-  return is_date ? written : "no date";
 }
 
 std::string spoken(const std::string& source) {
@@ -52,6 +43,7 @@ std::string spoken(const std::string& source) {
   if (source == "robots") return "set by the robots' stamps";
   if (source == "command_post") return "set by the Command Post's answers";
   if (source == "chip") return "set by the box's own clock";
+  if (source == "ntp") return "set by an NTP server";
   return "set by an operator";
 }
 
@@ -61,10 +53,12 @@ std::string text_of(const ToldClock& view, double here) {
       std::abs(ahead) <= kAsHere
           ? "as here"
           : icd::sentence(duration(std::abs(ahead)), ahead > 0 ? " ahead of here" : " behind here");
-  std::string out = icd::sentence(utc(view.now), ", ", apart, "\n");
+  const std::string date = icd::utc(view.now);
+  std::string out = icd::sentence(date.empty() ? "no date" : date + " UTC", ", ", apart, "\n");
   out += view.managed ? spoken(view.source) + '\n'
                       : icd::sentence("It cannot be set by Adit: ", host::escaped(view.why), "\n");
   if (!view.refusal.empty()) out += icd::sentence("Not set: ", host::escaped(view.refusal), "\n");
+  if (!view.ntp.empty()) out += host::escaped(view.ntp) + '\n';
   if (!view.is_set) out += "Set it by this computer's: adit clock set\n";
   return out;
 }

@@ -12,6 +12,7 @@
 #include "cli/reports.hpp"
 #include "cli/runs.hpp"
 #include "cli/settings.hpp"
+#include "cli/spare.hpp"
 #include "cli/test.hpp"
 #include "cli/update.hpp"
 #include "cli/watch.hpp"
@@ -45,6 +46,8 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
       return identify(*options);
     case Command::Clock:
       return clock(*options);
+    case Command::Spare:
+      return spare(*options, console);
     case Command::Network:
       return network(*options);
     case Command::Test:

@@ -15,6 +15,7 @@ constexpr Argument kRunKey{"KEY", "a run's key", 1, 1, 0, Among::Runs};
 constexpr Argument kKey{"[KEY]", "a key of the settings", 0, 1, 0, Among::Keys};
 constexpr Argument kFile{"FILE", "a file", 1, 1, 0, Among::Files};
 constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0, Among::Files};
+constexpr Argument kExport{"[FILE]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kCommand{"[COMMAND]", "a command", 0, 1, 0, Among::Commands};
 constexpr Argument kWord{"[WORD]", "a word of `adit reports`", 0, 1, 0};
@@ -81,6 +82,21 @@ constexpr Form kClockForms[] = {
      "the box's time of day, who set it, and how far it is from this computer's", "", true},
     {"set", Verb::Set, kNothing,
      "to this computer's time. Nothing hangs on it: stamps, sessions and reports go on as they were"}};
+constexpr Form kSpareForms[] = {
+    {"show", Verb::Show, kNothing,
+     "whether the box rests, with the code of its export, and what it took in of another box", "", true},
+    {"export", Verb::Export, kExport,
+     "puts the box to rest, and writes its export into FILE: ledger, settings and tokens; with --stick onto "
+     "the USB stick in the box. It prints the code that opens it: note it. From then on the box takes "
+     "nothing and sends nothing, also after a power cut",
+     "--stick --yes"},
+    {"take", Verb::Take, kExport,
+     "on the spare: takes in FILE, or with --stick the file of that name on the USB stick in the box (FILE "
+     "may be left out where there is one export on it). It shows what is in it, and takes over once you say "
+     "that the box that made it is unplugged",
+     "--stick --code --yes"},
+    {"wake", Verb::Wake, kNothing,
+     "the box goes on. Only where no spare took over from it: else a report may be sent twice", "--yes"}};
 constexpr Form kTestForms[] = {
     {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
 constexpr Form kUpdateForms[] = {
@@ -117,11 +133,12 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit status\n"
      "  adit status --at 10.0.0.1:8000 --token-file team.token\n"
      "  sudo adit status --json | jq '.run.remaining_reports'"},
-    {Command::Watch, "watch", "the same as `adit status`, again each second, until you end it", kPlain,
-     "On a terminal the screen is drawn again each second; q or Ctrl-C ends it. Elsewhere, in a pipe or a "
-     "file: first all of it, then a line for each change: of the run, of a report, of an endpoint, of a "
-     "robot's maps that stop or arrive, of what needs the operator. With --json: what Adit says, a line each "
-     "second. Where Adit does not answer, it says so and goes on asking.",
+    {Command::Watch, "watch", "the same as `adit status`, as it changes, until you end it", kPlain,
+     "On a terminal the screen is drawn again as it changes, at most each second; q or Ctrl-C ends it. "
+     "Elsewhere, in a pipe or a file: first all of it, then a line for each change: of the run, of a report, "
+     "of an endpoint, of a robot's maps that stop or arrive, of what needs the operator. With --json: what "
+     "Adit says, a line as it changes, at most one a second. Where Adit does not answer, it says so and goes "
+     "on asking.",
      "it was ended", "",
      "  sudo adit watch\n"
      "  sudo adit watch | tee run.log\n"
@@ -211,7 +228,8 @@ constexpr CommandRow kCommands[] = {
     {Command::Clock, "clock", "the box's time of day, and your word on it", kClockForms,
      "A box without a battery begins with the last time it knew. Then the `Date` of the Command Post's "
      "answers sets it, or a robot's stamps, or you do: here, or on the page, which asks where a browser's "
-     "time is another.",
+     "time is another. An NTP server of the team that the settings name (clock.ntp_server) sets it and keeps "
+     "it: while it answers, nobody else may. With clock.serve_ntp the team's network has the box's time.",
      "the time is set; of your word: it is being set", "it is not set, or could not be",
      "  adit clock\n"
      "  adit clock set --at 10.0.0.1:8000 --token-file team.token"},
@@ -233,6 +251,22 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit test\n"
      "  sudo adit test --scoring 10.100.2.200:8000 --mapping 10.100.2.201:8000\n"
      "  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == \"bad\")'"},
+    {Command::Spare, "spare", "a second box takes over from this one, with all that is known of the reports",
+     kSpareForms,
+     "A report that the first box knows is known to its spare, so that none is sent twice over the swap. In "
+     "this order:\n"
+     "  1. on the first box: adit spare export FILE, or --stick; it rests from then on\n"
+     "  2. unplug it\n"
+     "  3. on the spare, at its own address: adit spare take FILE, or --stick\n"
+     "  4. give the spare the addresses of the first box (adit network, or the set-up page) and its cables\n"
+     "What the first box had not sent yet is in doubt at the spare until the run's status shows that nobody "
+     "sent it since: that takes some 10 s, and then it goes. The export is sealed by its code, which is not "
+     "in it.",
+     "the box neither rests nor has an export that waits; of your word: it is done",
+     "it rests, or an export waits; of your word: it cannot be done, or you said no",
+     "  sudo adit spare export /media/stick/box.adit-spare\n"
+     "  sudo adit spare take /media/stick/box.adit-spare --code '1234 5678 9012 3456'\n"
+     "  adit spare export --stick --at 10.0.0.1:8000 --token-file team.token"},
     {Command::Update, "update", "the box's version, and the installation of another", kUpdateForms,
      "Without a word it tells which version runs, in which of the two slots, and what became of the last "
      "update; and where another slot runs than the one that was good last, why, and the two ways on: --back "

@@ -19,6 +19,7 @@ enum class Command : std::uint8_t {
   Identify,
   Network,
   Clock,
+  Spare,
   Test,
   Update,
   Check,
@@ -49,7 +50,9 @@ enum class Verb : std::uint8_t {
   Runs,
   Keys,
   Report,
-  Delete
+  Delete,
+  Take,
+  Wake
 };
 
 /// What an argument may be, for the completion of shells: `adit complete` lists all but files.

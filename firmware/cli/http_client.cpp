@@ -14,6 +14,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr int kOk = 200;
+
 std::string reason(int error) {
   return std::system_category().message(error);
 }
@@ -61,25 +63,75 @@ std::expected<HttpReply, std::string> exchanged(int fd, uplink::Exchange& exchan
   }
 }
 
+uplink::Endpoint endpoint_of(const settings::Address& address) {
+  return {.address = address.address, .port = address.port, .interface = ""};
+}
+
+std::expected<loop::FileDescriptor, std::string> connected(const uplink::Endpoint& endpoint,
+                                                           Clock::time_point deadline) {
+  auto fd = uplink::begin_connect(endpoint);
+  if (!fd) return std::unexpected(fd.error().why);
+  int error = wait_for(fd->get(), POLLOUT, deadline);
+  if (error == 0) error = uplink::connect_error(fd->get());
+  if (error != 0) return std::unexpected(reason(error));
+  return *std::move(fd);
+}
+
+std::string cannot_be_asked(const settings::Address& address, const std::string& why) {
+  return "Adit at " + written(address) + " cannot be asked: " + why;
+}
+
 }  // namespace
 
 std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
                                            std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
-  const auto fail = [&](const std::string& why, bool sent) {
-    return std::unexpected(NoReply{"Adit at " + written(address) + " cannot be asked: " + why, sent});
-  };
-  const uplink::Endpoint endpoint{.address = address.address, .port = address.port, .interface = ""};
-  const auto fd = uplink::begin_connect(endpoint);
-  if (!fd) return fail(fd.error().why, false);
-  int error = wait_for(fd->get(), POLLOUT, deadline);
-  if (error == 0) error = uplink::connect_error(fd->get());
-  if (error != 0) return fail(reason(error), false);
+  const uplink::Endpoint endpoint = endpoint_of(address);
+  const auto fd = connected(endpoint, deadline);
+  if (!fd) return std::unexpected(NoReply{cannot_be_asked(address, fd.error()), false});
   const icd::BearerToken token = request.token;
   uplink::Exchange exchange(endpoint, token, upstream(std::move(request)));
   auto reply = exchanged(fd->get(), exchange, deadline);
-  if (!reply) return fail(reply.error(), true);
+  if (!reply) return std::unexpected(NoReply{cannot_be_asked(address, reply.error()), true});
   return std::move(*reply);
+}
+
+std::expected<std::unique_ptr<HttpStream>, std::string> HttpStream::ask(const settings::Address& address,
+                                                                        HttpRequest request,
+                                                                        std::chrono::milliseconds within) {
+  const auto deadline = Clock::now() + within;
+  const uplink::Endpoint endpoint = endpoint_of(address);
+  auto fd = connected(endpoint, deadline);
+  if (!fd) return std::unexpected(cannot_be_asked(address, fd.error()));
+  const icd::BearerToken token = request.token;
+  auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, upstream(std::move(request)));
+  while (stream->exchange_.wants_to_write()) {
+    if (stream->exchange_.write(stream->fd()) != 0) break;  // reading tells why
+    if (!stream->exchange_.wants_to_write()) break;
+    if (const int error = wait_for(stream->fd(), POLLOUT, deadline); error != 0) {
+      return std::unexpected(cannot_be_asked(address, reason(error)));
+    }
+  }
+  return stream;
+}
+
+HttpStream::HttpStream(loop::FileDescriptor fd, const uplink::Endpoint& endpoint,
+                       const icd::BearerToken& token, uplink::Request request)
+    : fd_(std::move(fd)), exchange_(endpoint, token, std::move(request)) {}
+
+std::expected<std::string, HttpStream::Ended> HttpStream::read() {
+  if (!ended_) look();
+  std::string came = exchange_.status() == kOk ? exchange_.take_part() : "";
+  if (ended_ && came.empty()) return std::unexpected(*ended_);
+  return came;
+}
+
+void HttpStream::look() {
+  const auto answer = exchange_.read(fd());
+  if (answer == uplink::Exchange::Answer::Lost) ended_ = {.why = exchange_.doubt().why};
+  if (answer == uplink::Exchange::Answer::Whole) {
+    ended_ = {.status = exchange_.status() == kOk ? 0 : exchange_.status(), .why = "it tells no more"};
+  }
 }
 
 }  // namespace adit::cli

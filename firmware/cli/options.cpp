@@ -122,12 +122,23 @@ class Words {
   /// Two options of which the command takes only one.
   Wrong disagreement() const {
     if (options_.csv && options_.json) return "--csv and --json are two formats: which one?";
+    if (command_->command == Command::Spare) return spare_disagreement();
     if (command_->command != Command::Update) return std::nullopt;
     const int asked = int{options_.stick} + int{options_.restart} + int{options_.back} + int{options_.stay} +
                       int{!options_.file.empty()};
     if (asked > 1) return "a file, --stick, --restart, --back and --stay are five things: which one?";
     if (options_.again && !options_.stick && options_.file.empty()) return "update does not take --again";
     if (options_.anyway && !options_.restart && !options_.back) return "update does not take --anyway";
+    return std::nullopt;
+  }
+
+  /// An export is in a file here, or on the box's stick, where the file is named only to tell it from others.
+  Wrong spare_disagreement() const {
+    const bool takes_file = options_.verb == Verb::Export || options_.verb == Verb::Take;
+    if (takes_file && !options_.stick && options_.file.empty())
+      return "a file or --stick is missing after " + std::string(form_->word);
+    if (options_.verb == Verb::Export && options_.stick && !options_.file.empty())
+      return "a file and --stick are two things: which one?";
     return std::nullopt;
   }
 
@@ -180,12 +191,17 @@ command_line::Program command_line_of(Options& options) {
             command_line::take<take_run>(options)},
            {"--csv", "", "as CSV, for a spreadsheet", &options.csv},
            {"--yes", "",
-            "sends a report in doubt, or deletes a run, without asking. Without it, you are asked on a "
-            "terminal, and it is not done where there is none",
+            "sends a report in doubt, deletes a run, or does what a spare needs, without asking. Without it, "
+            "you "
+            "are asked on a terminal, and it is not done where there is none",
             &options.yes},
+           {"--code", "DIGITS", "of spare take: what the box that made the export showed", &options.code},
            {"--to", "FILE", "where the report of a run is written; if not given, to standard output",
             &options.to},
-           {"--stick", "", "installs the update that is on the USB stick in the box", &options.stick},
+           {"--stick", "",
+            "installs the update that is on the USB stick in the box; of spare: the export is written onto "
+            "that stick, or read from it",
+            &options.stick},
            {"--restart", "",
             "restarts the box, to use what was installed. Not while a report waits or is being sent",
             &options.restart},

@@ -42,13 +42,14 @@ struct Options {
   bool json = false, csv = false;
   bool yes = false;     // what is asked on a terminal is meant
   std::string at;       // "ADDR:PORT"; empty: as the settings say
-  std::string file;     // of settings: to check or apply; of Update: the bundle
+  std::string file;     // of settings: to check or apply; of Update: the bundle; of Spare: the export
   std::string key;      // of settings show; or where several begin
   std::string word;     // of Complete: of `adit reports`
   std::string run_key;  // of Runs
   std::string to;       // of Runs: the file for its report; "": standard output
   bool restart = false, stick = false, again = false, anyway = false, back = false,
-       stay = false;   // of Update
+       stay = false;   // of Update; stick: of Spare, too
+  std::string code;    // of Spare: of the export; "": it is asked for
   std::string course;  // to switch to; "": none
   Trial trial;         // of Test
   std::string settings = kGivenSettings;

@@ -27,26 +27,30 @@ inline double number(const codec::Field& object, std::string_view name) {
 
 /// What `parse` makes of Adit's answer, or why it is nothing that this Adit writes.
 template <class Message, class Parse>
-std::expected<Message, std::string> read(std::string_view json, Parse parse) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("its answer is no JSON: " + root.error());
+std::expected<Message, std::string> read(const codec::Value& root, Parse parse) {
   codec::Reading reading;
-  auto message = reading.outcome(parse(codec::Field(*root, reading)));
+  auto message = reading.outcome(parse(codec::Field(root, reading)));
   if (!message)
     return std::unexpected("its answer is not of this version of Adit: " + message.error().sentence);
   return std::move(*message);
 }
-/// The same, with where that Adit is.
 template <class Message, class Parse>
-std::expected<Message, std::string> read(const Adit& adit, std::string_view json, Parse parse) {
+std::expected<Message, std::string> read(std::string_view json, Parse parse) {
+  const auto root = codec::parse_json(json);
+  if (!root) return std::unexpected("its answer is no JSON: " + root.error());
+  return read<Message>(*root, parse);
+}
+/// The same, with where that Adit is.
+template <class Message, class Json, class Parse>
+std::expected<Message, std::string> read(const Adit& adit, const Json& json, Parse parse) {
   auto message = read<Message>(json, parse);
   if (message) return message;
   return std::unexpected("Adit at " + written(adit.address) + " cannot be understood: " + message.error());
 }
 
 /// The row, or the rows, that Adit's answer is.
-template <class Row>
-std::expected<Row, std::string> read(const Adit& adit, std::string_view json) {
+template <class Row, class Json>
+std::expected<Row, std::string> read(const Adit& adit, const Json& json) {
   return read<Row>(adit, json, [](const codec::Field& root) {
     Row row;
     codec::KindOf<Row>::read(root, row);

@@ -44,13 +44,15 @@ Patience::~Patience() {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
-Patience::Woken Patience::wait(std::chrono::milliseconds longest) {
-  std::array<pollfd, 2> ends{{{signals_.get(), POLLIN, 0}, {keys_ ? STDIN_FILENO : -1, POLLIN, 0}}};
+Patience::Woken Patience::wait(std::chrono::milliseconds longest, int fd) {
+  std::array<pollfd, 3> ends{
+      {{signals_.get(), POLLIN, 0}, {keys_ ? STDIN_FILENO : -1, POLLIN, 0}, {fd, POLLIN, 0}}};
   if (poll(ends.data(), ends.size(), static_cast<int>(longest.count())) <= 0) return Woken::ByTime;
   signalfd_siginfo signal{};
   if (read(signals_.get(), &signal, sizeof signal) == sizeof signal)
     return signal.ssi_signo == SIGWINCH ? Woken::ByChange : Woken::ToEnd;
-  return ends[1].revents != 0 && ends_by_key() ? Woken::ToEnd : Woken::ByChange;
+  if (ends[1].revents == 0) return Woken::ByTime;
+  return ends_by_key() ? Woken::ToEnd : Woken::ByChange;
 }
 
 bool Patience::ends_by_key() const {

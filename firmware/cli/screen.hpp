@@ -24,8 +24,8 @@ class Patience {
   Patience(const Patience&) = delete;
   Patience& operator=(const Patience&) = delete;
 
-  /// ByChange: the screen has another size.
-  Woken wait(std::chrono::milliseconds longest);
+  /// ByTime: or something came at `fd`, unless that is -1. ByChange: the screen has another size.
+  Woken wait(std::chrono::milliseconds longest, int fd);
 
  private:
   bool ends_by_key() const;

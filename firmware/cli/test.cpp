@@ -67,6 +67,13 @@ bool is_bad(const api::TestView& view) {
   });
 }
 
+/// An aditd that has been restarted in the midst of it knows of none.
+bool is_whole(const api::TestView& view) {
+  return !view.endpoints.empty() && std::ranges::all_of(view.endpoints, [](const auto& endpoint) {
+    return std::ranges::all_of(endpoint.steps, has_ended);
+  });
+}
+
 using codec::Value;
 
 /// An endpoint to try, as POST /adit/test takes it; null where none is named.
@@ -132,6 +139,8 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
     if (!options.json) progress.show(*view);
     if (!view->running) {
       if (options.json) print(*json + '\n');
+      if (!is_whole(*view))
+        return unable("the test was cut short, as when Adit is restarted: begin it again");
       return {is_bad(*view) ? Exit::Attention : Exit::Fine, "", ""};
     }
     std::this_thread::sleep_for(kTestEvery);

@@ -10,47 +10,34 @@
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
 #include "cli/ask.hpp"
-#include "cli/reading.hpp"
+#include "cli/follower.hpp"
 #include "cli/screen.hpp"
 #include "cli/status_text.hpp"
 #include "cli/watch_text.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
+#include "codec/json.hpp"
 #include "host/log.hpp"
 
 namespace adit::cli {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
-constexpr std::chrono::seconds kLookEvery{1};
-
-struct Seen {
-  std::string json;
-  api::RunView view;
-};
-using Look = std::expected<Seen, std::string>;
-
-Look look(const Adit& adit) {
-  auto json = get(adit, "/adit/run");
-  if (!json) return std::unexpected(json.error());
-  auto view = read<api::RunView>(adit, *json);
-  if (!view) return std::unexpected(view.error());
-  return Seen{std::move(*json), std::move(*view)};
-}
+using Clock = Follower::Clock;
 
 /// How what was seen is shown.
 class Shown {
  public:
   virtual ~Shown() = default;
   virtual void show(const Look& seen) = 0;
+  /// How long what was shown stays, whatever comes.
+  virtual std::chrono::milliseconds spacing() const { return std::chrono::seconds(1); }
 };
 
 class AsJson : public Shown {
  public:
   explicit AsJson(const Console& console) : console_(console) {}
   void show(const Look& seen) override {
-    if (seen) console_.print(seen->json + '\n');
+    if (seen) console_.print(codec::write_json(seen->told) + '\n');
   }
 
  private:
@@ -70,6 +57,7 @@ class AsLines : public Shown {
                            : status_text(seen->view, console_.colour) + '\n');
     before_ = seen->view;
   }
+  std::chrono::milliseconds spacing() const override { return {}; }  // no change is passed over
 
  private:
   const Console& console_;
@@ -112,22 +100,30 @@ std::unique_ptr<Shown> shown_for(const Options& options, const Console& console,
 Outcome watch(const Options& options, const Console& console) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  Look seen = look(*adit);
-  if (!seen) return unable(seen.error());
   const bool drawn = console.screen && !options.json;
   Patience patience(drawn && isatty(STDIN_FILENO) == 1);
-  const auto shown = shown_for(options, console, *adit);
+  Follower follower(*adit);
+  std::unique_ptr<Shown> shown;  // once there is something to show
+  std::optional<Look> seen;
+  bool is_news = false;
+  Clock::time_point next{};
   while (true) {
-    shown->show(seen);
-    const auto next = Clock::now() + kLookEvery;
-    auto woken = Patience::Woken::ByChange;
-    while (woken == Patience::Woken::ByChange) {
-      const auto left = std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now());
-      woken = patience.wait(std::max(left, std::chrono::milliseconds(0)));
-      if (woken == Patience::Woken::ToEnd) return {};
-      if (woken == Patience::Woken::ByChange && drawn) shown->show(seen);
+    if (auto look = follower.look()) {
+      if (!seen && !*look) return unable(look->error());
+      seen = std::move(look);
+      is_news = true;
     }
-    seen = look(*adit);
+    if (!shown && seen) shown = shown_for(options, console, *adit);
+    if (is_news && Clock::now() >= next) {
+      shown->show(*seen);
+      next = Clock::now() + shown->spacing();
+      is_news = false;
+    }
+    const auto until = is_news ? std::min(next, follower.due()) : follower.due();
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+    const auto woken = patience.wait(std::max(left, std::chrono::milliseconds(0)), follower.fd());
+    if (woken == Patience::Woken::ToEnd) return {};
+    if (woken == Patience::Woken::ByChange && drawn && shown) shown->show(*seen);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "clock/messages.hpp"
 
 #include "network/messages.hpp"
+#include "settings/subnet.hpp"
 
 namespace adit::clock {
 namespace {
@@ -13,15 +14,32 @@ constexpr codec::Member kClockRequest[] = {
     codec::member<&Request::time>("time"),
     codec::member<&Request::at>("at"),
 };
+/// A subnet by its first address, as settings::written() has it, or "".
+void read_subnet(const codec::Field& field, void* subnet) {
+  auto& text = *static_cast<std::string*>(subnet);
+  text = field.text();
+  if (text.empty()) return;
+  const auto parsed = settings::parse_subnet(text);
+  if (!parsed || settings::written(*parsed) != text) field.refuse("expected a subnet, or none");
+}
+constexpr codec::Kind kSubnetOrNone = {.write = codec::kind_of<std::string>.write,
+                                       .read = read_subnet,
+                                       .schema = codec::kind_of<std::string>.schema};
+
+constexpr codec::Member kNtp[] = {
+    codec::member<&Ntp::server>("server").as(network::kAddressOrNone),
+    codec::member<&Ntp::clients>("clients").as(kSubnetOrNone),
+};
 constexpr codec::Member kClockStatus[] = {
-    codec::member<&Status::nonce>("nonce"),
-    codec::member<&Status::refusal>("refusal"),
-    codec::member<&Status::source>("source"),
+    codec::member<&Status::nonce>("nonce"),     codec::member<&Status::refusal>("refusal"),
+    codec::member<&Status::source>("source"),   codec::member<&Status::ntp>("ntp"),
+    codec::member<&Status::trouble>("trouble"),
 };
 
 }  // namespace
 
 constexpr codec::Row Request::kRow = {"", kClockRequest};
+constexpr codec::Row Ntp::kRow = {"", kNtp};
 constexpr codec::Row Status::kRow = {"", kClockStatus};
 
 std::string hindrance(const Request& request, double at) {

@@ -14,11 +14,12 @@ namespace adit::clock {
 /// What aditd asks for, in its own state folder; adit-clock takes it away. And what adit-clock tells
 /// everybody, in its runtime folder.
 inline constexpr const char* kRequestFile = "clock.json";
+inline constexpr const char* kNtpFile = "ntp.json";
 inline constexpr const char* kStatusFile = "status.json";
 
 /// The words of Source, in its order.
-inline constexpr std::string_view kSourceWords[] = {"none",         "last_known", "robots",
-                                                    "command_post", "chip",       "operator"};
+inline constexpr std::string_view kSourceWords[] = {"none", "last_known", "robots", "command_post",
+                                                    "chip", "operator",   "ntp"};
 
 }  // namespace adit::clock
 
@@ -36,10 +37,21 @@ struct Request {
   static const codec::Row kRow;
 };
 
+/// What the settings ask of NTP on the team's network: in the file of its own that lasts.
+struct Ntp {
+  std::string server = "";   // an IPv4 address; "": none is asked
+  std::string clients = "";  // the subnet that the box is to be the server of: "10.0.0.0/24"; "": of none
+  bool is_on() const { return !server.empty() || !clients.empty(); }
+  static const codec::Row kRow;
+  friend bool operator==(const Ntp&, const Ntp&) = default;
+};
+
 struct Status {
   std::string nonce = "";        // of the last request that was taken up
   std::string refusal = "";      // why it was not done; "" where it was
   Source source = Source::None;  // who set the time of day last, since the machine started
+  Ntp ntp = {};                  // what is asked of NTP
+  std::string trouble = "";      // why that is not done; "" where it is
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };

@@ -14,6 +14,7 @@ enum class Source : std::uint8_t {
   CommandPost,  // the Date of its answers
   Chip,         // a clock with a battery of its own
   Operator,     // by his browser, or by `adit clock set`
+  Ntp,          // a server on the team's network
 };
 
 /// Seconds since 1970: in 2026, before this was built, and in 2100. A clock that shows another time is wrong.
@@ -32,7 +33,8 @@ struct Offer {
 };
 
 /// What the time of day is to be set to, where `present` set it last and it is `now`; nothing: it stays.
-/// Whoever is trusted more sets it, either way, and after him the operator alone. What was known last sets it
+/// Whoever is trusted more sets it, either way, and after him the operator alone (who is asked whether the
+/// NTP server keeps it: not here). What was known last sets it
 /// ahead alone; so do robots, and not by more than kRobotsMost.
 std::optional<double> to_be_set(Source present, const Offer& offer, double now);
 

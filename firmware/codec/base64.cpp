@@ -1,5 +1,6 @@
 #include "codec/base64.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
@@ -10,8 +11,9 @@ namespace {
 
 constexpr std::uint8_t kNone = 0xFF;
 
+constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+
 constexpr std::array<std::uint8_t, 256> kSextets = [] {
-  constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::array<std::uint8_t, 256> sextets{};
   sextets.fill(kNone);
   for (std::size_t i = 0; i < kAlphabet.size(); ++i) {
@@ -133,6 +135,18 @@ std::expected<std::size_t, std::string> Base64Decoder::finish(std::span<std::uin
   out[0] = static_cast<std::uint8_t>(bits >> 16);
   out[1] = static_cast<std::uint8_t>(bits >> 8);
   return static_cast<std::size_t>(pending_ - 1);
+}
+
+std::string base64_of(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  text.reserve((bytes.size() + kBytes - 1) / kBytes * kGroup);
+  for (std::size_t at = 0; at < bytes.size(); at += kBytes) {
+    const std::size_t count = std::min(kBytes, bytes.size() - at);
+    std::uint32_t word = 0;
+    for (std::size_t i = 0; i < kBytes; ++i) word = word << 8 | (i < count ? bytes[at + i] : 0U);
+    for (std::size_t i = 0; i < kGroup; ++i) text += i <= count ? kAlphabet[word >> (18 - 6 * i) & 63] : '=';
+  }
+  return text;
 }
 
 }  // namespace adit::codec

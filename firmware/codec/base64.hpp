@@ -37,4 +37,7 @@ class Base64Decoder {
   std::size_t characters_ = 0;  // before this one, for sentences
 };
 
+/// Base64 of `bytes`, padded (RFC 4648 section 4).
+std::string base64_of(std::span<const std::uint8_t> bytes);
+
 }  // namespace adit::codec

@@ -1,6 +1,8 @@
 #include "codec/patch.hpp"
 
 #include <algorithm>
+#include <cassert>
+#include <iterator>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -8,39 +10,18 @@
 namespace adit::codec {
 namespace {
 
-std::optional<Value> change(const Row* row, const Value& before, const Value& now);
+std::optional<Value> change(const Kind& kind, void* before, void* now);
 
-/// Objects of one row have their members in the same places.
-const Value* member_of(const Value::Object& object, std::string_view name, std::size_t likely) {
-  if (likely < object.size() && object[likely].first == name) return &object[likely].second;
-  const auto found = std::ranges::find(object, name, &Value::Member::first);
-  return found == object.end() ? nullptr : &found->second;
-}
-
-/// What a member is of that is a row, or a list of them.
-const Row* row_of(const Schema& schema) {
-  return schema.items != nullptr ? schema.items->row : schema.row;
-}
-
-const Row* row_in(const Row* row, std::string_view name, std::size_t likely) {
-  if (row == nullptr) return nullptr;
-  if (likely < row->members.size() && row->members[likely].name == name) {
-    return row_of(*row->members[likely].kind->schema);
-  }
-  const auto found = std::ranges::find(row->members, name, &Member::name);
-  return found == row->members.end() ? nullptr : row_of(*found->kind->schema);
-}
-
-std::optional<Value> change(const Row* row, const Value::Object& before, const Value::Object& now) {
+std::optional<Value> change(const Row& row, void* before, void* now) {
   Value::Object changes;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const auto& [name, value] = now[i];
-    const Value* const was = member_of(before, name, i);
-    auto changed = was == nullptr ? std::optional(value) : change(row_in(row, name, i), *was, value);
-    if (changed) changes.emplace_back(name, std::move(*changed));
-  }
-  for (std::size_t i = 0; i < before.size(); ++i) {
-    if (member_of(now, before[i].first, i) == nullptr) changes.emplace_back(before[i].first, Value{});
+  for (const Member& member : row.members) {
+    auto changed = change(*member.kind, member.in(before), member.in(now));
+    if (!changed) continue;
+    if (member.name.empty()) {
+      std::ranges::move(std::get<Value::Object>(changed->is), std::back_inserter(changes));
+    } else {
+      changes.emplace_back(member.name, *std::move(changed));
+    }
   }
   if (changes.empty()) return std::nullopt;
   return Value{std::move(changes)};
@@ -52,32 +33,46 @@ struct Places {
   bool moved = false;  // any of them
 };
 
-bool is_same_row(const Row& row, const Value& one, const Value& other) {
-  const auto* const a = std::get_if<Value::Object>(&one.is);
-  const auto* const b = std::get_if<Value::Object>(&other.is);
-  return a != nullptr && b != nullptr && std::ranges::all_of(row.id, [&](std::string_view name) {
-           const Value* const value = member_of(*a, name, 0);
-           const Value* const same = member_of(*b, name, 0);
-           return value != nullptr && same != nullptr && *value == *same;
-         });
+bool is_same(const Kind& kind, void* one, void* other) {
+  return kind.same != nullptr ? kind.same(one, other) : kind.write(one) == kind.write(other);
 }
 
+/// By the members that a row is told by.
+class Identity {
+ public:
+  explicit Identity(const Row& row) {
+    for (const std::string_view name : row.id) {
+      members_.push_back(std::ranges::find(row.members, name, &Member::name));
+      assert(members_.back() != row.members.end());
+    }
+  }
+  bool is_same_row(void* one, void* other) const {
+    return std::ranges::all_of(members_, [&](const auto& member) {
+      return is_same(*member->kind, member->in(one), member->in(other));
+    });
+  }
+
+ private:
+  std::vector<std::span<const Member>::iterator> members_;
+};
+
 /// Rows mostly keep their order: that of one is looked for from behind that of the one before.
-std::optional<std::size_t> place_of(const Row& row, const Value& one, const Value::Array& before,
+std::optional<std::size_t> place_of(const Identity& identity, void* one, const Rows& before,
                                     std::size_t likely) {
-  for (std::size_t tried = 0; tried < before.size(); ++tried) {
-    const std::size_t at = (likely + tried) % before.size();
-    if (is_same_row(row, before[at], one)) return at;
+  for (std::size_t tried = 0; tried < before.count; ++tried) {
+    const std::size_t at = (likely + tried) % before.count;
+    if (identity.is_same_row(before.at(at), one)) return at;
   }
   return std::nullopt;
 }
 
-Places places_of(const Row& row, const Value::Array& before, const Value::Array& now) {
-  Places places{.from = std::vector<std::optional<std::size_t>>(now.size())};
+Places places_of(const Row& row, const Rows& before, const Rows& now) {
+  Places places{.from = std::vector<std::optional<std::size_t>>(now.count)};
   if (row.id.empty()) return places;
+  const Identity identity(row);
   std::size_t likely = 0;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const auto from = places.from[i] = place_of(row, now[i], before, likely);
+  for (std::size_t i = 0; i < now.count; ++i) {
+    const auto from = places.from[i] = place_of(identity, now.at(i), before, likely);
     if (!from) continue;
     likely = *from + 1;
     places.moved |= *from != i;
@@ -100,38 +95,40 @@ Value::Array kept(const Places& places) {
   return runs;
 }
 
-std::optional<Value> list_change(const Row& row, const Value::Array& before, const Value::Array& now) {
+std::optional<Value> list_change(const Row& row, const Rows& before, const Rows& now) {
   const Places places = places_of(row, before, now);
   Value::Object list, rows;
-  for (std::size_t i = 0; i < now.size(); ++i) {
-    const auto from = places.moved ? places.from[i] : i < before.size() ? std::optional(i) : std::nullopt;
-    auto changed = from ? change(&row, before[*from], now[i]) : std::optional(now[i]);
-    if (changed) rows.emplace_back(std::to_string(i), std::move(*changed));
+  for (std::size_t i = 0; i < now.count; ++i) {
+    const auto from = places.moved ? places.from[i] : i < before.count ? std::optional(i) : std::nullopt;
+    auto changed = from ? change(row, before.at(*from), now.at(i)) : write_row(row, now.at(i));
+    if (changed) rows.emplace_back(std::to_string(i), *std::move(changed));
   }
-  if (now.size() != before.size()) list.emplace_back("length", Value{std::uint64_t{now.size()}});
+  if (now.count != before.count) list.emplace_back("length", Value{std::uint64_t{now.count}});
   if (places.moved) list.emplace_back("kept", Value{kept(places)});
   if (!rows.empty()) list.emplace_back("rows", Value{std::move(rows)});
   if (list.empty()) return std::nullopt;
   return Value{std::move(list)};
 }
 
-/// `row`: of what they are, or of the rows that they list; or null.
-std::optional<Value> change(const Row* row, const Value& before, const Value& now) {
-  const auto* const object = std::get_if<Value::Object>(&now.is);
-  const auto* const object_before = std::get_if<Value::Object>(&before.is);
-  if (object != nullptr && object_before != nullptr) return change(row, *object_before, *object);
-  const auto* const list = std::get_if<Value::Array>(&now.is);
-  const auto* const list_before = std::get_if<Value::Array>(&before.is);
-  if (row != nullptr && list != nullptr && list_before != nullptr)
-    return list_change(*row, *list_before, *list);
-  if (before == now) return std::nullopt;
-  return now;
+std::optional<Value> change(const Kind& kind, void* before, void* now) {
+  if (kind.rows != nullptr) {
+    const Row& row = *row_of(*kind.schema);
+    const Rows rows_before = kind.rows(before), rows = kind.rows(now);
+    if (kind.schema->items != nullptr) return list_change(row, rows_before, rows);
+    if (rows_before.count > 0 && rows.count > 0) return change(row, rows_before.first, rows.first);
+    if (rows_before.count == rows.count) return std::nullopt;  // none before, none now
+  } else if (is_same(kind, before, now)) {
+    return std::nullopt;
+  }
+  return kind.write(now);
 }
 
 }  // namespace
 
-std::optional<Value> patch(const Row& row, const Value& before, const Value& now) {
-  return change(&row, before, now);
+std::optional<Value> patch(const Row& row, const void* before, const void* now) {
+  // They are only looked at.
+  // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
+  return change(row, const_cast<void*>(before), const_cast<void*>(now));
 }
 
 }  // namespace adit::codec

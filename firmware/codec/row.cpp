@@ -11,7 +11,16 @@ const void* in(const Member& member, const void* row) {
   return member.in(const_cast<void*>(row));  // NOLINT(cppcoreguidelines-pro-type-const-cast)
 }
 
+template <class Number>
+Number* as(const Member& member, void* row) {
+  return member.kind == &kind_of<Number> ? static_cast<Number*>(member.in(row)) : nullptr;
+}
+
 }  // namespace
+
+const Row* row_of(const Schema& schema) {
+  return schema.items != nullptr ? schema.items->row : schema.row;
+}
 
 std::string in_turn(std::span<const std::string_view> words) {
   std::string text;
@@ -44,6 +53,21 @@ void read_row(const Row& row, const Field& field, void* into) {
     } else {
       const Field inner = field.member(member.name);
       member.kind->read(inner, member.in(into));
+    }
+  }
+}
+
+void change_numbers(const Row& row, void* in, double (*changed)(double)) {
+  for (const Member& member : row.members) {
+    if (member.is_exact) continue;
+    if (auto* const number = as<double>(member, in)) *number = changed(*number);
+    if (auto* const number = as<std::optional<double>>(member, in); number != nullptr && *number) {
+      **number = changed(**number);
+    }
+    if (member.kind->rows == nullptr) continue;
+    const Rows rows = member.kind->rows(member.in(in));
+    for (std::size_t i = 0; i < rows.count; ++i) {
+      change_numbers(*row_of(*member.kind->schema), rows.at(i), changed);
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <concepts>
+#include <cstddef>
 #include <cstdint>
 #include <iterator>
 #include <optional>
@@ -51,12 +52,30 @@ struct Schema {
   }
 };
 
-/// How the values of one C++ type are written, read and described.
+/// Structs of one row, in memory one behind the other.
+struct Rows {
+  void* first = nullptr;
+  std::size_t count = 0, size = 0;  // size: of one, in bytes
+
+  void* at(std::size_t place) const { return static_cast<std::byte*>(first) + place * size; }
+};
+
+/// Of what is a row, or lists rows, their row; or null.
+const Row* row_of(const Schema& schema);
+
+/// How the values of one C++ type are written, read, described and, for a patch, compared.
 struct Kind {
+  using Same = bool (*)(const void* one, const void* other);
+  using ToRows = Rows (*)(void* value);
+
   Value (*write)(const void* value);
   /// Refuses what is no such value, and leaves something harmless.
   void (*read)(const Field& field, void* value);
   const Schema* schema;
+  /// Whether both are written alike; null: only writing them tells.
+  Same same = nullptr;
+  /// The row that the value is, if it is there, or the rows that it lists; null: it is written another way.
+  ToRows rows = nullptr;
 };
 
 /// How a member stands in CSV: not at all, as it is, as ISO 8601, or empty where it is 0.
@@ -73,6 +92,7 @@ struct Member {
   Cell cell = Cell::None;
   int column = 0;         // of CSV, from 1
   bool is_needed = true;  // else it is left out where it would be null
+  bool is_exact = false;  // its numbers say what it is: they are never rounded
 
   /// The same but for one of these; before those that call it, for clang.
   template <class T>
@@ -85,6 +105,7 @@ struct Member {
   constexpr Member as(const Kind& other) const { return with(&Member::kind, &other); }
   constexpr Member one_of(std::span<const std::string_view> all) const { return with(&Member::words, all); }
   constexpr Member if_any() const { return with(&Member::is_needed, false); }
+  constexpr Member exact() const { return with(&Member::is_exact, true); }
   constexpr Member from(std::int64_t bound) const { return with(&Member::least, std::optional(bound)); }
   constexpr Member to(std::int64_t bound) const { return with(&Member::most, std::optional(bound)); }
   constexpr Member csv(int place, Cell form = Cell::Plain) const {
@@ -94,29 +115,62 @@ struct Member {
 
 Value write_row(const Row& row, const void* from);
 void read_row(const Row& row, const Field& field, void* into);
+/// All reals in the row and in its rows, but for those of members that are exact.
+void change_numbers(const Row& row, void* in, double (*changed)(double));
 
 /// What the Kind of each type does.
 template <class T>
 struct KindOf;
 
-/// A Kind out of a class that has what KindOf has.
+template <class T>
+concept IsCompared = requires(const T& value) { KindOf<T>::same(value, value); };
+template <class T>
+concept IsRow = requires(T& value) { KindOf<T>::rows_at(&value, 1); };
+
+template <class T, class As>
+constexpr Kind::Same same_as() {
+  if constexpr (requires(const T& value) { As::same(value, value); }) {
+    return [](const void* one, const void* other) {
+      return As::same(*static_cast<const T*>(one), *static_cast<const T*>(other));
+    };
+  } else {
+    return nullptr;
+  }
+}
+template <class T, class As>
+constexpr Kind::ToRows rows_as() {
+  if constexpr (requires(T& value) { As::rows(value); }) {
+    return [](void* value) { return As::rows(*static_cast<T*>(value)); };
+  } else {
+    return nullptr;
+  }
+}
+
+/// A Kind out of a class that has what KindOf has; `same` and `rows` where it can.
 template <class T, class As>
 inline constexpr Kind kind_as = {
     .write = [](const void* value) -> Value { return As::write(*static_cast<const T*>(value)); },
     .read = [](const Field& field, void* value) { As::read(field, *static_cast<T*>(value)); },
-    .schema = &As::schema};
+    .schema = &As::schema,
+    .same = same_as<T, As>(),
+    .rows = rows_as<T, As>()};
 template <class T>
 inline constexpr Kind kind_of = kind_as<T, KindOf<T>>;
 
+/// For the Kind of what is written alike where it is equal, and only there.
+struct Equal {
+  static bool same(const auto& one, const auto& other) { return one == other; }
+};
+
 template <>
-struct KindOf<std::string> {
+struct KindOf<std::string> : Equal {
   static Value write(const std::string& text) { return {text}; }
   static void read(const Field& field, std::string& text) { text = field.text(); }
   static constexpr Schema schema = {.type = "string"};
 };
 
 template <>
-struct KindOf<bool> {
+struct KindOf<bool> : Equal {
   static Value write(bool value) { return {value}; }
   static void read(const Field& field, bool& value) { value = field.truth(); }
   static constexpr Schema schema = {.type = "boolean"};
@@ -124,21 +178,21 @@ struct KindOf<bool> {
 
 /// Anything at all.
 template <>
-struct KindOf<Value> {
+struct KindOf<Value> : Equal {
   static Value write(const Value& value) { return value; }
   static void read(const Field& field, Value& value) { value = field.value() ? *field.value() : Value{}; }
   static constexpr Schema schema = {};
 };
 
 template <>
-struct KindOf<double> {
+struct KindOf<double> : Equal {
   static Value write(double number) { return {number}; }
   static void read(const Field& field, double& number) { number = field.number(); }
   static constexpr Schema schema = {.type = "number"};
 };
 
 template <std::signed_integral Whole>
-struct KindOf<Whole> {
+struct KindOf<Whole> : Equal {
   static Value write(Whole number) { return {std::int64_t{number}}; }
   static void read(const Field& field, Whole& number) { number = field.whole<Whole>(); }
   static constexpr Schema schema = {.type = "integer"};
@@ -146,7 +200,7 @@ struct KindOf<Whole> {
 
 /// Counts: JSON's are below 2^63.
 template <std::unsigned_integral Count>
-struct KindOf<Count> {
+struct KindOf<Count> : Equal {
   static Value write(Count number) { return {std::uint64_t{number}}; }
   static void read(const Field& field, Count& number) {
     number = static_cast<Count>(field.whole<std::int64_t>(0));
@@ -159,6 +213,8 @@ template <class T, const Row& kRow>
 struct KindOfRow {
   static Value write(const T& row) { return write_row(kRow, &row); }
   static void read(const Field& field, T& row) { read_row(kRow, field, &row); }
+  static Rows rows(T& row) { return rows_at(&row, 1); }
+  static Rows rows_at(T* first, std::size_t count) { return {first, count, sizeof(T)}; }
   static constexpr Schema schema = {.row = &kRow};
 };
 
@@ -172,7 +228,7 @@ std::string in_turn(std::span<const std::string_view> words);
 
 /// Of an enum whose values have these words, in their order from 0.
 template <class Enum, const auto& kWords>
-struct KindOfWords {
+struct KindOfWords : Equal {
   static Value write(Enum value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
   static void read(const Field& field, Enum& value) {
     const auto* const word = std::find(std::begin(kWords), std::end(kWords), field.text());
@@ -195,6 +251,16 @@ struct KindOf<std::optional<T>> {
     value.reset();
     if (!field.is_absent()) KindOf<T>::read(field, value.emplace());
   }
+  static bool same(const std::optional<T>& one, const std::optional<T>& other)
+    requires IsCompared<T>
+  {
+    return one && other ? KindOf<T>::same(*one, *other) : one.has_value() == other.has_value();
+  }
+  static Rows rows(std::optional<T>& value)
+    requires IsRow<T>
+  {
+    return value ? KindOf<T>::rows_at(&*value, 1) : Rows{};
+  }
   static constexpr Schema schema = KindOf<T>::schema.nullable();
 };
 
@@ -212,6 +278,16 @@ struct KindOf<std::vector<T>> {
       const Field element = field.element(i);
       KindOf<T>::read(element, all.emplace_back());
     }
+  }
+  static bool same(const std::vector<T>& one, const std::vector<T>& other)
+    requires IsCompared<T>
+  {
+    return std::ranges::equal(one, other, [](const T& a, const T& b) { return KindOf<T>::same(a, b); });
+  }
+  static Rows rows(std::vector<T>& all)
+    requires IsRow<T>
+  {
+    return KindOf<T>::rows_at(all.data(), all.size());
   }
   static constexpr Schema schema = {.type = "array", .items = &KindOf<T>::schema};
 };

@@ -127,6 +127,8 @@ class Reports {
   /// How many wait for each Command Post that the settings do not name.
   std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
+  /// What /api/status would answer now; nothing: it is not known for certain, or proves nothing.
+  std::optional<icd::RunStatus> expected(Instant now) const { return account_.expected(now); }
   /// Whether it is in doubt and Adit can find out by itself.
   bool is_asking(const Report& report) const;
 

@@ -29,6 +29,7 @@ void AsForwarded::begin_run(api::Time now) {
 void AsForwarded::move(double seconds) {
   for (auto& [name, robot] : robots_) robot.at += seconds;
   tracks_.move(seconds);
+  markers_.move(seconds);
 }
 
 void AsForwarded::go_on_from(std::vector<api::Track> earlier) {

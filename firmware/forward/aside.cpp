@@ -146,7 +146,7 @@ bool Aside::restore_one(std::uint64_t number) {
 void Aside::add(lanes::Message message, int status, const std::string& why, std::size_t bytes,
                 Origin origin) {
   lanes::AsideItem item{
-      .message = std::move(message), .status = status, .why = why, .at = loop_.wall_now(), .bytes = bytes};
+      .message = std::move(message), .status = status, .why = why, .at = loop_.stamp_now(), .bytes = bytes};
   host::log(host::Level::Warning, "the Command Post would not take a message: it is set aside",
             {{"kind", kind_of(item.message)},
              {"robot", who(item.message)},
@@ -262,7 +262,7 @@ std::vector<api::AsideRow> Aside::rows() const {
     rows.push_back({.number = item.number,
                     .kind = kind_of(item.message),
                     .robot = who(item.message),
-                    .at = item.at,
+                    .at = item.at + (loop_.wall_now() - loop_.stamp_now()),
                     .status = item.status,
                     .why = item.why,
                     .bytes = item.bytes,

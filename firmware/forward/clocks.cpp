@@ -19,6 +19,10 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
     if (kept.floor > loop_.stamp_now()) loop_.set_stamp(kept.floor);
     if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);
   }
+  if (kept.least > loop_.stamp_now()) {
+    loop_.set_stamp(kept.least);
+    senders_ = {};  // they were brought to the clock as it was
+  }
   journal_.begin({.boot = boot, .at = loop_.now(), .stamp = loop_.stamp_now()});
 }
 

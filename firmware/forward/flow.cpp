@@ -5,13 +5,23 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "intake/icd_routes.hpp"
 
 namespace adit::forward {
+
+namespace {
+
+std::unexpected<icd::Refusal> unavailable(const std::string& why) {
+  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, why});
+}
+
+}  // namespace
 
 std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
   return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
                               std::shared_ptr<spool::MapFile> file,
                               std::function<void(icd::Checked<void>)> done) {
+    if (!rests_.empty()) return done(unavailable(rests_));
     take(std::move(update), sender, std::move(file), std::move(done));
   });
 }
@@ -25,6 +35,7 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
 }
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
+  if (!rests_.empty()) return unavailable(rests_);
   const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
   update.header.stamp =
@@ -33,16 +44,21 @@ icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sen
 }
 
 void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
+  if (!rests_.empty()) return done(unavailable(rests_));
   clocks_.stamp(update, sender.address);
   telemetry_.take(std::move(update), sender.bytes, std::move(done));
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,
                 std::shared_ptr<intake::Responder> responder) {
+  if (!rests_.empty())
+    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, rests_));
   scoring_.take(report, sender, std::move(responder));
 }
 
 void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> responder) {
+  if (!rests_.empty())
+    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, rests_));
   scoring_.status(std::move(responder));
 }
 
@@ -63,6 +79,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
 
 std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideAction action) {
   if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
+  if (!rests_.empty()) return std::unexpected(rests_);
   if (action == api::AsideAction::Discard) return aside_.discard(number);
   auto message = aside_.to_be_sent(number);
   if (!message) return std::unexpected(message.error());

@@ -35,7 +35,7 @@ namespace adit::forward {
 
 /// What a flow hands on to the next one, which replaces it.
 struct Legacy {
-  picture::Mosaic picture;
+  Pictured picture;
   std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
   AsForwarded as_forwarded;
   std::unique_ptr<archive::Archive> archive;                     // which goes on writing meanwhile
@@ -73,6 +73,9 @@ class Flow final : public intake::Desk {
 
   /// Goes on where the life before ended, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
+  /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who
+  /// asks.
+  void rest(const std::string& why);
   /// The settings have changed; `restarts` names the endpoints that have another address, way or token.
   /// Clients that wait go on waiting.
   void settings_changed(const settings::Restarts& restarts, Tokens tokens);
@@ -106,9 +109,11 @@ class Flow final : public intake::Desk {
 
   /// The operator's actions: api::Operator.
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
+    if (!rests_.empty()) return std::unexpected(rests_);
     return scoring_.judge(number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
+    if (!rests_.empty()) return std::unexpected(rests_);
     return scoring_.report(report, resubmit);
   }
   std::expected<void, std::string> aside(std::uint64_t number, api::AsideAction action);
@@ -122,6 +127,7 @@ class Flow final : public intake::Desk {
   const Record& record() const { return record_; }
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
+  api::FinerMap& finer() { return picture_.finer(); }
   /// What is kept of runs.
   archive::Archive& archive() { return *archive_; }
   const archive::Archive& archive() const { return *archive_; }
@@ -175,6 +181,7 @@ class Flow final : public intake::Desk {
   Telemetry telemetry_;
   Meter meter_;
   std::int64_t pictured_run_;  // Legacy's
+  std::string rests_;          // why nothing is taken and sent; "": it is
   bool has_started_ = false;   // until then the ledger has not said which run it is
   std::unique_ptr<archive::Archive> archive_;
   Ending ending_;

@@ -45,7 +45,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       record_([this] { changed(); }),
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.restart),
       picture_(
-          loop, workers_, [this] { changed(); }, legacy_ ? std::move(legacy_->picture) : picture::Mosaic()),
+          loop, workers_, [this] { changed(); }, legacy_ ? std::move(legacy_->picture) : Pictured()),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
@@ -66,6 +66,13 @@ std::expected<void, std::string> Flow::start() {
   if (!archive_->has_begun() && pictured_run_ == reports().run().number) keep_the_run();
   picture_the_run();
   return {};
+}
+
+void Flow::rest(const std::string& why) {
+  rests_ = why;
+  scoring_.rest();
+  maps_.rest();
+  telemetry_.rest();
 }
 
 Legacy Flow::hand_over() {
@@ -159,13 +166,14 @@ KnownTimes Flow::known_times() const {
   return {.command_post = scoring_.channel().time_there(), .robots = clocks_.told_by_robots()};
 }
 
-/// What is told of this life is as long ago as it was. Stamps, the ledger and what is kept of the run stay as
-/// they are.
+/// What is told of this life and this run is as long ago as it was. Stamps, the ledger and what is kept of
+/// other runs stay as they are.
 void Flow::wall_was_set(double seconds) {
   clocks_.wall_was_set();
   scoring_.move(seconds);
   record_.move(seconds);
   as_forwarded_.move(seconds);
+  picture_.move(seconds);
   archive_->move(seconds);
 }
 

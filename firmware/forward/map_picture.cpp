@@ -18,20 +18,22 @@ bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
 
 }  // namespace
 
-/// One drawing: the worker reads the map and the canvas, and writes `drawing`.
+/// One drawing: the worker reads the map and the canvas, and writes the rest.
 struct MapPicture::Job {
   Waiting waiting;
   picture::Canvas canvas;
   icd::Checked<picture::Drawing> drawing{};
+  std::shared_ptr<const picture::ForwardedGrid> forwarded{};  // null: a cloud
 };
 
 MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed,
-                       picture::Mosaic mosaic)
+                       Pictured pictured)
     : loop_(loop),
       workers_(workers),
       changed_(std::move(changed)),
       wake_(loop.timer([this] { pump(); })),
-      mosaic_(std::move(mosaic)) {}
+      mosaic_(std::move(pictured.mosaic)),
+      fine_(workers, mosaic_, std::move(pictured.grids)) {}
 
 void MapPicture::forwarded(icd::MapUpdate map) {
   std::erase_if(waiting_, [&](const Waiting& older) {
@@ -65,14 +67,21 @@ void MapPicture::begin_run() {
   waiting_.clear();
   waiting_bytes_ = 0;
   mosaic_.wipe(loop_.wall_now());
+  fine_.clear();
   changed_();
 }
 
-picture::Mosaic MapPicture::hand_over() {
+void MapPicture::move(double seconds) {
+  mosaic_.move(seconds);
+  for (Waiting& waiting : waiting_) waiting.stamp += seconds;
+  if (drawing_) drawing_->stamp += seconds;
+}
+
+Pictured MapPicture::hand_over() {
   if (drawing_) mosaic_.missed(drawing_->layer, drawing_->stamp);
   for (const Waiting& waiting : waiting_) mosaic_.missed(picture::layer_of(waiting.map), waiting.stamp);
   waiting_.clear();
-  return std::move(mosaic_);
+  return {.mosaic = std::move(mosaic_), .grids = fine_.hand_over()};
 }
 
 void MapPicture::pump() {
@@ -92,6 +101,7 @@ void MapPicture::draw(Waiting waiting) {
       loop::Urgency::CanWait,
       [job, &workers = workers_] {  // they outlive this
         job->drawing = picture::draw(job->waiting.map, job->canvas, [&workers] { workers.give_way(); });
+        job->forwarded = picture::forwarded_grid(job->waiting.map);
         job->waiting.map.data = {};  // here: that takes milliseconds of a file that is mapped
       },
       [this, job] { drawn(*job); },
@@ -102,13 +112,16 @@ void MapPicture::draw(Waiting waiting) {
 }
 
 void MapPicture::drawn(Job& job) {
-  drawing_.reset();
+  const double stamp = std::exchange(drawing_, std::nullopt)->stamp;
   const picture::Layer layer = picture::layer_of(job.waiting.map);
   const auto before = mosaic_.version();
   if (job.drawing) {
-    mosaic_.apply(std::move(*job.drawing), job.waiting.stamp);
+    const bool is_applied = mosaic_.apply(std::move(*job.drawing), stamp);
+    if (is_applied && job.forwarded && fine_.take(std::move(job.forwarded), mosaic_.version() + 1)) {
+      mosaic_.count_change(stamp);
+    }
   } else {
-    mosaic_.missed(layer, job.waiting.stamp);
+    mosaic_.missed(layer, stamp);
     host::log(host::Level::Warning, "a map could not be drawn",
               {{"robot", layer.robot}, {"why", job.drawing.error().sentence}});
   }

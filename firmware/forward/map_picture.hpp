@@ -6,12 +6,19 @@
 #include <memory>
 #include <optional>
 
+#include "forward/fine_tiles.hpp"
 #include "icd/map_update.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::forward {
+
+/// What was drawn, and what finer tiles are drawn of.
+struct Pictured {
+  picture::Mosaic mosaic;
+  picture::ForwardedGrids grids;
+};
 
 /// The picture of the maps as the Command Post took them. They are drawn on a worker, one after the other:
 /// each can wait, and gives way to what is on its way to the Command Post (loop::JobQueue).
@@ -23,9 +30,9 @@ class MapPicture {
   /// How long what was drawn before is waited for.
   static constexpr std::chrono::seconds kMostHeld{10};
 
-  /// `changed` is called after each change of the picture. `mosaic`: what an earlier one has drawn.
+  /// `changed` is called after each change of the picture. `pictured`: what an earlier one has.
   MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed,
-             picture::Mosaic mosaic = picture::Mosaic());
+             Pictured pictured = Pictured());
 
   /// The Command Post took this map. It need not be drawn if a later one covers it.
   void forwarded(icd::MapUpdate map);
@@ -36,15 +43,19 @@ class MapPicture {
   void go_on_from(picture::Mosaic earlier);
   /// A new run: forgets all that was drawn, and all that waits to be.
   void begin_run();
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds);
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
+  api::FinerMap& finer() { return fine_; }
+  std::size_t finer_bytes() const { return fine_.bytes(); }
   /// The picture, for the MapPicture that follows this one, without the maps that still wait. Ends this.
-  picture::Mosaic hand_over();
+  Pictured hand_over();
 
  private:
   struct Waiting {
     icd::MapUpdate map;
-    double stamp = 0;  // when it was forwarded, on the gateway's clock
+    double stamp = 0;  // when it was forwarded, by the time of day
   };
   struct Drawn {
     picture::Layer layer;
@@ -61,6 +72,7 @@ class MapPicture {
   std::function<void()> changed_;
   loop::Source wake_;
   picture::Mosaic mosaic_;
+  FineTiles fine_;
   std::deque<Waiting> waiting_;  // oldest first
   std::size_t waiting_bytes_ = 0;
   std::optional<Drawn> drawing_;  // that is under way

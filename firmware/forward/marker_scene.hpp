@@ -27,6 +27,10 @@ class MarkerScene {
 
   /// The Command Post took these, at `now`; the first is at number 1, later ones never run backward.
   void forwarded(std::span<const icd::Marker> markers, api::Time now);
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds) {
+    for (auto& [key, entry] : entries_) entry.at += seconds;
+  }
   /// A new run begins with none.
   void wipe(api::Time now);
 

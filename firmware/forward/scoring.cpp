@@ -53,6 +53,7 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
 
 std::expected<void, std::string> Scoring::start() {
   if (auto opened = open_reports(); !opened) return opened;
+  if (stopping_) return {};
   channel_.keep_warm();
   poll();
   return {};

@@ -56,6 +56,8 @@ class Scoring {
   /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
   /// the place is another, what is known of the run is forgotten; clients whose reports wait go on waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
+  /// Before start(): connects to nobody, and sends nothing.
+  void rest() { stopping_ = true; }
   /// Begins with what the ledger holds, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
 

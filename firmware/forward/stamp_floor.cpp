@@ -31,8 +31,10 @@ StampFloor::Kept StampFloor::read() const {
   std::string_view rest = text ? *text : std::string_view();
   const double floor = take_time(rest);
   // A release that had no second line brought the time of day to its stamps.
-  if (floor >= 0)
-    return {.floor = floor, .wall = std::max(0.0, rest.empty() ? floor - kAhead : take_time(rest))};
+  if (floor >= 0) {
+    const double wall = std::max(0.0, rest.empty() ? floor - kAhead : take_time(rest));
+    return {.floor = floor, .wall = wall, .least = std::max(0.0, take_time(rest))};
+  }
   host::log(host::Level::Warning, "which stamps were given out before is not known",
             {{"why", text ? file_ + ": expected seconds since 1970" : text.error()}});
   return {};
@@ -45,8 +47,9 @@ std::optional<StampFloor::Kept> StampFloor::due(double now, double wall) {
 }
 
 void StampFloor::write(const Kept& kept) {
-  const auto written = host::write_file(
-      file_, std::to_string(kept.floor) + '\n' + std::to_string(kept.wall) + '\n', host::kOursAlone);
+  std::string text = std::to_string(kept.floor) + '\n' + std::to_string(kept.wall) + '\n';
+  if (kept.least > 0) text += std::to_string(kept.least) + '\n';
+  const auto written = host::write_file(file_, text, host::kOursAlone);
   const std::string why = written ? "" : written.error();
   if (std::exchange(*trouble_, why) == why || written) return;
   host::log(host::Level::Warning, "after a power cut, stamps may run backward", {{"why", written.error()}});

@@ -16,6 +16,7 @@ class StampFloor {
  public:
   struct Kept {
     double floor = 0, wall = 0;  // seconds since 1970; 0: nothing is known
+    double least = 0;  // no stamp may be earlier, even where the machine did not restart: another box's were
   };
   static constexpr const char* kFile = "stamps";
   static constexpr double kEvery = 10;  // seconds

@@ -52,7 +52,10 @@ class Telemetry {
   /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
+  /// Before start(): connects to nobody, and sends nothing.
+  void rest() { stopping_ = true; }
   void start() {
+    if (stopping_) return;
     channel_.keep_warm();
     pump();
   }

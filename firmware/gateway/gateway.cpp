@@ -5,10 +5,12 @@
 #include "box/candidate.hpp"
 #include "dispatch/another_post.hpp"
 #include "gateway/report_rows.hpp"
+#include "host/interfaces.hpp"
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "loop/guard.hpp"
+#include "settings/subnet.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {
@@ -39,7 +41,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
       accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.state_folder,
                 parts_.loaded.secrets.label_code),
-      network_requests_(parts_.state_folder, parts_.network_folder),
+      network_requests_(parts_.state_folder, parts_.network_folder, parts_.watch_folder),
       setup_(
           parts_.store, parts_.reset, parts_.loaded, parts_.trouble,
           [this](const std::string& post) {
@@ -59,7 +61,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           network_requests_, network_, [this] { api_.changed(); }),
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
-      clock_(loop, parts_.state_folder, parts_.clock_folder),
+      clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd, {}),
+      spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder,
+             parts_.take_over_trouble,
+             {.content = [this] { return content(); }, .restart = [this] { make_way(); }}),
       api_(loop,
            {.source = *this,
             .judge = *this,
@@ -70,7 +75,9 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .updates = &updates_,
             .box = &box_,
             .runs = &flow_.archive(),
-            .clock = &clock_},
+            .clock = &clock_,
+            .finer = &flow_.finer(),
+            .spare = &spare_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
       acknowledged_(parts_.state_folder, disk_writer_),
@@ -124,6 +131,8 @@ void Gateway::ledger_is_back() {
 
 std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
+  if (!spare_.rests().empty())
+    flow_.rest("this box rests, for its spare to take over: nothing is taken or sent");
   if (auto started = flow_.start(); !started) return started;
   if (auto listening = listen(settings_.team); !listening) return listening;
   board_.remember(acknowledged_.read(), loop_.wall_now());
@@ -159,6 +168,7 @@ void Gateway::end() {
 
 void Gateway::finish() {
   loop_.stop();
+  spare_.ends(flow_.reports().expected(loop_.now()));
   if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
@@ -206,7 +216,7 @@ void Gateway::every_second() {
 
 /// Somebody set the time of day: whoever may, and either way. And whoever knows it better than who set it.
 void Gateway::look_at_clock() {
-  clock_.every_second();
+  clock_.every_second(wanted_ntp());
   const forward::KnownTimes known = flow_.known_times();
   clock_.offered({clock::Source::LastKnown, loop_.wall_now()});
   clock_.offered({clock::Source::CommandPost, known.command_post.value_or(0)});
@@ -217,6 +227,13 @@ void Gateway::look_at_clock() {
   flow_.wall_was_set(step);
   board_.move(step);
   api_.changed();
+}
+
+clock::Ntp Gateway::wanted_ntp() const {
+  clock::Ntp ntp{.server = settings_.clock.ntp_server, .clients = ""};
+  if (!settings_.clock.serve_ntp) return ntp;
+  if (const auto own = host::own_address(settings_.team.interface)) ntp.clients = settings::written(*own);
+  return ntp;
 }
 
 /// The team's interface came back as another one.

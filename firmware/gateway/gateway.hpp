@@ -12,7 +12,9 @@
 #include "admin/network_requests.hpp"
 #include "admin/session_keeper.hpp"
 #include "admin/setup.hpp"
+#include "admin/spare.hpp"
 #include "admin/store.hpp"
+#include "admin/taking_over.hpp"
 #include "admin/updates.hpp"
 #include "alarms/board.hpp"
 #include "alarms/facts.hpp"
@@ -28,6 +30,7 @@
 #include "gateway/listen_sockets.hpp"
 #include "gateway/listeners.hpp"
 #include "gateway/lookout.hpp"
+#include "gateway/report_rows.hpp"
 #include "gateway/roster.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
@@ -42,11 +45,13 @@ namespace adit::gateway {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  admin::Store& store;         // outlives the gateway
-  admin::FactoryReset& reset;  // so does this
-  ListenSockets& sockets;      // and this
+  admin::Store& store;             // outlives the gateway
+  admin::FactoryReset& reset;      // so does this
+  admin::TakingOver& taking_over;  // this
+  ListenSockets& sockets;          // and this
   admin::Store::Loaded loaded;
-  std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
+  std::string trouble;            // for the operator: why the settings are not those that were wanted; or ""
+  std::string take_over_trouble;  // why a take-over is not finished; or ""
   ledger::Ledger ledger;
   std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
   settings::Board board;
@@ -59,7 +64,9 @@ struct Parts {
   std::string state_folder;
   std::string update_folder;              // where adit-update tells its status
   std::string network_folder;             // where adit-network tells its status
+  std::string watch_folder;               // where adit-network --watch tells who else has our addresses
   std::string clock_folder;               // where adit-clock tells its status
+  std::string spare_folder;               // where adit-spare tells its status
   std::optional<forward::Legacy> legacy;  // of the gateway before, where there was one
 };
 
@@ -123,6 +130,7 @@ class Gateway final : public api::Source, public api::Operator {
   std::expected<void, std::string> take_over(admin::Store::Loaded next);
   void tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens);
   void reopen_panel();
+  clock::Ntp wanted_ntp() const;
   void take_back(const std::string& why);
   intake::IcdOptions icd_options() const;
   forward::Tokens tokens() const;
@@ -140,6 +148,7 @@ class Gateway final : public api::Source, public api::Operator {
   void judge(api::RunView& view) const;
   double look_for_alarms();  // when it looked, as alarms::Facts::now
   std::string report_under_way() const;
+  std::expected<spare::Content, std::string> content() const;
   std::vector<api::EndpointRow> endpoints() const;
 
   loop::Loop& loop_;
@@ -161,6 +170,7 @@ class Gateway final : public api::Source, public api::Operator {
   box::SelfTest self_test_;
   admin::Updates updates_;
   admin::ClockSetting clock_;
+  admin::Spare spare_;
   api::Api api_;
   intake::IcdRoutes routes_;
   Crowding crowding_;
@@ -173,6 +183,7 @@ class Gateway final : public api::Source, public api::Operator {
   loop::Instant sessions_kept_{};
   std::optional<LedgerReturn> ledger_return_;
   bool makes_way_ = false;
+  mutable ReadAnswers answers_;  // of the view's reports
   std::string notified_;
   panel::Lights told_lights_{};  // what pages were told that the lights show
 };

@@ -37,7 +37,9 @@ alarms::Facts Gateway::facts(const std::vector<api::ActivityRow>& activities) co
 void Gateway::add_flow(alarms::Facts& facts) const {
   const double steady = loop_.stamp_now();
   facts.endpoints = lookout_.endpoints(flow_, settings_.command_post, steady);
-  for (alarms::Endpoint& each : facts.endpoints) each.since += facts.now - steady;
+  for (alarms::Endpoint& each : facts.endpoints) {
+    if (each.since != 0) each.since += facts.now - steady;  // 0: nobody knows since when
+  }
   facts.robots = lookout_.robots(settings_.alarms, steady);
   facts.turn = static_cast<double>(std::ranges::count_if(facts.streams, &alarms::Stream::is_map)) /
                settings_.command_post.rates.map_hz;
@@ -77,6 +79,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.disk = {flow_.archive().trouble(), flow_.maps().trouble(), flow_.journal_trouble(),
                 host::free_bytes(parts_.state_folder)};
   facts.time_set = clock_.is_set();
+  facts.ntp_trouble = clock_.ntp_trouble();
   facts.change_trouble = parts_.trouble;
   facts.settings_trouble = parts_.loaded.trouble;
   facts.board_trouble = parts_.board_trouble;
@@ -85,6 +88,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.update.on_trial = update.trial;
   facts.update.version = update.last.version;
   facts.update.stray = update.stray;
+  facts.rests = spare_.rests();
 }
 
 }  // namespace adit::gateway

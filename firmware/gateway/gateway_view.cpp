@@ -1,11 +1,15 @@
 // What the gateway shows of itself.
+#include <algorithm>
+
 #include "alarms/conditions.hpp"
 #include "alarms/words.hpp"
 #include "api/judged.hpp"
 #include "box/version.hpp"
+#include "forward/stamp_floor.hpp"
 #include "gateway/gateway.hpp"
 #include "gateway/report_rows.hpp"
 #include "icd/sentence.hpp"
+#include "settings/written.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -42,6 +46,28 @@ std::vector<api::EndpointRow> Gateway::endpoints() const {
            .foreign = maps.foreign() + telemetry.foreign()}};
 }
 
+/// For the export; no stamp is given out any more.
+std::expected<spare::Content, std::string> Gateway::content() const {
+  auto ledger = parts_.ledger.copy();
+  if (!ledger) return std::unexpected(std::move(ledger.error().what));
+  const dispatch::Reports& reports = flow_.reports();
+  spare::Content content;
+  content.about.name = team_address();
+  content.about.version = box::kVersion;
+  // When it came to rest: it has been silent since then.
+  const double rests = std::max(0.0, loop_.wall_now() - spare_.rests_since().value_or(loop_.wall_now()));
+  content.about.stamp = loop_.stamp_now() - rests;
+  content.about.stamps = loop_.stamp_now() + forward::StampFloor::kAhead;
+  content.about.reports = static_cast<std::int64_t>(reports.book().all().size());
+  content.about.open = static_cast<std::int64_t>(reports.book().open().size());
+  content.about.post = reports.run().post;
+  content.about.run = reports.run().last;
+  content.settings = settings::file_of(parts_.loaded.settings);
+  content.tokens = {parts_.loaded.secrets.tokens.begin(), parts_.loaded.secrets.tokens.end()};
+  content.ledger = *std::move(ledger);
+  return content;
+}
+
 api::RunView Gateway::view() const {
   api::RunView view{.now = loop_.wall_now(),
                     .version = box::kVersion,
@@ -52,7 +78,7 @@ api::RunView Gateway::view() const {
                     .run_seconds = settings_.runs.length_seconds,
                     .endpoints = endpoints(),
                     .robots = flow_.as_forwarded().robots(),
-                    .reports = latest_rows(flow_.reports(), kMostReportRows),
+                    .reports = latest_rows(flow_.reports(), kMostReportRows, answers_),
                     .near_metres = settings_.reports.near_metres,
                     .activities = flow_.activities(),
                     .refusals = flow_.record().refusals(),

@@ -21,8 +21,11 @@ command_line::Program command_line_of(Options& options) {
             "secrets/, which count before the other two; made where it is absent",
             &options.state, Wanted::Always},
            {"--network", "DIR", "where adit-network tells how it stands", &options.network},
+           {"--watch", "DIR", "where adit-network --watch tells who else uses the box's addresses",
+            &options.watch},
            {"--update", "DIR", "where adit-update tells how it stands", &options.update},
            {"--clock", "DIR", "where adit-clock tells how it stands", &options.clock},
+           {"--spare", "DIR", "where adit-spare tells how it stands", &options.spare},
            {"--board", "FILE",
             "what the board is, and where its lights and its button are: counts before the settings' "
             "panel; may be absent",

@@ -7,7 +7,9 @@ namespace adit::gateway {
 /// aditd's command line.
 struct Options {
   std::string settings, secrets, state;
-  std::string network = "/run/adit-network", update = "/run/adit-update", clock = "/run/adit-clock";
+  std::string network = "/run/adit-network", update = "/run/adit-update", clock = "/run/adit-clock",
+              spare = "/run/adit-spare";
+  std::string watch = "/run/adit-network-watch";
   std::string board;  // "": none
   std::string panel;  // the socket of adit-panel; "": none
   std::string notices = "/run/adit-notices";

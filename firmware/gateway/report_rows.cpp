@@ -4,12 +4,25 @@
 #include <chrono>
 #include <functional>
 #include <ranges>
+#include <utility>
 
 #include "codec/read.hpp"
 
 namespace adit::gateway {
 
-api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report) {
+const std::optional<icd::ReportReply>& ReadAnswers::of(const dispatch::Report& report) {
+  if (known_.size() >= kMost && !known_.contains(report.number)) known_.clear();
+  const auto [found, is_new] = known_.try_emplace(report.number);
+  Known& known = found->second;
+  if (!is_new && known.answer == report.answer) return known.reply;
+  known = {.answer = report.answer, .reply = std::nullopt};
+  if (report.answer.empty()) return known.reply;
+  if (auto reply = codec::read_report_reply(report.answer)) known.reply = std::move(*reply);
+  return known.reply;
+}
+
+api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report,
+                      ReadAnswers& answers) {
   api::ReportRow row{.number = report.number,
                      .type = report.report.type,
                      .position = report.is_lost() ? std::nullopt : std::optional(report.report.position),
@@ -25,8 +38,7 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
                      .asking = reports.is_asking(report),
                      .reconciled = report.reconciled,
                      .same_as = report.same_as};
-  if (report.answer.empty()) return row;
-  if (const auto reply = codec::read_report_reply(report.answer)) {
+  if (const auto& reply = answers.of(report)) {
     row.report_status = reply->report_status;
     row.score_change = reply->score_change;
   }
@@ -36,9 +48,10 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
 std::vector<api::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
                                        std::size_t most) {
   std::vector<api::ReportRow> rows;
+  ReadAnswers answers;
   const auto& all = reports.book().all();
   for (auto next = all.upper_bound(after); next != all.end() && rows.size() < most; ++next) {
-    rows.push_back(row_of(reports, next->second));
+    rows.push_back(row_of(reports, next->second, answers));
   }
   return rows;
 }
@@ -67,10 +80,11 @@ std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book,
   return chosen;
 }
 
-std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most) {
+std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
+                                        ReadAnswers& answers) {
   std::vector<api::ReportRow> rows;
   for (const dispatch::Report* const report : latest_of(reports.book(), most)) {
-    rows.push_back(row_of(reports, *report));
+    rows.push_back(row_of(reports, *report, answers));
   }
   return rows;
 }
@@ -90,7 +104,8 @@ std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, con
                                            std::int64_t number) {
   const dispatch::Report* const report = reports.book().find(number);
   if (report == nullptr) return std::nullopt;
-  api::ReportDetail detail{.row = row_of(reports, *report), .history = {}, .answer = report->answer};
+  ReadAnswers answers;
+  api::ReportDetail detail{.row = row_of(reports, *report, answers), .history = {}, .answer = report->answer};
   if (const auto history = ledger.history(number)) {
     for (const auto& step : *history) detail.history.push_back({step.at, step.state, step.note});
   }

@@ -10,6 +10,7 @@
 #include "host/inherited.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "panel/remote.hpp"
 #include "settings/saved.hpp"
 
 namespace adit::gateway {
@@ -55,20 +56,24 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
 }
 
 std::expected<Parts, std::string> gather(const Options& options, admin::Store& store,
-                                         admin::FactoryReset& reset, ListenSockets& sockets) {
+                                         admin::FactoryReset& reset, admin::TakingOver& taking_over,
+                                         ListenSockets& sockets, loop::FileDescriptor announced) {
   host::keep_out_of_log(store.redaction());
   auto loaded = store.load();
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = open_ledger(options);
   if (!ledger) return std::unexpected(ledger.error().what);
   auto known = box::read_board(options.board);
-  auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel),
-                               {.socket = options.panel, .folder = runtime_folder(options)});
+  auto panel =
+      box::open_panel(known.board.panel.value_or(loaded->settings.panel),
+                      {.socket = options.panel, .folder = runtime_folder(options)}, std::move(announced));
   return Parts{.store = store,
                .reset = reset,
+               .taking_over = taking_over,
                .sockets = sockets,
                .loaded = std::move(*loaded),
                .trouble = "",
+               .take_over_trouble = "",
                .ledger = std::move(*ledger),
                .ledger_rest = LedgerReturn::kRest,
                .board = std::move(known.board),
@@ -81,7 +86,9 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .state_folder = options.state,
                .update_folder = options.update,
                .network_folder = options.network,
+               .watch_folder = options.watch,
                .clock_folder = options.clock,
+               .spare_folder = options.spare,
                .legacy = std::nullopt};
 }
 
@@ -95,9 +102,13 @@ int fail(const std::string& why) {
 Service::Service(const Options& options)
     : options_(options),
       store_(options.settings, options.secrets, options.state),
-      reset_(store_, options.state, runtime_folder(options)) {}
+      reset_(store_, options.state, runtime_folder(options)),
+      taking_over_(store_, options.state, runtime_folder(options)) {}
 
 int Service::run() {
+  const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
+  const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
+  announce();
   if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
   if (auto made = make_folder(options_.state); !made) {
     host::log(host::Level::Error, "the state folder cannot be made", {{"why", made.error()}});
@@ -106,8 +117,6 @@ int Service::run() {
        {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
     host::remove_unwritten(folder);
   }
-  const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
-  const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
   while (true) {
     const auto again = run_one();
     if (again && !*again) break;
@@ -121,16 +130,24 @@ int Service::run() {
   return 0;
 }
 
+/// First of all: a start that comes to nothing shows on the lights.
+void Service::announce() {
+  if (!announced_ && !options_.panel.empty()) announced_ = panel::announce(options_.panel);
+}
+
 /// Whether another is to follow; an error: it could not start.
 std::expected<bool, std::string> Service::run_one() {
+  announce();
   if (const auto done = reset_.finish(); !done) {
     trouble_ = "the factory reset is not finished: " + done.error();
     host::log(host::Level::Error, trouble_);
   } else if (*done) {
     legacy_.reset();  // the team's before: its map, its robots
   }
-  auto parts = gather(options_, store_, reset_, sockets_);
+  const std::string take_over_trouble = finish_taking_over();
+  auto parts = gather(options_, store_, reset_, taking_over_, sockets_, std::exchange(announced_, {}));
   if (!parts) return std::unexpected(parts.error());
+  parts->take_over_trouble = take_over_trouble;
   const settings::Settings settings = parts->loaded.settings;
   parts->trouble = trouble_;
   const bool waits_for_ledger = !parts->ledger.refusal().empty();
@@ -141,6 +158,17 @@ std::expected<bool, std::string> Service::run_one() {
   const auto ran = run(gateway, settings);
   legacy_ = gateway.hand_over();
   return ran;
+}
+
+/// Why it is not finished, or "".
+std::string Service::finish_taking_over() {
+  const auto done = taking_over_.finish(loop_);
+  if (!done) {
+    host::log(host::Level::Error, "the take-over is not finished", {{"why", done.error()}});
+    return done.error();
+  }
+  if (*done) legacy_.reset();  // of this box, which goes on as another
+  return "";
 }
 
 std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::Settings& settings) {

@@ -7,10 +7,12 @@
 
 #include "admin/factory_reset.hpp"
 #include "admin/store.hpp"
+#include "admin/taking_over.hpp"
 #include "gateway/gateway.hpp"
 #include "gateway/ledger_return.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/options.hpp"
+#include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "loop/watchdog.hpp"
 
@@ -27,16 +29,20 @@ class Service {
   int run();
 
  private:
+  void announce();
   std::expected<bool, std::string> run_one();
   std::expected<bool, std::string> run(Gateway& gateway, const settings::Settings& settings);
   void begin_watchdog();
   std::expected<void, std::string> take_over_sockets();
+  std::string finish_taking_over();
 
   const Options& options_;
   admin::Store store_;
   admin::FactoryReset reset_;
+  admin::TakingOver taking_over_;
   ListenSockets sockets_;
   loop::Loop loop_;
+  loop::FileDescriptor announced_;          // to adit-panel, until its lights are opened
   std::optional<loop::Watchdog> watchdog_;  // where systemd wants one
   Gateway* running_ = nullptr;              // signals come while the loop runs, and so does it
   std::string trouble_;                     // what came of the last change

@@ -8,15 +8,26 @@
 #include <cerrno>
 
 namespace adit::host {
+namespace {
 
-loop::FileDescriptor link_changes() {
+/// What the kernel tells these groups.
+loop::FileDescriptor told_to(unsigned groups) {
   loop::FileDescriptor changes(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE));
   sockaddr_nl address{};
   address.nl_family = AF_NETLINK;
-  address.nl_groups = RTMGRP_LINK;
+  address.nl_groups = groups;
   if (changes && bind(changes.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
     return {};
   return changes;
+}
+
+}  // namespace
+
+loop::FileDescriptor link_changes() {
+  return told_to(RTMGRP_LINK);
+}
+loop::FileDescriptor link_and_address_changes() {
+  return told_to(RTMGRP_LINK | RTMGRP_IPV4_IFADDR);
 }
 
 /// What it says is not read: where too much came at once (ENOBUFS), some of it would be missing.

@@ -36,6 +36,9 @@ std::vector<const icd::MapUpdate*> said_by(const WaitingMap& taken) {
 bool says_all_of(const WaitingMap& newer, const WaitingMap& older) {
   if (newer.map.name != older.map.name || newer.map.is_grid() != older.map.is_grid()) return false;
   if (!newer.map.is_grid()) return newer.is_whole;
+  if (newer.has_gaps) {
+    return std::ranges::any_of(newer.parts, [&](const WaitingMap& part) { return says_all_of(part, older); });
+  }
   return covers(std::get<icd::OccupancyGrid>(newer.map.msg), std::get<icd::OccupancyGrid>(older.map.msg));
 }
 

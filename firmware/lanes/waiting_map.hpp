@@ -54,7 +54,8 @@ struct WaitingMap {
 /// The maps of which the Command Post has all once it took `taken`: that one; of one with gaps its parts, for
 /// what is in a gap is no news of that place.
 std::vector<const icd::MapUpdate*> said_by(const WaitingMap& taken);
-/// Whether `newer`, which has just come, says all that `older` said: a grid that covers it, or a whole cloud.
+/// Whether `newer`, which has just come, says all that `older` said: a grid that covers it (of one with gaps
+/// a part of it), or a whole cloud.
 bool says_all_of(const WaitingMap& newer, const WaitingMap& older);
 /// Whether `newer`, which is under way or waits, is newer and says all that `older` said, which comes back.
 bool replaces(const WaitingMap& newer, const WaitingMap& older);

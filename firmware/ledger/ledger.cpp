@@ -149,13 +149,48 @@ class Ledger::Impl {
 
   /// Steps of one report: one row.
   Result<void> write_one(std::span<const dispatch::Report> steps) {
-    const auto doing = [&] { return "recording a step of report " + std::to_string(steps[0].number); };
-    const std::string history = history_of(steps);
+    return write_one(steps.back(), history_of(steps));
+  }
+
+  /// `history`: what is added to that of the report.
+  Result<void> write_one(const dispatch::Report& report, const std::string& history) {
+    const auto doing = [&] { return "recording a step of report " + std::to_string(report.number); };
     Query row(write_report_);
-    bind_report(row, steps.back(), history);
+    bind_report(row, report, history);
     if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
     if (sqlite3_changes(database_.get()) != 1)
       return std::unexpected(Error{.what = doing() + ": this number is another report's"});
+    return {};
+  }
+
+  /// The history of a report as it is kept.
+  Result<std::string> history_text(std::int64_t number) const {
+    Query query(read_history_);
+    query.bind(number);
+    const int result = query.step();
+    if (result == SQLITE_ROW) return query.bytes(0);
+    if (result == SQLITE_DONE) return std::string();
+    return std::unexpected(database_.error("reading the history of report " + std::to_string(number)));
+  }
+
+  /// `there`: where what is new here comes from.
+  Result<void> write(const dispatch::TakeOver& taken, const Impl& there) {
+    Transaction transaction(database_);
+    if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
+    for (const dispatch::Run& run : taken.runs) {
+      if (auto written = write_one(run); !written) return written;
+    }
+    for (const dispatch::TakenOver& each : taken.reports) {
+      std::string history;
+      if (each.there != 0) {
+        auto before = there.history_text(each.there);
+        if (!before) return std::unexpected(std::move(before.error()));
+        history = *std::move(before);
+      }
+      if (each.has_stepped) history += history_of({&each.report, 1});
+      if (auto written = write_one(each.report, history); !written) return written;
+    }
+    if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
     return {};
   }
 
@@ -241,6 +276,28 @@ Result<std::vector<Ledger::Step>> Ledger::history(std::int64_t number) const {
   auto steps = steps_of(number, query.bytes(0));
   if (!steps) return std::unexpected(Error{.what = doing() + ": it is damaged"});
   return *std::move(steps);
+}
+
+Result<std::string> Ledger::copy() const {
+  sqlite3_int64 size = 0;
+  const std::unique_ptr<unsigned char, decltype(&sqlite3_free)> bytes(
+      sqlite3_serialize(impl_->database_.get(), "main", &size, 0), &sqlite3_free);
+  if (!bytes) return std::unexpected(impl_->database_.error("copying the ledger"));
+  return std::string(reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(size));
+}
+
+Result<void> Ledger::take_over(const Ledger& there, const dispatch::Handover& handover) {
+  dispatch::Books books[2];
+  const Ledger* const ledgers[] = {this, &there};
+  for (std::size_t i = 0; i < std::size(ledgers); ++i) {
+    auto reports = ledgers[i]->reports();
+    if (!reports) return std::unexpected(std::move(reports.error()));
+    auto runs = ledgers[i]->runs();
+    if (!runs) return std::unexpected(std::move(runs.error()));
+    books[i] = {*std::move(reports), *std::move(runs)};
+  }
+  if (!impl_->refusal_.empty()) return std::unexpected(Error{Error::Kind::ReadOnly, impl_->refusal_});
+  return impl_->write(dispatch::take_over(books[0], books[1], handover), *there.impl_);
 }
 
 const std::string& Ledger::damage() const {

@@ -11,6 +11,7 @@
 #include "dispatch/output.hpp"
 #include "dispatch/report.hpp"
 #include "dispatch/run.hpp"
+#include "dispatch/taking_over.hpp"
 
 namespace adit::ledger {
 
@@ -86,6 +87,12 @@ class Ledger {
   };
   /// All steps of one report, oldest first.
   Result<std::vector<Step>> history(std::int64_t number) const;
+
+  /// The whole ledger as one file's bytes, which open() reads wherever they are.
+  Result<std::string> copy() const;
+  /// Takes over all that `there`, another box's, knows: dispatch::take_over(), with each report's history, as
+  /// one transaction and with one flush.
+  Result<void> take_over(const Ledger& there, const dispatch::Handover& handover);
 
   /// A sentence about damage that was found at open(), or "".
   const std::string& damage() const;

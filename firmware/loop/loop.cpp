@@ -25,6 +25,7 @@ namespace {
 /// Timers fire at most this late. sd-event's own default, 250 ms, is for saving batteries.
 constexpr std::uint64_t kAccuracyUsec = 1000;
 constexpr std::uint64_t kNever = UINT64_MAX;
+constexpr std::chrono::milliseconds kReadTogether{1};  // two clocks
 
 /// Without its loop the process is nothing: where sd-event fails (out of memory, or a descriptor that cannot
 /// be watched) the process ends, and systemd restarts it.
@@ -205,7 +206,11 @@ double Loop::wall_ahead() const {
   return impl_->wall().ahead();
 }
 double Loop::look_at_wall() {
-  return impl_->wall().look(system_now(), now());
+  const Instant before = now();
+  const double system = system_now();
+  const Instant after = now();
+  // Who was held up between the two clocks looks again in a second.
+  return after - before > kReadTogether ? 0 : impl_->wall().look(system, after);
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

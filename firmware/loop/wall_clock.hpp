@@ -11,7 +11,9 @@ namespace adit::loop {
 class WallClock {
  public:
   using Instant = std::chrono::steady_clock::time_point;
-  static constexpr double kSet = 0.5;  // seconds at once: no clock runs so wrong, it was set
+  /// Seconds: both clocks run at one rate, so that by more than this somebody set the system's. Less is how
+  /// far apart the two were read, and may wait.
+  static constexpr double kSet = 0.01;
 
   /// `system`: seconds since 1970 by the system's clock, at that instant of the monotonic one; below too.
   WallClock(double system, Instant at) : seen_(system), seen_at_(at) {}
@@ -25,9 +27,9 @@ class WallClock {
   /// By how many seconds now() jumps for this look; 0: it does not. To be called each second.
   double look(double system, Instant at) {
     const double step = system - seen_ - seconds(at), before = ahead_;
+    if (std::abs(step) < kSet) return 0;
     seen_ = system;
     seen_at_ = at;
-    if (std::abs(step) < kSet) return 0;
     ahead_ = 0;
     return step - before;
   }

@@ -80,16 +80,46 @@ void read_nonce(const Field& field, void* nonce) {
   if (!is_nonce(text)) field.refuse("expected ", kNonceDigits, " hexadecimal digits");
 }
 
-/// An IPv4 address, or "".
-constexpr codec::Kind kAddressOrNone = {.write = codec::kind_of<std::string>.write,
-                                        .read =
-                                            [](const Field& field, void* address) {
-                                              auto& text = *static_cast<std::string*>(address);
-                                              text = field.text();
-                                              if (!text.empty() && !settings::ipv4_of(text))
-                                                field.refuse("expected an IPv4 address, or none");
-                                            },
-                                        .schema = codec::kind_of<std::string>.schema};
+void read_address(const Field& field, void* address) {
+  auto& text = *static_cast<std::string*>(address);
+  text = field.text();
+  if (!text.empty() && !settings::ipv4_of(text)) field.refuse("expected an IPv4 address, or none");
+}
+
+void read_own_address(const Field& field, void* address) {
+  auto& text = *static_cast<std::string*>(address);
+  text = field.text();
+  if (!settings::ipv4_of(text)) field.refuse("expected an IPv4 address");
+}
+constexpr codec::Kind kAddress = {.write = codec::kind_of<std::string>.write,
+                                  .read = read_own_address,
+                                  .schema = codec::kind_of<std::string>.schema};
+
+bool is_mac(std::string_view text) {
+  constexpr std::size_t kLength = 17;
+  if (text.size() != kLength) return false;
+  for (std::size_t i = 0; i < kLength; ++i) {
+    const std::string_view wanted = i % 3 == 2 ? ":" : "0123456789abcdef";
+    if (!wanted.contains(text[i])) return false;
+  }
+  return true;
+}
+void read_mac(const Field& field, void* mac) {
+  auto& text = *static_cast<std::string*>(mac);
+  text = field.text();
+  if (!is_mac(text)) field.refuse("expected a MAC address");
+}
+constexpr codec::Kind kMac = {.write = codec::kind_of<std::string>.write,
+                              .read = read_mac,
+                              .schema = codec::kind_of<std::string>.schema};
+
+void read_taken(const Field& list, void* addresses) {
+  if (list.size() > kMostTaken) return list.refuse("expected at most ", kMostTaken);
+  codec::kind_of<std::vector<TakenAddress>>.read(list, addresses);
+}
+constexpr codec::Kind kTaken = {.write = codec::kind_of<std::vector<TakenAddress>>.write,
+                                .read = read_taken,
+                                .schema = codec::kind_of<std::vector<TakenAddress>>.schema};
 
 codec::Value write_addresses(const void* addresses) {
   codec::Value::Array list;
@@ -162,6 +192,14 @@ constexpr Member kProbedMembers[] = {
     member<&Probed::found_on>("found_on"),      member<&Probed::trouble>("trouble"),
 };
 
+constexpr Member kTakenAddressMembers[] = {
+    member<&TakenAddress::interface>("interface"),
+    member<&TakenAddress::address>("address").as(kAddress),
+    member<&TakenAddress::mac>("mac").as(kMac),
+    member<&TakenAddress::seen>("seen_ms").from(0),
+};
+constexpr Member kTakenMembers[] = {member<&Taken::addresses>("taken").as(kTaken)};
+
 /// The file that is kept.
 struct Kept {
   Numbers numbers;
@@ -176,6 +214,10 @@ constexpr codec::Kind kNonce = {.write = codec::kind_of<std::string>.write,
                                 .read = read_nonce,
                                 .schema = codec::kind_of<std::string>.schema};
 
+constexpr codec::Kind kAddressOrNone = {.write = codec::kind_of<std::string>.write,
+                                        .read = read_address,
+                                        .schema = codec::kind_of<std::string>.schema};
+
 constexpr Row Wanted::kRow = {"", kWantedMembers};
 constexpr Row Word::kRow = {"", kWordMembers};
 constexpr Row Probe::kRow = {"", kProbeMembers};
@@ -184,6 +226,8 @@ constexpr Row Forget::kRow = {"", kForgetMembers};
 constexpr Row Pending::kRow = {"", kPendingMembers};
 constexpr Row Status::kRow = {"", kStatusMembers};
 constexpr Row Probed::kRow = {"", kProbedMembers};
+constexpr Row TakenAddress::kRow = {"", kTakenAddressMembers};
+constexpr Row Taken::kRow = {"", kTakenMembers};
 
 std::string write_kept(const Numbers& numbers) {
   return write(Kept{numbers});

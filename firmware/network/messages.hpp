@@ -27,12 +27,16 @@ inline constexpr const char* kForgetFile = "forget.json";
 /// What adit-network tells everybody, in its runtime folder.
 inline constexpr const char* kStatusFile = "status.json";
 inline constexpr const char* kProbedFile = "probed.json";
+/// What adit-network --watch tells everybody, in a runtime folder of its own.
+inline constexpr const char* kTakenFile = "taken.json";
 
 inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{600000};
 
 /// 32 hexadecimal digits that name one request: the kind of that text.
 extern const codec::Kind kNonce;
 bool is_nonce(std::string_view text);
+/// An IPv4 address, or "": the kind of that text.
+extern const codec::Kind kAddressOrNone;
 
 struct Wanted {
   std::string nonce;
@@ -107,6 +111,24 @@ struct Probed {
   std::string trouble = "";   // why nothing was found out
   static const codec::Row kRow;
 };
+
+/// That another machine uses an address of the box's, too (RFC 5227 2.4).
+struct TakenAddress {
+  std::string interface = "", address = "";
+  std::string mac = "";  // whose; "02:00:5e:10:00:01"
+  Instant seen = {};     // last
+  static const codec::Row kRow;
+  friend bool operator==(const TakenAddress&, const TakenAddress&) = default;
+};
+/// It counts for so long after it was seen last.
+inline constexpr std::chrono::seconds kTakenFor{20};
+
+struct Taken {
+  std::vector<TakenAddress> addresses = {};  // kMostTaken
+  static const codec::Row kRow;
+  friend bool operator==(const Taken&, const Taken&) = default;
+};
+inline constexpr std::size_t kMostTaken = 32;
 
 inline constexpr codec::FileFormat kFormat = {"version", 1};
 

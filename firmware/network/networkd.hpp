@@ -22,10 +22,12 @@ std::string team_file(const std::string& interface, const Numbers& numbers);
 std::string command_post_file(const std::string& interface, const Numbers& numbers,
                               const std::vector<std::uint32_t>& endpoints);
 
-/// A .network file of a lower number wins over one of a higher: what is tried goes before what is kept.
-inline constexpr const char* kTriedTeam = "40-adit-team.network";
-inline constexpr const char* kTriedCommandPost = "40-adit-command-post.network";
-inline constexpr const char* kKeptTeam = "50-adit-team.network";
-inline constexpr const char* kKeptCommandPost = "50-adit-command-post.network";
+/// A .network file of a lower number wins over one of a higher: what is tried goes before what is kept, and
+/// both before what the machine may have of before (netplan's 10-*), for an interface is found by its earlier
+/// name, too.
+inline constexpr const char* kTriedTeam = "04-adit-team.network";
+inline constexpr const char* kTriedCommandPost = "04-adit-command-post.network";
+inline constexpr const char* kKeptTeam = "05-adit-team.network";
+inline constexpr const char* kKeptCommandPost = "05-adit-command-post.network";
 
 }  // namespace adit::network

@@ -28,8 +28,11 @@ std::string unreachable(const std::string& socket, int error) {
 /// What lights and button have in common.
 class Connection {
  public:
-  Connection(std::string socket, std::string greeting, loop::FileDescriptor epoll)
-      : socket_(std::move(socket)), greeting_(std::move(greeting)), epoll_(std::move(epoll)) {}
+  Connection(std::string socket, std::string greeting, loop::FileDescriptor epoll,
+             loop::FileDescriptor announced)
+      : socket_(std::move(socket)), greeting_(std::move(greeting)), epoll_(std::move(epoll)) {
+    if (announced) greet(std::move(announced));
+  }
 
   std::expected<void, std::string> tell(const std::string& message) {
     if ((fd_ || connect()) && put(message)) {
@@ -72,9 +75,13 @@ class Connection {
       errno = fd.error();
       return false;
     }
+    return greet(std::move(*fd));
+  }
+
+  bool greet(loop::FileDescriptor fd) {
     epoll_event wanted{.events = EPOLLIN, .data = {}};
-    if (epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd->get(), &wanted) != 0) return false;
-    fd_ = std::move(*fd);
+    if (epoll_ctl(epoll_.get(), EPOLL_CTL_ADD, fd.get(), &wanted) != 0) return false;
+    fd_ = std::move(fd);
     return put(greeting_);
   }
 
@@ -98,15 +105,21 @@ class RemoteLines final : public Lines {
   explicit RemoteLines(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
   RemoteLines(const RemoteLines&) = delete;
   RemoteLines& operator=(const RemoteLines&) = delete;
-  ~RemoteLines() override { [[maybe_unused]] const auto told = connection_->tell(message_of(ToEnd{})); }
+  /// Whoever never said what is to be lit did not start: that he ends is the fault.
+  ~RemoteLines() override {
+    if (is_started_) [[maybe_unused]]
+      const auto told = connection_->tell(message_of(ToEnd{}));
+  }
 
   std::expected<void, std::string> set(const Lit& lit) override {
+    is_started_ = true;
     return connection_->tell(message_of(ToLight{lit}));
   }
   bool is_watched() const override { return true; }
 
  private:
   std::shared_ptr<Connection> connection_;
+  bool is_started_ = false;
 };
 
 class RemoteButton final : public ButtonLine {
@@ -121,10 +134,17 @@ class RemoteButton final : public ButtonLine {
 
 }  // namespace
 
-std::expected<Remote, std::string> remote(const std::string& socket, const settings::Panel& settings) {
+loop::FileDescriptor announce(const std::string& socket) {
+  auto fd = connected_to(socket);
+  return fd ? std::move(*fd) : loop::FileDescriptor();
+}
+
+std::expected<Remote, std::string> remote(const std::string& socket, const settings::Panel& settings,
+                                          loop::FileDescriptor announced) {
   loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC));
   if (!epoll) return std::unexpected(unreachable(socket, errno));
-  auto connection = std::make_shared<Connection>(socket, message_of(ToUse{settings}), std::move(epoll));
+  auto connection = std::make_shared<Connection>(socket, message_of(ToUse{settings}), std::move(epoll),
+                                                 std::move(announced));
   return Remote{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
 }
 

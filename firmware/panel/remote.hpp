@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "loop/file_descriptor.hpp"
 #include "panel/lines.hpp"
 
 namespace adit::panel {
@@ -15,6 +16,11 @@ struct Remote {
   std::unique_ptr<Lines> lines;
   std::unique_ptr<ButtonLine> button;
 };
-std::expected<Remote, std::string> remote(const std::string& socket, const settings::Panel& settings);
+std::expected<Remote, std::string> remote(const std::string& socket, const settings::Panel& settings,
+                                          loop::FileDescriptor announced = {});
+
+/// A connection to adit-panel for remote(), before it is known what is to be lit: where it ends before that,
+/// adit-panel shows the fault. Empty where nobody answers there.
+loop::FileDescriptor announce(const std::string& socket);
 
 }  // namespace adit::panel

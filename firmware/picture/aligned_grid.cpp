@@ -16,26 +16,26 @@ constexpr double kMostSkew = kPixel / 10;
 /// border is that far off at most, in cells: else a grid that grows would flicker.
 constexpr double kRounding = 1e-3;
 
-int pixel_at(double metres) {
-  return static_cast<int>(
-      std::clamp(std::floor(metres / kPixel), double{-kWorldPixels}, double{kWorldPixels}));
-}
-
 }  // namespace
 
-AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t count)
-    : first_pixel(pixel_at(origin)) {
+int AlignedGrid::Axis::Pixels::at(double place) const {
+  return static_cast<int>(
+      std::clamp(std::floor(place / metres), static_cast<double>(from), static_cast<double>(from + side)));
+}
+
+AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t count, const Pixels& pixels)
+    : first_pixel(pixels.at(origin)) {
   const auto cell = [count](double number) {
     return static_cast<std::uint32_t>(std::clamp(number, 0.0, static_cast<double>(count)));
   };
   const auto first_centre_from = [&](double metres) {
     return cell(std::ceil((metres - origin) / metres_per_cell - 0.5 - kRounding));
   };
-  const int last = std::min(pixel_at(origin + count * metres_per_cell), kWorldPixels - 1);
+  const int last = std::min(pixels.at(origin + count * metres_per_cell), pixels.from + pixels.side - 1);
   for (int pixel = first_pixel; pixel <= last; ++pixel) {
-    Cells shown{first_centre_from(pixel * kPixel), first_centre_from((pixel + 1) * kPixel)};
+    Cells shown{first_centre_from(pixel * pixels.metres), first_centre_from((pixel + 1) * pixels.metres)};
     if (shown.begin == shown.end) {
-      const double centre = std::floor(((pixel + 0.5) * kPixel - origin) / metres_per_cell);
+      const double centre = std::floor(((pixel + 0.5) * pixels.metres - origin) / metres_per_cell);
       if (centre >= 0 && centre < count) shown = {cell(centre), cell(centre) + 1};
     }
     if (shown.begin < shown.end) {
@@ -55,8 +55,10 @@ bool AlignedGrid::suits(const icd::OccupancyGrid& grid, const icd::Placement& pl
 
 AlignedGrid::AlignedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet)
     : sheet_(sheet),
-      columns_(placement.shift.x, grid.resolution * placement.turn[0][0], grid.width),
-      rows_(placement.shift.y, grid.resolution * placement.turn[1][1], grid.height),
+      columns_(placement.shift.x, grid.resolution * placement.turn[0][0], grid.width,
+               {sheet.frame().metres_per_pixel(), sheet.frame().first_x(), sheet.frame().side()}),
+      rows_(placement.shift.y, grid.resolution * placement.turn[1][1], grid.height,
+            {sheet.frame().metres_per_pixel(), sheet.frame().first_y(), sheet.frame().side()}),
       width_(grid.width) {
   icd::require(suits(grid, placement));
   if (columns_.end() - columns_.begin() > kMostColumns) columns_.cells.clear();

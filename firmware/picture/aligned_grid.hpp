@@ -30,7 +30,14 @@ class AlignedGrid {
   /// Which cells each pixel shows, along x or along y. The cells of two pixels are the same ones or have none
   /// in common.
   struct Axis {
-    Axis(double origin, double metres_per_cell, std::uint32_t count);
+    /// Those of the frame along it.
+    struct Pixels {
+      double metres = 0;  // each
+      int from = 0, side = 0;
+      /// The pixel there, or the frame's first one, or the one after its last.
+      int at(double place) const;
+    };
+    Axis(double origin, double metres_per_cell, std::uint32_t count, const Pixels& pixels);
     std::size_t begin() const { return cells.empty() ? 0 : cells.front().begin; }
     std::size_t end() const { return cells.empty() ? 0 : cells.back().end; }
     int first_pixel = 0;

@@ -29,6 +29,10 @@ class History {
   /// Requires a stamp that is not before the newest.
   void add(Version version, double spacing);
   void thin(double spacing);
+  /// The time of day was set ahead by so many seconds.
+  void move(double seconds) {
+    for (Version& version : versions_) version.stamp += seconds;
+  }
   /// The newest state is from now on that of this version.
   void renumber(std::uint64_t number) { versions_.back().number = number; }
 

@@ -96,6 +96,16 @@ void Mosaic::wipe(double stamp) {
   keep_to_budget();
 }
 
+void Mosaic::move(double seconds) {
+  last_ += seconds;
+  if (wiped_) *wiped_ += seconds;
+  for (auto& [layer, state] : layers_) {
+    state.view.first += seconds;
+    state.view.last += seconds;
+    for (auto& [at, history] : state.tiles) history.move(seconds);
+  }
+}
+
 void Mosaic::put(State& state, const TileAt& at, Tile tile, double stamp) {
   History& history = state.tiles[at];
   if (!history.empty()) newest_bytes_ -= cost_of(history.newest());

@@ -20,6 +20,13 @@ struct TileView {
   bool blank = false;         // it was wiped since
 };
 
+/// Of which level a layer's tiles can be had besides, and what of these changed.
+struct Finer {
+  int level = 0;              // the finest: -1 or -2
+  std::uint64_t version = 0;  // of the last change
+  std::optional<Area> area;   // that changed
+};
+
 /// A layer, and those of its tiles that changed.
 struct LayerView {
   Layer layer;
@@ -30,6 +37,7 @@ struct LayerView {
   std::size_t missed = 0;      // maps that are not in it
   std::size_t left_out = 0;    // Drawing::left_out of the last map
   std::vector<TileView> tiles;
+  std::optional<Finer> finer;  // ForwardedGrids' word
 };
 
 /// The picture of all maps: its layers, their tiles, and how these were at earlier times. Does no more than
@@ -54,8 +62,16 @@ class Mosaic {
   bool apply(Drawing drawing, double stamp);
   /// A map of that layer came that will not be drawn.
   void missed(const Layer& layer, double stamp);
+  /// Something that is shown with this changed: gives its version.
+  std::uint64_t count_change(double stamp) {
+    begin_change(stamp);
+    return version_;
+  }
   /// A new run: from now on all is blank. Earlier times stay as they were.
   void wipe(double stamp);
+
+  /// The time of day was set ahead by so many seconds: all of it came as long ago as it did.
+  void move(double seconds);
 
   /// A state of a tile as it was before a restart, which comes in the order of its tile's states. False where
   /// that order is broken, or there is no room for it.

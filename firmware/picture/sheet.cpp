@@ -4,11 +4,12 @@
 
 namespace adit::picture {
 
-Sheet::Sheet() : places_(std::size_t{4} * kWorldTiles * kWorldTiles) {}
+Sheet::Sheet(const Frame& frame)
+    : frame_(frame), places_(static_cast<std::size_t>(frame.tiles) * static_cast<std::size_t>(frame.tiles)) {}
 
 std::uint16_t Sheet::made(int x, int y) {
   if (parts_.size() == kMostTiles) return kNone;
-  parts_.push_back({{0, x, y}, std::make_unique<Pixels>()});
+  parts_.push_back({{frame_.level, x, y}, std::make_unique<Pixels>()});
   return static_cast<std::uint16_t>(parts_.size());
 }
 

@@ -10,8 +10,20 @@
 
 namespace adit::picture {
 
-/// What one map says, at the base's scale: of all that falls on a pixel, the highest index. A tile takes
-/// memory (64 KiB) once something is known in it, and no more than kMostTiles do.
+/// A square of whole tiles of one level.
+struct Frame {
+  int level = 0;
+  int left = -kWorldTiles, bottom = -kWorldTiles;  // its first tile
+  int tiles = 2 * kWorldTiles;                     // along each side
+
+  double metres_per_pixel() const { return picture::metres_per_pixel(level); }
+  int first_x() const { return left * kSide; }  // pixels
+  int first_y() const { return bottom * kSide; }
+  int side() const { return tiles * kSide; }
+};
+
+/// What one map says within a frame, at the scale of its level: of all that falls on a pixel, the highest
+/// index. A tile takes memory (64 KiB) once something is known in it, and no more than kMostTiles do.
 class Sheet {
  public:
   static constexpr std::size_t kMostTiles = 512;  // about 2 square kilometres
@@ -21,10 +33,11 @@ class Sheet {
     std::unique_ptr<Pixels> pixels;
   };
 
-  Sheet();
+  /// Of the whole world at the base's scale, unless told otherwise.
+  explicit Sheet(const Frame& frame = {});
 
-  /// `index` at the base's pixel x, y (-kWorldPixels up to kWorldPixels). False where there is no tile for it
-  /// any more.
+  const Frame& frame() const { return frame_; }
+  /// `index` at a pixel of the frame. False where there is no tile for it any more.
   bool raise(int x, int y, std::uint8_t index) {
     Pixels* pixels = tile(x >> 8, y >> 8);
     if (pixels == nullptr) return false;
@@ -44,8 +57,8 @@ class Sheet {
 
   /// Null where it would be one too many.
   Pixels* tile(int x, int y) {
-    const auto at = static_cast<std::size_t>(y + kWorldTiles) * 2 * kWorldTiles +
-                    static_cast<std::size_t>(x + kWorldTiles);
+    const auto at = static_cast<std::size_t>(y - frame_.bottom) * static_cast<std::size_t>(frame_.tiles) +
+                    static_cast<std::size_t>(x - frame_.left);
     if (at != last_at_) {
       if (places_[at] == kNone) places_[at] = made(x, y);
       last_ = places_[at] == kNone ? nullptr : parts_[places_[at] - 1U].pixels.get();
@@ -55,10 +68,11 @@ class Sheet {
   }
   std::uint16_t made(int x, int y);
 
+  Frame frame_;
   std::vector<Part> parts_;
   std::size_t last_at_ = SIZE_MAX;  // the tile asked for last, as most often the next one is
   Pixels* last_ = nullptr;
-  std::vector<std::uint16_t> places_;  // in parts_, from 1; for each tile of the world
+  std::vector<std::uint16_t> places_;  // in parts_, from 1; for each tile of the frame
 };
 
 }  // namespace adit::picture

@@ -9,8 +9,6 @@
 namespace adit::picture {
 namespace {
 
-constexpr double kPixelsPerMetre = 1 / kMetresPerPixel[0];
-
 /// A lattice of that spacing, in pixels, has a point in every pixel however it lies.
 constexpr double kGapless = 1 / std::numbers::sqrt2;
 
@@ -19,23 +17,32 @@ constexpr double kGapless = 1 / std::numbers::sqrt2;
 TurnedGrid::TurnedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet)
     : sheet_(sheet) {
   const auto& turn = placement.turn;
-  const double cell = grid.resolution * kPixelsPerMetre;
-  origin_ = {placement.shift.x * kPixelsPerMetre, placement.shift.y * kPixelsPerMetre};
+  const double pixel = sheet.frame().metres_per_pixel(), cell = grid.resolution / pixel;
+  origin_ = {placement.shift.x / pixel, placement.shift.y / pixel};
   column_ = {turn[0][0] * cell, turn[1][0] * cell};
   row_ = {turn[0][1] * cell, turn[1][1] * cell};
+  reach_ = cell / std::numbers::sqrt2;
   side_ = cell > kLargestTurnedCell ? 0 : std::max(1, static_cast<int>(std::ceil(cell / kGapless)));
 }
 
+/// Whether a cell with its centre there reaches into the frame.
+bool TurnedGrid::is_near(double x, double y) const {
+  const Frame& frame = sheet_.frame();
+  const auto near = [&](double at, int from) {
+    return at + reach_ >= from && at - reach_ < from + frame.side();  // no number is not
+  };
+  return near(x, frame.first_x()) && near(y, frame.first_y());
+}
+
 void TurnedGrid::dab(double x, double y, std::uint8_t index) {
-  const auto inside = [](double at) { return at >= -kWorldPixels && at < kWorldPixels; };  // no number is not
-  if (!inside(x) || !inside(y)) {
+  const Frame& frame = sheet_.frame();
+  const auto inside = [&](double at, int from) { return at >= from && at < from + frame.side(); };
+  if (!inside(x, frame.first_x()) || !inside(y, frame.first_y())) {
     ++left_out_;
     return;
   }
-  const auto pixel = [](double at) {
-    return static_cast<int>(at + kWorldPixels) - kWorldPixels;  // rounds down
-  };
-  if (!sheet_.raise(pixel(x), pixel(y), index)) ++left_out_;
+  const auto pixel = [](double at, int from) { return static_cast<int>(at - from) + from; };  // rounds down
+  if (!sheet_.raise(pixel(x, frame.first_x()), pixel(y, frame.first_y()), index)) ++left_out_;
 }
 
 void TurnedGrid::draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells) {
@@ -47,14 +54,15 @@ void TurnedGrid::draw(std::size_t row, std::size_t column, std::span<const std::
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::uint8_t index = index_of_cell(cells[i]);
     if (index == 0) continue;
-    if (dabs == 0 || dabs_ + dabs > kMostDabs) {
+    const auto c = static_cast<double>(column + i);
+    const double x = first_x + c * column_.x, y = first_y + c * column_.y;
+    if (dabs == 0 || dabs_ + dabs > kMostDabs || !is_near(x, y)) {
       ++left_out_;
       continue;
     }
     dabs_ += dabs;
-    const auto c = static_cast<double>(column + i);
     if (side_ == 1) {
-      dab(first_x + c * column_.x, first_y + c * column_.y, index);
+      dab(x, y, index);
       continue;
     }
     for (int v = 0; v < side_; ++v) {

@@ -25,10 +25,12 @@ class TurnedGrid {
   struct Step {
     double x = 0, y = 0;  // in pixels
   };
+  bool is_near(double x, double y) const;
   void dab(double x, double y, std::uint8_t index);
 
   Sheet& sheet_;
   Step origin_, column_, row_;  // where the grid's corner lies, and what one cell more adds
+  double reach_ = 0;            // of a cell around its centre
   int side_ = 1;                // points along a cell's side; 0: cells are too large to be drawn
   std::size_t dabs_ = 0;
   std::size_t left_out_ = 0;

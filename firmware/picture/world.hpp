@@ -19,6 +19,16 @@ inline constexpr int kLevels = 3;
 inline constexpr std::array<double, kLevels> kMetresPerPixel{0.25, 1, 4};
 inline constexpr double kPixel = kMetresPerPixel[0];
 
+/// Finer levels, -1 and -2, which are drawn only where somebody looks: see fine.hpp. Each is finer by
+/// kFineStep, so that the cells of nearly all grids (5, 10, 20, 25 cm) are whole pixels.
+inline constexpr int kFineStep = 5;
+inline constexpr int kFinest = -2;
+inline constexpr std::array<double, 2> kFineMetresPerPixel{0.05, 0.01};
+inline constexpr double metres_per_pixel(int level) {
+  return level < 0 ? kFineMetresPerPixel[static_cast<std::size_t>(-1 - level)]
+                   : kMetresPerPixel[static_cast<std::size_t>(level)];
+}
+
 /// What lies farther from the frame's origin along x or y is not drawn: in metres, pixels and tiles of the
 /// base.
 inline constexpr double kWorldMetres = 8192;
@@ -46,8 +56,17 @@ struct TileAt {
 
 /// The tile of the next coarser level that this one lies in.
 inline TileAt coarser(const TileAt& at) {
-  static_assert(kStep == 4);
-  return {at.level + 1, at.x >> 2, at.y >> 2};
+  const int step = at.level < 0 ? kFineStep : kStep;
+  const auto down = [step](int number) { return (number - (number < 0 ? step - 1 : 0)) / step; };
+  return {at.level + 1, down(at.x), down(at.y)};
+}
+
+/// Whether some of it is drawn at all.
+inline bool is_in_world(const TileAt& at) {
+  if (at.level < kFinest || at.level >= kLevels) return false;
+  const double reach = kWorldMetres / (metres_per_pixel(at.level) * kSide);
+  const auto inside = [reach](int number) { return number >= -reach && number < reach; };
+  return inside(at.x) && inside(at.y);
 }
 
 /// A rectangle, in metres.
@@ -55,6 +74,16 @@ struct Area {
   double left = 0, bottom = 0, right = 0, top = 0;
   friend bool operator==(const Area&, const Area&) = default;
 };
+
+/// Whether they have more than a border in common.
+inline bool touch(const Area& a, const Area& b) {
+  return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
+}
+
+inline Area area_of(const TileAt& at) {
+  const double metres = metres_per_pixel(at.level) * kSide;
+  return {at.x * metres, at.y * metres, (at.x + 1) * metres, (at.y + 1) * metres};
+}
 
 inline void extend(std::optional<Area>& area, const Area& more) {
   if (!area) {

@@ -57,6 +57,12 @@ void check_endpoint(const std::string& path, const Address& address, std::vector
   }
 }
 
+void check_ntp_server(const std::string& address, std::vector<Error>& errors) {
+  const Host host = host_of(address);
+  if (!address.empty() && (host.any || host.several || host.loopback))
+    errors.push_back({"clock.ntp_server", icd::sentence(address, " is no address of another machine")});
+}
+
 void check_endpoints(const Settings& settings, std::vector<Error>& errors) {
   const auto is_own = [&settings](const Address& endpoint) {  // check_listen() tells of these
     return std::ranges::find(settings.team.listen, endpoint) != settings.team.listen.end();
@@ -165,6 +171,7 @@ void check_panel(const Panel& panel, std::vector<Error>& errors) {
 std::vector<Error> contradictions(const Settings& settings) {
   std::vector<Error> errors;
   check_endpoints(settings, errors);
+  check_ntp_server(settings.clock.ntp_server, errors);
   check_listen(settings, errors);
   check_panel(settings.panel, errors);
   check_robots(settings.robots, errors);

@@ -117,6 +117,15 @@ const Key kKeys[] = {
      "both.",
      flag<MEMBER(network.allow_overlap)>()},
 
+    {"clock.ntp_server",
+     "An NTP server on the team's network that the box takes its time from; empty: none. Only where "
+     "adit-clock "
+     "sets the clock: not on a PC, which has a time service of its own.",
+     text<MEMBER(clock.ntp_server)>(Form::Ipv4OrNone)},
+    {"clock.serve_ntp",
+     "Whether the box is the NTP server of the team's subnet, once its own time is set. Not on a PC, either.",
+     flag<MEMBER(clock.serve_ntp)>()},
+
     {"reports.answer_within_ms",
      "How long a client waits for the answer to its report, at most; then it is told 503 and that the report "
      "is kept.",

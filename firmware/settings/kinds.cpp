@@ -9,6 +9,7 @@
 
 #include "codec/json.hpp"
 #include "icd/robot_name.hpp"
+#include "settings/subnet.hpp"
 
 namespace adit::settings {
 namespace {
@@ -76,6 +77,8 @@ bool fits(Form form, const std::string& text) {
       return is_course(text);
     case Form::CourseOrNone:
       return text.empty() || is_course(text);
+    case Form::Ipv4OrNone:
+      return text.empty() || ipv4_of(text).has_value();
     case Form::Line:
       return is_name(text, 31);  // GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL
   }
@@ -98,6 +101,8 @@ std::string range_of(Form form) {
       return "1 to 20 letters, digits, underscores and hyphens";
     case Form::CourseOrNone:
       return "a course's name, or \"\"";
+    case Form::Ipv4OrNone:
+      return "an IPv4 address, or \"\"";
     case Form::Line:
       return "a GPIO line's name of at most 31 characters, or \"\"";
   }

@@ -35,7 +35,17 @@ struct Real {
   double least, most;
 };
 
-enum class Form : std::uint8_t { Address, Interface, Chip, Line, Robot, Alias, Course, CourseOrNone };
+enum class Form : std::uint8_t {
+  Address,
+  Interface,
+  Chip,
+  Line,
+  Robot,
+  Alias,
+  Course,
+  CourseOrNone,
+  Ipv4OrNone
+};
 struct Text {
   void (*put)(Settings&, std::string);
   const std::string& (*get)(const Settings&);

@@ -111,6 +111,12 @@ struct Course {
   Address scoring, mapping;
 };
 
+/// NTP on the team's network: room clock.
+struct Clock {
+  std::string ntp_server;  // an IPv4 address; "": none is asked
+  bool serve_ntp = false;
+};
+
 /// How the box's own addresses are changed. They are not here: room network.
 struct Network {
   std::chrono::milliseconds confirm_within{90000};  // then a change of them is taken back
@@ -124,6 +130,7 @@ struct Settings {
   Team team;
   std::vector<Robot> robots;
   Network network;
+  Clock clock;
   Reports reports;
   Queues queues;
   Runs runs;

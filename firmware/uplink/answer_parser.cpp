@@ -179,6 +179,16 @@ AnswerParser::State AnswerParser::feed_end() {
   return impl_->head_and_body_done();
 }
 
+int AnswerParser::status() const {
+  return impl_->parser->is_header_done() ? static_cast<int>(impl_->parser->get().result_int()) : 0;
+}
+
+std::string AnswerParser::take_part() {
+  impl_->read = impl_->unread.size() + 1;  // it has begun
+  impl_->parser->body_limit(impl_->longest_body);
+  return std::exchange(impl_->parser->get().body().text, {});
+}
+
 Answered AnswerParser::take() {
   auto message = impl_->parser->release();
   Answered answered;

@@ -27,6 +27,12 @@ class AnswerParser {
   /// The peer has sent all that it will, which is the end of an answer that has no length (RFC 9112 6.3).
   State feed_end();
 
+  /// Once the head has come; before, 0.
+  int status() const;
+  /// What has come of the body since the last call, for an answer that goes on: it is not in take(), and all
+  /// limits are of what comes from now on.
+  std::string take_part();
+
   /// For Whole.
   Answered take();
   /// For Whole: both sides may go on using the connection, and nothing came after the answer.

@@ -31,6 +31,9 @@ class Exchange {
   Answer read(int fd);
   /// For Whole.
   Answered take_answer() { return parser_.take(); }
+  /// Of an answer that goes on, as AnswerParser has it.
+  int status() const { return parser_.status(); }
+  std::string take_part() { return parser_.take_part(); }
   /// When the request left, as the kernel says a moment before `now`, once its answer has come.
   Sent left(const Transmission& seen, loop::Instant now) const;
   bool may_keep_alive() const { return sent_ == total_ && parser_.may_keep_alive(); }

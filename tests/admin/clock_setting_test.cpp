@@ -2,8 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "admin/fake_chronyd.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::admin {
 namespace {
@@ -15,7 +17,7 @@ class ClockSettingTest : public testing::Test {
  protected:
   void say(const clock::Status& status) {
     ASSERT_TRUE(host::write_file(run_ / clock::kStatusFile, clock::write(status), 0644));
-    setting_.every_second();
+    setting_.every_second(ntp_);
   }
   std::optional<clock::Request> asked() const {
     const auto text = host::read_file(state_ / clock::kRequestFile);
@@ -24,13 +26,34 @@ class ClockSettingTest : public testing::Test {
   }
   double now() const { return loop_.wall_now(); }
 
+  std::optional<clock::Ntp> asked_for_ntp() {
+    const auto text = host::read_file(state_ / clock::kNtpFile);
+    const auto ntp = text ? clock::read<clock::Ntp>(*text) : std::unexpected(text.error());
+    return ntp ? std::optional(*ntp) : std::nullopt;
+  }
+  /// The server is heard, and the system's clock is behind it.
+  void hear(double behind) {
+    chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = behind};
+    const int before = chronyd_.answers;
+    ASSERT_TRUE(loop::turn_until(loop_, [&] {
+      setting_.every_second(ntp_);
+      return chronyd_.answers > before;
+    }));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] {
+      setting_.every_second(ntp_);
+      return setting_.ntp_trouble().empty() && (asked() || setting_.clock().is_kept);
+    }));
+  }
+
   host::Folder state_, run_;
   loop::Loop loop_;
-  ClockSetting setting_{loop_, state_.path(), run_.path()};
+  clock::Ntp ntp_;
+  FakeChronyd chronyd_{loop_};
+  ClockSetting setting_{loop_, state_.path(), run_.path(), chronyd_.port(), {}};
 };
 
 TEST_F(ClockSettingTest, SaysWhyItCannotSetTheClockWhereAditClockDoesNotRun) {
-  setting_.every_second();
+  setting_.every_second(ntp_);
   EXPECT_FALSE(setting_.clock().managed);
   EXPECT_THAT(setting_.clock().why, HasSubstr("adit-clock"));
   EXPECT_EQ(setting_.is_set(), std::nullopt) << "the machine's own affair";
@@ -93,8 +116,156 @@ TEST_F(ClockSettingTest, TellsWhyItWasNotSet) {
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   setting_.offered({Source::CommandPost, now() + 600});
-  EXPECT_FALSE(asked()) << "it would be refused again, each second";
+  EXPECT_FALSE(asked()) << "it would be refused again, each second; a minute later it is asked again";
   EXPECT_TRUE(setting_.set_clock(1.8e9));
+}
+
+/// It asks again soon.
+class SoonAgain : public ClockSettingTest {
+ protected:
+  /// The Command Post tells its time all the while: the next request, if one comes.
+  std::optional<clock::Request> next_after(const std::string& nonce, double ahead) {
+    std::optional<clock::Request> next;
+    (void)loop::turn_until(loop_, [&] {
+      hasty_.every_second(ntp_);
+      hasty_.offered({Source::CommandPost, now() + ahead});
+      next = asked();
+      return next && next->nonce != nonce;
+    });
+    return next;
+  }
+
+  ClockSetting hasty_{
+      loop_,
+      state_.path(),
+      run_.path(),
+      chronyd_.port(),
+      {.taken_up_within = std::chrono::milliseconds(50), .ask_again = std::chrono::milliseconds(50)}};
+};
+
+TEST_F(SoonAgain, AsksAgainWhereABusyBoxDidNotTakeItUpInTime) {
+  say({});
+  const auto first = next_after("", 600);
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    hasty_.every_second(ntp_);
+    return !hasty_.clock().refusal.empty();
+  }));
+  EXPECT_THAT(hasty_.clock().refusal, HasSubstr("did not take it up"));
+  EXPECT_FALSE(asked()) << "it would be old";
+  const auto second = next_after(first->nonce, 600);
+  ASSERT_TRUE(second);
+  EXPECT_NE(second->nonce, first->nonce);
+  ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    hasty_.every_second(ntp_);
+    return !hasty_.clock().refusal.empty();
+  }));
+  say({.nonce = second->nonce, .refusal = "", .source = Source::CommandPost});
+  hasty_.every_second(ntp_);
+  EXPECT_EQ(hasty_.clock().refusal, "") << "it was late, but it is set";
+}
+
+TEST_F(SoonAgain, AsksAgainWhatWasRefused) {
+  say({});
+  const auto first = next_after("", 600);
+  ASSERT_TRUE(first);
+  ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
+  say({.nonce = first->nonce, .refusal = "at: not within the last minute", .source = Source::None});
+  const auto second = next_after(first->nonce, 600);
+  ASSERT_TRUE(second);
+  EXPECT_NE(second->nonce, first->nonce);
+}
+
+TEST_F(ClockSettingTest, AsksForNtpAsTheSettingsHaveItAndWhenTheyChange) {
+  say({});
+  EXPECT_FALSE(asked_for_ntp()) << "it is off";
+  ntp_ = {.server = "10.0.0.5", .clients = "10.0.0.0/24"};
+  say({});
+  EXPECT_EQ(asked_for_ntp(), ntp_);
+  ASSERT_TRUE(host::remove_file(state_ / clock::kNtpFile));
+  const clock::Status done{.ntp = ntp_};
+  say(done);
+  EXPECT_FALSE(asked_for_ntp()) << "that is done";
+  ntp_ = {};
+  say(done);
+  EXPECT_EQ(asked_for_ntp(), ntp_);
+}
+
+TEST_F(ClockSettingTest, SaysThatAMachineThatKeepsItsTimeItselfSpeaksNoNtpForAdit) {
+  setting_.every_second(ntp_);
+  EXPECT_EQ(setting_.ntp_trouble(), "");
+  ntp_ = {.server = "10.0.0.5", .clients = ""};
+  setting_.every_second(ntp_);
+  EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("keeps its time by itself"));
+  EXPECT_EQ(setting_.clock().ntp, setting_.ntp_trouble());
+  EXPECT_FALSE(asked_for_ntp());
+}
+
+TEST_F(ClockSettingTest, TakesTheServersTimeWithinTheBoundsOfAnyOther) {
+  ntp_ = {.server = "10.0.0.5", .clients = ""};
+  say({.source = Source::Operator, .ntp = ntp_});
+  hear(7776000);
+  ASSERT_TRUE(asked());
+  EXPECT_EQ(asked()->source, Source::Ntp);
+  EXPECT_NEAR(asked()->time, now() + 7776000, 1);
+}
+
+TEST_F(ClockSettingTest, TakesNoServersTimeThatIsNoTimeOfABox) {
+  ntp_ = {.server = "10.0.0.5", .clients = ""};
+  say({.source = Source::None, .ntp = ntp_});
+  chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = -now()};
+  ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    setting_.every_second(ntp_);
+    return chronyd_.answers > 1;  // the first has been read
+  }));
+  EXPECT_FALSE(asked());
+}
+
+TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnceItIsGone) {
+  ntp_ = {.server = "10.0.0.5", .clients = ""};
+  say({.source = Source::Ntp, .ntp = ntp_});
+  ASSERT_TRUE(setting_.set_clock(1.8e9)) << "nobody is heard";
+  say({.nonce = asked()->nonce, .source = Source::Ntp, .ntp = ntp_});
+  ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
+  hear(0.001);
+  EXPECT_TRUE(setting_.clock().is_kept);
+  const auto refused = setting_.set_clock(1.8e9);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().status, icd::Status::Conflict);
+  EXPECT_THAT(refused.error().sentence, HasSubstr("10.0.0.5 keeps it"));
+  setting_.offered({Source::CommandPost, now() + 600});
+  EXPECT_FALSE(asked());
+  ntp_ = {};
+  setting_.every_second(ntp_);
+  EXPECT_TRUE(setting_.set_clock(1.8e9)) << "it is not asked any more";
+}
+
+TEST_F(ClockSettingTest, HearsNobodyWhoWasHeardLongAgoOrIsAnother) {
+  ntp_ = {.server = "10.0.0.5", .clients = ""};
+  say({.source = Source::Ntp, .ntp = ntp_});
+  for (const clock::Tracking& other :
+       {clock::Tracking{.server = 0x0a000006, .heard = now(), .behind = 0},
+        clock::Tracking{.server = 0x0a000005, .heard = now() - NtpWatch::kSilence - 1, .behind = 0},
+        clock::Tracking{}}) {
+    chronyd_.told = other;
+    const int before = chronyd_.answers;
+    ASSERT_TRUE(loop::turn_until(loop_, [&] {
+      setting_.every_second(ntp_);
+      return chronyd_.answers > before + 1;
+    }));
+    EXPECT_FALSE(setting_.clock().is_kept);
+  }
+}
+
+TEST_F(ClockSettingTest, TellsWhyChronydDoesNotRunAndWhatItDoes) {
+  ntp_ = {.server = "", .clients = "10.0.0.0/24"};
+  say({.source = Source::None, .ntp = ntp_, .trouble = "chronyd cannot be started: no"});
+  EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("cannot be started"));
+  say({.source = Source::None, .ntp = ntp_});
+  EXPECT_EQ(setting_.ntp_trouble(), "");
+  EXPECT_EQ(setting_.clock().ntp, "once it is set, given by NTP to 10.0.0.0/24");
+  say({.source = Source::Operator, .ntp = ntp_});
+  EXPECT_EQ(setting_.clock().ntp, "given by NTP to 10.0.0.0/24");
 }
 
 }  // namespace

@@ -30,6 +30,9 @@ class NetworkChangeTest : public testing::Test {
   /// As adit-network does; it is read again once it is no longer fresh.
   void tell() {
     std::ofstream(folder / network::kStatusFile) << network::write(status);
+    wait_until_not_fresh();
+  }
+  void wait_until_not_fresh() {
     const auto end = loop.now() + 2 * NetworkChange::kFresh;
     while (loop.now() < end) loop.turn(std::chrono::milliseconds(10));
   }
@@ -49,7 +52,7 @@ class NetworkChangeTest : public testing::Test {
   loop::Loop loop;
   settings::Settings settings;
   network::Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
-  NetworkRequests requests{folder.path(), folder.path()};
+  NetworkRequests requests{folder.path(), folder.path(), folder.path()};
   NetworkChange change{loop, settings, requests};
 };
 
@@ -119,6 +122,50 @@ TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet
   wait(numbers());
   EXPECT_FALSE(change.fact().no_address) << "the change may set it";
   EXPECT_GT(change.fact().confirm_within, 0);
+}
+
+class AddressesTakenTest : public NetworkChangeTest {
+ protected:
+  /// As adit-network --watch does.
+  void watch_tells(const std::vector<network::TakenAddress>& taken) {
+    std::ofstream(folder / network::kTakenFile) << network::write(network::Taken{taken});
+    wait_until_not_fresh();
+  }
+  network::TakenAddress on(const char* interface, const char* address, loop::Duration ago = {}) {
+    return {interface, address, "02:00:00:00:00:07",
+            std::chrono::floor<std::chrono::milliseconds>(loop.now() - ago)};
+  }
+  /// Side by side with its address.
+  std::vector<std::string> taken() const {
+    std::vector<std::string> all;
+    for (const alarms::TakenAddress& each : change.fact().taken)
+      all.push_back((each.is_team ? "team " : "command post ") + each.interface + " " + each.address);
+    return all;
+  }
+};
+
+TEST_F(AddressesTakenTest, AreToldOnceForASide) {
+  EXPECT_TRUE(taken().empty()) << "nobody listens";
+  watch_tells({on("darpa0", "10.100.1.10"), on("team0", "192.168.7.11"), on("darpa0", "10.100.2.10"),
+               on("eth7", "10.9.9.9")});
+  EXPECT_EQ(taken(),
+            (std::vector<std::string>{"team team0 192.168.7.11", "command post darpa0 10.100.1.10"}));
+  EXPECT_EQ(change.fact().taken[0].mac, "02:00:00:00:00:07");
+  watch_tells({});
+  EXPECT_TRUE(taken().empty());
+}
+
+TEST_F(AddressesTakenTest, CountForAWhileAfterTheyWereSeen) {
+  watch_tells({on("team0", "192.168.7.11", network::kTakenFor / 2)});
+  EXPECT_EQ(taken().size(), 1u);
+  watch_tells({on("team0", "192.168.7.11", network::kTakenFor)});
+  EXPECT_TRUE(taken().empty()) << "who listened does not run any more";
+}
+
+TEST_F(AddressesTakenTest, OfADamagedFileAreNone) {
+  std::ofstream(folder / network::kTakenFile) << R"({"version":1,"taken":[{"interface":"team0")";
+  wait_until_not_fresh();
+  EXPECT_TRUE(taken().empty());
 }
 
 }  // namespace

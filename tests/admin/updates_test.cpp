@@ -1,12 +1,15 @@
 #include "admin/updates.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
+#include <csignal>
 #include <fstream>
 #include <thread>
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::admin {
 namespace {
@@ -141,6 +144,46 @@ TEST_F(UpdatesTest, RefuseWhatTheDiskHasNoRoomFor) {
 TEST_F(UpdatesTest, SayThatABundleCannotBeWritten) {
   fs::create_directory(state_ / "update.raucb.part");
   EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("the bundle cannot be written"));
+  EXPECT_FALSE(asked());
+}
+
+/// No file may grow beyond so many bytes, as on a full disk.
+class NoLargerFiles {
+ public:
+  explicit NoLargerFiles(rlim_t most) : before_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &limits_);
+    const rlimit lower{most, limits_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &lower);
+  }
+  ~NoLargerFiles() {
+    setrlimit(RLIMIT_FSIZE, &limits_);
+    std::signal(SIGXFSZ, before_);
+  }
+  NoLargerFiles(const NoLargerFiles&) = delete;
+  NoLargerFiles& operator=(const NoLargerFiles&) = delete;
+
+ private:
+  rlimit limits_{};
+  void (*before_)(int);
+};
+
+TEST_F(UpdatesTest, GiveTheRoomBackAtOnceWhereTheDiskIsFullBeforeTheEnd) {
+  const std::string part = state_ / "update.raucb.part";
+  const NoLargerFiles full(500'000);
+  bool may_go_on = true;
+  auto upload = updates_.receive(2'000'000, false, [&may_go_on] { may_go_on = true; });
+  ASSERT_TRUE(upload);
+  const std::vector<std::uint8_t> piece(100'000);
+  for (int i = 0; i < 10; ++i) {
+    while (!may_go_on) loop_.turn(100ms);
+    may_go_on = (*upload)->write(piece);
+  }
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::file_size(part) == 0; })) << "while more is to come";
+  std::optional<icd::Checked<void>> ended;
+  (*upload)->finish([&ended](icd::Checked<void> outcome) { ended = std::move(outcome); });
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return ended.has_value(); }));
+  EXPECT_EQ(ended->error().sentence, "the bundle cannot be written: File too large");
+  EXPECT_TRUE(fs::is_empty(state_.path()));
   EXPECT_FALSE(asked());
 }
 

@@ -73,10 +73,13 @@ void the_box(std::vector<Facts>& days) {
   facts.ledger_damage = "a page was put aside";
   facts.disk.free = 500u << 10;
   facts.time_set = false;
+  facts.ntp_trouble = "the NTP server ADDRESS does not answer";
   facts.change_trouble = "the last change was taken back: port 8000 is in use";
   facts.settings_trouble = facts.board_trouble = "an error in it";
   facts.notices = {"what happened"};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
+  days.push_back(named());
+  days.back().rests = "it was put to rest, for its spare to take over";
 }
 
 void the_network(std::vector<Facts>& days) {
@@ -85,8 +88,7 @@ void the_network(std::vector<Facts>& days) {
   network.confirm_within = 88;
   network.page = "http://ADDRESS";
   network.no_address = true;
-  network.taken_by = "another machine";
-  network.address = "ADDRESS";
+  network.taken = {{true, "team0", "ADDRESS", "another machine"}};
   for (const std::optional<bool> carrier : {std::optional(false), std::optional<bool>()}) {
     days.push_back(named());
     for (Cable& cable : days.back().cables) cable.carrier = carrier;

@@ -56,7 +56,9 @@ TEST_F(PostWatchTest, CallsAPostSilentThatTakesAndDoesNotAnswer) {
 TEST_F(PostWatchTest, GoesOnCallingItSilentWhereEachRequestRunsOutOfTime) {
   for (int i = 0; i < 4; ++i) {
     seen_[0].busy = true;
+    seen_[0].sent += 300;
     lasts(9);
+    EXPECT_EQ(trouble(), i > 0 ? Silent : None) << "what is sent again is no answer";
     seen_[0].busy = false;
     ++seen_[0].ended;
     seen_[0].status = 0;
@@ -64,6 +66,8 @@ TEST_F(PostWatchTest, GoesOnCallingItSilentWhereEachRequestRunsOutOfTime) {
     lasts(1);
   }
   EXPECT_EQ(trouble(), Silent);
+  answers(200, 1);
+  EXPECT_EQ(trouble(), None);
 }
 
 TEST_F(PostWatchTest, DoesNotCallItSilentWhileBytesLeave) {

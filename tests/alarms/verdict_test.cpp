@@ -51,6 +51,13 @@ TEST(Verdict, IsThatNothingArrivesWhileTheEndpointIsDown) {
   EXPECT_EQ(verdict_of(facts).level, Level::Good) << "it takes them all the same";
 }
 
+TEST(Verdict, DoesNotSaySinceWhenThereHasBeenNoToken) {
+  Facts facts = well(3);
+  facts.endpoints[1].trouble = PostTrouble::NoToken;
+  EXPECT_EQ(verdict_of(facts),
+            (Verdict{Level::Bad, "Nothing arrives", "no mapping token is set; the box keeps all"}));
+}
+
 TEST(Verdict, OfNoMapsIsNone) {
   EXPECT_EQ(verdict_of(well(0)), (Verdict{Level::Quiet, "No map yet", "no robot has sent one"}));
 }

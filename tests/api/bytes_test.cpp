@@ -201,14 +201,15 @@ TEST(Bytes, OfTheMap) {
       text,
       testing::StartsWith(
           R"({"version":2000000,"tile_side":256,"metres_per_pixel":[0.25,1.0,4.0],)"
+          R"("finer_metres_per_pixel":[0.05,0.01],)"
           R"("colours":{"free":"#c8d2da","occupied":"#a8321e","heights":["#472c7a","#3b518b","#2c718e",)"
           R"("#21908d","#27ad81","#5cc863","#aadc32","#fde725"]},"spacing":1.0,"wiped":null,)"
           R"("layers":[{"robot":"","kind":"grid","bounds":{"left":-10.0,"bottom":-5.5,"right":230.0,)"
           R"("top":152.5},"heights":null,"first":1429.0,"last":1999.0,"version":1999000,"missed":0,)"
-          R"("left_out":0,"tiles":[{"level":0,"x":-1,"y":0,"first":1429.0,"stamp":1429.0,)"
+          R"("left_out":0,"finer":null,"tiles":[{"level":0,"x":-1,"y":0,"first":1429.0,"stamp":1429.0,)"
           R"("version":1429000,"blank":false})"));
   EXPECT_THAT(text, testing::HasSubstr(R"("heights":{"low":)"));
-  EXPECT_EQ(text.size(), 3154u);
+  EXPECT_EQ(text.size(), 3217u);
 }
 
 TEST(Bytes, OfWhoIsLoggedIn) {

@@ -15,6 +15,7 @@
 #include "api/fake_clock.hpp"
 #include "api/fake_kept_runs.hpp"
 #include "api/fake_setup.hpp"
+#include "api/fake_spare.hpp"
 #include "api/fake_updates.hpp"
 
 namespace adit::api {
@@ -79,6 +80,7 @@ struct Page {
   FakeBox box;
   FakeKeptRuns runs;
   FakeClock clock;
+  FakeSpare spare;
   Api api{loop,
           {.source = source,
            .judge = judge,
@@ -89,7 +91,8 @@ struct Page {
            .updates = &updates,
            .box = &box,
            .runs = &runs,
-           .clock = &clock},
+           .clock = &clock,
+           .spare = &spare},
           {token("team-1"), token("scoring-1")},
           icd::Redaction({token("team-1"), token("scoring-1")})};
 };

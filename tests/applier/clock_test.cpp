@@ -24,7 +24,21 @@ class ClockSetterTest : public testing::Test {
     options.wanted = folder / "wanted";
     options.status = folder / "status";
     options.chip = folder / "chip";
+    options.systemctl = folder / "systemctl";
+    have_systemctl("echo \"$*\" >>" + (folder / "orders"));
   }
+  void have_systemctl(const std::string& what) {
+    folder.put("systemctl", "#!/bin/sh\n" + what + '\n');
+    fs::permissions(folder / "systemctl", fs::perms::owner_all);
+  }
+  void ask(const clock::Ntp& ntp) { folder.put("wanted/ntp.json", clock::write(ntp)); }
+  /// What systemd was told since the last time.
+  std::string orders() {
+    const std::string all = host::read_file(folder / "orders").value_or("");
+    fs::remove(folder / "orders");
+    return all;
+  }
+  std::string chrony(const char* name) { return host::read_file(folder / "status/" + name).value_or(""); }
   void ask(double time, double at, Source source = Source::Operator) {
     folder.put("wanted/clock.json",
                clock::write(clock::Request{.nonce = kAsker, .source = source, .time = time, .at = at}));
@@ -84,6 +98,64 @@ TEST_F(ClockSetterTest, KnowsAChipThatAgreesWithTheClock) {
   fs::remove(folder / "status/status.json");
   folder.put("chip/since_epoch", "1790000001\n");
   EXPECT_EQ(work().source, Source::Chip);
+}
+
+TEST_F(ClockSetterTest, HasChronydMeasureAndKeepTheClockOnceItsTimeWasTaken) {
+  ask({.server = "10.0.0.5", .clients = ""});
+  EXPECT_EQ(work().ntp.server, "10.0.0.5");
+  EXPECT_EQ(orders(), "restart adit-ntp.service\n");
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n");
+  ask(1.8e9, 99, Source::Ntp);
+  EXPECT_EQ(work().source, Source::Ntp);
+  EXPECT_THAT(set, ElementsAre(1.8e9 + 1)) << "within the bounds of any other";
+  EXPECT_EQ(orders(), "restart adit-ntp.service\n");
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=\n");
+  ask({.server = "10.0.0.5", .clients = ""});
+  work();
+  EXPECT_EQ(orders(), "") << "as it was";
+  ask(1.8e9, 99, Source::Operator);
+  work();
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "else it would be set back";
+  EXPECT_EQ(orders(), "restart adit-ntp.service\n");
+}
+
+TEST_F(ClockSetterTest, HasChronydGiveTheTimeOnceItIsSet) {
+  ask({.server = "", .clients = "10.0.0.0/24"});
+  work();
+  EXPECT_THAT(chrony("chrony.conf"), HasSubstr("port 0"));
+  ask(1.8e9, 99, Source::CommandPost);
+  work();
+  EXPECT_THAT(chrony("chrony.conf"), HasSubstr("local stratum 10"));
+  EXPECT_EQ(orders(), "restart adit-ntp.service\nrestart adit-ntp.service\n");
+}
+
+TEST_F(ClockSetterTest, StopsChronydThatItStartedAndNoOther) {
+  ask(clock::Ntp{});
+  work();
+  EXPECT_EQ(orders(), "");
+  ask({.server = "10.0.0.5", .clients = ""});
+  work();
+  ask(clock::Ntp{});
+  EXPECT_EQ(work().ntp, clock::Ntp{});
+  EXPECT_EQ(orders(), "restart adit-ntp.service\nstop adit-ntp.service\n");
+  EXPECT_FALSE(fs::exists(folder / "status/chrony.conf"));
+}
+
+TEST_F(ClockSetterTest, TellsWhyChronydDoesNotRunAndTriesAgainWhereItIsAskedAgain) {
+  have_systemctl("echo not found >&2; exit 5");
+  ask({.server = "10.0.0.5", .clients = ""});
+  EXPECT_THAT(work().trouble, HasSubstr("not found"));
+  have_systemctl("true");
+  ask({.server = "10.0.0.5", .clients = ""});
+  EXPECT_EQ(work().trouble, "");
+}
+
+TEST_F(ClockSetterTest, TakesNoNtpThatIsNone) {
+  for (const char* text : {"{}", "null", R"({"format":1,"server":"10.0.0.5\nallow","clients":""})"}) {
+    folder.put("wanted/ntp.json", text);
+    EXPECT_EQ(work().ntp, clock::Ntp{}) << text;
+  }
+  EXPECT_EQ(orders(), "");
 }
 
 TEST_F(ClockSetterTest, RemembersWhoSetItUntilTheMachineRestarts) {

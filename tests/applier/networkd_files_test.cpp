@@ -79,15 +79,15 @@ class NetworkdFilesTest : public testing::Test {
   const network::Numbers first = numbers(), second = numbers("192.168.8.11/24");
 };
 
-constexpr const char* kBothTried[] = {"40-adit-team.network", "40-adit-command-post.network"};
-constexpr const char* kBothKept[] = {"50-adit-team.network", "50-adit-command-post.network"};
+constexpr const char* kBothTried[] = {"04-adit-team.network", "04-adit-command-post.network"};
+constexpr const char* kBothKept[] = {"05-adit-team.network", "05-adit-command-post.network"};
 
 TEST_F(NetworkdFilesTest, TryBesideWhatIsKept) {
   ASSERT_TRUE(files->settle());
   EXPECT_EQ(reloads(), 0u);
   ASSERT_TRUE(files->apply(first));
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothTried));
-  EXPECT_EQ(text_of("40-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("04-adit-team.network"), network::team_file("team0", first));
   EXPECT_EQ(reloads(), 1u);
   ASSERT_TRUE(files->take_back());
   EXPECT_THAT(in(options.networkd), IsEmpty());
@@ -98,7 +98,7 @@ TEST_F(NetworkdFilesTest, KeepWithoutDisturbingAnything) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
   EXPECT_EQ(in(options.networkd).size(), 4u);
-  EXPECT_EQ(text_of("50-adit-command-post.network"), network::command_post_file("darpa0", first, {}));
+  EXPECT_EQ(text_of("05-adit-command-post.network"), network::command_post_file("darpa0", first, {}));
   EXPECT_EQ(reloads(), 1u) << "networkd has it all already";
   ASSERT_TRUE(files->take_back());
   EXPECT_EQ(reloads(), 1u) << "there is nothing to take back";
@@ -110,10 +110,10 @@ TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
   restart(true);
   ASSERT_TRUE(files->apply(second));
   EXPECT_EQ(in(options.networkd).size(), 3u);
-  EXPECT_EQ(text_of("40-adit-team.network"), network::team_file("team0", second));
+  EXPECT_EQ(text_of("04-adit-team.network"), network::team_file("team0", second));
   ASSERT_TRUE(files->take_back());
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
 
 TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
@@ -130,8 +130,8 @@ TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->take_back());
   EXPECT_EQ(in(options.networkd).size(), 3u) << "of what was tried, what is confirmed may stay";
-  EXPECT_EQ(text_of("40-adit-team.network"), "");
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("04-adit-team.network"), "");
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
 
 TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
@@ -153,12 +153,12 @@ TEST_F(NetworkdFilesTest, TakeAnUnconfirmedChangeBackAfterAKill) {
 TEST_F(NetworkdFilesTest, FinishAKeepingThatWasCutOff) {
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
-  std::ofstream(options.networkd + "/50-adit-team.network") << network::team_file("team0", first);
-  fs::remove(options.networkd + "/50-adit-command-post.network");
+  std::ofstream(options.networkd + "/05-adit-team.network") << network::team_file("team0", first);
+  fs::remove(options.networkd + "/05-adit-command-post.network");
   restart(false);
   EXPECT_EQ(files->kept(), second);
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", second));
-  EXPECT_EQ(text_of("50-adit-command-post.network"), network::command_post_file("darpa0", second, {}));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", second));
+  EXPECT_EQ(text_of("05-adit-command-post.network"), network::command_post_file("darpa0", second, {}));
 }
 
 TEST_F(NetworkdFilesTest, HaveWhatTheBoxCameWithUntilSomethingIsConfirmed) {
@@ -166,12 +166,12 @@ TEST_F(NetworkdFilesTest, HaveWhatTheBoxCameWithUntilSomethingIsConfirmed) {
   restart(true);
   EXPECT_EQ(files->kept(), first);
   EXPECT_EQ(reloads(), 0u) << "networkd reads them as it starts";
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
   restart(true);
   EXPECT_EQ(files->kept(), second);
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", second));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", second));
 }
 
 TEST_F(NetworkdFilesTest, ForgetWhatWasConfirmed) {
@@ -185,7 +185,7 @@ TEST_F(NetworkdFilesTest, ForgetWhatWasConfirmed) {
   EXPECT_EQ(*forgotten, first);
   EXPECT_THAT(in(options.state), IsEmpty());
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
 
 TEST_F(NetworkdFilesTest, ForgetAllWhereTheBoxCameWithNothing) {
@@ -205,14 +205,14 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWithoutAChange) {
   EXPECT_EQ(reloads(), before) << "they are on the link";
   ASSERT_TRUE(files->lead_to(elsewhere));
   EXPECT_EQ(reloads(), before + 1);
-  for (const char* name : {"40-adit-command-post.network", "50-adit-command-post.network"}) {
+  for (const char* name : {"04-adit-command-post.network", "05-adit-command-post.network"}) {
     EXPECT_EQ(text_of(name), network::command_post_file("darpa0", routed, elsewhere.addresses)) << name;
   }
   ASSERT_TRUE(files->lead_to(elsewhere));
   EXPECT_EQ(reloads(), before + 1);
   restart(true);
   EXPECT_EQ(files->endpoints(), elsewhere);
-  EXPECT_EQ(text_of("50-adit-command-post.network"),
+  EXPECT_EQ(text_of("05-adit-command-post.network"),
             network::command_post_file("darpa0", routed, elsewhere.addresses));
 }
 
@@ -222,9 +222,9 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWhileAChangeIsTried) {
   const network::Numbers routed = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
   ASSERT_TRUE(files->apply(routed));
   ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
-  EXPECT_EQ(text_of("40-adit-command-post.network"),
+  EXPECT_EQ(text_of("04-adit-command-post.network"),
             network::command_post_file("darpa0", routed, {0x0a6402c8}));
-  EXPECT_EQ(text_of("40-adit-team.network"), "") << "that side stays as it is";
+  EXPECT_EQ(text_of("04-adit-team.network"), "") << "that side stays as it is";
   ASSERT_TRUE(files->take_back());
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
 }
@@ -252,7 +252,7 @@ TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndHaveWhatTheBoxCameWith)
   restart(true);
   EXPECT_EQ(files->kept(), first);
   EXPECT_THAT(in(options.state), UnorderedElementsAre("confirmed.json.damaged"));
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
   EXPECT_TRUE(files->apply(second));
 }
 
@@ -262,7 +262,7 @@ TEST_F(NetworkdFilesTest, HaveAddressesThoughNothingCanBeRead) {
   EXPECT_FALSE(files->settle()) << "what is in use stays in use";
   EXPECT_THAT(in(options.networkd), IsEmpty());
   ASSERT_TRUE(NetworkdFiles(options, &nobody).write_at_start());
-  EXPECT_EQ(text_of("50-adit-team.network"), network::team_file("team0", first));
+  EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
   folder.put("network.json", "{");
   NetworkdFiles without(options, &nobody);
   EXPECT_TRUE(without.write_at_start());

@@ -27,6 +27,11 @@ TEST(AditNetworkOptions, MayAskForNothingButTheFilesOfTheStart) {
   EXPECT_TRUE(parse({"--start", "--team", "eth0"})->start);
 }
 
+TEST(AditNetworkOptions, MayAskForTheWatchAlone) {
+  EXPECT_TRUE(parse({"--watch", "--status", "/tmp/x"})->watch);
+  EXPECT_THAT(parse({"--watch", "--start"}).error(), HasSubstr("two different things"));
+}
+
 TEST(AditNetworkOptions, AreRefusedByTheirWord) {
   EXPECT_THAT(parse({"--wnated", "x"}).error(), HasSubstr("--wnated"));
   EXPECT_THAT(parse({"--wanted"}).error(), HasSubstr("--wanted wants a value"));

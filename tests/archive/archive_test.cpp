@@ -83,6 +83,34 @@ TEST_F(ArchiveTest, GivesTheNextLifeEarlierTimes) {
   EXPECT_NE(shown(picture), before);
 }
 
+TEST_F(ArchiveTest, GivesTheNextLifeAllThatItHasByTheTimeOfDayAsItWasSet) {
+  run.easel.now = 1e9;
+  run.tracks[0].poses[0].at = 1e9;
+  for (const double step : {3e8, -6e8}) {
+    live(run.head);
+    run.draw(1);
+    write();
+    archive->move(step);
+    run.easel.mosaic.move(step);
+    run.easel.now += step;
+    for (api::TrackPose& pose : run.tracks[0].poses) pose.at += step;
+    const double then = run.easel.now;
+    run.easel.now += 100;
+    run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {100}));
+    run.tracks[0].poses.push_back({.at = run.easel.now, .position = {4, 5, 6}});
+    write();
+    const std::string before = shown(run.easel.mosaic, then), last = shown(run.easel.mosaic);
+    const auto poses = run.tracks[0].poses.size();
+    live(run.head);
+    EXPECT_EQ(shown(picture), last) << "the newest is not passed over";
+    EXPECT_EQ(shown(picture, then), before);
+    ASSERT_EQ(tracks.size(), 1U);
+    EXPECT_EQ(tracks[0].poses.size(), poses);
+    EXPECT_NEAR(archive->history(0).at.back(), run.now(), 1);
+    EXPECT_GT(archive->history(0).at.front(), then - 1000);
+  }
+}
+
 TEST_F(ArchiveTest, KeepsEachRunByItself) {
   live(run.head);
   run.draw(2);
@@ -105,6 +133,34 @@ TEST_F(ArchiveTest, ListsThePresentRunFromItsBegin) {
   ASSERT_EQ(all.runs.size(), 1U);
   EXPECT_EQ(all.runs[0].key, "3");
   EXPECT_TRUE(all.runs[0].is_present);
+}
+
+TEST_F(ArchiveTest, HasThePresentRunAsItIsNowNotAsItWasWrittenLast) {
+  live(run.head);
+  write();
+  run.facts.score = 7;
+  archive->tick(run.seen());
+  EXPECT_EQ(archive->list().runs.at(0).score, 7);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.at(0).bytes > 0; }));
+  std::optional<api::RunRow> read;
+  archive->read("3", [&](auto its) { read = its->facts; });
+  std::string html;
+  archive->report("3", {}, [&](std::string its) { html = std::move(its); });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return !html.empty(); }));
+  EXPECT_EQ(read->score, 7);
+  EXPECT_THAT(html, testing::HasSubstr("<dt>Score</dt><dd>7</dd>"));
+}
+
+TEST_F(ArchiveTest, KeepsHowARunStoodWhenTheNextBegan) {
+  live(run.head);
+  write();
+  run.facts.score = 7;
+  archive->tick(run.seen());
+  run.facts.score = 0;  // of the run that is about to be the present one
+  archive->end_run(run.seen());
+  live({.run = 4, .began = 2000, .post = run.head.post});
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.size() == 2; }));
+  EXPECT_EQ(archive->list().runs.at(1).score, 7);
 }
 
 TEST_F(ArchiveTest, ListsRunsTheLatestFirstAndForgetsOneThatIsNotThePresentOne) {

@@ -105,5 +105,17 @@ TEST_F(Damage, RecordsOfAnotherRunAreNotMixedIn) {
   EXPECT_TRUE(told.files().empty());
 }
 
+// A write that failed halfway tells its lines again.
+TEST_F(Damage, AStepOfTheClockThatWasWrittenTwiceIsOne) {
+  constexpr std::uint64_t kLines = 0;
+  const std::string step = framed(Kind::Moved, said(Step{.seconds = 50, .when = 7}));
+  const std::string later = framed(Kind::Moved, said(Step{.seconds = 50, .when = 8}));
+  Told told(picture::Mosaic::kBudget);
+  told.tell(file + step + step, kLines);
+  EXPECT_EQ(told.tracks()[0].poses[0].at, 1051);
+  told.tell(framed(Kind::Head, said(run.head)) + step + later, kLines);
+  EXPECT_EQ(told.tracks()[0].poses[0].at, 1101);
+}
+
 }  // namespace
 }  // namespace adit::archive

@@ -65,21 +65,7 @@ TEST(RunReport, StaysSmallHoweverMuchWasMapped) {
   EXPECT_LT(run_report(kept, {}).size(), std::size_t{5} << 20);
 }
 
-TEST(Html, Base64IsThatOfRfc4648) {
-  const auto of = [](std::string_view text) {
-    return base64_of({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
-  };
-  EXPECT_EQ(of(""), "");
-  EXPECT_EQ(of("f"), "Zg==");
-  EXPECT_EQ(of("fo"), "Zm8=");
-  EXPECT_EQ(of("foo"), "Zm9v");
-  EXPECT_EQ(of("foobar"), "Zm9vYmFy");
-}
-
 TEST(Html, TimesAndNumbersAreFiniteOrNotThere) {
-  EXPECT_EQ(utc(0), "");
-  EXPECT_EQ(utc(1e300), "");
-  EXPECT_EQ(utc(86399), "1970-01-01 23:59:59");
   EXPECT_EQ(lasted(3723), "1:02:03");
   EXPECT_EQ(lasted(-1), "-");
   EXPECT_EQ(fixed(1.0 / 0.0, 1), "-");

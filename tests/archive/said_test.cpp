@@ -89,6 +89,9 @@ TEST(Said, IsNothingWhereABytesIsWrongOrMissing) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(read_time(said_time(kNone)));
   EXPECT_FALSE(read_time(said_time(-1)));
+  EXPECT_EQ(read_step(said(Step{-1, 5})), (Step{-1, 5}));
+  EXPECT_FALSE(read_step(said(Step{kNone, 0})));
+  EXPECT_FALSE(read_step(said(Step{-1e300, 0})));
   EXPECT_FALSE(read_poses(said("r", std::vector<api::TrackPose>{{.at = 1, .position = {kNone, 0, 0}}})));
   EXPECT_FALSE(read_tile(said(TileState{kTile.layer, {9, 0, 0}, 1, nullptr}))) << "no such level";
   EXPECT_FALSE(read_tile(said(TileState{kTile.layer, {0, 1 << 19, 0}, 1, nullptr}))) << "out of the world";

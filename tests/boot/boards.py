@@ -80,10 +80,10 @@ PC_FIRMWARE = pathlib.Path("/usr/share/OVMF")
 
 
 def pc(folder, _):
-    """UEFI, and a copy of what it remembers."""
+    """UEFI, and a copy of what it remembers; and a clock whose battery is empty."""
     variables = folder / "variables.fd"
     shutil.copy(PC_FIRMWARE / "OVMF_VARS_4M.fd", variables)
-    machine = ["-M", "q35", "-cpu", "qemu64", "-smp", "2", "-nodefaults", "-display", "none"]
+    machine = ["-M", "q35", "-cpu", "qemu64", "-smp", "2", "-nodefaults", "-display", "none", "-rtc", "base=2020-01-01T00:00:00"]
     return [*machine, *flashes(PC_FIRMWARE / "OVMF_CODE_4M.fd", variables)]
 
 

@@ -30,10 +30,9 @@ def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_
             "mksquashfs",
             root,
             work / "root.squashfs",
-            "-comp",
-            "zstd",
-            "-Xcompression-level",
-            "1",
+            "-noI",
+            "-noD",
+            "-noF",
             "-all-root",
             "-noappend",
             "-no-xattrs",
@@ -44,7 +43,7 @@ def bundle(folder, version, board="qemu-virt", without=None, source=boards.QEMU_
         stdout=subprocess.DEVNULL,
     )
     shutil.rmtree(root)
-    os.link(made / "boot.vfat", work / "boot.vfat") if same_disk(made, work) else shutil.copy(made / "boot.vfat", work)
+    (work / "boot.vfat").symlink_to(made / "boot.vfat")
     subprocess.run([boards.SOURCE / "rootfs" / "bundle", board, version, work, output], check=True)
     shutil.rmtree(work)
     return output
@@ -73,7 +72,3 @@ def stick(folder, *files):
         subprocess.run(["mformat", "-i", f"{image}@@{start}M", "-F", "-T", str((size << 20) // 512), "::"], check=True)
     subprocess.run(["mcopy", "-i", f"{image}@@{starts[1]}M", *files, "::"], check=True)
     return image
-
-
-def same_disk(one, other):
-    return one.stat().st_dev == other.stat().st_dev

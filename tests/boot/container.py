@@ -8,6 +8,7 @@ import re
 import shutil
 import signal
 import subprocess
+import tempfile
 import time
 
 import cables
@@ -59,6 +60,19 @@ class Cables(hosts.Network):
                 != 0
             ):
                 self._cable(host, "eth0", addresses, self.box, port, [])
+
+
+    def exchange_cables(self):
+        """At the box: the team's is in darpa0 then, and the Command Post's in team0; or each in its own again."""
+        ends = {self.team: [self.team_address], self.post: [hosts.SCORING, hosts.MAPPING]}
+        for host in ends:
+            hosts.ip("-n", host, "link", "set", "eth0", "name", "moved")
+        for host, other in ((self.team, self.post), (self.post, self.team)):
+            hosts.ip("-n", host, "link", "set", "moved", "netns", other, "name", "eth0")
+        for host, addresses in ends.items():
+            for address in addresses:
+                hosts.ip("-n", host, "address", "add", f"{address}/24", "dev", "eth0")
+            hosts.ip("-n", host, "link", "set", "eth0", "up")
 
 
 class Nspawn(programs.Page):
@@ -182,3 +196,36 @@ class Container(Nspawn):
 
     def is_started(self):
         return self.answers()
+
+
+class Stage:
+    """A container in a folder of its own, and a Command Post."""
+
+    cables, contained = Cables, Container
+
+    def __enter__(self):
+        self.temporary = tempfile.TemporaryDirectory(prefix="adit-container-")
+        self.folder = pathlib.Path(self.temporary.name)
+        self.network = self.cables()
+        self.post = self.box = None
+        self.network.__enter__()
+        try:
+            programs.secrets_folder(self.folder / "secrets")
+            self.post = programs.CommandPost(self.network, self.folder, "--rate", "0")
+            self.box = self.contained(self.network, self.folder)
+            self.prepare()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def prepare(self):
+        """What comes before its story; not even started, if nothing is said."""
+
+    def __exit__(self, *_):
+        if self.box is not None:
+            self.box.close()
+        if self.post is not None:
+            self.post.stop()
+        self.network.__exit__()
+        self.temporary.cleanup()

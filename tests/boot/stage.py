@@ -28,7 +28,7 @@ NUMBERS = {
     "command_post": {"addresses": [{"address": hosts.BOX_DARPA, "prefix": 24}], "gateway": ""},
 }
 ENDPOINTS = [(hosts.SCORING, programs.PORT), (hosts.MAPPING, programs.PORT)]
-FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", "boot-figures.txt"))
+FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", boards.SOURCE / "build" / "boot-figures.txt"))
 
 
 def setUpModule():  # of each module that imports it

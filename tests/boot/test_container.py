@@ -1,20 +1,24 @@
 """Every day's variant: the real root and units in a container, set up, reporting, restarted and killed, in under a
 minute."""
 
-import pathlib
-import tempfile
+import shlex
 import time
 import unittest
 
 import requests
 
+import cables
 import container
+import dhcp_server
+import eavesdropper
 import hosts
 import inside_unit
 import maps
 import messages
+import ntp
 import programs
 import stage
+import sticks
 from reporting import REPORT, another, submit
 from stage import Story, load_tests, note  # unittest looks for them here
 
@@ -30,39 +34,12 @@ def setUpModule():
         raise unittest.SkipTest(container.missing())
 
 
-class Contained:
-    """The stage: container and Command Post."""
-
-    def __enter__(self):
-        self.temporary = tempfile.TemporaryDirectory(prefix="adit-container-")
-        self.folder = pathlib.Path(self.temporary.name)
-        self.network = container.Cables()
-        self.post = self.box = None
-        self.network.__enter__()
-        try:
-            programs.secrets_folder(self.folder / "secrets")
-            self.post = programs.CommandPost(self.network, self.folder, "--rate", "0")
-            self.box = container.Container(self.network, self.folder)
-        except BaseException:
-            self.__exit__()
-            raise
-        return self
-
-    def __exit__(self, *_):
-        if self.box is not None:
-            self.box.close()
-        if self.post is not None:
-            self.post.stop()
-        self.network.__exit__()
-        self.temporary.cleanup()
-
-
 class Everyday(Story):
     session = {}
 
     @classmethod
     def setUpClass(cls):
-        cls.tell(Contained())
+        cls.tell(container.Stage())
 
     def asked(self, request, body=None, status=200):
         headers = {**self.session, "Content-Type": "application/json"}
@@ -97,6 +74,29 @@ class Everyday(Story):
         self.asked("POST /adit/network", stage.NUMBERS)
         programs.wait_until(self.confirmed, "darpa0 to have its address, and that to be confirmed", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+
+    def addresses(self):
+        return [each["address"] for each in self.asked("GET /adit/network")["command_post"]["addresses"]]
+
+    def networkd(self):
+        return self.shell("systemctl show -p MainPID --value systemd-networkd.service").strip()
+
+    def test_networkd_may_be_killed_in_the_middle_of_a_change(self):
+        other = {"addresses": [{"address": "10.100.1.77", "prefix": 24}], "gateway": ""}
+        self.asked("POST /adit/network", {**stage.NUMBERS, "command_post": other})
+        programs.wait_until(lambda: self.addresses() == ["10.100.1.77"], "the change to be tried", 60)
+        before = self.networkd()
+        self.shell("systemctl kill --kill-who=main --signal=KILL systemd-networkd.service")
+        programs.wait_until(lambda: self.networkd() not in ("0", before), "another networkd", 60)
+        self.shell("networkctl reload")  # so it serves
+        self.assertEqual(self.addresses(), ["10.100.1.77"])
+        programs.wait_until(self.taken_back, "the change to be taken back", 60)
+        programs.wait_until(lambda: self.addresses() == [hosts.BOX_DARPA], "the address from before", 60)
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+
+    def taken_back(self):
+        session = {**self.session, "Content-Type": "application/json"}
+        return self.box.ask("POST /adit/network/back", session, None, token=None)[0] == 200
 
     def test_a_report_is_recorded(self):
         self.assertEqual(submit(self.stage).status_code, 201)
@@ -189,12 +189,174 @@ class Everyday(Story):
         programs.wait_until(lambda: self.box.pid() not in (0, before) and self.box.answers(), "another aditd to answer", 60)
         self.wait_for_lights()
 
+    def blink(self, lights):
+        """All of these, while health is steady: what is seen of them now and in the next looks."""
+        seen = [self.lit() for _ in range(12)]
+        each = all(any(light in lit for lit in seen) and any(light not in lit for lit in seen) for light in lights)
+        return each and all("health" in lit for lit in seen)
+
+    def test_exchanged_cables_show_on_the_lights_and_heal_by_themselves(self):
+        """No page is to be had then, and nothing else tells whoever stands at the box."""
+        self.wait_for_lights()
+        self.stage.network.exchange_cables()
+        programs.wait_until(lambda: self.blink(["scoring", "mapping", "attention"]), "the lights to tell of it", 60)
+        self.assertFalse(self.box.answers(), "nothing is served at darpa0, and no team is at team0")
+        told = self.box.run("adit", "status")
+        self.assertEqual(told.returncode, 1, told)
+        self.assertIn("Command Post is unreachable", told.stdout)
+        self.stage.network.exchange_cables()
+        programs.wait_until(self.box.answers, "the team to reach the box", 60)
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.wait_for_lights()
+
     def test_a_panel_that_is_killed_or_hangs_comes_back(self):
         for how in "KILL", "STOP":
             before = self.shell("systemctl show -p MainPID --value adit-panel.service").strip()
             self.shell(f"kill -{how} {before}; rm -f /run/adit-panel/lights")
             programs.wait_until(lambda: self.lit() >= {"health", "scoring", "mapping"}, "another adit-panel to show the lights", 60)
             self.assertTrue(self.box.answers())
+
+    def drop_in(self, unit, *lines):
+        folder = f"/run/systemd/system/{unit}.d"
+        self.shell(f"mkdir -p {folder}; printf '%s\\n' {shlex.join(lines)} >{folder}/container.conf")
+
+    def speaks_ntp(self):
+        return self.box.run("systemctl", "is-active", "adit-ntp").stdout.strip() == "active"
+
+    def asks_for_ntp(self, **clock):
+        session = {**self.session, "Content-Type": "application/json"}
+        held = self.box.ask("GET /adit/settings", session, token=None)[1]
+        self.asked("POST /adit/settings", {"settings": {**held["settings"], "clock": clock}, "base": held["tag"]})
+
+    def test_ntp_is_spoken_on_team0_alone_where_the_settings_ask_for_it(self):
+        """Nobody in a container may set the clock: all else is as on a box."""
+        network = self.stage.network
+        for unit in ("adit-clock.service", "adit-clock.path"):
+            self.drop_in(unit, "[Unit]", "ConditionVirtualization=")
+        only = ("CapabilityBoundingSet", "AmbientCapabilities")
+        self.drop_in("adit-ntp.service", "[Service]", *(f"{name}={value}" for name in only for value in ("", "CAP_NET_BIND_SERVICE")))
+        self.shell("systemctl daemon-reload; systemctl start adit-clock.service adit-clock.path")
+        server = ntp.Server(network.team, network.team_address, ahead=90 * 86400.0)
+        self.addCleanup(server.close)
+        self.assertFalse(self.speaks_ntp(), "it is off")
+        self.asks_for_ntp(ntp_server=network.team_address, serve_ntp=True)
+        programs.wait_until(self.speaks_ntp, "chronyd to be started", 60)
+        programs.wait_until(lambda: server.asked > 0, "the server to be asked", 60)
+        self.assertIn("is being asked", self.asked("GET /adit/clock")["ntp"])
+        self.assertEqual(self.asked("GET /adit/clock")["source"], "none")
+        self.assertIsNone(ntp.asked_of(network.team, network.box_address), "its time is not set")
+        # As if the operator had set it, while nobody asks again for the Command Post's time, which nobody here may set.
+        self.shell("""systemctl stop adit-clock.path adit-clock.service
+            sed -i 's/"source":"none"/"source":"operator"/' /run/adit-clock/status.json; grep -q operator /run/adit-clock/status.json
+            systemctl start adit-clock.path""")
+        self.asks_for_ntp(serve_ntp=True)
+        stratum, told = programs.wait_until(lambda: ntp.asked_of(network.team, network.box_address), "the team to be told the time", 60)
+        self.assertEqual(stratum, 10)
+        self.assertAlmostEqual(told, time.time(), delta=5)
+        self.assertIsNone(ntp.asked_of(network.post, hosts.BOX_DARPA), "on darpa0")
+        self.shell("nft flush chain inet adit input; nft add chain inet adit input '{ policy accept; }'")
+        self.assertIsNone(ntp.asked_of(network.post, hosts.BOX_DARPA), "on darpa0, where no firewall is")
+        self.shell("systemctl reload adit-nftables.service")
+        self.asks_for_ntp()
+        programs.wait_until(lambda: not self.speaks_ntp(), "chronyd to be stopped", 60)
+        self.assertIsNone(ntp.asked_of(network.team, network.box_address))
+        self.assertNotIn("elements", self.shell("nft list set inet adit ntp_clients; nft list set inet adit ntp_servers"))
+
+    def moves_to(self, address, team):
+        """A change of the team's side, confirmed at the address that the box has then."""
+        self.asked("POST /adit/network", {**stage.NUMBERS, "team": team})
+        self.stage.network.box_address = address
+        programs.wait_until(lambda: self.reached(self.confirmed), f"the change to be confirmed at {address}", 60)
+
+    @staticmethod
+    def reached(asks):
+        """What it gives; False while the box is at another address."""
+        try:
+            return asks()
+        except OSError:
+            return False
+
+    def shows_run(self):
+        return self.reached(lambda: self.box.ask("GET /adit/run", timeout=5)[0] == 200)
+
+    def dhcp(self, address):
+        server = dhcp_server.Server(self.stage.network, self.stage.folder, address)
+        self.addCleanup(server.stop)
+        return server
+
+    def test_a_lease_of_a_real_dhcp_server_is_taken_renewed_lost_and_taken_again(self):
+        network = self.stage.network
+        ear = eavesdropper.Eavesdropper(network, network.post)
+        self.addCleanup(ear.close)
+        server = self.dhcp("10.0.0.50")
+        self.moves_to("10.0.0.50", {"mode": "dhcp"})
+        given = server.given()
+        programs.wait_until(lambda: server.given() > given + 1, "the lease to be renewed, twice", 60)
+        self.assertTrue(self.shows_run())
+        self.assertEqual(self.box.run("ip", "-4", "-o", "route", "show", "default").stdout, "", "no router is taken")
+        server.stop()
+        programs.wait_until(lambda: not self.shows_run(), "the lease to be lost", 60)
+        asked = len(self.stage.post.requests("/api/status"))
+        programs.wait_until(lambda: len(self.stage.post.requests("/api/status")) > asked, "the Command Post to be asked all the same", 60)
+        self.dhcp("10.0.0.60")  # another base station
+        network.box_address = "10.0.0.60"
+        programs.wait_until(self.shows_run, "the page under the new address", 120)
+        self.flows("/state/update", {"poses": [POSE]})
+        self.moves_to(cables.FACTORY_ADDRESS, stage.NUMBERS["team"])
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.assertGreater(ear.count(), 0)
+        self.assertEqual(ear.strangers(*stage.ENDPOINTS), [], "of all this nothing is on the Command Post's side")
+
+    def spare(self):
+        return self.asked("GET /adit/spare")
+
+    def stick(self):
+        return self.spare()["stick"]
+
+    def wait_for_stick(self, condition, what):
+        programs.wait_until(lambda: condition(self.stick()), what, 60)
+        return self.stick()
+
+    def test_its_export_goes_to_a_stick_and_comes_from_it(self):
+        """By the units of the box; of FAT, and of a real stick that is pulled out: test_usb_stick.py. No udev runs in a container,
+        which would start the stick's unit, and end it."""
+        if not sticks.can_mount("ext4"):
+            self.skipTest("nothing can be mounted here")
+        stick = sticks.Stick(self.box, self.stage.folder, "stick")
+        self.addCleanup(stick.pull)
+        self.assertEqual(self.stick()["hindrance"], "there is no stick in the box")
+        self.asked("POST /adit/spare/rest")
+        programs.wait_until(lambda: self.spare()["code"], "it to rest", 60)
+        self.asked("POST /adit/spare/to-stick", status=409)
+        stick.plug()
+        self.wait_for_stick(lambda said: not said["hindrance"], "the stick to be found")
+        self.asked("POST /adit/spare/to-stick")
+        began = time.monotonic()
+        name = self.wait_for_stick(lambda said: said["written"] or said["refusal"], "the export to be on the stick")["written"]
+        note("container, from the press to the export on the stick, read back", f"{time.monotonic() - began:.1f} s")
+        self.assertRegex(name, r"^adit-[0-9.]+-\d{8}T\d{6}Z\.adit-spare$", self.stick()["refusal"])
+        kept = stick.as_it_is(name)  # pulled out at this very moment
+        self.assertEqual(kept[:10], b"adit-spare")
+        self.asked("POST /adit/spare/from-stick", {"name": name})
+        programs.wait_until(lambda: self.spare()["asks_code"], f"the export to be read: {self.stick()}", 60)
+        said = self.asked("POST /adit/spare/open", {"code": self.spare()["code"]}, status=409)
+        self.assertIn("this box made the export itself", said)
+        self.asked("POST /adit/spare/forget")
+        second = sticks.Stick(self.box, self.stage.folder, "second")
+        self.addCleanup(second.pull)
+        second.plug()
+        self.wait_for_stick(lambda said: "more than one stick" in said["hindrance"], "the second stick to be found")
+        self.assertIn("more than one stick", self.asked("POST /adit/spare/to-stick", status=409))
+        second.pull()
+        self.wait_for_stick(lambda said: not said["hindrance"], "the second stick to be gone")
+        stick.fill()
+        self.wait_for_stick(lambda said: not said["hindrance"] and said["exports"], "the full stick to be found")
+        self.asked("POST /adit/spare/to-stick")
+        refusal = self.wait_for_stick(lambda said: said["refusal"] and not said["doing"], "a refusal")["refusal"]
+        self.assertRegex(refusal, "the stick has room for|the stick has no room")
+        self.assertEqual(stick.as_it_is(name), kept, "what was there before is there still")
+        self.asked("POST /adit/spare/wake")
+        programs.wait_until(self.box.knows_the_run, "it to go on", 60)
 
     def test_settings_reports_and_journal_are_kept_over_a_start(self):
         self.box.stop()

@@ -21,7 +21,8 @@ double time_of_here() {
 
 std::string clock_view(double now, const char* source, bool is_set, const char* refusal = "") {
   return Server::ok(R"({"now":)" + std::to_string(now) + R"(,"managed":true,"why":"","source":")" + source +
-                    R"(","is_set":)" + (is_set ? "true" : "false") + R"(,"refusal":")" + refusal + "\"}");
+                    R"(","is_set":)" + (is_set ? "true" : "false") + R"(,"refusal":")" + refusal +
+                    R"(","ntp":"","is_kept":false})");
 }
 
 class ClockCommand : public testing::Test {

@@ -134,6 +134,16 @@ TEST_F(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
   EXPECT_THAT(say(server, {"test", "--json"}).out + printed_, HasSubstr("\"running\":false"));
 }
 
+TEST_F(NetworkCommand, SaysThatATestWasCutShort) {
+  constexpr const char* kKnowsOfNone = R"({"running":false,"applied":true,"course":"","endpoints":[]})";
+  for (const std::string& left : {Server::ok(kKnowsOfNone), tested("waiting")}) {
+    const Outcome outcome =
+        say(Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", left}}), {"test"});
+    EXPECT_EQ(outcome.exit, Exit::Unable);
+    EXPECT_EQ(outcome.err, "adit: the test was cut short, as when Adit is restarted: begin it again\n");
+  }
+}
+
 TEST_F(NetworkCommand, JoinsATestThatRuns) {
   const Server server({{"POST /adit/test", Server::reply("409 Conflict", "\"a test is running\"")},
                        {"GET /adit/test", tested("skipped")}});

@@ -80,10 +80,10 @@ TEST(Options, NameTheWordThatIsWrong) {
     const char* sentence;
   } cases[] = {{{},
                 "a command is missing: status, watch, reports, aside, run, runs, settings, course, identify, "
-                "network, clock, test, update, check or complete"},
+                "network, clock, test, spare, update, check or complete"},
                {{"--json"},
                 "a command is missing: status, watch, reports, aside, run, runs, settings, course, identify, "
-                "network, clock, test, update, check or complete"},
+                "network, clock, test, spare, update, check or complete"},
                {{"stat"}, "no such command: stat; did you mean status?"},
                {{"xyzzy"}, "no such command: xyzzy"},
                {{"help", "report"}, "no such command: report; did you mean reports?"},

@@ -28,6 +28,18 @@ TEST(ClockMessages, ARequestThatIsNoneIsRefusedWithTheNameOfItsFault) {
   EXPECT_FALSE(read<Request>("1.8e9"));
 }
 
+TEST(ClockMessages, NtpIsAskedForByAddressesAlone) {
+  const Ntp both{.server = "10.0.0.5", .clients = "10.0.0.0/24"};
+  EXPECT_EQ(read<Ntp>(write(both)), both);
+  EXPECT_EQ(read<Ntp>(write(Ntp{})), Ntp{});
+  for (const char* server : {"ntp.example.org", "10.0.0.5\nallow", "::1", "10.0.0.5 "})
+    EXPECT_THAT(read<Ntp>(write(Ntp{.server = server, .clients = ""})).error(), HasSubstr("server"))
+        << server;
+  for (const char* clients : {"10.0.0.1/24", "10.0.0.0", "10.0.0.0/24\nallow all", "0.0.0.0/33"})
+    EXPECT_THAT(read<Ntp>(write(Ntp{.server = "", .clients = clients})).error(), HasSubstr("clients"))
+        << clients;
+}
+
 TEST(ClockMessages, ARequestCountsForAMinuteOfTheSameStart) {
   EXPECT_EQ(hindrance(request(), 100), "");
   EXPECT_EQ(hindrance(request(), 160), "");

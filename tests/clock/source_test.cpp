@@ -10,13 +10,14 @@ namespace {
 using enum Source;
 
 constexpr double kNow = 1.8e9;
-constexpr Source kAll[] = {None, LastKnown, Robots, CommandPost, Chip, Operator};
+constexpr Source kAll[] = {None, LastKnown, Robots, CommandPost, Chip, Operator, Ntp};
 
 TEST(Source, TheMoreTrustedSetsTheClockEitherWay) {
   for (const double time : {kNow - 1e6, kNow + 1e6}) {
     EXPECT_EQ(to_be_set(LastKnown, {CommandPost, time}, kNow), time);
     EXPECT_EQ(to_be_set(Chip, {Operator, time}, kNow), time);
     EXPECT_EQ(to_be_set(CommandPost, {Operator, time}, kNow), time);
+    EXPECT_EQ(to_be_set(Operator, {Ntp, time}, kNow), time);
   }
 }
 
@@ -52,7 +53,7 @@ TEST(Source, NoTimeBeforeTheBuildOrBeyondTheCenturyIsTaken) {
 
 TEST(Source, ABoxWithoutAClockKnowsThatItsTimeIsNotSet) {
   EXPECT_FALSE(is_set(None) || is_set(LastKnown) || is_set(Robots));
-  EXPECT_TRUE(is_set(CommandPost) && is_set(Chip) && is_set(Operator));
+  EXPECT_TRUE(is_set(CommandPost) && is_set(Chip) && is_set(Operator) && is_set(Ntp));
 }
 
 }  // namespace

@@ -52,6 +52,21 @@ TEST(Base64, DecodesTheVectorsOfRfc4648WithAndWithoutPadding) {
   }
 }
 
+TEST(Base64, IsWrittenAsTheVectorsOfRfc4648) {
+  const auto written = [](std::string_view text) {
+    return codec::base64_of({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
+  };
+  const std::vector<std::pair<std::string, std::string>> vectors = {{"", ""},
+                                                                    {"f", "Zg=="},
+                                                                    {"fo", "Zm8="},
+                                                                    {"foo", "Zm9v"},
+                                                                    {"foob", "Zm9vYg=="},
+                                                                    {"fooba", "Zm9vYmE="},
+                                                                    {"foobar", "Zm9vYmFy"},
+                                                                    {"\xfb\xff\xbf", "+/+/"}};
+  for (const auto& [bytes, text] : vectors) EXPECT_EQ(written(bytes), text);
+}
+
 TEST(Base64, RefusesWhatIsNoneAndSaysWhere) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"Zm9v YmFy", "character 4: a space is not of the base64 alphabet"},

@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "codec/apply_patch.hpp"
 #include "codec/json.hpp"
 #include "codec/patched.hpp"
 
@@ -18,8 +19,17 @@ struct Step {
   static const Row kRow;
 };
 
+/// What stands among the members of a way.
+struct Mark {
+  double depth = 0;
+  std::optional<double> width;
+
+  static const Row kRow;
+};
+
 struct Way {
   double now = 0;
+  Mark at = {};
   std::optional<Step> top;
   std::vector<Step> steps;
   std::vector<std::uint64_t> marks;
@@ -32,6 +42,7 @@ struct Way {
 struct Unnamed {
   static Value write(const std::vector<Step>& steps);
   static void read(const Field& field, std::vector<Step>& steps);
+  static Rows rows(std::vector<Step>& steps) { return KindOf<std::vector<Step>>::rows(steps); }
   static const Schema schema;
 };
 
@@ -49,13 +60,26 @@ void Unnamed::read(const Field& field, std::vector<Step>& steps) {
   KindOf<std::vector<Step>>::read(field, steps);
 }
 
-constexpr Member kWay[] = {member<&Way::now>("now"), member<&Way::top>("top"), member<&Way::steps>("steps"),
-                           member<&Way::marks>("marks"),
-                           member<&Way::unnamed>("unnamed").as(kind_as<std::vector<Step>, Unnamed>)};
+/// One that writes itself in another way than it is kept.
+struct InWords {
+  static Value write(double depth) { return {std::string(depth < 10 ? "shallow" : "deep")}; }
+  static void read(const Field& field, double& depth) { depth = field.text() == "deep" ? 10 : 0; }
+  static constexpr Schema schema = {.type = "string"};
+};
+
+constexpr Member kMark[] = {member<&Mark::depth>("depth").as(kind_as<double, InWords>),
+                            member<&Mark::width>("width")};
+constexpr Row Mark::kRow = {"", kMark};
+
+constexpr Member kWay[] = {
+    member<&Way::now>("now"),     member<&Way::at>(""),
+    member<&Way::top>("top"),     member<&Way::steps>("steps"),
+    member<&Way::marks>("marks"), member<&Way::unnamed>("unnamed").as(kind_as<std::vector<Step>, Unnamed>)};
 constexpr Row Way::kRow = {"Way", kWay};
 
 Way way() {
   return {.now = 1,
+          .at = {},
           .top = std::nullopt,
           .steps = {{1, "a", 0.5}, {2, "b", {}}, {3, "c", {}}},
           .marks = {7},
@@ -64,7 +88,7 @@ Way way() {
 
 /// As JSON; "": nothing changed.
 std::string patch_text(const Way& before, const Way& now) {
-  const auto found = patch(Way::kRow, json(before), json(now));
+  const auto found = patch(before, now);
   return found ? write_json(*found) : "";
 }
 
@@ -82,6 +106,14 @@ TEST(Patch, HasTheMembersThatChanged) {
   next.top->height.reset();
   EXPECT_EQ(patch_text(now, next), R"({"top":{"height":null}})");
   EXPECT_EQ(patch_text(now, way()), R"({"now":1.0,"top":null,"marks":[7]})");
+}
+
+TEST(Patch, HasWhatIsWrittenInAnotherWayAndWhatStandsAmongTheMembers) {
+  Way now = way();
+  now.at = {.depth = 3, .width = 0.5};
+  EXPECT_EQ(patch_text(way(), now), R"({"width":0.5})") << "both are shallow";
+  now.at.depth = 30;
+  EXPECT_EQ(patch_text(way(), now), R"({"depth":"deep","width":0.5})");
 }
 
 TEST(Patch, OfARowHasItsPlaceAndWhatChangedOfIt) {
@@ -164,6 +196,8 @@ void change_some(Random& random, std::vector<Step>& steps) {
 void change_some(Random& random, Way& way) {
   way.now += static_cast<double>(random() % 2);
   if (random() % 3 == 0) way.top = random() % 3 == 0 ? std::nullopt : std::optional(any_step(random));
+  if (random() % 3 == 0) way.at.depth = static_cast<double>(random() % 20);
+  if (random() % 3 == 0) way.at.width = random() % 2 == 0 ? std::nullopt : std::optional(0.5);
   if (random() % 3 == 0) way.marks.resize(random() % 3, random() % 4);
   change_some(random, way.steps);
   change_some(random, way.unnamed);
@@ -177,17 +211,18 @@ Value read_again(const Value& value) {
 TEST(Patch, MakesOfAnyViewTheNextOne) {
   Random random(7);
   for (int life = 0; life < 50; ++life) {
-    Way now = way();
-    Value told = json(now), known = read_again(told);
+    Way told = way(), now = told;
+    Value known = read_again(json(told));
     for (int step = 0; step < 100; ++step) {
       change_some(random, now);
-      const Value next = json(now);
-      const auto change = patch(Way::kRow, told, next);
-      ASSERT_EQ(change.has_value(), told != next);
+      const auto change = patch(told, now);
+      ASSERT_EQ(change.has_value(), json(told) != json(now));
       if (!change) continue;
+      const auto applied = apply_patch(known, read_again(*change));
       known = test::patched(known, read_again(*change));
-      ASSERT_EQ(write_json(known), write_json(read_again(next))) << write_json(*change);
-      told = next;
+      ASSERT_TRUE(applied && *applied == known) << "our own client makes the same of it";
+      ASSERT_EQ(write_json(known), write_json(read_again(json(now)))) << write_json(*change);
+      told = now;
     }
   }
 }

@@ -81,6 +81,33 @@ TEST(Row, RefusesWithTheNameOfTheMember) {
             "steps[0]: expected a whole number from 0 to 9223372036854775807, got -1");
 }
 
+struct Shaft {
+  double depth = 0;
+  std::optional<double> width = std::nullopt;
+  icd::Point mouth = {}, end = {};
+  std::vector<Climb> climbs = {};
+
+  static const Row kRow;
+};
+constexpr Member kShaft[] = {member<&Shaft::depth>("depth"), member<&Shaft::width>("width"),
+                             member<&Shaft::mouth>("mouth"), member<&Shaft::end>("end").exact(),
+                             member<&Shaft::climbs>("climbs")};
+constexpr Row Shaft::kRow = {"", kShaft};
+
+TEST(Row, HasAllItsNumbersChangedButThoseThatAreExact) {
+  Shaft shaft = {.depth = 1, .width = 2, .mouth = {.x = 3, .y = 4, .z = 5}, .end = {.x = 6}};
+  shaft.climbs = {climb(), climb()};
+  shaft.climbs[1].top = icd::Point{.x = 7, .y = 8, .z = 9};
+  change_numbers(Shaft::kRow, &shaft, [](double number) { return 10 * number; });
+  EXPECT_EQ(shaft.depth, 10);
+  EXPECT_EQ(shaft.width, 20);
+  EXPECT_EQ(to_json(shaft.mouth), R"({"x":30.0,"y":40.0,"z":50.0})");
+  EXPECT_EQ(shaft.end.x, 6);
+  EXPECT_EQ(shaft.climbs[0].rope.end.z, 15);
+  EXPECT_FALSE(shaft.climbs[0].top);
+  EXPECT_EQ(shaft.climbs[1].top->z, 90);
+}
+
 TEST(Row, IsDescribedWithUnitsWordsAndBounds) {
   static constexpr auto kText = Schemas({&KindOf<Climb>::schema}).text();
   const std::string_view text(kText.data(), kText.size());

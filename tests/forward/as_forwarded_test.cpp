@@ -42,6 +42,18 @@ TEST(AsForwarded, ShowsARunFromItsBeginning) {
   EXPECT_THAT(all.markers().changes(0).markers, IsEmpty());
 }
 
+TEST(AsForwarded, WasAsLongAgoAsItWasWhereverTheClockIsSet) {
+  for (const double step : {3e8, -3e8}) {
+    AsForwarded all;
+    all.forwarded(state("a", 1), 1e9);
+    all.forwarded(std::vector{icd::Marker{}}, 1e9);
+    all.move(step);
+    EXPECT_EQ(all.robots().at(0).at, 1e9 + step);
+    EXPECT_EQ(all.tracks().since(0).at(0).poses.at(0).at, 1e9 + step);
+    EXPECT_EQ(all.markers().changes(0).markers.at(0).at, 1e9 + step);
+  }
+}
+
 TEST(AsForwarded, HasRoomForSoManyRobots) {
   AsForwarded all;
   for (int i = 0; i < 150; ++i) all.forwarded(state(icd::sentence("r", i), i), 100);

@@ -105,6 +105,17 @@ TEST_F(AsideTest, OutlivesTheServiceWithItsReason) {
   EXPECT_EQ(std::get<icd::MapUpdate>(*map).data.raw_size, 4);
 }
 
+TEST_F(AsideTest, IsAsLongAgoAsItWasWhereverTheClockIsSet) {
+  add(grid());
+  for (const double step : {3e8, -6e8}) {
+    loop_.set_wall(loop_.wall_now() + step);
+    EXPECT_NEAR(aside_->rows().at(0).at, loop_.wall_now(), 60);
+  }
+  settle();
+  restart();
+  EXPECT_NEAR(aside_->rows().at(0).at, loop_.wall_now(), 60) << "nor by a restart";
+}
+
 TEST_F(AsideTest, ForgetsWhatIsSentAgainOrDiscarded) {
   add(grid());
   add(state(), 500);

@@ -69,6 +69,17 @@ TEST_F(ClocksTest, AMachineWithoutAClockGoesOnFromTheFloor) {
   EXPECT_NEAR(loop_.wall_ahead(), 0, 1) << "of the system's own";
 }
 
+TEST_F(ClocksTest, ABoxThatTookOverGoesOnAfterTheStampsOfTheOther) {
+  live();
+  clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+  const double least = now() + kFar;
+  StampFloor(folder_.path()).write({.floor = least, .wall = 0, .least = least});
+  live();
+  EXPECT_GE(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), least) << "of a sender that was known, too";
+  live();
+  EXPECT_GE(now(), least);
+}
+
 TEST_F(ClocksTest, AMachineWithAClockGoesOnByIt) {
   live();
   keep();

@@ -84,7 +84,7 @@ TEST_F(MapPictureTest, IsHandedOnWithWhatItHasDrawnAndCountsWhatItHasNot) {
   picture.forwarded(grid("r1", 0, 4, 0));
   ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
   picture.forwarded(grid("r2", 0, 4, 0));
-  const picture::Mosaic handed = picture.hand_over();
+  const picture::Mosaic handed = picture.hand_over().mosaic;
   const auto layers = handed.layers();
   ASSERT_EQ(layers.size(), 2u);
   EXPECT_EQ(layers[0].missed, 0u);

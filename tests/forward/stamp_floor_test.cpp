@@ -50,6 +50,15 @@ TEST_F(StampFloorTest, ReadsWhatAReleaseWroteThatKeptTheStampsAlone) {
   EXPECT_EQ(kept.wall, 1700000000) << "the stamps were of the time of day";
 }
 
+TEST_F(StampFloorTest, KeepsTheLeastUntilTheStampsHavePassedIt) {
+  StampFloor living(folder_.string());
+  EXPECT_EQ(StampFloor(folder_.string()).read().least, 0);
+  living.write({.floor = 1.7e9, .wall = 1.6e9, .least = 1.75e9});
+  EXPECT_EQ(StampFloor(folder_.string()).read().least, 1.75e9);
+  living.write(*living.due(1.75e9, 1.6e9));
+  EXPECT_EQ(StampFloor(folder_.string()).read().least, 0);
+}
+
 TEST_F(StampFloorTest, IsWrittenSeldom) {
   StampFloor floor(folder_.string());
   int written = 0;

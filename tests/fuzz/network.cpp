@@ -12,6 +12,7 @@ void try_network(Input text) {
   settles(text, network::read<network::Forget>);
   settles(text, network::read<network::Status>);
   settles(text, network::read<network::Probed>);
+  settles(text, network::read<network::Taken>);
   settles(text, network::read_kept, network::write_kept);
 }
 

@@ -44,5 +44,39 @@ TEST(LatestReports, HaveEachThatWaitsForSomething_HoweverOldItIs) {
   EXPECT_THAT(latest(all, 1), ElementsAre(3));
 }
 
+TEST(ReadAnswers, AreReadAnewWhereTheyAreOthers) {
+  ReadAnswers answers;
+  dispatch::Report report{.number = 7};
+  EXPECT_FALSE(answers.of(report));
+  const std::string reply = R"({"id": 1, "run": "2", "team": "t", "run_clock": 3.5, "type": "Drill", "x": 1,)"
+                            R"( "y": 2, "z": 3, "report_status": "scored", "score_change": )";
+  report.answer = reply + "1}";
+  ASSERT_TRUE(answers.of(report));
+  EXPECT_EQ(answers.of(report)->score_change, 1);
+  report.answer = reply + "0}";
+  ASSERT_TRUE(answers.of(report));
+  EXPECT_EQ(answers.of(report)->score_change, 0);
+  EXPECT_EQ(answers.of(report)->report_status, "scored");
+  report.answer = "not an answer";
+  EXPECT_FALSE(answers.of(report));
+}
+
+TEST(ReadAnswers, AreOfEachReportByItself_HoweverManyThereAre) {
+  ReadAnswers answers;
+  const auto report = [](std::int64_t number) {
+    return dispatch::Report{
+        .number = number,
+        .answer = R"({"id": 1, "run": "2", "team": "t", "run_clock": 3.5, "type": "Drill",)"
+                  R"( "x": 1, "y": 2, "z": 3, "report_status": "scored", "score_change": )" +
+                  std::to_string(number) + "}"};
+  };
+  for (int round = 0; round < 2; ++round) {
+    for (std::int64_t number = 1; number <= 2500; ++number) {
+      ASSERT_TRUE(answers.of(report(number)));
+      ASSERT_EQ(answers.of(report(number))->score_change, number);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace adit::gateway

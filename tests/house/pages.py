@@ -1,4 +1,5 @@
 """The project's documents, *.md, and what stands in them: links, headings, code."""
+import os
 import pathlib
 import re
 
@@ -11,7 +12,12 @@ HEADING = re.compile(r"^#{1,6} +(.*?) *#*$", re.M)
 
 
 def documents():
-    return sorted(path for path in ROOT.rglob("*.md") if not MADE & set(path.relative_to(ROOT).parts))
+    """What is made is not walked through: meanwhile other tests make it."""
+    found = []
+    for folder, folders, files in os.walk(ROOT):
+        folders[:] = set(folders) - MADE
+        found += (pathlib.Path(folder, name) for name in files if name.endswith(".md"))
+    return sorted(found)
 
 
 def without_blocks(text):

@@ -98,15 +98,21 @@ TEST(SetAside, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
   EXPECT_EQ(taken(aside, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
 }
 
-TEST(SetAside, IsNotOvertakenByTheGapOfAStitchedGrid) {
+/// Of 30 x 10 cells, of which nothing was made but the ten at the left and the ten at the right.
+WaitingMap with_a_gap() {
   WaitingMap stitched{.map = grid_update("ugv1", grid(0, 0, 30, 10)), .accepted = {}, .updates = {1, 2}};
   for (const double x : {0.0, 2.0})
     stitched.parts.push_back(
         {.map = grid_update("ugv1", grid(x, 0, 10, 10)), .accepted = {}, .updates = {1}});
+  stitched.has_gaps = true;
+  return stitched;
+}
+
+TEST(SetAside, IsNotOvertakenByTheGapOfAStitchedGrid) {
+  WaitingMap stitched = with_a_gap();
   SetAside aside;
   aside.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
   aside.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
-  stitched.has_gaps = true;
   std::vector<std::uint64_t> overtaken;
   for (const icd::MapUpdate* const map : said_by(stitched))
     std::ranges::copy(taken(aside, *map), std::back_inserter(overtaken));
@@ -114,6 +120,17 @@ TEST(SetAside, IsNotOvertakenByTheGapOfAStitchedGrid) {
   stitched.has_gaps = false;
   ASSERT_EQ(said_by(stitched).size(), 1u);
   EXPECT_EQ(taken(aside, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+}
+
+TEST(SetAside, IsSentAgainWhereWhatGoesHasAGapThere) {
+  const auto back = [](double x, std::uint32_t cells) {
+    return WaitingMap{
+        .map = grid_update("ugv1", grid(x, 0, cells, cells)), .accepted = {}, .updates = {3}, .again = 10};
+  };
+  const WaitingMap goes = with_a_gap();
+  EXPECT_FALSE(replaces(goes, back(1, 10))) << "in the middle";
+  EXPECT_FALSE(replaces(goes, back(1.8, 5))) << "half in the second part";
+  EXPECT_TRUE(replaces(goes, back(2, 5))) << "within it";
 }
 
 TEST(SetAside, MarksADeleteAllThatWouldDeleteSomethingNewer) {

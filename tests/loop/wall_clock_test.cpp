@@ -24,11 +24,24 @@ class WallClockTest : public testing::Test {
   WallClock clock_{system_, at_};
 };
 
-TEST_F(WallClockTest, IsTheSystemsAndFollowsItsLittleCorrections) {
-  EXPECT_EQ(look(1.01), 0);
-  EXPECT_DOUBLE_EQ(now(), kBegan + 1.01);
-  EXPECT_EQ(look(0.6), 0);
-  EXPECT_DOUBLE_EQ(now(), kBegan + 1.61);
+TEST_F(WallClockTest, IsTheSystemsButForHowFarApartTheTwoAreRead) {
+  EXPECT_EQ(look(1.004), 0);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 1);
+  EXPECT_EQ(look(0.996), 0);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 2);
+}
+
+TEST_F(WallClockTest, TellsOfALittleStepToo) {
+  EXPECT_NEAR(look(1 + 0.3), 0.3, 1e-6) << "else whatever was noted before is as much too old";
+  EXPECT_DOUBLE_EQ(now(), kBegan + 1.3);
+  EXPECT_NEAR(look(1 - 0.4), -0.4, 1e-6);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 1.9);
+}
+
+TEST_F(WallClockTest, LosesNoStepThatIsTooLittleToTell) {
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(look(1.004), 0);
+  EXPECT_NEAR(look(1.004), 0.012, 1e-6);
+  EXPECT_DOUBLE_EQ(now(), kBegan + 3.012);
 }
 
 TEST_F(WallClockTest, TellsByHowMuchSomebodySetIt) {

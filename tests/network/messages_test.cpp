@@ -55,6 +55,35 @@ TEST(NetworkMessages, TellTheWholeStatus) {
   EXPECT_EQ(json::parse(write(status))["pending"]["until_ms"], 123456);
 }
 
+TEST(NetworkMessages, TellWhoElseHasAnAddress) {
+  Taken taken;
+  EXPECT_EQ(read<Taken>(write(taken)), taken);
+  taken.addresses.push_back(
+      {"team0", "10.0.0.1", "02:00:5e:10:00:01", Instant(std::chrono::milliseconds(5))});
+  EXPECT_EQ(read<Taken>(write(taken)), taken);
+  const std::tuple<const char*, json, const char*> cases[] = {
+      {"address", "10.0.0.1; rm", "taken[0].address: expected an IPv4 address"},
+      {"address", "", "taken[0].address"},
+      {"mac", "", "taken[0].mac: expected a MAC address"},
+      {"mac", "02:00:5e:10:00:0", "taken[0].mac"},
+      {"mac", "02:00:5e:10:00:0g", "taken[0].mac"},
+      {"mac", "02-00-5e-10-00-01", "taken[0].mac"},
+      {"mac", "<b>02:00:5e:10:00", "taken[0].mac"},
+      {"seen_ms", -1, "taken[0].seen_ms"},
+      {"interface", 7, "taken[0].interface"},
+      {"else", 7, "else"},
+  };
+  for (const auto& [name, value, why] : cases) {
+    json bad = json::parse(write(taken));
+    bad["taken"][0][name] = value;
+    const auto result = read<Taken>(bad.dump());
+    ASSERT_FALSE(result) << bad;
+    EXPECT_THAT(result.error(), HasSubstr(why));
+  }
+  taken.addresses.resize(kMostTaken + 1, taken.addresses.front());
+  EXPECT_THAT(read<Taken>(write(taken)).error(), HasSubstr("taken: expected at most 32"));
+}
+
 TEST(NetworkMessages, HaveNoTimeThatTheClockDoesNotHave) {
   const Status status{.team_interface = "team0",
                       .command_post_interface = "darpa0",

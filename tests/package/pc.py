@@ -6,6 +6,7 @@ import re
 
 import container
 import hosts
+import programs
 
 SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
 BUILT = SOURCE / "build" / "package"
@@ -65,3 +66,18 @@ class Pc(container.Nspawn):
         """(address, interface, port) of each TCP socket that listens."""
         lines = self.shell("ss -Hltn").splitlines()
         return sorted(re.fullmatch(r"(.*?)(?:%(.*))?:(\d+)", line.split()[3]).groups(default="") for line in lines)
+
+
+class Stage(container.Stage):
+    """The PC, its third port in use, and a Command Post."""
+
+    cables, contained = Cables, Pc
+
+    def prepare(self):
+        self.box.start()
+        self.box.shell(f"ip link set {OFFICE} up; ip address add {OFFICE_ADDRESS}/24 dev {OFFICE}")
+        programs.wait_until(lambda: "tentative" not in self.office(), "the third port's addresses")
+        self.office_before = self.office()
+
+    def office(self):
+        return self.box.shell(f"ip -o address show dev {OFFICE}; ip -o link show dev {OFFICE}; sysctl -a -r 'conf.{OFFICE}'")

@@ -2,17 +2,18 @@
 downgraded, removed and purged, as their user does it; and the rehearsal from its package."""
 
 import concurrent.futures
-import pathlib
-import tempfile
+import subprocess
 import unittest
 
 import hosts
+import neighbour
 import pc
 import programs
 import stage
 from reporting import REPORT, another, insist, submit
 from stage import Story, load_tests  # unittest looks for them here
 
+CAP_NET_RAW = 13  # capabilities(7)
 PASSWORD = "correct horse battery"
 STATE = "/var/lib/private/adit"
 NOW, BEFORE = "/packages/now/adit_*.deb", "/packages/before/adit_*.deb"
@@ -25,46 +26,12 @@ def setUpModule():
             raise unittest.SkipTest("tests/package/debian_root has made nothing here")
 
 
-class OnAPc:
-    """The stage: a PC and a Command Post."""
-
-    def __enter__(self):
-        self.temporary = tempfile.TemporaryDirectory(prefix="adit-package-")
-        self.folder = pathlib.Path(self.temporary.name)
-        self.network = pc.Cables()
-        self.post = self.box = None
-        self.network.__enter__()
-        try:
-            programs.secrets_folder(self.folder / "secrets")
-            self.post = programs.CommandPost(self.network, self.folder, "--rate", "0")
-            self.box = pc.Pc(self.network, self.folder)
-            self.box.start()
-            self.box.shell(f"ip link set {pc.OFFICE} up; ip address add {pc.OFFICE_ADDRESS}/24 dev {pc.OFFICE}")
-            programs.wait_until(lambda: "tentative" not in self.office(), "the third port's addresses")
-            self.office_before = self.office()
-        except BaseException:
-            self.__exit__()
-            raise
-        return self
-
-    def office(self):
-        return self.box.shell(f"ip -o address show dev {pc.OFFICE}; ip -o link show dev {pc.OFFICE}; sysctl -a -r 'conf.{pc.OFFICE}'")
-
-    def __exit__(self, *_):
-        if self.box is not None:
-            self.box.close()
-        if self.post is not None:
-            self.post.stop()
-        self.network.__exit__()
-        self.temporary.cleanup()
-
-
 class Packages(Story):
     session = {}
 
     @classmethod
     def setUpClass(cls):
-        cls.tell(OnAPc())
+        cls.tell(pc.Stage())
 
     def asked(self, request, body=None):
         headers = {**self.session, "Content-Type": "application/json"}
@@ -75,7 +42,7 @@ class Packages(Story):
     def test_without_interfaces_it_is_installed_and_does_nothing(self):
         said = self.box.apt(f"install {BEFORE}")
         self.assertIn("Adit does not start before /etc/adit/interfaces names its two interfaces", said)
-        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-nftables", "systemd-networkd"):
+        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-network-watch", "adit-nftables", "systemd-networkd"):
             self.assertFalse(self.box.is_active(unit), unit)
         self.assertEqual(self.box.listens(), [])
         self.assertEqual(self.box.shell("nft list ruleset"), "")
@@ -88,7 +55,17 @@ class Packages(Story):
                                         ("a/b", "enp2s0", "team: expected the name of an interface or its MAC address, got 'a/b'")):
             self.box.shell(f"printf 'team={team}\\ncommand_post={command_post}\\n' >/etc/adit/interfaces")
             self.assertIn(why, self.box.shell("/usr/lib/adit/interfaces check", good=False))
-        self.box.shell("rm /etc/adit/interfaces")
+        for name in pc.PORTS["team"], "eth0":
+            self.box.shell(f"""printf 'team={pc.PORTS["team"]}\ncommand_post={pc.PORTS["command_post"]}\n' >/etc/adit/interfaces
+                mkdir -p /etc/network; printf 'auto lo {name}\niface {name} inet dhcp\n' >/etc/network/interfaces""")
+            said = self.box.shell("/usr/lib/adit/interfaces check", good=name == "eth0")
+            self.assertEqual("team: /etc/network/interfaces sets up enp1s0, too: take it out there" in said, name != "eth0", said)
+        self.box.shell("rm -r /etc/adit/interfaces /etc/network")
+
+    def test_what_a_newcomer_reads_is_there(self):
+        self.box.shell("""cd /usr/share/doc/adit; grep -q '<title>Adit: the card' card.html
+            grep -q 'class Client' examples/client.py; test -s examples/README.md -a -s examples/client.cpp
+            zgrep -q 'adit-rehearsal demo' README.Debian*""")
 
     def test_named_its_two_ports_it_serves_the_page_on_the_teams_alone(self):
         self.box.shell(f"""echo 'adit adit/team string {pc.PORTS["team"]}' | debconf-set-selections
@@ -114,6 +91,34 @@ class Packages(Story):
                             "the addresses to be confirmed", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         self.assertEqual(submit(self.stage).status_code, 201)
+
+    def test_the_card_is_followed_to_its_end(self):
+        """As somebody at the machine: the Test, robots of the team, an alarm and its end."""
+        said = self.box.shell("adit test")
+        for words in "the scoring token is taken", "the mapping token is taken", "scoring 10.100.1.200:8000", "mapping 10.100.1.201:8000":
+            self.assertIn(words, said)
+        robots = self.stage.network.start(self.stage.network.team, programs.BIN / "adit-robots", "--post", self.box.url,
+                                          "--secrets", self.stage.folder / "secrets", "--for", "5", "--quiet", stdout=subprocess.DEVNULL)
+        self.assertEqual(robots.wait(120), 0)
+        programs.wait_until(lambda: self.stage.post.requests("/map/update"), "a map to arrive", 60)
+        self.assertIn("Reports  answered", self.box.shell("adit status", good=False))
+        self.stage.network.pull_cable()
+        programs.wait_until(lambda: "Command Post's cable is out" in self.box.shell("adit status", good=False), "the alarm", 60)
+        self.assertEqual(self.box.run("adit", "status").returncode, 1)
+        self.stage.network.pull_cable(False)
+        programs.wait_until(lambda: "cable is out" not in self.box.shell("adit status", good=False), "the alarm to go", 60)
+
+    def test_another_machine_with_its_address_is_told_by_whoever_may_do_no_more(self):
+        pid = self.box.shell("systemctl show -p MainPID --value adit-network-watch.service").strip()
+        rights = dict(line.split(":\t", 1) for line in self.box.shell(f"cat /proc/{pid}/status").splitlines() if ":\t" in line)
+        self.assertEqual({rights[name] for name in ("CapEff", "CapPrm", "CapBnd")}, {f"{1 << CAP_NET_RAW:016x}"})
+        self.assertNotIn("0", rights["Uid"].split())
+        with neighbour.Neighbour(self.stage.network, self.stage.network.team, "team0") as other:
+            other.take(self.stage.network.box_address)
+            programs.wait_until(lambda: f"is also {other.mac}'s" in self.box.shell("adit status", good=False), "the alarm", 60)
+            self.assertEqual(self.box.run("adit", "status").returncode, 1)
+            other.leave()
+            programs.wait_until(lambda: "address is taken" not in self.box.shell("adit status", good=False), "the alarm to go", 60)
 
     def test_an_upgrade_turns_nobody_away_and_keeps_all(self):
         """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
@@ -149,7 +154,7 @@ class Packages(Story):
 
     def test_removed_it_leaves_its_state_and_nothing_that_runs(self):
         self.box.apt("remove adit")
-        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-nftables"):
+        for unit in ("adit.service", "adit.socket", "adit-network-start", "adit-network-watch", "adit-nftables"):
             self.assertFalse(self.box.is_active(unit), unit)
         self.assertEqual(self.box.listens(), [])
         self.assertEqual(self.box.shell("nft list ruleset"), "")
@@ -157,6 +162,7 @@ class Packages(Story):
 
     def test_installed_again_it_goes_on(self):
         self.box.apt(f"install {NOW}")
+        programs.wait_until(self.box.answers, "the page to answer", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         self.assertEqual(self.box.reports()[0]["state"], "answered")
 

@@ -40,6 +40,12 @@ test("does not ask again whoever said no, and leaves the clock alone", async (t)
   assert.equal((await clockOf(page)).now, before);
 });
 
+test("says who set the box’s clock", async (t) => {
+  const { page, dialog } = await come(t, OPERATOR);
+  await dialog.locator("button").first().click();
+  await page.locator("#about dl div", { hasText: "Clock" }).getByText(/^(set by|nobody set it|it went on)/).waitFor();
+});
+
 test("does not ask a viewer", async (t) => {
   const { page, dialog } = await come(t, VIEWER);
   await page.locator("#who .text", { hasText: "viewer" }).waitFor();

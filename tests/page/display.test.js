@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { retell } from "./retold.js";
 import { said, showsTheClock, text, watch } from "./watch.js";
 
 const SCREENS = [[1280, 720], [1920, 1080], [3840, 2160]];
@@ -58,6 +59,37 @@ test("cuts no figure short, not even on a phone", async (t) => {
     assert.deepEqual(cut, [], `${width} x ${height}`);
     const outside = await page.$$eval(".figures, .figures > div", ([box, ...parts]) => parts.filter((part) => part.getBoundingClientRect().right > box.getBoundingClientRect().right + 1).length);
     assert.equal(outside, 0, `${width} x ${height}`);
+  }
+});
+
+test("cuts no word in the head of a list, and shows what is wrong before what is well", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const grid = view.activities.find(({ kind, robot }) => kind === "grid" && !robot), markers = view.activities.find(({ kind }) => kind === "markers");
+    if (!grid || !markers) return view;
+    const late = { level: "wait", arrival: "late", behind_since: view.now - 95, last_forwarded: view.now - 95 };
+    const shared = [{ ...grid, ...late }, { ...grid, kind: "cloud", last_forwarded: view.now - 3599 }, { ...markers, level: "bad", arrival: "refused" }];
+    return { ...view, activities: [...view.activities.filter((row) => row.robot), ...shared] };
+  });
+  for (const told of [undefined, prepare]) {
+    const { page } = await watch(t, "reports", { path: "display", prepare: told });
+    await page.locator("#shared .name", { hasText: "Markers" }).waitFor({ state: "attached" });
+    for (const [width, height] of SCREENS) {
+      await page.setViewportSize({ width, height });
+      const [cut, words] = await page.evaluate(() => {
+        const parts = [...document.querySelectorAll(".panel h2:not(.spoken), .panel h2:not(.spoken) .count, #shared > *, #shared .name, #shared .badge")];
+        const head = (node) => node.closest(".line") ?? node.closest("h2");
+        const inSight = parts.filter((node) => node.getBoundingClientRect().top < head(node).getBoundingClientRect().bottom - 1);
+        const isCut = (node) => {
+          const its = node.getBoundingClientRect(), { left, right } = node.closest(".panel").getBoundingClientRect();
+          return its.left < left || its.right > right || (node.scrollWidth > node.clientWidth + 1 && node.matches(".count, .name, .badge"));
+        };
+        return [inSight.filter(isCut).map((node) => node.textContent), inSight.map((node) => node.textContent.trim())];
+      });
+      assert.deepEqual(cut, [], `${width} x ${height}`);
+      for (const word of ["Markers", "Merged"]) assert.ok(words.includes(word), `${word} of ${words} at ${width}`);
+      assert.ok(words.some((word) => word.startsWith("Robots")), "the title");
+    }
+    await page.close();
   }
 });
 

@@ -4,7 +4,7 @@ import { robotRgb } from "../../firmware/site/files/robot_colour.js";
 import { until } from "./box.js";
 import { becomes, box, canvas, changed, picture } from "./pictures.js";
 import { serve } from "./stage.js";
-import { settled, toTab, watch } from "./watch.js";
+import { hears, settled, toTab, watch } from "./watch.js";
 
 const asked = (page, part) => page.requests.filter((url) => url.includes(part)).length;
 const tiles = (page) => asked(page, ".png");
@@ -139,7 +139,7 @@ test("fetches a tile when it is seen and its version changed, not over and over"
   await settled(page);
   const once = tiles(page), maps = asked(page, "/adit/map?");
   assert.ok(once > 0 && once < 40, `${once} tiles`);
-  await page.waitForTimeout(3000);
+  await hears(page, 6);
   assert.equal(tiles(page), once);
   assert.equal(asked(page, "/adit/map?"), maps);
 });
@@ -156,7 +156,7 @@ test("is drawn again only when something on it changed", async (t) => {
   const { page } = await watch(t, "empty", { prepare });
   await settled(page);
   const before = await page.evaluate(() => globalThis.drawn);
-  await page.waitForTimeout(2500);
+  await hears(page, 2);
   assert.equal(await page.evaluate(() => globalThis.drawn), before);
 });
 

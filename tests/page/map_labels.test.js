@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Labels } from "../../firmware/site/files/map_labels.js";
-import { stepOf } from "../../firmware/site/files/map_metres.js";
+import { drawFigures, drawScale, stepOf, takenByMetres } from "../../firmware/site/files/map_metres.js";
 import { MapView } from "../../firmware/site/files/map_view.js";
 
 const SIZE = 12;
@@ -54,6 +54,23 @@ test("draws a line each 1, 2 or 5 metres, times a power of ten, far enough apart
     const step = stepOf(scale), apart = step * scale;
     assert.ok(apart >= 84 && apart <= 84 * 2.5 + 1e-9, `${step} m at ${scale}`);
     assert.match(step.toExponential(3), /^[125]\.000e/);
+  }
+});
+
+test("writes no name upon the scale and the figures at the edges", () => {
+  for (const [width, height, scale] of [[374, 230, 3.3], [374, 184, 2.7], [1260, 720, 8], [2900, 1800, 31]]) {
+    const view = Object.assign(new MapView(), { width, height, scale, centre: { x: 40, y: -3 } });
+    const edges = { ...paper(), beginPath() {}, moveTo() {}, lineTo() {}, stroke() {} };
+    drawFigures(edges, {}, view, SIZE);
+    drawScale(edges, {}, view, SIZE);
+    const boxes = [...takenByMetres(view, SIZE)];
+    assert.equal(boxes.length, edges.written.length);
+    for (const [i, [left, top, right, bottom]] of boxes.entries()) assert.ok(overlap(boxes[i], edges.written[i]) && right - left < 400 && bottom - top < 2 * SIZE);
+    const paint = paper(), labels = new Labels(paint, {}, SIZE, view), roll = dice(3);
+    for (const box of boxes) labels.keepOffBox(box);
+    for (let i = 0; i < 400; ++i) labels.write("#23 Fire Extinguisher", roll() * width, height - roll() * 80);
+    assert.ok(paint.written.length);
+    for (const one of paint.written) assert.ok(!boxes.some((box) => overlap(one, box)), `${one} upon an edge`);
   }
 });
 

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
 import { box, canvas } from "./pictures.js";
-import { settled, watch } from "./watch.js";
+import { hears, settled, watch } from "./watch.js";
 
 const INK = { r: 1, g: 0.2, b: 1, a: 1 }, PINK = [255, 51, 255], BLUE = [0, 102, 255], BLUE_HEX = "#0066ffff";
 const SIDE = [[0, 0], [20, 0]], ANGLE = [[0, 0], [20, 0], [20, 20]], PAIRS = [[0, 0], [20, 0], [0, 20], [20, 20]];
@@ -93,7 +93,7 @@ test("draws the markers once for a view, however often a robot moves on it", asy
   await settled(page);
   const before = await until(async () => { // once it has come to rest, it is drawn as large as it is seen
     const { lines } = await drawn();
-    await page.waitForTimeout(400);
+    await hears(page, 2);
     const now = await drawn();
     return now.lines === lines && now;
   }, "the map to be at rest");

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { robotRgb } from "../../firmware/site/files/robot_colour.js";
 import { until } from "./box.js";
 import { box, canvas } from "./pictures.js";
-import { settled, toTab, watch } from "./watch.js";
+import { hears, settled, toTab, watch } from "./watch.js";
 
 const SCOUT = robotRgb("Scout", "dark");
 const measure = (page) => page.getByRole("button", { name: "Measure" });
@@ -160,8 +160,8 @@ test("is copied while it is dragged: what is on it is drawn now and then, and wh
   await settled(page);
   await only(page, "Reports");
   await page.locator(canvas).press("f");
-  await page.waitForTimeout(400);
   const drawn = () => page.evaluate(() => globalThis.drawn);
+  await hears(page, 2); // it has come to rest meanwhile
   const { before, during, frames } = await page.$eval(canvas, async (node) => {
     const { x, y } = node.getBoundingClientRect(), frame = () => new Promise(requestAnimationFrame);
     node.setPointerCapture = () => {};

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
 import { canvas } from "./pictures.js";
-import { settled, toTab, watch } from "./watch.js";
+import { armed, settled, toTab, watch } from "./watch.js";
 
 const PHONE = { hasTouch: true, viewport: { width: 390, height: 844 } };
 const DIALOG = "#help";
@@ -29,7 +29,6 @@ async function glass(page) {
 
 /** Everything that a dialog does has been done. */
 const quiet = async (page) => {
-  await page.waitForTimeout(100);
   await settled(page);
 };
 
@@ -125,7 +124,7 @@ test("a finger that is down while a dialog opens by another hand does not press 
   await page.waitForSelector(DIALOG, { state: "hidden" });
   await down(place);
   await page.locator("button.help").first().evaluate((button) => button.click());
-  await page.waitForTimeout(700); // the dialog stands still by then, and it is not a long press yet
+  await armed(page); // the dialog stands still by then, and it is not a long press yet
   await up();
   await quiet(page);
   assert.ok(await page.locator(DIALOG).isVisible());
@@ -156,7 +155,7 @@ test("what moves under a finger is not pressed by it, and is once it has stood s
   await toTab(page, "Reports");
   const { down, up, tap } = await glass(page);
   const button = page.locator("#reports .compose:enabled");
-  await page.waitForTimeout(700);
+  await armed(page);
   let by = 0;
   /** The panel, which holds still otherwise, goes down by 100 pixels; gives where the button is then. */
   const shift = () => button.evaluate((node, by) => {

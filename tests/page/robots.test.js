@@ -1,6 +1,7 @@
 // The robots' panel: who is worst off is seen at once, and nothing of it moves under a hand.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { retell } from "./retold.js";
 import { twenty } from "./twenty.js";
 import { axeFindsNothing, openMore, toTab, watch } from "./watch.js";
 
@@ -25,6 +26,21 @@ test("has twenty robots in sight, whole, where the screen is one of 720 or 1080 
   assert.match(await page.innerText('#robots li[data-key="ugv4"]'), /^ugv4\s+grid (now|\d s) · cloud (now|\d s)\s+(now|\d s)$/);
 });
 
+test("cuts no word in the head of its list", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const grid = view.activities.find(({ kind, robot }) => kind === "grid" && !robot);
+    return grid ? { ...view, activities: [...view.activities, { ...grid, kind: "cloud" }] } : view;
+  });
+  const { page } = await watch(t, "calm", { prepare });
+  await page.locator("#shared .name", { hasText: "Merged cloud" }).waitFor();
+  for (const [width, height] of [[1280, 720], [1440, 900], [1920, 1080], [3840, 2160]]) {
+    await page.setViewportSize({ width, height });
+    const cut = await page.$$eval("#maps-title, #maps-title .count, #shared .name, #shared .badge", (parts) =>
+      parts.filter((part) => part.checkVisibility() && part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).display !== "inline").map((part) => part.textContent));
+    assert.deepEqual(cut, [], `${width} x ${height}`);
+  }
+});
+
 test("has the worst first: who is silent is filled and says so, who is late has a shape", async (t) => {
   const { page } = await watchTwenty(t, { viewport: LARGE, colorScheme: "dark" });
   await page.locator("#robots li").nth(19).waitFor();
@@ -38,14 +54,26 @@ test("has the worst first: who is silent is filled and says so, who is late has 
   assert.deepEqual(styles.map(([, , level]) => level), ["bad", "wait", "good"]);
 });
 
-test("blames no robot while the Command Post is away", async (t) => {
+test("says of a robot that sends no map that it has none, and of one whose map never came that it never did", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const like = view.activities.find(({ kind }) => kind === "grid");
+    const now = { ...like, last_forwarded: view.now, last_accepted: view.now };
+    const waits = { ...now, robot: "carter", last_forwarded: null, bytes_sent: 0 };
+    return like ? { ...view, activities: [{ ...now, robot: "scout", kind: "state" }, waits, { ...now, robot: "carter", kind: "state" }] } : view;
+  });
+  const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
+  const age = (name) => page.innerText(`#robots li[data-key="${name}"] .age`);
+  await page.waitForSelector('#robots li[data-key="scout"]');
+  assert.deepEqual([await age("scout"), await age("carter")], ["no map", "never"]);
+});
+
+test("is dim while the list of alarms says that the Command Post is away", async (t) => {
   const { page, stage } = await watchTwenty(t);
-  await page.locator("#robots li[data-level=bad]").waitFor();
+  await page.waitForSelector("#maps[data-away=false]");
   stage.play("trouble");
   await page.waitForSelector("#maps[data-away=true]");
-  assert.equal(await page.locator("#robots li[data-level=bad]").count(), 0);
   stage.play("calm");
-  await page.locator("#maps[data-away=false] li[data-level=bad]").waitFor();
+  await page.waitForSelector("#maps[data-away=false]");
 });
 
 test("moves no row under a pointer; the order changes once it has left", async (t) => {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { robotRgb } from "../../firmware/site/files/robot_colour.js";
 import { OPERATOR, VIEWER, box, play, until } from "./box.js";
-import { axeFindsNothing, shoot, visitor } from "./watch.js";
+import { armed, axeFindsNothing, shoot, visitor } from "./watch.js";
 
 const SIZES = [["phone", 390, 844], ["720p", 1280, 720], ["1080p", 1920, 1080], ["4k", 3840, 2160]];
 
@@ -58,7 +58,7 @@ test("lists runs, shows an earlier one's map at its times, and deletes it once t
   await earlier.getByRole("button", { name: /^Delete/ }).click();
   await page.locator("#confirm button", { hasText: "Leave it" }).click();
   assert.equal(await page.locator("#runs .rows li").count(), 2);
-  await page.waitForTimeout(400); // presses.js: what has just moved takes no press
+  await armed(page);
   await earlier.getByRole("button", { name: /^Delete/ }).click();
   await page.locator("#confirm .main").click();
   await earlier.waitFor({ state: "detached" });

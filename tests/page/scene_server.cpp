@@ -17,6 +17,7 @@
 #include "api/fake_network.hpp"
 #include "api/map_scene.hpp"
 #include "api/played.hpp"
+#include "api/played_spare.hpp"
 #include "api/played_updates.hpp"
 #include "api/scenes.hpp"
 
@@ -121,6 +122,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   PlayedUpdates updates;
   FakeKeptRuns runs;
   FakeClock clock;
+  PlayedSpare spare;
   clock.view = {.now = loop.wall_now() - 7200, .managed = more == "clock-behind", .why = {}, .refusal = {}};
   Api page{loop,
            {.source = stage,
@@ -131,7 +133,8 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
             .updates = &updates,
             .box = &box,
             .runs = &runs,
-            .clock = &clock},
+            .clock = &clock,
+            .spare = &spare},
            {token()}};
   furnish(box, loop.wall_now());
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);

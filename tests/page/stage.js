@@ -66,9 +66,16 @@ export async function visit(browser, url, options = {}, prepare = () => {}) {
   return page;
 }
 
-/** Counts, in the page, what it asked for and has not yet: an init script, for settled(). */
+/** Counts, in the page, what it asked for and has not yet, and what the box told it: an init script, for settled() and hears(). */
 export function countAwaited() {
-  globalThis.awaited = globalThis.still = 0;
+  globalThis.awaited = globalThis.still = globalThis.heard = 0;
+  const { EventSource } = globalThis;
+  globalThis.EventSource = class extends EventSource {
+    constructor(...words) {
+      super(...words);
+      for (const type of ["message", "patch"]) this.addEventListener(type, ({ isTrusted }) => (globalThis.heard += isTrusted));
+    }
+  };
   const { prototype } = Response;
   for (const [owner, name] of [[globalThis, "fetch"], [globalThis, "createImageBitmap"], [prototype, "json"], [prototype, "blob"]]) {
     const real = owner[name];
@@ -85,6 +92,15 @@ export const settled = (page) =>
     globalThis.still = globalThis.awaited ? 0 : (globalThis.still + 1) % 4;
     return !globalThis.awaited && !globalThis.still;
   });
+
+/** Until a page that is watched was told so many events more: what it does of itself, or because of them, it has done. */
+export async function hears(page, count) {
+  const before = await page.evaluate(() => globalThis.heard);
+  await page.waitForFunction((enough) => globalThis.heard >= enough, before + count);
+}
+
+/** Until all that appeared or moved takes presses again: presses.js. */
+export const armed = (page) => page.waitForFunction(() => !document.querySelector("[data-moving]"));
 
 /** Kept beside the programs, for people to look at. */
 export async function shoot(page, name) {

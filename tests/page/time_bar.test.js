@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
-import { settled, toTab, watch } from "./watch.js";
+import { hears, settled, toTab, watch } from "./watch.js";
 
 const button = (page, name) => page.locator("#map .time").getByRole("button", { name, exact: true });
 const slider = (page) => page.getByRole("slider");
@@ -50,7 +50,7 @@ test("plays from where it is up to now, faster or slower, and pauses", async (t)
   await until(async () => (await value(page)) >= 10, "ten seconds");
   await button(page, "Pause").click();
   const paused = await value(page);
-  await page.waitForTimeout(700);
+  await hears(page, 3);
   assert.equal(await value(page), paused);
   await page.locator("#map .speed").click();
   assert.equal(await page.textContent("#map .speed"), "60×");
@@ -70,7 +70,6 @@ test("asks for a tile again only where it changed by that time", async (t) => {
   await slider(page).press("Home");
   for (let i = 0; i < 4; ++i) await slider(page).press("PageUp");
   await settled(page);
-  await page.waitForTimeout(500);
   const tiles = () => page.requests.filter((url) => url.includes("at=")).length, before = tiles();
   for (let i = 0; i < 6; ++i) {
     await slider(page).press("Shift+ArrowRight"); // the scene's map grows each 30 s
@@ -121,7 +120,7 @@ test("fills plots and the robots' lines from what the box has kept, as the page 
   const [first] = await spans(page, '#robots li[data-key="ANYmal1"] path');
   assert.ok(first >= 85, `${first} of 90`);
   assert.equal(page.historyAsked[0], "0");
-  await page.waitForTimeout(1500);
+  await hears(page, 4);
   assert.equal(page.historyAsked.length, 1);
   const { page: young } = await opened(t, "calm", { prepare: withHistory((now) => kept(now, 0)) });
   await young.locator("#plots li").nth(4).waitFor();

@@ -6,7 +6,7 @@ import { countAwaited, FILES, launch, look, serve, visit } from "./stage.js";
 
 export { axeFindsNothing } from "./axe.js";
 export { openMore, toTab } from "./parts.js";
-export { settled, shoot } from "./stage.js";
+export { armed, hears, settled, shoot } from "./stage.js";
 
 let browser;
 before(async () => (browser = await launch()));

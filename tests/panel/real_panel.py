@@ -233,11 +233,11 @@ class Starting(Running):
 class WithAditd(Running):
     """What is killed, stopped, hangs, or is started in another order."""
 
-    def begin_aditd(self):
+    def begin_aditd(self, port=0):
         (self.folder / "secrets").mkdir(mode=0o700, exist_ok=True)
         settings = self.folder / "settings.json"
         settings.write_text(json.dumps({"version": 1, "command_post": {"scoring": NOWHERE, "mapping": NOWHERE},
-                                        "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}}))
+                                        "team": {"listen": [{"address": "127.0.0.1", "port": port}]}}))
         return self.begin(aditd, "--settings", settings, "--secrets", self.folder / "secrets", "--state", self.folder / "state",
                           "--panel", self.socket)
 
@@ -280,6 +280,27 @@ class WithAditd(Running):
         self.shows_fault()
         self.begin_aditd()
         self.is_at_work()
+
+    def test_a_first_start_that_comes_to_nothing_is_shown_at_once(self):
+        board = self.folder / "board.json"
+        board.write_text('{"name": "b", "title": "B", "panel": {}}')
+        self.begin_panel("--board", board)
+        failed = self.begin_aditd(port="none")
+        self.shows_fault()
+        self.assertEqual(failed.wait(PATIENCE), 1)
+
+    def test_so_is_one_after_a_stop_whatever_it_fails_of(self):
+        self.begin_panel()
+        taken = self.enterContext(socket.create_server(("127.0.0.1", 0)))
+        for port in ("none", taken.getsockname()[1]):
+            stopped = self.begin_aditd()
+            self.is_at_work()
+            stopped.send_signal(signal.SIGTERM)
+            self.assertEqual(stopped.wait(PATIENCE), 0)
+            self.shows(DARK)
+            failed = self.begin_aditd(port)
+            self.shows_fault()
+            self.assertEqual(failed.wait(PATIENCE), 1)
 
     def test_a_stop_is_none(self):
         self.begin_panel()

@@ -63,6 +63,24 @@ TEST(Mosaic, ShowsHowItWasAtAnEarlierTime) {
   EXPECT_TRUE(easel.mosaic.tile(easel.layer, {0, 0, 0}, 1003).newest);
 }
 
+TEST(Mosaic, GoesAlongWithAClockThatIsSet) {
+  for (const double step : {3e8, -3e8}) {
+    Easel easel;
+    easel.now = 1e9;
+    easel.draw(grid_at(0, 0, 1, 0.25, {100}));
+    easel.mosaic.wipe(easel.now + 1);
+    easel.mosaic.move(step);
+    easel.now += 1 + step;
+    easel.draw(grid_at(0, 0, 1, 0.25, {0}));
+    EXPECT_EQ(easel.seen(0.1, 0.1, 0, 1e9 + 1 + step), kOccupied) << "as it was before, by the new time";
+    EXPECT_EQ(easel.mosaic.tile(easel.layer, {0, 0, 0}, std::nullopt).stamp, easel.now)
+        << "and not by the old one";
+    EXPECT_EQ(easel.mosaic.wiped(), 1e9 + 2 + step);
+    EXPECT_EQ(easel.mosaic.layers().at(0).first, 1e9 + 1 + step);
+    EXPECT_EQ(easel.mosaic.layers().at(0).last, easel.now);
+  }
+}
+
 TEST(Mosaic, TellsWhichTilesChangedSinceAVersion) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));

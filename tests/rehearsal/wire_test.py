@@ -1,6 +1,7 @@
 """Below the messages: HTTP, connections, signals, the command line, and whatever a broken peer sends."""
 
 import contextlib
+import email.utils
 import json
 import os
 import random
@@ -34,6 +35,17 @@ class Http(unittest.TestCase):
                 received += piece
             self.assertEqual(received.count(b"HTTP/1.1 200 OK\r\n"), 2)
             self.assertIn(b"Connection: close", received)
+
+    def test_each_answer_tells_the_time_of_day(self):
+        with CommandPost() as post:
+            for request in (STATUS, STATUS.replace(b"Authorization", b"Nobody"), STATUS.replace(b"status", b"nothing")):
+                with connect(post.scoring) as stream:
+                    before = int(time.time())
+                    stream.sendall(request)
+                    status, headers, _ = read_answer(stream)
+                    told = email.utils.parsedate_to_datetime(headers["date"])
+                    self.assertRegex(headers["date"], r"^[A-Z][a-z]{2}, \d\d [A-Z][a-z]{2} \d{4} \d\d:\d\d:\d\d GMT$")
+                    self.assertTrue(before <= told.timestamp() <= time.time(), (status, headers))
 
     def test_expect_is_answered_before_the_body_is_there(self):
         body = cbor2.dumps(grid(cbor=True))

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from recipe import IMAGES, TOP, built, conf, skip
 
+ARCHITECTURE = subprocess.run(["dpkg", "--print-architecture"], check=True, capture_output=True, text=True).stdout.strip()
 ID = re.compile(r"SPDXRef-[A-Za-z0-9.-]+")
 BOARDS = built()
 if not BOARDS:
@@ -100,6 +101,26 @@ class Root(unittest.TestCase):
                         self.assertFalse(path.stat().st_mode & 0o6000 and path.is_file(), path)
                 for program in "apt", "apt-get", "dpkg", "sudo", "su", "login", "sshd", "passwd":
                     self.assertFalse(list(root.glob(f"usr/*bin/{program}")))
+
+    def test_what_only_tls_and_downloads_need_is_not_there(self):
+        """chronyd has libnettle's checksums, which TLS would have, too."""
+        for board in BOARDS:
+            there = {path.name.partition(".so")[0] for path in (IMAGES / board / "work/root").rglob("lib*.so*")}
+            with self.subTest(board):
+                self.assertEqual(there & {"libhogweed", "libp11-kit", "libkrb5", "libldap-2", "libssh2", "libnghttp2"}, set())
+                self.assertLessEqual({"libgcc_s", "libidn2"}, there, "opened by name")
+
+    def test_the_programs_of_a_board_like_this_machine_find_each_function(self):
+        """Those of the stand-ins, too: linked as they are at their start, with nothing left for later."""
+        for board in BOARDS:
+            root = IMAGES / board / "work/root"
+            if conf(board, "architecture") != [ARCHITECTURE]:
+                continue
+            for program in "aditd", "adit", "rauc":
+                with self.subTest(board, program=program):
+                    said = subprocess.run(["chroot", root, f"/usr/bin/{program}", "--version"], capture_output=True, text=True,
+                                          env={"LD_BIND_NOW": "1", "PATH": "/usr/sbin:/usr/bin"})
+                    self.assertEqual((said.returncode, said.stderr), (0, ""), said)
 
     def test_every_library_that_is_asked_for_is_there(self):
         for board in BOARDS:

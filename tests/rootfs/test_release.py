@@ -10,7 +10,7 @@ import sys
 from recipe import TOP, skip
 
 BUILD = sys.argv[1]
-VERSION = re.search(r"^project\(adit VERSION (\S+)", (TOP / "CMakeLists.txt").read_text(), re.M)[1]
+VERSION = subprocess.run([TOP / "toolchain/version"], capture_output=True, text=True, check=True).stdout.strip()
 FOLDER = TOP / f"build/release-{VERSION}"
 
 
@@ -40,7 +40,7 @@ def main():
     listed = {line.split()[1] for line in (FOLDER / "SHA256SUMS").read_text().splitlines()}
     present = {path.name for path in FOLDER.iterdir()}
     assert present == listed | {"SHA256SUMS", "SHA256SUMS.sig", "adit.pub"}, present ^ listed
-    for kind in (f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".raucb", ".img", ".spdx.json"):
+    for kind in (f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".raucb", ".img", ".spdx.json"):
         assert any(kind in name for name in listed), kind
     with open(FOLDER / "CHANGES.md", "a", encoding="utf-8") as changes:
         changes.write("And more.\n")

@@ -202,7 +202,7 @@ class Options(Scripts):
         super().setUp()
         for path in "board/one", "toolchain", "rootfs", "programs":
             (self.folder / path).mkdir(parents=True)
-        for path in "toolchain/image", "toolchain/image-key":
+        for path in "toolchain/image", "toolchain/image-key", "toolchain/version":
             shutil.copy(TOP / path, self.folder / path)
         (self.folder / "board/one/board.conf").write_text("architecture=amd64 kernel_package=linux boot_packages=()\n")
         (self.folder / "CMakeLists.txt").write_text("project(adit VERSION 0.1.0)\n")
@@ -231,6 +231,12 @@ class Options(Scripts):
                 done = self.call(self.folder / "toolchain/image", "--version", version, "one")
                 self.assertEqual(done.returncode, 2)
                 self.assertIn("--version wants", done.stderr)
+
+    def test_the_version_is_that_of_the_tree_unless_it_is_said(self):
+        self.assertEqual(self.told()[0], "0.1.0")
+        (self.folder / "CMakeLists.txt").write_text('project(adit DESCRIPTION "no version")\n')
+        done = self.call(self.folder / "toolchain/image", "--programs", "programs", "one")
+        self.assertEqual((done.returncode, done.stdout), (1, ""))
 
     def test_the_box_takes_updates_for_the_keyring_that_the_user_sets(self):
         self.assertEqual(self.told(ADIT_KEYRING="both.pem", ADIT_SIGNING_CERT="one.pem")[1], "both.pem")

@@ -155,7 +155,11 @@ const Case kNames[] = {
     {sample(
          "", "",
          R"(, "courses": [{"name": "A", "scoring": {"address": "::1", "port": 1}, "mapping": {"address": "::ffff:10.0.0.1", "port": 2}}])"),
-     "courses[0].mapping.address: ::ffff:10.0.0.1 is an IPv4 address: write it as one"}};
+     "courses[0].mapping.address: ::ffff:10.0.0.1 is an IPv4 address: write it as one"},
+    {sample("", "", R"(, "clock": {"ntp_server": "ntp.example.org"})"),
+     R"(clock.ntp_server: expected an IPv4 address, or "", got "ntp.example.org")"},
+    {sample("", "", R"(, "clock": {"ntp_server": "127.0.0.1"})"),
+     "clock.ntp_server: 127.0.0.1 is no address of another machine"}};
 
 void expect(std::span<const Case> cases) {
   for (const Case& row : cases) EXPECT_THAT(errors_of(row.json), ElementsAre(row.sentence));

@@ -238,13 +238,27 @@ class GridsOfOneName {
   std::map<Key, Has> has_;
 };
 
-/// A life that could write nothing down, and a power cut: the next one holds itself for the first.
-bool leaves_no_trace(const Evidence& evidence) {
-  std::set<std::int64_t> unwritten;  // lives
-  return std::ranges::any_of(evidence.events, [&](const Event& event) {
+/// A life that could write nothing down, and a power cut: where it was the life's end the next one holds
+/// itself for the first, and where it was before, this one knows nothing of what the earlier ones sent.
+bool knows_nothing(const Evidence& evidence) {
+  std::set<std::int64_t> unwritten, cut;  // lives
+  for (const Event& event : evidence.events) {
     if (event.kind == Kind::Said && event.text.contains("stamps may run backward"))
       unwritten.insert(event.life);
-    return event.kind == Kind::PowerCut && unwritten.contains(event.serial);
+    if (event.kind == Kind::PowerCut) cut.insert(event.serial);
+  }
+  return std::ranges::any_of(unwritten,
+                             [&](std::int64_t life) { return cut.contains(life) || cut.contains(life - 1); });
+}
+
+/// While no gateway ran the time of day was set: the next life sees that the run has gone on by less, and
+/// holds it for another (dispatch/run_watch.hpp), which begins with an empty map.
+bool may_hold_for_another(const Evidence& evidence) {
+  bool is_running = false;
+  return std::ranges::any_of(evidence.events, [&](const Event& event) {
+    if (event.kind == Kind::Begins) is_running = true;
+    if (event.kind == Kind::Ended) is_running = false;
+    return event.kind == Kind::ClockSet && !is_running && event.life > 0;
   });
 }
 
@@ -252,10 +266,10 @@ bool leaves_no_trace(const Evidence& evidence) {
 
 void grid_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMap);
-  const bool has_more_maps =
-      leaves_no_trace(evidence) || std::ranges::any_of(evidence.events, [](const Event& event) {
-        return event.what == kCourse || event.kind == Kind::NewRun;
-      });
+  const bool has_more_maps = knows_nothing(evidence) || may_hold_for_another(evidence) ||
+                             std::ranges::any_of(evidence.events, [](const Event& event) {
+                               return event.what == kCourse || event.kind == Kind::NewRun;
+                             });
   std::map<std::string, GridsOfOneName> names;
   const auto of = [&](const std::string& name) -> GridsOfOneName& {
     return names.try_emplace(name, has_more_maps).first->second;

@@ -1,11 +1,11 @@
 // Honest, Lights and Alive: of what the page, the panel and systemd are told.
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/checks_metrics.hpp"
 #include "simulation/courses.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/page_account.hpp"
@@ -168,59 +168,6 @@ void judge_last_answers(const Evidence& evidence, std::size_t begun, const Readi
     broken.push_back(icd::sentence("Honest: at ", reading.at, " the page says that scoring answered ",
                                    row.at("last_status").dump(), " last, and it was ", heard->status));
   }
-}
-
-/// The number of a metric, with its labels.
-std::optional<double> metric(const std::string& text, const std::string& name) {
-  const std::size_t at = text.find("\n" + name + " ");
-  if (at == std::string::npos) return std::nullopt;
-  return std::strtod(text.c_str() + at + name.size() + 2, nullptr);
-}
-
-/// Of alarms that come and go by time alone, which is no event.
-bool goes_by_time(const Json& alarm) {
-  const std::string id = alarm.at("id");
-  constexpr std::string_view kByTime[] = {"robot_silent",  "robots_silent",   "map_behind",   "maps_behind",
-                                          "queue_",        "clients_refused", "wrong_tokens", "strangers",
-                                          "robot_unknown", "command_post_",   "disk_full",    "reports_left"};
-  return std::ranges::any_of(kByTime, [&](std::string_view begins) { return id.starts_with(begins); });
-}
-
-/// The metrics name each alarm that the view has.
-void judge_alarms(const Reading& reading, Broken& broken) {
-  for (const Json& alarm : reading.view.at("alarms")) {
-    if (goes_by_time(alarm) || reading.metrics.contains("adit_alarm{id=" + alarm.at("id").dump() + ","))
-      continue;
-    broken.push_back(icd::sentence("Honest: at ", reading.at, " the metrics lack the alarm ", alarm.dump()));
-  }
-}
-
-/// The metrics say what the view says, where nothing happened between the two.
-void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& broken) {
-  if (reading.metrics.empty()) return;
-  for (std::size_t i = reading.asked; i < reading.measured; ++i) {
-    const Event& event = evidence.events[i];
-    const bool ours = event.what == "/adit/run" || event.what == "/metrics";
-    if (!ours && event.kind != Kind::Shows && event.kind != Kind::Told) return;
-  }
-  const auto compare = [&](const std::string& name, double shown) {
-    const auto told = metric(reading.metrics, name);
-    if (told && std::abs(*told - shown) < 1e-6) return;
-    broken.push_back(icd::sentence("Honest: at ", reading.at, " ", name, " is ", told.value_or(-1),
-                                   ", and by the view ", shown));
-  };
-  for (const Json& row : reading.view.at("activities")) {
-    const std::string labels = "{kind=" + row.at("kind").dump() + ",robot=" + row.at("robot").dump() + "}";
-    for (const char* const count : {"accepted", "forwarded", "replaced", "merged", "throttled", "failed"})
-      compare("adit_updates_" + std::string(count) + "_total" + labels, row.at(count));
-  }
-  judge_alarms(reading, broken);
-  for (const Json& row : reading.view.at("endpoints")) {
-    const std::string labels = "{endpoint=" + row.at("name").dump() + "}";
-    compare("adit_endpoint_up" + labels, row.at("connected") ? 1 : 0);
-    compare("adit_endpoint_last_status" + labels, row.at("last_status"));
-  }
-  if (!reading.view.at("run").is_null()) compare("adit_run_score", reading.view.at("run").at("score"));
 }
 
 /// That a message was not taken for want of room is said until the next one is: there may be none. And a

@@ -62,16 +62,21 @@ void paced(const Evidence& evidence, Broken& broken) {
   }
 }
 
-/// Whoever counts from its answers is found out by his first 429, and tried again after 10 s at the soonest
-/// (pace/rate_limit.hpp).
+/// Whoever counts from its answers is found out by his first 429 that is heard, and tried again after 10 s at
+/// the soonest (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {
-  std::map<std::string, double> last;
+  std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
     if (event.kind == Kind::Dies) last.clear();  // the answer may have been read and not yet understood
     disk.add(event);
+    const auto unheard = said.find(event.what);
+    if (event.kind == Kind::Replied && event.status == 429 && unheard != said.end()) {
+      last[event.what] = unheard->second;
+      said.erase(unheard);
+    }
     if (event.kind != Kind::Fault || event.who != kTooSoon || event.at < forgotten_until) continue;
     const auto before = last.find(event.what);
     if (event.serial != static_cast<std::int64_t>(Counting::What::Answers)) {
@@ -83,7 +88,7 @@ void learned(const Evidence& evidence, Broken& broken) {
                                      " came too soon for a Command Post that counts ", "from its answers, ",
                                      event.at - before->second, " s after the last time, at ", event.at));
     }
-    last[event.what] = event.at;
+    said[event.what] = event.at;
   }
 }
 

@@ -110,6 +110,32 @@ class OverTheApi(unittest.TestCase):
         connection.close()
         raucs.wait_until(lambda: self.left() == [], "nothing of it to be left")
 
+    def test_a_disk_that_fills_up_as_it_comes_has_its_room_again(self):
+        wanted = self.box.folder / "wanted"
+        self.aditd.stop()
+        shutil.rmtree(self.box.folder / "secrets")
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=96m", "adit-full", wanted], check=True)
+        self.addCleanup(subprocess.run, ["umount", wanted], check=True)
+        self.aditd = Aditd(self.box)
+        self.addCleanup(self.aditd.stop)
+        for _ in range(2):
+            status, said = self.aditd.ask("POST", "/adit/update", self.fills_the_disk(wanted, 40 << 20), **{"Content-Length": str(40 << 20)})
+            self.assertEqual((status, said), (503, "the bundle cannot be written: No space left on device"))
+            self.assertEqual(self.left(), [])
+            (wanted / "filler").unlink()
+        self.assertEqual(self.aditd.ask("POST", "/adit/update", self.bundles.make().read_bytes())[0], 200)
+        self.assertEqual(self.left(), ["update.json", "update.raucb"])
+
+    def fills_the_disk(self, folder, size):
+        """The pieces of a bundle; somebody else takes all room while they come."""
+        yield HEAD + bytes((1 << 20) - len(HEAD))
+        raucs.wait_until(lambda: self.left() == ["update.raucb.part"], "its beginning")
+        with contextlib.suppress(OSError), open(folder / "filler", "wb", buffering=0) as filler:
+            while filler.write(bytes(1 << 16)):
+                pass
+        for _ in range((size >> 20) - 1):
+            yield bytes(1 << 20)
+
     def refused_at_once(self, length, begins):
         """The answer to a bundle of which no more than its beginning was sent."""
         connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=60)

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <sstream>
 #include <string>
 
 namespace adit::uplink {
@@ -151,6 +152,28 @@ TEST(AnswerParser, TakesAnAnswerThatIsLongButNotTooLong) {
       parser.feed("HTTP/1.1 200 OK\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body),
       State::Whole);
   EXPECT_EQ(parser.take().body, body);
+}
+
+TEST(AnswerParser, GivesAnAnswerThatGoesOnInParts_HoweverLongAllOfItIs) {
+  for (const bool is_chunked : {false, true}) {
+    AnswerParser parser(kLongest);
+    EXPECT_EQ(parser.status(), 0);
+    ASSERT_EQ(parser.feed("HTTP/1.1 200 OK\r\nX: y\r\n"), State::Incomplete);
+    EXPECT_EQ(parser.status(), 0);
+    ASSERT_EQ(parser.feed(is_chunked ? "Transfer-Encoding: chunked\r\n\r\n" : "\r\n"), State::Incomplete);
+    EXPECT_EQ(parser.status(), 200);
+    EXPECT_EQ(parser.take_part(), "");
+    const std::string part(kLongest / 2, 'x');
+    std::ostringstream size;
+    size << std::hex << part.size() << "\r\n";
+    for (int i = 0; i < 20; ++i) {
+      const std::string piece = is_chunked ? size.str() + part + "\r\n" : part;
+      ASSERT_EQ(parser.feed(piece), State::Incomplete) << parser.fault();
+      ASSERT_EQ(parser.take_part(), part);
+    }
+    EXPECT_EQ(is_chunked ? parser.feed("0\r\n\r\n") : parser.feed_end(), State::Whole);
+    EXPECT_EQ(parser.take().body, "");
+  }
 }
 
 /// Who answered is told by it.

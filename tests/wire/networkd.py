@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import secrets
+import signal
 import subprocess
 import unittest
 
@@ -73,6 +74,9 @@ class Networkd:
     def _answers(self):
         return self.reload().returncode == 0
 
+    def hang(self):
+        self.daemon.send_signal(signal.SIGSTOP)
+
     def restart(self):
         self.daemon.kill()
         self.daemon.wait()
@@ -89,6 +93,21 @@ class Networkd:
             process.kill()
             process.wait()
         self.log.close()
+
+
+class AddressWatch(programs.Program):
+    """adit-network --watch on the box, or on another host that has two such interfaces; by its unit it is no root."""
+
+    def __init__(self, network, folder, host=None):
+        self.folder = folder
+        folder.mkdir(exist_ok=True)
+        super().__init__(network, host or network.box, folder / "log", [programs.BIN / "adit-network", "--watch", "--status", folder])
+        programs.wait_until((folder / "taken.json").exists, "adit-network --watch")
+
+    def taken(self):
+        """{("team0", "192.168.7.11"): mac}"""
+        told = json.loads((self.folder / "taken.json").read_text())
+        return {(each["interface"], each["address"]): each["mac"] for each in told["taken"]}
 
 
 class AditNetwork:

@@ -15,6 +15,8 @@ import unittest
 from unittest import mock
 
 import hosts
+import neighbour
+import networkd
 import programs
 from alarming import WithAlarms
 from networkd import AditNetwork
@@ -38,6 +40,16 @@ class AlarmsOfTheBox(WithAlarms):
         self.sees(stage, "disk_full", "bad", "box", "The disk is nearly full")
         filler.unlink()
         self.goes(stage, "disk_full")
+
+    def test_the_box_rests(self):
+        stage = self.stage()
+        self.assertEqual(stage.box.ask("POST /adit/spare/rest", body={})[0], 200)
+        self.sees(stage, "rests", "bad", "box", "This box rests and sends nothing", "for its spare")
+        self.assertEqual([alarm["id"] for alarm in self.view(stage)["alarms"]], ["rests"], "the only cause")
+        wait_until(lambda: stage.box.ask("POST /adit/spare/wake", body={})[0] == 200, "it to be woken up")
+        wait_until(lambda: self.view(stage)["lights"] and not self.alarm(stage, "rests"), "it to go on")
+        began(stage)
+        self.assertEqual(submit(stage).status_code, 201)
 
     def test_the_ledger_was_damaged(self):
         stage = self.stage()
@@ -156,19 +168,19 @@ class AlarmsOfTheBox(WithAlarms):
         self.tell_of_update(stage)
         self.goes(stage, "other_slot")
 
-    # By adit-network's file: it asks by ARP at each Test, as root.
     def test_our_address_is_taken(self):
+        """By another host, on either side, and once it is gone the alarm goes by itself."""
         stage = self.stage()
-        folder = stage.folder / "network" / "status"
-        folder.mkdir(parents=True, exist_ok=True)
-        probed = {"version": 1, "nonce": "0" * 32, "address": hosts.BOX_DARPA, "claimant": "02:00:00:00:00:07", "own": "",
-                  "found_on": "", "trouble": ""}
-        for claimant in ("02:00:00:00:00:07", ""):
-            (folder / "probed.new").write_text(json.dumps({**probed, "claimant": claimant}))
-            (folder / "probed.new").rename(folder / "probed.json")
-            if claimant:
-                self.sees(stage, "address_taken", "bad", "network", "Our address is taken", claimant)
-        self.goes(stage, "address_taken")
+        watch = networkd.AddressWatch(stage.network, stage.folder / "watch")
+        self.addCleanup(watch.stop)
+        for side, host, address, interface in (("command_post", stage.network.post, hosts.BOX_DARPA, "darpa0"),
+                                               ("team", stage.network.team, stage.network.box_address, "team0")):
+            with neighbour.Neighbour(stage.network, host, interface) as other:
+                other.take(address)
+                name = f"address_taken:{side}"
+                self.sees(stage, name, "bad", "network", "Our address is taken", f"{address} on {interface} is also {other.mac}'s")
+                other.leave()
+                self.goes(stage, name)
 
     def test_no_token_is_set_at_all(self):
         stage = self.stage()
@@ -222,6 +234,12 @@ class AlarmsOfTheBox(WithAlarms):
             stage = self.stage()
         self.sees(stage, "time_not_set", "wait", "box", "The box's time is not set", "of a wrong day")
         self.gone_after_a_restart(stage, "time_not_set")
+
+    def test_ntp_does_not_work(self):
+        """On a machine that keeps its time by itself."""
+        stage = self.stage(clock={"ntp_server": "192.168.7.5"})
+        self.sees(stage, "ntp", "wait", "box", "NTP does not work", "keeps its time by itself")
+        self.gone_after_a_restart(stage, "ntp", clock={"ntp_server": ""})
 
     @staticmethod
     def is_reached(stage):

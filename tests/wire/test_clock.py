@@ -2,15 +2,26 @@
 word of the operator. adit-clock is the real one, without the right to set this machine's clock."""
 
 import json
+import os
+import pathlib
 import shutil
+import struct
 import subprocess
 import time
 import unittest
+from unittest import mock
+
+import requests
 
 import hosts
-from programs import BIN, Stage, wait_until
+import maps
+import messages
+from programs import BIN, Stage, log_in, wait_until
+from reporting import submit
 
 DAYS = 90 * 86400.0
+YEARS = 10 * 365 * 86400.0
+PASSWORD = "correct horse battery"
 
 
 def setUpModule():
@@ -80,6 +91,14 @@ class Clock(unittest.TestCase):
         self.assertFalse((self.stage.box.state / "clock.json").exists())
         wait_until(lambda: "not permitted" in self.clock()["refusal"], "the refusal to be told")
 
+    def test_asks_for_the_command_posts_date_where_nobody_knows_better(self):
+        self.assertEqual(self.set_clock()["source"], "none")
+        asked = self.stage.box.state / "clock.json"
+        wait_until(asked.exists, "somebody's time to be asked for")
+        request = json.loads(asked.read_text())
+        self.assertEqual(request["source"], "command_post")
+        self.assertAlmostEqual(request["time"], time.time(), delta=10)
+
     def test_names_the_field_of_a_time_that_no_box_has(self):
         self.set_clock()
         wait_until(lambda: self.clock()["managed"], "adit-clock to be known")
@@ -87,6 +106,86 @@ class Clock(unittest.TestCase):
             status, said = self.stage.box.ask("POST /adit/clock", body={"time": wrong})
             self.assertEqual(status, 422, said)
             self.assertIn("time", said)
+
+
+class Step(unittest.TestCase):
+    """Somebody sets the clock by years, either way, while all goes on."""
+
+    def setUp(self):
+        if not shutil.which("cc"):
+            self.skipTest("no C compiler is here")
+        self.stage = Stage()
+        self.ahead = self.stage.folder / "ahead"
+        self.set_ahead(0)
+        library = self.stage.folder / "set_clock.so"
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", library, pathlib.Path(__file__).with_name("set_clock.c"), "-lm"], check=True)
+        self.enterContext(mock.patch.dict(os.environ, LD_PRELOAD=str(library), ADIT_CLOCK_AHEAD=str(self.ahead)))
+        self.enterContext(self.stage)
+
+    def set_ahead(self, seconds):
+        """In place: the programs see it at once."""
+        with self.ahead.open("r+b" if self.ahead.exists() else "wb") as file:
+            file.write(struct.pack("d", seconds))
+
+    def view(self):
+        return self.stage.box.ask("GET /adit/run")[1]
+
+    def ages(self):
+        """How long ago all is that the page shows with an age or on its time bar, by name."""
+        box, run = self.stage.box, self.view()
+        times = {"run_heard": run["run_heard"]}
+        times |= {f"robot {row['name']}": row["at"] for row in run["robots"]}
+        times |= {f"refusal {row['uri']}": row["at"] for row in run["refusals"]}
+        times |= {f"alarm {row['id']}": row["since"] for row in run["alarms"]}
+        for row in run["activities"]:
+            for name in ("last_accepted", "last_forwarded", "behind_since"):
+                times[f"{name} {row['robot']} {row['kind']}"] = row[name]
+        for report in box.reports():
+            times[f"report {report['number']}"] = report["received"]
+        for layer in box.ask("GET /adit/map")[1]["layers"]:
+            times |= {f"{name} of layer {layer['robot']}": layer[name] for name in ("first", "last")}
+        for track in box.ask("GET /adit/tracks")[1]["tracks"]:
+            times[f"track {track['robot']}"] = track["poses"][0][0]
+        for marker in box.ask("GET /adit/markers?since=0")[1]["markers"]:
+            times[f"marker {marker['id']}"] = marker["at"]
+        times |= {f"plot {i}": at for i, at in enumerate(box.ask("GET /adit/history")[1]["at"][:1])}
+        times |= {f"session {i}": row["seen"] for i, row in enumerate(box.ask("GET /adit/sessions")[1])}
+        return {name: self.view()["now"] - at for name, at in times.items() if at is not None}
+
+    def test_no_age_and_no_session_goes_by_it_and_the_ledger_neither(self):
+        box = self.stage.box
+        box.ask("POST /adit/password", body={"role": "operator", "code": self.code(), "password": PASSWORD}, token=None)
+        session = log_in(box, PASSWORD)
+        self.assertEqual(submit(self.stage).status_code, 201)
+        post = requests.Session()
+        style = messages.Style()
+        pose = {"name": "r1", "position": {"x": 4.0, "y": 0.0, "z": 0.0}, "orientation": maps.IDENTITY}
+        messages.post(post, box.url, "/state/update", {"poses": [pose]}, style)
+        messages.post(post, box.url, "/map/update", messages.map_update(maps.made_grid(20, 20), "r1", time.time(), style), style)
+        messages.post(post, box.url, "/state/update", {"poses": 7}, style)
+        wait_until(lambda: len(self.ages()) > 8 and "first of layer r1" in self.ages(), "all of it to be shown")
+        shown, stored = set(self.ages()), box.on_disk("SELECT received FROM report")
+        for ahead in (YEARS, -YEARS, 0.0):
+            self.set_ahead(ahead)
+            wait_until(lambda ahead=ahead: abs(self.view()["now"] - time.time() - ahead) < 60, "the step to be seen")
+            ages = self.ages()
+            self.assertLessEqual(shown - {"plot 0"}, set(ages))
+            for name, age in ages.items():
+                self.assertTrue(-5 < age < 600, f"{name}: {age:.0f} s ago, with the clock {ahead:.0f} s ahead")
+            self.assertEqual(box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
+            self.assertEqual(box.on_disk("SELECT received FROM report"), stored)
+            self.assertEqual(submit(self.stage).status_code, 201, "the same report: it is known")
+        self.set_ahead(-YEARS)
+        wait_until(lambda: abs(self.view()["now"] - time.time() + YEARS) < 60, "the step to be seen")
+        self.assertEqual(box.stop(), 0)
+        self.stage.restart_box()
+        wait_until(lambda: "first of layer r1" in self.ages(), "the picture to go on")
+        for name, age in self.ages().items():
+            self.assertTrue(-5 < age < 600, f"{name}: {age:.0f} s ago, after a restart")
+        self.assertEqual(self.stage.box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
+
+    def code(self):
+        return self.stage.box.said().split("code=")[1].split()[0].strip('"')
 
 
 if __name__ == "__main__":

@@ -7,9 +7,11 @@ import os
 import pty
 import select
 import signal
+import socket
 import subprocess
 import sys
 import termios
+import threading
 import time
 import unittest
 
@@ -68,6 +70,51 @@ class Terminal:
         self.process.wait()
         os.close(self.ours)
         os.close(self.theirs)
+
+
+class Line:
+    """A line to the box that is slow, that can be cut, and that knows what was asked on it."""
+
+    def __init__(self, stage, bytes_at_once=65536, pause=0.0):
+        self.stage, self.bytes_at_once, self.pause = stage, bytes_at_once, pause
+        self.listens = socket.create_server(("127.0.0.1", 0))
+        self.asked, self.came, self.open = [], 0, set()
+        threading.Thread(target=self._serve, daemon=True).start()
+
+    @property
+    def at(self):
+        return f"127.0.0.1:{self.listens.getsockname()[1]}"
+
+    def cut(self):
+        """All connections; new ones can be made."""
+        for side in list(self.open):
+            with contextlib.suppress(OSError):
+                side.shutdown(socket.SHUT_RDWR)
+
+    def close(self):
+        self.listens.close()
+        self.cut()
+
+    def _serve(self):
+        with contextlib.suppress(OSError):
+            while True:
+                near, _ = self.listens.accept()
+                threading.Thread(target=self._carry, args=(near,), daemon=True).start()
+
+    def _carry(self, near):
+        with near, contextlib.suppress(OSError):
+            far = socket.create_connection((self.stage.network.box_address, programs.PORT))
+            with far:
+                self.open |= {near, far}
+                self.asked.append(near.recv(65536).decode())
+                far.sendall(self.asked[-1].encode())
+                while piece := far.recv(self.bytes_at_once):
+                    near.sendall(piece)
+                    self.came += len(piece)
+                    time.sleep(self.pause)  # it is what makes the line slow
+
+    def targets(self):
+        return [asked.split()[1] for asked in self.asked]
 
 
 class Case(unittest.TestCase):
@@ -206,6 +253,52 @@ class Watching(Case):
             self.assertEqual(watch.wait(30), 0)
             self.assertLess(views[0]["now"], views[2]["now"])
             self.assertEqual(views[0]["run"]["remaining_reports"], 45)
+
+    def on_a_line(self, stage, line, *said):
+        """What `adit watch` prints there, in a file."""
+        self.addCleanup(line.close)
+        path = stage.folder / "followed"
+        command = [BIN / "adit", "watch", *said, "--at", line.at, "--token-file", stage.folder / "secrets" / "team.token"]
+        with open(path, "wb") as output:
+            watch = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=UTF8)
+        self.addCleanup(watch.wait)
+        self.addCleanup(watch.kill)
+        return path
+
+    def test_is_told_what_changes_and_does_not_ask_again(self):
+        with self.stage() as stage:
+            line = Line(stage)
+            said = self.on_a_line(stage, line, "--json")
+            views = lambda: [json.loads(text) for text in said.read_text().split("\n")[:-1]]
+            wait_until(lambda: len(views()) >= 1, "the view")
+            whole = line.came
+            is_taken(stage, REPORT)
+            wait_until(lambda: any(report["state"] == "answered" for report in views()[-1]["reports"]), "the report")
+            wait_until(lambda: len(views()) >= 5, "views")
+            self.assertEqual(line.targets(), ["/adit/events"], "it asked once")
+            self.assertLess(line.came - whole, 3 * whole, "what it was told then are changes")
+            self.assertEqual(set(views()[-1]), set(stage.box.ask("GET /adit/run")[1]))
+
+    def test_takes_the_line_up_again_and_misses_nothing(self):
+        with self.stage() as stage:
+            line = Line(stage)
+            said = self.on_a_line(stage, line)
+            wait_until(lambda: "reports left" in said.read_text(), "all of it once")
+            line.cut()
+            is_taken(stage, REPORT)
+            wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
+            self.assertEqual(set(line.targets()), {"/adit/events"})
+            self.assertGreaterEqual(len(line.targets()), 2)
+
+    def test_of_a_box_on_a_slow_line(self):
+        with self.stage() as stage:
+            line = Line(stage, bytes_at_once=128, pause=0.2)  # the view takes longer than an answer may
+            said = self.on_a_line(stage, line)
+            wait_until(lambda: "reports left" in said.read_text(), "all of it once")
+            is_taken(stage, REPORT)
+            wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
+            self.assertNotIn("cannot be asked", said.read_text())
+            self.assertEqual(line.targets(), ["/adit/events"])
 
     def test_of_an_adit_that_is_not_there(self):
         with self.stage() as stage:

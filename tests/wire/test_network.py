@@ -31,7 +31,7 @@ class WithAStandIn(Change):
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "taken back"))
         self.assertEqual(status["why"], "nobody confirmed it within 15 s")
-        self.assertNotIn("40-adit-team.network", self.box.files("networkd"))
+        self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
 
     def test_a_confirmed_change_stays(self):
         nonce = self.box.want(team="192.168.8.11")
@@ -40,7 +40,7 @@ class WithAStandIn(Change):
         self.ends()
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "confirmed"))
-        self.assertIn("Address=192.168.8.11/24", (self.folder / "networkd" / "50-adit-team.network").read_text())
+        self.assertIn("Address=192.168.8.11/24", (self.folder / "networkd" / "05-adit-team.network").read_text())
         self.restart_the_machine()
         self.has(NEW)
 
@@ -145,7 +145,7 @@ class WithAStandIn(Change):
         status = self.box.status()
         self.assertEqual(status["last"], "taken back")
         self.assertIn("no bus", status["why"])
-        self.assertNotIn("40-adit-team.network", self.box.files("networkd"))
+        self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
 
     def test_an_address_that_somebody_has_is_not_taken(self):
         hosts.ip("-n", self.network.team, "address", "add", "192.168.8.11/24", "dev", "eth0")

@@ -1,5 +1,6 @@
 """Changes of the box's addresses by a real systemd-networkd."""
 
+import pathlib
 import unittest
 
 import dhcp
@@ -15,7 +16,10 @@ class WithNetworkd(Change):
     def setUp(self):
         super().setUp()
         networkd.needs_networkd()
-        hosts.ip("-n", self.network.box, "address", "flush", "dev", "darpa0")  # with its route, which networkd would keep
+        # Addresses that somebody else set. networkd would keep darpa0's route; and the kernel keeps team0's without a broadcast address, so
+        # that a networkd (252) which is restarted and has the same one to set sets it for ever, and hears nobody.
+        for port in "team0", "darpa0":
+            hosts.ip("-n", self.network.box, "address", "flush", "dev", port)
         self.box = networkd.AditNetwork(self.network, self.folder)
         self.networkd = networkd.Networkd(self.network, self.folder)
         self.addCleanup(self.networkd.stop)
@@ -60,14 +64,44 @@ class WithNetworkd(Change):
 
     def test_networkd_may_restart_while_a_change_waits(self):
         self.confirm_first()
-        self.box.want(within_ms=20000, team="192.168.8.11")
+        nonce = self.box.want(within_ms=600000, team="192.168.8.11")
         self.has(NEW)
         self.networkd.restart()
         self.assertEqual(self.box.addresses("team0"), [NEW])
+        self.box.ask("word.json", nonce=nonce, word="back")
         self.ends()
         self.has(OLD)
         self.networkd.restart()
         self.has(OLD)
+
+    def test_networkd_may_die_as_it_is_asked(self):
+        """Then the change is made by the next one, or taken back, and what is told is so."""
+        self.confirm_first()
+        for _ in range(3):
+            self.networkd.hang()
+            nonce = self.box.ask("wanted.json", confirm_within_ms=600000, numbers=self.box.numbers(team="192.168.8.11"))
+            self.box.start()
+            wait_until(self.is_asked, "networkd to be asked")
+            self.networkd.restart()
+            wait_until(lambda: self.is_made(nonce) or self.box.process.poll() is not None, "the change to be made, or not")
+            if self.is_made(nonce):
+                self.box.ask("word.json", nonce=nonce, word="back")
+            else:
+                self.assertIn("it could not be applied: ", self.box.status()["why"])
+            self.ends()
+            self.assertEqual((self.box.status()["pending"], self.box.status()["last"]), (None, "taken back"))
+            # Where no udev is, a networkd that is started leaves an address alone that it did not set itself.
+            wait_until(lambda: OLD in self.box.addresses("team0"), f"team0 to have {OLD}")
+            hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0", "to", NEW)
+
+    def is_asked(self):
+        """Whether adit-network waits for networkctl."""
+        asking = pathlib.Path(f"/proc/{self.box.process.pid}/task/{self.box.process.pid}/children").read_text().split()
+        return any(pathlib.Path(f"/proc/{each}/comm").read_text() == "networkctl\n" for each in asking)
+
+    def is_made(self, nonce):
+        pending = self.box.pending()
+        return bool(pending) and pending["nonce"] == nonce and NEW in self.box.addresses("team0")
 
     def test_a_confirmation_disturbs_nothing(self):
         self.box.put("endpoints.json", endpoints=["10.100.1.200", "10.100.2.201", "172.20.0.1"])

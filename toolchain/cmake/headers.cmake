@@ -23,5 +23,5 @@ adit_way(fast OPTIONS $<$<CONFIG:Release>:-O3>)  # what works on each byte of a 
 if(ADIT_TESTS OR ADIT_REHEARSAL)
   find_package(nlohmann_json REQUIRED)
   adit_way(soon HEADERS <nlohmann/json.hpp> LIBRARIES nlohmann_json::nlohmann_json
-    OPTIONS $<$<CONFIG:Release>:-O1> $<$<CONFIG:Release>:-Wno-maybe-uninitialized>)  # which GCC raises falsely at -O1
+    OPTIONS $<$<CONFIG:Release>:-O1> $<$<AND:$<CONFIG:Release>,$<CXX_COMPILER_ID:GNU>>:-Wno-maybe-uninitialized>)  # which it raises falsely at -O1
 endif()

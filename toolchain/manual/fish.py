@@ -13,15 +13,18 @@ LISTS = """function __{name}_lists # WORD...: what `{name} complete` lists, of t
     command {name} complete $argv $asked 2>/dev/null
 end
 
-function __{name}_at # COMMAND [WORD]: whether they are what was said so far; "": no word
-    set -l words
+function __{name}_said # the words that were said so far, one a line, without options and their values
     set -l before ""
     for each in (commandline -opc)[2..]
         if not string match -qr -- '^-' $each; and not contains -- $before {valued}
-            set -a words $each
+            echo $each
         end
         set before $each
     end
+end
+
+function __{name}_at # COMMAND [WORD]: whether they are what was said so far; "": no word
+    set -l words (__{name}_said)
     test (count $words) -ge (count $argv); or return 1
     for at in (seq (count $argv))
         test "$words[$at]" = "$argv[$at]"; or return 1
@@ -29,14 +32,7 @@ function __{name}_at # COMMAND [WORD]: whether they are what was said so far; ""
 end
 
 function __{name}_no_word # [COMMAND]: whether nothing else was said so far
-    set -l words
-    set -l before ""
-    for each in (commandline -opc)[2..]
-        if not string match -qr -- '^-' $each; and not contains -- $before {valued}
-            set -a words $each
-        end
-        set before $each
-    end
+    set -l words (__{name}_said)
     test "$words" = "$argv"
 end
 """

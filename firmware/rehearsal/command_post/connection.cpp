@@ -193,7 +193,8 @@ Connection::End Connection::serve() {
         break;
     }
     if (outcome.answer.status == 0) return End::Closed;
-    if (!write(bytes_of(outcome, request->method == "HEAD"))) return End::Closed;
+    if (!write(bytes_of(outcome, request->method == "HEAD", std::chrono::system_clock::now())))
+      return End::Closed;
     if (outcome.after == After::KeepOpen) continue;
     end(outcome.after);
     return End::Closed;

@@ -1,5 +1,8 @@
 #include "rehearsal/command_post/http.hpp"
 
+#include <array>
+#include <ctime>
+
 namespace adit::rehearsal {
 namespace {
 
@@ -40,6 +43,15 @@ std::string_view reason_of(int status) {
   }
 }
 
+/// "Sun, 06 Nov 1994 08:49:37 GMT" (RFC 9110 5.6.7); no program here has a locale.
+std::string http_date(std::chrono::system_clock::time_point now) {
+  const std::time_t seconds = std::chrono::system_clock::to_time_t(now);
+  std::tm utc{};
+  (void)gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  return {text.data(), std::strftime(text.data(), text.size(), "%a, %d %b %Y %H:%M:%S GMT", &utc)};
+}
+
 }  // namespace
 
 std::string_view path_of(std::string_view target) {
@@ -51,11 +63,12 @@ std::string_view path_of(std::string_view target) {
   return target.substr(0, target.find('?'));
 }
 
-std::string bytes_of(const Outcome& outcome, bool head) {
+std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now) {
   const Answer& answer = outcome.answer;
   std::string bytes =
       "HTTP/1.1 " + std::to_string(answer.status) + " " + std::string(reason_of(answer.status));
   bytes += "\r\nContent-Length: " + std::to_string(answer.body.size());
+  bytes += "\r\nDate: " + http_date(now);
   if (!answer.content_type.empty()) bytes += "\r\nContent-Type: " + answer.content_type;
   for (const auto& [name, value] : answer.headers)
     bytes.append("\r\n").append(name).append(": ").append(value);

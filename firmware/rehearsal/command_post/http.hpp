@@ -71,7 +71,8 @@ struct Outcome {
   std::function<Outcome()> then;  // called while the request still is
 };
 
-/// The answer's bytes as they go to the socket; without its body for a HEAD request.
-std::string bytes_of(const Outcome& outcome, bool head);
+/// The answer's bytes as they go to the socket; without its body for a HEAD request. Dated, as what has a
+/// clock must do (RFC 9110 6.6.1).
+std::string bytes_of(const Outcome& outcome, bool head, std::chrono::system_clock::time_point now);
 
 }  // namespace adit::rehearsal

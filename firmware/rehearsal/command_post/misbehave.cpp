@@ -92,7 +92,7 @@ Outcome spoiled(Action action, const Request& request, Outcome decided) {
     case Action::RecordThenFail:
       return failure();
     case Action::HalfAnswer: {
-      std::string bytes = bytes_of(decided, request.method == "HEAD");
+      std::string bytes = bytes_of(decided, request.method == "HEAD", std::chrono::system_clock::now());
       bytes.resize(bytes.size() / 2);
       return broken(std::move(bytes));
     }

@@ -1,4 +1,5 @@
 // Where an alarm's action leads on this page: /#report=7, /#reports, /#robot=uav5, /#aside.
+import { reveal } from "./reports.js";
 import { closeSide, goTab, openSide } from "./side.js";
 
 const find = (selector, key) => [...document.querySelectorAll(selector)].find(({ dataset }) => dataset.key === key);
@@ -9,12 +10,12 @@ function show(node) {
 }
 
 const WAYS = {
-  report: (number) => {
+  report: (number) => reveal(Number(number)), // however far down the list it is
+  reports: () => {
     closeSide();
     goTab("reports");
-    show(find("#reports .rows > li", number));
+    show(document.querySelector("#reports .rows > li"));
   },
-  reports: () => WAYS.report(""),
   robot: (name) => {
     closeSide();
     goTab("robots");

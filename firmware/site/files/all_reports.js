@@ -1,26 +1,53 @@
-// Every report: an event has the newest 200, and those with which something is still to happen; the others are asked for.
+// Every report: an event has the newest 200, and those with which something is still to happen. The others are asked for once, and then each that changes.
 import { get } from "./session.js";
 
 const IN_EVENT = 200;
-const EVERY = 60_000; // ms: what others do to an old one is known by then
+const RETRY = 5000, EVERY = 60_000; // ms
+const OPEN = ["received", "waiting", "sending", "in doubt"];
 
 const known = new Map(); // by number
+let newest = new Set(); // numbers, of the last event
+let isWhole = false; // all are known as they are: each change since was in an event
 let asked = -Infinity;
 
-async function learn() {
-  asked = performance.now();
-  const rows = await get("/adit/reports").catch(() => ((asked = -Infinity), []));
-  for (const row of rows) if (!known.has(row.number) || known.get(row.number).changed < row.changed) known.set(row.number, row);
+const isOpen = ({ state }) => OPEN.includes(state);
+const sameClock = (one, other) => Math.abs(one.received - other.received) < 1;
+
+/** What an event has is newer, and so may be what was heard meanwhile, unless the box's clock was set. */
+function learn(row) {
+  const was = known.get(row.number), isLater = was && was.changed > row.changed && sameClock(was, row);
+  if (!newest.has(row.number) && !isLater) known.set(row.number, row);
 }
 
-/** The reports of an event and those that are older than its, newest first. */
-export function allReports({ reports }) {
-  for (const row of reports) known.set(row.number, row);
+async function learnAll() {
+  asked = performance.now();
+  isWhole = true; // what changes from now on is told
+  try {
+    for (const row of await get("/adit/reports")) learn(row);
+  } catch {
+    isWhole = false;
+  }
+}
+
+/** What became of one that events do not have any more. */
+const learnOne = (number) => get(`/adit/reports/${number}`).then(learn, () => (isWhole = false));
+
+/** The reports of an event and those that are older than its, newest first. `lost`: the box does not answer, so that changes go by. */
+export function allReports({ reports }, lost) {
+  const before = newest;
+  newest = new Set(reports.map(({ number }) => number));
+  for (const row of reports) {
+    const was = known.get(row.number);
+    if (was && !sameClock(was, row)) isWhole = false; // all times are others
+    known.set(row.number, row);
+  }
+  if (lost) isWhole = false;
   if (reports.length < IN_EVENT) {
     if (known.size > reports.length) known.clear();
     return reports;
   }
-  if (performance.now() - asked > EVERY) learn();
-  const newest = new Set(reports.map(({ number }) => number));
+  const wait = isWhole ? Infinity : RETRY;
+  if (!lost && performance.now() - asked > (reports.every(isOpen) ? EVERY : wait)) learnAll(); // of more than 200 open ones events have not all
+  for (const number of before) if (!newest.has(number) && isOpen(known.get(number))) learnOne(number);
   return known.size === reports.length ? reports : [...reports, ...[...known.values()].filter(({ number }) => !newest.has(number)).sort((a, b) => b.number - a.number)];
 }

@@ -1,4 +1,5 @@
 // The support bundle, the factory reset, and what the box is made of.
+import { clockSaid } from "./clock.js";
 import { open } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, post, sitOutReset } from "./session.js";
@@ -66,7 +67,7 @@ export async function showAbout() {
   const section = document.getElementById("about");
   try {
     const { version, build, licence, uptime, kernel, model, board, parts } = await get("/adit/about");
-    const facts = [["Version", version], ["Build", build], ["Licence", licence], ["Running for", age(uptime)], ["Kernel", kernel], ["Machine", model], ["Board", board?.title]];
+    const facts = [["Version", version], ["Build", build], ["Licence", licence], ["Running for", age(uptime)], ["Clock", await clockSaid()], ["Kernel", kernel], ["Machine", model], ["Board", board?.title]];
     section.querySelector("dl").replaceChildren(...facts.filter(([, value]) => value).map(([name, value]) => fact(name, value)));
     section.querySelector("tbody").replaceChildren(...parts.map(part));
   } catch (error) {

@@ -15,12 +15,28 @@ async function compare() {
   return { box, ahead: box.now - (asked + Date.now()) / 2000 };
 }
 
+const SOURCES = {
+  none: "nobody set it since the box started",
+  last_known: "it went on from the last time known",
+  robots: "set by the robots’ stamps",
+  command_post: "set by the Command Post’s answers",
+  chip: "set by the box’s own clock",
+  operator: "set by an operator",
+  ntp: "set by an NTP server",
+};
+
+/** What the box says of its time, in words; "" where it does not. */
+export async function clockSaid() {
+  const { managed, source, ntp } = await get("/adit/clock");
+  return [managed ? SOURCES[source] : "kept by the machine itself", ntp].filter(Boolean).join("; ");
+}
+
 /** To be asked as a page begins. Gives whether the box was asked to set its clock. */
 export async function offerClock() {
   const { role } = await session();
   if (role !== "operator" || sessionStorage.getItem(SAID_NO)) return false;
   const { box, ahead } = await compare();
-  if (!box.managed || Math.abs(ahead) <= MOST) return false;
+  if (!box.managed || box.is_kept || Math.abs(ahead) <= MOST) return false;
   const sure = await confirmed({
     title: "Set the box’s clock?",
     text: `The box has ${utc(box.now)} UTC, which is ${age(Math.abs(ahead))} ${ahead > 0 ? "ahead of" : "behind"} this device. Reports, stamps and who is logged in stay as they are.`,

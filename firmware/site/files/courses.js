@@ -82,9 +82,6 @@ function update(node, name) {
   remove.hidden = readOnly || !set;
 }
 
-/** What is typed for a token and not set yet; null: nothing. */
-export const typedToken = (name) => document.querySelector(`form.token[data-key="${name}"]`)?.field.control.value.trim() || null;
-
 /** Sets whatever is typed and not set yet; whether all of it was taken. */
 export async function setTyped() {
   for (const node of document.querySelectorAll("form.token")) {

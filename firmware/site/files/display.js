@@ -36,7 +36,7 @@ function show({ view, time, lost }) {
   const calling = view.alarms.filter(({ severity }) => severity !== "wait").sort((a, b) => a.acknowledged - b.acknowledged); // what is new first
   showAttention(calling.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
-  showEnds(view.endpoints, lost);
+  showEnds(view, lost);
   showRobots(view, time, lost);
   showReports(view);
   map.show(view);

@@ -1,17 +1,19 @@
 // The map: the picture of what was forwarded, and on it robots, their tracks, markers and reports. Drawn again only when something changed.
 import { listenTo } from "./map_input.js";
 import { Labels } from "./map_labels.js";
+import { drawLayers, fetchLayers } from "./map_layers.js";
 import { Markers, writeMarkers } from "./map_markers.js";
-import { drawFigures, drawLines, drawOrigin, drawScale } from "./map_metres.js";
+import { drawFigures, drawLines, drawOrigin, drawScale, takenByMetres } from "./map_metres.js";
 import { Picture } from "./map_picture.js";
 import { drawCross, drawPairRings, drawReports, nameReports } from "./map_reports.js";
 import { drawRobots, isStale, keepOffRobots, nameRobots, robotAt } from "./map_robots.js";
 import { Ruler } from "./map_ruler.js";
 import { drawShapes } from "./map_shapes.js";
 import { coloursOf, looksOf } from "./map_theme.js";
-import { drawLayer, fetchLayer, Tiles } from "./map_tiles.js";
+import { Tiles } from "./map_tiles.js";
 import { drawTracks, Tracks } from "./map_tracks.js";
 import { MapView } from "./map_view.js";
+import { Steps } from "./steps.js";
 import { whenThemeChanges } from "./theme_now.js";
 
 const PAIR_RIM = 4; // metres around two reports that are compared
@@ -24,6 +26,7 @@ export class MapOfRun {
   #tiles = new Tiles(() => this.redraw());
   #markers = new Markers(() => this.redraw());
   #tracks = new Tracks(() => this.redraw());
+  #steps = new Steps();
   #ruler = new Ruler();
   #run = null;
   #ill = new Set(); // robots whose map does not come
@@ -104,6 +107,7 @@ export class MapOfRun {
 
   show(run) {
     this.#run = run;
+    if (this.#steps.seen(run.now)) this.#askAgain();
     if (run.map_version !== this.#version && !this.#asked) this.#refresh(run.map_version);
     this.#markers.follow(run.marker_version);
     this.#tracks.follow(run);
@@ -131,11 +135,17 @@ export class MapOfRun {
     this.#refresh(-1);
   }
 
+  /** Somebody set the box's clock: all of it has another time. */
+  #askAgain() {
+    this.#version = -1;
+    for (const kept of [this.#tiles, this.#markers, this.#tracks]) kept.forget();
+  }
+
   async #refresh(version) {
     this.#asked = true;
     try {
       await this.#tiles.refresh();
-      for (const layer of this.#layers()) fetchLayer(this.#view, this.#tiles, layer, this.#at, this.#picture.density());
+      fetchLayers(this.#view, this.#tiles, this.#layers(), this.#at, this.#picture.density());
       this.#version = version;
       this.onLayers();
     } catch {
@@ -261,7 +271,7 @@ export class MapOfRun {
     return layers.sort((a, b) => (a.kind === "cloud") - (b.kind === "cloud") || (a.robot !== "") - (b.robot !== "") || a.robot.localeCompare(b.robot));
   }
   #drawMaps = (paint, view, piece) => {
-    for (const layer of this.#layers()) drawLayer(paint, view, this.#tiles, layer, this.#at, this.#picture.density(), piece);
+    drawLayers(paint, view, this.#tiles, this.#layers(), this.#at, this.#picture.density(), piece);
     drawLines(paint, this.#colours, view);
     drawOrigin(paint, this.#colours, view, this.#picture.fontSize / 14);
   };
@@ -280,6 +290,7 @@ export class MapOfRun {
     const { reports, robots, markers } = this.#places, size = this.#picture.fontSize, colours = this.#colours;
     const rim = [(view.width - this.#view.width) / 2, (view.height - this.#view.height) / 2];
     const labels = new Labels(paint, colours, size, { width: view.width, height: view.height, rim });
+    for (const [left, top, right, bottom] of takenByMetres(this.#view, size)) labels.keepOffBox([left + rim[0], top + rim[1], right + rim[0], bottom + rim[1]]);
     const robotSize = size / 1.8, now = this.#now();
     keepOffRobots(labels, view, robots, robotSize);
     if (this.#pair) drawPairRings(paint, colours, labels, view, this.#pair, size);

@@ -28,6 +28,11 @@ export class Labels {
     this.#taken.push([left - size, top - size, left + size, top + size]);
   }
 
+  /** Something else is written there: [left, top, right, bottom]. */
+  keepOffBox(box) {
+    this.#taken.push(box);
+  }
+
   #isFree = (box) => !this.#taken.some(([a, b, c, d]) => box[0] < c && box[2] > a && box[1] < d && box[3] > b);
 
   /** Right of the place, else left of it, above or below; what is in sight is not cut at the edge. `away`: pixels from the place. Gives whether it is written. */

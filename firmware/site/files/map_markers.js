@@ -48,6 +48,11 @@ export class Markers {
     }
   }
 
+  /** All are asked for again. */
+  forget() {
+    this.#version = 0;
+  }
+
   #take({ version, whole, left_out, markers, gone }) {
     if (whole) this.#all.clear();
     const key = ({ ns, id }) => `${id} ${ns}`;

@@ -59,24 +59,44 @@ function write(paint, colours, text, left, top, align) {
   paint.fillText(text, left, top);
 }
 
-/** The figures of the lines, below and at the left; those that would stand upon the scale are left out. */
-export function drawFigures(paint, colours, view, size) {
-  const { left, right, bottom, top } = view.bounds(), step = stepOf(view.scale), small = Math.max(11, size * 0.86);
-  Object.assign(paint, { font: `500 ${small}px system-ui, sans-serif`, textBaseline: "middle", lineJoin: "round", lineWidth: small / 3, strokeStyle: colours.ground, fillStyle: colours.soft });
+const fontOf = (size) => Math.max(11, size * 0.86);
+
+/** The figures of the lines, below and at the left: [text, left, top, align]; those that would stand upon the scale are left out. */
+function* figuresOf(view, size) {
+  const { left, right, bottom, top } = view.bounds(), step = stepOf(view.scale), small = fontOf(size);
   for (const x of multiples(left, right, step)) {
     const [at] = view.toPixel({ x, y: 0 });
-    if (at > NAMES * small && at < view.width - 2 * small) write(paint, colours, minus(x), at, view.height - small * 0.8, "center");
+    if (at > NAMES * small && at < view.width - 2 * small) yield [minus(x), at, view.height - small * 0.8, "center"];
   }
   for (const y of multiples(bottom, top, step)) {
     const at = view.toPixel({ x: 0, y })[1];
-    if (at > TOOLS && at < view.height - 4.5 * small) write(paint, colours, minus(y), small * 0.4, at, "left");
+    if (at > TOOLS && at < view.height - 4.5 * small) yield [minus(y), small * 0.4, at, "left"];
   }
+}
+
+export function drawFigures(paint, colours, view, size) {
+  const small = fontOf(size);
+  Object.assign(paint, { font: `500 ${small}px system-ui, sans-serif`, textBaseline: "middle", lineJoin: "round", lineWidth: small / 3, strokeStyle: colours.ground, fillStyle: colours.soft });
+  for (const figure of figuresOf(view, size)) write(paint, colours, ...figure);
   paint.textAlign = "left";
+}
+
+const scaleOf = (view, size) => ({ length: stepOf(view.scale), left: size * 0.5, top: view.height - size * 2.4 });
+
+/** What figures and scale take: [left, top, right, bottom], pixels of the view. */
+export function* takenByMetres(view, size) {
+  const small = fontOf(size), letter = small * 0.62;
+  for (const [text, left, top, align] of figuresOf(view, size)) {
+    const from = align === "center" ? left - text.length * letter / 2 : left;
+    yield [from, top - small * 0.6, from + text.length * letter, top + small * 0.6];
+  }
+  const { length, left, top } = scaleOf(view, size);
+  yield [left, top - size * 0.7, left + length * view.scale + size * 4, top + size * 0.7];
 }
 
 /** A line of a round length in the corner, above the figures. */
 export function drawScale(paint, colours, view, size) {
-  const length = stepOf(view.scale), width = length * view.scale, left = size * 0.5, top = view.height - size * 2.4;
+  const { length, left, top } = scaleOf(view, size), width = length * view.scale;
   for (const [line, colour] of [[6, colours.ground], [2.5, colours.ink]]) {
     Object.assign(paint, { lineWidth: line, strokeStyle: colour });
     paint.beginPath();

@@ -1,7 +1,9 @@
 // The picture of the maps, as the box has it: which layers and tiles there are, and their images, each fetched
 // when it is looked at and its version changed (README.md: GET /adit/map).
 
-const AT_ONCE = 4, MOST_IMAGES = 400;
+const AT_ONCE = 4, FINER_AT_ONCE = 2, MOST_IMAGES = 500; // a finer tile may have to be drawn first
+
+const overlap = (a, b) => a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 
 /** Tells of a time and colours whether a tile's answer is what it was then, too: it says from when to when it was so. */
 function spanOf({ headers }, name) {
@@ -12,6 +14,7 @@ function spanOf({ headers }, name) {
 export class Tiles {
   layers = new Map(); // "grid r1" to {kind, robot, bounds, tiles: Map("level/x/y" to {version, first, stamp, blank})}
   metresPerPixel = [0.25, 1, 4];
+  finerMetresPerPixel = []; // of levels -1, -2
   side = 256;
   colours = null; // {free, occupied, heights}: of the images
   heights = null; // {low, high}, in metres, over which the colours of all clouds are spread
@@ -23,6 +26,7 @@ export class Tiles {
   #images = new Map(); // "grid/r1/0/1/2" to {name, image}: what was asked for, and what was last fetched
   #queue = [];
   #loading = 0;
+  #loadingFiner = 0;
   #changed;
   #base;
 
@@ -56,7 +60,7 @@ export class Tiles {
   async refresh() {
     let map = await this.#ask();
     if (map.version < this.#version) {
-      this.#forget(); // the box restarted, and its picture with it
+      this.forget(); // the box restarted, and its picture with it
       map = await this.#ask();
     }
     this.#take(map);
@@ -72,12 +76,14 @@ export class Tiles {
     if (map.version === this.#version) return;
     this.#version = map.version;
     this.metresPerPixel = map.metres_per_pixel;
+    this.finerMetresPerPixel = map.finer_metres_per_pixel;
     this.side = map.tile_side;
     this.colours = map.colours;
     for (const { tiles, ...layer } of map.layers) {
       const key = `${layer.kind} ${layer.robot}`;
       const known = this.layers.get(key) ?? { tiles: new Map() };
       this.layers.set(key, Object.assign(known, layer));
+      if (layer.finer?.area) this.#ageFiner(layer);
       for (const tile of tiles) {
         const place = `${tile.level}/${tile.x}/${tile.y}`;
         known.tiles.set(place, tile);
@@ -86,6 +92,12 @@ export class Tiles {
     }
     this.#spreadColours();
     this.#changed();
+  }
+
+  #ageFiner({ kind, robot, finer: { area } }) {
+    for (const [path, known] of this.#images) {
+      if (known.isFiner && path.startsWith(this.#pathOf(kind, robot, "")) && overlap(this.#areaOf(known.place), area)) known.isOld = true;
+    }
   }
 
   /** In steps, so that not every map gives every cloud new colours. */
@@ -97,7 +109,8 @@ export class Tiles {
     this.heights = { low, high: Math.max(high, low + 4) };
   }
 
-  #forget() {
+  /** All is asked for again. */
+  forget() {
     this.layers.clear();
     this.#images.clear();
     this.#version = 0;
@@ -128,29 +141,64 @@ export class Tiles {
     const tile = layer.tiles.get(place);
     if (!tile || (at === null ? tile.blank : at < tile.first)) return null;
     const isNewest = at === null || (at >= tile.stamp && !tile.blank);
-    const path = `${this.#base}/map/${layer.kind}/${layer.robot || "-"}/${place}.png`;
-    const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${this.#coloursOf(layer)}`;
-    let known = this.#images.get(path);
-    if (!known) this.#images.set(path, (known = { name: "", image: null, place }));
-    known.used = performance.now();
-    if (known.name !== name && !(at !== null && known.isAsOf?.(at, this.#coloursOf(layer)))) {
-      known.name = name;
-      this.#queue = this.#queue.filter((other) => other.known !== known);
-      this.#queue.push({ known, name });
-      this.#load();
-    }
+    const path = this.#pathOf(layer.kind, layer.robot, place), colours = this.#coloursOf(layer);
+    const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${colours}`;
+    const known = this.#known(path, place);
+    if (known.name !== name && !(at !== null && known.isAsOf?.(at, colours))) this.#want(known, name);
     return known.image;
   }
 
+  /** The same of a finer level; `asks`: it is fetched where it is not there. */
+  finerImage(layer, place, asks) {
+    const path = this.#pathOf(layer.kind, layer.robot, place), colours = this.#coloursOf(layer);
+    if (!asks) return this.#images.get(path)?.image ?? null;
+    const known = this.#known(path, place);
+    known.isFiner = true;
+    if (known.isOld || known.version === undefined) Object.assign(known, { version: layer.finer.version, isOld: false });
+    if (known.colours !== colours) Object.assign(known, { colours, etag: "" });
+    const name = `${path}?v=${known.version}${colours}`;
+    if (known.name !== name) this.#want(known, name);
+    return known.image;
+  }
+
+  /** In metres. */
+  metresOf = (level) => (level < 0 ? this.finerMetresPerPixel[-1 - level] : this.metresPerPixel[level]) * this.side;
+
+  #pathOf = (kind, robot, place) => `${this.#base}/map/${kind}/${robot || "-"}/${place}${place && ".png"}`;
+
+  #known(path, place) {
+    let known = this.#images.get(path);
+    if (!known) this.#images.set(path, (known = { name: "", image: null, place }));
+    known.used = performance.now();
+    return known;
+  }
+
+  #want(known, name) {
+    known.name = name;
+    this.#queue = this.#queue.filter((other) => other.known !== known);
+    this.#queue.push({ known, name });
+    this.#load();
+  }
+
+  #next() {
+    if (this.#loading >= AT_ONCE) return null;
+    const next = this.#queue.findIndex(({ known }) => !known.isFiner || (this.#loadingFiner < FINER_AT_ONCE && this.#loading < AT_ONCE - 1));
+    return next < 0 ? null : this.#queue.splice(next, 1)[0];
+  }
+
   async #load() {
-    if (this.#loading >= AT_ONCE || !this.#queue.length) return;
-    const { known, name } = this.#queue.shift();
+    const next = this.#next();
+    if (!next) return;
+    const { known, name } = next;
     ++this.#loading;
+    this.#loadingFiner += Boolean(known.isFiner);
     try {
-      const answer = await fetch(name);
+      const answer = await fetch(name, known.etag ? { headers: { "If-None-Match": known.etag } } : {});
       const image = answer.ok ? await createImageBitmap(await answer.blob()) : null;
+      if (known.isFiner && answer.status === 503) known.name = ""; // asked for again when it is next drawn
       if (known.name !== name || !(image || answer.status === 404)) return;
       known.image = image;
+      if (known.isFiner) known.etag = answer.headers.get("ETag") ?? "";
       known.isAsOf = spanOf(answer, name);
       this.#pieces.set(known.place, this.#areaOf(known.place));
       this.#changed();
@@ -158,13 +206,14 @@ export class Tiles {
       if (known.name === name) known.name = ""; // asked for again when it is next drawn
     } finally {
       --this.#loading;
+      this.#loadingFiner -= Boolean(known.isFiner);
       this.#drop();
       this.#load();
     }
   }
 
   #areaOf(place) {
-    const [level, x, y] = place.split("/").map(Number), metres = this.metresPerPixel[level] * this.side;
+    const [level, x, y] = place.split("/").map(Number), metres = this.metresOf(level);
     return { left: x * metres, right: (x + 1) * metres, bottom: y * metres, top: (y + 1) * metres };
   }
 
@@ -172,41 +221,5 @@ export class Tiles {
     if (this.#images.size <= MOST_IMAGES) return;
     const oldest = [...this.#images].sort(([, a], [, b]) => a.used - b.used).slice(0, MOST_IMAGES / 4);
     for (const [path] of oldest) this.#images.delete(path);
-  }
-}
-
-/** The level whose pixels are about as large as those of the page. */
-function levelOf(tiles, view, density) {
-  const sizes = tiles.metresPerPixel.map((metres) => metres * view.scale * density);
-  return { level: Math.max(0, sizes.findLastIndex((size) => size <= 2)), sizes };
-}
-
-/** Those tiles of a layer that are seen, of which it has one: [{name, x, y}]. */
-function placesIn(layer, level, seen, metres) {
-  const places = [];
-  for (const [name, { level: of, x, y }] of layer.tiles) {
-    const isSeen = x * metres < seen.right && (x + 1) * metres > seen.left && y * metres < seen.top && (y + 1) * metres > seen.bottom;
-    if (of === level && isSeen) places.push({ name, x, y });
-  }
-  return places;
-}
-
-/** Asks for the images of what is seen that changed. */
-export function fetchLayer(view, tiles, layer, at, density) {
-  const { level } = levelOf(tiles, view, density);
-  for (const { name } of placesIn(layer, level, view.bounds(), tiles.metresPerPixel[level] * tiles.side)) tiles.image(layer, name, at);
-}
-
-/** Draws those of a layer's tiles that lie in `seen`, metres. */
-export function drawLayer(paint, view, tiles, layer, at, density, seen = view.bounds()) {
-  const { level, sizes } = levelOf(tiles, view, density), metres = tiles.metresPerPixel[level] * tiles.side;
-  paint.imageSmoothingEnabled = sizes[level] < 1;
-  for (const place of placesIn(layer, level, seen, metres)) {
-    const image = tiles.image(layer, place.name, at);
-    if (!image) continue;
-    // Whole pixels, so that no line shows between two tiles.
-    const [left, top] = view.toPixel({ x: place.x * metres, y: (place.y + 1) * metres }).map(Math.round);
-    const [right, bottom] = view.toPixel({ x: (place.x + 1) * metres, y: place.y * metres }).map(Math.round);
-    paint.drawImage(image, left, top, right - left, bottom - top);
   }
 }

@@ -29,10 +29,8 @@ export class Tracks {
     if (now - this.#heard > SILENCE) this.#fetched = false; // what came meanwhile was missed
     this.#heard = now;
     if (run_number !== this.#run) {
-      this.#all.clear();
-      this.#fetched = false;
+      this.forget();
       this.#run = run_number;
-      ++this.changes;
     }
     if (!this.#fetched) this.#fetch();
     for (const { name, at, position: { x, y, z }, heading } of robots) {
@@ -41,6 +39,13 @@ export class Tracks {
         track.push([at, x, y, z, heading]);
       }
     }
+  }
+
+  /** All are asked for again. */
+  forget() {
+    this.#all.clear();
+    this.#fetched = false;
+    ++this.changes;
   }
 
   #of(name) {

@@ -28,13 +28,13 @@ import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
 function show({ view: told, time, lost }) {
-  const view = told && { ...told, reports: allReports(told) };
+  const view = told && { ...told, reports: allReports(told, lost) };
   showLink(view, lost);
   linkIs(lost);
   showAlarms(view, time, lost);
   if (!view) return;
   showRun(view, time, lost);
-  showEnds(view.endpoints, lost);
+  showEnds(view, lost);
   showBoxActions(view, time);
   showLights(view.lights);
   showRobotsList(showRobots(view, time, lost), time);

@@ -9,8 +9,8 @@ function createEndpoint() {
   return make("li", make("span.name"), make("span.badge"), make("span.address"), make("span.answer"), make("span.trouble"));
 }
 
-function updateEndpoint(node, row, lost) {
-  const { level, word } = lost ? { level: "quiet", word: "unknown" } : endpoint(row);
+function updateEndpoint(node, row, view, lost) {
+  const { level, word } = lost ? { level: "quiet", word: "unknown" } : endpoint(row, view);
   const [name, badged, address, answer, trouble] = node.children;
   mark(node, "level", level);
   say(name, row.name);
@@ -23,7 +23,7 @@ function updateEndpoint(node, row, lost) {
 
 export function showPost(view, lost) {
   list(document.querySelector("#post .endpoints"), view.endpoints, (row) => row.name, createEndpoint, (node, row) =>
-    updateEndpoint(node, row, lost));
+    updateEndpoint(node, row, view, lost));
   const share = view.budget_mbit > 0 ? Math.min(100, (100 * view.sent_mbit) / view.budget_mbit) : 0;
   say(at("sent"), lost ? "–" : `${mbit(view.sent_mbit)} Mbit/s`);
   say(at("budget"), `of ${mbit(view.budget_mbit)}`);

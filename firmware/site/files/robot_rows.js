@@ -26,6 +26,8 @@ const kindWords = ({ kind, level, word, age }) => `${kind} ${level === "good" ||
 
 function words({ isSilent, kinds }, isFull) {
   const shown = isFull ? kinds : kinds.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
+  const isAllOne = !isFull && !isSilent && shown.length > 1 && shown.every(({ level, word }) => level === "bad" && word === shown[0].word);
+  if (isAllOne) return shown[0].word; // "not arriving", of grid and cloud: there may be room for no more
   const texts = shown.map((kind) => (isFull && kind.details ? `${kindWords(kind)}, ${kind.details}` : kindWords(kind)));
   return [...(isSilent ? ["silent"] : []), ...texts].join(" · ");
 }
@@ -33,7 +35,7 @@ function words({ isSilent, kinds }, isFull) {
 function updateRow(row, robot, isFull) {
   const [, , kinds, spark, age] = row.children;
   mark(row, "level", robot.level);
-  badge(age, robot.level, mapAge(robot.age));
+  badge(age, robot.level, robot.hasMap ? mapAge(robot.age) : "no map");
   say(kinds, words(robot, isFull));
   row.title = [`${robot.name}: ${robot.word}`, ...robot.kinds.map(({ title }) => title)].join("\n");
   const path = pathOf(robot.name);

@@ -26,16 +26,14 @@ function details(row) {
   return row.bytes_sent ? bytes(row.bytes_sent) : "";
 }
 
-/** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `blame`: "lost", the box does not answer,
- *  so nothing is known; "away", the Command Post does not, which no robot is blamed for; or "". */
-export function stateOf(row, now, blame) {
-  const known = blame === "lost" ? { level: "quiet", word: "unknown" } : arrival(row, now);
-  if (blame === "away" && (row.last_sentence || known.level === "bad")) Object.assign(known, { level: "quiet", word: "behind" });
+/** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `lost`: the box does not answer, so nothing is known. */
+export function stateOf(row, now, lost) {
+  const known = lost ? { level: "quiet", word: "unknown" } : arrival(row, now);
   const since = row.last_forwarded === null ? null : Math.max(0, now - row.last_forwarded);
   return { kind: kindOf(row), ...known, age: since, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
 }
 
-/** A robot's map at the Command Post: as old as the older of its kinds; one that it stopped to send does not count beside another. */
+/** A robot's map at the Command Post: as old as the older of its kinds; one that it stopped to send does not count beside another. null: none arrived. */
 function oldest(kinds) {
   const maps = kinds.filter(({ kind }) => kind !== "pose"), live = maps.filter(({ level }) => level !== "quiet");
   const ages = (live.length ? live : maps).map(({ age }) => age);
@@ -43,18 +41,18 @@ function oldest(kinds) {
   return live.length ? Math.max(...ages) : Math.min(...ages);
 }
 
-function robotState(name, rows, now, blame) {
-  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, now, blame));
+function robotState(name, rows, now, lost) {
+  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, now, lost));
   const worst = WORST.map((level) => kinds.find((kind) => kind.level === level)).find(Boolean);
-  const isSilent = !blame && rows.some((row) => row.arrival === "silent");
-  return { name, level: worst.level, word: worst.word, isSilent, age: oldest(kinds), kinds };
+  const isSilent = !lost && rows.some((row) => row.arrival === "silent");
+  return { name, level: worst.level, word: worst.word, isSilent, age: oldest(kinds), hasMap: kinds.some(({ kind }) => kind !== "pose"), kinds };
 }
 
-/** {robots: each with {name, level, word, isSilent, age, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
-export function robotsOf(activities, now, blame) {
+/** {robots: each with {name, level, word, isSilent, age, hasMap, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
+export function robotsOf(activities, now, lost) {
   const rows = activities.filter(({ kind }) => KINDS.includes(kind));
   const byName = Map.groupBy(rows.filter(({ robot }) => robot), robotOf);
-  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, now, blame) }));
-  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, now, blame) });
-  return { robots: [...byName].map(([name, its]) => robotState(name, its, now, blame)), shared };
+  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, now, lost) }));
+  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, now, lost) });
+  return { robots: [...byName].map(([name, its]) => robotState(name, its, now, lost)), shared };
 }

@@ -1,6 +1,6 @@
 // Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
 import { badge, list, make, mark, say } from "./dom.js";
-import { kindOf, robotOf } from "./arriving.js";
+import { kindOf, robotOf, troubleOf } from "./arriving.js";
 import { sampleAges } from "./robot_ages.js";
 import { RobotRows } from "./robot_rows.js";
 import { mapAge, robotsOf } from "./robot_state.js";
@@ -37,9 +37,9 @@ function showSayings(activities) {
 
 /** Gives how the robots stand, as robotsOf(). */
 export function showRobots(view, now, lost) {
-  const { activities, endpoints } = view;
-  const isAway = endpoints.some(({ name, connected }) => name === "mapping" && !connected);
-  const state = robotsOf(activities, now, lost ? "lost" : isAway ? "away" : "");
+  const { activities } = view;
+  const isAway = troubleOf(view, "mapping")?.level === "bad";
+  const state = robotsOf(activities, now, lost);
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));

@@ -2,12 +2,14 @@
 // at once, and from then on what came since.
 import { fillAges } from "./robot_ages.js";
 import { fillLink } from "./link.js";
+import { Steps } from "./steps.js";
 
 const EVERY = 20; // s
 const AGAIN = 5; // s: where the box did not answer
 
 let run = null, due = 0, asked = false, last = 0;
 let alarms = [];
+const steps = new Steps();
 
 /** [{at, level}]: when something came that needed the operator. */
 export const alarmTicks = () => alarms;
@@ -21,8 +23,8 @@ function take({ attention, ...plots }, time, isFirst) {
 }
 
 /** With each view of the run. */
-export async function followHistory({ run_number }, time) {
-  if (run_number !== run) [run, due, last, alarms] = [run_number, 0, 0, []];
+export async function followHistory({ run_number, now }, time) {
+  if (steps.seen(now) || run_number !== run) [run, due, last, alarms] = [run_number, 0, 0, []];
   if (asked || time < due) return;
   asked = true;
   try {

@@ -5,10 +5,10 @@ import { clip } from "./words.js";
 
 const ends = document.querySelector(".strip .ends");
 
-export function showEnds(endpoints, lost) {
+export function showEnds(view, lost) {
   const create = () => make("div", make("dt"), make("dd"));
-  list(ends, endpoints, ({ name }) => name, create, (node, row) => {
-    const { level, word } = lost ? { level: "quiet", word: "–" } : answerOf(row);
+  list(ends, view.endpoints, ({ name }) => name, create, (node, row) => {
+    const { level, word } = lost ? { level: "quiet", word: "–" } : answerOf(row, view);
     mark(node, "level", level);
     say(node.firstChild, clip(row.name, 12));
     say(node.lastChild, word);

@@ -9,6 +9,7 @@ import { offerPasswords } from "./passwords.js";
 import { followNetwork } from "./pending.js";
 import { showPorts } from "./ports.js";
 import { session, showWho, toLogin } from "./session.js";
+import { offerSpare } from "./spare.js";
 import { offerUpdate } from "./update.js";
 
 const link = document.getElementById("link");
@@ -34,6 +35,7 @@ async function begin() {
   watchSessions();
   offerPasswords();
   offerBundle();
+  offerSpare();
   offerReset();
 }
 

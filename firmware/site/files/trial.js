@@ -1,5 +1,4 @@
 // The Test, and tries of what is not applied yet: each step to each endpoint, as it runs, and what to do where it fails.
-import { typedToken } from "./courses.js";
 import { badge, list, make, say } from "./dom.js";
 import { draft, ENDPOINTS } from "./draft.js";
 import { named, spoken } from "./names.js";
@@ -17,6 +16,9 @@ const NAMES = {
 const LEVELS = { waiting: "quiet", running: "ask", good: "good", bad: "bad", skipped: "quiet" };
 const places = new Map([...document.querySelectorAll("[data-tried]")].map((place) => [place.dataset.tried, place]));
 const parts = (place) => [".outcome", ".endpoints"].map((part) => place.querySelector(part));
+
+/** What is typed for a token and not set yet; null: nothing. */
+const typedToken = (name) => document.querySelector(`form.token[data-key="${name}"]`)?.field.control.value.trim() || null;
 
 /** Of what is in use: "good", "bad", or "" where it was not run to its end. */
 export let result = "";

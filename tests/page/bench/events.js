@@ -6,7 +6,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { until } from "../box.js";
 import { begin, TOKENS } from "../box/box.js";
 
-const REPORTS = Number(process.env.BENCH_REPORTS ?? 1000), SECONDS = Number(process.env.BENCH_SECONDS ?? 20), AT_ONCE = 20, ROUNDS = 5;
+const REPORTS = Number(process.env.BENCH_REPORTS ?? 1000), SECONDS = Number(process.env.BENCH_SECONDS ?? 20), AT_ONCE = 20, ROUNDS = Number(process.env.BENCH_ROUNDS ?? 5);
 
 export const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1];
 

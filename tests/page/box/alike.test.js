@@ -47,3 +47,31 @@ test("says that a robot is silent, everywhere as the box judges it", async (t) =
   made.thawRobots();
   for (const page of pages) await until(async () => (await silent(page)) === 0, "none that is silent");
 });
+
+const CASES = [
+  { is: "command_post_refusing", word: "refused", fault: "401,for=600" },
+  { is: "command_post_foreign", word: "wrong host", fault: "html-200,for=600" },
+  { is: "command_post_failing", word: "failing", fault: "500,for=600" },
+  { is: "command_post_silent", word: "silent", fault: "answer-after=60,for=600" },
+  { is: "command_post_unreachable", word: "unreachable" },
+];
+for (const { is, word, fault } of CASES) {
+  test(`blames no robot for a Command Post that is ${word}, on any face`, async (t) => {
+    const made = await box(t, { robots: 3 });
+    const mapsTaken = ({ activities }) => activities.filter(({ kind, forwarded }) => kind === "grid" && forwarded > 0).length >= 3;
+    await until(async () => mapsTaken(await made.run()), "a map of each robot to be taken");
+    const pages = [await look(t, made), await look(t, made, "display")];
+    for (const page of pages) await page.waitForSelector("#maps[data-away=false]");
+    await (fault ? made.misbehave({ mapping: [fault] }) : made.endPost());
+    await until(async () => (await made.run()).alarms.some(({ id, subject }) => id === is && (!subject || subject === "mapping")), is, 60_000);
+    for (const page of pages) {
+      await page.waitForSelector("#maps[data-away=true]");
+      await page.waitForFunction((word) => document.querySelector('.strip .ends [data-key="mapping"] dd').textContent === word, word);
+    }
+    // One that is silent is for a while as if it were well after each try that was given up: it is looked at while it is told of.
+    const blamesNobody = ({ alarms, activities }) => alarms.some(({ id }) => id === is) && activities.some(({ arrival }) => arrival === "not arriving") && !activities.some(({ level }) => level === "bad" || level === "wait");
+    await until(async () => blamesNobody(await made.run()), "what waits to be nobody's fault");
+    for (const page of pages) await page.waitForFunction(() => document.querySelector("#maps[data-away=true]") && !document.querySelector("#robots li:is([data-level=bad], [data-level=wait])"));
+    await until(async () => /^Maps +Nothing arrives: for \d+:\d\d; the box keeps all$/m.test(await status(made)), "the same of `adit status`");
+  });
+}

@@ -69,6 +69,8 @@ class Box {
   /** Lets the robots stand still, and their programs, too; or go on. */
   freezeRobots = () => this.#programs["adit-robots"].kill("SIGSTOP");
   thawRobots = () => this.#programs["adit-robots"].kill("SIGCONT");
+  /** The Command Post is gone for good. */
+  endPost = () => stop(this.#programs["adit-rehearsal"], "SIGKILL");
   killAditd = () => stop(this.#programs.aditd, "SIGKILL");
 
   /** Asks the box, as the team's script does: {status, said}. With a body: POST. */

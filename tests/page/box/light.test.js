@@ -5,9 +5,10 @@ import { join } from "node:path";
 import { test } from "node:test";
 import { until } from "../box.js";
 import { FILES } from "../stage.js";
+import { withReports } from "./reports.js";
 import { box, logIn, row, says } from "./visits.js";
 
-const REPORTS = 1000, AT_ONCE = 20;
+const REPORTS = 1000;
 const patched = readFileSync(join(FILES, "patched.js"), "utf8").replace(/^export /gm, "");
 
 /** Keeps, in the page, what came (`heard`: type and bytes of each event) and the view that it makes (`told`). */
@@ -28,14 +29,6 @@ const listen = (page) => page.addInitScript(`{
   };
 }`);
 
-async function withThousand(t) {
-  const made = await box(t, { post: ["--reports", String(2 * REPORTS), "--rate", "0"], settings: { command_post: { rates: { reports_hz: 1000, status_hz: 20 } } } });
-  for (let i = 0; i < REPORTS; i += AT_ONCE) await Promise.all(Array.from({ length: AT_ONCE }, (_, j) => made.compose("Rope", 10 * (i + j), 5)));
-  const left = async () => (await made.run()).run.remaining_reports;
-  await until(async () => (await left()) === REPORTS, "the reports to be recorded", 300_000);
-  return made;
-}
-
 /** A robot's pose, as its client posts it. */
 const move = (made, name, x) =>
   made.ask("/state/update", { header: { stamp: Date.now() / 1000, frame_id: "darpa" }, poses: [{ name, position: { x, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } }] });
@@ -51,7 +44,7 @@ const upToDate = (pages, made) => Promise.all(pages.map((page) => until(async ()
 }, "a page to have what the box has")));
 
 test("tells two pages, of a thousand reports and a robot, what changes in few bytes, and all of it", async (t) => {
-  const made = await withThousand(t);
+  const made = await withReports(t, REPORTS);
   await move(made, "ugv1", 1);
   await until(async () => (await made.run()).robots.length === 1, "the robot's pose to arrive");
   const pages = [await logIn(t, made, listen), await logIn(t, made, listen)], [, other] = pages;

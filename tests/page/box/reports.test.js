@@ -62,7 +62,7 @@ test("is sent once where two operators press send at once", async (t) => {
     await says(page, number, "It will be sent.");
   }
   await made.becomes(number, "answered");
-  await new Promise((resolve) => setTimeout(resolve, 2500)); // a second sending would have come by now
+  await made.becomes(await made.compose("Rope", 900), "answered"); // a second sending would have been before it
   assert.equal(await recorded(made, 50), 1);
 });
 

@@ -4,7 +4,7 @@ import { axeFindsNothing } from "../axe.js";
 import { becomes, box, canvas, changed, picture } from "../pictures.js";
 import { until } from "../box.js";
 import { begin } from "./box.js";
-import { look, openMore, settled, shoot } from "./visits.js";
+import { hears, look, openMore, settled, shoot } from "./visits.js";
 
 // One run for all of these: five robots explore, and the operator reports.
 let made;
@@ -27,7 +27,7 @@ const off = async (page, ...names) => {
 /** The picture, once it keeps still. */
 async function still(page) {
   for (let last = await picture(page); ; ) {
-    await page.waitForTimeout(400);
+    await hears(page, 2);
     const next = await picture(page);
     if (next === last) return next;
     last = next;
@@ -84,6 +84,7 @@ test("makes the lights flash, on the box as on the page, and lets them be again"
   await page.getByRole("button", { name: "Identify" }).click();
   await page.waitForFunction(() => [...document.querySelectorAll("#lights li")].every((light) => light.dataset.pattern === "twice"));
   await page.waitForFunction(() => /Flashing, \d+ s/.test(document.querySelector("button.identify").textContent));
+  assert.equal((await made.ask("/adit/identify", { seconds: 60 })).status, 200, "a longer time, too: a busy machine is slow to look");
   const all = (lit) => until(() => Object.values(made.lights()).every((light) => light === lit), `all lights ${lit}`);
   for (const lit of [true, false, true, false]) await all(lit);
   assert.match(await page.textContent("#lights li"), /flashes/); // in words: nothing blinks on the page
@@ -164,15 +165,23 @@ test("has nothing that axe finds wrong during a run, in the dark and by day", as
   await isWell("new run");
 });
 
+/** Until all of the map is drawn: finer tiles come as long as robots map, so they stand still until they are thawed. */
+async function keepsStill(page) {
+  made.freezeRobots();
+  await settled(page);
+}
+
 test("is kept as pictures, for people to look at", async (t) => {
+  t.after(() => made.thawRobots());
   for (const path of ["", "display"]) {
     const page = await look(t, made, path);
     for (const [name, width, height] of [["phone", 390, 844], ["1080p", 1920, 1080]]) {
       await page.setViewportSize({ width, height });
       for (const colorScheme of ["dark", "light"]) {
         await page.emulateMedia({ colorScheme });
-        await settled(page);
+        await keepsStill(page);
         await shoot(page, `${path || "run"}-${name}-${colorScheme}`);
+        made.thawRobots();
       }
     }
   }
@@ -181,8 +190,9 @@ test("is kept as pictures, for people to look at", async (t) => {
   for (const [width, height, name] of [[390, 844, "phone"], [1280, 720, "720p"]]) {
     await page.setViewportSize({ width, height });
     await page.locator("#map").scrollIntoViewIfNeeded();
-    await settled(page);
+    await keepsStill(page);
     await shoot(page, `run-pair-${name}-dark`);
+    made.thawRobots();
   }
 });
 

@@ -3,7 +3,7 @@ import { after, before } from "node:test";
 import { countAwaited, launch, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
 
-export { settled, shoot } from "../stage.js";
+export { hears, settled, shoot } from "../stage.js";
 export { canBeDeaf } from "../retold.js";
 export { openMore } from "../parts.js";
 

@@ -1,0 +1,239 @@
+#include "admin/spare.hpp"
+
+#include <memory>
+#include <utility>
+
+#include "admin/refuse.hpp"
+#include "host/log.hpp"
+#include "host/random.hpp"
+#include "icd/sentence.hpp"
+#include "spare/code.hpp"
+#include "spare/file_name.hpp"
+#include "spare/sealed.hpp"
+
+namespace adit::admin {
+namespace {
+
+using icd::Status;
+
+template <std::size_t size>
+std::array<std::uint8_t, size> random() {
+  std::array<std::uint8_t, size> bytes;
+  host::fill_random(bytes);
+  return bytes;
+}
+
+std::string draw_box() {
+  constexpr std::string_view kDigits = "0123456789abcdef";
+  std::string box;
+  for (const std::uint8_t byte : random<8>()) {
+    box += kDigits[byte >> 4];
+    box += kDigits[byte & 15];
+  }
+  return box;
+}
+
+}  // namespace
+
+Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
+             std::string status_folder, const std::string& trouble, Asked asked)
+    : loop_(loop),
+      workers_(workers),
+      taking_over_(taking_over),
+      state_(std::move(state_folder)),
+      stick_(loop, state_, std::move(status_folder),
+             [this](std::string file) { taken_from_stick(std::move(file)); }),
+      trouble_(trouble),
+      asked_(std::move(asked)),
+      restart_(loop.timer([this] { asked_.restart(); })) {
+  auto file = SpareFile::read(state_);
+  const std::string unread = file ? "" : file.error();
+  if (file) file_ = *std::move(file);
+  if (!trouble_.empty()) {
+    rests_ = "it could not take over yet: " + trouble_;
+  } else if (!unread.empty()) {
+    rests_ = "nobody knows whether its spare took over: " + unread;
+  } else if (file_.rest) {
+    rests_ = "it was put to rest, for its spare to take over";
+  }
+  if (!rests_.empty()) host::log(host::Level::Warning, "this box rests", {{"why", rests_}});
+}
+
+std::optional<double> Spare::rests_since() const {
+  return file_.rest ? std::optional(file_.rest->since) : std::nullopt;
+}
+
+void Spare::ends(const std::optional<icd::RunStatus>& expected) {
+  if (!goes_to_rest_ || !expected) return;
+  SpareFile next = file_;
+  next.rest->expected = expected;
+  if (const auto kept = keep(next); !kept)
+    host::log(host::Level::Warning, "what the Command Post counted is not known to the spare",
+              {{"why", kept.error().sentence}});
+}
+
+icd::Checked<void> Spare::keep(const SpareFile& next) {
+  if (auto written = next.write(state_); !written)
+    return refuse(Status::ServiceUnavailable, std::move(written.error()));
+  file_ = next;
+  return {};
+}
+
+api::SpareView Spare::spare() const {
+  api::SpareView view;
+  view.rests = !rests_.empty();
+  view.why = rests_;
+  view.since = rests_since();
+  view.asks_code = sealed_ != nullptr;
+  view.takes_over = takes_over_;
+  view.stick = stick_.view();
+  if (view.rests && file_.rest) view.code = spare::spoken(file_.rest->code);
+  if (!taken_in_) return view;
+  const spare::About& about = taken_in_->about;
+  view.taken_in = {.name = about.name,
+                   .version = about.version,
+                   .at = about.at,
+                   .reports = about.reports,
+                   .open = about.open,
+                   .post = about.post,
+                   .run = about.run};
+  return view;
+}
+
+icd::Checked<void> Spare::rest() {
+  if (!rests_.empty() || goes_to_rest_) return {};
+  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  SpareFile next = file_;
+  if (next.box.empty()) next.box = draw_box();
+  next.rest = {.code = spare::draw_code(random<spare::kCodeDigits>()), .since = loop_.wall_now()};
+  if (auto kept = keep(next); !kept) return kept;
+  goes_to_rest_ = true;
+  host::log(host::Level::Notice, "this box goes to rest, for its spare to take over");
+  restart_.call_at(loop_.now());
+  return {};
+}
+
+icd::Checked<void> Spare::wake() {
+  if (rests_.empty()) return refuse(Status::Conflict, "this box does not rest");
+  if (!is_stuck()) {
+    SpareFile next = file_;
+    next.rest.reset();
+    if (auto kept = keep(next); !kept) return kept;
+    host::log(host::Level::Notice, "this box was woken up: its spare did not take over");
+  }
+  restart_.call_at(loop_.now());
+  return {};
+}
+
+void Spare::export_to(Sealed done) {
+  seal([done = std::move(done)](icd::Checked<std::string> file, const std::string&) {
+    done(std::move(file));
+  });
+}
+
+void Spare::export_to_stick(Done done) {
+  seal([this, done = std::move(done)](const icd::Checked<std::string>& file, const std::string& name) {
+    if (!file) return done(std::unexpected(file.error()));
+    done(stick_.write(spare::file_name(name, rests_since().value_or(0)), *file));
+  });
+}
+
+void Spare::seal(const Named& done) {
+  const auto refused = [&done](Status status, std::string why) { done(refuse(status, std::move(why)), ""); };
+  if (!file_.rest || rests_.empty() || is_stuck())
+    return refused(Status::Conflict, "this box does not rest: only then is there an export of it");
+  auto content = asked_.content();
+  if (!content) return refused(Status::ServiceUnavailable, std::move(content.error()));
+  content->about.box = file_.box;
+  content->about.at = file_.rest->since;
+  content->about.expected = file_.rest->expected;
+  auto text = std::make_shared<std::string>(spare::write(*content));
+  if (text->size() > spare::kLargestExport - spare::kSealing)
+    return refused(Status::Conflict, "there is more in the ledger than an export may hold");
+  auto sealed =
+      std::make_shared<std::expected<std::string, std::string>>(std::unexpected("it could not be sealed"));
+  const spare::Seed seed{.salt = random<16>(), .nonce = random<24>()};
+  workers_.submit(
+      loop::Urgency::CanWait,
+      [text, sealed, seed, code = file_.rest->code] { *sealed = spare::seal(*text, code, seed); },
+      [sealed, done, name = content->about.name] {
+        if (!*sealed) return done(refuse(Status::ServiceUnavailable, std::move(sealed->error())), name);
+        done(std::move(**sealed), name);
+      });
+}
+
+icd::Checked<void> Spare::take_from_stick(const std::string& name) {
+  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  return stick_.take(name);
+}
+
+/// By the checks of one that is uploaded.
+void Spare::taken_from_stick(std::string file) {
+  if (const auto taken = take_in(std::move(file)); !taken)
+    host::log(host::Level::Warning, "the export from the stick was not taken in",
+              {{"why", taken.error().sentence}});
+}
+
+icd::Checked<void> Spare::take_in(std::string file) {
+  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  taken_in_.reset();
+  sealed_ = std::make_shared<const std::string>(std::move(file));
+  return {};
+}
+
+void Spare::open(const std::string& code, Done done) {
+  const auto typed = spare::code_in(code);
+  if (!typed)
+    return done(
+        refuse(Status::UnprocessableEntity, icd::sentence("code: expected ", spare::kCodeDigits, " digits")));
+  if (!sealed_) return done(refuse(Status::Conflict, "no export waits for its code: take one in first"));
+  auto text =
+      std::make_shared<std::expected<std::string, std::string>>(std::unexpected("it could not be opened"));
+  workers_.submit(
+      loop::Urgency::CanWait,
+      [sealed = sealed_, text, code = *typed] { *text = spare::unseal(*sealed, code); },
+      [this, sealed = sealed_, text, done = std::move(done)] {
+        if (sealed != sealed_) return done(refuse(Status::Conflict, "another export was taken in meanwhile"));
+        auto checked = opened(std::move(*text));
+        if (checked) sealed_.reset();
+        done(std::move(checked));
+      });
+}
+
+/// A wrong code may be typed again.
+icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
+  if (!text) return refuse(Status::UnprocessableEntity, std::move(text.error()));
+  auto content = spare::read(*text);
+  if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
+  if (std::string why = file_.hindrance(content->about.box, content->about.at); !why.empty())
+    return refuse(Status::Conflict, std::move(why));
+  if (auto checked = taking_over_.check(*content); !checked)
+    return refuse(Status::UnprocessableEntity, std::move(checked.error()));
+  taken_in_ = *std::move(content);
+  return {};
+}
+
+/// Also what cannot be finished.
+icd::Checked<void> Spare::forget() {
+  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  if (is_stuck()) {
+    if (auto done = taking_over_.abandon(); !done)
+      return refuse(Status::ServiceUnavailable, std::move(done.error()));
+    restart_.call_at(loop_.now());
+  }
+  taken_in_.reset();
+  sealed_.reset();
+  return {};
+}
+
+icd::Checked<void> Spare::take_over() {
+  if (takes_over_) return {};
+  if (!taken_in_) return refuse(Status::Conflict, "nothing is taken in: take in the export first");
+  if (auto begun = taking_over_.begin(spare::write(*taken_in_)); !begun)
+    return refuse(Status::ServiceUnavailable, std::move(begun.error()));
+  takes_over_ = true;
+  restart_.call_at(loop_.now());
+  return {};
+}
+
+}  // namespace adit::admin

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <expected>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "api/spare.hpp"
+#include "loop/loop.hpp"
+#include "spare/stick.hpp"
+
+namespace adit::admin {
+
+/// Exports to and from the USB stick in the box, as adit-spare carries them (firmware/spare/README.md).
+class SpareStick {
+ public:
+  /// adit-spare begins within that time, unless it does not run here.
+  static constexpr std::chrono::seconds kTakenUpWithin{60};
+  /// How often it is looked what became of a request.
+  static constexpr std::chrono::milliseconds kLook{100};
+
+  using Taken = std::function<void(std::string)>;
+
+  /// `state_folder`: where requests are left; `status_folder`: where they are answered. `taken` is given each
+  /// export that was read from a stick. `loop` outlives this.
+  SpareStick(loop::Loop& loop, std::string state_folder, std::string status_folder, Taken taken);
+
+  /// Nothing: adit-spare does not run here.
+  std::optional<api::StickRow> view() const;
+  /// Why nothing can be asked for now; nothing: it can.
+  std::optional<icd::Refusal> hindrance() const;
+  /// Why no export can be written now.
+  std::optional<icd::Refusal> hindrance_to_write() const;
+  /// The whole file, under that name.
+  icd::Checked<void> write(const std::string& name, const std::string& file);
+  icd::Checked<void> take(const std::string& name);
+
+ private:
+  using What = spare::StickRequest::What;
+  struct Asked {
+    spare::StickRequest request;
+    loop::Instant at;
+  };
+  std::expected<spare::StickStatus, std::string> status() const;
+  icd::Checked<void> ask(What what, const std::string& name);
+  void look();
+  void finish(const spare::StickStatus& status);
+  void forget();
+
+  loop::Loop& loop_;
+  std::string state_, status_;
+  Taken taken_;
+  loop::Source timer_;
+  std::optional<Asked> asked_;  // and not finished yet
+  std::string refusal_;         // why the last came to nothing
+};
+
+}  // namespace adit::admin

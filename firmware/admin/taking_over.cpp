@@ -1,0 +1,157 @@
+#include "admin/taking_over.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "admin/spare_file.hpp"
+#include "forward/stamp_floor.hpp"
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+#include "ledger/ledger.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::admin {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::expected<std::string, std::string> read_whole(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  if (!file) return std::unexpected(path + ": it cannot be read");
+  return bytes;
+}
+
+/// A folder of this program's own, gone with it.
+class OwnFolder {
+ public:
+  explicit OwnFolder(std::string path) : path_(std::move(path)) {
+    fs::remove_all(path_, error_);
+    if (!error_) fs::create_directory(path_, error_);
+    if (!error_) fs::permissions(path_, fs::perms::owner_all, error_);
+  }
+  ~OwnFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+  std::string trouble() const { return error_ ? path_ + ": " + error_.message() : ""; }
+
+ private:
+  std::string path_;
+  std::error_code error_;
+};
+
+/// The ledger of the box that made an export, as long as this is there.
+class FirstLedger {
+ public:
+  FirstLedger(const std::string& runtime, const std::string& bytes)
+      : folder_(runtime + "/first-box"), ledger_(opened(bytes)) {}
+
+  const std::expected<ledger::Ledger, std::string>& ledger() const { return ledger_; }
+
+ private:
+  std::expected<ledger::Ledger, std::string> opened(const std::string& bytes) const {
+    if (std::string why = folder_.trouble(); !why.empty()) return std::unexpected(std::move(why));
+    const auto written = host::write_file(folder_.path() + "/ledger.sqlite", bytes, host::kOursAlone);
+    if (!written) return std::unexpected(written.error());
+    auto there = ledger::Ledger::open(folder_.path());
+    if (!there) return std::unexpected(std::move(there.error().what));
+    return std::move(*there);
+  }
+
+  OwnFolder folder_;  // before the ledger, which is in it
+  std::expected<ledger::Ledger, std::string> ledger_;
+};
+
+/// How far the stamps here, which are at `stamp`, are ahead of the first box's: as much time went by since it
+/// came to rest as both boxes' times of day say. `wall`: here.
+double ahead(const spare::About& about, double stamp, double wall) {
+  const double since = std::max(0.0, wall - about.at);
+  return stamp - since - about.stamp;
+}
+
+}  // namespace
+
+std::expected<void, std::string> TakingOver::begin(const std::string& content) {
+  return host::write_file(begun(), content, host::kOursAlone);
+}
+
+std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
+  if (!host::may_exist(begun())) return false;
+  const auto text = read_whole(begun());
+  if (!text) return std::unexpected(text.error());
+  const auto content = spare::read(*text);
+  if (!content) return std::unexpected(begun() + ": " + content.error());
+  if (auto done = take(*content, loop); !done) return std::unexpected(std::move(done.error()));
+  if (auto removed = host::remove_file(begun()); !removed) return std::unexpected(std::move(removed.error()));
+  host::log(host::Level::Notice, "this box took over from another",
+            {{"from", content->about.name}, {"reports", std::to_string(content->about.reports)}});
+  return true;
+}
+
+/// Each step may be done again. Who exported is noted last: until then it is not finished.
+std::expected<void, std::string> TakingOver::take(const spare::Content& content, const loop::Loop& loop) {
+  forward::StampFloor stamps(state_);
+  const forward::StampFloor::Kept kept = stamps.read();
+  const double least = std::ceil(std::max(content.about.stamps, kept.least));  // as it is kept
+  const dispatch::Handover handover{
+      .expected = content.about.expected,
+      .stamp = std::max(loop.stamp_now(), least),
+      .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
+  if (auto taken = take_ledger(content, handover); !taken) return taken;
+  stamps.write({.floor = std::max(kept.floor, least), .wall = kept.wall, .least = least});
+  if (stamps.read().least < least) return std::unexpected("the stamps of the first box cannot be kept");
+  if (auto taken = take_settings(content); !taken) return taken;
+  return note(content.about);
+}
+
+std::expected<void, std::string> TakingOver::check(const spare::Content& content) const {
+  if (const auto saved = settings::parse_saved(content.settings); !saved)
+    return std::unexpected("its settings cannot be used here: " + settings::sentence_of(saved.error()));
+  const FirstLedger there(runtime_, content.ledger);
+  if (!there.ledger()) return std::unexpected("its ledger cannot be used here: " + there.ledger().error());
+  return {};
+}
+
+std::expected<void, std::string> TakingOver::abandon() {
+  return host::remove_file(begun());
+}
+
+std::expected<void, std::string> TakingOver::take_ledger(const spare::Content& content,
+                                                         const dispatch::Handover& handover) {
+  const FirstLedger there(runtime_, content.ledger);
+  if (!there.ledger()) return std::unexpected("the first box's ledger: " + there.ledger().error());
+  auto here = ledger::Ledger::open(state_);
+  if (!here) return std::unexpected("this box's ledger: " + here.error().what);
+  if (auto taken = here->take_over(*there.ledger(), handover); !taken)
+    return std::unexpected(std::move(taken.error().what));
+  return {};
+}
+
+std::expected<void, std::string> TakingOver::take_settings(const spare::Content& content) {
+  const auto saved = settings::parse_saved(content.settings);
+  if (!saved) return std::unexpected("the first box's settings: " + settings::sentence_of(saved.error()));
+  for (const std::string& name : token_names(saved->settings)) {
+    const auto found = content.tokens.find(name);
+    const auto token = found == content.tokens.end() ? std::nullopt : std::optional(found->second);
+    if (auto kept = store_.save_token(name, token); !kept) return kept;
+  }
+  return store_.save(saved->settings);
+}
+
+std::expected<void, std::string> TakingOver::note(const spare::About& about) {
+  SpareFile file = SpareFile::read(state_).value_or(SpareFile{});
+  file.rest.reset();
+  std::erase_if(file.taken, [&about](const TakenFrom& each) { return each.box == about.box; });
+  file.taken.push_back({.box = about.box, .at = about.at});
+  return file.write(state_);
+}
+
+}  // namespace adit::admin

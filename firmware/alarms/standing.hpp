@@ -1,0 +1,22 @@
+#pragma once
+
+#include "alarms/arrival.hpp"
+#include "alarms/facts.hpp"
+
+namespace adit::alarms {
+
+/// What all faces say of a stream: whether it arrives, and how well that is.
+struct Standing {
+  Arrival arrival = Arrival::NotYet;
+  Level level = Level::Quiet;
+};
+
+/// `stream` is one of the facts'. A larger cause is blamed alone, as in the list of conditions: while the
+/// mapping endpoint takes nothing, what waits does not arrive, at level Quiet, and no robot is silent; nor is
+/// one while the team's cable is out.
+Standing standing_of(const Stream& stream, const Facts& facts);
+
+/// The mapping endpoint, where nothing is taken at all; or null.
+const Endpoint* stopped(const Facts& facts);
+
+}  // namespace adit::alarms

@@ -1,0 +1,121 @@
+#include "api/spare_routes.hpp"
+
+#include <utility>
+
+#include "api/answers.hpp"
+#include "api/read_body.hpp"
+#include "api/small_body.hpp"
+#include "spare/sealed.hpp"
+
+namespace adit::api {
+namespace {
+
+constexpr const char* kFileName = "export.adit-spare";
+
+/// An export as it comes. What is none is refused by its first bytes, and nothing more of it is kept.
+class ReceivingExport final : public intake::BodySink {
+ public:
+  explicit ReceivingExport(std::function<void(icd::Checked<std::string>)> done) : done_(std::move(done)) {}
+
+  bool on_body(std::span<const std::uint8_t> piece) override {
+    if (!done_) return true;
+    file_.append(reinterpret_cast<const char*>(piece.data()), piece.size());
+    if (file_.size() >= spare::kExportHead) refuse_what_is_none();
+    return true;
+  }
+  void on_end() override {
+    if (done_) refuse_what_is_none();
+    if (done_) std::exchange(done_, nullptr)(std::move(file_));
+  }
+
+ private:
+  void refuse_what_is_none() {
+    std::string why = spare::not_an_export(std::string_view(file_).substr(0, spare::kExportHead));
+    if (why.empty()) return;
+    file_.clear();
+    std::exchange(done_,
+                  nullptr)(std::unexpected(icd::Refusal{icd::Status::UnprocessableEntity, std::move(why)}));
+  }
+
+  std::function<void(icd::Checked<std::string>)> done_;
+  std::string file_;
+};
+
+}  // namespace
+
+intake::Answer SpareRoutes::shown() const {
+  return fresh("application/json", codec::to_json(spare_.spare()));
+}
+
+intake::Answer SpareRoutes::after(const icd::Checked<void>& done) {
+  changed_();
+  return done ? shown() : refused(done.error());
+}
+
+intake::Answer SpareRoutes::rest() {
+  return after(spare_.rest());
+}
+
+intake::Answer SpareRoutes::wake() {
+  return after(spare_.wake());
+}
+
+std::unique_ptr<intake::BodySink> SpareRoutes::exported(const Call& call) {
+  const auto give = [responder = call.responder](icd::Checked<std::string> file) {
+    if (!file) return responder->answer(refused(file.error()));
+    auto answer = fresh("application/octet-stream", *std::move(file));
+    answer.headers.push_back(
+        {"Content-Disposition", std::string("attachment; filename=\"") + kFileName + "\""});
+    responder->answer(std::move(answer));
+  };
+  return std::make_unique<SmallBody>(call.responder, 0,
+                                     [this, give](const std::string&) { spare_.export_to(give); });
+}
+
+void SpareRoutes::to_stick(const Call& call) {
+  spare_.export_to_stick(
+      [this, responder = call.responder](const icd::Checked<void>& done) { responder->answer(after(done)); });
+}
+
+intake::Answer SpareRoutes::from_stick(const std::string& body) {
+  const auto name = read_body<std::string>(
+      body, [](const codec::Field& root) { return std::string(root.member("name").text()); });
+  if (!name) return refused(name.error());
+  return after(spare_.take_from_stick(*name));
+}
+
+std::unique_ptr<intake::BodySink> SpareRoutes::take_in(const Call& call) {
+  if (call.head.content_length().value_or(spare::kLargestExport + 1) > spare::kLargestExport) {
+    call.responder->answer(SmallBody::too_long(spare::kLargestExport, "export"));
+    return nullptr;
+  }
+  return std::make_unique<ReceivingExport>(
+      [this, responder = call.responder](icd::Checked<std::string> file) {
+        responder->answer(file ? after(spare_.take_in(*std::move(file))) : refused(file.error()));
+      });
+}
+
+void SpareRoutes::open(const Call& call) {
+  const auto code = read_body<std::string>(
+      call.body, [](const codec::Field& root) { return std::string(root.member("code").text()); });
+  if (!code) return call.responder->answer(refused(code.error()));
+  spare_.open(*code, [this, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(done));
+  });
+}
+
+intake::Answer SpareRoutes::forget() {
+  return after(spare_.forget());
+}
+
+intake::Answer SpareRoutes::take_over(const std::string& body) {
+  const auto unplugged =
+      read_body<bool>(body, [](const codec::Field& root) { return root.member("unplugged").truth(); });
+  if (!unplugged) return refused(unplugged.error());
+  if (!*unplugged)
+    return refusal(icd::Status::UnprocessableEntity,
+                   "unplugged: expected true, for the box that made the export must be off");
+  return after(spare_.take_over());
+}
+
+}  // namespace adit::api

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "api/route.hpp"
+#include "api/spare.hpp"
+#include "intake/server.hpp"
+
+namespace adit::api {
+
+/// A spare box, and the box that it is the spare of. README.md has the routes.
+class SpareRoutes {
+ public:
+  /// `spare` outlives this. `changed` is called when the page shows something else.
+  SpareRoutes(Spare& spare, std::function<void()> changed) : spare_(spare), changed_(std::move(changed)) {}
+
+  intake::Answer shown() const;
+  intake::Answer rest();
+  intake::Answer wake();
+  std::unique_ptr<intake::BodySink> exported(const Call& call);
+  void to_stick(const Call& call);
+  intake::Answer from_stick(const std::string& body);
+  std::unique_ptr<intake::BodySink> take_in(const Call& call);
+  void open(const Call& call);
+  intake::Answer forget();
+  intake::Answer take_over(const std::string& body);
+
+ private:
+  intake::Answer after(const icd::Checked<void>& done);
+
+  Spare& spare_;
+  std::function<void()> changed_;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,177 @@
+#include "applier/address_watch.hpp"
+
+#include <net/if.h>
+#include <sys/epoll.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "host/interfaces.hpp"
+#include "host/link_changes.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::Level;
+
+static_assert(2 * Takers::kMost <= network::kMostTaken);
+
+/// What is to be watched.
+std::vector<std::uint32_t> addresses_of(const std::string& interface) {
+  std::vector<std::uint32_t> all;
+  for (const settings::Subnet& each : host::own_addresses(interface)) all.push_back(each.address);
+  all.resize(std::min(all.size(), Takers::kMost));
+  return all;
+}
+
+}  // namespace
+
+AddressWatch::AddressWatch(loop::Loop& loop, const Options& options)
+    : loop_(loop),
+      sides_{{{.interface = options.team}, {.interface = options.command_post}}},
+      file_(options.status + '/' + network::kTakenFile),
+      kernel_(host::link_and_address_changes()),
+      due_(loop.timer([this] { work(); })) {}
+
+std::expected<void, std::string> AddressWatch::start() {
+  if (!kernel_) return std::unexpected("the kernel does not tell what becomes of the interfaces");
+  changed_ = loop_.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
+    if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
+    look();
+  });
+  if (auto told = file_.tell(network::write(network::Taken{})); !told) return std::unexpected(told.error());
+  look();
+  return {};
+}
+
+void AddressWatch::look() {
+  std::vector<Mac> macs;
+  for (const Side& side : sides_) {
+    if (const auto mac = mac_of(side.interface)) macs.push_back(*mac);
+  }
+  for (Side& side : sides_) look(side, macs);
+  work();
+}
+
+void AddressWatch::look(Side& side, const std::vector<Mac>& macs) {
+  const Instant now = loop_.now();
+  const unsigned index = if_nametoindex(side.interface.c_str());
+  const bool is_ours = side.arp && std::ranges::find(macs, side.arp->own()) != macs.end();
+  if (index != side.index || !is_ours) open(side, index);
+  const auto addresses = addresses_of(side.interface);
+  side.takers.set_own(addresses, macs, now);
+  if (side.arp) {
+    // What is heard is judged again: without it there is only more to read.
+    if (const auto set = side.arp->hear_only(addresses); !set)
+      host::log(Level::Warning, "all ARP is heard", {{"why", set.error()}});
+  }
+  const bool had_carrier = std::exchange(side.carrier, host::carrier(side.interface).value_or(false));
+  if (side.carrier && !had_carrier) side.takers.ask_again(now);
+}
+
+void AddressWatch::open(Side& side, unsigned index) {
+  side.heard = {};
+  side.arp.reset();
+  side.index = 0;
+  if (index == 0) return;
+  auto arp = ArpSocket::open(side.interface);
+  if (!arp) {
+    if (side.trouble != arp.error()) host::log(Level::Error, "nothing is heard", {{"why", arp.error()}});
+    side.trouble = std::move(arp.error());
+    return;
+  }
+  side.trouble.clear();
+  side.index = index;
+  side.arp = std::move(*arp);
+  side.rests_until.reset();
+  side.heard = loop_.watch(side.arp->descriptor(), EPOLLIN, [this, &side](std::uint32_t) { hear(side); });
+}
+
+void AddressWatch::hear(Side& side) {
+  const Instant now = loop_.now();
+  std::uint8_t packet[128];
+  for (int i = 0; i < kMostAtOnce; ++i) {
+    const auto size = side.arp->receive(packet);
+    if (!size) return work();
+    if (const auto arp = read_arp({packet, *size})) side.takers.hear(*arp, now);
+  }
+  side.rests_until = now + kRest;
+  side.heard.wait_for(0);
+  work();
+}
+
+/// All that is due.
+void AddressWatch::work() {
+  const Instant now = loop_.now();
+  for (Side& side : sides_) {
+    if (side.rests_until && now >= *side.rests_until) {
+      side.rests_until.reset();
+      side.heard.wait_for(EPOLLIN);
+    }
+    ask(side);
+    say(side, now);
+  }
+  std::optional<Instant> next;
+  const auto at = [&next](const std::optional<Instant>& when) {
+    if (when && (!next || *when < *next)) next = when;
+  };
+  tell(now);
+  if (told_at_) at(*told_at_ + kBetweenTellings);
+  for (const Side& side : sides_) {
+    at(side.takers.wake());
+    at(side.rests_until);
+  }
+  next ? due_.call_at(*next) : due_.cancel();
+}
+
+void AddressWatch::ask(Side& side) {
+  for (const std::uint32_t address : side.takers.take_due(loop_.now())) {
+    if (!side.arp || !side.carrier) continue;  // asked again once there is a cable
+    if (const auto asked = side.arp->ask(address); !asked)
+      host::log(Level::Debug, "nobody was asked", {{"why", asked.error()}});
+  }
+}
+
+/// Seldom enough that nobody fills the log by coming and going.
+void AddressWatch::say(Side& side, Instant now) {
+  const auto taken = side.takers.taken();
+  const auto is_taken = [&taken](std::uint32_t address) {
+    return std::ranges::find(taken, address, &Takers::Taken::address) != taken.end();
+  };
+  if (!side.said.empty() && std::ranges::none_of(side.said, is_taken)) {
+    side.said.clear();
+    host::log(Level::Notice, "no other machine uses the box's address any more",
+              {{"interface", side.interface}});
+  }
+  if (taken.empty() || !side.said.empty() || (side.said_at && now < *side.said_at + kBetweenLines)) return;
+  side.said_at = now;
+  for (const Takers::Taken& each : taken) side.said.push_back(each.address);
+  host::log(Level::Warning, "another machine uses the box's address",
+            {{"interface", side.interface},
+             {"address", settings::ipv4_text(taken.front().address)},
+             {"mac", text_of(taken.front().by)}});
+}
+
+void AddressWatch::tell(Instant now) {
+  if (told_at_ && now < *told_at_ + kBetweenTellings) return;
+  told_at_.reset();
+  const auto told = file_.tell(network::write(taken()));
+  if (!told || *told) told_at_ = now;
+}
+
+network::Taken AddressWatch::taken() const {
+  network::Taken all;
+  for (const Side& side : sides_) {
+    for (const Takers::Taken& each : side.takers.taken()) {
+      all.addresses.push_back({.interface = side.interface,
+                               .address = settings::ipv4_text(each.address),
+                               .mac = text_of(each.by),
+                               .seen = each.seen});
+    }
+  }
+  return all;
+}
+
+}  // namespace adit::applier

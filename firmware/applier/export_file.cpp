@@ -1,0 +1,89 @@
+#include "applier/export_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <utility>
+
+#include "host/files.hpp"
+#include "host/service.hpp"
+#include "loop/file_descriptor.hpp"
+#include "spare/sealed.hpp"
+
+namespace adit::applier {
+namespace {
+
+using loop::FileDescriptor;
+
+/// O_NONBLOCK: a FIFO must not hold this up.
+constexpr int kPlainly = O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
+
+FileDescriptor open_folder(const std::string& path) {
+  return FileDescriptor(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
+}
+
+std::unexpected<std::string> failed(const std::string& name, int error) {
+  std::string why = host::trouble(name, error);
+  if (error == ENOSPC || error == EDQUOT) why = "the stick has no room for it";
+  if (error == EROFS) why = "the stick is write-protected, or its file system is damaged";
+  return std::unexpected(std::move(why));
+}
+
+/// 0, or the errno.
+int write_all(int file, const std::string& bytes) {
+  for (std::size_t at = 0; at < bytes.size();) {
+    const ssize_t count = write(file, bytes.data() + at, bytes.size() - at);
+    if (count < 0 && errno != EINTR) return errno;
+    if (count > 0) at += static_cast<std::size_t>(count);
+  }
+  return fsync(file) == 0 ? 0 : errno;
+}
+
+/// The same, of the new file in the folder.
+int put(int folder, const std::string& name, const std::string& bytes) {
+  const FileDescriptor file(
+      openat(folder, kUnfinished, O_WRONLY | O_CREAT | O_EXCL | kPlainly, host::kForAll));
+  if (!file) return errno;
+  if (const int error = write_all(file.get(), bytes); error != 0) return error;
+  if (renameat(folder, kUnfinished, folder, name.c_str()) != 0) return errno;
+  return fsync(folder) == 0 && syncfs(folder) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+std::expected<void, std::string> write_export(const std::string& folder, const std::string& name,
+                                              const std::string& bytes) {
+  const FileDescriptor in = open_folder(folder);
+  if (!in) return failed("the stick", errno);
+  unlinkat(in.get(), kUnfinished, 0);
+  const int error = put(in.get(), name, bytes);
+  if (error == 0) return {};
+  unlinkat(in.get(), kUnfinished, 0);
+  return failed(name, error);
+}
+
+std::expected<std::string, std::string> read_export(const std::string& folder, const std::string& name) {
+  const FileDescriptor in = open_folder(folder);
+  const FileDescriptor file(in ? openat(in.get(), name.c_str(), O_RDONLY | kPlainly) : -1);
+  if (!file) return failed(name, errno);
+  struct stat status{};
+  if (fstat(file.get(), &status) != 0) return failed(name, errno);
+  if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
+  std::string bytes(spare::kLargestExport + 1, '\0');
+  std::size_t size = 0;
+  while (size < bytes.size()) {
+    const ssize_t count = read(file.get(), bytes.data() + size, bytes.size() - size);
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return failed(name, errno);
+    if (count == 0) break;
+    size += static_cast<std::size_t>(count);
+  }
+  if (size == bytes.size()) return std::unexpected(name + ": it is too large for an export");
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace adit::applier

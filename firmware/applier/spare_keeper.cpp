@@ -1,0 +1,146 @@
+#include "applier/spare_keeper.hpp"
+
+#include <unistd.h>
+
+#include "applier/export_file.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
+#include "spare/sealed.hpp"
+
+namespace adit::applier {
+namespace {
+
+using host::Level;
+using Mode = Sticks::Mode;
+
+/// Takes the export that is to be written out of a folder in which somebody else writes.
+std::expected<std::string, std::string> take_export(host::UntrustedFolder& folder) {
+  auto bytes = read_export(folder.path_by_descriptor() + "/.", spare::kForStickFile);
+  if (const auto gone = folder.remove(spare::kForStickFile); !gone) return std::unexpected(gone.error());
+  if (!bytes) return bytes;
+  if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));
+      !why.empty())
+    return std::unexpected(std::move(why));
+  return bytes;
+}
+
+}  // namespace
+
+std::expected<void, std::string> SpareKeeper::work() {
+  const std::string file = options_.status + '/' + spare::kStickStatusFile;
+  const bool first = access(file.c_str(), F_OK) != 0;
+  if (const auto before = host::read_file(file)) {
+    const auto known = spare::read_message<spare::StickStatus>(*before);
+    if (known) status_ = *known;
+    if (!status_.doing.empty()) status_.refusal = "it was cut off: try again";
+    status_.doing.clear();
+  }
+  sticks_.settle();
+  look();
+  if (!tell()) return std::unexpected("the status cannot be told");
+  auto folder = host::UntrustedFolder::open(options_.wanted);
+  if (folder) return take_requests(*folder, first);
+  host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+  return {};
+}
+
+/// `drop`: they are taken away and not done.
+std::expected<void, std::string> SpareKeeper::take_requests(host::UntrustedFolder& folder, bool drop) {
+  while (true) {
+    const auto text = folder.take(spare::kStickRequestFile);
+    if (text && !*text) break;
+    if (!text && text.error().stays) return std::unexpected(text.error().why);
+    const auto request =
+        text ? spare::read_message<spare::StickRequest>(**text) : std::unexpected(text.error().why);
+    if (drop) continue;
+    if (request) {
+      answer(*request, folder);
+    } else {
+      host::log(Level::Warning, "refused what was asked for", {{"why", request.error()}});
+    }
+  }
+  if (drop) (void)folder.remove(spare::kForStickFile);
+  return {};
+}
+
+void SpareKeeper::answer(const spare::StickRequest& request, host::UntrustedFolder& folder) {
+  status_.nonce = request.nonce;
+  status_.refusal.clear();
+  status_.written.clear();
+  status_.refusal = request.what == spare::StickRequest::What::Write
+                        ? write(request.name, take_export(folder))
+                        : take(request.name);
+  status_.doing.clear();
+  if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+  look();  // it may be another by now, or gone
+  tell();
+}
+
+std::string SpareKeeper::write(const std::string& name,
+                               const std::expected<std::string, std::string>& bytes) {
+  if (!bytes) return bytes.error();
+  const auto medium = spare::medium_for(sticks_.media(), bytes->size());
+  if (!medium) return medium.error();
+  doing("writing");
+  std::string why = write_to(*medium, name, *bytes);
+  // Unmounted in any case: it may be pulled out.
+  const auto done = sticks_.remount(medium->name, Mode::ReadOnly);
+  if (!sticks_.is_in(medium->name))
+    return "the stick was pulled out before the export was whole: put it in again";
+  if (!why.empty()) return why;
+  if (!done) return done.error();
+  doing("checking");
+  why = check(*medium, name, *bytes);
+  if (why.empty()) {
+    status_.written = name;
+    host::log(Level::Notice, "an export was written to a stick", {{"name", name}, {"stick", medium->name}});
+  }
+  return why;
+}
+
+std::string SpareKeeper::write_to(const spare::Medium& medium, const std::string& name,
+                                  const std::string& bytes) {
+  if (const auto writable = sticks_.remount(medium.name, Mode::Writable); !writable) return writable.error();
+  const auto written = write_export(sticks_.folder(medium.name), name, bytes);
+  return written ? "" : written.error();
+}
+
+/// What the stick has kept: nothing of it is in the machine's memory any more since it was unmounted.
+std::string SpareKeeper::check(const spare::Medium& medium, const std::string& name,
+                               const std::string& bytes) {
+  const auto kept = read_export(sticks_.folder(medium.name), name);
+  if (kept && *kept == bytes) return "";
+  if (!sticks_.is_in(medium.name))
+    return "the stick was pulled out before it was read back: export once more";
+  return "the stick has not kept the export as it was written: use another stick";
+}
+
+std::string SpareKeeper::take(const std::string& name) {
+  doing("reading");
+  const std::string folder = sticks_.folder_with(name);
+  if (folder.empty()) return "there is no such export on a stick";
+  const auto bytes = read_export(folder, name);
+  if (!bytes) return bytes.error();
+  if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));
+      !why.empty())
+    return why;
+  const auto kept = host::write_file(options_.status + '/' + spare::kFromStickFile, *bytes, host::kForAll);
+  return kept ? "" : kept.error();
+}
+
+void SpareKeeper::doing(const char* what) {
+  status_.doing = what;
+  tell();
+}
+
+void SpareKeeper::look() {
+  const auto medium = spare::medium_for(sticks_.media(), 0);
+  status_.hindrance = medium ? "" : medium.error();
+  status_.exports = sticks_.exports();
+}
+
+bool SpareKeeper::tell() {
+  return file_.tell(spare::write_message(status_)).has_value();
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,131 @@
+#include "applier/sticks.hpp"
+
+#include <sys/stat.h>
+#include <sys/statvfs.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <thread>
+
+#include "host/log.hpp"
+#include "host/output.hpp"
+#include "host/service.hpp"
+#include "spare/file_name.hpp"
+
+namespace adit::applier {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Names at the top of a stick, of whatever.
+constexpr std::size_t kMostAtTop = 4096;
+constexpr std::chrono::seconds kMount{90};
+/// Whoever looks at all mounts holds one for a moment, and the unit of the mount before is gone a moment
+/// after it.
+constexpr int kTries = 20;
+constexpr std::chrono::milliseconds kBetween{100};
+
+/// As adit-stick@.service mounts it, but for the first word.
+constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime";
+
+std::vector<std::string> names_at(const std::string& folder, std::size_t most) {
+  auto names = host::names_in(folder, most);
+  if (names) return *std::move(names);
+  host::log(host::Level::Warning, "a stick cannot be looked at",
+            {{"folder", folder}, {"why", names.error()}});
+  return {};
+}
+
+}  // namespace
+
+bool Sticks::is_in(const std::string& name) const {
+  std::error_code error;
+  return fs::exists(options_.block + '/' + name, error);
+}
+
+bool Sticks::is_mounted(const std::string& name) const {
+  struct stat mounted{}, around{};
+  return stat(folder(name).c_str(), &mounted) == 0 && stat(options_.sticks.c_str(), &around) == 0 &&
+         mounted.st_dev != around.st_dev;
+}
+
+std::vector<spare::Medium> Sticks::media() const {
+  std::vector<spare::Medium> media;
+  for (const std::string& name : host::names_in(options_.sticks).value_or(std::vector<std::string>())) {
+    if (!is_in(name)) continue;  // the folder of one that was pulled out
+    const std::string block = options_.block + '/' + name;
+    std::error_code error;
+    const fs::path itself = fs::canonical(block, error);
+    const bool is_partition = fs::exists(block + "/partition", error);
+    spare::Medium medium{.name = name, .is_mounted = is_mounted(name)};
+    medium.disk = (is_partition ? itself.parent_path() : itself).filename();
+    medium.is_write_protected = host::read_file(block + "/ro").value_or("").starts_with('1');
+    struct statvfs room{};
+    if (medium.is_mounted && statvfs(folder(name).c_str(), &room) == 0)
+      medium.room = std::uint64_t{room.f_bavail} * room.f_frsize;
+    media.push_back(std::move(medium));
+  }
+  return media;
+}
+
+std::vector<std::string> Sticks::exports() const {
+  std::vector<std::string> found;
+  for (const spare::Medium& medium : media()) {
+    if (!medium.is_mounted) continue;
+    for (std::string& name : names_at(folder(medium.name), kMostAtTop)) {
+      if (spare::is_file_name(name) && std::ranges::find(found, name) == found.end())
+        found.push_back(std::move(name));
+    }
+  }
+  std::ranges::sort(found, spare::is_before);
+  if (found.size() > kMost) found.resize(kMost);
+  return found;
+}
+
+std::string Sticks::folder_with(const std::string& name) const {
+  for (const spare::Medium& medium : media()) {
+    struct stat status{};
+    if (medium.is_mounted && lstat((folder(medium.name) + '/' + name).c_str(), &status) == 0)
+      return folder(medium.name);
+  }
+  return "";
+}
+
+std::expected<void, std::string> Sticks::unmount(const std::string& name) const {
+  std::expected<void, std::string> done;
+  for (int tries = 0; is_mounted(name) && tries < kTries; ++tries) {
+    if (tries > 0) std::this_thread::sleep_for(kBetween);
+    done = host::run_command({options_.mount, "--umount", folder(name)}, kMount);
+  }
+  if (!is_mounted(name)) return {};
+  return std::unexpected("the stick is in use, and could not be unmounted: " +
+                         (done ? "systemd says nothing" : done.error()));
+}
+
+std::expected<void, std::string> Sticks::remount(const std::string& name, Mode mode) const {
+  if (auto unmounted = unmount(name); !unmounted) return unmounted;
+  const std::string how = std::string(mode == Mode::Writable ? "rw" : "ro") + kOptions;
+  std::expected<void, std::string> done;
+  for (int tries = 0; tries < kTries && is_in(name); ++tries) {
+    done = host::run_command({options_.mount, "--collect", "--fsck=no", "--type=vfat,ext4",
+                              "--options=" + how, options_.devices + '/' + name, folder(name)},
+                             kMount);
+    if (is_mounted(name)) return {};
+    std::this_thread::sleep_for(kBetween);
+  }
+  if (!is_in(name)) return std::unexpected("the stick is gone");
+  return std::unexpected("the stick could not be mounted: " + (done ? "systemd says nothing" : done.error()));
+}
+
+void Sticks::settle() const {
+  for (const spare::Medium& medium : media()) {
+    struct statvfs now{};
+    if (!medium.is_mounted || statvfs(folder(medium.name).c_str(), &now) != 0 ||
+        (now.f_flag & ST_RDONLY) != 0)
+      continue;
+    if (const auto done = remount(medium.name, Mode::ReadOnly); !done)
+      host::log(host::Level::Error, "a stick is left writable", {{"why", done.error()}});
+  }
+}
+
+}  // namespace adit::applier

@@ -1,0 +1,37 @@
+#include "cli/event_reader.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace adit::cli {
+namespace {
+
+Event event_of(std::string_view lines) {
+  Event event;
+  while (!lines.empty()) {
+    const std::string_view line = lines.substr(0, lines.find('\n'));
+    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+    constexpr std::string_view kType = "event: ", kData = "data: ";
+    if (line.starts_with(kType)) event.type = line.substr(kType.size());
+    if (line.starts_with(kData)) event.data = line.substr(kData.size());
+  }
+  return event;
+}
+
+}  // namespace
+
+std::optional<Event> EventReader::next() {
+  while (true) {
+    const std::size_t end = unread_.find("\n\n", searched_);
+    if (end == std::string::npos) {
+      searched_ = unread_.empty() ? 0 : unread_.size() - 1;
+      return std::nullopt;
+    }
+    Event event = event_of(std::string_view(unread_).substr(0, end));
+    unread_.erase(0, end + 2);
+    searched_ = 0;
+    if (!event.data.empty()) return event;
+  }
+}
+
+}  // namespace adit::cli

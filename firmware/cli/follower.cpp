@@ -1,0 +1,96 @@
+#include "cli/follower.hpp"
+
+#include <utility>
+
+#include "cli/reading.hpp"
+#include "cli/where.hpp"
+#include "codec/apply_patch.hpp"
+#include "codec/json.hpp"
+
+namespace adit::cli {
+namespace {
+
+Look seen(const Adit& adit, const codec::Value& told) {
+  auto view = read<api::RunView>(adit, told);
+  if (!view) return std::unexpected(std::move(view.error()));
+  return Seen{told, *std::move(view)};
+}
+
+}  // namespace
+
+std::optional<Look> Follower::look() {
+  if (!stream_) return Clock::now() < again_ ? std::nullopt : open();
+  auto came = stream_->read();
+  if (!came) return ended(came.error());
+  if (!came->empty()) {
+    heard_ = Clock::now();
+  } else if (Clock::now() >= heard_ + kSilence) {
+    return lost("it says nothing any more");
+  }
+  events_.feed(*came);
+  return news();
+}
+
+std::optional<Look> Follower::open() {
+  again_ = Clock::now() + kAgain;
+  auto stream =
+      HttpStream::ask(adit_.address, {.target = "/adit/events", .token = adit_.token.token}, kReadPatience);
+  if (!stream) return std::unexpected(std::move(stream.error()));
+  stream_ = *std::move(stream);
+  events_ = {};
+  has_told_ = false;
+  heard_ = Clock::now();
+  return std::nullopt;
+}
+
+/// One that has told something is asked for again at once: only where that fails it is known to be away.
+std::optional<Look> Follower::ended(const HttpStream::Ended& end) {
+  if (end.status != 0) {
+    stream_.reset();
+    return ask();
+  }
+  if (!has_told_) return lost(end.why);
+  stream_.reset();
+  return Clock::now() < again_ ? std::nullopt : open();
+}
+
+std::optional<Look> Follower::lost(const std::string& why) {
+  stream_.reset();
+  return std::unexpected("Adit at " + written(adit_.address) + " cannot be asked: " + why);
+}
+
+Look Follower::ask() const {
+  const auto json = get(adit_, "/adit/run");
+  if (!json) return std::unexpected(json.error());
+  const auto told = codec::parse_json(*json);
+  if (!told)
+    return std::unexpected("Adit at " + written(adit_.address) + " answers no JSON: " + told.error());
+  return seen(adit_, *told);
+}
+
+std::optional<Look> Follower::news() {
+  bool is_news = false;
+  while (const auto event = events_.next()) {
+    if (!take(*event)) return lost("what it tells cannot be understood");
+    is_news = true;
+  }
+  if (events_.waiting() > kLargestBody) return lost("what it tells is too long");
+  if (!is_news) return std::nullopt;
+  has_told_ = true;
+  return seen(adit_, told_);
+}
+
+bool Follower::take(const Event& event) {
+  auto data = codec::parse_json(event.data);
+  if (!data) return false;
+  if (event.type != "patch") {
+    told_ = *std::move(data);
+    return true;
+  }
+  auto now = codec::apply_patch(std::move(told_), *data);
+  if (!now) return false;
+  told_ = *std::move(now);
+  return true;
+}
+
+}  // namespace adit::cli

@@ -1,0 +1,314 @@
+#include "dispatch/taking_over.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "dispatch/report_verdict.hpp"
+#include "dispatch/run_watch.hpp"
+#include "dispatch/runs.hpp"
+#include "dispatch/same_report.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+/// What never changes of a report, whichever box it is at.
+auto identity_of(const Report& report) {
+  const icd::Point& at = report.report.position;
+  return std::tuple(report.received, report.report.type, at.x, at.y, at.z);
+}
+using Identity = decltype(identity_of(std::declval<Report>()));
+
+bool was_recorded(const Report& report) {
+  return report.state == ReportState::Answered || report.state == ReportState::Settled;
+}
+
+/// It reached the Command Post, or may have, and stands for what is the same.
+bool stands(const Report& report) {
+  const bool was_sent =
+      was_recorded(report) || report.state == ReportState::InDoubt || report.state == ReportState::Sending;
+  return was_sent && !effect_of(report).again;
+}
+
+bool are_told_apart(const Run& one, const Run& other) {
+  const bool other_name = !one.id.empty() && !other.id.empty() && one.id != other.id;
+  const bool other_team =
+      one.last && other.last && are_other_teams(one.last->current_team, other.last->current_team);
+  return other_name || other_team;
+}
+
+Runs runs_of(const Books& books) {
+  std::int64_t latest = 1;
+  for (const Report& report : books.reports) latest = std::max(latest, report.run);
+  Runs runs;
+  runs.open(books.runs, latest);
+  return runs;
+}
+
+/// What is known of one run at both boxes: nothing that is known here is forgotten.
+Run joined(Run here, const Run& there) {
+  if (there.heard > here.heard) {
+    here.heard = there.heard;
+    here.last = there.last;
+    here.status_clock = there.status_clock;
+    here.answer_clock = there.answer_clock;
+  }
+  if (here.id.empty()) here.id = there.id;
+  if (here.unreliable.empty()) here.unreliable = there.unreliable;
+  return here;
+}
+
+class TakingOver {
+ public:
+  TakingOver(const Books& here, const Books& there, const Handover& handover)
+      : here_(here),
+        there_(there),
+        here_runs_(runs_of(here)),
+        there_runs_(runs_of(there)),
+        handover_(handover) {
+    for (const Report& report : here_.reports) {
+      known_.emplace(identity_of(report), &report);
+      next_number_ = std::max(next_number_, report.number + 1);
+      sendings_here_ = std::max(sendings_here_, report.sending);
+      next_sending_ = std::max(next_sending_, report.sending);
+    }
+    for (const Report& report : there_.reports)
+      next_sending_ = std::max(next_sending_, sendings_here_ + report.sending);
+  }
+
+  TakeOver run() {
+    take_runs();
+    for (const Report& report : there_.reports) number(report);
+    for (const Report& report : there_.reports) take(report);
+    for (const Report& report : here_.reports) {
+      if (!met_.contains(&report)) meet_first_box(report);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  const Report* known(const Report& report) const {
+    const auto found = known_.find(identity_of(report));
+    return found == known_.end() ? nullptr : found->second;
+  }
+
+  /// The spare was never at a run: it may count them as the first box did.
+  bool is_blank() const { return here_.reports.empty() && std::ranges::none_of(here_.runs, &Run::was_heard); }
+
+  // Runs.
+
+  /// One that both know: by its reports, or by its name and begin. 0: it is new here.
+  std::int64_t run_known_as(const Run& run) const {
+    std::int64_t found = 0;
+    for (const Report& report : there_.reports) {
+      const Report* const here = report.run == run.number ? known(report) : nullptr;
+      if (here == nullptr || here_runs_.find(here->run) == nullptr) continue;
+      if (found == 0 || here_runs_.find(here->run)->place() > here_runs_.find(found)->place())
+        found = here->run;
+    }
+    if (found != 0) return found;
+    // Each box's first run began at no known time.
+    const auto is_it = [&run](const Run& here) {
+      return here.post == run.post && here.began == run.began && here.why == run.why &&
+             (run.began != 0 || (here.last == run.last && here.id == run.id));
+    };
+    const auto same = std::ranges::find_if(here_.runs, is_it);
+    return same == here_.runs.end() ? 0 : same->number;
+  }
+
+  void take_runs() {
+    std::int64_t next = is_blank() ? 1 : here_runs_.next_number();
+    std::int64_t turn = 0;
+    for (const auto& [number, run] : here_runs_.all()) turn = std::max(turn, run.place());
+    std::vector<const Run*> in_turn;
+    for (const auto& [number, run] : there_runs_.all()) {
+      const std::int64_t as = run_known_as(run);
+      is_new_run_[number] = as == 0;
+      if (as == 0 && is_blank()) next = number;
+      runs_[number] = as != 0 ? as : next++;
+      in_turn.push_back(&run);
+    }
+    std::ranges::stable_sort(in_turn, {}, &Run::place);
+    for (const Run* const run : in_turn) {
+      const bool is_present = run->number == there_runs_.present().number;
+      take_run(*run, ++turn, is_present);
+    }
+    link_to_own();
+    for (const auto& [number, run] : merged_) result_.runs.push_back(run);
+  }
+
+  void take_run(const Run& run, std::int64_t turn, bool is_present) {
+    const std::int64_t number = runs_.at(run.number);
+    Run next = run;
+    if (run.heard != 0) next.heard += handover_.ahead;
+    if (is_new_run_.at(run.number)) {
+      next.number = number;
+      next.turn = turn;
+      const auto may_be = runs_.find(run.may_be);
+      next.may_be = may_be == runs_.end() ? 0 : may_be->second;
+    } else {
+      const auto before = merged_.find(number);
+      next = joined(before != merged_.end() ? before->second : *here_runs_.find(number), next);
+      const bool is_present_already = here_runs_.present().number == number;
+      if (is_present && !is_present_already) next.turn = turn;
+    }
+    merged_[number] = std::move(next);
+  }
+
+  /// The run that was the last one here at the same Command Post; nothing: it is the first box's present one
+  /// itself, or there is none of which anything is known.
+  const Run* own_run() const {
+    const Run& present = merged_.at(runs_.at(there_runs_.present().number));
+    const Run* own = nullptr;
+    for (const auto& [number, run] : here_runs_.all()) {
+      const bool is_there = run.post == present.post && !merged_.contains(number);
+      const bool counts = run.was_heard() || has_reports(number);
+      if (is_there && counts && (own == nullptr || run.place() > own->place())) own = &run;
+    }
+    return own;
+  }
+
+  bool has_reports(std::int64_t run) const {
+    return std::ranges::find(here_.reports, run, &Report::run) != here_.reports.end();
+  }
+
+  /// The first box's present run may be the one that the spare was at before.
+  void link_to_own() {
+    present_ = runs_.at(there_runs_.present().number);
+    const Run* const own = own_run();
+    if (own == nullptr || !is_new_run_.at(there_runs_.present().number)) return;
+    own_ = own->number;
+    own_is_another_ = are_told_apart(*own, merged_.at(present_));
+    if (own_is_another_) return;
+    Run* first = &merged_.at(present_);
+    while (first->may_be != 0 && merged_.contains(first->may_be)) first = &merged_.at(first->may_be);
+    if (first->may_be == 0 && own_ < first->number) first->may_be = own_;
+  }
+
+  // Reports.
+
+  void number(const Report& report) {
+    const Report* const here = known(report);
+    if (here != nullptr) met_.emplace(here, &report);
+    if (here == nullptr && here_.reports.empty()) next_number_ = report.number;
+    numbers_[report.number] = here != nullptr ? here->number : next_number_++;
+  }
+
+  /// It in the numbers of here.
+  Report renumbered(const Report& report) const {
+    Report next = report;
+    next.number = numbers_.at(report.number);
+    if (const auto run = runs_.find(report.run); run != runs_.end()) next.run = run->second;
+    const auto same = numbers_.find(report.same_as);
+    next.same_as = same == numbers_.end() ? 0 : same->second;
+    if (report.sending != 0) next.sending = sendings_here_ + report.sending;
+    if (report.sent != 0) next.sent += handover_.ahead;
+    return next;
+  }
+
+  void take(const Report& report) {
+    const Report* const here = known(report);
+    if (here != nullptr && !is_better(report, *here)) return;
+    Report next = renumbered(report);
+    const bool has_stepped = move(next, report) || here != nullptr;
+    result_.reports.push_back({.report = std::move(next),
+                               .there = here == nullptr ? report.number : 0,
+                               .has_stepped = has_stepped});
+  }
+
+  /// What the first box knows of it says more than what is known here.
+  static bool is_better(const Report& there, const Report& here) {
+    // Of those that stand for what is lost nothing tells one from the other.
+    if (was_recorded(here) || here.is_lost()) return false;
+    return was_recorded(there) || there.changed > here.changed;
+  }
+
+  /// What the change of boxes does to it. False: nothing.
+  bool move(Report& next, const Report& there) {
+    if (there.state == ReportState::Sending) {
+      ++next.tries;
+      return step(next, ReportState::InDoubt, "the first box stopped while it was being sent");
+    }
+    if (there.state != ReportState::Waiting) return false;
+    if (const Report* const own = sent_here(next); own != nullptr) {
+      next.same_as = own->number;
+      return step(next, ReportState::Received,
+                  icd::sentence("held: the same as report ", own->number, ", which this box had"));
+    }
+    next.before = there.run == there_runs_.present().number ? handover_.expected : std::nullopt;
+    next.sending = ++next_sending_;
+    next.sent = handover_.stamp;
+    return step(next, ReportState::InDoubt, "it waited at the first box, which may have sent it since");
+  }
+
+  bool step(Report& report, ReportState state, const std::string& note) const {
+    report.state = state;
+    report.note = note;
+    report.changed = handover_.stamp;
+    return true;
+  }
+
+  /// The same one, that this box sent, or may have, in what may be the first box's present run.
+  const Report* sent_here(const Report& report) const {
+    if (own_ == 0 || own_is_another_ || report.run != present_ || report.asked) return nullptr;
+    for (const Report& own : here_.reports) {
+      if (own.run == own_ && stands(own) && is_same(own.report, report.report)) return &own;
+    }
+    return nullptr;
+  }
+
+  /// What waits here was posted for the run that is on, which the first box knew better.
+  void meet_first_box(const Report& own) {
+    const Run* const its = here_runs_.find(own.run);
+    const bool is_of_own = own_ != 0 && own.run == own_;
+    const bool is_of_none = its != nullptr && !its->was_heard() && !merged_.contains(own.run);
+    if (own.state != ReportState::Waiting || (!is_of_own && !is_of_none)) return;
+    Report next = own;
+    if (is_of_own && own_is_another_) {
+      step(next, ReportState::Received, "held: the run of the first box goes on");
+    } else if (const TakenOver* const same = taken_like(own); same != nullptr && !own.asked) {
+      next.run = present_;
+      next.same_as = same->report.number;
+      step(next, ReportState::Received,
+           icd::sentence("held: the same as report ", same->report.number, ", which the first box had"));
+    } else {
+      next.run = present_;
+      step(next, ReportState::Waiting, "");
+    }
+    result_.reports.push_back({.report = std::move(next), .there = 0, .has_stepped = true});
+  }
+
+  const TakenOver* taken_like(const Report& own) const {
+    const auto is_like = [&](const TakenOver& taken) {
+      return taken.there != 0 && taken.report.run == present_ && stands(taken.report) &&
+             is_same(taken.report.report, own.report);
+    };
+    const auto found = std::ranges::find_if(result_.reports, is_like);
+    return found == result_.reports.end() ? nullptr : &*found;
+  }
+
+  const Books& here_;
+  const Books& there_;
+  const Runs here_runs_, there_runs_;
+  const Handover& handover_;
+  std::map<Identity, const Report*> known_;
+  std::map<const Report*, const Report*> met_;           // of here, and the same report there
+  std::map<std::int64_t, std::int64_t> runs_, numbers_;  // those of there, and what they are here
+  std::map<std::int64_t, bool> is_new_run_;              // by its number there
+  std::map<std::int64_t, Run> merged_;                   // by their numbers here
+  std::int64_t present_ = 0;                             // the first box's, by its number here
+  std::int64_t own_ = 0;  // the spare's run at the same Command Post, if that is none of the first box's
+  bool own_is_another_ = false;
+  std::int64_t next_number_ = 1, sendings_here_ = 0, next_sending_ = 0;
+  TakeOver result_;
+};
+
+}  // namespace
+
+TakeOver take_over(const Books& here, const Books& there, const Handover& handover) {
+  return TakingOver(here, there, handover).run();
+}
+
+}  // namespace adit::dispatch

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "api/finer_map.hpp"
+#include "loop/workers.hpp"
+#include "picture/fine.hpp"
+
+namespace adit::forward {
+
+/// Finer tiles of the grids that the Command Post took. A worker draws them where somebody looks: one block
+/// after the other, each of which can wait and gives way to what is on its way to the Command Post. What was
+/// drawn is kept until a grid comes there.
+class FineTiles final : public api::FinerMap {
+ public:
+  static constexpr std::size_t kMostDrawn = std::size_t{4} << 20;  // bytes of tiles
+  static constexpr std::size_t kMostAskers = 256;
+
+  /// Both outlive this; `mosaic` is what the grids were drawn upon.
+  FineTiles(loop::Workers& workers, const picture::Mosaic& mosaic, picture::ForwardedGrids grids);
+
+  /// False where no finer tile can differ by it.
+  bool take(std::shared_ptr<const picture::ForwardedGrid> grid, std::uint64_t number) {
+    return grids_.take(std::move(grid), number);
+  }
+  void clear();
+  /// For the one that follows. Ends this.
+  picture::ForwardedGrids hand_over() { return std::move(grids_); }
+
+  std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const override {
+    return grids_.finer(layer, since);
+  }
+  void tile(const picture::Layer& layer, const picture::TileAt& at, Done done) override;
+  std::size_t bytes() const { return grids_.bytes() + drawn_bytes_; }
+
+ private:
+  /// Which tile of the next coarser level a block is in the place of.
+  struct Place {
+    picture::Layer layer;
+    picture::TileAt over;
+    friend auto operator<=>(const Place&, const Place&) = default;
+  };
+  /// What a block was drawn of.
+  struct Of {
+    std::uint64_t newest = 0;
+    picture::Tile base;
+    friend bool operator==(const Of&, const Of&) = default;
+  };
+  struct Drawn {
+    Of of;
+    picture::FineBlock tiles;
+    std::size_t bytes = 0;
+    std::uint64_t used = 0;  // grows
+  };
+  struct Asker {
+    picture::TileAt at;
+    Done done;
+  };
+  struct Job;
+
+  Of of(const Place& place) const;
+  const picture::FineBlock* found(const Place& place, const Of& of);
+  void pump();
+  void draw(const Place& place, Of of, std::vector<Asker> askers);
+  void drawn(const Job& job);
+  void keep(const Place& place, const Of& of, const picture::FineBlock& tiles);
+
+  loop::Workers& workers_;
+  const picture::Mosaic& mosaic_;
+  picture::ForwardedGrids grids_;
+  std::map<Place, Drawn> drawn_;
+  std::size_t drawn_bytes_ = 0;
+  std::uint64_t uses_ = 0;
+  std::map<Place, std::vector<Asker>> askers_;
+  std::deque<Place> waiting_;  // each of which has askers
+  bool is_drawing_ = false;
+};
+
+}  // namespace adit::forward

@@ -1,0 +1,176 @@
+// The spare box: this one rests and is exported, or takes over from another by its export.
+import { confirmed } from "./dialog.js";
+import { make } from "./dom.js";
+import { get, getFile, post } from "./session.js";
+import { showStick } from "./spare_stick.js";
+
+const section = document.getElementById("spare");
+const [note, outcome] = section.querySelectorAll(":scope > p"), facts = section.querySelector("dl");
+const form = section.querySelector("form"), file = section.querySelector("input[type=file]");
+const buttons = Object.fromEntries([...section.querySelectorAll("[data-does]")].map((button) => [button.dataset.does, button]));
+const EVERY = 2000, EVERY_OF_STICK = 300;
+let timer;
+
+function say(text, bad = false) {
+  outcome.textContent = text;
+  outcome.dataset.bad = bad;
+}
+
+const AT_WORK = "A second box can take over from this one, with all that is known of the reports: put this one to rest, carry its export to the spare, and unplug this one. A spare takes in the export here.";
+
+function noteOf({ rests, why, asks_code: asksCode, taken_in: taken, takes_over: takesOver }) {
+  if (takesOver) return "This box is taking over.";
+  if (taken) return "Unplug the box that made this export before this one takes over.";
+  if (asksCode) return "An export was taken in. The box that made it shows its code while it rests.";
+  if (rests) return `This box rests: ${why}. It takes nothing and sends nothing until it is woken up.`;
+  return AT_WORK;
+}
+
+const whenOf = (seconds) => new Date(seconds * 1000).toLocaleString();
+
+/** What is in an export, or the code of this box's own. */
+function factsOf({ rests, code, taken_in: taken, takes_over: takesOver }) {
+  if (takesOver) return [];
+  if (taken) {
+    const { name, version, at, reports, open, post: where, run } = taken;
+    return [["Box", name], ["Adit", version], ["Came to rest", `${whenOf(at)}, by its clock`], ["Reports", `${reports}, ${open} of them not finished`],
+      ["Command Post", where], ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"]];
+  }
+  return rests && code ? [["Code", code]] : [];
+}
+
+/** Nothing moves under a finger: what is there stays as it is, where it says the same. */
+function showFacts(rows) {
+  const key = JSON.stringify(rows);
+  if (facts.dataset.key === key) return;
+  facts.dataset.key = key;
+  facts.hidden = !rows.length;
+  facts.replaceChildren(...rows.flatMap(([name, value]) => {
+    const pair = [make("dt"), make("dd")];
+    [pair[0].textContent, pair[1].textContent] = [name, value];
+    return pair;
+  }));
+}
+
+function show(view) {
+  const { rests, code, asks_code: asksCode, taken_in: taken, takes_over: takesOver, stick } = view;
+  section.hidden = false;
+  note.textContent = noteOf(view);
+  showFacts(factsOf(view));
+  const takes = Boolean(taken || asksCode);
+  form.hidden = !asksCode || takesOver;
+  file.hidden = takes || takesOver;
+  showStick(view, takes, (name) => act(() => takeFromStick(name)));
+  const free = stick && !stick.doing;
+  const shown = { rest: !rests && !takes, restToStick: free && !rests && !takes, toStick: free && rests && code && !takes, download: rests && code && !takes, wake: rests && !takes, take: !takes, over: taken, forget: takes };
+  for (const [does, button] of Object.entries(buttons)) button.hidden = takesOver || !shown[does];
+}
+
+async function look() {
+  clearTimeout(timer);
+  const view = await get("/adit/spare").catch(() => null);
+  if (view) show(view);
+  timer = setTimeout(look, view?.stick?.doing ? EVERY_OF_STICK : EVERY);
+  return view;
+}
+
+async function download() {
+  const { name, blob } = await getFile("/adit/spare/export");
+  const link = make("a");
+  link.href = URL.createObjectURL(blob);
+  link.download = name;
+  link.click();
+  setTimeout(() => URL.revokeObjectURL(link.href), 60_000);
+  say("The export is downloaded. Note its code, and unplug this box before the spare takes over.");
+}
+
+/** The box ends what is under way, and is there again. */
+async function untilItRests() {
+  for (const end = performance.now() + 60_000; performance.now() < end; ) {
+    const view = await look();
+    if (view?.rests && view.code) return;
+    await new Promise((resolve) => setTimeout(resolve, 300));
+  }
+  throw new Error("The box does not rest yet.");
+}
+
+const sure = (title, text, word) => confirmed({ title, text, word });
+
+/** Whether the box was put to rest. */
+async function putToRest() {
+  const text = "From then on this box takes nothing and sends nothing, also after a power cut, until it is woken up.";
+  if (!(await sure("Put this box to rest?", text, "Rest and export"))) return false;
+  say("The box goes to rest, once what is under way is answered.");
+  await post("/adit/spare/rest");
+  await untilItRests();
+  return true;
+}
+
+async function toStick() {
+  await post("/adit/spare/to-stick");
+  say("");
+}
+
+async function takeFromStick(name) {
+  await post("/adit/spare/from-stick", { name });
+  say("");
+}
+
+const DOES = {
+  async rest() {
+    if (await putToRest()) await download();
+  },
+  /** Not where nothing could be written: it would rest for nothing. */
+  async restToStick() {
+    const { stick } = await get("/adit/spare");
+    if (stick.hindrance) return say(`The box is not put to rest: ${stick.hindrance}.`, true);
+    if (await putToRest()) await toStick();
+  },
+  toStick,
+  download,
+  async wake() {
+    const text = "Only where no spare took over from it: else a report may be sent twice.";
+    if (!(await sure("Wake this box up?", text, "Wake it up"))) return;
+    await post("/adit/spare/wake");
+    say("The box goes on.");
+  },
+  async take() {
+    if (!file.files[0]) return say("Choose the export first.", true);
+    await post("/adit/spare/take", file.files[0]);
+    file.value = "";
+    say("");
+  },
+  async over() {
+    const text = "If the box that made the export is plugged in still, or was woken up since, a report may be sent twice.";
+    if (!(await sure("Is the first box unplugged?", text, "It is: take over"))) return;
+    await post("/adit/spare/take-over", { unplugged: true });
+    say("This box takes over, with the settings of the first. Then give it that one's addresses and cables.");
+  },
+  async forget() {
+    await post("/adit/spare/forget");
+    say("");
+  },
+};
+
+async function act(does) {
+  try {
+    await does();
+  } catch (error) {
+    say(error.message, true);
+  }
+  look();
+}
+
+/** Where the box has no such thing, the section is not shown. */
+export async function offerSpare() {
+  for (const [does, button] of Object.entries(buttons)) button.addEventListener("click", () => act(DOES[does]));
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    act(async () => {
+      await post("/adit/spare/open", { code: form.elements.code.value });
+      form.reset();
+      say("");
+    });
+  });
+  look();
+}

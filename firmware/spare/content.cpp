@@ -1,0 +1,128 @@
+#include "spare/content.hpp"
+
+#include <charconv>
+#include <vector>
+
+#include "codec/row_file.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::spare {
+namespace {
+
+constexpr codec::FileFormat kFormat = {"format", 1};
+constexpr std::string_view kAbout = "about", kSettings = "settings", kLedger = "ledger", kToken = "token:";
+constexpr std::size_t kMostTokens = 256, kLongestHead = 128;
+
+constexpr codec::Member kAboutMembers[] = {
+    codec::member<&About::box>("box"),
+    codec::member<&About::name>("name"),
+    codec::member<&About::version>("version"),
+    codec::member<&About::at>("at"),
+    codec::member<&About::stamp>("stamp"),
+    codec::member<&About::stamps>("stamps"),
+    codec::member<&About::reports>("reports").from(0),
+    codec::member<&About::open>("open").from(0),
+    codec::member<&About::post>("post"),
+    codec::member<&About::run>("run"),
+    codec::member<&About::expected>("expected"),
+};
+
+void add(std::string& text, std::string_view name, std::string_view bytes) {
+  text += icd::sentence(name, " ", bytes.size(), "\n");
+  text += bytes;
+}
+
+struct Part {
+  std::string_view name, bytes;
+};
+
+/// The first part of `rest`, which is taken away.
+std::optional<Part> take_part(std::string_view& rest) {
+  const std::size_t end = rest.substr(0, kLongestHead).find('\n');
+  if (end == std::string_view::npos) return std::nullopt;
+  const std::string_view head = rest.substr(0, end);
+  const std::size_t blank = head.rfind(' ');
+  if (blank == std::string_view::npos) return std::nullopt;
+  const std::string_view digits = head.substr(blank + 1);
+  std::size_t size = 0;
+  const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), size);
+  if (error != std::errc() || last != digits.data() + digits.size()) return std::nullopt;
+  rest.remove_prefix(end + 1);
+  if (size > rest.size()) return std::nullopt;
+  const Part part{head.substr(0, blank), rest.substr(0, size)};
+  rest.remove_prefix(size);
+  return part;
+}
+
+std::unexpected<std::string> damaged(const std::string& why) {
+  return std::unexpected("the export cannot be read: " + why);
+}
+
+/// Each once.
+class Reading {
+ public:
+  std::optional<std::string> take(const Part& part) {
+    if (!seen_.emplace(std::string(part.name), true).second) return sentence(part, "is there twice");
+    if (part.name == kAbout) return take_about(part);
+    if (part.name == kSettings) return keep(content_.settings, part);
+    if (part.name == kLedger) return keep(content_.ledger, part);
+    return take_token(part);
+  }
+  std::expected<Content, std::string> finish() {
+    for (const std::string_view name : {kAbout, kSettings, kLedger}) {
+      if (!seen_.contains(std::string(name))) return damaged(icd::sentence(name, " is missing"));
+    }
+    return std::move(content_);
+  }
+
+ private:
+  static std::string sentence(const Part& part, std::string_view why) {
+    return icd::sentence(part.name, " ", why);
+  }
+  static std::optional<std::string> keep(std::string& into, const Part& part) {
+    into = part.bytes;
+    return std::nullopt;
+  }
+  std::optional<std::string> take_about(const Part& part) {
+    auto about = codec::read_file<About>(part.bytes, kFormat);
+    if (!about) return sentence(part, about.error());
+    content_.about = *std::move(about);
+    return std::nullopt;
+  }
+  std::optional<std::string> take_token(const Part& part) {
+    auto token = icd::BearerToken::parse(part.bytes);
+    if (!part.name.starts_with(kToken) || content_.tokens.size() == kMostTokens)
+      return std::string("it has a part that this Adit does not know");
+    if (!token) return sentence(part, "is no token");
+    content_.tokens.emplace(part.name.substr(kToken.size()), *std::move(token));
+    return std::nullopt;
+  }
+
+  Content content_;
+  std::map<std::string, bool> seen_;
+};
+
+}  // namespace
+
+constexpr codec::Row About::kRow = {"", kAboutMembers};
+
+std::string write(const Content& content) {
+  std::string text;
+  add(text, kAbout, codec::write_file(content.about, kFormat));
+  add(text, kSettings, content.settings);
+  for (const auto& [name, token] : content.tokens) add(text, icd::sentence(kToken, name), token.reveal());
+  add(text, kLedger, content.ledger);
+  return text;
+}
+
+std::expected<Content, std::string> read(std::string_view text) {
+  Reading reading;
+  while (!text.empty()) {
+    const auto part = take_part(text);
+    if (!part) return damaged("a part of it is cut off");
+    if (auto why = reading.take(*part)) return damaged(*why);
+  }
+  return reading.finish();
+}
+
+}  // namespace adit::spare

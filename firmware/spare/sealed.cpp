@@ -1,0 +1,85 @@
+#include "spare/sealed.hpp"
+
+#include <sodium.h>
+
+#include <algorithm>
+
+#include "icd/sentence.hpp"
+
+namespace adit::spare {
+namespace {
+
+// A file is: the magic, the version as a byte and a zero, the salt, the nonce, and what is sealed, with its
+// tag. All before the last is authenticated with it.
+constexpr std::string_view kMagic = "adit-spare";
+constexpr std::uint8_t kVersion = 1;
+static_assert(kMagic.size() + 2 == kExportHead);
+constexpr std::size_t kSalt = crypto_pwhash_SALTBYTES, kNonce = crypto_aead_xchacha20poly1305_ietf_NPUBBYTES,
+                      kTag = crypto_aead_xchacha20poly1305_ietf_ABYTES;
+constexpr std::size_t kBefore = kExportHead + kSalt + kNonce;
+static_assert(kBefore + kTag <= kSealing);
+static_assert(sizeof(Seed::salt) == kSalt && sizeof(Seed::nonce) == kNonce);
+constexpr std::size_t kMemory = 32u << 20;
+constexpr unsigned long long kPasses = 3;
+
+using Key = std::array<std::uint8_t, crypto_aead_xchacha20poly1305_ietf_KEYBYTES>;
+
+const std::uint8_t* bytes(std::string_view text) {
+  return reinterpret_cast<const std::uint8_t*>(text.data());
+}
+
+std::expected<Key, std::string> key_of(std::string_view code, const std::uint8_t* salt) {
+  Key key;
+  if (sodium_init() < 0 || crypto_pwhash(key.data(), key.size(), code.data(), code.size(), salt, kPasses,
+                                         kMemory, crypto_pwhash_ALG_ARGON2ID13) != 0)
+    return std::unexpected("there is no memory for the key of the export");
+  return key;
+}
+
+}  // namespace
+
+std::expected<std::string, std::string> seal(std::string_view content, std::string_view code,
+                                             const Seed& seed) {
+  auto key = key_of(code, seed.salt.data());
+  if (!key) return std::unexpected(std::move(key.error()));
+  std::string file(kMagic);
+  file += static_cast<char>(kVersion);
+  file += '\0';
+  file.append(reinterpret_cast<const char*>(seed.salt.data()), kSalt);
+  file.append(reinterpret_cast<const char*>(seed.nonce.data()), kNonce);
+  file.resize(kBefore + content.size() + kTag);
+  auto* const data = reinterpret_cast<std::uint8_t*>(file.data());
+  crypto_aead_xchacha20poly1305_ietf_encrypt(data + kBefore, nullptr, bytes(content), content.size(), data,
+                                             kBefore, nullptr, seed.nonce.data(), key->data());
+  sodium_memzero(key->data(), key->size());
+  return file;
+}
+
+std::string not_an_export(std::string_view head) {
+  if (head.size() < kExportHead || !head.starts_with(kMagic)) return "it is no export of an Adit";
+  const auto version = static_cast<std::uint8_t>(head[kMagic.size()]);
+  if (version > kVersion)
+    return icd::sentence("a later Adit made this export (version ", int{version}, ", and this one reads ",
+                         int{kVersion}, "): update this box first");
+  if (version < 1 || head[kMagic.size() + 1] != '\0') return "it is no export of an Adit";
+  return "";
+}
+
+std::expected<std::string, std::string> unseal(std::string_view file, std::string_view code) {
+  if (std::string why = not_an_export(file.substr(0, kExportHead)); !why.empty())
+    return std::unexpected(std::move(why));
+  if (file.size() > kLargestExport) return std::unexpected("it is too large for an export");
+  if (file.size() < kBefore + kTag) return std::unexpected("the export is not whole");
+  const auto* const data = bytes(file);
+  auto key = key_of(code, data + kExportHead);
+  if (!key) return std::unexpected(std::move(key.error()));
+  std::string content(file.size() - kBefore - kTag, '\0');
+  const int opened = crypto_aead_xchacha20poly1305_ietf_decrypt(
+      reinterpret_cast<std::uint8_t*>(content.data()), nullptr, nullptr, data + kBefore,
+      file.size() - kBefore, data, kBefore, data + kExportHead + kSalt, key->data());
+  sodium_memzero(key->data(), key->size());
+  if (opened != 0) return std::unexpected("the code is not that of this export, or the export is not whole");
+  return content;
+}
+
+}  // namespace adit::spare

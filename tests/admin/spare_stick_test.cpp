@@ -1,0 +1,116 @@
+#include "admin/spare_stick.hpp"
+
+#include <gmock/gmock.h>
+
+#include "host/folder.hpp"
+#include "host/service.hpp"
+
+namespace adit::admin {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+constexpr const char* kName = "adit-10.0.0.1-20261123T231600Z.adit-spare";
+constexpr double kAt = 1795475760;
+
+class SpareStickTest : public testing::Test {
+ protected:
+  void say(const spare::StickStatus& status) const {
+    ASSERT_TRUE(host::write_file(run_ / spare::kStickStatusFile, spare::write_message(status), 0644));
+  }
+  std::optional<spare::StickRequest> asked() const {
+    const auto text = host::read_file(state_ / spare::kStickRequestFile);
+    const auto request =
+        text ? spare::read_message<spare::StickRequest>(*text) : std::unexpected(text.error());
+    return request ? std::optional(*request) : std::nullopt;
+  }
+  /// As adit-spare takes a request away, and then says that.
+  void answer(spare::StickStatus status) {
+    status.nonce = asked()->nonce;
+    ASSERT_TRUE(host::remove_file(state_ / spare::kStickRequestFile));
+    say(status);
+    const auto until = loop_.now() + 10s;
+    while (!stick_.view()->doing.empty() && status.doing.empty() && loop_.now() < until) loop_.turn(10ms);
+  }
+  static std::string why(const icd::Checked<void>& done) { return done ? "" : done.error().sentence; }
+
+  host::Folder state_, run_;
+  loop::Loop loop_;
+  std::vector<std::string> taken_;
+  SpareStick stick_{loop_, state_.path(), run_.path(),
+                    [this](std::string file) { taken_.push_back(std::move(file)); }};
+};
+
+TEST_F(SpareStickTest, IsNoneWhereAditSpareDoesNotRun) {
+  EXPECT_FALSE(stick_.view());
+  for (const auto& refused : {stick_.write(kName, "x"), stick_.take(kName)})
+    EXPECT_THAT(why(refused), HasSubstr("adit-spare does not run"));
+  EXPECT_FALSE(asked());
+}
+
+TEST_F(SpareStickTest, ShowsWhatIsOnItByTheNamesOfTheFiles) {
+  say({.hindrance = "the stick is write-protected", .exports = {kName, "b.adit-spare"}});
+  const auto view = stick_.view();
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->hindrance, "the stick is write-protected");
+  ASSERT_EQ(view->exports.size(), 2U);
+  EXPECT_EQ(view->exports[0].box, "10.0.0.1");
+  EXPECT_EQ(view->exports[0].at, kAt);
+  EXPECT_EQ(view->exports[1].box, "");
+}
+
+TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
+  say({});
+  ASSERT_TRUE(stick_.write(kName, "sealed"));
+  EXPECT_EQ(host::read_file(state_ / spare::kForStickFile), "sealed");
+  EXPECT_EQ(asked()->what, spare::StickRequest::What::Write);
+  EXPECT_EQ(asked()->name, kName);
+  EXPECT_EQ(stick_.view()->doing, "writing");
+  EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is writing already"));
+  answer({.doing = "checking"});
+  EXPECT_EQ(stick_.view()->doing, "checking");
+  say({.nonce =
+           spare::read_message<spare::StickStatus>(*host::read_file(run_ / spare::kStickStatusFile))->nonce,
+       .written = kName});
+  while (!stick_.view()->doing.empty()) loop_.turn(10ms);
+  EXPECT_EQ(stick_.view()->written, kName);
+  EXPECT_TRUE(taken_.empty());
+}
+
+TEST_F(SpareStickTest, IsNotWrittenWhereThatIsKnownToComeToNothing) {
+  say({.hindrance = "there is no stick in the box"});
+  EXPECT_EQ(why(stick_.write(kName, "sealed")), "there is no stick in the box");
+  EXPECT_FALSE(asked());
+}
+
+TEST_F(SpareStickTest, GivesWhatWasReadFromIt) {
+  say({.exports = {kName}});
+  ASSERT_TRUE(stick_.take(kName));
+  run_.put(spare::kFromStickFile, "sealed");
+  answer({.exports = {kName}});
+  EXPECT_THAT(taken_, ElementsAre("sealed"));
+}
+
+TEST_F(SpareStickTest, SaysWhyItCameToNothing) {
+  say({.exports = {kName}});
+  ASSERT_TRUE(stick_.take(kName));
+  answer({.refusal = "it is no export of an Adit"});
+  EXPECT_EQ(stick_.view()->refusal, "it is no export of an Adit");
+  ASSERT_TRUE(stick_.take(kName));
+  EXPECT_EQ(stick_.view()->refusal, "") << "while it is tried again";
+  answer({});
+  EXPECT_THAT(stick_.view()->refusal, HasSubstr("is gone")) << "adit-spare left no file";
+  EXPECT_TRUE(taken_.empty());
+}
+
+TEST_F(SpareStickTest, IsAskedForNoNameThatLeadsElsewhere) {
+  say({});
+  for (const char* const name : {"../../etc/shadow", "a/b.adit-spare", "passwd", ""})
+    EXPECT_THAT(why(stick_.take(name)), HasSubstr("name: expected")) << name;
+  EXPECT_FALSE(asked());
+}
+
+}  // namespace
+}  // namespace adit::admin

@@ -1,0 +1,129 @@
+#include "admin/taking_over.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+
+#include "admin/spare_file.hpp"
+#include "forward/stamp_floor.hpp"
+#include "host/folder.hpp"
+#include "ledger/ledger.hpp"
+
+namespace adit::admin {
+namespace {
+
+using testing::HasSubstr;
+using testing::SizeIs;
+namespace fs = std::filesystem;
+
+constexpr const char* kSettings = R"({
+  "version": 1,
+  "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},
+                   "mapping": {"address": "10.100.1.201", "port": 8000}, "interface": "darpa0"},
+  "team": {"interface": "team0", "listen": [{"address": "192.168.7.11", "port": 8000}]}})";
+
+dispatch::Report answered(std::int64_t number) {
+  dispatch::Report report{
+      .number = number, .sender = "10.0.0.7", .received = 10.0 + static_cast<double>(number)};
+  report.report = {"Backpack", {1, 2, 3}};
+  report.run = 1;
+  report.state = dispatch::ReportState::Answered;
+  return report;
+}
+
+class TakingOverTest : public testing::Test {
+ protected:
+  TakingOverTest() { given_.put("settings.json", kSettings); }
+
+  /// What a box with two reports hands on.
+  spare::Content content(std::size_t reports = 2) const {
+    const host::Folder folder;
+    auto ledger = ledger::Ledger::open(folder.path());
+    for (std::size_t i = 1; ledger && i <= reports; ++i) {
+      const dispatch::Report report = answered(static_cast<std::int64_t>(i));
+      EXPECT_TRUE(ledger->write({&report, 1}));
+    }
+    spare::Content content;
+    content.about = {.box = "0123456789abcdef", .name = "192.168.7.11", .version = "1.0.0", .at = 100};
+    content.about.stamps = 9e9 / 2;
+    content.settings = kSettings;
+    content.tokens.emplace("scoring", *icd::BearerToken::parse("the-first-box-s"));
+    content.tokens.emplace("../../escaped", *icd::BearerToken::parse("of-no-name"));
+    content.ledger = *ledger->copy();
+    return content;
+  }
+  std::vector<dispatch::Report> reports() const {
+    const auto ledger = ledger::Ledger::open(state_.path());
+    return ledger ? *ledger->reports() : std::vector<dispatch::Report>();
+  }
+
+  host::Folder given_, state_, runtime_;
+  Store store_{given_ / "settings.json", given_.path(), state_.path()};
+  TakingOver taking_over_{store_, state_.path(), runtime_.path()};
+  loop::Loop loop_;
+};
+
+TEST_F(TakingOverTest, DoesNothingUnlessItWasBegun) {
+  EXPECT_EQ(taking_over_.finish(loop_), false);
+  EXPECT_FALSE(fs::exists(state_ / "ledger.sqlite"));
+}
+
+TEST_F(TakingOverTest, TakesReportsSettingsTokensAndStampsOnce) {
+  store_.save_token("mapping", icd::BearerToken::parse("the-spare-s-own"));
+  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  EXPECT_FALSE(fs::exists(state_ / "ledger.sqlite")) << "nothing is changed while others use it";
+  ASSERT_EQ(taking_over_.finish(loop_), true);
+  EXPECT_THAT(reports(), SizeIs(2));
+  const auto loaded = store_.load();
+  ASSERT_TRUE(loaded);
+  EXPECT_TRUE(loaded->saved);
+  EXPECT_EQ(loaded->secrets.token("scoring")->reveal(), "the-first-box-s");
+  EXPECT_FALSE(loaded->secrets.token("mapping")) << "the first box had none";
+  EXPECT_EQ(forward::StampFloor(state_.path()).read().least, 9e9 / 2);
+  EXPECT_EQ(SpareFile::read(state_.path())->taken.at(0).at, 100);
+  EXPECT_EQ(taking_over_.finish(loop_), false);
+  EXPECT_TRUE(fs::is_empty(runtime_.path()));
+  EXPECT_FALSE(fs::exists(state_ / "../../escaped.token"));
+}
+
+TEST_F(TakingOverTest, IsDoneAgainWhereThePowerWentBeforeItsLastStep) {
+  const std::string text = spare::write(content());
+  for (int cut = 0; cut < 3; ++cut) {
+    ASSERT_TRUE(taking_over_.begin(text));
+    ASSERT_EQ(taking_over_.finish(loop_), true);
+    EXPECT_THAT(reports(), SizeIs(2));
+  }
+}
+
+TEST_F(TakingOverTest, EndsTheRestOfABoxThatTakesOver) {
+  ASSERT_TRUE((SpareFile{.box = "b", .rest = Rest{.code = "1", .since = 5}}.write(state_.path())));
+  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  ASSERT_EQ(taking_over_.finish(loop_), true);
+  EXPECT_FALSE(SpareFile::read(state_.path())->rest);
+}
+
+TEST_F(TakingOverTest, IsNotFinishedWhereItsLedgerIsNoneAndSaysSo) {
+  spare::Content other = content();
+  other.ledger = "no ledger";
+  other.ledger.resize(8192, 'x');
+  fs::create_directory(state_ / "ledger.sqlite");  // its own cannot be opened either
+  ASSERT_TRUE(taking_over_.begin(spare::write(other)));
+  const auto done = taking_over_.finish(loop_);
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error(), HasSubstr("ledger"));
+  EXPECT_TRUE(fs::exists(state_ / "take-over")) << "it is tried again";
+  ASSERT_TRUE(taking_over_.abandon());
+  EXPECT_EQ(taking_over_.finish(loop_), false);
+}
+
+TEST_F(TakingOverTest, RefusesSettingsThatCannotBeUsedHere) {
+  spare::Content other = content();
+  other.settings = R"({"version": 9})";
+  const auto checked = taking_over_.check(other);
+  ASSERT_FALSE(checked);
+  EXPECT_THAT(checked.error(), HasSubstr("its settings cannot be used here"));
+  EXPECT_TRUE(taking_over_.check(content()));
+}
+
+}  // namespace
+}  // namespace adit::admin

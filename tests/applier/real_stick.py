@@ -1,0 +1,284 @@
+#!/usr/bin/python3
+"""adit-spare and USB sticks: images of real file systems, mounted, for which a stand-in for systemd-mount calls mount(8):
+real_stick.py ADIT_SPARE. Skipped (77) where nothing can be mounted; FAT, where the kernel has none."""
+
+import contextlib
+import json
+import os
+import pathlib
+import secrets
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+from mounting import Slots, be_alone, can_mount, make, run
+
+NAME = "adit-10.0.0.1-20261123T231600Z.adit-spare"
+EXPORT = b"adit-spare\x01\x00" + secrets.token_bytes(1 << 20)
+PART = "adit-spare.part"
+adit_spare = None
+
+
+class Sticks(unittest.TestCase):
+    kind = "ext4"
+
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-stick-")))
+        for name in ("wanted", "status"):
+            (self.folder / name).mkdir()
+        self.slots = Slots(self.folder)
+        self.calls, self.place, self.mount_stick = self.slots.calls, self.slots.place, self.slots.mount_stick
+        self.addCleanup(self.slots.unmount_all)
+        self.status = self.run_it()  # a machine that has just started
+
+    def plug(self, name="sda1", size=16 << 20):
+        image = self.folder / f"{name}.img"
+        make(self.kind, image, size)
+        self.slots.plug(image, name)
+        return image
+
+    def put(self, name, data, stick="sda1"):
+        """As somebody does at a PC."""
+        run("umount", self.place(stick))
+        run("mount", "-o", "loop", self.folder / "dev" / stick, self.place(stick))
+        (self.place(stick) / name).write_bytes(data)
+        run("umount", self.place(stick))
+        self.mount_stick(stick)
+
+    def hook(self, script):
+        (self.folder / "hook").write_text(script)
+
+    def run_it(self):
+        """adit-spare to its end, and what it tells."""
+        done = subprocess.run([adit_spare, "--wanted", self.folder / "wanted", "--status", self.folder / "status",
+                               *self.slots.options()], capture_output=True, text=True, timeout=120, check=False)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return json.loads((self.folder / "status/status.json").read_text())
+
+    def ask(self, what, name=NAME, export=None):
+        nonce = secrets.token_hex(16)
+        if export is not None:
+            (self.folder / "wanted/stick.adit-spare").write_bytes(export)
+        (self.folder / "wanted/stick.json").write_text(json.dumps({"format": 1, "nonce": nonce, "what": what, "name": name}))
+        status = self.run_it()
+        self.assertEqual((status["nonce"], status["doing"]), (nonce, ""))
+        self.assertEqual(list((self.folder / "wanted").iterdir()), [], "what was asked for is taken away")
+        return status
+
+    def write(self, export=EXPORT):
+        return self.ask("write", export=export)
+
+    def is_read_only(self, name="sda1"):
+        return os.path.ismount(self.place(name)) and bool(os.statvfs(self.place(name)).f_flag & os.ST_RDONLY)
+
+    def expect_refused(self, status, *words):
+        for word in words:
+            self.assertIn(word, status["refusal"])
+        self.assertEqual(status["written"], "")
+
+
+class Stick(Sticks):
+    def test_has_the_export_whole_and_may_be_pulled_out(self):
+        image = self.plug()
+        self.put("photo", b"of a cave")
+        status = self.write()
+        self.assertEqual((status["refusal"], status["written"], status["exports"]), ("", NAME, [NAME]))
+        self.assertEqual(self.calls.read_text().splitlines(), ["umount sda1", "mount rw sda1", "umount sda1", "mount ro sda1"])
+        self.assertTrue(self.is_read_only())
+        run("umount", self.place())
+        shutil.copy(image, self.folder / "pulled")  # as it was at that instant
+        run("mount", "-o", "loop,ro", self.folder / "pulled", self.place())
+        self.assertEqual((self.place() / NAME).read_bytes(), EXPORT)
+        self.assertEqual({each.name for each in self.place().iterdir()} - {"lost+found"}, {NAME, "photo"})
+
+    def test_has_it_in_place_of_the_one_of_that_name(self):
+        self.plug()
+        self.write()
+        later = EXPORT[:-4] + b"last"
+        self.assertEqual(self.write(later)["written"], NAME)
+        self.assertEqual((self.place() / NAME).read_bytes(), later)
+
+    def test_without_room_is_left_as_it_was(self):
+        self.plug(size=3 << 20)
+        self.put("photo", bytes(1 << 20))
+        before = set(os.listdir(self.place()))
+        self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "and the export has")
+        self.assertEqual((self.calls.read_text(), set(os.listdir(self.place()))), ("", before))
+
+    def test_that_fills_up_meanwhile_is_left_as_it_was(self):
+        self.plug(size=8 << 20)
+        self.hook('[ "$1" != rw ] || dd if=/dev/zero of="$2/filler" bs=64k 2>/dev/null || true\n')
+        self.expect_refused(self.write(), "the stick has no room for it")
+        self.assertTrue(self.is_read_only())
+        self.assertFalse({NAME, PART} & set(os.listdir(self.place())))
+
+    def test_that_is_write_protected_says_so(self):
+        self.plug()
+        (self.folder / "block/sda1/ro").write_text("1\n")
+        self.assertEqual(self.run_it()["hindrance"], "the stick is write-protected")
+        self.expect_refused(self.write(), "the stick is write-protected")
+        self.assertEqual(self.calls.read_text(), "")
+
+    def test_that_takes_no_write_though_it_said_nothing_is_told_of(self):
+        self.plug()
+        self.hook('[ "$1" != rw ] || mount -o remount,ro "$2"\n')
+        self.expect_refused(self.write(), "the stick is write-protected, or its file system is damaged")
+        self.assertTrue(self.is_read_only())
+
+    def test_that_the_box_cannot_read_says_what_was_expected(self):
+        self.plug()
+        run("umount", self.place())
+        (self.folder / "sda1.img").write_bytes(bytes(1 << 20))
+        self.mount_stick()
+        self.assertIn("expected FAT32 or ext4", self.run_it()["hindrance"])
+        self.expect_refused(self.write(), "the box cannot read the stick's file system")
+
+    def test_that_is_not_in_is_missed(self):
+        self.expect_refused(self.write(), "there is no stick in the box")
+        self.expect_refused(self.ask("take"), "there is no such export on a stick")
+
+    def test_beside_another_is_not_guessed(self):
+        self.plug()
+        self.plug("sdb1")
+        self.expect_refused(self.write(), "more than one stick")
+        self.assertEqual(self.calls.read_text(), "")
+
+    def test_that_is_in_use_is_told_of_and_left_alone(self):
+        self.plug()
+        self.put("adit-box-1.0.0.raucb", bytes(100))
+        with open(self.place() / "adit-box-1.0.0.raucb", "rb"):  # as adit-update reads it
+            self.expect_refused(self.write(), "the stick is in use")
+        self.assertTrue(self.is_read_only())
+        self.assertEqual(self.write()["written"], NAME)
+        self.assertTrue((self.place() / "adit-box-1.0.0.raucb").exists())
+
+    def test_that_is_pulled_out_at_any_moment_is_missed(self):
+        out = f"rm -r {self.folder}/block/sda1 {self.folder}/dev/sda1; umount --lazy"
+        for moment in ("rw", "ro"):
+            with self.subTest(moment):
+                self.plug()
+                self.hook(f'[ "$1" != {moment} ] || {{ {out} "$2"; }}\n')
+                self.expect_refused(self.write(), "the stick was pulled out before")
+                self.assertEqual(self.run_it()["hindrance"], "there is no stick in the box")
+                (self.folder / "hook").unlink()
+
+    def test_that_keeps_other_bytes_is_found_out(self):
+        """A stick that lies: what is read back counts."""
+        self.plug()
+        lies = f'[ "$1" != ro ] || {{ umount "$2"; mount -o loop,rw {self.folder}/dev/sda1 "$2"; printf x >>"$2/{NAME}"; mount -o remount,ro "$2"; }}\n'
+        self.hook(lies)
+        self.expect_refused(self.write(), "the stick has not kept the export as it was written")
+
+    def test_that_fails_while_it_is_written_is_told_of(self):
+        """Every write beyond what its medium takes comes to nothing, as with one that dies."""
+        small = self.folder / "small"
+        small.mkdir()
+        run("mount", "-t", "tmpfs", "-o", "size=1m", "tmpfs", small)
+        self.addCleanup(lambda: subprocess.run(["umount", "--lazy", small], check=False))
+        self.plug()
+        run("umount", self.place())
+        run("cp", "--sparse=always", self.folder / "dev/sda1", small / "image")
+        (self.folder / "dev/sda1").unlink()
+        (self.folder / "dev/sda1").symlink_to(small / "image")
+        self.mount_stick()
+        self.assertNotEqual(self.write(EXPORT + EXPORT)["refusal"], "")
+
+    def test_is_read_only_again_after_a_kill(self):
+        self.plug()
+        self.hook(f'[ "$1" != rw ] || {{ rm {self.folder}/hook; kill -9 $(ps -o ppid= $PPID); }}\n')
+        (self.folder / "wanted/stick.adit-spare").write_bytes(EXPORT)
+        (self.folder / "wanted/stick.json").write_text(
+            json.dumps({"format": 1, "nonce": secrets.token_hex(16), "what": "write", "name": NAME}))
+        with contextlib.suppress(AssertionError):
+            self.run_it()
+        self.assertFalse(self.is_read_only(), "it was killed there")
+        status = self.run_it()
+        self.assertEqual((status["doing"], status["refusal"]), ("", "it was cut off: try again"))
+        self.assertTrue(self.is_read_only())
+        self.assertEqual(self.write()["written"], NAME)
+
+    def test_gives_the_export_that_is_asked_for(self):
+        self.plug()
+        other = "export (1).adit-spare"
+        self.put(NAME, EXPORT)
+        self.put(other, EXPORT + b"other")
+        self.put("._" + NAME, b"of a Mac")
+        self.put("adit-spare.txt", b"a note")
+        self.assertEqual(self.run_it()["exports"], [NAME, other], "the latest first")
+        self.assertEqual(self.ask("take", other)["refusal"], "")
+        self.assertEqual((self.folder / "status/export.adit-spare").read_bytes(), EXPORT + b"other")
+
+    def test_that_somebody_prepared_leads_nowhere(self):
+        self.plug()
+        secret = self.folder / "secret"
+        secret.write_bytes(EXPORT)
+        run("umount", self.place())
+        run("mount", "-o", "loop", self.folder / "dev/sda1", self.place())
+        top = self.place()
+        (top / "link.adit-spare").symlink_to(secret)
+        os.mkfifo(top / "pipe.adit-spare")
+        (top / "folder.adit-spare").mkdir()
+        (top / "none.adit-spare").write_bytes(b"PK\x03\x04 a zip file")
+        (top / "empty.adit-spare").touch()
+        with open(top / "large.adit-spare", "wb") as large:
+            large.write(EXPORT)
+            large.truncate(1 << 33)
+        (top / b"\xff\x1b[2J.adit-spare".decode("utf-8", "surrogateescape")).write_bytes(EXPORT)
+        run("umount", top)
+        self.mount_stick()
+        self.assertEqual(len(self.run_it()["exports"]), 6, "they are names so far")
+        for name, why in (("link", "link.adit-spare"), ("pipe", "expected a plain file"), ("folder", "expected a plain file"),
+                          ("none", "it is no export of an Adit"), ("empty", "it is no export of an Adit"),
+                          ("large", "too large for an export")):
+            with self.subTest(name):
+                self.expect_refused(self.ask("take", f"{name}.adit-spare"), why)
+        self.assertFalse((self.folder / "status/export.adit-spare").exists())
+
+    def test_shows_no_more_than_eight(self):
+        self.plug()
+        for day in range(10, 22):
+            self.put(f"adit-10.0.0.1-202611{day}T000000Z.adit-spare", EXPORT[:100])
+        self.assertEqual(self.run_it()["exports"][::7], [f"adit-10.0.0.1-202611{day}T000000Z.adit-spare" for day in (21, 14)])
+
+    def test_is_written_nothing_that_is_no_export(self):
+        self.plug()
+        for export, why in ((b"#!/bin/sh", "it is no export of an Adit"), (EXPORT + bytes(9 << 20), "too large")):
+            self.expect_refused(self.write(export), why)
+        target = self.folder / "secret"
+        target.write_bytes(EXPORT)
+        (self.folder / "wanted/stick.adit-spare").symlink_to(target)
+        self.expect_refused(self.ask("write"), "stick.adit-spare")
+        self.expect_refused(self.ask("write"), "stick.adit-spare")  # there is none
+        self.assertEqual(self.calls.read_text(), "")
+
+    def test_is_not_written_what_was_asked_before_the_machine_started(self):
+        self.plug()
+        (self.folder / "status/status.json").unlink()
+        (self.folder / "wanted/stick.adit-spare").write_bytes(EXPORT)
+        (self.folder / "wanted/stick.json").write_text(
+            json.dumps({"format": 1, "nonce": secrets.token_hex(16), "what": "write", "name": NAME}))
+        self.assertEqual((self.run_it()["written"], list((self.folder / "wanted").iterdir())), ("", []))
+
+
+class FatStick(Stick):
+    """As sticks are; what only a file system of Linux can hold is left out."""
+
+    kind = "vfat"
+    test_that_somebody_prepared_leads_nowhere = test_that_fails_while_it_is_written_is_told_of = None
+
+    @classmethod
+    def setUpClass(cls):
+        if not can_mount("vfat"):
+            raise unittest.SkipTest("this kernel mounts no FAT")
+
+
+if __name__ == "__main__":
+    adit_spare = sys.argv.pop(1)
+    if os.geteuid() == 0:
+        be_alone()
+    if not can_mount("ext4"):
+        print("skipped: no file system can be mounted here")
+        sys.exit(77)
+    unittest.main()

@@ -1,0 +1,117 @@
+#include "cli/follower.hpp"
+
+#include <gmock/gmock.h>
+
+#include "cli/server.hpp"
+#include "cli/view.hpp"
+#include "codec/json.hpp"
+#include "codec/patch.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+std::string whole(const api::RunView& view) {
+  return "data: " + codec::to_json(view) + "\n\n";
+}
+
+std::string patch(const std::string& json) {
+  return "event: patch\ndata: " + json + "\n\n";
+}
+
+std::string stream(const std::string& events) {
+  return "HTTP/1.1 200 OK\r\nContent-Type: text/event-stream\r\n\r\n" + events;
+}
+
+/// Follows whom a test plays.
+class Following {
+ public:
+  explicit Following(const Server& server)
+      : adit_{server.address(), {*icd::BearerToken::parse("sesame-1"), ""}} {}
+
+  /// The next that is new; it is waited for.
+  Look next() {
+    while (true) {
+      if (auto look = follower_.look()) return *std::move(look);
+      const auto left =
+          std::chrono::ceil<std::chrono::milliseconds>(follower_.due() - Follower::Clock::now());
+      pollfd entry{follower_.fd(), POLLIN, 0};
+      poll(&entry, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+    }
+  }
+  /// How many reports are left by the next view, or what is said in its place.
+  std::string left() {
+    const Look look = next();
+    return look ? std::to_string(look->view.run->remaining_reports) : look.error();
+  }
+  const Follower& follower() const { return follower_; }
+
+ private:
+  Adit adit_;
+  Follower follower_{adit_};
+};
+
+TEST(Follower, TakesTheViewWholeAndThenWhatChanges) {
+  api::RunView now = sample_view();
+  now.run->remaining_reports = 3;
+  now.reports.insert(now.reports.begin(), now.reports.front())->number = 4;
+  const std::string change = codec::write_json(*codec::patch(sample_view(), now));
+  const Server server(stream(whole(sample_view()) + patch(change)), true);
+  Following following(server);
+  Look look = following.next();
+  if (look && look->view.run->remaining_reports == 18) look = following.next();  // they came one by one
+  ASSERT_TRUE(look) << look.error();
+  EXPECT_EQ(codec::write_json(look->told), codec::write_json(codec::parse_json(codec::to_json(now)).value()));
+  EXPECT_EQ(codec::to_json(look->view), codec::to_json(now));
+  EXPECT_EQ(server.request().substr(0, 21), "GET /adit/events HTTP");
+}
+
+TEST(Follower, AsksAgainWhereTheEventsEnd) {
+  const Server server(stream(whole(sample_view())));
+  Following following(server);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(following.left(), "18");
+}
+
+TEST(Follower, AsksForTheViewAloneWhereThereAreNoEventsToBeHad) {
+  const Server server(Server::Answers{
+      {"GET /adit/events", Server::reply("503 Service Unavailable", "\"as many pages are open as ...\"")},
+      {"GET /adit/run", Server::ok(codec::to_json(sample_view()))}});
+  Following following(server);
+  for (int i = 0; i < 2; ++i) EXPECT_EQ(following.left(), "18");
+}
+
+TEST(Follower, SaysWhyThereIsNoView) {
+  const auto said = [](const std::string& answer) {
+    const Server server(answer);
+    return Following(server).left();
+  };
+  EXPECT_THAT(said(Server::reply("401 Unauthorized", "\"who are you?\"")),
+              HasSubstr("does not know the token"));
+  EXPECT_THAT(said(stream(whole(sample_view()) + patch(R"({"reports":{"length":-1}})"))),
+              HasSubstr("what it tells cannot be understood"));
+  EXPECT_THAT(said(stream("data: {\n\n")), HasSubstr("what it tells cannot be understood"));
+  EXPECT_THAT(said(stream("data: {}\n\n")), HasSubstr("not of this version of Adit"));
+  EXPECT_THAT(said(stream("")), HasSubstr("it tells no more"));
+  EXPECT_THAT(said(""), HasSubstr("did not answer"));
+}
+
+TEST(Follower, SaysThatNobodyIsThere_AndTriesAgain) {
+  std::optional<Server> server(std::in_place, "");
+  Following following(*server);
+  server.reset();
+  for (int i = 0; i < 2; ++i) EXPECT_THAT(following.left(), HasSubstr("cannot be asked: Connection refused"));
+}
+
+TEST(Follower, TakesALongSilenceForALoss) {
+  const Server server(stream(whole(sample_view())), true);
+  Following following(server);
+  EXPECT_EQ(following.left(), "18");
+  EXPECT_GT(following.follower().due(), Follower::Clock::now() + std::chrono::seconds(2))
+      << "longer than a heartbeat";
+  EXPECT_THAT(following.left(), StartsWith("Adit at 127.0.0.1:"));
+}
+
+}  // namespace
+}  // namespace adit::cli

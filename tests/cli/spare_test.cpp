@@ -1,0 +1,130 @@
+#include "cli/spare.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <iterator>
+
+#include "cli/command.hpp"
+#include "cli/server.hpp"
+#include "cli/token_file.hpp"
+#include "host/folder.hpp"
+
+namespace adit::cli {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr const char* kAtWork =
+    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false})";
+constexpr const char* kRests =
+    R"({"rests":true,"why":"it was put to rest","since":1.75e9,"code":"1234 5678 9012 3456","asks_code":false,)"
+    R"("taken_in":null,"takes_over":false})";
+constexpr const char* kTakenIn =
+    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":{"name":"10.0.0.1",)"
+    R"("version":"1.2.3","at":1.75e9,"reports":4,"open":1,"post":"10.100.1.200:8000","run":{"score":3,)"
+    R"("run_clock":100,"remaining_reports":20,"current_team":"adit"}},"takes_over":false})";
+
+constexpr const char* kStick =
+    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
+    R"("stick":{"hindrance":"","doing":"","refusal":"","written":"","exports":[)"
+    R"({"name":"adit-a.adit-spare","box":"","at":null},{"name":"adit-b.adit-spare","box":"","at":null}]}})";
+constexpr const char* kNoStick =
+    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
+    R"("stick":{"hindrance":"there is no stick in the box","doing":"","refusal":"","written":"","exports":[]}})";
+
+class SpareCommand : public testing::Test {
+ protected:
+  Outcome say(const Server& server, std::vector<std::string_view> words) {
+    const std::string at = server.at();
+    words.insert(words.begin(), "spare");
+    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
+    return run(words);
+  }
+  TokenFile file_;
+  const std::string token_file_ = file_.path();
+  const host::Folder folder_;
+  const std::string export_ = folder_ / "box.adit-spare";
+};
+
+TEST_F(SpareCommand, TellsHowTheBoxStands) {
+  const Server at_work({{"GET /adit/spare", Server::ok(kAtWork)}});
+  EXPECT_EQ(say(at_work, {}).exit, Exit::Fine);
+  const Server rests({{"GET /adit/spare", Server::ok(kRests)}});
+  const Outcome outcome = say(rests, {"show"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_EQ(outcome.out, "This box rests: it was put to rest\nThe code of its export: 1234 5678 9012 3456\n");
+}
+
+TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {
+  const Server server({{"GET /adit/spare", Server::ok(kAtWork)}});
+  const Outcome outcome = say(server, {"export", export_});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_THAT(outcome.err, HasSubstr("It is not done; if that is meant: --yes"));
+}
+
+TEST_F(SpareCommand, WritesTheExportAndTellsItsCode) {
+  const Server server({{"POST /adit/spare/rest", Server::ok(kAtWork)},
+                       {"GET /adit/spare/export", Server::ok("a sealed file")},
+                       {"GET /adit/spare", Server::ok(kRests)}});
+  const Outcome outcome = say(server, {"export", export_, "--yes"});
+  EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("Its code: 1234 5678 9012 3456\n"));
+  std::ifstream file(export_, std::ios::binary);
+  EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a sealed file");
+}
+
+TEST_F(SpareCommand, RefusesWhatIsNoExportBeforeItIsSent) {
+  const Server server(Server::Answers{});
+  const std::string other = folder_.put("other", "PK a zip file of more bytes");
+  EXPECT_THAT(say(server, {"take", other, "--code", "1234567890123456"}).err,
+              HasSubstr("it is no export of an Adit"));
+  EXPECT_THAT(say(server, {"take", folder_ / "none", "--code", "1"}).err, HasSubstr("it cannot be read"));
+  EXPECT_THAT(say(server, {"take", other}).err, HasSubstr("the code of the export is missing: --code"));
+}
+
+TEST_F(SpareCommand, PutsNoBoxToRestWhoseStickCouldNotBeWritten) {
+  const Server without({{"GET /adit/spare", Server::ok(kNoStick)}});
+  const Outcome outcome = say(without, {"export", "--stick", "--yes"});
+  EXPECT_EQ(outcome.exit, Exit::Attention);
+  EXPECT_THAT(outcome.err, HasSubstr("the box is not put to rest: there is no stick in the box"));
+  const Server pc({{"GET /adit/spare", Server::ok(kAtWork)}});
+  EXPECT_THAT(say(pc, {"export", "--stick", "--yes"}).err, HasSubstr("writes and reads no stick"));
+}
+
+TEST_F(SpareCommand, TellsWhatIsOnTheStickAndTakesTheOneThatIsNamed) {
+  const Server server(
+      {{"POST /adit/spare/from-stick", Server::reply("409 Conflict", R"("it cannot be read")")},
+       {"GET /adit/spare", Server::ok(kStick)}});
+  EXPECT_THAT(say(server, {"show"}).out, HasSubstr("On the stick: adit-a.adit-spare\nOn the stick: adit-b"));
+  EXPECT_THAT(say(server, {"take", "--stick", "--code", "1234567890123456"}).err,
+              HasSubstr("several exports on the stick: name one of adit-a.adit-spare adit-b.adit-spare"));
+  EXPECT_THAT(say(server, {"take", "adit-b.adit-spare", "--stick", "--code", "1234567890123456"}).err,
+              HasSubstr("it cannot be read"));
+}
+
+TEST_F(SpareCommand, IsOfAFileOrOfTheStick) {
+  const Server server(Server::Answers{});
+  EXPECT_THAT(say(server, {"export"}).err, HasSubstr("a file or --stick is missing after export"));
+  EXPECT_THAT(say(server, {"take"}).err, HasSubstr("a file or --stick is missing after take"));
+  EXPECT_THAT(say(server, {"export", "x", "--stick"}).err, HasSubstr("two things: which one?"));
+  EXPECT_THAT(say(server, {"wake", "--stick"}).err, HasSubstr("spare wake does not take --stick"));
+}
+
+TEST_F(SpareCommand, ShowsWhatIsInItAndTakesOverOnlyWhereThatIsMeant) {
+  const std::string file = folder_.put("it", std::string("adit-spare\1\0 and more", 21));
+  const Server server({{"POST /adit/spare/take-over", Server::ok(kAtWork)},
+                       {"POST /adit/spare/take", Server::ok(kAtWork)},
+                       {"POST /adit/spare/open", Server::ok(kTakenIn)},
+                       {"GET /adit/spare", Server::ok(kTakenIn)}});
+  const Outcome unasked = say(server, {"take", file, "--code", "1234567890123456"});
+  EXPECT_EQ(unasked.exit, Exit::Attention);
+  EXPECT_THAT(unasked.err, HasSubstr("a report may be sent twice"));
+  const Outcome meant = say(server, {"take", file, "--code", "1234567890123456", "--yes"});
+  EXPECT_EQ(meant.exit, Exit::Fine) << meant.err;
+  EXPECT_THAT(meant.out, HasSubstr("this box takes over"));
+  EXPECT_THAT(say(server, {"show"}).out, HasSubstr("4 reports, 1 of them not finished"));
+}
+
+}  // namespace
+}  // namespace adit::cli

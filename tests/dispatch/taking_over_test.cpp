@@ -1,0 +1,332 @@
+// What a spare knows that takes over: the two boxes as they are, and the Command Post's count.
+#include "dispatch/taking_over.hpp"
+
+#include <gmock/gmock.h>
+
+#include <map>
+#include <random>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Books books_of(Scene& scene) {
+  Books books;
+  for (const auto& [number, report] : scene.output().ledger) books.reports.push_back(report);
+  for (const auto& [number, run] : scene.output().runs) books.runs.push_back(run);
+  return books;
+}
+
+/// A box that was in use and one that takes over from it.
+class TakingOverTest : public testing::Test {
+ protected:
+  TakingOverTest() { blank(spare); }
+
+  /// It was never at a run.
+  static void blank(Scene& scene) {
+    scene.output().ledger.clear();
+    scene.output().runs.clear();
+    scene.restart();
+  }
+
+  static void take_over(Scene& from, Scene& to, const std::optional<icd::RunStatus>& expected) {
+    const TakeOver taken = dispatch::take_over(books_of(to), books_of(from),
+                                               {.expected = expected, .stamp = to.time().stamp, .ahead = 0});
+    for (const TakenOver& each : taken.reports) {
+      const auto here = to.output().ledger.find(each.report.number);
+      const double received = here == to.output().ledger.end() ? each.report.received : here->second.received;
+      EXPECT_EQ(received, each.report.received) << "a number is never another's";
+      to.output().ledger[each.report.number] = each.report;
+    }
+    for (const dispatch::Run& run : taken.runs) to.output().runs[run.number] = run;
+    to.restart();
+  }
+  void take_over() { take_over(first, spare, first.reports().expected(first.time().now)); }
+
+  Scene first, spare;
+};
+
+TEST_F(TakingOverTest, AReportThatIsKnownThereIsKnownHere) {
+  first.post(1);
+  first.answer(recorded(1));
+  take_over();
+  spare.hear(19, 1);
+  const ClientId again = spare.post(1);
+  EXPECT_EQ(spare.told(again).status, 201);
+  EXPECT_EQ(spare.told(again).body, first.report(1).answer) << "byte for byte";
+  EXPECT_EQ(spare.count(), 1U);
+}
+
+TEST_F(TakingOverTest, WhatWaitedGoesOnceTheStatusShowsThatNobodySentIt) {
+  first.post_to_wait(1);
+  take_over();
+  EXPECT_EQ(spare.state(1), InDoubt);
+  EXPECT_THAT(spare.report(1).note, HasSubstr("may have sent it since"));
+  spare.keep_hearing(5, 20, 0);
+  EXPECT_EQ(spare.send_next(), 0);
+  spare.keep_hearing(7, 20, 0);
+  EXPECT_EQ(spare.send_next(), 1);
+}
+
+TEST_F(TakingOverTest, WhatTheFirstBoxSentAfterItsExportIsFoundRecorded) {
+  first.post_to_wait(1);
+  take_over();
+  spare.keep_hearing(3, 19, 1);
+  EXPECT_EQ(spare.state(1), Settled);
+}
+
+TEST_F(TakingOverTest, WhereTheFirstBoxSentSomeOfWhatWaitedTheOperatorDecides) {
+  first.post_to_wait(1);
+  first.post_to_wait(2);
+  take_over();
+  spare.keep_hearing(60, 19, 1);
+  EXPECT_EQ(spare.send_next(), 0);
+  EXPECT_EQ(spare.undecided().size(), 2U);
+}
+
+TEST_F(TakingOverTest, WhereTheCountIsNotKnownForCertainTheOperatorDecides) {
+  first.post_to_wait(1);
+  take_over(first, spare, std::nullopt);
+  spare.keep_hearing(60, 20, 0);
+  EXPECT_EQ(spare.send_next(), 0);
+  EXPECT_THAT(spare.undecided(), testing::ElementsAre(HasSubstr("the operator decides")));
+}
+
+TEST_F(TakingOverTest, WhatWasUnderWayIsFoundOut) {
+  for (const bool was_recorded : {true, false}) {
+    Scene box, other;
+    blank(other);
+    box.post(1);
+    take_over(box, other, std::nullopt);
+    EXPECT_EQ(other.state(1), InDoubt);
+    EXPECT_EQ(other.report(1).tries, 1);
+    other.keep_hearing(12, was_recorded ? 19 : 20, 0);
+    EXPECT_EQ(other.state(1), was_recorded ? Settled : Waiting);
+  }
+}
+
+TEST_F(TakingOverTest, TheOperatorsWordStands) {
+  first.post_to_wait(1);
+  ASSERT_TRUE(first.reports().hold(1, first.time()));
+  first.post_to_wait(2);
+  ASSERT_TRUE(first.reports().withdraw(2, first.time()));
+  take_over();
+  spare.keep_hearing(30, 20, 0);
+  EXPECT_EQ(spare.state(1), Received);
+  EXPECT_EQ(spare.state(2), Withdrawn);
+}
+
+TEST_F(TakingOverTest, ASpareThatWasNeverAtARunCountsAsTheFirstBoxDid) {
+  first.post(1);
+  first.answer(recorded());
+  first.post(2);
+  take_over();
+  EXPECT_EQ(spare.report(1).report.position.x, 1);
+  EXPECT_EQ(spare.report(2).report.position.x, 2);
+  EXPECT_EQ(spare.reports().run().number, first.reports().run().number);
+}
+
+TEST_F(TakingOverTest, DoneTwiceItChangesNothing) {
+  first.post(1);
+  first.answer(recorded());
+  first.post_to_wait(2);
+  Scene other;
+  other.post_to_wait(3);
+  take_over(first, other, first.reports().expected(first.time().now));
+  const auto reports = other.output().ledger;
+  const auto runs = other.output().runs;
+  take_over(first, other, first.reports().expected(first.time().now));
+  EXPECT_EQ(other.output().ledger, reports);
+  EXPECT_EQ(other.output().runs, runs);
+}
+
+TEST_F(TakingOverTest, WhatWaitsAtTheSpareGoesInTheFirstBoxsRun) {
+  Scene other;
+  other.post_to_wait(7);
+  first.post(1);
+  first.answer(recorded());
+  take_over(first, other, first.reports().expected(first.time().now));
+  other.hear(19, 0);
+  EXPECT_EQ(other.send_next(), 1);
+  EXPECT_EQ(other.report(2).report.position.x, 1) << "the first box's has a number that was free";
+}
+
+TEST_F(TakingOverTest, TheSameReportAtBothBoxesIsSentByNobodyUnasked) {
+  for (const bool first_sent : {true, false}) {
+    Scene box, other;
+    box.post_to_wait(1);
+    other.wait(0.25);
+    other.post_to_wait(1);
+    Scene& sends = first_sent ? box : other;
+    ASSERT_EQ(sends.send_next(), 1);
+    sends.answer(recorded());
+    take_over(box, other, box.reports().expected(box.time().now));
+    other.keep_hearing(60, 19, 0);
+    EXPECT_EQ(other.send_next(), 0);
+    EXPECT_THAT(other.undecided(), testing::ElementsAre(HasSubstr("held: the same as report")));
+  }
+}
+
+TEST_F(TakingOverTest, AReportOfARunThatIsAnotherForCertainIsNoRepeat) {
+  Scene other;
+  other.post(1);
+  other.answer(recorded(0, "scored", "yesterday"));
+  first.post(2);
+  first.answer(recorded(0, "scored", "today"));
+  take_over(first, other, first.reports().expected(first.time().now));
+  other.hear(19, 0);
+  const ClientId again = other.post(1);
+  EXPECT_FALSE(other.is_told(again)) << "it is sent, in today's run";
+  EXPECT_NE(other.reports().sending(), nullptr);
+}
+
+TEST_F(TakingOverTest, AndBackAgain) {
+  first.wait(1);
+  first.post(1);
+  first.answer(recorded());
+  first.post_to_wait(2);
+  take_over();
+  spare.wait(5);
+  spare.keep_hearing(12, 19, 0);
+  ASSERT_EQ(spare.send_next(), 2);
+  spare.answer(recorded());
+  spare.hear(18, 0);
+  spare.post(3);
+  spare.answer(recorded());
+  first.wait(60);
+  take_over(spare, first, spare.reports().expected(spare.time().now));
+  EXPECT_EQ(first.state(1), Answered);
+  EXPECT_EQ(first.state(2), Answered) << "what waited here was sent there";
+  EXPECT_EQ(first.state(3), Answered);
+  first.hear(17, 0);
+  EXPECT_EQ(first.told(first.post(2)).status, 201);
+  EXPECT_EQ(first.count(), 3U);
+}
+
+TEST_F(TakingOverTest, AClockThatIsAnotherMakesNoNewRun) {
+  first.keep_hearing(40, 20, 0);
+  first.post(1);
+  first.answer(recorded());
+  spare.set_box_clock_forward(7200);
+  const TakeOver taken = dispatch::take_over(books_of(spare), books_of(first),
+                                             {.stamp = spare.time().stamp, .ahead = 7200 - 40});
+  for (const TakenOver& each : taken.reports) spare.output().ledger[each.report.number] = each.report;
+  for (const dispatch::Run& run : taken.runs) spare.output().runs[run.number] = run;
+  spare.restart();
+  spare.hear(19, 0, 145);
+  EXPECT_EQ(spare.told(spare.post(1)).status, 201) << "not held as one of another run";
+}
+
+TEST_F(TakingOverTest, WhatIsKnownHereStaysKnown) {
+  first.post_to_wait(1);
+  const Books before = books_of(first);
+  take_over();
+  spare.keep_hearing(12, 20, 0);
+  ASSERT_EQ(spare.send_next(), 1);
+  spare.answer(recorded());
+  const TakeOver taken = dispatch::take_over(books_of(spare), before, {.stamp = spare.time().stamp});
+  EXPECT_THAT(taken.reports, IsEmpty()) << "an older export says nothing about it";
+}
+
+/// A Command Post that counts, and both boxes beside it.
+class World {
+ public:
+  explicit World(unsigned seed) : random_(seed) { blank(); }
+
+  void live() {
+    for (int i = 0; i < 4; ++i) post_one();
+    const auto expected = first_.reports().expected(first_.time().now);
+    if (chance(3)) wake_first_box();
+    Books here, there = books_of(first_);
+    const TakeOver taken = dispatch::take_over(
+        here, there, {.expected = chance(2) ? expected : std::nullopt, .stamp = spare_.time().stamp});
+    for (const TakenOver& each : taken.reports) spare_.output().ledger[each.report.number] = each.report;
+    for (const Run& run : taken.runs) spare_.output().runs[run.number] = run;
+    spare_.restart();
+    for (int second = 0; second < 90; ++second) live_at_spare();
+  }
+
+  /// How often each was recorded, by its x.
+  const std::map<double, int>& recorded_times() const { return recorded_; }
+  Scene& spare() { return spare_; }
+
+ private:
+  void blank() {
+    spare_.output().ledger.clear();
+    spare_.output().runs.clear();
+    spare_.restart();
+  }
+  bool chance(unsigned of) { return random_() % of == 0; }
+  void record(const Report& report) { ++recorded_[report.report.position.x]; }
+  std::int64_t left() const {
+    std::int64_t left = 20;
+    for (const auto& [x, times] : recorded_) left -= times;
+    return left;
+  }
+
+  void post_one() {
+    const double x = ++posted_;
+    if (first_.reports().sending() != nullptr || chance(3)) {
+      first_.post_to_wait(x);
+      waiting_.push_back(x);
+      return;
+    }
+    first_.post(x);
+    const Report* const sending = first_.reports().sending();
+    if (sending == nullptr) return waiting_.push_back(x);
+    const bool arrives = !chance(3);
+    if (arrives) record(*sending);
+    if (chance(2)) return;  // it is under way still
+    if (arrives && chance(2)) return first_.answer(recorded(0));
+    first_.lose();
+  }
+
+  /// Somebody did, though he should not have: it sent some of what waited.
+  void wake_first_box() {
+    for (const double x : waiting_) {
+      if (chance(2)) ++recorded_[x];
+    }
+  }
+
+  void live_at_spare() {
+    spare_.wait(1);
+    if (spare_.reports().sending() == nullptr) spare_.hear(left(), 0);
+    if (spare_.send_next() == 0) return;
+    record(*spare_.reports().sending());
+    spare_.answer(recorded(0));
+  }
+
+  std::mt19937 random_;
+  Scene first_, spare_;
+  std::map<double, int> recorded_;
+  std::vector<double> waiting_;
+  double posted_ = 0;
+};
+
+TEST(TakingOverInAWorld, NoReportIsRecordedTwiceNorLostWhateverHappened) {
+  std::size_t decided = 0;
+  for (unsigned seed = 1; seed <= 500; ++seed) {
+    World world(seed);
+    world.live();
+    for (const auto& [x, times] : world.recorded_times())
+      ASSERT_LE(times, 1) << "x " << x << ", seed " << seed;
+    for (const auto& [number, report] : world.spare().reports().book().all()) {
+      const auto found = world.recorded_times().find(report.report.position.x);
+      const bool was_recorded = found != world.recorded_times().end() && found->second > 0;
+      if (!is_final(report.state)) continue;  // the operator is asked
+      ++decided;
+      ASSERT_TRUE(was_recorded) << "report " << number << " is " << name_of(report.state) << ", seed "
+                                << seed;
+    }
+    ASSERT_EQ(world.spare().count(), 4U) << "seed " << seed;
+  }
+  EXPECT_GT(decided, 500U) << "many need nobody's word";
+}
+
+}  // namespace
+}  // namespace adit::dispatch

@@ -1,0 +1,92 @@
+"""The OCI image of the packages, read by umoci and run by runc as somebody who has no right, on a root that cannot be written to: the whole
+rehearsal, its page seen from another host, and the service by itself."""
+
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import tempfile
+import unittest
+
+import hosts
+import pc
+import programs
+import requests
+from test_package import setUpModule  # unittest looks for it here
+
+LAYOUT = pc.SOURCE / "build" / "oci" / "amd64" / "layout"
+PORT = 8000
+
+
+class Image(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        for program in "umoci", "runc":
+            if not shutil.which(program):
+                raise unittest.SkipTest(f"no {program} here")
+        if not LAYOUT.is_dir():
+            raise unittest.SkipTest("toolchain/oci has made nothing here")
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-oci-")))
+        cls.network = cls.enterClassContext(hosts.Network())
+        tag = json.loads((LAYOUT / "index.json").read_text())["manifests"][0]["annotations"]["org.opencontainers.image.ref.name"]
+        subprocess.run(["umoci", "unpack", "--image", f"{LAYOUT}:{tag}", cls.folder / "bundle"], check=True, capture_output=True)
+
+    def start(self, *command, mounts=()):
+        """As the image says, or another command of its programs; its port is the box's on the team's network."""
+        bundle = self.folder / "bundle"
+        config = json.loads((bundle / "config.json").read_text())
+        self.assertEqual(config["process"]["user"], {"uid": 1000, "gid": 1000})
+        if command:
+            config["process"]["args"] = list(command)
+        config["process"]["terminal"] = False
+        config["process"]["noNewPrivileges"] = True
+        config["process"]["capabilities"] = {}
+        config["root"]["readonly"] = True
+        config["mounts"] += [{"destination": "/tmp", "type": "tmpfs", "source": "tmpfs", "options": ["mode=1777"]}, *mounts]
+        for namespace in config["linux"]["namespaces"]:
+            if namespace["type"] == "network":
+                namespace["path"] = f"/run/netns/{self.network.box}"
+        (bundle / "config.json").write_text(json.dumps(config))
+        name = f"adit-oci-{self._testMethodName[-40:]}"
+        log = self.folder / f"{name}.log"
+        with open(log, "wb") as said:
+            running = subprocess.Popen(["runc", "run", "--bundle", bundle, name], stdin=subprocess.DEVNULL, stdout=said, stderr=said)
+        self.addCleanup(running.wait)
+        self.addCleanup(subprocess.run, ["runc", "delete", "--force", name], capture_output=True, check=False)
+        return name, running, log
+
+    def answer(self, running):
+        """The page's, to another host."""
+        def asked():
+            self.assertIsNone(running.poll(), "it has ended")
+            try:
+                return requests.get(f"http://{self.network.box_address}:{PORT}/", timeout=10)
+            except requests.ConnectionError:
+                return None
+
+        return programs.wait_until(asked, "the page to answer", 120)
+
+    def test_it_runs_the_rehearsal(self):
+        name, running, log = self.start()
+        self.assertIn("<title>", self.answer(running).text)
+        scored = re.compile(r"\b(?!45\b)\d+ reports left")
+        programs.wait_until(lambda: scored.search(log.read_text()), "the summary to tell of a report", 120)
+        subprocess.run(["runc", "kill", name, "INT"], check=True)
+        running.wait(60)
+        said = log.read_text()
+        self.assertEqual(running.returncode, 0, said)
+        for words in "The page:     http://127.0.0.1:8000/", "Its password: rehearsal-", "Your clients: http://127.0.0.1:8000":
+            self.assertIn(words, said)
+
+    def test_it_runs_the_service(self):
+        (self.folder / "settings.json").write_text(json.dumps(
+            {"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000}, "mapping": {"address": "10.100.1.201", "port": 8000}},
+             "team": {"listen": [{"address": "0.0.0.0", "port": PORT}]}}))
+        settings = {"destination": "/settings.json", "type": "bind", "source": str(self.folder / "settings.json"), "options": ["bind", "ro"]}
+        _, running, _ = self.start("aditd", "--settings", "/settings.json", "--secrets", "/tmp/secrets", "--state", "/tmp/state", mounts=[settings])
+        self.assertEqual(self.answer(running).status_code, 200)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,84 @@
+// The spare box on the system page: the first one rests and is exported, the second one takes over, in a browser as a user does it.
+import assert from "node:assert/strict";
+import { after, before, test } from "node:test";
+import { axeFindsNothing } from "../axe.js";
+import { until } from "../box.js";
+import { launch, visit } from "../stage.js";
+import { begin, TOKENS } from "./box.js";
+
+let browser;
+before(async () => (browser = await launch()));
+after(() => browser?.close());
+
+async function box(t) {
+  const made = await begin();
+  t.after(() => made.end());
+  return made;
+}
+
+/** Its system page, at the spare box. */
+async function spareOf(t, made) {
+  const page = await visit(browser, `${made.url}system.html#spare`, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, acceptDownloads: true, bypassCSP: true });
+  t.after(() => page.context().close());
+  await page.waitForSelector("#spare:not([hidden])");
+  return { page, section: page.locator("#spare"), press: (name) => page.locator("#spare").getByRole("button", { name }).click() };
+}
+
+const yes = (page) => page.locator("#confirm button.main").click();
+const no = (page) => page.locator("#confirm button").first().click();
+const notes = (section, words) => section.locator(".note", { hasText: words }).waitFor();
+
+test("one press puts the box to rest and downloads its export, and the other box takes over by it", async (t) => {
+  const [first, spare] = await Promise.all([box(t), box(t)]);
+  await until(async () => (await first.run()).run_heard, "the run");
+  const number = await first.compose("Drill", 3, 4, 5);
+  await first.becomes(number, "answered");
+
+  const here = await spareOf(t, first);
+  await here.press("Rest and export");
+  await no(here.page);
+  assert.equal((await first.ask("/adit/spare")).said.rests, false, "it was asked, and answered no");
+  const downloads = here.page.waitForEvent("download", { timeout: 90_000 });
+  await here.press("Rest and export");
+  await yes(here.page);
+  const file = await (await downloads).path();
+  await notes(here.section, "This box rests");
+  const code = await here.section.locator("dd").first().innerText();
+  assert.match(code, /^(\d{4} ){3}\d{4}$/);
+  await axeFindsNothing(here.page, "a box that rests");
+  assert.equal((await first.run()).alarms[0].id, "rests");
+  await first.killAditd();
+
+  const there = await spareOf(t, spare);
+  await there.press("Take in the export");
+  await there.section.locator(".outcome", { hasText: "Choose the export first" }).waitFor();
+  await there.section.locator("input[type=file]").setInputFiles(file);
+  await there.press("Take in the export");
+  await there.section.locator("input[name=code]").fill("1111 2222 3333 4444");
+  await there.press("Open it");
+  await there.section.locator(".outcome", { hasText: "the code is not that of this export" }).waitFor();
+  await there.section.locator("input[name=code]").fill(code);
+  await there.press("Open it");
+  await there.section.locator("dd", { hasText: "1, 0 of them not finished" }).waitFor();
+  await axeFindsNothing(there.page, "an export that is opened");
+  await there.press("Take over");
+  await no(there.page);
+  assert.equal((await spare.ask("/adit/reports")).said.length, 0, "nothing has changed yet");
+  await there.press("Take over");
+  await yes(there.page);
+
+  spare.port = first.port; // the settings of the first are the spare's from now on
+  const reports = await until(() => spare.ask("/adit/reports").then(({ said }) => said?.length && said, () => null), "the spare, where the first was");
+  assert.deepEqual(reports.map(({ number, type, state }) => [number, type, state]), [[number, "Drill", "answered"]]);
+});
+
+test("a box that rests is woken up where its spare did not take over", async (t) => {
+  const made = await box(t);
+  await made.ask("/adit/spare/rest", {});
+  const { page, section, press } = await spareOf(t, made);
+  await notes(section, "This box rests");
+  await press("Wake it up");
+  await yes(page);
+  await notes(section, "A second box can take over");
+  await until(async () => (await made.run()).run_heard, "the run");
+});

@@ -1,0 +1,29 @@
+// The system page, for its tests: fed by a program that plays scenes.
+import { serve } from "./stage.js";
+import { visitor } from "./watch.js";
+
+export const OPERATOR = "correct horse", VIEWER = "look, do not touch";
+
+/** A page that logged in with `password` and looks at the system, for the length of one test. */
+export async function come(t, password = OPERATOR, { stage, ...options } = {}) {
+  if (!stage) {
+    stage = await serve("calm");
+    t.after(() => stage.end());
+  }
+  const page = await visitor(t, `${stage.url}system`, options);
+  await page.waitForURL(/login\.html\?next=%2Fsystem/);
+  await page.locator("#login").getByLabel("Password").fill(password);
+  await page.keyboard.press("Enter");
+  await page.waitForURL(/\/system$/);
+  await page.locator("#link .text", { hasText: "Live" }).waitFor();
+  return { stage, page };
+}
+
+/** The rows of the log, the newest first. */
+export const rows = (page) => page.$$eval("#log .rows li", (items) => items.map((item) => item.innerText.replace(/\s+/g, " ")));
+export const untilRows = (page, count) => page.waitForFunction((count) => document.querySelectorAll("#log .rows li").length === count, count);
+
+/** Fills the fields of a form by their names. */
+export async function fill(form, fields) {
+  for (const [name, value] of Object.entries(fields)) await form.locator(`[name=${name}]`).fill(value);
+}

@@ -1,0 +1,78 @@
+// The export for a spare box and the stick in the box, on the system page. Both boxes in full: box/spare.test.js.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { axeFindsNothing } from "./axe.js";
+import { come, OPERATOR, VIEWER } from "./system_page.js";
+
+const STAGED = "adit-10.0.0.1-20250615T150640Z.adit-spare";
+
+async function spareOf(t) {
+  const { page } = await come(t, OPERATOR, { bypassCSP: true }); // for axe
+  const section = page.locator("#spare"), said = (words) => section.getByText(words).waitFor();
+  await section.getByRole("button", { name: "Rest and export to the stick" }).waitFor();
+  return { page, section, said, press: (name) => section.getByRole("button", { name }).click(), yes: () => page.locator("#confirm button.main").click() };
+}
+
+const asked = (page, path) => page.requests.filter((url) => url.endsWith(path)).length;
+
+test("one press puts the box to rest and its export on the stick; what fails can be tried again, and it says when the stick may go", async (t) => {
+  const { page, section, said, press, yes } = await spareOf(t);
+  await press("Rest and export to the stick");
+  await page.locator("#confirm").getByRole("button", { name: "Leave it" }).click();
+  assert.equal(asked(page, "/adit/spare/rest"), 0, "nothing is asked for on a no");
+  await press("Rest and export to the stick");
+  await yes();
+  await said("The stick has no room for it.");
+  assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "true");
+  assert.equal(await section.locator("dd").first().innerText(), "1234 5678 9012 3456");
+  await press("Export to the stick");
+  await said("Leave the stick in.");
+  assert.equal(await section.getByRole("button", { name: "Export to the stick" }).count(), 0, "one at a time");
+  await said(`The export is on the stick and was read back: ${STAGED}. The stick may be unplugged.`);
+  assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "false");
+  await axeFindsNothing(page, "an export on a stick");
+  assert.deepEqual(page.complaints, []);
+});
+
+test("a box is not put to rest whose stick could not be written to", async (t) => {
+  const { page, said, press } = await spareOf(t);
+  await page.route("**/adit/spare", async (route) => {
+    const answer = await route.fetch(), view = await answer.json();
+    await route.fulfill({ response: answer, json: { ...view, stick: { ...view.stick, hindrance: "there is no stick in the box" } } });
+  });
+  await press("Rest and export to the stick");
+  await said("The box is not put to rest: there is no stick in the box.");
+  assert.equal(asked(page, "/adit/spare/rest"), 0);
+});
+
+test("what is on the stick is offered by the box and the time of its name, and asks for its code like what is uploaded", async (t) => {
+  const { page, section, said, press } = await spareOf(t);
+  const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());
+  await section.getByRole("button", { name: `Take in from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
+  await press("Take in from the stick: zip.adit-spare");
+  await said("It is no export of an Adit.");
+  await press("Take in from the stick: the box at 10.0.0.7");
+  await said("An export was taken in.");
+  await section.getByLabel("Code of the export").waitFor();
+  assert.equal(await section.getByRole("button", { name: /from the stick|to the stick/ }).count(), 0);
+  await axeFindsNothing(page, "an export from a stick");
+  await press("Forget it");
+  await section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }).waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test("where no stick is written or read, none is spoken of", async (t) => {
+  const { page, section } = await spareOf(t);
+  await page.route("**/adit/spare", async (route) => {
+    const answer = await route.fetch();
+    await route.fulfill({ response: answer, json: { ...(await answer.json()), stick: null } });
+  });
+  await section.getByRole("button", { name: "Rest and export to the stick" }).waitFor({ state: "hidden" });
+  assert.equal(await section.getByRole("button", { name: /stick/ }).count(), 0);
+  assert.equal(await section.getByRole("button", { name: "Rest and export", exact: true }).count(), 1);
+});
+
+test("a viewer is shown nothing of it", async (t) => {
+  const { page } = await come(t, VIEWER);
+  assert.equal(await page.locator("#spare").isVisible(), false);
+});

@@ -1,0 +1,117 @@
+// The system page's updates and restart.
+import assert from "node:assert/strict";
+import { test } from "node:test";
+import { come, VIEWER } from "./system_page.js";
+
+const updating = (page) => page.locator("#update");
+/** Begins as a bundle does: as a squashfs of 40 bytes. */
+const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffer: Buffer.from(`hsqs${"\0".repeat(36)}(${"\0".repeat(7)}${text}`, "latin1") });
+
+test("tells which version runs and what became of the last update", async (t) => {
+  const { page } = await come(t);
+  await updating(page).getByText("0.1.0, slot A. 0.0.9 left: it did not come up healthy in three starts").waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test("installs an update from a file, and says why one was refused", async (t) => {
+  const { page } = await come(t);
+  const file = updating(page).getByLabel("The update"), install = updating(page).getByRole("button", { name: "Install it" });
+  await file.setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
+  await install.click();
+  await updating(page).getByText("it is no update").waitFor();
+  assert.match(page.complaints.splice(0).join(), /^[^,]*status of 422[^,]*$/); // the browser's own word of it
+  await file.setInputFiles(aFile("xxx"));
+  await install.click();
+  await updating(page).getByText("Invalid bundle format: Signature size is 0").waitFor();
+  await file.setInputFiles(aFile("good"));
+  await install.click();
+  await updating(page).getByText("0.1.0, slot A. 0.2.0 waits for a restart").waitFor();
+  assert.deepEqual(page.complaints, []);
+});
+
+test("installs what is on a stick, and shows how far it is", async (t) => {
+  const { page } = await come(t);
+  await updating(page).getByRole("button", { name: "Install 0.3.0 from the stick" }).click();
+  await updating(page).getByText("The box is installing.").waitFor();
+  assert.equal(await updating(page).getByRole("progressbar").getAttribute("value"), "40");
+  assert.equal(await updating(page).getByRole("button").count(), 0, "one at a time");
+});
+
+test("restarts the box only on the operator's word while a report waits", async (t) => {
+  const { page } = await come(t);
+  const restart = page.locator("#restart"), dialog = page.locator("#confirm");
+  const press = (name) => dialog.getByRole("button", { name, exact: true }).click();
+  await restart.getByRole("button", { name: "Restart the box" }).click();
+  await dialog.getByText("It takes about a minute.").waitFor();
+  await press("Leave it");
+  assert.ok(!page.requests.some((url) => url.endsWith("/adit/update/restart")), "nothing is asked for on a no");
+  await restart.getByRole("button", { name: "Restart the box" }).click();
+  await press("Restart");
+  await dialog.getByText("1 report waits to be sent.").waitFor();
+  await press("Leave it");
+  await restart.getByText("The box was not restarted.").waitFor();
+  await restart.getByRole("button", { name: "Restart the box" }).click();
+  await press("Restart");
+  await dialog.getByText("1 report waits to be sent.").waitFor();
+  await press("Restart");
+  await restart.getByText("The box is restarting.").waitFor();
+  await page.waitForFunction(() => document.querySelector("#restart button").disabled);
+});
+
+const STRAY = "slot A with 0.1.0 runs, and slot B with 0.2.0 was good last";
+
+/** The page of a box that runs from another slot than the one that was good last, until it is told to stay. */
+async function strayed(t, password) {
+  const { page } = await come(t, password);
+  let stray = STRAY;
+  await page.route("**/adit/update", async (route) => {
+    const answer = await route.fetch();
+    await route.fulfill({ response: answer, json: { ...(await answer.json()), stray } });
+  });
+  await page.route("**/adit/update/stay", (route) => {
+    stray = null;
+    return route.continue();
+  });
+  await updating(page).getByText(`Another slot is running: ${STRAY}.`).waitFor();
+  return page;
+}
+
+test("goes back from a slot that nobody meant, once it is confirmed", async (t) => {
+  const page = await strayed(t), dialog = page.locator("#confirm");
+  const press = (name) => dialog.getByRole("button", { name, exact: true }).click();
+  await updating(page).getByRole("button", { name: "Go back" }).click();
+  await press("Leave it");
+  assert.ok(!page.requests.some((url) => url.endsWith("/adit/update/back")), "nothing is asked for on a no");
+  await updating(page).getByRole("button", { name: "Go back" }).click();
+  await press("Go back");
+  await dialog.getByText("1 report waits to be sent.").waitFor();
+  await press("Go back");
+  await updating(page).locator(".stray").getByText("The box is restarting.").waitFor();
+});
+
+test("stays with the slot that runs, once it is confirmed", async (t) => {
+  const page = await strayed(t), dialog = page.locator("#confirm");
+  await updating(page).getByRole("button", { name: "Stay with slot A" }).click();
+  await dialog.getByRole("button", { name: "Stay", exact: true }).click();
+  await updating(page).getByText("Another slot is running").waitFor({ state: "hidden" });
+  assert.ok(page.requests.some((url) => url.endsWith("/adit/update/stay")));
+});
+
+test("says to a viewer that another slot is running, and offers him nothing", async (t) => {
+  const page = await strayed(t, VIEWER);
+  assert.equal(await updating(page).getByRole("button").count(), 0);
+});
+
+test("says why it cannot restart the box, and what to do then", async (t) => {
+  const { page } = await come(t);
+  await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "adit-update does not run here", doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null } }));
+  await page.locator("#restart").getByText("This page cannot restart the box (adit-update does not run here). Switch it off and on.").waitFor();
+  assert.equal(await page.locator("#restart").getByRole("button").count(), 0);
+});
+
+test("lets a viewer see the update and do nothing", async (t) => {
+  const { page } = await come(t, VIEWER);
+  await updating(page).getByText("0.1.0, slot A").waitFor();
+  assert.equal(await updating(page).getByRole("button").count(), 0);
+  assert.equal(await page.locator("#restart").getByRole("button").count(), 0);
+});

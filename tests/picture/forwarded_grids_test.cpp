@@ -1,0 +1,146 @@
+#include "picture/forwarded_grids.hpp"
+
+#include <random>
+
+#include "picture/maps.hpp"
+
+namespace adit::picture {
+namespace {
+
+constexpr Area kNear{-1, -1, 1, 1};
+
+icd::MapUpdate named(const std::string& robot, icd::MapUpdate map) {
+  map.name = icd::RobotName::parse(robot);
+  return map;
+}
+
+icd::MapUpdate square(double x, double y, std::uint32_t side, double resolution = 0.05,
+                      std::uint8_t value = 0) {
+  return grid_at(x, y, side, resolution, Cells(std::size_t{side} * side, value));
+}
+
+class Forwarded : public testing::Test {
+ protected:
+  bool take(const icd::MapUpdate& map) {
+    layer = layer_of(map);
+    return grids.take(forwarded_grid(map), ++number);
+  }
+  std::size_t kept(const Area& area = kNear) const { return grids.in(layer, area).size(); }
+
+  ForwardedGrids grids;
+  Layer layer;
+  std::uint64_t number = 100;
+};
+
+TEST_F(Forwarded, AGridTakesThePlaceOfWhatLiesWithinIt) {
+  take(square(0, 0, 20));
+  take(square(-0.52, -0.51, 40));
+  EXPECT_EQ(kept(), 1U) << "though not on the same lattice";
+  take(square(0.3, 0.3, 20));
+  EXPECT_EQ(kept(), 2U);
+  const auto both = grids.in(layer, kNear);
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(square(0.3, 0.3, 20).msg).origin, both.back()->grid.origin)
+      << "in their order";
+  EXPECT_EQ(kept({5, 5, 6, 6}), 0U);
+  EXPECT_EQ(grids.newest_in(layer, kNear), number);
+}
+
+TEST_F(Forwarded, OneThatIsTurnedTakesThePlaceOfWhatLiesWithinItsOwnSides) {
+  take(square(0, 0, 10));
+  take(grid_of(40, 0.05, {{0.5, -0.7, 0}, turned_by(0.785398)}, Cells(1600, 0)));
+  EXPECT_EQ(kept(), 1U);
+  take(square(-0.6, 1.1, 10));
+  take(grid_of(40, 0.05, {{0.5, -0.7, 0}, turned_by(0.785398)}, Cells(1600, 1)));
+  EXPECT_EQ(kept({-1, -1, 2, 2}), 2U) << "its corner reaches out";
+}
+
+TEST_F(Forwarded, TheSameOnceMoreChangesNothing) {
+  EXPECT_TRUE(take(square(0, 0, 20)));
+  EXPECT_FALSE(take(gzipped(square(0, 0, 20))));
+  EXPECT_EQ(grids.newest_in(layer, kNear), 101U);
+  EXPECT_TRUE(take(square(0, 0, 20, 0.05, 100)));
+}
+
+TEST_F(Forwarded, TellsHowFineTheyAreAndWhatChanged) {
+  EXPECT_FALSE(grids.finer({"ugv1", Kind::Grid}, 0));
+  take(square(0, 0, 20, 0.2));
+  EXPECT_EQ(grids.finer(layer, 0)->level, -1);
+  take(square(10, 0, 20, 0.05));
+  EXPECT_EQ(grids.finer(layer, 0)->level, -1);
+  take(square(20, 0, 20, 0.02));
+  const auto finer = grids.finer(layer, 0);
+  ASSERT_TRUE(finer && finer->area);
+  EXPECT_EQ(finer->level, -2);
+  EXPECT_EQ(finer->version, number);
+  EXPECT_EQ(*finer->area, (Area{0, 0, 20.4, 4}));
+  EXPECT_EQ(*grids.finer(layer, 102)->area, (Area{20, 0, 20.4, 0.4}));
+  EXPECT_FALSE(grids.finer(layer, 103)->area);
+}
+
+TEST_F(Forwarded, GridsNoFinerThanTheBaseAreNotKeptAlone) {
+  EXPECT_FALSE(take(square(0, 0, 20, 0.25)));
+  EXPECT_EQ(grids.bytes(), 0U);
+  take(square(0, 0, 20, 0.1));
+  EXPECT_TRUE(take(square(0.5, 0, 20, 0.25))) << "it lies over the other";
+  EXPECT_EQ(kept(), 2U);
+  EXPECT_EQ(forwarded_grid(cloud_of({{0, 0, 0}})), nullptr);
+}
+
+TEST_F(Forwarded, WhatCannotBeKeptLeavesNothingOlderInItsPlace) {
+  std::mt19937_64 random{23};
+  Cells noise(std::size_t{3400} * 3400);
+  for (auto& cell : noise) cell = static_cast<std::uint8_t>(random() % 101);
+  const auto large = grid_at(0, 0, 3400, 0.05, noise);
+  for (const auto& map : {large, gzipped(large), square(0, 0, 20, 1)}) {
+    EXPECT_FALSE(take(map)) << "there was nothing finer";
+    take(square(0, 0, 20));
+    EXPECT_TRUE(take(map));
+    EXPECT_FALSE(grids.finer(layer, 0));
+    EXPECT_EQ(grids.bytes(), 0U);
+  }
+}
+
+TEST_F(Forwarded, TwentyRobotsWithManyGridsStayWithinTheBudgetAndTheOldestGoFirst) {
+  std::mt19937_64 random{24};
+  Cells noise(300 * 300);
+  for (auto& cell : noise) cell = static_cast<std::uint8_t>(random() % 101);
+  for (int i = 0; i < 600; ++i) {
+    take(named("r" + std::to_string(i % 20), grid_at(i, 0, 300, 0.05, noise)));
+    ASSERT_LE(grids.bytes(), ForwardedGrids::kBudget);
+  }
+  EXPECT_GT(grids.bytes(), ForwardedGrids::kBudget * 9 / 10);
+  EXPECT_EQ(grids.in({"r0", Kind::Grid}, {0, 0, 10, 10}).size(), 0U) << "the first one";
+  EXPECT_EQ(grids.in({"r19", Kind::Grid}, {599, 0, 600, 10}).size(), 1U) << "the last one";
+  grids.clear();
+  EXPECT_EQ(grids.bytes(), 0U);
+}
+
+TEST_F(Forwarded, ForOneBlockNoMoreCellsAreLookedAtThanASmallBoardHasTimeFor) {
+  Cells cells(std::size_t{8192} * 8192, 0);
+  const auto large = grid_at(0, 0, 8192, 0.05, cells);
+  for (int i = 0; i < 6; ++i) {
+    auto map = large;
+    std::get<icd::OccupancyGrid>(map.msg).origin.position.x = -i;
+    take(map);
+  }
+  const auto some = grids.in(layer, kNear);
+  ASSERT_EQ(some.size(), ForwardedGrids::kMostCells / cells.size());
+  EXPECT_EQ(some.back()->grid.origin.position.x, -5) << "the last ones";
+}
+
+TEST_F(Forwarded, AWordOnWhatAGridTakesHasNoLargerPieceInIt) {
+  auto map = gzipped(square(0, 0, 20));
+  const std::vector<std::uint8_t> bytes = map.data.bytes.to_vector();
+  auto released = std::make_shared<std::vector<std::uint8_t>>(bytes);
+  const std::weak_ptr<std::vector<std::uint8_t>> watch = released;
+  map.data.bytes = {};
+  map.data.bytes.append(released, *released);
+  const auto grid = forwarded_grid(map);
+  map.data.bytes = {};
+  released.reset();
+  EXPECT_TRUE(watch.expired()) << "the file that it came from is free";
+  EXPECT_EQ(grid->data.bytes.to_vector(), bytes);
+}
+
+}  // namespace
+}  // namespace adit::picture

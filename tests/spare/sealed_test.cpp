@@ -1,0 +1,61 @@
+#include "spare/sealed.hpp"
+
+#include <gtest/gtest.h>
+
+namespace adit::spare {
+namespace {
+
+constexpr std::string_view kCode = "1234567890123456";
+const Seed kSeed{.salt = {1, 2, 3}, .nonce = {4, 5, 6}};
+
+std::string sealed(std::string_view content) {
+  auto file = seal(content, kCode, kSeed);
+  EXPECT_TRUE(file) << file.error();
+  return file.value_or("");
+}
+
+std::string why_not(std::string_view file, std::string_view code = kCode) {
+  const auto content = unseal(file, code);
+  return content ? "" : content.error();
+}
+
+TEST(Sealed, IsOpenedByItsCodeAlone) {
+  const std::string content("reports\0and tokens", 18), file = sealed(content);
+  EXPECT_EQ(unseal(file, kCode), content);
+  EXPECT_EQ(why_not(file, "1234567890123457"),
+            "the code is not that of this export, or the export is not whole");
+  EXPECT_EQ(file.find("tokens"), std::string::npos) << "it is not to be read without";
+}
+
+TEST(Sealed, MayBeEmpty) {
+  EXPECT_EQ(unseal(sealed(""), kCode), "");
+}
+
+TEST(Sealed, IsNotOpenedWithAnyByteOfItChangedOrCutOff) {
+  const std::string file = sealed("a ledger");
+  for (std::size_t at = 0; at < file.size(); at += 3) {
+    std::string changed = file;
+    changed[at] = static_cast<char>(changed[at] ^ 0x10);
+    EXPECT_NE(why_not(changed), "") << "byte " << at;
+    EXPECT_NE(why_not(file.substr(0, at)), "") << "cut off at byte " << at;
+  }
+  EXPECT_NE(why_not(file + "x"), "");
+}
+
+TEST(Sealed, ALaterAditsExportIsRefusedByItsFirstBytes) {
+  std::string file = sealed("a ledger");
+  file[10] = 2;
+  const char* const why =
+      "a later Adit made this export (version 2, and this one reads 1): update this box first";
+  EXPECT_EQ(not_an_export(file.substr(0, kExportHead)), why);
+  EXPECT_EQ(why_not(file), why);
+}
+
+TEST(Sealed, WhatIsNoExportIsRefusedByItsFirstBytes) {
+  EXPECT_EQ(not_an_export(sealed("a ledger").substr(0, kExportHead)), "");
+  for (const std::string_view other : {"", "adit", "PK\3\4 a zip file", "adit-share\1", "SQLite format 3"})
+    EXPECT_EQ(not_an_export(other.substr(0, kExportHead)), "it is no export of an Adit") << other;
+}
+
+}  // namespace
+}  // namespace adit::spare

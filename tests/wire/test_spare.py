@@ -1,0 +1,293 @@
+"""A spare box takes over: each report is recorded exactly once, whenever the first box was cut off, and by whatever the export went."""
+
+import contextlib
+import json
+import os
+import pathlib
+import random
+import subprocess
+import time
+import unittest
+from unittest import mock
+
+import requests
+
+import hosts
+import programs
+from alarming import WithAlarms
+from programs import Box, Stage, wait_until
+from reporting import QUICK, REPORT, another, began, left_unanswered, submit
+
+FINISHED = ("answered", "settled", "withdrawn")
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+
+
+class Swap(Stage):
+    """A stage on which the box can be replaced by a spare, which has a state of its own."""
+
+    def __enter__(self):
+        super().__enter__()
+        self.spare_folder = self.folder / "spare"
+        self.spare_folder.mkdir()
+        secrets = self.spare_folder / "secrets"
+        secrets.mkdir(mode=0o700)
+        token = secrets / "team.token"  # it knows none of the Command Post's
+        token.write_text(programs.TEAM_TOKEN + "\n")
+        token.chmod(0o600)
+        self.export = self.folder / "box.adit-spare"
+        return self
+
+    def adit(self, *words, check=True):
+        """`adit spare`: what it prints."""
+        done = subprocess.run([programs.BIN / "adit", "spare", *words, "--at", f"{self.network.box_address}:{programs.PORT}",
+                               "--token-file", self.spare_folder / "secrets/team.token"],
+                              capture_output=True, text=True, check=False, timeout=120)
+        if check and done.returncode != 0:
+            raise AssertionError(f"adit spare {words}: {done.returncode} {done.stdout}{done.stderr}")
+        return done.stdout + done.stderr if not check else done.stdout
+
+    def exported(self):
+        """The box rests; the code of its export."""
+        self.adit("export", self.export, "--yes")
+        return self.box.ask("GET /adit/spare")[1]["code"]
+
+    def unplug(self):
+        self.box.stop(programs.signal.SIGKILL)
+
+    def plug_in_spare(self):
+        self.box = Box(self.network, self.spare_folder, **{**self.overrides, "reports__near_metres": 9})
+
+    def take_over(self, code):
+        self.adit("take", self.export, "--code", code, "--yes")
+        wait_until(lambda: self.settled(), "the spare to have taken over")
+
+    def settled(self):
+        try:
+            view = self.box.ask("GET /adit/spare")[1]
+            return not view["takes_over"] and not view["taken_in"] and not view["rests"]
+        except OSError:
+            return False
+
+    def swap(self):
+        code = self.exported()
+        self.unplug()
+        self.plug_in_spare()
+        self.take_over(code)
+
+    def decide(self):
+        """What an operator does about reports in doubt who has seen what the Command Post recorded."""
+        decisions = "the operator decides"
+        wait_until(lambda: all(row["state"] in FINISHED or decisions in row["note"] for row in self.box.reports()), "nothing to be open")
+        recorded = {made["x"] for made in self.post.recorded()}
+        for row in self.box.reports():
+            if decisions in row["note"]:
+                word = "done" if row["position"]["x"] in recorded else "send"
+                self.box.ask(f"POST /adit/reports/{row['number']}/{word}", body={})
+
+    def all_recorded(self, reports):
+        wait_until(lambda: len(self.post.recorded()) >= len(reports), "all to be recorded")
+        wait_until(lambda: all(row["state"] in FINISHED for row in self.box.reports()), "all to be finished")
+        time.sleep(0.5)  # what might still be sent would be by now
+        return sorted(made["x"] for made in self.post.recorded()) == sorted(report["x"] for report in reports)
+
+
+class Spare(WithAlarms):
+    def swap(self, **overrides):
+        return began(self.enterContext(Swap(**{**QUICK, **overrides})))
+
+    def test_what_is_known_there_is_known_here(self):
+        stage = self.swap()
+        answers = [submit(stage, another(number)) for number in range(1, 4)]
+        stage.swap()
+        began(stage)
+        for number, answer in enumerate(answers, 1):
+            again = submit(stage, another(number))
+            self.assertEqual((again.status_code, again.content), (201, answer.content), "byte for byte")
+        self.assertEqual(submit(stage, another(4)).status_code, 201)
+        self.assertTrue(stage.all_recorded([another(number) for number in range(1, 5)]))
+        self.assertEqual(stage.box.ask("GET /adit/settings")[1]["settings"]["reports"]["near_metres"], 5, "the first box's")
+        self.assertEqual(stage.post.violations(), [])
+
+    def test_the_first_box_is_cut_off_at_the_very_instant_of_an_answer(self):
+        for fault in ("record-then-drop", "answer-after=1", "record-after=0.3,reset", "drop", "reset-unrecorded"):
+            for cut in (0.0, 0.005, 0.05, 0.3):
+                with self.subTest(fault, cut=cut), Swap(**QUICK) as stage:
+                    began(stage)
+                    self.assertEqual(submit(stage, another(9)).status_code, 201)
+                    stage.post.will(fault)
+                    left_unanswered(stage, patience=0.05)
+                    time.sleep(cut)
+                    stage.unplug()
+                    stage.restart_box()  # for its export alone
+                    stage.swap()
+                    self.assertIn(submit(stage).status_code, (201,))
+                    self.assertTrue(stage.all_recorded([REPORT, another(9)]))
+
+    def test_the_export_is_made_while_an_answer_is_awaited(self):
+        for fault in ("answer-after=0.2", "record-then-drop", "drop", "record-after=0.6"):
+            with self.subTest(fault), Swap(**QUICK) as stage:
+                began(stage)
+                self.assertEqual(submit(stage, another(9)).status_code, 201)
+                stage.post.will(fault)
+                left_unanswered(stage, patience=0.05)
+                stage.swap()
+                self.assertEqual(submit(stage).status_code, 201)
+                self.assertTrue(stage.all_recorded([REPORT, another(9)]))
+
+    def test_what_waited_at_the_first_box_is_sent_by_its_spare(self):
+        stage = self.swap()
+        self.assertEqual(submit(stage, another(9)).status_code, 201)
+        stage.network.pull_cable()
+        for number in range(1, 4):
+            left_unanswered(stage, another(number))
+        code = stage.exported()
+        stage.unplug()
+        stage.network.pull_cable(False)
+        stage.plug_in_spare()
+        stage.take_over(code)
+        stage.decide()  # this first box's kernel outlives it, and may yet deliver one of them, but not say which
+        self.assertTrue(stage.all_recorded([another(number) for number in (9, 1, 2, 3)]))
+
+    def test_the_first_box_was_woken_up_all_the_same(self):
+        stage = self.swap()
+        self.assertEqual(submit(stage, another(9)).status_code, 201)
+        stage.network.pull_cable()
+        left_unanswered(stage, another(1))
+        left_unanswered(stage, another(2))
+        code = stage.exported()
+        stage.network.pull_cable(False)
+        stage.adit("wake", "--yes")
+        wait_until(lambda: len(stage.post.recorded()) == 3, "the first box to send what waited")
+        stage.unplug()
+        stage.plug_in_spare()
+        stage.take_over(code)
+        self.assertTrue(stage.all_recorded([another(number) for number in (9, 1, 2)]), "found recorded, and not sent again")
+
+    def test_a_box_that_rests_says_so_and_takes_and_sends_nothing(self):
+        stage = self.swap()
+        self.assertEqual(submit(stage).status_code, 201)
+        asked = len(stage.post.requests())
+        stage.exported()
+        asked = max(asked, len(stage.post.requests()))
+        self.sees(stage, "rests", "bad", "box", "This box rests and sends nothing", "for its spare")
+        refused = submit(stage, another(1))
+        self.assertEqual((refused.status_code, refused.json()),
+                         (503, "this box rests, for its spare to take over: nothing is taken or sent"))
+        self.assertEqual(self.send_map(stage, "r1").status_code, 503)
+        self.assertEqual(stage.box.judge(1, "resubmit")[0], 409)
+        stage.unplug()
+        stage.restart_box()
+        wait_until(lambda: self.alarm(stage, "rests"), "it to rest after a power cut, too")
+        self.assertEqual(len(stage.post.requests()), asked, "nothing was asked of the Command Post")
+        self.assertEqual(len(stage.box.reports()), 1, "nothing was kept")
+        stage.adit("wake", "--yes")
+        wait_until(lambda: self.view(stage)["lights"] and not self.alarm(stage, "rests"), "it to go on")
+        began(stage)
+        self.assertEqual(submit(stage, another(1)).status_code, 201)
+
+    def test_the_power_goes_again_and_again_while_the_spare_takes_over(self):
+        stage = self.swap()
+        for number in range(1, 6):
+            self.assertEqual(submit(stage, another(number)).status_code, 201)
+        stage.network.pull_cable()
+        left_unanswered(stage, another(6))
+        code = stage.exported()
+        stage.unplug()
+        stage.network.pull_cable(False)
+        stage.plug_in_spare()
+        stage.adit("take", stage.export, "--code", code, check=False)  # and nobody confirms it
+        self.assertEqual(stage.box.reports(), [], "nothing has changed yet")
+        dice = random.Random(5)
+        with contextlib.suppress(OSError, requests.RequestException):
+            self.assertEqual(stage.box.ask("POST /adit/spare/take-over", body={"unplugged": True})[0], 200)
+        for _ in range(12):
+            time.sleep(dice.choice((0.0, 0.002, 0.01, 0.03, 0.1)))
+            stage.box.process.kill()
+            stage.box.process.wait()
+            begun = programs.Program(stage.network, stage.network.box, stage.spare_folder / "cut.log", stage.box.process.args[4:])
+            stage.box.process = begun.process
+        stage.box.process.kill()
+        stage.box.process.wait()
+        stage.plug_in_spare()
+        wait_until(stage.settled, "the spare to have taken over")
+        self.assertTrue(stage.all_recorded([another(number) for number in range(1, 7)]))
+        self.assertFalse((stage.spare_folder / "state/take-over").exists())
+
+    def test_what_is_no_whole_export_of_another_box_is_refused_with_a_true_sentence(self):
+        stage = self.swap()
+        self.assertEqual(submit(stage).status_code, 201)
+        code = stage.exported()
+        whole = stage.export.read_bytes()
+        self.assertNotIn(programs.SCORING_TOKEN.encode(), whole)
+        self.assertNotIn(b"SQLite", whole)
+        self.assertIn("this box made the export itself", stage.adit("take", stage.export, "--code", code, "--yes", check=False))
+        stage.unplug()
+        stage.plug_in_spare()
+        for name, text, sentence in (
+                ("half", whole[:len(whole) // 2], "the export is not whole"),
+                ("another", b"PK\x03\x04 a zip file", "it is no export of an Adit"),
+                ("empty", b"", "it is no export of an Adit"),
+                ("later", whole[:10] + b"\x07" + whole[11:], "a later Adit made this export"),
+                ("changed", whole[:-9] + b"x" + whole[-8:], "the export is not whole"),
+                ("large", whole + bytes(9 << 20), "too large for an export")):
+            with self.subTest(name):
+                (stage.folder / name).write_bytes(text)
+                self.assertIn(sentence, stage.adit("take", stage.folder / name, "--code", code, "--yes", check=False))
+        self.assertIn("the code is not that of this export",
+                      stage.adit("take", stage.export, "--code", "0" * 16, "--yes", check=False))
+        self.assertIn("expected 16 digits", stage.adit("take", stage.export, "--code", "12", "--yes", check=False))
+        self.assertEqual(stage.box.reports(), [])
+        stage.take_over(code)
+        self.assertIn("took over from this export already",
+                      stage.adit("take", stage.export, "--code", code, "--yes", check=False))
+
+    def test_there_and_back_again(self):
+        stage = self.swap()
+        self.assertEqual(submit(stage, another(1)).status_code, 201)
+        first = stage.folder
+        stage.swap()
+        began(stage)
+        self.assertEqual(submit(stage, another(2)).status_code, 201)
+        older = stage.export.read_bytes()
+        code = stage.exported()
+        stage.unplug()
+        stage.box = Box(stage.network, first, **stage.overrides)
+        self.assertTrue(stage.box.ask("GET /adit/spare")[1]["rests"], "as it was left")
+        stage.take_over(code)
+        began(stage)
+        self.assertEqual(submit(stage, another(2)).status_code, 201)
+        self.assertEqual(submit(stage, another(3)).status_code, 201)
+        self.assertTrue(stage.all_recorded([another(number) for number in (1, 2, 3)]))
+        self.assertNotEqual(older, stage.export.read_bytes())
+
+    def test_the_disk_of_the_spare_is_full(self):
+        with Swap(**QUICK) as stage:
+            began(stage)
+            self.assertEqual(submit(stage).status_code, 201)
+            code = stage.exported()
+            stage.unplug()
+            state = stage.spare_folder / "state"
+            state.mkdir()
+            subprocess.run(["mount", "-t", "tmpfs", "-o", "size=12m", "adit-wire", state], check=True)
+            try:
+                stage.plug_in_spare()
+                stage.adit("take", stage.export, "--code", code, check=False)
+                filler, room = state / "filler", os.statvfs(state)
+                filler.write_bytes(bytes(room.f_bavail * room.f_frsize - (4 << 10)))
+                self.assertEqual(stage.box.ask("POST /adit/spare/take-over", body={"unplugged": True})[0], 503)
+                filler.unlink()
+                self.assertEqual(stage.box.ask("POST /adit/spare/take-over", body={"unplugged": True})[0], 200)
+                wait_until(stage.settled, "the spare to have taken over")
+                began(stage)
+                self.assertEqual(submit(stage).status_code, 201)
+                self.assertTrue(stage.all_recorded([REPORT]))
+                stage.box.stop()
+            finally:
+                subprocess.run(["umount", "--lazy", state], check=False)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -18,6 +18,19 @@ struct Time {
   double stamp = 0;  // seconds since 1970
 };
 
+/// With a restart of the machine the clock for stamps may go ahead by more than the time that went by: the
+/// time of day was set, and the machine begins with that.
+struct Leap {
+  double to = 0;  // stamps from here on are later by `by`; seconds since 1970
+  double by = 0;  // seconds
+
+  /// The seconds that went by from one stamp to a later one.
+  double between(double from, double until) const {
+    return until - from - (from < to && to <= until ? by : 0);
+  }
+  friend bool operator==(const Leap&, const Leap&) = default;
+};
+
 /// One artifact report and all that is known of it: what the ledger holds.
 struct Report {
   std::int64_t number = 0;  // Adit's own, from 1, never used twice

@@ -81,6 +81,8 @@ class Reports {
   void will_move(const std::string& post, Time time);
   /// The rules from now on. A client that waits already keeps its deadline.
   void go_by(const ReportRules& rules) { rules_ = rules; }
+  /// What is read was written down before it, or after.
+  void leapt(const Leap& leap) { account_.leapt(leap); }
 
   /// A client posts a report; it is told by Output, at once or later. `may_send`: nothing is under way and
   /// the rate allows it. True: it is on disk as sending(): send it.

@@ -78,7 +78,7 @@ void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time
   const bool other_team = run().last && are_other_teams(run().last->current_team, status.current_team);
   const Run* const known = other_team ? account_.of_team(status.current_team) : nullptr;
   if (known != nullptr) {
-    const auto differs = another_run(*known, status, time.stamp - known->heard);
+    const auto differs = another_run(*known, status, account_.between(known->heard, time.stamp));
     if (!differs) return take_up_run(*known, another.why, time);
     return begin_run(another.why, differs->certain ? 0 : known->number, status, time);
   }

@@ -25,6 +25,9 @@ class RunAccount {
   /// `book` outlives this.
   explicit RunAccount(ReportBook& book) : book_(book) {}
 
+  /// Over which the run's silence is counted.
+  void leapt(const Leap& leap) { leap_ = leap; }
+  double between(double from, double until) const { return leap_.between(from, until); }
   /// `latest`: the highest run that a report belongs to; it may have been written down before its run was.
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
@@ -91,6 +94,7 @@ class RunAccount {
   ReportBook& book_;
   Runs runs_;
   std::string post_;
+  Leap leap_;
   double written_ = 0;            // Run::heard as it is on disk
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
   std::optional<Instant> dumb_at_;

@@ -1,5 +1,6 @@
 #include "forward/clocks.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <set>
 #include <string_view>
@@ -14,16 +15,30 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   if (clock) {
     senders_ = carried.senders();
     loop_.set_stamp(clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count());
+    leap_ = {.to = clock->leapt_to, .by = clock->leapt_by};
   } else {
-    // The machine may have no clock that went on.
-    if (kept.floor > loop_.stamp_now()) loop_.set_stamp(kept.floor);
-    if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);
+    begin_start(kept);
   }
   if (kept.least > loop_.stamp_now()) {
     loop_.set_stamp(kept.least);
     senders_ = {};  // they were brought to the clock as it was
   }
-  journal_.begin({.boot = boot, .at = loop_.now(), .stamp = loop_.stamp_now()});
+  journal_.begin({.boot = boot,
+                  .at = loop_.now(),
+                  .stamp = loop_.stamp_now(),
+                  .leapt_to = leap_.to,
+                  .leapt_by = leap_.by});
+}
+
+/// Of the machine, which may have no clock that went on. How long it was off is told by the time of day,
+/// which may have been set long after stamps were begun: they begin with it now.
+void Clocks::begin_start(const StampFloor::Kept& kept) {
+  if (kept.floor > loop_.stamp_now()) loop_.set_stamp(kept.floor);
+  if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);
+  if (kept.floor <= 0 || kept.wall <= 0) return;
+  const double went_on = loop_.stamp_now() - (kept.floor - StampFloor::kAhead);
+  const double went_by = loop_.wall_now() - kept.wall;
+  leap_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on - went_by)};
 }
 
 icd::Stamp Clocks::stamped(const std::string& sender, std::optional<icd::Stamp> stamp,

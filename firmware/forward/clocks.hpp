@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "dispatch/report.hpp"
 #include "forward/stamp_floor.hpp"
 #include "icd/markers_update.hpp"
 #include "intake/desk.hpp"
@@ -24,6 +25,8 @@ class Clocks {
   /// Goes on where the life before ended, and begins the journal of this one. `boot`: the machine's.
   void carry_on(journal::Carried& carried, const std::string& boot);
 
+  /// With which the clock for stamps began at this start of the machine.
+  const dispatch::Leap& leap() const { return leap_; }
   /// Whether this box may have sent something in a life before.
   bool ran_before() const { return ran_before_; }
 
@@ -41,12 +44,14 @@ class Clocks {
   std::optional<double> told_by_robots() const { return senders_.told(loop_.stamp_now()); }
 
  private:
+  void begin_start(const StampFloor::Kept& kept);
   void keep(const std::string& sender);
 
   loop::Loop& loop_;
   journal::Journal& journal_;
   StampFloor floor_;
   lanes::StampShift senders_;
+  dispatch::Leap leap_;
   bool ran_before_ = false;
 };
 

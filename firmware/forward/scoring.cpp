@@ -66,6 +66,7 @@ std::expected<void, std::string> Scoring::open_reports() {
   auto runs = ledger_.runs();
   if (!runs) return std::unexpected(runs.error().what);
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
+  next->leapt(leap_);
   next->open(std::move(*all), std::move(*runs), time(), channel_.address(), *reports_);
   reports_ = std::move(next);
   return {};

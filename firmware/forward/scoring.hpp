@@ -56,6 +56,8 @@ class Scoring {
   /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
   /// the place is another, what is known of the run is forgotten; clients whose reports wait go on waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
+  /// Before start(): what the ledger holds was written by a clock that has leapt since.
+  void leapt(const dispatch::Leap& leap) { leap_ = leap; }
   /// Before start(): connects to nobody, and sends nothing.
   void rest() { stopping_ = true; }
   /// Begins with what the ledger holds, and connects. An error: the ledger cannot be read.
@@ -130,6 +132,7 @@ class Scoring {
   Record& record_;
   std::function<void()> restart_;
   ReportOutput output_;
+  dispatch::Leap leap_;
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   UriPace report_pace_, status_pace_;

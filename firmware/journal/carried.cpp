@@ -110,6 +110,7 @@ bool Carried::read_clock(std::string_view said) {
   Reader reader(said);
   Clock clock{.boot = std::string(reader.text()), .at = pace::Instant(duration_in(reader)), .stamp = 0};
   clock.stamp = reader.real();
+  if (!reader.at_end()) clock.leapt_to = reader.real(), clock.leapt_by = reader.real();
   if (!reader.ok()) return false;
   machine_is(clock.boot);
   clock_ = std::move(clock);
@@ -288,7 +289,9 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
 }
 
 std::string said(const Clock& clock) {
-  return Writer().text(clock.boot).number(number_of(clock.at.time_since_epoch())).real(clock.stamp).finish();
+  Writer out;
+  out.text(clock.boot).number(number_of(clock.at.time_since_epoch())).real(clock.stamp);
+  return out.real(clock.leapt_to).real(clock.leapt_by).finish();
 }
 
 std::string said(const std::string& sender, const lanes::SenderClock& clock) {

@@ -24,6 +24,7 @@ struct Clock {
   std::string boot;  // host::boot()
   pace::Instant at{};
   double stamp = 0;
+  double leapt_to = 0, leapt_by = 0;  // dispatch::Leap: with which this start of the machine began
 };
 
 /// What one life of the gateway hands on to the next: what the records of a journal come to.

@@ -91,6 +91,32 @@ TEST_F(ClocksTest, AMachineWithAClockGoesOnByIt) {
   EXPECT_NEAR(loop_.wall_now(), later, 1);
 }
 
+TEST_F(ClocksTest, ALeapIsWhatStampsGoAheadBeyondTheTimeThatWentBy) {
+  live();
+  EXPECT_EQ(clocks_->leap(), dispatch::Leap()) << "nothing is known of a life before";
+  const double before = now();
+  loop_.set_wall(before + 5 * kFar);
+  keep();
+  loop_.set_stamp(before + 6 * kFar);  // as of a start with a clock that went on
+  loop_.set_wall(before + 6 * kFar);
+  live("another start");
+  EXPECT_NEAR(clocks_->leap().by, 5 * kFar, 1);
+  EXPECT_NEAR(clocks_->leap().between(before, now()), kFar, 1) << "so long it was off";
+  const dispatch::Leap leap = clocks_->leap();
+  live("another start");
+  EXPECT_EQ(clocks_->leap(), leap) << "the next life of the service has it, too";
+}
+
+TEST_F(ClocksTest, AMachineWithoutAClockWasOffForNoTimeThatIsKnown) {
+  live();
+  keep();
+  const double before = now();
+  loop_.set_stamp(before - kFar);
+  loop_.set_wall(before - kFar);
+  live("another start");
+  EXPECT_NEAR(clocks_->leap().between(before, now()), 0, 1);
+}
+
 TEST_F(ClocksTest, AClockThatWasSetBackStaysSoInTheNextLife) {
   live();
   keep();

@@ -239,16 +239,25 @@ class GridsOfOneName {
 };
 
 /// A life that could write nothing down, and a power cut: where it was the life's end the next one holds
-/// itself for the first, and where it was before, this one knows nothing of what the earlier ones sent.
+/// itself for the first, and where it was before, this one knows nothing of what the earlier ones sent. A
+/// life between them that ended as it began has written nothing down, either.
 bool knows_nothing(const Evidence& evidence) {
+  constexpr double kTooShort = 1;         // seconds
   std::set<std::int64_t> unwritten, cut;  // lives
+  std::map<std::int64_t, double> length;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Said && event.text.contains("stamps may run backward"))
       unwritten.insert(event.life);
     if (event.kind == Kind::PowerCut) cut.insert(event.serial);
+    if (event.kind == Kind::Begins) length[event.life] = -event.at;
+    if (event.kind == Kind::Ended) length[event.life] += event.at;
   }
-  return std::ranges::any_of(unwritten,
-                             [&](std::int64_t life) { return cut.contains(life) || cut.contains(life - 1); });
+  return std::ranges::any_of(unwritten, [&](std::int64_t life) {
+    if (cut.contains(life - 1)) return true;
+    std::int64_t last = life;
+    while (!cut.contains(last) && length.contains(last + 1) && length[last + 1] < kTooShort) ++last;
+    return cut.contains(last);
+  });
 }
 
 /// While no gateway ran the time of day was set: the next life sees that the run has gone on by less, and

@@ -10,7 +10,7 @@
 namespace adit::admin {
 namespace {
 
-std::unexpected<icd::Refusal> conflict(std::string sentence) {
+std::unexpected<icd::Refusal> refuse_now(std::string sentence) {
   return refuse(icd::Status::Conflict, std::move(sentence));
 }
 
@@ -143,11 +143,11 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 }
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
-  if (pending()) return conflict("a change waits to be confirmed or taken back");
-  if (const std::string why = hindrance(); !why.empty()) return conflict(why);
+  if (pending()) return refuse_now("a change waits to be confirmed or taken back");
+  if (const std::string why = hindrance(); !why.empty()) return refuse_now(why);
   network::Wanted request{NetworkRequests::draw_nonce(), settings_.network.confirm_within, wanted};
   if (const auto asked = requests_.ask(request); !asked)
-    return conflict("it cannot be asked for: " + asked.error());
+    return refuse_now("it cannot be asked for: " + asked.error());
   host::log(host::Level::Notice, "a change of the network is asked for",
             {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
   asked_ = Asked{std::move(request), loop_.now()};
@@ -157,7 +157,7 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
-  if (!waits) return conflict("no change waits to be confirmed");
+  if (!waits) return refuse_now("no change waits to be confirmed");
   if (auto may = check_confirmable(waits->wanted, local); !may) return may;
   return say(network::Word::What::Confirm, *waits);
 }
@@ -169,12 +169,12 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const auto kept = status_ ? status_->kept : std::nullopt;
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
   if ((stays || !fixed) && is_asked())
-    return conflict("the change is not made yet: try again in a few seconds");
+    return refuse_now("the change is not made yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
   if (stays || new_one) return {};
-  return conflict(icd::sentence("confirm it at ", network::page_at(wanted, settings_.team.listen),
-                                ": this came to ", local, ", and says nothing of the new address"));
+  return refuse_now(icd::sentence("confirm it at ", network::page_at(wanted, settings_.team.listen),
+                                  ": this came to ", local, ", and says nothing of the new address"));
 }
 
 void NetworkChange::lead_to_endpoints() {
@@ -211,13 +211,13 @@ std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
 
 icd::Checked<void> NetworkChange::take_back() {
   const auto waits = pending();
-  if (!waits) return conflict("no change waits: there is nothing to take back");
+  if (!waits) return refuse_now("no change waits: there is nothing to take back");
   return say(network::Word::What::Back, *waits);
 }
 
 icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {
   if (const auto asked = requests_.ask(network::Word{pending.nonce, what}); !asked) {
-    return conflict("it cannot be said: " + asked.error());
+    return refuse_now("it cannot be said: " + asked.error());
   }
   return {};
 }

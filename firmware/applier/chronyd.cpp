@@ -12,7 +12,7 @@ namespace adit::applier {
 namespace {
 
 constexpr const char* kUnit = "adit-ntp.service";
-constexpr std::chrono::seconds kSystemctlAnswer{20};
+constexpr std::chrono::seconds kUnitAnswer{20};
 
 std::array<std::pair<const char*, const std::string*>, 3> files_of(const clock::Chrony& chrony) {
   return {{{clock::kOptionsFile, &chrony.options},
@@ -37,7 +37,7 @@ std::string Chronyd::start(const clock::Chrony& chrony) const {
     if (const auto written = host::write_file(path(name), *text, host::kForAll); !written)
       return written.error();
   }
-  const auto started = host::run_command({systemctl_, "restart", kUnit}, kSystemctlAnswer);
+  const auto started = host::run_command({systemctl_, "restart", kUnit}, kUnitAnswer);
   if (started) {
     host::log(host::Level::Notice, "NTP is spoken on the team's network");
     return "";
@@ -48,7 +48,7 @@ std::string Chronyd::start(const clock::Chrony& chrony) const {
 
 std::string Chronyd::stop() const {
   if (!host::may_exist(path(clock::kConfigurationFile))) return "";
-  const auto stopped = host::run_command({systemctl_, "stop", kUnit}, kSystemctlAnswer);
+  const auto stopped = host::run_command({systemctl_, "stop", kUnit}, kUnitAnswer);
   if (!stopped) return "chronyd cannot be stopped: " + stopped.error();
   host::log(host::Level::Notice, "NTP is not spoken any more");
   const auto removed = host::remove_file(path(clock::kConfigurationFile));

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "applier/bundle_file.hpp"
+#include "applier/sticks.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "update/bundle_name.hpp"
@@ -13,8 +14,6 @@ namespace {
 
 /// Each is read once, which takes a while.
 constexpr std::size_t kMost = 8;
-/// Names at the top of a stick, of whatever.
-constexpr std::size_t kMostAtTop = 4096;
 
 struct Candidate {
   std::string folder, name;
@@ -29,7 +28,7 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
   if (!all) trouble = "the sticks: " + all.error();
   for (const std::string& stick : all.value_or(std::vector<std::string>())) {
     const std::string folder = sticks + '/' + stick;
-    const auto names = host::names_in(folder, kMostAtTop);
+    const auto names = host::names_in(folder, Sticks::kMostAtTop);
     if (!names) trouble = host::escaped(stick) + ": " + names.error();
     for (const std::string& name : names.value_or(std::vector<std::string>())) {
       if (update::is_bundle_name(name)) found.push_back({folder, name, update::promise_of(name, compatible)});

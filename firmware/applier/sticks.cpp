@@ -17,8 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Names at the top of a stick, of whatever.
-constexpr std::size_t kMostAtTop = 4096;
 constexpr std::chrono::seconds kMount{90};
 /// Whoever looks at all mounts holds one for a moment, and the unit of the mount before is gone a moment
 /// after it.

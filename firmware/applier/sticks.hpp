@@ -24,6 +24,8 @@ class Sticks {
   std::string folder(const std::string& name) const { return options_.sticks + '/' + name; }
   bool is_in(const std::string& name) const;
 
+  /// Names at the top of a stick, of whatever.
+  static constexpr std::size_t kMostAtTop = 4096;
   /// Names of exports on all that are mounted, the latest first: at most kMost.
   static constexpr std::size_t kMost = 8;
   std::vector<std::string> exports() const;

@@ -47,7 +47,7 @@ Outcome not_understood(const std::string& why) {
 }
 
 /// "  team.listen[0].port  8000 -> 8080"
-std::string changes_text(const Value& answer, bool colour) {
+std::string changed_text(const Value& answer, bool colour) {
   Table table({{}, {}, {}});
   for (const Value& change : items(answer, "changes")) {
     table.add({{text_of(member(change, "path")), Tone::Strong},
@@ -138,7 +138,7 @@ Outcome check(const Adit& adit, const Options& options, bool colour) {
   const Exit exit = checked->good() ? Exit::Fine : Exit::Attention;
   if (options.json) return {exit, checked->body + '\n', ""};
   if (!checked->good()) return {exit, "", errors_text(checked->answer)};
-  return {exit, changes_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
+  return {exit, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
 
 Outcome apply(const Adit& adit, const Options& options, bool colour) {
@@ -154,7 +154,7 @@ Outcome apply(const Adit& adit, const Options& options, bool colour) {
            codec::write_json({Value::Object{{"settings", checked->settings}, {"base", {*tag}}}}), kSee);
   if (!done) return unable(done.error());
   if (options.json) return {Exit::Fine, *done + '\n', ""};
-  return {Exit::Fine, changes_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
+  return {Exit::Fine, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
 
 }  // namespace

@@ -44,14 +44,14 @@ std::string alarms_table(const RunView& view, bool colour) {
   return table.empty() ? "" : table.written(colour) + '\n';
 }
 
-Tone tone_of(alarms::Level level) {
+Tone tone_of_level(alarms::Level level) {
   constexpr Tone kTones[] = {Tone::Faint, Tone::Good, Tone::Warning, Tone::Bad};
   return kTones[static_cast<std::size_t>(level)];
 }
 
 std::string verdict_line(const RunView& view, bool colour) {
   if (view.verdict.what.empty()) return "";
-  return "Maps  " + painted(view.verdict.what, tone_of(view.verdict.level), colour) + ": " +
+  return "Maps  " + painted(view.verdict.what, tone_of_level(view.verdict.level), colour) + ": " +
          host::escaped(view.verdict.why) + '\n';
 }
 
@@ -122,7 +122,7 @@ std::string endpoints_table(const RunView& view, bool colour) {
 Cell arrival_cell(const api::ActivityRow& row, api::Time now) {
   const bool late = row.arrival == alarms::Arrival::Late && row.behind_since;
   return {late ? duration(now - *row.behind_since) + " behind" : std::string(name_of(row.arrival)),
-          tone_of(row.level)};
+          tone_of_level(row.level)};
 }
 
 std::string ago(const std::optional<api::Time>& time, api::Time now) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "admin/settings_of_a_box.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "ledger/ledger.hpp"
@@ -15,12 +16,6 @@ namespace {
 
 using namespace std::chrono_literals;
 using testing::HasSubstr;
-
-constexpr const char* kSettings = R"({
-  "version": 1,
-  "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},
-                   "mapping": {"address": "10.100.1.201", "port": 8000}, "interface": "darpa0"},
-  "team": {"interface": "team0", "listen": [{"address": "192.168.7.11", "port": 8000}]}})";
 
 /// A box in its lives: restart() is the end of one gateway and the begin of the next.
 class Box {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "admin/settings_of_a_box.hpp"
 #include "admin/spare_file.hpp"
 #include "forward/stamp_floor.hpp"
 #include "host/folder.hpp"
@@ -15,12 +16,6 @@ namespace {
 using testing::HasSubstr;
 using testing::SizeIs;
 namespace fs = std::filesystem;
-
-constexpr const char* kSettings = R"({
-  "version": 1,
-  "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},
-                   "mapping": {"address": "10.100.1.201", "port": 8000}, "interface": "darpa0"},
-  "team": {"interface": "team0", "listen": [{"address": "192.168.7.11", "port": 8000}]}})";
 
 dispatch::Report answered(std::int64_t number) {
   dispatch::Report report{

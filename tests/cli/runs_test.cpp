@@ -33,7 +33,7 @@ api::RunRow course_b() {
           .bytes = 3400000};
 }
 
-api::RunList two_runs() {
+api::RunList two_kept_runs() {
   return {.runs = {{.key = "2", .run = 2, .post = "10.100.1.200:8000", .is_present = true}, course_b()},
           .bytes = 3400000,
           .trouble = ""};
@@ -49,7 +49,7 @@ class Runs : public testing::Test {
   }
 
   const Server server_{
-      {{"GET /adit/runs", Server::ok(codec::to_json(two_runs()))},
+      {{"GET /adit/runs", Server::ok(codec::to_json(two_kept_runs()))},
        {"GET /adit/runs/1-2", Server::ok(codec::to_json(course_b()))},
        {"GET /adit/runs/7", Server::reply("404 Not Found", "\"there is no such run\"")},
        {"GET /adit/runs/1-2/report.html", Server::ok("<!doctype html><title>Run 1</title>")},
@@ -68,7 +68,7 @@ TEST_F(Runs, AreListedTheLatestFirst) {
       HasSubstr("  1-2  2019-08-20T14:03:05.500Z  B                      7            18       2  3.4 MB\n"));
   EXPECT_THAT(listed.out, testing::ContainsRegex("\n +2 .*10.100.1.200:8000 .* now\n"));
   EXPECT_THAT(listed.out, Not(HasSubstr("1970"))) << "whose beginning nobody knows";
-  EXPECT_EQ(say({"--json"}).out, codec::to_json(two_runs()) + '\n');
+  EXPECT_EQ(say({"--json"}).out, codec::to_json(two_kept_runs()) + '\n');
 }
 
 TEST_F(Runs, AreShownOneByOne) {

@@ -8,6 +8,7 @@ namespace adit::codec {
 namespace {
 
 using test::Bytes;
+using test::in_pieces;
 
 Bytes noise(std::size_t size, std::uint64_t seed) {
   std::mt19937_64 random(seed);
@@ -37,14 +38,6 @@ Inflated inflate_all(const icd::ChunkedBytes& bytes, std::size_t most = 1U << 24
   inflated.sentence = test::sentence_of(size);
   EXPECT_EQ(size.value_or(inflated.bytes.size()), inflated.bytes.size());
   return inflated;
-}
-
-icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
-  icd::ChunkedBytes chunked;
-  for (std::size_t i = 0; i < bytes.size(); i += piece) {
-    chunked.append(Bytes(bytes.begin() + i, bytes.begin() + std::min(i + piece, bytes.size())));
-  }
-  return chunked;
 }
 
 TEST(Gzip, MakesExactlyOneMemberAndNothingAfterIt) {

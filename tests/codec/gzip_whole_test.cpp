@@ -8,6 +8,7 @@ namespace adit::codec {
 namespace {
 
 using test::Bytes;
+using test::in_pieces;
 
 constexpr std::size_t kEnough = std::size_t{1} << 24;
 
@@ -59,15 +60,6 @@ TEST(GzipWhole, OfNoiseIsNothingWithinItsOwnSize) {
 TEST(GzipWhole, IsSmallerAtAHigherLevel) {
   const Bytes bytes = mixed(500'000);
   EXPECT_LT(gzip_whole(bytes, kSmallestLevel, kEnough)->size(), gzip_whole(bytes, 1, kEnough)->size());
-}
-
-icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
-  icd::ChunkedBytes pieces;
-  for (std::size_t at = 0; at < bytes.size(); at += piece) {
-    const auto part = std::span(bytes).subspan(at, std::min(piece, bytes.size() - at));
-    pieces.append(Bytes(part.begin(), part.end()));
-  }
-  return pieces;
 }
 
 TEST(GunzipWhole, GivesBackWhatWasCompressedHoweverItIsCut) {

@@ -19,6 +19,15 @@ namespace adit::codec::test {
 
 using nlohmann::json;
 using Bytes = std::vector<std::uint8_t>;
+
+/// As they come from a network.
+inline icd::ChunkedBytes in_pieces(const Bytes& bytes, std::size_t piece) {
+  icd::ChunkedBytes chunked;
+  for (std::size_t i = 0; i < bytes.size(); i += piece) {
+    chunked.append(Bytes(bytes.begin() + i, bytes.begin() + std::min(i + piece, bytes.size())));
+  }
+  return chunked;
+}
 using Random = std::mt19937_64;
 
 /// Good messages, each with every member that the ICD lists; a map's data is binary.

@@ -18,7 +18,6 @@
 namespace adit::forward {
 namespace {
 
-using picture::Kind;
 using picture::TileAt;
 
 icd::MapUpdate grid(const char* robot, double x, std::uint32_t width, std::uint8_t value) {
@@ -41,7 +40,7 @@ icd::MapUpdate cloud(const char* robot, std::size_t points) {
 
 class MapPictureTest : public testing::Test {
  protected:
-  bool drawn(const char* robot, const TileAt& at, Kind kind = Kind::Grid) const {
+  bool drawn(const char* robot, const TileAt& at, picture::Kind kind = picture::Kind::Grid) const {
     return picture.mosaic().tile({robot, kind}, at, {}).tile != nullptr;
   }
 
@@ -55,7 +54,7 @@ TEST_F(MapPictureTest, DrawsEachMapThatWasForwardedAndSaysThatThePictureChanged)
   picture.forwarded(grid("r1", 0, 4, 0));
   picture.forwarded(grid("r2", 64, 4, 0));
   picture.forwarded(cloud("r1", 3));
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); }))
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }))
       << "the last that came";
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r2", {0, 1, 0}));
@@ -152,10 +151,10 @@ TEST_F(MapPictureTest, DrawsEveryCloudAndEveryGridThatIsNotCovered) {
   picture.forwarded(grid("r1", 64, 4, 0));
   picture.forwarded(cloud("r1", 3));
   picture.forwarded(cloud("r2", 3));
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, Kind::Cloud); }));
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r2", {0, 0, 0}, picture::Kind::Cloud); }));
   EXPECT_TRUE(drawn("r1", {0, 0, 0}));
   EXPECT_TRUE(drawn("r1", {0, 1, 0}));
-  EXPECT_TRUE(drawn("r1", {0, 0, 0}, Kind::Cloud));
+  EXPECT_TRUE(drawn("r1", {0, 0, 0}, picture::Kind::Cloud));
 }
 
 TEST_F(MapPictureTest, CountsWhatItCouldNotKeepUntilItsTurn) {
@@ -167,7 +166,7 @@ TEST_F(MapPictureTest, CountsWhatItCouldNotKeepUntilItsTurn) {
   const auto layers = picture.mosaic().layers();
   ASSERT_EQ(layers.size(), 1U);
   EXPECT_EQ(layers[0].missed, 2U) << "two of them do not fit together";
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, Kind::Cloud); }))
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}, picture::Kind::Cloud); }))
       << "the last one is drawn";
 }
 

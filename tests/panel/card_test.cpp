@@ -1,18 +1,11 @@
 // The lights on the card to print (board/card.html), as the table of the states has them.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
+#include "panel/project_text.hpp"
 #include "panel/states.hpp"
 
 namespace adit::panel {
 namespace {
-
-std::string text_of(const std::string& path) {
-  std::ifstream stream(ADIT_SOURCE_DIR "/" + path);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// "`adit status`" as HTML has it.
 std::string html(std::string_view text) {

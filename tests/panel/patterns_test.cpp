@@ -11,7 +11,7 @@ namespace {
 using namespace std::chrono_literals;
 
 /// How long a pattern is lit in two seconds, and how often it is turned on in them.
-std::pair<Milliseconds, int> seen(Pattern pattern) {
+std::pair<Milliseconds, int> lit_and_turns(Pattern pattern) {
   Milliseconds lit{};
   int turned_on = 0;
   for (Milliseconds at = 8s; at < 10s; ++at) {
@@ -23,20 +23,20 @@ std::pair<Milliseconds, int> seen(Pattern pattern) {
 }
 
 TEST(Patterns, BlinkAsTheReadmeDrawsThem) {
-  EXPECT_EQ(seen(Pattern::Off), std::pair(0ms, 0));
-  EXPECT_EQ(seen(Pattern::On), std::pair(2000ms, 0));
-  EXPECT_EQ(seen(Pattern::Slow), std::pair(1000ms, 2));
-  EXPECT_EQ(seen(Pattern::Fast), std::pair(1000ms, 8));
-  EXPECT_EQ(seen(Pattern::Twice), std::pair(500ms, 4));
-  EXPECT_EQ(seen(Pattern::Flash), std::pair(125ms, 1));
-  EXPECT_EQ(seen(Pattern::Wink), std::pair(1750ms, 1));
-  EXPECT_EQ(seen(Pattern::Rush), std::pair(1000ms, 20));
+  EXPECT_EQ(lit_and_turns(Pattern::Off), std::pair(0ms, 0));
+  EXPECT_EQ(lit_and_turns(Pattern::On), std::pair(2000ms, 0));
+  EXPECT_EQ(lit_and_turns(Pattern::Slow), std::pair(1000ms, 2));
+  EXPECT_EQ(lit_and_turns(Pattern::Fast), std::pair(1000ms, 8));
+  EXPECT_EQ(lit_and_turns(Pattern::Twice), std::pair(500ms, 4));
+  EXPECT_EQ(lit_and_turns(Pattern::Flash), std::pair(125ms, 1));
+  EXPECT_EQ(lit_and_turns(Pattern::Wink), std::pair(1750ms, 1));
+  EXPECT_EQ(lit_and_turns(Pattern::Rush), std::pair(1000ms, 20));
 }
 
 TEST(Patterns, DifferInMoreThanColour) {
   std::set<std::pair<Milliseconds, int>> all;
   for (const Pattern pattern : kPatterns) {
-    if (pattern != Pattern::Digits) all.insert(seen(pattern));
+    if (pattern != Pattern::Digits) all.insert(lit_and_turns(pattern));
   }
   EXPECT_EQ(all.size(), kPatterns.size() - 1);
 }

@@ -1,18 +1,11 @@
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <iterator>
-
 #include "panel/drawing.hpp"
+#include "panel/project_text.hpp"
 #include "panel/states.hpp"
 
 namespace adit::panel {
 namespace {
-
-std::string text_of(const std::string& name) {
-  std::ifstream stream(ADIT_SOURCE_DIR "/firmware/panel/" + name);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 std::string table_of_states() {
   std::string text = "| state | health | scoring | mapping | attention | priority | what it says |\n";
@@ -28,20 +21,22 @@ std::string table_of_states() {
 }
 
 TEST(PanelReadme, HasTheTableOfTheStates) {
-  EXPECT_NE(text_of("README.md").find(table_of_states()), std::string::npos)
+  EXPECT_NE(text_of("firmware/panel/README.md").find(table_of_states()), std::string::npos)
       << "put this table into firmware/panel/README.md:\n"
       << table_of_states();
 }
 
 TEST(PanelReadme, DrawsThePatternsAsTheyAre) {
-  EXPECT_NE(text_of("README.md").find("](patterns.svg)"), std::string::npos);
-  EXPECT_TRUE(text_of("patterns.svg") == drawing()) << "put this into firmware/panel/patterns.svg:\n"
-                                                    << drawing();
+  EXPECT_NE(text_of("firmware/panel/README.md").find("](patterns.svg)"), std::string::npos);
+  EXPECT_TRUE(text_of("firmware/panel/patterns.svg") == drawing())
+      << "put this into firmware/panel/patterns.svg:\n"
+      << drawing();
 }
 
 TEST(PanelReadme, HasARowForEachPattern) {
   for (const Pattern pattern : kPatterns) {
-    EXPECT_NE(text_of("README.md").find("\n| " + std::string(name_of(pattern)) + " | "), std::string::npos)
+    EXPECT_NE(text_of("firmware/panel/README.md").find("\n| " + std::string(name_of(pattern)) + " | "),
+              std::string::npos)
         << name_of(pattern);
   }
 }

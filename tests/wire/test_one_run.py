@@ -109,8 +109,9 @@ class OneRun(unittest.TestCase):
     def test_what_waits_is_kept_for_its_own_command_post(self):
         with measured(courses=[{"name": "A", **endpoints(PORT)}, {"name": "B", **endpoints(OTHER_PORT)}],
                       command_post__course="A") as stage:
-            stage.post.will("429=100")
+            stage.post.will("429=100,retry-after=8")  # so that it waits when the course is switched, and is not under way
             left_unanswered(stage)
+            wait_until(lambda: stage.box.reports()[0]["state"] == "waiting", "the answer that it is to wait")
             other = CommandPost(stage.network, stage.folder, *MEASURED, name="other", port=OTHER_PORT, control_port=8003)
             self.addCleanup(other.process.kill)
             said = switch(stage, "B")

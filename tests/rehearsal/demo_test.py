@@ -1,0 +1,158 @@
+"""adit-rehearsal demo as a newcomer meets it: in a small window, in a pipe, a second one beside it, with a wrong word; however it ends,
+nothing of it runs on."""
+import fcntl
+import os
+import pty
+import re
+import signal
+import struct
+import subprocess
+import tempfile
+import termios
+import time
+import unittest
+from pathlib import Path
+
+DEMO = Path(__file__).resolve().parents[2] / "firmware/rehearsal/demo/demo"
+SIZE = struct.Struct("4H")  # winsize: rows, columns, and pixels that nobody counts
+HOME, BELOW = b"\x1b[H", b"\x1b[J"
+TO_THE_END = re.compile(r"\x1b\[K")
+
+
+def until(true, what, seconds=60):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if found := true():
+            return found
+        time.sleep(0.05)
+    raise AssertionError(f"{what} did not come")
+
+
+class Window:
+    """A terminal of so many rows and columns, on which the demo runs."""
+
+    def __init__(self, rows, columns, *words):
+        self.screen, end = pty.openpty()
+        self.said = b""
+        self.resize(rows, columns)
+        os.set_blocking(self.screen, False)
+        self.process = subprocess.Popen([DEMO, *words], stdin=end, stdout=end, stderr=end, start_new_session=True,
+                                        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+        os.close(end)
+
+    def resize(self, rows, columns):
+        self.rows, self.columns = rows, columns
+        fcntl.ioctl(self.screen, termios.TIOCSWINSZ, SIZE.pack(rows, columns, 0, 0))
+
+    def read(self):
+        try:
+            while more := os.read(self.screen, 65536):
+                self.said += more
+        except (BlockingIOError, OSError):  # nothing more now, or ever
+            pass
+        return self.said
+
+    def next_frame(self):
+        """The lines of the next picture that is drawn from its beginning on, as far as they are drawn over the last one's."""
+        self.read()
+        self.said = b""
+
+        def drawn():
+            whole = [frame for frame in self.read().split(HOME)[1:] if BELOW in frame]
+            return [TO_THE_END.sub("", line.decode()) for line in whole[-1].replace(BELOW, b"").split(b"\r\n")] if whole else None
+
+        return until(drawn, "a picture")
+
+    def rows_of(self, frame):
+        return sum(max(1, -(-len(line) // self.columns)) for line in frame)
+
+
+class Demo(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-demo-")), "demo")
+
+    def window(self, rows, columns, *words):
+        window = Window(rows, columns, "--folder", self.folder, *words)
+        self.addCleanup(self.end, window.process)
+        return window
+
+    def end(self, process):
+        if process.poll() is None:
+            process.terminate()
+            process.wait(60)
+
+    def nothing_runs(self):
+        """Each program of a demo holds its folder."""
+        with open(self.folder / "of-a-demo", "ab") as held:
+            try:
+                fcntl.flock(held, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                return False
+        return True
+
+    def refused(self, *words, folder=None):
+        done = subprocess.run([DEMO, "--folder", folder or self.folder, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+                              timeout=120, check=False)
+        self.assertNotIn(done.returncode, (0, 130), done.stdout)
+        return done.stderr
+
+    def test_in_a_small_window_the_page_and_its_password_stay_in_sight(self):
+        window = self.window(24, 80)
+        for rows, columns in (24, 80), (16, 50):
+            window.resize(rows, columns)
+            until(lambda: window.rows_of(window.next_frame()) < rows, f"a picture of {rows} rows")
+            frame = until(lambda: [line for line in window.next_frame() if line.startswith("Run ")] and window.next_frame(), "the summary")
+            self.assertLess(window.rows_of(frame), rows, frame)
+            self.assertRegex("\n".join(frame), r"^The page:     http://127\.0\.0\.1:80\d\d/\nIts password: rehearsal-\w+\n")
+        self.assertIn(f"another demo runs in {self.folder}", self.refused())
+        self.assertIsNone(window.process.poll(), "and the one that runs is not upset")
+        os.write(window.screen, b"\x03")  # Ctrl-C
+        until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
+        self.assertEqual(window.process.returncode, 0)
+        self.assertIn(f"Kept in {self.folder}", window.read().decode().replace("\r\n", "\n"))
+        self.assertTrue(self.nothing_runs())
+
+    def test_it_ends_with_its_window(self):
+        window = self.window(24, 80)
+        window.next_frame()
+        os.close(window.screen)
+        window.process.wait(60)
+        self.assertTrue(self.nothing_runs())
+
+    def test_it_ends_with_its_pipe(self):
+        process = subprocess.Popen([DEMO, "--folder", self.folder], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+        self.addCleanup(self.end, process)
+        for line in process.stdout:
+            self.assertNotIn("\x1b", line)
+            if line.startswith("Reports "):
+                break
+        process.stdout.close()
+        process.wait(60)
+        self.assertTrue(self.nothing_runs())
+
+    def test_stopped_while_it_starts_it_leaves_nothing(self):
+        window = self.window(24, 80)
+        until((self.folder / "adit-rehearsal.log").exists, "its first program")
+        window.process.send_signal(signal.SIGINT)
+        until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
+        self.assertTrue(self.nothing_runs())
+
+    def test_where_it_listens_is_where_the_page_is(self):
+        process = subprocess.Popen([DEMO, "--folder", self.folder, "--listen", "127.0.0.2"], stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.PIPE, text=True)
+        self.addCleanup(process.stdout.close)
+        self.addCleanup(self.end, process)
+        self.assertRegex(next(line for line in process.stdout if line.strip()), r"The page:     http://127\.0\.0\.2:80\d\d/\n")
+
+    def test_what_is_wrong_is_told(self):
+        for words, why in ((("--for", "soon"), "--for wants whole seconds, not 'soon'"), (("--for",), "--for wants a value"),
+                           (("--fast",), "unknown word '--fast'"), (("fast",), "unknown word 'fast'"),
+                           (("--robots", "many"), "--robots"), (("--listen", "here"), "team.listen[0].address: expected an IPv4")):
+            with self.subTest(words):
+                self.assertIn(why, self.refused(*words))
+        self.assertIn("/proc/demo cannot be written to: name another folder by --folder", self.refused(folder="/proc/demo"))
+        self.assertIn("is there, and not a demo's", self.refused(folder=self.folder.parent))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tempfile
 
 from recipe import TOP, skip
 
@@ -14,14 +15,36 @@ VERSION = subprocess.run([TOP / "toolchain/version"], capture_output=True, text=
 FOLDER = TOP / f"build/release-{VERSION}"
 
 
-def release(*words):
-    done = subprocess.run([TOP / "toolchain/release", *words], capture_output=True, text=True, check=False)
+def release(*words, **signer):
+    done = subprocess.run([TOP / "toolchain/release", *words], capture_output=True, text=True, check=False, env={**os.environ, **signer})
     return done.returncode, done.stdout + done.stderr
 
 
 def shell(script, good=True):
     done = subprocess.run(["bash", "-euo", "pipefail", "-c", script], cwd=FOLDER, capture_output=True, text=True, check=False)
     assert (done.returncode == 0) == good, f"{script}: {done.stdout}{done.stderr}"
+
+
+def pair(folder, name, days="30", kind=("ec", "-pkeyopt", "ec_paramgen_curve:P-256")):
+    """A key and its certificate."""
+    key, certificate = f"{folder}/{name}.key", f"{folder}/{name}.cert"
+    subprocess.run(["openssl", "req", "-x509", "-newkey", *kind, "-nodes", "-subj", f"/CN={name}", "-days", days, "-keyout", key, "-out", certificate],
+                   check=True, capture_output=True)
+    return key, certificate
+
+
+def refuses_who_cannot_sign():
+    """Before it builds anything."""
+    with tempfile.TemporaryDirectory() as folder:
+        (key, certificate), (other, _), (old, at_its_end) = pair(folder, "team"), pair(folder, "other"), pair(folder, "old", days="1")
+        short, of_short = pair(folder, "short", kind=["ed25519"])
+        for signer, why in (({"ADIT_SIGNING_KEY": key}, "belong together"), ({"ADIT_SIGNING_CERT": certificate}, "belong together"),
+                            ({"ADIT_SIGNING_KEY": f"{folder}/none", "ADIT_SIGNING_CERT": certificate}, "is no private key"),
+                            ({"ADIT_SIGNING_KEY": other, "ADIT_SIGNING_CERT": certificate}, "is not the key of the certificate"),
+                            ({"ADIT_SIGNING_KEY": old, "ADIT_SIGNING_CERT": at_its_end}, "ends within a week"),
+                            ({"ADIT_SIGNING_KEY": short, "ADIT_SIGNING_CERT": of_short}, "cannot sign by SHA-256")):
+            status, said = release("--programs", BUILD, VERSION, "generic-x86_64", **signer)
+            assert status != 0 and why in said, said
 
 
 def main():
@@ -31,11 +54,13 @@ def main():
     for words, why in (((), "which version?"), (("9.9.9",), f"has version {VERSION}, not 9.9.9"), ((VERSION, "toaster"), "no board 'toaster'")):
         status, said = release("--programs", BUILD, *words)
         assert status != 0 and why in said, said
+    refuses_who_cannot_sign()
     status, said = release("--programs", BUILD, VERSION, "generic-x86_64")
     assert status == 0, said
     readme = (FOLDER / "README.md").read_text()
     check = re.search(r"```\n(.*?)```", readme, re.S)[1]
     shell(check)
+    assert re.search(r"\n    sha256 Fingerprint=(\w\w:){31}\w\w\n", readme) and "a key of one checkout alone" in readme, readme
     assert (FOLDER / "CHANGES.md").read_text().startswith(f"# Adit {VERSION}\n")
     listed = {line.split()[1] for line in (FOLDER / "SHA256SUMS").read_text().splitlines()}
     present = {path.name for path in FOLDER.iterdir()}

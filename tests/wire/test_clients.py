@@ -18,7 +18,7 @@ SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/intake/clients"
 CLIENTS = {"Python": ["/usr/bin/python3", "-B", SHOWN / "example.py"], "C++": [programs.BIN / "adit_client_example"]}
 UPDATES = ("map", "state", "markers")
 ANSWERED, REFUSED, NOT_KNOWN = 0, 1, 3  # exit status
-NOT_RECORDED = ("drop", "html-200")
+NOT_RECORDED = ("drop", "html-200", "html-302")
 BAD_DAY = ("--rate", "0", "--seed", "5", "--fault-rate", "reports:record-then-drop=0.3", "--fault-rate", "reports:drop=0.2",
            "--fault-rate", "reports:429=0.1", "--fault-rate", "mapping:drop=0.2")
 
@@ -122,7 +122,7 @@ class Bare(unittest.TestCase):
 
     def test_a_report_whose_answer_is_lost_is_never_sent_again(self):
         with Stage(post_options=("--rate", "0")) as stage:
-            for number, fault in enumerate(("record-then-drop", "drop", "500-recorded", "half-answer", "garbage", "html-200"), 1):
+            for number, fault in enumerate(("record-then-drop", "drop", "500-recorded", "half-answer", "garbage", "html-200", "html-302"), 1):
                 for offset, name in enumerate(CLIENTS):
                     with self.subTest(fault, client=name):
                         made = report(2 * number + offset)
@@ -131,7 +131,7 @@ class Bare(unittest.TestCase):
                         self.assertEqual(status, NOT_KNOWN)
                         self.assertIn("remaining_reports", said)
                         self.assertEqual(len(stage.post.recorded(made)), 0 if fault in NOT_RECORDED else 1)
-            self.assertEqual(len([1 for each in stage.post.requests("/api/artifact_reports") if each["message"]]), 12)
+            self.assertEqual(len([1 for each in stage.post.requests("/api/artifact_reports") if each["message"]]), 14)
 
     def test_a_report_that_never_left_or_came_too_soon_is_sent_again(self):
         for at, name in enumerate(CLIENTS):

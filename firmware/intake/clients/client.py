@@ -54,12 +54,13 @@ class Client:
         if self.bare:  # which takes one request a second
             time.sleep(max(0.0, self.turn - time.monotonic()))
         try:  # each on a new connection: a bare Command Post closes old ones without a word
-            answer = requests.request(method, self.url + uri, json=message, headers=self.headers, timeout=(3, 30))
-            body = answer.json() if answer.ok else answer.text  # a 2xx without JSON, or with half of it, is no answer
+            answer = requests.request(method, self.url + uri, json=message, headers=self.headers, timeout=(3, 30),
+                                      allow_redirects=False)
+            body = answer.json() if answer.ok else answer.text  # a redirection, and a 2xx without JSON, is another machine's
             return answer.status_code, body, answer.headers.get("Retry-After", "1")
         except requests.ConnectTimeout:
             return NEVER_LEFT, "", "1"
-        except requests.RequestException as why:
+        except (requests.RequestException, ValueError) as why:  # the latter from requests before 2.27, of JSON
             not_connected = why.args and isinstance(getattr(why.args[0], "reason", None), NewConnectionError)
             return NEVER_LEFT if not_connected else LOST, "", "1"
         finally:

@@ -71,7 +71,8 @@ class BesideNetworkManager(Story):
 
     def test_removed_and_purged_it_leaves_them_to_it(self):
         self.box.apt("purge adit")
-        programs.wait_until(lambda: self.stage.managed("team0") != "unmanaged", "NetworkManager to manage it again", 60)
+        for port in pc.PORTS.values():
+            programs.wait_until(lambda port=port: self.stage.managed(port) not in ("unmanaged", "not there"), f"NetworkManager to have {port} again", 60)
         self.assertEqual(self.stage.managed(pc.OFFICE), "connected")
 
 

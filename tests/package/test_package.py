@@ -15,7 +15,8 @@ from stage import Story, load_tests  # unittest looks for them here
 
 CAP_NET_RAW = 13  # capabilities(7)
 PASSWORD = "correct horse battery"
-STATE = "/var/lib/private/adit"
+STATE, INTERFACES = "/var/lib/private/adit", "/etc/adit/interfaces"
+OFFICE_KEEPER = "the keeper of the office"
 NOW, BEFORE = "/packages/now/adit_*.deb", "/packages/before/adit_*.deb"
 
 
@@ -39,6 +40,11 @@ class Packages(Story):
         self.assertEqual(status, 200, said)
         return said
 
+    def the_ports_are_the_machines(self):
+        names = set(self.box.shell("ls /sys/class/net").split())
+        self.assertTrue(names.issuperset(pc.PORTS.values()) and names.isdisjoint(("team0", "darpa0")), names)
+        self.assertEqual(self.box.shell(" ".join(f"ip -4 -o address show dev {port};" for port in pc.PORTS.values())), "")
+
     def test_without_interfaces_it_is_installed_and_does_nothing(self):
         said = self.box.apt(f"install {BEFORE}")
         self.assertIn("Adit does not start before /etc/adit/interfaces names its two interfaces", said)
@@ -60,12 +66,23 @@ class Packages(Story):
                 mkdir -p /etc/network; printf 'auto lo {name}\niface {name} inet dhcp\n' >/etc/network/interfaces""")
             said = self.box.shell("/usr/lib/adit/interfaces check", good=name == "eth0")
             self.assertEqual("team: /etc/network/interfaces sets up enp1s0, too: take it out there" in said, name != "eth0", said)
-        self.box.shell("rm -r /etc/adit/interfaces /etc/network")
+        self.box.shell("rm -r /etc/network")
+
+    def test_a_file_that_is_wrong_takes_no_port_and_opens_no_door(self):
+        for command_post in pc.PORTS["team"], "enp9s0":  # which is the other one, and which is not there
+            self.box.shell(f"""printf 'team=enp8s0\ncommand_post={command_post}\nteem=x\n' >{INTERFACES}
+                systemctl start adit-interfaces || systemctl start adit.socket adit-nftables || true""")
+            self.assertEqual(self.box.listens(), [])
+            self.the_ports_are_the_machines()
+        self.box.shell(f"rm {INTERFACES}; systemctl stop adit.socket adit.service adit-nftables; systemctl reset-failed")
+        self.assertEqual(self.box.shell("nft list ruleset"), "")
 
     def test_what_a_newcomer_reads_is_there(self):
         self.box.shell("""cd /usr/share/doc/adit; grep -q '<title>Adit: the card' card.html
-            grep -q 'class Client' examples/client.py; test -s examples/README.md -a -s examples/client.cpp
-            zgrep -q 'adit-rehearsal demo' README.Debian*""")
+            grep -q 'class Client' examples/client.py; test -s examples/README.md -a -s examples/client.hpp
+            zgrep -q 'adit-rehearsal demo' README.Debian*
+            zgrep -qF '/usr/share/doc/adit/NEWS.md.gz' changelog.gz; zgrep -q '^## ' NEWS.md.gz""")
+        self.assertEqual(self.box.shell("cd /usr/share/doc/adit; zgrep -hE '\\]\\([^()]*/' NEWS.md.gz examples/README.md || true"), "", "leads nowhere")
 
     def test_named_its_two_ports_it_serves_the_page_on_the_teams_alone(self):
         self.box.shell(f"""echo 'adit adit/team string {pc.PORTS["team"]}' | debconf-set-selections
@@ -79,6 +96,18 @@ class Packages(Story):
     def test_the_third_port_is_as_it_was(self):
         self.assertEqual(self.stage.office(), self.stage.office_before)
         self.assertIn("refused", self.box.shell("(exec 3<>/dev/tcp/172.20.0.1/9) || true"))  # so it was heard there
+
+    def test_whoever_names_none_has_both_back_and_may_name_them_again(self):
+        """As in a dialog; without one, the answers are those of the file."""
+        none = r"""sed -i 's|^\(adit/[a-z-]*=\).*|\1""|'"""
+        self.box.shell(f'DEBIAN_FRONTEND=editor VISUAL="{none}" EDITOR="{none}" dpkg-reconfigure adit </dev/null'.replace('""', r'\"\"'))
+        self.assertEqual(self.box.listens(), [])
+        self.assertEqual(self.box.shell("nft list ruleset"), "")
+        self.the_ports_are_the_machines()
+        self.box.shell(f"""test ! -e {INTERFACES}
+            printf 'team={pc.PORTS["team"]}\ncommand_post={pc.PORTS["command_post"]}\n' >{INTERFACES}
+            DEBIAN_FRONTEND=noninteractive dpkg-reconfigure adit""")
+        programs.wait_until(self.box.answers, "the page to answer", 60)
 
     def test_it_is_set_up_over_the_api(self):
         self.asked("POST /adit/password", {"role": "operator", "code": self.box.code(), "password": PASSWORD})
@@ -122,6 +151,8 @@ class Packages(Story):
 
     def test_an_upgrade_turns_nobody_away_and_keeps_all(self):
         """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
+        self.box.shell(f"sed -i '1i # asked {OFFICE_KEEPER}' {INTERFACES}")
+        named = self.box.shell(f"cat {INTERFACES}")
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             upgrade = pool.submit(self.box.apt, f"install {NOW}")
             posted = []
@@ -130,11 +161,26 @@ class Packages(Story):
                 self.assertIn(insist(self.stage, posted[-1], 30).status_code, (201, 503, 504))
             upgrade.result()
         self.assertNotEqual(self.box.version(), "0.0.9")
+        self.assertEqual(self.box.shell(f"cat {INTERFACES}"), named, "as somebody wrote it")
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         for report in posted:
             programs.wait_until(lambda report=report: submit(self.stage, report).status_code == 201, "its answer", 60)
             self.assertEqual(len(self.stage.post.recorded(report)), 1)
         self.assertEqual(len(self.stage.post.recorded(REPORT)), 1)
+
+    def test_an_upgrade_that_was_cut_off_is_finished(self):
+        self.box.shell(f"dpkg --unpack {NOW}")
+        self.assertTrue(self.box.answers(), "meanwhile the one that runs goes on")
+        self.box.shell("DEBIAN_FRONTEND=noninteractive dpkg --configure -a")
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.assertEqual(self.box.shell("dpkg --audit"), "")
+
+    def test_the_file_that_somebody_took_away_is_not_made_again(self):
+        self.box.shell(f"mv {INTERFACES} /root/")
+        said = self.box.apt(f"install --reinstall {NOW}")
+        self.assertIn("Adit does not start before /etc/adit/interfaces names its two interfaces", said)
+        self.box.shell(f"test ! -e {INTERFACES}; mv /root/interfaces {INTERFACES}; DEBIAN_FRONTEND=noninteractive dpkg-reconfigure adit")
+        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
 
     def test_what_is_older_is_refused(self):
         version = self.box.version()
@@ -158,7 +204,8 @@ class Packages(Story):
             self.assertFalse(self.box.is_active(unit), unit)
         self.assertEqual(self.box.listens(), [])
         self.assertEqual(self.box.shell("nft list ruleset"), "")
-        self.box.shell(f"test -s {STATE}/ledger.sqlite -a -s /etc/adit/interfaces")
+        self.the_ports_are_the_machines()
+        self.box.shell(f"test -s {STATE}/ledger.sqlite -a -s {INTERFACES}")
 
     def test_installed_again_it_goes_on(self):
         self.box.apt(f"install {NOW}")

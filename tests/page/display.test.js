@@ -1,6 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { until } from "./box.js";
+import { COUNT, withMany } from "./many_reports.js";
 import { retell } from "./retold.js";
+import { kept, spans, withHistory } from "./kept_history.js";
 import { said, showsTheClock, text, watch } from "./watch.js";
 
 const SCREENS = [[1280, 720], [1920, 1080], [3840, 2160]];
@@ -118,4 +121,26 @@ test("says that the box is lost, and comes back by itself", async (t) => {
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
   assert.equal(await text(page, "#attention"), "");
+});
+
+test("shows the run also where damage took a report's place from the ledger", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    for (const report of view.reports) if (report.number === 8) Object.assign(report, { type: "", position: null, sender: "lost", run: view.run_number });
+    return view;
+  });
+  const { page } = await watch(t, "trouble", { path: "display", prepare, viewport: { width: 3840, height: 2160 } });
+  await page.locator("#reports li", { hasText: "#8 · lost from the ledger" }).waitFor({ state: "attached" });
+  await page.waitForFunction(() => document.querySelector("#map canvas").width > 300);
+  assert.deepEqual(page.complaints, []);
+});
+
+test("counts every report, also those past the newest 200", async (t) => {
+  const { page } = await watch(t, "reports", { path: "display", prepare: withMany });
+  await page.locator("#reports .count", { hasText: new RegExp(`^${COUNT}$`) }).waitFor();
+});
+
+test("has the robots' lines from what the box has kept, as it opens", async (t) => {
+  const { page } = await watch(t, "calm", { path: "display", prepare: withHistory((now) => kept(now, 500)) });
+  await until(async () => (await spans(page, '#robots li[data-key="ANYmal1"] path'))[0] >= 85, "a line of three minutes");
+  assert.deepEqual(page.complaints, []);
 });

@@ -1,7 +1,7 @@
 // The list of reports while a hand is on it, another operator at work meanwhile; and reports past those that an event has.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { retell } from "./retold.js";
+import { COUNT, withMany } from "./many_reports.js";
 import { watch } from "./watch.js";
 
 const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
@@ -38,20 +38,6 @@ test("shows what is new at once where that is asked for", async (t) => {
   }
   await row(page, 29).waitFor();
 });
-
-const COUNT = 450;
-/** A box that has so many reports, of which an event tells the newest 200. */
-async function withMany(page) {
-  const one = { type: "Rope", sender: "ugv1", received: 1e9, changed: 1e9, state: "answered", status: 201, report_status: "scored", score_change: 1, note: "", asking: false, reconciled: false, same_as: 0 };
-  await retell(page, (one, count) => (view) => {
-    const reports = Array.from({ length: 200 }, (_, i) => ({ ...one, number: count - i, run: view.run_number, position: { x: 10 * (count - i), y: 0, z: 0 } }));
-    return { ...view, reports };
-  }, one, COUNT);
-  await page.route("**/adit/reports", async (route) => {
-    const { run_number: run } = await (await fetch(new URL("run", route.request().url()), { headers: { Authorization: "Bearer team-1" } })).json();
-    await route.fulfill({ json: Array.from({ length: COUNT }, (_, i) => ({ ...one, number: i + 1, run, position: { x: 10 * (i + 1), y: 0, z: 0 } })) });
-  });
-}
 
 test("reaches every report, also those past the newest 200, and looks for duplicates among all", async (t) => {
   const { page } = await watch(t, "reports", { prepare: withMany });

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "./box.js";
+import { kept, spans, withHistory } from "./kept_history.js";
 import { hears, settled, toTab, watch } from "./watch.js";
 
 const button = (page, name) => page.locator("#map .time").getByRole("button", { name, exact: true });
@@ -86,20 +87,6 @@ const ticks = (page) => page.$eval("#map .ticks", (canvas) => {
   return counts;
 });
 
-/** The box's history: `seconds` of it up to now, a sample each two. */
-function kept(now, seconds, alarms = []) {
-  const at = Array.from({ length: seconds / 2 }, (_, i) => now - seconds + 2 * i);
-  const all = (value) => at.map(() => value);
-  return {
-    spacing: 2, at, sent_mbit: at.map((_, i) => i % 50), queued_bytes: all(5e5), scoring_ms: all(7), mapping_ms: at.map((_, i) => (i % 2 ? 9 : null)), throttled: all(0),
-    robots: [{ robot: "ANYmal1", ages: at.map((_, i) => i % 30) }], attention: alarms.map((ago) => ({ at: now - ago, came: true, sentence: "r3 is silent" })),
-  };
-}
-const withHistory = (make) => (page) => page.route("**/adit/history*", (route) => {
-  page.historyAsked = [...(page.historyAsked ?? []), new URL(route.request().url()).searchParams.get("since")];
-  return route.fulfill({ json: make(Date.now() / 1000) });
-});
-
 test("has ticks of reports above its line, and of alarms below", async (t) => {
   const { page: calm } = await opened(t, "calm");
   await until(async () => (await ticks(calm))[0] > 20, "the reports");
@@ -107,11 +94,6 @@ test("has ticks of reports above its line, and of alarms below", async (t) => {
   const { page: alarmed } = await opened(t, "calm", { prepare: withHistory((now) => kept(now, 600, [100, 300])) });
   await until(async () => (await ticks(alarmed))[1] > 20, "the alarms");
 });
-
-const spans = (page, selector) => page.$$eval(selector, (paths) => paths.map((path) => {
-  const xs = [...(path.getAttribute("d") ?? "").matchAll(/[ML]([\d.]+) /g)].map(([, x]) => Number(x));
-  return xs.length ? Math.max(...xs) - Math.min(...xs) : 0;
-}));
 
 test("fills plots and the robots' lines from what the box has kept, as the page opens", async (t) => {
   const { page } = await opened(t, "calm", { prepare: withHistory((now) => kept(now, 500)) });

@@ -1,13 +1,15 @@
 // The run as others look at it: no controls, everything on one screen.
+import { allReports } from "./all_reports.js";
 import { icon } from "./artifact_icons.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { follow } from "./live.js";
 import { MapOfRun } from "./map.js";
 import { showAttention, showRun } from "./run.js";
+import { followHistory } from "./run_history.js";
 import { life } from "./arriving.js";
 import { showRobots } from "./robots.js";
 import { showEnds } from "./strip.js";
-import { clip, metres, timeOfDay } from "./words.js";
+import { clip, placeOf, timeOfDay } from "./words.js";
 
 const MOST_REPORTS = 20; // more than fit any screen
 
@@ -25,12 +27,12 @@ function showReports(view) {
     mark(node, "level", level);
     say(what, clip(report.type, 40));
     badge(badged, level, clip(word, 20));
-    const { x, y, z } = report.position;
-    say(number, `#${report.number} · ${metres(x)}, ${metres(y)}, ${metres(z)} m`);
+    say(number, `#${report.number} · ${placeOf(report)}`);
   });
 }
 
-function show({ view, time, lost }) {
+function show({ view: told, time, lost }) {
+  const view = told && { ...told, reports: allReports(told, lost) };
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
   const calling = view.alarms.filter(({ severity }) => severity !== "wait").sort((a, b) => a.acknowledged - b.acknowledged); // what is new first
@@ -40,6 +42,7 @@ function show({ view, time, lost }) {
   showRobots(view, time, lost);
   showReports(view);
   map.show(view);
+  if (!lost) followHistory(view, time);
 }
 
 follow("/adit/events", show);

@@ -8,7 +8,7 @@ import { showHistory } from "./history.js";
 import { life } from "./arriving.js";
 import { Still } from "./still.js";
 import { closeSide, goTab, showOnTab } from "./side.js";
-import { ago, clip, metres } from "./words.js";
+import { ago, clip, placeOf } from "./words.js";
 
 const section = document.getElementById("reports");
 const rows = section.querySelector(".rows"), others = section.querySelector(".others");
@@ -83,9 +83,6 @@ export function reveal(number) {
 }
 
 const nearestOf = (report, view) => (report.position && report.run === view.run_number && report.state !== "withdrawn" ? nearTo(view, report)[0] : undefined);
-
-/** A report without a position is one that damage took from the ledger. */
-const placeOf = ({ position }) => (position ? `${metres(position.x)}, ${metres(position.y)}, ${metres(position.z)} m` : "lost from the ledger");
 
 /** What else there is to know: the Command Post's words, or why it is where it is. */
 function more(report, nearest) {

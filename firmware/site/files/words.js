@@ -29,6 +29,9 @@ export const mbit = (n) => (n >= 1e5 ? n.toExponential(0) : n.toFixed(n >= 10 ? 
 /** A true minus sign is as wide as a plus; past any cave a number keeps to its size. */
 export const metres = (n) => (Math.abs(n) < 1e6 ? n.toFixed(1) : n.toExponential(1)).replace("-", "−");
 
+/** Where a report's artifact is; one without a position is one that damage took from the ledger. */
+export const placeOf = ({ position }) => (position ? `${metres(position.x)}, ${metres(position.y)}, ${metres(position.z)} m` : "lost from the ledger");
+
 /** "+1", "0", "−1". */
 export const signed = (n) => (n > 0 ? `+${n}` : n < 0 ? `−${-n}` : "0");
 

@@ -26,8 +26,9 @@ struct Endpoint {
   std::string name = {};  // "scoring"
   std::string address = {};
   PostTrouble trouble = PostTrouble::None;
-  double since = 0;       // of the trouble, as Facts::now
-  std::string said = {};  // about the trouble: what the connection, or the Command Post, says
+  double since = 0;                     // of the trouble, as Facts::now
+  std::string said = {};                // about the trouble: what the connection, or the Command Post, says
+  std::optional<double> well_for = {};  // seconds since it takes again what it could not; nothing: none such
 };
 
 /// A report that the operator has to know of.

@@ -1,6 +1,7 @@
 #include "alarms/post_watch.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit::alarms {
 namespace {
@@ -52,11 +53,14 @@ void PostWatch::look(const std::vector<Seen>& seen, double now) {
     }
   }
   for (std::size_t i = 0; i < seen.size(); ++i) look(ways_[i], seen[i], now);
+  const bool was_stopped = std::exchange(is_stopped_, endpoint(now).trouble < PostTrouble::Throttling);
+  if (was_stopped && !is_stopped_) well_since_ = now;
 }
 
 void PostWatch::forget() {
   ways_.clear();
   throttled_.clear();
+  is_stopped_ = true;  // what waited for the place before is taken from the next look on
 }
 
 /// Another connection of the endpoint has had a good answer since, or just before.
@@ -96,6 +100,7 @@ Endpoint PostWatch::endpoint(double now) const {
     const Endpoint trouble = trouble_of(way, now);
     if (trouble.trouble < worst.trouble) worst = trouble;
   }
+  if (well_since_ && worst.trouble >= PostTrouble::Throttling) worst.well_for = now - *well_since_;
   return worst;
 }
 

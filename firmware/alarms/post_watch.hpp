@@ -57,7 +57,9 @@ class PostWatch {
   Endpoint throttling(double now) const;
 
   std::vector<Way> ways_;
-  std::deque<double> throttled_;  // when, the last kThrottled
+  bool is_stopped_ = false;           // it took nothing, when last looked at
+  std::optional<double> well_since_;  // when that was over
+  std::deque<double> throttled_;      // when, the last kThrottled
 };
 
 }  // namespace adit::alarms

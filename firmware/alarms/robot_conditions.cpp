@@ -3,6 +3,7 @@
 
 #include "alarms/conditions.hpp"
 #include "alarms/found.hpp"
+#include "alarms/standing.hpp"
 #include "alarms/words.hpp"
 #include "icd/sentence.hpp"
 
@@ -49,15 +50,17 @@ void find_silent(const Facts& facts, Found& found) {
                    .why = "is the team's network up, or its base station off?"});
 }
 
-/// Of all maps of one robot the one that is longest behind; nothing: none is behind.
-std::string kind_behind(const Facts& facts, const std::string& robot, double& behind) {
-  std::string kind;
+/// Of all maps of one robot the one that is longest behind, and longer than `least`, the endpoint's own
+/// trouble not counted; or null.
+const Stream* longest_behind(const Facts& facts, const std::string& robot, double least) {
+  const Stream* longest = nullptr;
   for (const Stream& stream : facts.streams) {
-    if (!stream.is_map() || stream.robot != robot || stream.behind.value_or(0) <= behind) continue;
-    behind = *stream.behind;
-    kind = stream.kind;
+    const double its = waited(stream, facts).value_or(0);
+    if (!stream.is_map() || stream.robot != robot || its <= least) continue;
+    least = its;
+    longest = &stream;
   }
-  return kind;
+  return longest;
 }
 
 void find_behind(const Facts& facts, Found& found) {
@@ -70,17 +73,16 @@ void find_behind(const Facts& facts, Found& found) {
   names.erase(std::ranges::unique(names).begin(), names.end());
   std::size_t count = 0;
   for (const std::string& name : names) {
-    double behind = told;
-    const std::string kind = kind_behind(facts, name, behind);
-    if (kind.empty()) continue;
+    const Stream* const longest = longest_behind(facts, name, told);
+    if (longest == nullptr) continue;
     ++count;
     found.push_back({.id = "map_behind:" + name,
-                     .severity = behind > stuck ? Severity::Bad : Severity::Wait,
+                     .severity = *waited(*longest, facts) > stuck ? Severity::Bad : Severity::Wait,
                      .side = Side::CommandPost,
                      .subject = name,
-                     .since = facts.now - behind,
+                     .since = facts.now - *longest->behind,
                      .what = name.empty() ? "The merged map is behind" : name + "'s map is behind",
-                     .why = sentence("its newest ", kind, " is not at the Command Post"),
+                     .why = sentence("its newest ", longest->kind, " is not at the Command Post"),
                      .action = name.empty() ? Action{} : show(name)});
   }
   if (count < kManyBehind) return;

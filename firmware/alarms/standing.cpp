@@ -12,13 +12,34 @@ bool is_silent(const Stream& stream, const Facts& facts) {
   return robot != facts.robots.end() && robot->second.silent && !is_cut_off;
 }
 
+const Endpoint* mapping(const Facts& facts) {
+  const auto found = std::ranges::find(facts.endpoints, "mapping", &Endpoint::name);
+  return found == facts.endpoints.end() ? nullptr : &*found;
+}
+
+/// A word on the endpoint or its token, not on what was sent (PostWatch).
+bool is_of_endpoint(int status) {
+  return status == 401 || status == 403 || status == 404 || status == 405 || status == 407;
+}
+
+/// The last that was heard of it may be of when the endpoint took nothing.
+bool is_catching_up(const Stream& stream, const Facts& facts) {
+  const Endpoint* const endpoint = mapping(facts);
+  return endpoint != nullptr && endpoint->well_for && *endpoint->well_for < kLateAfter + facts.turn &&
+         (stream.behind || stream.failed || is_of_endpoint(stream.last_status));
+}
+
 }  // namespace
 
 const Endpoint* stopped(const Facts& facts) {
-  const auto found = std::ranges::find_if(facts.endpoints, [](const Endpoint& endpoint) {
-    return endpoint.name == "mapping" && endpoint.trouble < PostTrouble::Throttling;
-  });
-  return found == facts.endpoints.end() ? nullptr : &*found;
+  const Endpoint* const endpoint = mapping(facts);
+  return endpoint != nullptr && endpoint->trouble < PostTrouble::Throttling ? endpoint : nullptr;
+}
+
+std::optional<double> waited(const Stream& stream, const Facts& facts) {
+  const Endpoint* const endpoint = mapping(facts);
+  if (!stream.behind || endpoint == nullptr || !endpoint->well_for) return stream.behind;
+  return std::min(*stream.behind, *endpoint->well_for);
 }
 
 Standing standing_of(const Stream& stream, const Facts& facts) {
@@ -26,7 +47,11 @@ Standing standing_of(const Stream& stream, const Facts& facts) {
   const Arrival arrival = arrival_of(stream, facts.turn, !is_stopped && is_silent(stream, facts));
   const Level level = level_of(arrival);
   const bool is_kept_back = is_stopped && (stream.behind || stream.failed || level == Level::Bad);
-  return is_kept_back ? Standing{Arrival::NotArriving, Level::Quiet} : Standing{arrival, level};
+  if (is_kept_back) return {Arrival::NotArriving, Level::Quiet};
+  const bool is_of_before = arrival == Arrival::NotArriving || arrival == Arrival::Failing ||
+                            (arrival == Arrival::Refused && is_of_endpoint(stream.last_status));
+  if (is_of_before && is_catching_up(stream, facts)) return {Arrival::Late, Level::Wait};
+  return {arrival, level};
 }
 
 }  // namespace adit::alarms

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "alarms/arrival.hpp"
 #include "alarms/facts.hpp"
 
@@ -13,10 +15,14 @@ struct Standing {
 
 /// `stream` is one of the facts'. A larger cause is blamed alone, as in the list of conditions: while the
 /// mapping endpoint takes nothing, what waits does not arrive, at level Quiet, and no robot is silent; nor is
-/// one while the team's cable is out.
+/// one while the team's cable is out. Once the endpoint takes again what it could not, what waited is late,
+/// until each that sends has had its turn.
 Standing standing_of(const Stream& stream, const Facts& facts);
 
 /// The mapping endpoint, where nothing is taken at all; or null.
 const Endpoint* stopped(const Facts& facts);
+
+/// Seconds that the oldest news has waited at an endpoint that took it, at most; nothing: none waits.
+std::optional<double> waited(const Stream& stream, const Facts& facts);
 
 }  // namespace adit::alarms

@@ -51,6 +51,16 @@ std::string names_of(const std::vector<std::string>& names) {
   return names.size() > kMostNames ? sentence(text, " and ", names.size() - kMostNames, " more") : text;
 }
 
+/// "20 robots and the merged map, oldest 22 s".
+std::string all_arrive(const std::map<std::string, Maps>& all, double oldest) {
+  const bool is_merged = all.contains("");
+  const std::size_t robots = all.size() - (is_merged ? 1 : 0);
+  std::string who;
+  if (robots > 0) who = sentence(robots, robots == 1 ? " robot" : " robots");
+  if (is_merged) who += robots > 0 ? " and the merged map" : "the merged map";
+  return sentence(who, all.size() == 1 ? ", " : ", oldest ", age_text(oldest));
+}
+
 std::vector<std::string> names_at(const std::map<std::string, Maps>& all, Level level) {
   std::vector<std::string> names;
   for (const auto& [name, maps] : all) {
@@ -93,9 +103,7 @@ Verdict verdict_of(const Facts& facts) {
   if (worst == Level::Wait) return {Level::Wait, "Maps are late", names_of(names_at(all, Level::Wait))};
   if (worst == Level::Quiet)
     return {Level::Quiet, "Every map arrived", "nothing new for " + age_text(newest.value_or(0))};
-  return {
-      Level::Good, "Every map arrives",
-      sentence(all.size(), all.size() == 1 ? " robot, " : " robots, oldest ", age_text(oldest.value_or(0)))};
+  return {Level::Good, "Every map arrives", all_arrive(all, oldest.value_or(0))};
 }
 
 }  // namespace adit::alarms

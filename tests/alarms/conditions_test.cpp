@@ -285,6 +285,21 @@ TEST(Maps, AreNotBehindForTakingTurns) {
   EXPECT_THAT(conditions_of(facts), IsEmpty());
 }
 
+TEST(Maps, AreNotBehindForWhatTheEndpointDidNotTake) {
+  Facts facts = well(1);
+  facts.streams[0].behind = 300;
+  facts.endpoints[1].well_for = 20;
+  EXPECT_THAT(conditions_of(facts), IsEmpty()) << "it has its turn now";
+  facts.endpoints[1].well_for = 21;
+  const auto found = conditions_of(facts);
+  ASSERT_THAT(ids_of(found), ElementsAre("map_behind:uav1"));
+  EXPECT_EQ(found[0].severity, Severity::Wait);
+  EXPECT_EQ(found[0].since, facts.now - 300);
+  facts.endpoints[0].well_for = 1;
+  facts.endpoints[1].well_for.reset();
+  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("map_behind:uav1")) << "scoring takes no maps";
+}
+
 TEST(Queue, NamesThreeWhoAreRefusedForAMinute) {
   Facts facts = well();
   facts.streams = {{.kind = "cloud", .no_room = 61},

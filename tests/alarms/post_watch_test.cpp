@@ -53,6 +53,22 @@ TEST_F(PostWatchTest, CallsAPostSilentThatTakesAndDoesNotAnswer) {
   EXPECT_EQ(trouble(), None);
 }
 
+TEST_F(PostWatchTest, TellsForHowLongItHasTakenAgainWhatItCouldNot) {
+  answers(200, 3);
+  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "it always took all";
+  answers(500, 8);
+  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt);
+  answers(200, 1);
+  EXPECT_EQ(watch_.endpoint(now_).well_for, 1);
+  answers(200, 5);
+  EXPECT_EQ(watch_.endpoint(now_).well_for, 6);
+  answers(500, 8);
+  EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "the next trouble";
+  watch_.forget();
+  lasts(3);
+  EXPECT_EQ(watch_.endpoint(now_).well_for, 3) << "another place takes what waited for the one before";
+}
+
 TEST_F(PostWatchTest, GoesOnCallingItSilentWhereEachRequestRunsOutOfTime) {
   for (int i = 0; i < 4; ++i) {
     seen_[0].busy = true;

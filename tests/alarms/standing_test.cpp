@@ -46,6 +46,25 @@ TEST_F(StandingTest, BlamesNoRobotWhileTheMappingEndpointTakesNothing) {
   }
 }
 
+TEST_F(StandingTest, BlamesNoRobotForWhatTheEndpointDidNotTakeUntilItsTurnHasCome) {
+  facts_.turn = 20;
+  facts_.endpoints[1].well_for = 29;
+  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200, .failed = true};
+  expect(Arrival::Late, Level::Wait);
+  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 60, .forwarded = 60, .last_status = 401};
+  expect(Arrival::Late, Level::Wait);
+  stream_.last_status = 422;
+  expect(Arrival::Refused, Level::Bad);
+  stream_ = {.kind = "grid", .robot = stream_.robot, .forwarded = 1, .last_status = 200};
+  expect(Arrival::UpToDate, Level::Good);
+  robot_.silent = true;
+  expect(Arrival::Silent, Level::Bad);
+  robot_.silent = false;
+  facts_.endpoints[1].well_for = 31;
+  stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200, .failed = true};
+  expect(Arrival::NotArriving, Level::Bad);
+}
+
 TEST_F(StandingTest, IsItsOwnWhileItIsOnlyScoringThatDoesNotAnswerOrMappingThatThrottles) {
   stream_.behind = 200;
   facts_.endpoints[0].trouble = PostTrouble::Unreachable;

@@ -72,5 +72,13 @@ TEST(Verdict, OfOneRobotNeedsNoCount) {
   EXPECT_EQ(verdict_of(well(1)), (Verdict{Level::Good, "Every map arrives", "1 robot, 3 s"}));
 }
 
+TEST(Verdict, CountsTheMergedMapAsNoRobot) {
+  Facts facts = well(2);
+  facts.streams.push_back({.kind = "grid", .robot = "", .forwarded = 9.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(facts).why, "2 robots and the merged map, oldest 9 s");
+  facts.streams.erase(facts.streams.begin(), facts.streams.end() - 1);
+  EXPECT_EQ(verdict_of(facts).why, "the merged map, 9 s");
+}
+
 }  // namespace
 }  // namespace adit::alarms

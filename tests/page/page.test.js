@@ -11,7 +11,7 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   await showsTheClock(page, began);
   assert.equal(await text(page, "#score"), "7");
   assert.equal(await text(page, "#remaining"), "18");
-  assert.match(await text(page, "#arriving"), /Every map arrives.*4 robots, oldest 7 s/);
+  assert.match(await text(page, "#arriving"), /Every map arrives.*3 robots and the merged map, oldest 7 s/);
   assert.equal(await page.locator("#robots li").filter({ hasText: "ANYmal2" }).count(), 1);
   await page.locator("#robots li[data-level=good]").filter({ hasText: /ANYmal2 grid 7 s · cloud 1 s\s*7 s/ }).waitFor(); // its age grows until the next event
   await page.getByTitle(/^ANYmal1: up to date\n(.*\n)*cloud: .*96 merged, taken as parts, rounded to 8mm$/m).waitFor();

@@ -42,6 +42,19 @@ test("writes no name upon another, nor cut at the edge, nor upon what is drawn",
   });
 });
 
+test("leaves a gap between two names in a row: they are two", () => {
+  const paint = paper(), labels = new Labels(paint, {}, SIZE, { width: 4000, height: 500 });
+  labels.write("r8", 400, 250);
+  const [begin, , end] = paint.written[0];
+  for (let left = end + 60; left > end; --left) {
+    const one = new Labels(paper(), {}, SIZE, { width: 4000, height: 500 });
+    one.write("r8", 400, 250);
+    one.write("r10", left - SIZE, 250);
+    const [, next] = one.paint.written;
+    assert.ok(next[1] !== 250 - SIZE / 2 || Math.max(next[0] - end, begin - next[2]) >= SIZE / 2, `${next} beside ${begin} to ${end}`);
+  }
+});
+
 test("gives who comes first the place at the right, the next one another, and the fifth none", () => {
   const paint = paper(), labels = new Labels(paint, {}, SIZE, { width: 800, height: 500 });
   const found = [..."abcde"].map((letter) => labels.write(letter.repeat(6), 400, 250));

@@ -33,7 +33,7 @@ test("cuts no word in the head of its list", async (t) => {
   });
   const { page } = await watch(t, "calm", { prepare });
   await page.locator("#shared .name", { hasText: "Merged cloud" }).waitFor();
-  for (const [width, height] of [[1280, 720], [1440, 900], [1920, 1080], [3840, 2160]]) {
+  for (const [width, height] of [[360, 740], [390, 844], [844, 390], [1280, 720], [1440, 900], [1920, 1080], [3840, 2160]]) {
     await page.setViewportSize({ width, height });
     const cut = await page.$$eval("#maps-title, #maps-title .count, #shared .name, #shared .badge", (parts) =>
       parts.filter((part) => part.checkVisibility() && part.scrollWidth > part.clientWidth + 1 && getComputedStyle(part).display !== "inline").map((part) => part.textContent));

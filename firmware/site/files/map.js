@@ -1,4 +1,5 @@
 // The map: the picture of what was forwarded, and on it robots, their tracks, markers and reports. Drawn again only when something changed.
+import { Covers } from "./map_covers.js";
 import { listenTo } from "./map_input.js";
 import { Labels } from "./map_labels.js";
 import { drawLayers, fetchLayers } from "./map_layers.js";
@@ -22,6 +23,7 @@ const FADES_EVERY = 2; // s: so often are tracks drawn again
 export class MapOfRun {
   #canvas;
   #picture;
+  #covers;
   #view = new MapView();
   #tiles = new Tiles(() => this.redraw());
   #markers = new Markers(() => this.redraw());
@@ -63,6 +65,7 @@ export class MapOfRun {
       ],
     });
     this.#picture.before = () => this.#prepare();
+    this.#covers = new Covers(canvas, () => this.redraw());
     const recolour = () => {
       this.#colours = coloursOf(document.documentElement);
       this.#recolourMaps();
@@ -285,17 +288,18 @@ export class MapOfRun {
   #drawMarkers = (paint, view) => drawShapes(paint, this.#colours, view, this.#places.markers, this.#picture.fontSize / 14);
 
   #signsKey = () => [this.#drawn, this.#at, this.#tracks.changes * !this.isLive(), this.#shown.robots, this.#shown.reports, this.#markersKey(), this.#followed,
-    this.#pair?.map(({ number }) => number), this.#onTap !== null].join();
+    this.#pair?.map(({ number }) => number), this.#onTap !== null, this.#covers.boxes(), this.#picture.hasNames].join();
   #drawSigns = (paint, view) => {
     const { reports, robots, markers } = this.#places, size = this.#picture.fontSize, colours = this.#colours;
     const rim = [(view.width - this.#view.width) / 2, (view.height - this.#view.height) / 2];
     const labels = new Labels(paint, colours, size, { width: view.width, height: view.height, rim });
-    for (const [left, top, right, bottom] of takenByMetres(this.#view, size)) labels.keepOffBox([left + rim[0], top + rim[1], right + rim[0], bottom + rim[1]]);
+    for (const [left, top, right, bottom] of [...takenByMetres(this.#view, size), ...this.#covers.boxes()]) labels.keepOffBox([left + rim[0], top + rim[1], right + rim[0], bottom + rim[1]]);
     const robotSize = size / 1.8, now = this.#now();
     keepOffRobots(labels, view, robots, robotSize);
     if (this.#pair) drawPairRings(paint, colours, labels, view, this.#pair, size);
     drawReports(paint, colours, labels, view, this.#run, reports, size / 2);
     drawRobots(paint, colours, view, robots, robotSize, { now, followed: this.#followed });
+    if (!this.#picture.hasNames) return;
     nameRobots(labels, view, robots, robotSize, { now, ill: this.isLive() ? this.#ill : new Set() });
     nameReports(labels, view, reports, size / 2, this.#pair ?? []);
     writeMarkers(labels, view, markers);

@@ -1,6 +1,7 @@
 // Names on the map, none upon another: who comes first has its place, who finds none is not written.
 
 const RIM = 1 / 3; // of a letter's height: sets it off from any map
+const APART = 1 / 2; // of a letter's height: so far are two names in a row, or they read as one
 const MOST_KNOWN = 4000;
 
 const widths = new Map(); // of texts by their font
@@ -44,8 +45,9 @@ export class Labels {
     const boxes = places.map(([from, middle]) => [from, middle - half, from + wide, middle + half]);
     const box = boxes.find((each) => !this.#isCut(each) && this.#isFree(each));
     if (!box) return false;
-    this.#taken.push(box);
-    this.#paintText(text, box[0], box[1] + half, { colour, rim, size });
+    const [from, above, to, below] = box;
+    this.#taken.push([from - size * APART, above, to + size * APART, below]);
+    this.#paintText(text, from, above + half, { colour, rim, size });
     return true;
   }
 

@@ -22,6 +22,7 @@ export class Picture {
   #moved = -Infinity;
   #rest = 0;
   fontSize = 14; // pixels, of what is written on the map
+  hasNames = true; // or there is no room for any
   before = () => {};
 
   /** `layers`: from the lowest, {key(), draw(paint, view)}; of a layer of which pieces change also `pieces()`, what changed since it was
@@ -38,7 +39,9 @@ export class Picture {
     const density = this.density();
     const { clientWidth: width, clientHeight: height } = this.#canvas;
     if (!width || !height) return;
-    this.fontSize = parseFloat(getComputedStyle(this.#canvas).fontSize);
+    const style = getComputedStyle(this.#canvas);
+    this.fontSize = parseFloat(style.fontSize);
+    this.hasNames = style.getPropertyValue("--names") !== "none";
     Object.assign(this.#view, { width, height });
     const size = { width: Math.round(width * density), height: Math.round(height * density) };
     if (this.#canvas.width !== size.width || this.#canvas.height !== size.height) Object.assign(this.#canvas, size);

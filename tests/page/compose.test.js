@@ -66,6 +66,8 @@ test("says how far the next one of that type is where none is near", async (t) =
   await compose(page);
   await fill(page, "Drill", "343", "-104.5", "0.25");
   assert.match(await text(page, "#compose .notes"), /No other Drill within 5 m: the nearest is #28, 100 m away\./);
+  const gaps = await page.$$eval("#compose .notes li", (notes) => notes.map(({ firstChild, lastChild }) => lastChild.getBoundingClientRect().left - firstChild.getBoundingClientRect().right));
+  for (const gap of gaps) assert.ok(gap >= 4, `${gaps}: a shape stands beside its words, not in them`);
 });
 
 test("names the field that is wrong, and goes there", async (t) => {

@@ -112,6 +112,12 @@ test("names each robot in full, and tells what asks from what is bad", async (t)
   assert.deepEqual(levels, ["ask", "ask"]);
 });
 
+test("shows what may pass by itself where nothing else calls", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => ({ ...view, alarms: view.alarms.filter(({ severity }) => severity === "wait") }));
+  const { page } = await watch(t, "trouble", { path: "display", prepare });
+  await page.locator("#attention .alarm[data-level=wait]", { hasText: "5 reports are left" }).waitFor();
+});
+
 test("says that the box is lost, and comes back by itself", async (t) => {
   const { stage, page } = await watch(t, "calm", { path: "display" });
   stage.freeze();
@@ -120,7 +126,7 @@ test("says that the box is lost, and comes back by itself", async (t) => {
   assert.match(await text(page, "#arriving"), /Unknown/);
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
-  assert.equal(await text(page, "#attention"), "");
+  assert.equal((await text(page, "#attention")).trim(), "No alarm");
 });
 
 test("shows the run also where damage took a report's place from the ledger", async (t) => {

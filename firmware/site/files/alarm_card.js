@@ -27,6 +27,7 @@ async function acknowledge(id) {
 export function alarmCard() {
   const act = make("a.act"), seen = make("button.seen", "Acknowledge");
   seen.type = "button";
+  seen.title = "Acknowledge: quiet it until it gets worse";
   const node = make("div.alarm", make("span.glyph"), make("p.tx", make("strong", make("span.what"), " ", make("span.for")), make("span.why")), make("p.acts", act, seen));
   node.querySelector(".glyph").setAttribute("aria-hidden", "true");
   seen.addEventListener("click", () => acknowledge(node.dataset.key));

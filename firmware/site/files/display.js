@@ -11,6 +11,7 @@ import { showRobots } from "./robots.js";
 import { showEnds } from "./strip.js";
 import { clip, placeOf, timeOfDay } from "./words.js";
 
+const CALM = { id: "calm", severity: "good", what: "No alarm" };
 const MOST_REPORTS = 20; // more than fit any screen
 
 const map = new MapOfRun(document.querySelector("#map canvas"));
@@ -35,8 +36,8 @@ function show({ view: told, time, lost }) {
   const view = told && { ...told, reports: allReports(told, lost) };
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? "The box does not answer." : "");
-  const calling = view.alarms.filter(({ severity }) => severity !== "wait").sort((a, b) => a.acknowledged - b.acknowledged); // what is new first
-  showAttention(calling.slice(0, lost ? 1 : 2), lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
+  const calling = view.alarms.toSorted((a, b) => (a.severity === "wait") - (b.severity === "wait") || a.acknowledged - b.acknowledged); // what is new first
+  showAttention(calling.length || lost ? calling.slice(0, lost ? 1 : 2) : [CALM], lost ? `The box does not answer: all is as it was at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showEnds(view, lost);
   showRobots(view, time, lost);

@@ -35,11 +35,21 @@ function showSayings(activities) {
     });
 }
 
+/** Robots of which nothing was heard since the box started: an alarm alone tells of them, and their last pose. */
+function unheard({ alarms, robots }, known, now) {
+  const silent = alarms.filter(({ id, subject }) => id === `robot_silent:${subject}` && !known.some(({ name }) => name === subject));
+  return silent.map(({ subject: name }) => {
+    const last = robots.find((robot) => robot.name === name);
+    return { name, level: "bad", word: "silent", isSilent: true, age: last ? now - last.at : null, hasMap: Boolean(last), kinds: [] };
+  });
+}
+
 /** Gives how the robots stand, as robotsOf(). */
 export function showRobots(view, now, lost) {
   const { activities } = view;
   const isAway = troubleOf(view, "mapping")?.level === "bad";
   const state = robotsOf(activities, now, lost);
+  if (!lost) state.robots.push(...unheard(view, state.robots, now));
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));

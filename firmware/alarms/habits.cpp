@@ -1,6 +1,7 @@
 #include "alarms/habits.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace adit::alarms {
 namespace {
@@ -8,6 +9,14 @@ namespace {
 constexpr double kNew = 0.25;  // what the last gap says of the habit
 
 }  // namespace
+
+void Habits::expect(const std::string& robot, double now) {
+  if (known_.size() >= kMost && !known_.contains(robot)) return;
+  Known& known = known_.try_emplace(robot, Known{.last = now}).first->second;
+  if (known.messages > 1 || std::exchange(known.was_expected, true)) return;
+  known.messages = kMessages;
+  known.is_expected = true;
+}
 
 void Habits::heard(const std::string& robot, std::uint64_t count, double now) {
   if (robot.empty()) return;
@@ -19,6 +28,10 @@ void Habits::heard(const std::string& robot, std::uint64_t count, double now) {
   }
   Known& known = place->second;
   if (count == known.count) return;
+  if (known.is_expected) {
+    known = {.count = count, .messages = 1, .last = now, .was_expected = true};
+    return;
+  }
   const double gap = now - known.last;
   // A robot that comes back begins from nothing, for a silence is no habit.
   const bool was_away = known.messages >= kMessages && gap > std::max(60.0, 10 * known.gap);

@@ -22,6 +22,9 @@ class Habits {
   /// `count`: of its messages of all kinds, since ever. To be told each second; `now`: seconds of
   /// a clock that never steps. Messages that came between two calls count as one.
   void heard(const std::string& robot, std::uint64_t count, double now);
+  /// It spoke in this run before the service began, and at most one message is told of since, which may be of
+  /// before, too: from now on its silence counts.
+  void expect(const std::string& robot, double now);
   /// Another run: whoever says nothing any more need not be here.
   void forget() { known_.clear(); }
 
@@ -33,6 +36,8 @@ class Habits {
     std::uint64_t count = 0;
     int messages = 0;
     double last = 0, gap = 0;
+    bool is_expected = false;   // and nothing was heard of it here
+    bool was_expected = false;  // once is enough
   };
   std::map<std::string, Known> known_;
 };

@@ -5,13 +5,6 @@
 namespace adit::alarms {
 namespace {
 
-bool is_silent(const Stream& stream, const Facts& facts) {
-  const auto robot = facts.robots.find(stream.robot);
-  const bool is_cut_off = std::ranges::any_of(
-      facts.cables, [](const Cable& cable) { return cable.is_team && !cable.carrier.value_or(false); });
-  return robot != facts.robots.end() && robot->second.silent && !is_cut_off;
-}
-
 const Endpoint* mapping(const Facts& facts) {
   const auto found = std::ranges::find(facts.endpoints, "mapping", &Endpoint::name);
   return found == facts.endpoints.end() ? nullptr : &*found;
@@ -31,6 +24,13 @@ bool is_catching_up(const Stream& stream, const Facts& facts) {
 
 }  // namespace
 
+bool is_silent(const std::string& robot, const Facts& facts) {
+  const auto found = facts.robots.find(robot);
+  const bool is_cut_off = std::ranges::any_of(
+      facts.cables, [](const Cable& cable) { return cable.is_team && !cable.carrier.value_or(false); });
+  return found != facts.robots.end() && found->second.silent && !is_cut_off;
+}
+
 const Endpoint* stopped(const Facts& facts) {
   const Endpoint* const endpoint = mapping(facts);
   return endpoint != nullptr && endpoint->trouble < PostTrouble::Throttling ? endpoint : nullptr;
@@ -44,7 +44,7 @@ std::optional<double> waited(const Stream& stream, const Facts& facts) {
 
 Standing standing_of(const Stream& stream, const Facts& facts) {
   const bool is_stopped = stopped(facts) != nullptr;
-  const Arrival arrival = arrival_of(stream, facts.turn, !is_stopped && is_silent(stream, facts));
+  const Arrival arrival = arrival_of(stream, facts.turn, !is_stopped && is_silent(stream.robot, facts));
   const Level level = level_of(arrival);
   const bool is_kept_back = is_stopped && (stream.behind || stream.failed || level == Level::Bad);
   if (is_kept_back) return {Arrival::NotArriving, Level::Quiet};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "alarms/arrival.hpp"
 #include "alarms/facts.hpp"
@@ -18,6 +19,9 @@ struct Standing {
 /// one while the team's cable is out. Once the endpoint takes again what it could not, what waited is late,
 /// until each that sends has had its turn.
 Standing standing_of(const Stream& stream, const Facts& facts);
+
+/// It says nothing any more, and that is its own doing.
+bool is_silent(const std::string& robot, const Facts& facts);
 
 /// The mapping endpoint, where nothing is taken at all; or null.
 const Endpoint* stopped(const Facts& facts);

@@ -38,6 +38,12 @@ std::map<std::string, Maps> maps_of(const Facts& facts) {
     maps.newest = std::min(*stream.forwarded, maps.newest.value_or(*stream.forwarded));
     if (level != Level::Quiet) maps.oldest = std::max(*stream.forwarded, maps.oldest.value_or(0));
   }
+  // Of one that has said nothing since the service began nothing else is known.
+  for (const auto& [name, robot] : facts.robots) {
+    if (is_silent(name, facts) &&
+        std::ranges::find(facts.streams, name, &Stream::robot) == facts.streams.end())
+      all[name].level = Level::Bad;
+  }
   return all;
 }
 

@@ -24,15 +24,20 @@ void AsForwarded::forget_the_oldest() {
 void AsForwarded::begin_run(api::Time now) {
   markers_.wipe(now);
   tracks_.wipe();
+  before_.clear();
 }
 
 void AsForwarded::move(double seconds) {
   for (auto& [name, robot] : robots_) robot.at += seconds;
+  for (auto& [name, at] : before_) at += seconds;
   tracks_.move(seconds);
   markers_.move(seconds);
 }
 
 void AsForwarded::go_on_from(std::vector<api::Track> earlier) {
+  for (const api::Track& track : earlier) {
+    if (!track.poses.empty()) before_[track.robot] = track.poses.back().at;
+  }
   std::erase_if(earlier, [this](const api::Track& track) {
     if (robots_.contains(track.robot)) return false;
     if (track.poses.empty() || robots_.size() >= kMostRobots) return true;

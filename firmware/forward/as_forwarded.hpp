@@ -31,6 +31,8 @@ class AsForwarded {
 
   /// Each robot's last pose, by name.
   std::vector<api::RobotRow> robots() const;
+  /// When each was heard last in this run before a restart.
+  const std::map<std::string, api::Time>& before() const { return before_; }
   const MarkerScene& markers() const { return markers_; }
   const Tracks& tracks() const { return tracks_; }
 
@@ -38,6 +40,7 @@ class AsForwarded {
   void forget_the_oldest();
 
   std::map<std::string, api::RobotRow> robots_;
+  std::map<std::string, api::Time> before_;
   MarkerScene markers_;
   Tracks tracks_;
 };

@@ -11,7 +11,7 @@ std::vector<alarms::Alarm> Gateway::alarms() const {
 
 double Gateway::look_for_alarms() {
   const auto activities = flow_.activities();
-  lookout_.look(flow_, settings_, activities, loop_.stamp_now());
+  lookout_.look(flow_, settings_, activities, loop_.stamp_now(), loop_.wall_now());
   const alarms::Facts found = facts(activities);
   const std::vector<alarms::Condition> conditions = alarms::conditions_of(found);
   board_.take(conditions, found.now);

@@ -28,14 +28,19 @@ alarms::Endpoint named(const char* name, const settings::Address& address, const
 }  // namespace
 
 void Lookout::look(const forward::Flow& flow, const settings::Settings& settings,
-                   const std::vector<api::ActivityRow>& activities, double now) {
+                   const std::vector<api::ActivityRow>& activities, double now, api::Time time) {
   scoring_.look({seen(flow.scoring().channel())}, now);
   mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
   const std::int64_t run = flow.reports().run().number;
-  if (std::exchange(run_, run) != run) habits_.forget();
+  const std::int64_t before = std::exchange(run_, run);
+  if (before != run) habits_.forget();
+  is_first_run_ = is_first_run_ && (before == 0 || before == run);
   std::map<std::string, std::uint64_t> counts;
   for (const api::ActivityRow& row : activities) counts[row.robot] += row.accepted;
   for (const auto& [robot, count] : counts) habits_.heard(robot, count, now);
+  for (const auto& [robot, at] : flow.as_forwarded().before()) {
+    if (is_first_run_ && time - at < alarms::Habits::Rules{}.away) habits_.expect(robot, now);
+  }
   growth_.look(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
 }
 

@@ -14,9 +14,9 @@ namespace adit::gateway {
 /// whether what waits grows. `now` is seconds of the clock for stamps, which never steps.
 class Lookout {
  public:
-  /// To be told each second, with the activities of the view.
+  /// To be told each second, with the activities of the view. `time`: of the day.
   void look(const forward::Flow& flow, const settings::Settings& settings,
-            const std::vector<api::ActivityRow>& activities, double now);
+            const std::vector<api::ActivityRow>& activities, double now, api::Time time);
   /// That endpoint is another place, or has another token.
   void forget_scoring() { scoring_.forget(); }
   void forget_mapping() { mapping_.forget(); }
@@ -32,6 +32,7 @@ class Lookout {
   alarms::Habits habits_;
   alarms::Growth growth_;
   std::int64_t run_ = 0;
+  bool is_first_run_ = true;  // the one that the service began in
 };
 
 }  // namespace adit::gateway

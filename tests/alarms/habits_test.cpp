@@ -50,6 +50,23 @@ TEST_F(HabitsTest, GoByTheLongestGapsOfAnUnevenRobot) {
   EXPECT_FALSE(is_silent_after("ugv1", 60)) << "it pauses for 40 s now and then";
 }
 
+TEST_F(HabitsTest, BlameARobotThatSpokeBeforeTheServiceBeganAndSaysNothingSince) {
+  habits_.expect("uav5", now_);
+  EXPECT_FALSE(is_silent_after("uav5", 30));
+  EXPECT_TRUE(is_silent_after("uav5", 31));
+  now_ += 20;
+  habits_.heard("uav5", ++count_, now_);
+  EXPECT_FALSE(is_silent_after("uav5", 100)) << "it has no habit yet";
+  habits_.heard("ugv1", 7, now_);
+  habits_.expect("ugv1", now_);
+  habits_.heard("ugv1", 7, now_ + 20);
+  EXPECT_TRUE(is_silent_after("ugv1", 31)) << "its messages had waited since before";
+  habits_.expect("uav6", now_);
+  speaks("uav6", 1, 1);
+  habits_.expect("uav6", now_);
+  EXPECT_FALSE(is_silent_after("uav6", 100)) << "it was heard";
+}
+
 TEST_F(HabitsTest, SayNothingOfWhoHasNone) {
   speaks("uav5", 1, Habits::kMessages - 2);
   EXPECT_THAT(habits_.robots(rules_, now_ + 100), IsEmpty());

@@ -26,6 +26,14 @@ TEST(Verdict, NamesTheRobotThatIsSilent) {
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "19 of 20 arrive", "not uav5; oldest other 22 s"}));
 }
 
+TEST(Verdict, NamesARobotOfWhichNothingWasHeardSinceTheServiceBegan) {
+  Facts facts = well(3);
+  facts.robots["uav9"] = {.quiet = 40, .silent = true};
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "3 of 4 arrive", "not uav9; oldest other 5 s"}));
+  facts.streams.push_back({.kind = "state", .robot = "uav9", .forwarded = 50.0, .last_status = 200});
+  EXPECT_EQ(verdict_of(facts).what, "Every map arrives") << "it sends none";
+}
+
 TEST(Verdict, NamesThreeAtMost) {
   Facts facts = well(6);
   for (auto& [name, robot] : facts.robots) robot.silent = name != "uav6";

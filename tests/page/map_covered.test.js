@@ -10,7 +10,7 @@ async function crowded(page) {
   await page.addInitScript(() => {
     globalThis.written = [];
     const { fillText, resetTransform } = CanvasRenderingContext2D.prototype, rim = (side) => (side - side / 1.4) / 2;
-    CanvasRenderingContext2D.prototype.resetTransform = function () { // it is drawn anew
+    CanvasRenderingContext2D.prototype.resetTransform = function () { // it is about to be drawn again
       globalThis.written = globalThis.written.filter(({ canvas }) => canvas !== this.canvas);
       return resetTransform.call(this);
     };

@@ -67,6 +67,18 @@ test("says of a robot that sends no map that it has none, and of one whose map n
   assert.deepEqual([await age("scout"), await age("carter")], ["no map", "never"]);
 });
 
+test("has a row for one that an alarm alone tells of: nothing was heard of it since the box started", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const alarm = { id: "robot_silent:uav9", subject: "uav9", severity: "bad", side: "robot", since: view.now - 40, what: "uav9 is silent", why: "", action: { word: "", link: "" }, hides: 0, acknowledged: false };
+    const robot = { name: "uav9", position: { x: 1, y: 2, z: 0 }, heading: 0, at: view.now - 94 };
+    return { ...view, alarms: [alarm], robots: [...view.robots, robot] };
+  });
+  const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
+  await page.waitForSelector('#robots li[data-key="uav9"][data-level=bad]');
+  assert.match(await page.innerText('#robots li[data-key="uav9"]'), /^uav9\s+silent\s+1:\d\d$/);
+  assert.equal((await names(page))[0], "uav9");
+});
+
 test("is dim while the list of alarms says that the Command Post is away", async (t) => {
   const { page, stage } = await watchTwenty(t);
   await page.waitForSelector("#maps[data-away=false]");

@@ -48,6 +48,23 @@ test("says that a robot is silent, everywhere as the box judges it", async (t) =
   for (const page of pages) await until(async () => (await silent(page)) === 0, "none that is silent");
 });
 
+test("says that a robot is silent that says nothing since the service was killed", async (t) => {
+  const made = await box(t, { robots: 2, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
+  const bytes = async () => (await made.ask("/adit/runs")).said.runs[0]?.bytes ?? 0;
+  await until(async () => (await made.run()).robots.length === 2, "their poses");
+  for (const write of ["first", "second"]) { // the one that was under way may not have had them
+    const before = await bytes();
+    await until(async () => (await bytes()) > before, `the ${write} write`);
+  }
+  made.freezeRobots();
+  t.after(() => made.thawRobots());
+  await made.killAditd();
+  await made.startAditd();
+  const page = await look(t, made);
+  await until(async () => (await made.run()).alarms.some(({ id }) => id === "robots_silent"), "their silence");
+  await page.waitForFunction(() => /^Nothing arrives/.test(document.querySelector("#arriving .text").textContent));
+});
+
 const CASES = [
   { is: "command_post_refusing", word: "refused", fault: "401,for=600" },
   { is: "command_post_foreign", word: "wrong host", fault: "html-200,for=600" },
@@ -73,5 +90,15 @@ for (const { is, word, fault } of CASES) {
     await until(async () => blamesNobody(await made.run()), "what waits to be nobody's fault");
     for (const page of pages) await page.waitForFunction(() => document.querySelector("#maps[data-away=true]") && !document.querySelector("#robots li:is([data-level=bad], [data-level=wait])"));
     await until(async () => /^Maps +Nothing arrives: for \d+:\d\d; the box keeps all$/m.test(await status(made)), "the same of `adit status`");
+    if (!fault) return; // it is gone for good
+    await made.behave();
+    const blamed = [];
+    await until(async () => {
+      const { alarms, activities } = await made.run(), maps = activities.filter(({ kind }) => kind === "grid" || kind === "cloud");
+      if (alarms.some(({ id }) => id === is)) return false;
+      blamed.push(...maps.filter(({ level }) => level === "bad").map(({ kind, robot, arrival }) => `${robot} ${kind}: ${arrival}`), ...alarms.filter(({ id }) => /^maps?_behind/.test(id)).map(({ what }) => what));
+      return maps.every(({ last_status: status }) => status === 200);
+    }, "all to be taken again", 120_000);
+    assert.deepEqual(blamed, [], "nor as it comes back");
   });
 }

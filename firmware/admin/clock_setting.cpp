@@ -2,7 +2,7 @@
 
 #include <unistd.h>
 
-#include "admin/network_requests.hpp"
+#include "admin/nonce.hpp"
 #include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -60,7 +60,7 @@ void ClockSetting::offered(const clock::Offer& offer) {
 }
 
 std::expected<void, std::string> ClockSetting::ask(clock::Source source, double time) {
-  const clock::Request request{.nonce = NetworkRequests::draw_nonce(),
+  const clock::Request request{.nonce = draw_nonce(),
                                .source = source,
                                .time = time,
                                .at = std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};

@@ -6,6 +6,7 @@
 #include "admin/accounts.hpp"
 #include "admin/acknowledged_file.hpp"
 #include "admin/network_requests.hpp"
+#include "admin/nonce.hpp"
 #include "admin/taking_over.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -26,7 +27,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
   if (!is_begun) return false;
   if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
   NetworkRequests network(state_, "", "");
-  if (const auto asked = network.ask(network::Forget{NetworkRequests::draw_nonce()}); !asked)
+  if (const auto asked = network.ask(network::Forget{draw_nonce()}); !asked)
     return std::unexpected(asked.error());
   for (const char* kept : {"journal", "waiting", "aside"}) {
     std::error_code error;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "admin/nonce.hpp"
 #include "admin/refuse.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
@@ -145,7 +146,7 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
   if (pending()) return refuse_now("a change waits to be confirmed or taken back");
   if (const std::string why = hindrance(); !why.empty()) return refuse_now(why);
-  network::Wanted request{NetworkRequests::draw_nonce(), settings_.network.confirm_within, wanted};
+  network::Wanted request{draw_nonce(), settings_.network.confirm_within, wanted};
   if (const auto asked = requests_.ask(request); !asked)
     return refuse_now("it cannot be asked for: " + asked.error());
   host::log(host::Level::Notice, "a change of the network is asked for",

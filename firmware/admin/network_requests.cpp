@@ -2,9 +2,6 @@
 
 #include <unistd.h>
 
-#include <cstdint>
-
-#include "host/random.hpp"
 #include "host/service.hpp"
 
 namespace adit::admin {
@@ -46,18 +43,6 @@ std::expected<void, std::string> NetworkRequests::ask(const network::Forget& for
 
 void NetworkRequests::forget_wanted() {
   unlink((state_ + '/' + network::kWantedFile).c_str());
-}
-
-std::string NetworkRequests::draw_nonce() {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::uint8_t bytes[16];
-  host::fill_random(bytes);
-  std::string nonce;
-  for (const std::uint8_t byte : bytes) {
-    nonce += kDigits[byte >> 4];
-    nonce += kDigits[byte & 15];
-  }
-  return nonce;
 }
 
 }  // namespace adit::admin

@@ -32,9 +32,6 @@ class NetworkRequests {
   /// It is not to be done any more, where it has not been begun.
   void forget_wanted();
 
-  /// Never the same twice.
-  static std::string draw_nonce();
-
  private:
   std::string state_, status_, watch_;
 };

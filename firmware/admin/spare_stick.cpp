@@ -5,7 +5,7 @@
 #include <fstream>
 #include <utility>
 
-#include "admin/network_requests.hpp"
+#include "admin/nonce.hpp"
 #include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -27,6 +27,13 @@ icd::Refusal conflict(std::string sentence) {
 /// What is said to be done before adit-spare says so itself.
 const char* doing_of(spare::StickRequest::What what) {
   return what == spare::StickRequest::What::Write ? "writing" : "reading";
+}
+
+/// Why nothing can be asked for as it stands.
+std::optional<icd::Refusal> hindrance_in(const std::optional<api::StickRow>& now) {
+  if (!now) return conflict(kNotHere);
+  if (now->doing.empty()) return std::nullopt;
+  return conflict(icd::sentence("the box is ", now->doing, " already: wait"));
 }
 
 /// Of adit-spare's folder, in memory.
@@ -71,16 +78,13 @@ std::optional<api::StickRow> SpareStick::view() const {
 }
 
 std::optional<icd::Refusal> SpareStick::hindrance() const {
-  const auto now = view();
-  if (!now) return conflict(kNotHere);
-  if (!now->doing.empty()) return conflict(icd::sentence("the box is ", now->doing, " already: wait"));
-  return std::nullopt;
+  return hindrance_in(view());
 }
 
 std::optional<icd::Refusal> SpareStick::hindrance_to_write() const {
-  if (auto why = hindrance()) return why;
-  std::string why = view().value_or(api::StickRow{}).hindrance;
-  return why.empty() ? std::nullopt : std::optional(conflict(std::move(why)));
+  const auto now = view();
+  if (auto why = hindrance_in(now)) return why;
+  return now->hindrance.empty() ? std::nullopt : std::optional(conflict(now->hindrance));
 }
 
 icd::Checked<void> SpareStick::write(const std::string& name, const std::string& file) {
@@ -98,7 +102,7 @@ icd::Checked<void> SpareStick::take(const std::string& name) {
 }
 
 icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
-  spare::StickRequest request{.nonce = NetworkRequests::draw_nonce(), .what = what, .name = name};
+  spare::StickRequest request{.nonce = draw_nonce(), .what = what, .name = name};
   const auto asked = host::write_file(state_ + '/' + spare::kStickRequestFile, spare::write_message(request),
                                       host::kOursAlone);
   if (!asked) {

@@ -29,8 +29,6 @@ class SpareStick {
   std::optional<api::StickRow> view() const;
   /// Why nothing can be asked for now; nothing: it can.
   std::optional<icd::Refusal> hindrance() const;
-  /// Why no export can be written now.
-  std::optional<icd::Refusal> hindrance_to_write() const;
   /// The whole file, under that name.
   icd::Checked<void> write(const std::string& name, const std::string& file);
   icd::Checked<void> take(const std::string& name);
@@ -42,6 +40,8 @@ class SpareStick {
     loop::Instant at;
   };
   std::expected<spare::StickStatus, std::string> status() const;
+  /// Why no export can be written now.
+  std::optional<icd::Refusal> hindrance_to_write() const;
   icd::Checked<void> ask(What what, const std::string& name);
   void look();
   void finish(const spare::StickStatus& status);

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "admin/network_requests.hpp"
+#include "admin/nonce.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 
@@ -155,7 +155,7 @@ icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool any
 }
 
 icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
-  update::Request request{.nonce = NetworkRequests::draw_nonce(), .what = what, .again = again};
+  update::Request request{.nonce = draw_nonce(), .what = what, .again = again};
   if (const auto asked = requests_.ask(request); !asked) {
     return std::unexpected(
         icd::Refusal{icd::Status::ServiceUnavailable, "it cannot be asked for: " + asked.error()});

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "admin/nonce.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "forward/channel.hpp"
@@ -145,7 +146,7 @@ void SelfTest::ask_address() {
                                                                         " instead"
                                                                   : "";
   if (own && why.empty()) {
-    probe_ = {admin::NetworkRequests::draw_nonce(), network_.next_hop(address())};
+    probe_ = {admin::draw_nonce(), network_.next_hop(address())};
     const auto asked = requests_.ask(probe_);
     until_ = loop_.now() + kProbeWithin;
     if (asked) return wait_for_probe();

@@ -56,7 +56,7 @@ std::optional<Look> Follower::ended(const HttpStream::Ended& end) {
 
 std::optional<Look> Follower::lost(const std::string& why) {
   stream_.reset();
-  return std::unexpected("Adit at " + written(adit_.address) + " cannot be asked: " + why);
+  return std::unexpected(cannot_be_asked(adit_.address, why));
 }
 
 Look Follower::ask() const {

@@ -77,11 +77,11 @@ std::expected<loop::FileDescriptor, std::string> connected(const uplink::Endpoin
   return *std::move(fd);
 }
 
+}  // namespace
+
 std::string cannot_be_asked(const settings::Address& address, const std::string& why) {
   return "Adit at " + written(address) + " cannot be asked: " + why;
 }
-
-}  // namespace
 
 std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
                                            std::chrono::milliseconds within) {

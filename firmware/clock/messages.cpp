@@ -1,5 +1,6 @@
 #include "clock/messages.hpp"
 
+#include "codec/checked_text.hpp"
 #include "network/messages.hpp"
 #include "settings/subnet.hpp"
 
@@ -15,20 +16,15 @@ constexpr codec::Member kClockRequest[] = {
     codec::member<&Request::at>("at"),
 };
 /// A subnet by its first address, as settings::written() has it, or "".
-void read_subnet(const codec::Field& field, void* subnet) {
-  auto& text = *static_cast<std::string*>(subnet);
-  text = field.text();
-  if (text.empty()) return;
+bool is_subnet_or_none(std::string_view text) {
   const auto parsed = settings::parse_subnet(text);
-  if (!parsed || settings::written(*parsed) != text) field.refuse("expected a subnet, or none");
+  return text.empty() || (parsed && settings::written(*parsed) == text);
 }
-constexpr codec::Kind kSubnetOrNone = {.write = codec::kind_of<std::string>.write,
-                                       .read = read_subnet,
-                                       .schema = codec::kind_of<std::string>.schema};
+constexpr char kExpectedSubnet[] = "expected a subnet, or none";
 
 constexpr codec::Member kNtp[] = {
     codec::member<&Ntp::server>("server").as(network::kAddressOrNone),
-    codec::member<&Ntp::clients>("clients").as(kSubnetOrNone),
+    codec::member<&Ntp::clients>("clients").as(codec::kCheckedText<is_subnet_or_none, kExpectedSubnet>),
 };
 constexpr codec::Member kClockStatus[] = {
     codec::member<&Status::nonce>("nonce"),     codec::member<&Status::refusal>("refusal"),

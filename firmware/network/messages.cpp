@@ -1,13 +1,25 @@
 #include "network/messages.hpp"
 
+#include "codec/checked_text.hpp"
+
 namespace adit::network {
 namespace {
 
-constexpr std::size_t kNonceDigits = 32;
+constexpr std::size_t kNonceDigits = 2 * kNonceBytes;
 
 constexpr std::string_view kWordWords[] = {"confirm", "back"};  // in the order of Word::What
 
 }  // namespace
+
+std::string nonce_of(const std::array<std::uint8_t, kNonceBytes>& random) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string nonce;
+  for (const std::uint8_t byte : random) {
+    nonce += kDigits[byte >> 4];
+    nonce += kDigits[byte & 15];
+  }
+  return nonce;
+}
 
 bool is_nonce(std::string_view text) {
   return text.size() == kNonceDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
@@ -74,26 +86,18 @@ using codec::member;
 using codec::Member;
 using codec::Row;
 
-void read_nonce(const Field& field, void* nonce) {
-  auto& text = *static_cast<std::string*>(nonce);
-  text = field.text();
-  if (!is_nonce(text)) field.refuse("expected ", kNonceDigits, " hexadecimal digits");
-}
+constexpr char kExpectedNonce[] = "expected 32 hexadecimal digits";
+static_assert(kNonceDigits == 32);
+constexpr char kExpectedAddress[] = "expected an IPv4 address";
+constexpr char kExpectedAddressOrNone[] = "expected an IPv4 address, or none";
+constexpr char kExpectedMac[] = "expected a MAC address";
 
-void read_address(const Field& field, void* address) {
-  auto& text = *static_cast<std::string*>(address);
-  text = field.text();
-  if (!text.empty() && !settings::ipv4_of(text)) field.refuse("expected an IPv4 address, or none");
+bool is_address(std::string_view text) {
+  return settings::ipv4_of(text).has_value();
 }
-
-void read_own_address(const Field& field, void* address) {
-  auto& text = *static_cast<std::string*>(address);
-  text = field.text();
-  if (!settings::ipv4_of(text)) field.refuse("expected an IPv4 address");
+bool is_address_or_none(std::string_view text) {
+  return text.empty() || is_address(text);
 }
-constexpr codec::Kind kAddress = {.write = codec::kind_of<std::string>.write,
-                                  .read = read_own_address,
-                                  .schema = codec::kind_of<std::string>.schema};
 
 bool is_mac(std::string_view text) {
   constexpr std::size_t kLength = 17;
@@ -104,15 +108,6 @@ bool is_mac(std::string_view text) {
   }
   return true;
 }
-void read_mac(const Field& field, void* mac) {
-  auto& text = *static_cast<std::string*>(mac);
-  text = field.text();
-  if (!is_mac(text)) field.refuse("expected a MAC address");
-}
-constexpr codec::Kind kMac = {.write = codec::kind_of<std::string>.write,
-                              .read = read_mac,
-                              .schema = codec::kind_of<std::string>.schema};
-
 void read_taken(const Field& list, void* addresses) {
   if (list.size() > kMostTaken) return list.refuse("expected at most ", kMostTaken);
   codec::kind_of<std::vector<TakenAddress>>.read(list, addresses);
@@ -194,8 +189,8 @@ constexpr Member kProbedMembers[] = {
 
 constexpr Member kTakenAddressMembers[] = {
     member<&TakenAddress::interface>("interface"),
-    member<&TakenAddress::address>("address").as(kAddress),
-    member<&TakenAddress::mac>("mac").as(kMac),
+    member<&TakenAddress::address>("address").as(codec::kCheckedText<is_address, kExpectedAddress>),
+    member<&TakenAddress::mac>("mac").as(codec::kCheckedText<is_mac, kExpectedMac>),
     member<&TakenAddress::seen>("seen_ms").from(0),
 };
 constexpr Member kTakenMembers[] = {member<&Taken::addresses>("taken").as(kTaken)};
@@ -210,13 +205,8 @@ constexpr Row Kept::kRow = {"", kKeptMembers};
 
 }  // namespace
 
-constexpr codec::Kind kNonce = {.write = codec::kind_of<std::string>.write,
-                                .read = read_nonce,
-                                .schema = codec::kind_of<std::string>.schema};
-
-constexpr codec::Kind kAddressOrNone = {.write = codec::kind_of<std::string>.write,
-                                        .read = read_address,
-                                        .schema = codec::kind_of<std::string>.schema};
+constexpr codec::Kind kNonce = codec::kCheckedText<is_nonce, kExpectedNonce>;
+constexpr codec::Kind kAddressOrNone = codec::kCheckedText<is_address_or_none, kExpectedAddressOrNone>;
 
 constexpr Row Wanted::kRow = {"", kWantedMembers};
 constexpr Row Word::kRow = {"", kWordMembers};

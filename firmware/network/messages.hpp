@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <expected>
@@ -35,6 +36,9 @@ inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{60000
 /// 32 hexadecimal digits that name one request: the kind of that text.
 extern const codec::Kind kNonce;
 bool is_nonce(std::string_view text);
+inline constexpr std::size_t kNonceBytes = 16;
+/// Never the same twice, where the bytes are random.
+std::string nonce_of(const std::array<std::uint8_t, kNonceBytes>& random);
 /// An IPv4 address, or "": the kind of that text.
 extern const codec::Kind kAddressOrNone;
 

@@ -1,5 +1,6 @@
 #include "spare/stick.hpp"
 
+#include "codec/checked_text.hpp"
 #include "network/messages.hpp"
 #include "spare/file_name.hpp"
 
@@ -9,14 +10,7 @@ namespace {
 constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::What
 
 /// A name that cannot lead out of a folder.
-void read_file_name(const codec::Field& field, void* name) {
-  auto& text = *static_cast<std::string*>(name);
-  text = field.text();
-  if (!is_file_name(text)) field.refuse("expected the name of an export");
-}
-constexpr codec::Kind kFileName = {.write = codec::kind_of<std::string>.write,
-                                   .read = read_file_name,
-                                   .schema = codec::kind_of<std::string>.schema};
+constexpr char kExpectedName[] = "expected the name of an export";
 
 }  // namespace
 }  // namespace adit::spare
@@ -36,7 +30,7 @@ using codec::member;
 constexpr codec::Member kRequestMembers[] = {
     member<&StickRequest::nonce>("nonce").as(network::kNonce),
     member<&StickRequest::what>("what"),
-    member<&StickRequest::name>("name").as(kFileName),
+    member<&StickRequest::name>("name").as(codec::kCheckedText<is_file_name, kExpectedName>),
 };
 constexpr codec::Member kStatusMembers[] = {
     member<&StickStatus::nonce>("nonce"),         member<&StickStatus::refusal>("refusal"),

@@ -84,6 +84,13 @@ TEST(NetworkMessages, TellWhoElseHasAnAddress) {
   EXPECT_THAT(read<Taken>(write(taken)).error(), HasSubstr("taken: expected at most 32"));
 }
 
+TEST(NetworkMessages, HaveANonceOfEachByteThatIsDrawn) {
+  std::array<std::uint8_t, kNonceBytes> random{0x00, 0x0f, 0xa5};
+  random.back() = 0xff;
+  EXPECT_EQ(nonce_of(random), "000fa5000000000000000000000000ff");
+  EXPECT_TRUE(is_nonce(nonce_of(random)));
+}
+
 TEST(NetworkMessages, HaveNoTimeThatTheClockDoesNotHave) {
   const Status status{.team_interface = "team0",
                       .command_post_interface = "darpa0",

@@ -206,8 +206,8 @@ std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
   const auto number = settings::ipv4_of(endpoint.address);
   const auto numbers = present();
   if (!number || !numbers) return "";
-  if (network::on_link(*numbers, *number) != nullptr) return endpoint.address;
-  return numbers->gateway ? settings::ipv4_text(*numbers->gateway) : "";
+  const auto hop = network::next_hop(*numbers, *number);
+  return hop ? settings::ipv4_text(*hop) : "";
 }
 
 icd::Checked<void> NetworkChange::take_back() {
@@ -233,6 +233,20 @@ std::optional<alarms::TakenAddress> NetworkChange::taken(const std::string& inte
   return std::nullopt;
 }
 
+/// The first that is an endpoint of the settings, or the gateway to it.
+std::optional<alarms::ExchangedAddress> NetworkChange::exchanged() const {
+  const std::string scoring = next_hop(settings_.command_post.scoring),
+                    mapping = next_hop(settings_.command_post.mapping);
+  for (const network::TakenAddress& each : taken_.exchanged) {
+    if (loop_.now() >= each.seen + network::kTakenFor) continue;
+    if (each.interface != settings_.team.interface || (each.address != scoring && each.address != mapping))
+      continue;
+    return alarms::ExchangedAddress{
+        .address = each.address, .found_on = each.interface, .sought_on = settings_.command_post.interface};
+  }
+  return std::nullopt;
+}
+
 alarms::NetworkFact NetworkChange::fact() const {
   alarms::NetworkFact fact;
   const auto waits = pending();
@@ -246,6 +260,7 @@ alarms::NetworkFact NetworkChange::fact() const {
     const std::string& interface = is_team ? settings_.team.interface : settings_.command_post.interface;
     if (auto taken = this->taken(interface, is_team)) fact.taken.push_back(std::move(*taken));
   }
+  if (!taken_.exchanged.empty()) fact.exchanged = exchanged();
   return fact;
 }
 

@@ -54,6 +54,7 @@ class NetworkChange final : public api::Network {
   bool is_asked() const;
   void note_what_became_of_it();
   void lead_to_endpoints();
+  std::optional<alarms::ExchangedAddress> exchanged() const;
   std::optional<alarms::TakenAddress> taken(const std::string& interface, bool is_team) const;
   /// Why nothing can be changed here; "" where it can.
   std::string hindrance() const;

@@ -1,4 +1,5 @@
 // What is wrong with the box and its networks.
+#include <algorithm>
 #include <cmath>
 
 #include "alarms/conditions.hpp"
@@ -47,6 +48,22 @@ void find_cables(const Facts& facts, Found& found) {
     }
     found.push_back(std::move(condition));
   }
+}
+
+/// Whether an endpoint of the Command Post is known to be heard, by its own port.
+bool is_heard(const Endpoint& endpoint) {
+  return endpoint.trouble != PostTrouble::NoToken && endpoint.trouble != PostTrouble::Unreachable &&
+         endpoint.trouble != PostTrouble::Silent;
+}
+
+void find_exchanged_cables(const Facts& facts, Found& found) {
+  const auto& exchanged = facts.network.exchanged;
+  if (!exchanged || std::ranges::any_of(facts.endpoints, is_heard)) return;
+  found.push_back({.id = "cables_exchanged",
+                   .side = Side::Network,
+                   .what = "The two cables are exchanged",
+                   .why = sentence(exchanged->address, " is at ", exchanged->found_on, " and not at ",
+                                   exchanged->sought_on)});
 }
 
 void find_addresses(const Facts& facts, Found& found) {
@@ -135,6 +152,7 @@ void find_update_troubles(const UpdateFact& update, Found& found) {
 void find_network_troubles(const Facts& facts, Found& found) {
   find_pending_change(facts.network, found);
   find_cables(facts, found);
+  find_exchanged_cables(facts, found);
   find_addresses(facts, found);
 }
 

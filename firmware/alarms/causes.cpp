@@ -16,7 +16,8 @@ bool is_post(const Condition& condition) {
 
 /// The way to the Command Post is cut at the box.
 bool cuts_off(const Condition& condition) {
-  return condition.id == "cable_out:command_post" || condition.id == "no_address";
+  return condition.id == "cable_out:command_post" || condition.id == "cables_exchanged" ||
+         condition.id == "no_address";
 }
 
 /// Nothing of that endpoint's goes.

@@ -69,11 +69,18 @@ struct TakenAddress {
   std::string mac = {};  // of the other machine
 };
 
+/// An address of the Command Post's that is at the team's port, and not at its own.
+struct ExchangedAddress {
+  std::string address = {};
+  std::string found_on = {}, sought_on = {};  // the interfaces
+};
+
 struct NetworkFact {
   std::optional<double> confirm_within = {};  // seconds; a change waits to be confirmed
   std::string page = {};                      // where
   bool no_address = false;                    // on the Command Post's side
   std::vector<TakenAddress> taken = {};       // one of a side
+  std::optional<ExchangedAddress> exchanged = {};
 };
 
 struct Disk {

@@ -26,11 +26,19 @@ std::vector<std::uint32_t> addresses_of(const std::string& interface) {
   return all;
 }
 
+network::TakenAddress row_of(const std::string& interface, const Takers::Taken& taken) {
+  return {.interface = interface,
+          .address = settings::ipv4_text(taken.address),
+          .mac = text_of(taken.by),
+          .seen = taken.seen};
+}
+
 }  // namespace
 
 AddressWatch::AddressWatch(loop::Loop& loop, const Options& options)
     : loop_(loop),
       sides_{{{.interface = options.team}, {.interface = options.command_post}}},
+      told_(loop, options.told, [this] { look(); }),
       file_(options.status + '/' + network::kTakenFile),
       kernel_(host::link_and_address_changes()),
       due_(loop.timer([this] { work(); })) {}
@@ -51,24 +59,30 @@ void AddressWatch::look() {
   for (const Side& side : sides_) {
     if (const auto mac = mac_of(side.interface)) macs.push_back(*mac);
   }
-  for (Side& side : sides_) look(side, macs);
+  const auto sought =
+      sought_in(told_.read(), host::own_addresses(post().interface), host::own_addresses(team().interface));
+  exchanged_.set_sought(sought, macs, loop_.now());
+  for (Side& side : sides_) look(side, macs, sought);
   work();
 }
 
-void AddressWatch::look(Side& side, const std::vector<Mac>& macs) {
+void AddressWatch::look(Side& side, const std::vector<Mac>& macs, const std::vector<std::uint32_t>& sought) {
   const Instant now = loop_.now();
   const unsigned index = if_nametoindex(side.interface.c_str());
   const bool is_ours = side.arp && std::ranges::find(macs, side.arp->own()) != macs.end();
   if (index != side.index || !is_ours) open(side, index);
-  const auto addresses = addresses_of(side.interface);
+  auto addresses = addresses_of(side.interface);
   side.takers.set_own(addresses, macs, now);
+  addresses.insert(addresses.end(), sought.begin(), sought.end());
   if (side.arp) {
     // What is heard is judged again: without it there is only more to read.
     if (const auto set = side.arp->hear_only(addresses); !set)
       host::log(Level::Warning, "all ARP is heard", {{"why", set.error()}});
   }
   const bool had_carrier = std::exchange(side.carrier, host::carrier(side.interface).value_or(false));
-  if (side.carrier && !had_carrier) side.takers.ask_again(now);
+  if (!side.carrier || had_carrier) return;
+  side.takers.ask_again(now);
+  if (&side == &team()) exchanged_.ask_again(now);
 }
 
 void AddressWatch::open(Side& side, unsigned index) {
@@ -95,7 +109,10 @@ void AddressWatch::hear(Side& side) {
   for (int i = 0; i < kMostAtOnce; ++i) {
     const auto size = side.arp->receive(packet);
     if (!size) return work();
-    if (const auto arp = read_arp({packet, *size})) side.takers.hear(*arp, now);
+    const auto arp = read_arp({packet, *size});
+    if (!arp) continue;
+    side.takers.hear(*arp, now);
+    &side == &team() ? exchanged_.hear_at_team(*arp, now) : exchanged_.hear_at_post(*arp, now);
   }
   side.rests_until = now + kRest;
   side.heard.wait_for(0);
@@ -110,15 +127,19 @@ void AddressWatch::work() {
       side.rests_until.reset();
       side.heard.wait_for(EPOLLIN);
     }
-    ask(side);
+    ask(side, side.takers.take_due(now));
     say(side, now);
   }
+  const Exchanged::Due due = exchanged_.take_due(now);
+  ask(team(), due.at_team);
+  ask(post(), due.at_post);
   std::optional<Instant> next;
   const auto at = [&next](const std::optional<Instant>& when) {
     if (when && (!next || *when < *next)) next = when;
   };
   tell(now);
-  if (told_at_) at(*told_at_ + kBetweenTellings);
+  if (written_at_) at(*written_at_ + kBetweenTellings);
+  at(exchanged_.wake());
   for (const Side& side : sides_) {
     at(side.takers.wake());
     at(side.rests_until);
@@ -126,8 +147,8 @@ void AddressWatch::work() {
   next ? due_.call_at(*next) : due_.cancel();
 }
 
-void AddressWatch::ask(Side& side) {
-  for (const std::uint32_t address : side.takers.take_due(loop_.now())) {
+void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addresses) {
+  for (const std::uint32_t address : addresses) {
     if (!side.arp || !side.carrier) continue;  // asked again once there is a cable
     if (const auto asked = side.arp->ask(address); !asked)
       host::log(Level::Debug, "nobody was asked", {{"why", asked.error()}});
@@ -155,22 +176,20 @@ void AddressWatch::say(Side& side, Instant now) {
 }
 
 void AddressWatch::tell(Instant now) {
-  if (told_at_ && now < *told_at_ + kBetweenTellings) return;
-  told_at_.reset();
-  const auto told = file_.tell(network::write(taken()));
-  if (!told || *told) told_at_ = now;
+  if (written_at_ && now < *written_at_ + kBetweenTellings) return;
+  written_at_.reset();
+  const auto is_written = file_.tell(network::write(taken(now)));
+  if (!is_written || *is_written) written_at_ = now;
 }
 
-network::Taken AddressWatch::taken() const {
+network::Taken AddressWatch::taken(Instant now) const {
   network::Taken all;
   for (const Side& side : sides_) {
-    for (const Takers::Taken& each : side.takers.taken()) {
-      all.addresses.push_back({.interface = side.interface,
-                               .address = settings::ipv4_text(each.address),
-                               .mac = text_of(each.by),
-                               .seen = each.seen});
-    }
+    for (const Takers::Taken& each : side.takers.taken())
+      all.addresses.push_back(row_of(side.interface, each));
   }
+  for (const Takers::Taken& each : exchanged_.found(now))
+    all.exchanged.push_back(row_of(sides_.front().interface, each));
   return all;
 }
 

@@ -7,7 +7,9 @@
 #include <vector>
 
 #include "applier/arp_socket.hpp"
+#include "applier/exchanged.hpp"
 #include "applier/options.hpp"
+#include "applier/sought.hpp"
 #include "applier/status_file.hpp"
 #include "applier/takers.hpp"
 #include "loop/file_descriptor.hpp"
@@ -17,7 +19,8 @@
 namespace adit::applier {
 
 /// Listens, as long as the box is on, whether another machine uses an address of its two interfaces, and
-/// tells so in network::kTakenFile. Interfaces may come and go.
+/// whether the Command Post is at the team's port, and tells so in network::kTakenFile. Interfaces may come
+/// and go.
 class AddressWatch {
  public:
   /// Packets that are read at once. Where more come, they rest so long: what floods the box is dropped by the
@@ -49,20 +52,24 @@ class AddressWatch {
     loop::Source heard = {};  // ended before its descriptor is closed
   };
 
+  Side& team() { return sides_.front(); }
+  Side& post() { return sides_.back(); }
   void look();
-  void look(Side& side, const std::vector<Mac>& macs);
+  void look(Side& side, const std::vector<Mac>& macs, const std::vector<std::uint32_t>& sought);
   void open(Side& side, unsigned index);
   void hear(Side& side);
   void work();
-  void ask(Side& side);
+  static void ask(const Side& side, const std::vector<std::uint32_t>& addresses);
   static void say(Side& side, Instant now);
   void tell(Instant now);
-  network::Taken taken() const;
+  network::Taken taken(Instant now) const;
 
   loop::Loop& loop_;
   std::array<Side, 2> sides_;
+  Exchanged exchanged_;
+  ToldStatus told_;
   StatusFile file_;
-  std::optional<Instant> told_at_;
+  std::optional<Instant> written_at_;
   const loop::FileDescriptor kernel_;
   loop::Source changed_, due_;
 };

@@ -1,13 +1,16 @@
 /// adit-network: changes the box's own addresses, as root, for aditd, which has no privilege.
 
 #include <csignal>
+#include <optional>
 
 #include "applier/address_watch.hpp"
 #include "applier/applier.hpp"
 #include "applier/options.hpp"
 #include "command_line/answer.hpp"
 #include "host/log.hpp"
+#include "host/service.hpp"
 #include "loop/loop.hpp"
+#include "loop/watchdog.hpp"
 
 namespace {
 
@@ -29,6 +32,10 @@ int watch(const adit::applier::Options& options) {
   const auto terminated = loop.signal(SIGTERM, [&loop] { loop.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&loop] { loop.stop(); });
   if (const auto started = watch.start(); !started) return fail(started.error());
+  std::optional<adit::loop::Watchdog> watchdog;
+  if (const auto within = adit::host::watchdog_within())
+    watchdog.emplace(loop, *within, &adit::host::notify_alive);
+  adit::host::notify_ready("listening");
   loop.run();
   return 0;
 }

@@ -36,6 +36,8 @@ command_line::Program command_line_of(Options& options) {
                {"--watch", "",
                 "only tells, in the folder of --status, which other machine uses the box's addresses",
                 &options.watch},
+               {"--told", "DIR", "where --watch reads what adit-network tells of the endpoints",
+                &options.told},
                {"--version", "", "prints the version", &options.version},
                {"--help", "", "prints this", &options.help}},
       .ending =

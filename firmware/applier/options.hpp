@@ -9,6 +9,7 @@ namespace adit::applier {
 struct Options {
   std::string wanted = "/var/lib/private/adit";          // where aditd asks
   std::string status = "/run/adit-network";              // where it is answered, for everybody to read
+  std::string told = "/run/adit-network";                // where the watch reads what adit-network tells
   std::string state = "/var/lib/adit-network";           // what was confirmed last
   std::string networkd = "/run/systemd/network";         // networkd's folder that is gone at the next start
   std::string factory = "/usr/share/adit/network.json";  // the addresses that the box comes with

@@ -45,7 +45,7 @@ void Takers::hear(const ArpPacket& packet, Instant now) {
 /// Of several the one that was heard first is named until it is not heard any more.
 void Takers::note(Own& own, const Mac& by, Instant now) {
   if (!own.taken || now >= own.by_seen + network::kTakenFor)
-    own.taken = Taken{.address = own.address, .by = by};
+    own.taken = Taken{.address = own.address, .by = by, .since = now};
   own.taken->seen = now;
   if (own.taken->by == by) own.by_seen = now;
   ask_soon(own, now);

@@ -10,10 +10,10 @@
 
 namespace adit::applier {
 
-/// Who else uses the box's addresses on one interface, by what is heard of ARP there while they are in use
-/// (RFC 5227 2.4), and when to ask for it: as an address or a cable comes, after somebody else asked for an
-/// address, and again and again only while it is taken. Holds one machine for each address, and asks as
-/// seldom however much is heard: whoever sends what he likes fills nothing.
+/// Who uses addresses on one interface where no other machine is to have them, as are the box's own, by what
+/// is heard of ARP there (RFC 5227 2.4), and when to ask for it: as an address or a cable comes, after
+/// somebody else asked for an address, and again and again only while it is taken. Holds one machine for each
+/// address, and asks as seldom however much is heard: whoever sends what he likes fills nothing.
 class Takers {
  public:
   using Instant = std::chrono::steady_clock::time_point;
@@ -29,11 +29,11 @@ class Takers {
   struct Taken {
     std::uint32_t address = 0;
     Mac by{};  // the one that was heard first, as long as it is heard
-    Instant seen{};
+    Instant since{}, seen{};
     friend bool operator==(const Taken&, const Taken&) = default;
   };
 
-  /// What the interface has from now on, and the MAC addresses that are this machine's.
+  /// What is to be nobody else's there from now on, and the MAC addresses that are this machine's.
   void set_own(const std::vector<std::uint32_t>& addresses, std::vector<Mac> macs, Instant now);
   /// The cable came: whoever is at its end may have one of the addresses.
   void ask_again(Instant now);

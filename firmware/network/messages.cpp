@@ -193,7 +193,10 @@ constexpr Member kTakenAddressMembers[] = {
     member<&TakenAddress::mac>("mac").as(codec::kCheckedText<is_mac, kExpectedMac>),
     member<&TakenAddress::seen>("seen_ms").from(0),
 };
-constexpr Member kTakenMembers[] = {member<&Taken::addresses>("taken").as(kTaken)};
+constexpr Member kTakenMembers[] = {
+    member<&Taken::addresses>("taken").as(kTaken),
+    member<&Taken::exchanged>("exchanged").as(kTaken),
+};
 
 /// The file that is kept.
 struct Kept {

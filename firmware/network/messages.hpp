@@ -129,6 +129,8 @@ inline constexpr std::chrono::seconds kTakenFor{20};
 
 struct Taken {
   std::vector<TakenAddress> addresses = {};  // kMostTaken
+  /// The Command Post's that are at the team's port, and not at their own: kMostTaken.
+  std::vector<TakenAddress> exchanged = {};
   static const codec::Row kRow;
   friend bool operator==(const Taken&, const Taken&) = default;
 };

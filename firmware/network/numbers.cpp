@@ -257,6 +257,10 @@ const Subnet* on_link(const Numbers& numbers, std::uint32_t address) {
   return found == numbers.command_post.end() ? nullptr : &*found;
 }
 
+std::optional<std::uint32_t> next_hop(const Numbers& numbers, std::uint32_t address) {
+  return on_link(numbers, address) != nullptr ? address : numbers.gateway;
+}
+
 std::string host_text(const Subnet& host) {
   return settings::ipv4_text(host.address) + '/' + std::to_string(host.prefix);
 }

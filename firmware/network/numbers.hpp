@@ -59,6 +59,9 @@ struct AddressOrNone : codec::OnlyWritten {
 
 /// Of the Command Post's addresses, the one in whose subnet `address` is.
 const settings::Subnet* on_link(const Numbers& numbers, std::uint32_t address);
+/// Who answers there for an address of the Command Post's: it, or the gateway to it; nothing: there is no
+/// way.
+std::optional<std::uint32_t> next_hop(const Numbers& numbers, std::uint32_t address);
 
 /// "192.168.7.11/24", "dhcp", "link-local"
 std::string team_text(const Numbers& numbers);

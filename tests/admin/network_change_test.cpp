@@ -127,8 +127,9 @@ TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet
 class AddressesTakenTest : public NetworkChangeTest {
  protected:
   /// As adit-network --watch does.
-  void watch_tells(const std::vector<network::TakenAddress>& taken) {
-    std::ofstream(folder / network::kTakenFile) << network::write(network::Taken{taken});
+  void watch_tells(const std::vector<network::TakenAddress>& taken,
+                   const std::vector<network::TakenAddress>& exchanged = {}) {
+    std::ofstream(folder / network::kTakenFile) << network::write(network::Taken{taken, exchanged});
     wait_until_not_fresh();
   }
   network::TakenAddress on(const char* interface, const char* address, loop::Duration ago = {}) {
@@ -160,6 +161,24 @@ TEST_F(AddressesTakenTest, CountForAWhileAfterTheyWereSeen) {
   EXPECT_EQ(taken().size(), 1u);
   watch_tells({on("team0", "192.168.7.11", network::kTakenFor)});
   EXPECT_TRUE(taken().empty()) << "who listened does not run any more";
+}
+
+TEST_F(AddressesTakenTest, AreTheCommandPostsAtTheTeamsPortWhereTheSettingsNameIt) {
+  const auto exchanged = [this] {
+    const auto found = change.fact().exchanged;
+    return found ? found->address + ' ' + found->found_on + ' ' + found->sought_on : "";
+  };
+  EXPECT_EQ(exchanged(), "");
+  watch_tells({}, {on("team0", "10.100.1.77"), on("team0", "10.100.1.201")});
+  EXPECT_EQ(exchanged(), "10.100.1.201 team0 darpa0");
+  watch_tells({}, {on("team0", "10.100.1.201", network::kTakenFor)});
+  EXPECT_EQ(exchanged(), "") << "who listened does not run any more";
+  watch_tells({}, {on("team0", "10.100.1.77")});
+  EXPECT_EQ(exchanged(), "") << "another course's";
+  status.kept = numbers("192.168.7.11/24", "10.100.3.10/24", "10.100.3.1");
+  tell();
+  watch_tells({}, {on("team0", "10.100.3.1")});
+  EXPECT_EQ(exchanged(), "10.100.3.1 team0 darpa0") << "the gateway to it";
 }
 
 TEST_F(AddressesTakenTest, OfADamagedFileAreNone) {

@@ -89,6 +89,9 @@ void the_network(std::vector<Facts>& days) {
   network.page = "http://ADDRESS";
   network.no_address = true;
   network.taken = {{true, "team0", "ADDRESS", "another machine"}};
+  days.push_back(named());
+  for (Endpoint& endpoint : days.back().endpoints) endpoint.trouble = PostTrouble::Unreachable;
+  days.back().network.exchanged = {"ADDRESS", "team0", "darpa0"};
   for (const std::optional<bool> carrier : {std::optional(false), std::optional<bool>()}) {
     days.push_back(named());
     for (Cable& cable : days.back().cables) cable.carrier = carrier;

@@ -147,6 +147,12 @@ const ConditionCase kConditionCases[] = {
     {"address_taken:command_post", Bad, Side::Network, "Our address is taken",
      "10.100.1.1 on darpa0 is also aa:bb's",
      [](Facts& facts) { facts.network.taken = {{false, "darpa0", "10.100.1.1", "aa:bb"}}; }},
+    {"cables_exchanged", Bad, Side::Network, "The two cables are exchanged",
+     "10.100.1.200 is at team0 and not at darpa0",
+     [](Facts& facts) {
+       facts.endpoints.clear();
+       facts.network.exchanged = {"10.100.1.200", "team0", "darpa0"};
+     }},
     {"cable_out:command_post", Bad, Side::Network, "The Command Post's cable is out", "darpa0 has no carrier",
      [](Facts& facts) { facts.cables[1].carrier = false; }},
     {"cable_out:team", Bad, Side::Network, "There is no interface team0", "set-up names it",
@@ -208,6 +214,32 @@ TEST(Causes, AreTheCableBeforeTheEndpoint) {
   const auto found = conditions_of(facts);
   ASSERT_THAT(ids_of(found), ElementsAre("cable_out:command_post"));
   EXPECT_EQ(found[0].hides, 23u);
+}
+
+TEST(Causes, AreTheExchangedCablesBeforeBothEndpointsAndTheRobots) {
+  for (const auto trouble : {PostTrouble::Unreachable, PostTrouble::Silent, PostTrouble::NoToken}) {
+    Facts facts = busy();
+    for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
+    facts.network.exchanged = {"10.100.1.200", "team0", "darpa0"};
+    for (Endpoint& endpoint : facts.endpoints) endpoint.trouble = trouble;
+    const auto found = conditions_of(facts);
+    const Condition alarm = find(found, "cables_exchanged");
+    EXPECT_EQ(alarm.what, "The two cables are exchanged");
+    EXPECT_GE(alarm.hides, 22u);
+    for (const std::string& id : ids_of(found))
+      EXPECT_TRUE(id == "cables_exchanged" || id.starts_with("no_token")) << id;
+  }
+}
+
+TEST(Causes, AreNoExchangedCablesWhileAnEndpointIsHeardAtItsOwnPort) {
+  for (const auto trouble : {PostTrouble::None, PostTrouble::Refusing, PostTrouble::Foreign,
+                             PostTrouble::Failing, PostTrouble::Throttling}) {
+    Facts facts = well();
+    facts.network.exchanged = {"10.100.1.200", "team0", "darpa0"};
+    down(facts, PostTrouble::Unreachable, 0);
+    facts.endpoints[1].trouble = trouble;
+    EXPECT_EQ(find(conditions_of(facts), "cables_exchanged").id, "");
+  }
 }
 
 TEST(Causes, OfOneEndpointHideNothingOfTheOther) {

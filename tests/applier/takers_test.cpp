@@ -249,7 +249,7 @@ TEST_F(ArpFilter, LetsNothingThroughWhereThereIsNoAddress) {
 }
 
 TEST_F(ArpFilter, HasRoomForAsManyAddressesAsAreWatched) {
-  std::vector<std::uint32_t> many(Takers::kMost);
+  std::vector<std::uint32_t> many(2 * Takers::kMost);  // the box's own, and the Command Post's
   std::iota(many.begin(), many.end(), 0x0c000000u);
   set(many);
   EXPECT_TRUE(is_heard(packet(kAnswers, kFirst, many.back(), kElsewhere)));

@@ -62,19 +62,6 @@ class Cables(hosts.Network):
                 self._cable(host, "eth0", addresses, self.box, port, [])
 
 
-    def exchange_cables(self):
-        """At the box: the team's is in darpa0 then, and the Command Post's in team0; or each in its own again."""
-        ends = {self.team: [self.team_address], self.post: [hosts.SCORING, hosts.MAPPING]}
-        for host in ends:
-            hosts.ip("-n", host, "link", "set", "eth0", "name", "moved")
-        for host, other in ((self.team, self.post), (self.post, self.team)):
-            hosts.ip("-n", host, "link", "set", "moved", "netns", other, "name", "eth0")
-        for host, addresses in ends.items():
-            for address in addresses:
-                hosts.ip("-n", host, "address", "add", f"{address}/24", "dev", "eth0")
-            hosts.ip("-n", host, "link", "set", "eth0", "up")
-
-
 class Nspawn(programs.Page):
     """A root of its own, over `tree`, which stays as it is."""
 

@@ -61,6 +61,9 @@ TEST(NetworkMessages, TellWhoElseHasAnAddress) {
   taken.addresses.push_back(
       {"team0", "10.0.0.1", "02:00:5e:10:00:01", Instant(std::chrono::milliseconds(5))});
   EXPECT_EQ(read<Taken>(write(taken)), taken);
+  taken.exchanged.push_back(
+      {"team0", "10.100.1.200", "02:00:5e:10:00:02", Instant(std::chrono::milliseconds(6))});
+  EXPECT_EQ(read<Taken>(write(taken)), taken);
   const std::tuple<const char*, json, const char*> cases[] = {
       {"address", "10.0.0.1; rm", "taken[0].address: expected an IPv4 address"},
       {"address", "", "taken[0].address"},

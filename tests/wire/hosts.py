@@ -59,6 +59,18 @@ class Network:
         """Takes the Command Post's cable out, or puts it back."""
         ip("-n", self.post, "link", "set", "eth0", "down" if pulled else "up")
 
+    def exchange_cables(self):
+        """At the box: the team's is in darpa0 then, and the Command Post's in team0; or each in its own again."""
+        ends = {self.team: [self.team_address], self.post: [SCORING, MAPPING]}
+        for host in ends:
+            ip("-n", host, "link", "set", "eth0", "name", "moved")
+        for host, other in ((self.team, self.post), (self.post, self.team)):
+            ip("-n", host, "link", "set", "moved", "netns", other, "name", "eth0")
+        for host, addresses in ends.items():
+            for address in addresses:
+                ip("-n", host, "address", "add", f"{address}/24", "dev", "eth0")
+            ip("-n", host, "link", "set", "eth0", "up")
+
     def start(self, host, *command, **options):
         return subprocess.Popen(["ip", "netns", "exec", host, *map(str, command)], **options)
 

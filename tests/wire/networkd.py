@@ -98,16 +98,17 @@ class Networkd:
 class AddressWatch(programs.Program):
     """adit-network --watch on the box, or on another host that has two such interfaces; by its unit it is no root."""
 
-    def __init__(self, network, folder, host=None):
+    def __init__(self, network, folder, host=None, told=None):
+        """`told`: where adit-network tells of the endpoints."""
         self.folder = folder
         folder.mkdir(exist_ok=True)
-        super().__init__(network, host or network.box, folder / "log", [programs.BIN / "adit-network", "--watch", "--status", folder])
+        super().__init__(network, host or network.box, folder / "log", [programs.BIN / "adit-network", "--watch", "--status", folder, "--told", told or folder])
         programs.wait_until((folder / "taken.json").exists, "adit-network --watch")
 
-    def taken(self):
-        """{("team0", "192.168.7.11"): mac}"""
+    def taken(self, what="taken"):
+        """{("team0", "192.168.7.11"): mac}; or what is "exchanged"."""
         told = json.loads((self.folder / "taken.json").read_text())
-        return {(each["interface"], each["address"]): each["mac"] for each in told["taken"]}
+        return {(each["interface"], each["address"]): each["mac"] for each in told[what]}
 
 
 class AditNetwork:

@@ -167,6 +167,46 @@ class AddressWatch(unittest.TestCase):
         self.assertTrue(all(frame.is_arp for frame in heard), heard)
         self.assertLessEqual(len(heard), 10, "five for each address as it comes")
 
+    def exchanged(self):
+        return sorted(address for _, address in self.watch.taken("exchanged"))
+
+    def tell_of_endpoints(self):
+        told = {"version": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": networkd.AditNetwork.numbers(),
+                "endpoints": [hosts.SCORING, hosts.MAPPING], "pending": None, "last": None, "last_nonce": "", "why": ""}
+        folder = self.watch.folder
+        (folder / ".new").write_text(json.dumps(told))
+        (folder / ".new").rename(folder / "status.json")
+
+    def test_the_command_post_is_at_the_teams_port(self):
+        self.tell_of_endpoints()
+        both = [hosts.SCORING, hosts.MAPPING]
+        self.network.exchange_cables()
+        wait_until(lambda: self.exchanged() == both, "the exchanged cables")
+        self.network.exchange_cables()
+        wait_until(lambda: self.exchanged() == [], "each in its own port")
+        self.assertEqual(self.watch.taken(), {})
+
+    def test_a_robot_that_says_it_is_the_command_post_is_not_believed(self):
+        """Which answers at its own port when it is asked there."""
+        self.tell_of_endpoints()
+        robot = self.other(self.network.team, "team0")
+        robot.has(hosts.SCORING)
+        wait_until(lambda: self.asked().count(hosts.SCORING) >= 3, "it to be asked for where it belongs, again and again")
+        self.assertEqual(self.exchanged(), [])
+        self.assertEqual(self.asked().count(hosts.MAPPING), 0, "nobody says so of this one")
+
+    def test_where_the_networks_overlap_nobody_is_sought_at_the_teams_port(self):
+        hosts.ip("-n", self.network.box, "address", "add", "10.100.1.11/24", "dev", "team0")
+        self.tell_of_endpoints()
+        heard = capture.Capture(self.network.team, "eth0", capture.mac_of(self.network.box, "team0"))
+        self.addCleanup(heard.stop)
+        hosts.ip("-n", self.network.team, "link", "set", "eth0", "down")
+        hosts.ip("-n", self.network.team, "link", "set", "eth0", "up")
+        own = {self.network.box_address, "10.100.1.11"}
+        asked = lambda: [frame.arp[1] for frame in heard.frames if frame.is_arp and frame.arp[0] == neighbour.NOBODY]
+        wait_until(lambda: all(asked().count(each) >= 3 for each in own), "its own to be asked for as the cable comes")
+        self.assertEqual(set(asked()), own)
+
     def test_a_flood_fills_nothing(self):
         """Of packets from our address, each of another machine; and of questions whether it is free."""
         other = self.other()

@@ -24,7 +24,7 @@ from programs import wait_until
 from reporting import another, began, submit
 
 PASSWORD = "a password of the team's"
-CROWD = "192.168.7.21"
+CROWD, LOOKS = "192.168.7.21", "192.168.7.22"
 TOKEN = f"Authorization: Bearer {programs.TEAM_TOKEN}\r\n"
 
 
@@ -181,6 +181,31 @@ class AlarmsOfTheBox(WithAlarms):
                 self.sees(stage, name, "bad", "network", "Our address is taken", f"{address} on {interface} is also {other.mac}'s")
                 other.leave()
                 self.goes(stage, name)
+
+    def test_the_two_cables_are_exchanged(self):
+        """Nobody of the team can ask then: whoever looks has plugged himself into the cable that is at team0."""
+        stage = self.stage()
+        self.tell_of_network(stage, endpoints=[hosts.SCORING, hosts.MAPPING])
+        watch = networkd.AddressWatch(stage.network, stage.folder / "watch", told=stage.folder / "network/status")
+        self.addCleanup(watch.stop)
+        with self.exchanged(stage):
+            alarm = self.sees(stage, "cables_exchanged", "bad", "network", "The two cables are exchanged", light="scoring", within=90)
+            self.assertRegex(alarm["why"], r"^10\.100\.1\.20[01] is at team0 and not at darpa0$")
+            self.assertEqual([each["id"] for each in self.view(stage)["alarms"]], ["cables_exchanged"], "the only cause")
+            self.assertGreater(alarm["hides"], 0)
+        self.goes(stage, "cables_exchanged")
+
+    @contextlib.contextmanager
+    def exchanged(self, stage):
+        network = stage.network
+        network.exchange_cables()
+        hosts.ip("-n", network.post, "address", "add", f"{LOOKS}/24", "dev", "eth0")
+        hosts.enter(f"/run/netns/{network.post}")
+        try:
+            yield
+        finally:
+            hosts.enter(f"/run/netns/{network.team}")
+            network.exchange_cables()
 
     def test_no_token_is_set_at_all(self):
         stage = self.stage()

@@ -40,13 +40,13 @@ export function life(report) {
 }
 
 const AWAY = {
-  no_token: "no token", cable_out: "cable out", no_address: "no address", command_post_unreachable: "unreachable", command_post_foreign: "wrong host",
+  no_token: "no token", cable_out: "cable out", cables_exchanged: "cables exchanged", no_address: "no address", command_post_unreachable: "unreachable", command_post_foreign: "wrong host",
   command_post_refusing: "refused", command_post_silent: "silent", command_post_failing: "failing", command_post_throttling: "slow down",
 };
 
 /** What is wrong with an endpoint of the Command Post, or with the way to it, by the list of alarms: {level, word}, or undefined. */
 export function troubleOf({ alarms }, endpoint) {
-  const isOf = ({ id, subject }) => id === "cable_out:command_post" || id === "no_address" || subject === "" || subject === endpoint;
+  const isOf = ({ id, subject }) => id === "cable_out:command_post" || id === "cables_exchanged" || id === "no_address" || subject === "" || subject === endpoint;
   const alarm = alarms.find((each) => AWAY[each.id.split(":")[0]] && isOf(each));
   return alarm && { level: alarm.severity, word: AWAY[alarm.id.split(":")[0]] };
 }

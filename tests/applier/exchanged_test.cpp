@@ -1,0 +1,145 @@
+#include "applier/exchanged.hpp"
+
+#include <gmock/gmock.h>
+
+#include "applier/sought.hpp"
+#include "network/messages.hpp"
+
+namespace adit::applier {
+namespace {
+
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::IsEmpty;
+
+constexpr Mac kOurs = {2, 0, 0, 0, 0, 1}, kPost = {2, 0, 0, 0, 0, 7};
+constexpr std::uint32_t kScoring = 0x0a6401c8, kMapping = 0x0a6401c9;  // 10.100.1.200, .201
+
+ArpPacket from(std::uint32_t address, const Mac& sender = kPost) {
+  return {.asks = false, .sender = sender, .from = address, .about = 0};
+}
+
+class ExchangedTest : public testing::Test {
+ protected:
+  ExchangedTest() { exchanged.set_sought({kScoring, kMapping}, {kOurs}, now); }
+
+  /// So long, with whoever is there answering what he is asked.
+  void pass(seconds time, bool is_at_team, bool is_at_post) {
+    for (const auto until = now + time; now < until; now += seconds(1)) {
+      const Exchanged::Due due = exchanged.take_due(now);
+      asked_at_post += due.at_post.size();
+      for (const std::uint32_t address : due.at_team) {
+        if (is_at_team) exchanged.hear_at_team(from(address), now);
+      }
+      for (const std::uint32_t address : due.at_post) {
+        if (is_at_post) exchanged.hear_at_post(from(address), now);
+      }
+    }
+  }
+  std::vector<std::uint32_t> found() const {
+    std::vector<std::uint32_t> all;
+    for (const Takers::Taken& each : exchanged.found(now)) all.push_back(each.address);
+    return all;
+  }
+
+  Exchanged::Instant now{std::chrono::hours(1)};
+  Exchanged exchanged;
+  std::size_t asked_at_post = 0;
+};
+
+TEST_F(ExchangedTest, AreWhereTheCommandPostAnswersAtTheTeamsPortAlone) {
+  pass(seconds(10), true, false);
+  EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));
+  pass(std::chrono::minutes(5), true, false);
+  EXPECT_THAT(found(), ElementsAre(kScoring, kMapping)) << "as long as it is so";
+  pass(network::kTakenFor + seconds(6), false, true);
+  EXPECT_THAT(found(), IsEmpty());
+}
+
+TEST_F(ExchangedTest, AreNotWhereItAnswersAtItsOwnPort) {
+  pass(std::chrono::minutes(2), false, true);
+  EXPECT_THAT(found(), IsEmpty());
+  EXPECT_EQ(asked_at_post, 0u) << "nobody is asked there without a cause";
+  exchanged.ask_again(now);
+  pass(std::chrono::minutes(2), true, true);
+  EXPECT_THAT(found(), IsEmpty()) << "both cables are in one network, or somebody pretends";
+}
+
+TEST_F(ExchangedTest, AreNotForWhatIsHeardOnce) {
+  pass(std::chrono::minutes(1), false, false);
+  exchanged.hear_at_team(from(kScoring), now);
+  for (seconds waited(0); waited < network::kTakenFor; waited += seconds(1)) {
+    EXPECT_THAT(found(), IsEmpty());
+    pass(seconds(1), false, false);
+  }
+  EXPECT_THAT(found(), IsEmpty());
+}
+
+TEST_F(ExchangedTest, AreNotForWhatThisMachineSays) {
+  for (int i = 0; i < 60; ++i) {
+    exchanged.hear_at_team(from(kScoring, kOurs), now);
+    pass(seconds(1), false, false);
+  }
+  EXPECT_THAT(found(), IsEmpty());
+}
+
+TEST_F(ExchangedTest, AreFoundAgainAsACableComes) {
+  pass(std::chrono::minutes(2), false, false);
+  EXPECT_EQ(exchanged.wake(), std::nullopt) << "nobody is asked any more";
+  exchanged.ask_again(now);
+  pass(seconds(10), true, false);
+  EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));
+}
+
+TEST_F(ExchangedTest, AskAtTheCommandPostsPortAsSeldomHoweverMuchIsHeard) {
+  pass(std::chrono::minutes(1), false, false);
+  asked_at_post = 0;
+  const auto began = now;
+  for (; now < began + std::chrono::minutes(1); now += std::chrono::milliseconds(10)) {
+    exchanged.hear_at_team(from(kScoring), now);
+    asked_at_post += exchanged.take_due(now).at_post.size();
+  }
+  EXPECT_LE(asked_at_post, static_cast<std::size_t>(std::chrono::minutes(1) / Takers::kBetween) + 1);
+}
+
+settings::Subnet subnet(const char* text) {
+  return settings::parse_subnet(text).value();
+}
+
+network::Status status(const char* gateway = nullptr) {
+  network::Status status;
+  status.kept =
+      network::Numbers{.team = subnet("192.168.7.11/24"), .command_post = {subnet("10.100.1.10/24")}};
+  if (gateway != nullptr) status.kept->gateway = settings::ipv4_of(gateway);
+  status.endpoints.addresses = {kScoring, kMapping, 0x0a640501, 0x0a640502};
+  return status;
+}
+
+TEST(Sought, AreTheEndpointsOnTheLinkAndTheGatewayToTheOthers) {
+  const std::vector team = {subnet("192.168.7.11/24")};
+  EXPECT_THAT(sought_in(status(), {}, team), ElementsAre(kScoring, kMapping));
+  EXPECT_THAT(sought_in(status("10.100.1.1"), {}, team), ElementsAre(0x0a640101u, kScoring, kMapping));
+  EXPECT_THAT(sought_in({}, {}, team), IsEmpty());
+}
+
+TEST(Sought, AreByTheBoxsOwnAddressesWhereNobodySetThem) {
+  network::Status other = status();
+  other.kept.reset();
+  EXPECT_THAT(sought_in(other, {subnet("10.100.1.10/24")}, {}), ElementsAre(kScoring, kMapping));
+  EXPECT_THAT(sought_in(other, {}, {}), IsEmpty());
+}
+
+TEST(Sought, AreNoneThatMayBeARobotsWhereTheNetworksOverlap) {
+  EXPECT_THAT(sought_in(status(), {}, {subnet("169.254.3.4/16"), subnet("10.100.1.11/24")}), IsEmpty());
+}
+
+TEST(Sought, AreBounded) {
+  network::Status many = status();
+  many.endpoints.addresses.clear();
+  for (std::uint32_t i = 0; i < network::kMostEndpoints; ++i)
+    many.endpoints.addresses.push_back(0x0a640120 + i);
+  EXPECT_EQ(sought_in(many, {}, {}).size(), Takers::kMost);
+}
+
+}  // namespace
+}  // namespace adit::applier

@@ -1,7 +1,6 @@
 """Every day's variant: the real root and units in a container, set up, reporting, restarted and killed, in under a
 minute."""
 
-import shlex
 import time
 import unittest
 
@@ -19,10 +18,10 @@ import ntp
 import programs
 import stage
 import sticks
+from contained import Contained
 from reporting import REPORT, another, submit
-from stage import Story, load_tests, note  # unittest looks for them here
+from stage import load_tests, note  # unittest looks for them here
 
-PASSWORD = "correct horse battery"
 STATE = "/var/lib/private/adit"
 JSON = messages.Style()
 POSE = {"name": "r1", "position": {"x": 4.0, "y": 0.0, "z": 0.0}, "orientation": maps.IDENTITY}
@@ -34,26 +33,7 @@ def setUpModule():
         raise unittest.SkipTest(container.missing())
 
 
-class Everyday(Story):
-    session = {}
-
-    @classmethod
-    def setUpClass(cls):
-        cls.tell(container.Stage())
-
-    def asked(self, request, body=None, status=200):
-        headers = {**self.session, "Content-Type": "application/json"}
-        got, said = self.box.insist(request, headers, body, token=None)
-        self.assertEqual(got, status, said)
-        return said
-
-    def confirmed(self):
-        """Whether the change of the addresses could be confirmed: it is made within seconds."""
-        session = {**self.session, "Content-Type": "application/json"}
-        status, said = self.box.ask("POST /adit/network/confirm", session, None, token=None)
-        self.assertIn(status, (200, 409), said)
-        return status == 200
-
+class Everyday(Contained):
     def test_it_answers_at_the_factory_address(self):
         self.box.start()
         note("container, from its start to the first answer on team0", f"{time.monotonic() - self.box.began:.1f} s")
@@ -63,17 +43,7 @@ class Everyday(Story):
         self.assertEqual(self.box.run("systemctl", "--failed", "--plain", "--no-legend", "--no-pager").stdout, "")
 
     def test_it_is_set_up_over_the_api(self):
-        self.asked("POST /adit/password", {"role": "operator", "code": self.box.code(), "password": PASSWORD})
-        type(self).session = programs.log_in(self.box, PASSWORD)
-        for name, token in (
-            ("scoring", programs.SCORING_TOKEN),
-            ("mapping", programs.MAPPING_TOKEN),
-            ("team", programs.TEAM_TOKEN),
-        ):
-            self.asked("POST /adit/tokens", {"name": name, "token": token})
-        self.asked("POST /adit/network", stage.NUMBERS)
-        programs.wait_until(self.confirmed, "darpa0 to have its address, and that to be confirmed", 60)
-        programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
+        self.set_up()
 
     def addresses(self):
         return [each["address"] for each in self.asked("GET /adit/network")["command_post"]["addresses"]]
@@ -111,11 +81,6 @@ class Everyday(Story):
             for _ in range(20):
                 network.connect(network.team, network.box_address, 80, 20.0).close()
                 tried += 1
-
-    def shell(self, script):
-        done = self.box.run("sh", "-euc", script)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done.stdout
 
     def test_from_inside_its_unit_it_may_do_no_more_than_it_must(self):
         # A container's systemd may load no filter of addresses into the kernel.
@@ -170,14 +135,6 @@ class Everyday(Story):
             lambda: self.box.pid() not in (0, before) and self.box.answers(), "another aditd to answer", 60
         )
 
-    def lit(self):
-        """The lights that are lit; the panel is a simulated one."""
-        said = self.box.run("cat", "/run/adit-panel/lights").stdout
-        return {line.split()[0] for line in said.splitlines() if line.endswith(" on")}
-
-    def wait_for_lights(self):
-        programs.wait_until(lambda: {"health", "scoring", "mapping"} <= self.lit(), "the lights to say that all is well", 60)
-
     def test_the_lights_show_a_hang_before_systemd_ends_it(self):
         before = programs.wait_until(self.box.pid, "it to run", 60)
         self.wait_for_lights()
@@ -203,7 +160,9 @@ class Everyday(Story):
         self.assertFalse(self.box.answers(), "nothing is served at darpa0, and no team is at team0")
         told = self.box.run("adit", "status")
         self.assertEqual(told.returncode, 1, told)
-        self.assertIn("Command Post is unreachable", told.stdout)
+        programs.wait_until(
+            lambda: "The two cables are exchanged" in self.box.run("adit", "status").stdout, "the alarm to say so", 90
+        )
         self.stage.network.exchange_cables()
         programs.wait_until(self.box.answers, "the team to reach the box", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
@@ -216,9 +175,14 @@ class Everyday(Story):
             programs.wait_until(lambda: self.lit() >= {"health", "scoring", "mapping"}, "another adit-panel to show the lights", 60)
             self.assertTrue(self.box.answers())
 
-    def drop_in(self, unit, *lines):
-        folder = f"/run/systemd/system/{unit}.d"
-        self.shell(f"mkdir -p {folder}; printf '%s\\n' {shlex.join(lines)} >{folder}/container.conf")
+    def test_a_watch_of_the_network_that_hangs_is_started_again(self):
+        def pid():
+            return self.shell("systemctl show -p MainPID --value adit-network-watch.service").strip()
+
+        before = pid()
+        self.shell(f"kill -STOP {before}")
+        programs.wait_until(lambda: pid() not in ("0", before), "another one to listen", 90)
+        self.assertEqual(self.shell("systemctl is-active adit-network-watch.service").strip(), "active")
 
     def speaks_ntp(self):
         return self.box.run("systemctl", "is-active", "adit-ntp").stdout.strip() == "active"

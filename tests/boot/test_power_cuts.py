@@ -5,16 +5,25 @@ import os
 import time
 import unittest
 
+import boards
+import hosts
+import stage
 from disk import dice
 from insisting import Client, Operator, end, judge
 from reporting import QUICK
-from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
+from stage import Stage, Story, load_tests, note  # unittest looks for them here
 
+BOARD = boards.PC if os.environ.get("ADIT_BOARD") == boards.PC.name else boards.QEMU_VIRT
 CUTS = int(os.environ.get("ADIT_CUTS", "4"))
 SEED = 20210924
 FAULTS = {"reports:record-then-drop": 0.05, "reports:drop": 0.05, "reports:answer-after=0.3": 0.4, "status:drop": 0.02}
 LIFE = (0.3, 4.0)  # seconds from a start to its cut
 PATIENCES = (0.5, 1.0, 5.0)  # seconds after which each client hangs up and tries again
+
+
+def setUpModule():
+    hosts.needs_namespaces()
+    stage.skip_without(BOARD)
 
 
 class PowerCuts(Story):
@@ -25,6 +34,7 @@ class PowerCuts(Story):
             options += ["--fault-rate", f"{fault}={rate}"]
         cls.tell(
             Stage(
+                board=BOARD,
                 post_options=options,
                 **{**QUICK, "command_post__timeouts__scoring_answer_ms": 1500, "reports__doubt_for_ms": 1000},
             )
@@ -65,7 +75,7 @@ class PowerCuts(Story):
         posted = [each for client in clients for each in client.posted]
         recorded, waiting = judge(self, self.stage, operator, posted, cuts=True)
         note(
-            f"{CUTS} power cuts",
+            f"{BOARD.name}, {CUTS} power cuts",
             f"{lost} writes lost, {len(posted)} reports posted, {recorded.total()} recorded, 0 doubled, "
             f"{waiting} wait for the operator, {len(operator.judged)} judged by him; "
             f"starts of {min(starts):.1f} to {max(starts):.1f} s",

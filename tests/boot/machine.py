@@ -108,10 +108,9 @@ class Machine(programs.Page):
     # What a client on the team's side sees.
 
     def wait_for_answer(self, within=400.0):
-        """Until the first answer on team0. How long that took from the power switch on is in `answered_after`; how much
-        of this machine's processor time, which is what the clock of an idle one would say, in `cpu_answered_after`."""
+        """Until the first answer on team0. What that took from the power switch on is in `start_took`."""
         self.wait_until(self.answers, "the box to answer", within)
-        self.answered_after, self.cpu_answered_after = time.monotonic() - self.switched_on, self.cpu_seconds()
+        self.start_took = self.took((self.switched_on, 0.0))
 
     def run_view(self):
         return self.ask("GET /adit/run")[1]
@@ -133,11 +132,17 @@ class Machine(programs.Page):
         fields = pathlib.Path(f"/proc/{self.process.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
+    def moment(self):
+        """For took(): the clock, and QEMU's seconds of this machine's processor."""
+        return time.monotonic(), self.cpu_seconds()
+
+    def took(self, began):
+        """In words, since a moment(). The processor's seconds say more than the clock's: it is often busy with other things, too."""
+        (clock, cpu), (clock_then, cpu_then) = self.moment(), began
+        return f"{clock - clock_then:.1f} s ({cpu - cpu_then:.1f} s of the host's processors)"
+
     def said_last(self):
         return self.console.said()[-4000:]
-
-    def start_took(self):
-        return f"{self.answered_after:.1f} s ({self.cpu_answered_after:.1f} s of this machine's processor)"
 
     def wait_until(self, condition, what, within=120.0):
         """As programs.wait_until, for a box that may be away; a machine which has ended for good is said to have."""

@@ -1,5 +1,6 @@
 """A machine with a card, between the Command Post and the team: what every scene needs."""
 
+import functools
 import json
 import os
 import pathlib
@@ -158,9 +159,18 @@ class Story(unittest.TestCase):
         return self.stage.box
 
 
+@functools.cache
+def speed_of_host():
+    """What a second of this machine's processor is worth: those that ten million turns of a loop of Python take."""
+    began = time.process_time()
+    for _ in range(10_000_000):
+        pass
+    return f"{time.process_time() - began:.2f} s for ten million turns of Python"
+
+
 def note(figure, value):
-    """Prints a figure, and keeps it where CI finds it."""
+    """Prints a figure, and keeps it where CI finds it, with the host's speed."""
     print(f"\n  {figure}: {value}", flush=True)
     FIGURES.parent.mkdir(parents=True, exist_ok=True)
     with open(FIGURES, "a", encoding="utf-8") as file:
-        file.write(f"{time.strftime('%F %T')}  {figure}: {value}\n")
+        file.write(f"{time.strftime('%F %T')}  {figure}: {value}  [this host: {speed_of_host()}]\n")

@@ -28,7 +28,7 @@ class FirstStart(Story):
 
     def test_it_answers_at_the_factory_address_and_asks_for_a_first_password(self):
         self.box.wait_for_answer()
-        note("first start, from power to the first answer on team0", self.box.start_took())
+        note("first start, from power to the first answer on team0", self.box.start_took)
         said = self.asked("GET /adit/session")
         self.assertEqual((said["role"], said["first_start"], said["set_up_open"]), (None, True, False))
 
@@ -150,12 +150,12 @@ class FirstStart(Story):
         )
         heard = self.box.run_view()["run_heard"]
         self.box.plug("darpa0")
-        began = programs.time.monotonic()
+        began = self.box.moment()
         self.box.wait_until(
             lambda: self.box.run_view()["run_heard"] > heard and self.box.is_connected("scoring"),
             "the Command Post to be heard again",
         )
-        note("healed after the cable was put back in", f"{programs.time.monotonic() - began:.2f} s")
+        note("healed after the cable was put back in", self.box.took(began))
 
     def test_all_this_time_darpa0_heard_arp_and_tcp_to_the_endpoints_alone(self):
         self.assertGreater(self.stage.ear.count(), 100)

@@ -3,7 +3,6 @@
 import pathlib
 import re
 import tempfile
-import time
 import unittest
 
 import boards
@@ -37,7 +36,7 @@ class Pc(Updating, Story):
 
     def test_it_answers_on_the_first_port_of_two(self):
         self.stage.start()
-        note("PC: first start, from power to the first answer on team0", self.box.start_took())
+        note("PC: first start, from power to the first answer on team0", self.box.start_took)
         self.box.console.wait_for_shell()
         self.assertEqual(self.box.console.ask("ls /sys/class/net").split(), ["darpa0", "lo", "team0"])
 
@@ -64,10 +63,10 @@ class Pc(Updating, Story):
         self.box.wait_until(lambda: self.box.console.run(f"ls {NOTICE}")[0] != 0, "it to be gone")
 
     def test_an_update_is_installed(self):
-        began = time.monotonic()
+        began = self.box.moment()
         self.send(self.newer)
         self.settled("installed", NEWER, within=300)
-        note(f"PC: update of {self.newer.stat().st_size / 1e6:.0f} MB", f"{time.monotonic() - began:.0f} s")
+        note(f"PC: update of {self.newer.stat().st_size / 1e6:.0f} MB", self.box.took(began))
         counts = self.counts()
         self.assertEqual((counts["ORDER"], counts["B_OK"], counts["B_TRY"]), ("B A", "1", "0"))
 

@@ -21,19 +21,19 @@ class Recovery(Story):
         return int(self.box.console.ask(PID))
 
     def comes_back(self):
-        """Until another process answers: seconds since it was hit()."""
+        """Until another process answers: what that took since it was hit(), in words."""
         self.box.wait_until(
             lambda: self.pid() not in (0, self.before) and self.box.answers(), "another aditd to answer", 180
         )
-        return time.monotonic() - self.when
+        return self.box.took(self.when)
 
     def hit(self, how):
-        type(self).before, type(self).when = self.pid(), time.monotonic()
+        type(self).before, type(self).when = self.pid(), self.box.moment()
         self.box.console.type(f"kill -{how} {self.before}")
 
     def test_a_card_that_was_prepared_in_a_reader_sets_the_box_up(self):
         self.stage.start().began()
-        note("first start of a prepared card, from power to the first answer on team0", self.box.start_took())
+        note("first start of a prepared card, from power to the first answer on team0", self.box.start_took)
         self.box.console.wait_for_shell()
         self.assertEqual(self.box.ask("GET /adit/settings")[1]["tokens"]["scoring"], True)
 
@@ -43,7 +43,7 @@ class Recovery(Story):
         self.box.console.ask("systemctl daemon-reload")
         self.hit("KILL")
         self.box.wait_until(self.are_dark, "the lights not to pretend any more")
-        note("dark after a kill -9", f"{time.monotonic() - self.when:.2f} s")
+        note("dark after a kill -9", self.box.took(self.when))
         self.assertEqual(self.pid(), 0, "nobody else made them so")
         self.box.console.ask(f"rm -r {LATER} && systemctl daemon-reload && systemctl restart adit")
         leds.wait_for(self.box, health="on", scoring="on")
@@ -54,15 +54,15 @@ class Recovery(Story):
 
     def test_and_it_is_started_again(self):
         self.hit("KILL")
-        note("serves again after a kill -9", f"{self.comes_back():.1f} s")
+        note("serves again after a kill -9", self.comes_back())
         leds.wait_for(self.box, health="on", scoring="on")
 
     def test_what_is_hung_is_killed_by_systemds_watchdog_and_started_again(self):
         self.hit("STOP")
         self.box.wait_until(self.are_dark, "the lights to show the hang")
-        note("fault on the lights after a SIGSTOP", f"{time.monotonic() - self.when:.2f} s")
+        note("fault on the lights after a SIGSTOP", self.box.took(self.when))
         self.assertEqual(self.pid(), self.before, "systemd has not ended it yet")
-        note("serves again after a SIGSTOP", f"{self.comes_back():.1f} s")
+        note("serves again after a SIGSTOP", self.comes_back())
         self.assertIn("watchdog", self.box.console.ask("journalctl -b -u adit -n 30 --no-pager").lower())
 
     def test_connections_of_the_team_wait_while_it_is_started_again(self):
@@ -105,10 +105,10 @@ class Recovery(Story):
         self.box.console.wait_for(machine.GAVE_UP.encode() + rb".*Starting kernel", 400)
 
     def restarts(self, why):
-        began, heard = time.monotonic(), len(self.box.console.heard)
+        began, heard = self.box.moment(), len(self.box.console.heard)
         self.box.console.wait_for(rb"Starting kernel", 400, heard)
         self.box.wait_until(self.box.answers, "the box to answer", 400)
-        note(f"serves again after {why}", f"{time.monotonic() - began:.1f} s")
+        note(f"serves again after {why}", self.box.took(began))
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ refused. Settings and reports come along."""
 import pathlib
 import re
 import tempfile
-import time
 import unittest
 
 import boards
@@ -34,11 +33,11 @@ class Updates(Updating, Story):
 
     def install(self, ask, version):
         """`ask`: that asks for it."""
-        began = time.monotonic()
+        began = self.box.moment()
         ask()
         self.box.wait_until(lambda: self.last() in (("installed", version), ("failed", version)), "the end of it", 480)
         self.assertEqual(self.last(), ("installed", version), self.stands()["refusal"])
-        return time.monotonic() - began
+        return self.box.took(began)
 
     def offered(self):
         return (self.stands()["stick"] or {}).get("version")
@@ -90,7 +89,7 @@ class Updates(Updating, Story):
     def test_one_that_does_not_come_up_is_left_after_three_starts(self):
         broken = bundle(self.folder, BROKEN, without="usr/lib/systemd/systemd")
         took = self.install(lambda: self.send(broken), BROKEN)
-        note(f"update of {broken.stat().st_size / 1e6:.0f} MB sent and installed", f"{took:.0f} s")
+        note(f"update of {broken.stat().st_size / 1e6:.0f} MB sent and installed", took)
         self.restart()
         self.settled("left", BROKEN, within=600)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))

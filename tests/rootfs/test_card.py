@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+"""Which cards need adit-import: rootfs/initrd/card, over folders as whoever has a card leaves them. A card that is wrongly called empty
+would be one whose settings are never taken; one that is wrongly not costs a second."""
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+from recipe import TOP
+
+CARD = TOP / "rootfs/initrd/card"
+
+
+class Card(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def is_empty(self, *files):
+        for file in files:
+            path = self.folder / file
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.touch()
+        return not subprocess.run(["sh", "-euc", '. "$1"; card_is_empty "$2"', "sh", CARD, self.folder], check=False).returncode
+
+    def test_without_a_folder_it_is(self):
+        self.assertTrue(self.is_empty())
+        self.assertTrue(self.is_empty("EFI/BOOT/grub.cfg"))
+
+    def test_with_what_adit_import_left_it_is(self):
+        (self.folder / "adit/secrets").mkdir(parents=True)
+        self.assertTrue(self.is_empty("adit/boot.env", "adit/taken.txt", "adit/settings.json.taken", "adit/network.json.taken"))
+
+    def test_with_anything_to_take_it_is_not(self):
+        for file in ("settings.json", "network.json", "SETTINGS.JSON", "secrets/label.code", "secrets/scoring.token", "settings.json.txt"):
+            with self.subTest(file):
+                self.setUp()
+                self.assertFalse(self.is_empty("adit/boot.env", f"adit/{file}"))
+
+    def test_a_token_that_is_still_to_be_wiped_keeps_it_from_being_so(self):
+        self.assertFalse(self.is_empty("adit/secrets/scoring.token.taken"))
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -26,26 +26,15 @@ std::expected<std::string, std::string> take_export(host::UntrustedFolder& folde
 
 }  // namespace
 
-/// What was told last, if anything.
-bool SpareKeeper::read_told() {
-  const auto before = host::read_file(options_.status + '/' + spare::kStickStatusFile);
-  if (!before) return false;
-  const auto known = spare::read_message<spare::StickStatus>(*before);
-  if (known) status_ = *known;
-  return known.has_value();
-}
-
-std::expected<void, std::string> SpareKeeper::look_again() {
-  if (!read_told()) return {};
-  look();
-  return tell() ? std::expected<void, std::string>{} : std::unexpected("the status cannot be told");
-}
-
 std::expected<void, std::string> SpareKeeper::work() {
-  const bool first = access((options_.status + '/' + spare::kStickStatusFile).c_str(), F_OK) != 0;
-  read_told();
-  if (!status_.doing.empty()) status_.refusal = "it was cut off: try again";
-  status_.doing.clear();
+  const std::string file = options_.status + '/' + spare::kStickStatusFile;
+  const bool first = access(file.c_str(), F_OK) != 0;
+  if (const auto before = host::read_file(file)) {
+    const auto known = spare::read_message<spare::StickStatus>(*before);
+    if (known) status_ = *known;
+    if (!status_.doing.empty()) status_.refusal = "it was cut off: try again";
+    status_.doing.clear();
+  }
   sticks_.settle();
   look();
   if (!tell()) return std::unexpected("the status cannot be told");

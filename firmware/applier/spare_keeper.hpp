@@ -22,8 +22,6 @@ class SpareKeeper {
   /// be taken away. What was asked before the machine was restarted is dropped: whoever asked has seen that
   /// it came to nothing.
   std::expected<void, std::string> work();
-  /// After that: what is in may be another since, or gone.
-  std::expected<void, std::string> look_again();
 
  private:
   std::expected<void, std::string> take_requests(host::UntrustedFolder& folder, bool drop);
@@ -34,7 +32,6 @@ class SpareKeeper {
   std::string check(const spare::Medium& medium, const std::string& name, const std::string& bytes);
   std::string take(const std::string& name);
   void doing(const char* what);
-  bool read_told();
   void look();
   bool tell();
 

@@ -10,8 +10,7 @@ int main(int argc, char** argv) {
   const auto options = adit::command_line::read(spare_command_line_of, {argv + 1, argv + argc});
   if (const auto exit = adit::command_line::answer(spare_command_line_of, ADIT_VERSION, options))
     return *exit;
-  adit::applier::SpareKeeper keeper(*options);
-  const auto done = options->look ? keeper.look_again() : keeper.work();
+  const auto done = adit::applier::SpareKeeper(*options).work();
   if (done) return 0;
   adit::host::log(adit::host::Level::Error, "cannot work", {{"why", done.error()}});
   return 1;

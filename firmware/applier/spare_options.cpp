@@ -15,7 +15,6 @@ command_line::Program spare_command_line_of(SpareOptions& options) {
                {"--block", "DIR", "where the kernel tells of disks", &options.block},
                {"--devices", "DIR", "where disks are", &options.devices},
                {"--mount", "CMD", "systemd-mount, which mounts them", &options.mount},
-               {"--look", "", "only tells what is on the stick, and takes up nothing", &options.look},
                {"--version", "", "prints the version", &options.version},
                {"--help", "", "prints this", &options.help}},
       .ending =

@@ -14,7 +14,6 @@ struct SpareOptions {
   std::string block = "/sys/class/block";        // where the kernel tells of disks
   std::string devices = "/dev";                  // where they are
   std::string mount = "systemd-mount";           // mounts them, and takes --umount
-  bool look = false;                             // only tells what is in
   bool help = false, version = false;
 };
 

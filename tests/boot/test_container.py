@@ -186,14 +186,6 @@ class Everyday(Contained):
         self.shell(f"kill -STOP {before}")
         programs.wait_until(lambda: listening() not in ("", before), "another one to listen", 90)
 
-    def lingers(self, unit):
-        """It has done its work, and has not ended: for seconds, where it is else an instant."""
-        self.drop_in(unit, "[Service]", "ExecStartPost=sleep 5")
-        self.shell(f"systemctl daemon-reload; systemctl start --no-block {unit}")
-        state = f"systemctl show -p SubState --value {unit}"
-        programs.wait_until(lambda: self.shell(state).strip() == "start-post", f"{unit} to be at its end", 60)
-        self.shell(f"rm /run/systemd/system/{unit}.d/container.conf; systemctl daemon-reload")
-
     def speaks_ntp(self):
         return self.box.run("systemctl", "is-active", "adit-ntp").stdout.strip() == "active"
 
@@ -321,7 +313,6 @@ class Everyday(Contained):
         second.plug()
         self.wait_for_stick(lambda said: "more than one stick" in said["hindrance"], "the second stick to be found")
         self.assertIn("more than one stick", self.asked("POST /adit/spare/to-stick", status=409))
-        self.lingers("adit-spare.service")
         second.pull()
         self.wait_for_stick(lambda said: not said["hindrance"], "the second stick to be gone")
         stick.fill()

@@ -14,8 +14,6 @@
 namespace adit::simulation {
 namespace {
 
-using Json = nlohmann::json;
-
 constexpr double kSure = 20;         // seconds after which nothing is recorded any more that was lost
 constexpr double kAfter = 90;        // that he stays once the trouble is over
 constexpr std::int64_t kOwn = 9000;  // serials of his own reports
@@ -51,26 +49,26 @@ void Judge::look() {
   if (!is_over() && composes_ && random_.chance(0.3)) compose();
   client_.ask(http_request("GET", "/adit/run", kHeaders, ""), {.what = "/adit/run", .who = "reader"},
               [this](int status) {
-                if (status == 200) viewed(Json::parse(client_.heard()));
+                if (status == 200) viewed(nlohmann::json::parse(client_.heard()));
                 say_next();
               });
 }
 
-void Judge::viewed(const Json& view) {
+void Judge::viewed(const nlohmann::json& view) {
   const double now = view.at("now");
   place_ = place_at(view.at("endpoints").front().at("address"));
   if (looks_) {
-    for (const Json& row : view.at("reports")) {
+    for (const nlohmann::json& row : view.at("reports")) {
       // What is in doubt elsewhere is found out there.
       const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in doubt";
       if (!elsewhere) judge_report(row, now);
     }
     if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
   }
-  for (const Json& row : view.at("aside")) judge_aside(row);
+  for (const nlohmann::json& row : view.at("aside")) judge_aside(row);
 }
 
-void Judge::judge_report(const Json& row, double now) {
+void Judge::judge_report(const nlohmann::json& row, double now) {
   if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
   const std::string state = row.at("state");
   const std::int64_t id = row.at("number"),
@@ -89,7 +87,7 @@ void Judge::judge_held(std::int64_t id, std::int64_t serial) {
   say(id, sends ? kSend : kWithdraw, serial);
 }
 
-void Judge::judge_aside(const Json& row) {
+void Judge::judge_aside(const nlohmann::json& row) {
   const bool overtaken = row.at("overtaken");
   if (!is_over() && !looks_) return;
   if (overtaken && random_.chance(0.5)) return;
@@ -102,7 +100,8 @@ void Judge::compose() {
   const std::int64_t serial = kOwn + ++composed_;
   words_.push_back(
       {"/adit/reports", kCompose,
-       Json{{"type", "Drill"}, {"x", static_cast<double>(serial) * 100}, {"y", 2.5}, {"z", -1.0}}.dump(),
+       nlohmann::json{{"type", "Drill"}, {"x", static_cast<double>(serial) * 100}, {"y", 2.5}, {"z", -1.0}}
+           .dump(),
        serial});
 }
 

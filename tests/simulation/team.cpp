@@ -20,7 +20,6 @@ Reporter::Reporter(World& world, int number)
       twin_(world, address(110 + number), manners(random_),
             world.random("twin of reporter " + std::to_string(number))),
       twins_(random_.chance(0.3) ? 0.5 : 0),
-      number_(number),
       every_(random_.between(0.5, 10)),
       serial_(number * kReportsOfOne) {}
 

@@ -31,7 +31,6 @@ class Reporter {
   Random random_;
   Client client_, twin_;
   const double twins_;  // how likely it is posted a second time before the first is answered
-  const int number_;
   const double every_;
   double end_ = 0;
   std::int64_t serial_;

@@ -113,10 +113,10 @@ json sent_up(Format format, const std::string& body) {
 }
 
 json through_json(const json& marker) {
-  return sent_up(Format::Json, test::as_json({{"markers", {marker}}}));
+  return sent_up(Format::Json, test::as_json({{"markers", json::array({marker})}}));
 }
 json through_cbor(const json& marker) {
-  return sent_up(Format::Cbor, test::as_cbor({{"markers", {marker}}}));
+  return sent_up(Format::Cbor, test::as_cbor({{"markers", json::array({marker})}}));
 }
 
 TEST(Marker, IsTheWholeOfRossDefinition) {
@@ -185,7 +185,7 @@ TEST(Marker, TakesRossDefaultForAMemberThatIsAbsentOrNull) {
 std::string body_with_points(Format format, const std::string& raw) {
   json marker = least_marker();
   marker["points"] = "POINTS";
-  const json message = {{"markers", {marker}}};
+  const json message = {{"markers", json::array({marker})}};
   std::string body = format == Format::Json ? test::as_json(message) : test::as_cbor(message);
   const std::string place = format == Format::Json ? "\"POINTS\"" : "\x66POINTS";
   return body.replace(body.find(place), place.size(), raw);
@@ -195,7 +195,7 @@ TEST(Marker, ReadsANumberOfItsGeometryInEachFormOfJson) {
   for (const char* const three : {"3", "3.0", "3e0", "0.03E+2", "300e-2"}) {
     const std::string points = std::string(R"([{"x":)") + three + R"(,"y":-0.0,"z":0}])";
     const json up = sent_up(Format::Json, body_with_points(Format::Json, points));
-    EXPECT_EQ(up["points"], json({point(3, 0, 0)})) << three;
+    EXPECT_EQ(up["points"], json::array({point(3, 0, 0)})) << three;
   }
 }
 
@@ -206,7 +206,7 @@ TEST(Marker, ReadsANumberOfItsGeometryInEachFormOfCbor) {
   for (const std::string& three : forms) {
     const std::string points = "\x9f\xa3\x61x" + three + "\x61y\x20\x61z\xf9\xc0\x00\xff"s;  // -1 and -2.0
     const json up = sent_up(Format::Cbor, body_with_points(Format::Cbor, points));
-    EXPECT_EQ(up["points"], json({point(3, -1, -2)})) << testing::PrintToString(three);
+    EXPECT_EQ(up["points"], json::array({point(3, -1, -2)})) << testing::PrintToString(three);
   }
 }
 
@@ -225,7 +225,7 @@ TEST(Marker, IsRefusedWithASentenceThatNamesTheMember) {
       {"points", one, "markers[0].points: expected an array, got an object"},
       {"points", {one, 5}, "markers[0].points[1]: expected an object, got a whole number"},
       {"points", {one, {{"x", 1}, {"y", 2}}}, "markers[0].points[1].z: missing"},
-      {"points", {point(1, kNan, 3)}, "markers[0].points[0].y: expected a finite number, got nan"},
+      {"points", json::array({point(1, kNan, 3)}), "markers[0].points[0].y: expected a finite number, got nan"},
       {"points", json(100'001, json::object()), "markers[0].points: expected at most 100000, got 100001"},
       {"colors", 1, "markers[0].colors: expected an array, got a whole number"},
       {"colors", json(100'001, json::object()), "markers[0].colors: expected at most 100000, got 100001"},
@@ -249,7 +249,7 @@ TEST(Marker, IsRefusedWithASentenceThatNamesTheMember) {
 
 TEST(Marker,
      KeepsItsColorsHoweverManyPointsItHas) {  // rviz ignores those that fit none, and shows the marker
-  const json one = {color(1, 0, 0, 1)}, two = {color(1, 0, 0, 1), color(0, 1, 0, 1)};
+  const json one = json::array({color(1, 0, 0, 1)}), two = {color(1, 0, 0, 1), color(0, 1, 0, 1)};
   for (const int type : {1, 4, 8, 11}) {
     for (const int action : {0, 2}) {
       for (const json& points : {json::array(), json(kSaid.at("points"))}) {

@@ -53,7 +53,8 @@ bool Descriptors::dispatch(Whose whose) {
   std::array<epoll_event, 256> events;  // NOLINT(cppcoreguidelines-pro-type-member-init): asked for so often
   const int count = ::epoll_wait(epoll_, events.data(), static_cast<int>(events.size()), 0);
   for (const epoll_event& event : std::span(events).first(static_cast<std::size_t>(std::max(count, 0)))) {
-    happened_[event.data.u64] |= event.events;
+    const std::uint64_t number = event.data.u64;  // the kernel packs it: no reference to it
+    happened_[number] |= event.events;
   }
   bool any = false;
   for (const auto& [number, what] : std::exchange(happened_, {})) {

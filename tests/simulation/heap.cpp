@@ -35,7 +35,7 @@ std::size_t most_wanted() {
 
 }  // namespace adit::simulation
 
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#ifndef ADIT_SANITIZED  // whose heap is its own
 extern "C" {
 
 void* malloc(std::size_t size) {

@@ -220,7 +220,7 @@ class Starting(Running):
         board = self.folder / "board.json"
         board.write_text('{"name": "b", "title": "B", "panle": {}}')
         self.begin_panel("--board", board)
-        self.assertIn("board.json: panle: no such key; did you mean panel?", self.said())
+        self.wait_until(lambda: "board.json: panle: no such key; did you mean panel?" in self.said(), "the key to be told")
 
     def test_what_keeps_it_from_starting_is_told(self):
         for words, code, why in (((), 1, "--socket is missing"), (("--socket", "/nowhere/socket"), 1, "/nowhere/socket: No such file"),

@@ -225,6 +225,7 @@ class AlarmsOfTheBox(WithAlarms):
         self.blinks(stage, "attention")
         said = stage.box.insist("POST /adit/tokens", operator, {"name": "team", "token": programs.TEAM_TOKEN}, token=None)
         self.assertEqual(said[0], 200, said)
+        wait_until(lambda: stage.box.ask("GET /adit/run")[0] == 200, "the token to be in use")
         self.goes(stage, "no_token:team")
 
     def operator(self, stage):

@@ -62,8 +62,8 @@ TEST_F(HeldBack, ThePeerIsNotSilentMeanwhile) {
   EXPECT_EQ(answered(ask(peer.endpoint(), std::move(request))).status, 200);
 }
 
-/// Where the kernel had to send something twice, the answer's time is taken, for nobody knows better: then once
-/// more. It does so for nearly each large body on a busy machine, so this one is small.
+/// Where the kernel had to send something twice, the answer's time is taken, for nobody knows better: then
+/// once more. It does so for nearly each large body on a busy machine, so this one is small.
 TEST_F(HeldBack, TheTimeOfTheAnswerIsNotWhenTheLastByteLeft) {
   for (int tries = 0; tries < 10; ++tries) {
     const ListeningPeer peer(answers_after(milliseconds(400)));

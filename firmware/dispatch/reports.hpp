@@ -153,6 +153,7 @@ class Reports {
     std::int64_t same_as = 0;  // it may be the same as this one: held until the run is known for certain
   };
   Hold reason_to_hold(const Report& report) const;
+  Hold maybe_repeat(const Report& report) const;
   bool check(std::int64_t number, Time time);
   bool is_young(const Report& report, Instant now) const;
   bool may_go(const Report& report, Instant now) const;
@@ -183,6 +184,9 @@ class Reports {
   void meet(const AnotherRun& another, const icd::RunStatus& status, Time time);
   void meet(const icd::ReportReply& reply, Time time);
   std::vector<Report> steps_into(std::int64_t next, const std::string& why, Time time);
+  std::vector<Report> answered_since_status(std::int64_t next) const;
+  bool is_unclaimed(const Report& report) const;
+  void claim(const std::string& name, Time time);
   void begin_run(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
                  Time time);
   void take_up_run(const Run& known, const std::string& why, Time time);
@@ -190,7 +194,8 @@ class Reports {
   void clear_held(Time time);
   bool anything_was_sent_here() const;
   const Report* sent_elsewhere(const Report& report, const std::function<bool(const Run&)>& counts) const;
-  const Report* maybe_same(const Report& report) const;
+  const Report* unclaimed_same(const Report& report) const;
+  const Report* same_in_maybe(const Report& report) const;
   const Report* sent_to_another_post(const Report& report) const;
 
   ReportRules rules_;

@@ -92,7 +92,8 @@ std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& repor
   std::vector<const Report*> same;
   for (const std::int64_t number : book_.at_position(report.position)) {
     const Report& other = book_.at(number);
-    if (is_of_run(other) && is_same(other.report, report)) same.push_back(&other);
+    const bool is_its = is_of_run(other) && !is_unclaimed(other);
+    if (is_its && is_same(other.report, report)) same.push_back(&other);
   }
   return same;
 }
@@ -121,18 +122,30 @@ const Report* Reports::twin(const Report& report) const {
   return nullptr;
 }
 
+/// It is the same as one of which an answer is to tell yet whether it is of the present run.
+Reports::Hold Reports::maybe_repeat(const Report& report) const {
+  if (const Report* const other = same_in_maybe(report); other != nullptr) {
+    return {icd::sentence("held: the same as report ", other->number,
+                          ", and that run may go on still: nothing but the clock says that a new one began (",
+                          run().why, ")"),
+            other->number};
+  }
+  if (const Report* const other = unclaimed_same(report); other != nullptr) {
+    return {icd::sentence("held: the same as report ", other->number,
+                          ", which was answered when the new run may have begun already (", run().why,
+                          "): the next answer tells"),
+            other->number};
+  }
+  return {};
+}
+
 /// Why it must not go without the operator's word, if so.
 Reports::Hold Reports::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
   for (const Report* const doubt : book_.doubts(run().number)) {
     if (doubt->is_lost()) return {icd::sentence("held: ", doubt->note, ", and this may be it")};
   }
-  if (const Report* const other = maybe_same(report); other != nullptr) {
-    return {icd::sentence("held: the same as report ", other->number,
-                          ", and that run may go on still: nothing but the clock says that a new one began (",
-                          run().why, ")"),
-            other->number};
-  }
+  if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   if (rules_.review == Review::Off) return {};
   for (const auto& [number, other] : book_.all()) {
     // Of two that wait, the later one is held.

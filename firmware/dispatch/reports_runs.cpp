@@ -1,4 +1,8 @@
 // The run that all reports belong to: when it is another one, and what that does to them.
+#include <algorithm>
+#include <iterator>
+
+#include "codec/read.hpp"
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/reports.hpp"
 #include "dispatch/same_report.hpp"
@@ -21,6 +25,25 @@ Report passed_on(Report report, std::int64_t run, Time time) {
   report.note = "";
   report.changed = time.stamp;
   return report;
+}
+
+/// Until it is known which run is on.
+bool is_held_as_repeat(const Report& report) {
+  return report.state == ReportState::Received && report.same_as != 0;
+}
+
+/// What is_held_as_repeat() is a repeat of `original` for certain.
+Report joined_to(std::int64_t original, Report report, Time time) {
+  report.state = transition(report.state, ReportEvent::Joined)->to;
+  report.note = icd::sentence("the same as report ", original);
+  report.changed = time.stamp;
+  return report;
+}
+
+/// The name that a recorded report's answer gives to its run; "": none.
+std::string run_in(const std::string& answer) {
+  const auto reply = codec::read_report_reply(answer);
+  return reply ? reply->run : "";
 }
 
 std::string why_at(const std::string& post, const std::string& before) {
@@ -97,8 +120,9 @@ void Reports::meet(const icd::ReportReply& reply, Time time) {
     if (known != nullptr) return take_up_run(*known, another->why, time);
     return begin_run(another->why, another->certain ? 0 : run().number, std::nullopt, time);
   }
+  if (reply.run.empty() || !run().id.empty()) return;
   const Run* const before = account_.named_before();
-  if (before == nullptr || reply.run.empty() || !run().id.empty()) return;
+  if (before == nullptr) return claim(reply.run, time);
   if (before->id == reply.run) return return_to(*before, time);
   account_.is_another(time.stamp);
   clear_held(time);
@@ -142,10 +166,52 @@ std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& wh
   return steps;
 }
 
+/// What was answered since the last status of the run that ends. A status that shows a new run for certain
+/// does not tell in which of the two it was recorded.
+std::vector<Report> Reports::answered_since_status(std::int64_t next) const {
+  std::vector<Report> steps;
+  for (const auto& [number, report] : book_.all()) {
+    const bool since = report.state == ReportState::Answered && report.changed > account_.status_at();
+    if (report.run == run().number && since) steps.emplace_back(report).run = next;
+  }
+  return steps;
+}
+
+/// It was answered before its run was noticed, and no answer has named that run: it may be of the one before.
+bool Reports::is_unclaimed(const Report& report) const {
+  return report.run == run().number && report.state == ReportState::Answered &&
+         report.changed < run().began && run().id.empty();
+}
+
+/// The first answer that names the present run, `name`, tells what was recorded in it: what was held as a
+/// repeat of that gets its answer. All else is of the run before, and none of its repeats is one.
+void Reports::claim(const std::string& name, Time time) {
+  std::vector<Report> steps;
+  for (const auto& [number, report] : book_.all()) {
+    if (!is_unclaimed(report) || run_in(report.answer) == name) continue;
+    const Run* const its = account_.of_name(run_in(report.answer));
+    if (its != nullptr) steps.emplace_back(report).run = its->number;
+  }
+  std::vector<std::pair<std::int64_t, std::int64_t>> joined;
+  for (const std::int64_t number : book_.open()) {
+    const Report& report = book_.at(number);
+    if (!is_held_as_repeat(report) || report.run != run().number) continue;
+    const Report& original = book_.at(report.same_as);
+    if (!is_unclaimed(original) || run_in(original.answer) != name) continue;
+    steps.push_back(joined_to(original.number, report, time));
+    joined.emplace_back(number, original.number);
+  }
+  if (!steps.empty()) book_.change(steps, run());
+  for (const auto& [number, original] : joined) hand_clients_over(number, book_.at(original));
+  clear_held(time);
+}
+
 void Reports::begin_run(const std::string& why, std::int64_t may_be,
                         const std::optional<icd::RunStatus>& status, Time time) {
   const auto doubts = book_.doubts(run().number);
-  const auto steps = steps_into(account_.runs().next_number(), why, time);
+  const std::int64_t next = account_.runs().next_number();
+  auto steps = steps_into(next, why, time);
+  if (status && may_be == 0) std::ranges::copy(answered_since_status(next), std::back_inserter(steps));
   inquiry_.reset();
   account_.begin(why, may_be, status, steps, time);
   explain(doubts, "", time);
@@ -174,9 +240,8 @@ void Reports::return_to(const Run& known, Time time) {
     changed.changed = time.stamp;
     if (report.state == ReportState::InDoubt) changed.before.reset();
     if (report.state == ReportState::Waiting) unchecked_.insert(each);
-    if (report.state != ReportState::Received || report.same_as == 0) continue;
-    changed.state = transition(report.state, ReportEvent::Joined)->to;
-    changed.note = icd::sentence("the same as report ", report.same_as);
+    if (!is_held_as_repeat(report)) continue;
+    changed = joined_to(report.same_as, changed, time);
     joined.emplace_back(each, report.same_as);
   }
   account_.merge_into(number, steps, time);
@@ -189,8 +254,7 @@ void Reports::clear_held(Time time) {
   std::vector<ReportBook::Step> steps;
   for (const std::int64_t number : book_.open()) {
     const Report& report = book_.at(number);
-    const bool held = report.state == ReportState::Received && report.same_as != 0;
-    if (!held || report.run != run().number) continue;
+    if (!is_held_as_repeat(report) || report.run != run().number) continue;
     steps.push_back({number, ReportEvent::Cleared,
                      icd::sentence("report ", report.same_as, " is another run's"),
                      [](Report& cleared) { cleared.same_as = 0; }});
@@ -213,8 +277,17 @@ const Report* Reports::sent_elsewhere(const Report& report,
   return nullptr;
 }
 
+/// The same report that was answered when the present run may have begun already.
+const Report* Reports::unclaimed_same(const Report& report) const {
+  for (const std::int64_t number : book_.at_position(report.report.position)) {
+    const Report& other = book_.at(number);
+    if (is_unclaimed(other) && is_same(other.report, report.report) && !effect_of(other).again) return &other;
+  }
+  return nullptr;
+}
+
 /// The same report that was sent in the run that the present one may be still.
-const Report* Reports::maybe_same(const Report& report) const {
+const Report* Reports::same_in_maybe(const Report& report) const {
   return sent_elsewhere(report,
                         [this](const Run& its) { return account_.runs().may_be_present(its.number); });
 }

@@ -6,10 +6,17 @@
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
+namespace {
+
+/// An answer may have been the last word of the run that was written down; seconds.
+constexpr double kAnswerWritten = 1;
+
+}  // namespace
 
 void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::string& post) {
   runs_.open(std::move(all), latest);
   written_ = run().heard;
+  status_at_ = run().heard - kAnswerWritten;
   post_ = post.empty() ? run().post : post;
   if (post.empty() || !run().post.empty()) return;
   runs_.present().post = post;
@@ -70,6 +77,7 @@ void RunAccount::begin(const std::string& why, std::int64_t may_be,
       .began = time.stamp, .why = why, .last = status, .heard = time.stamp, .post = post_, .may_be = may_be};
   if (status) next.status_clock = Clock{.shows = status->run_clock};
   runs_.begin(std::move(next));
+  status_at_ = time.stamp;
   clock_at_ = time.now;
   forget_counts();
   book_.change(steps, run());
@@ -89,6 +97,7 @@ std::int64_t RunAccount::announce(const std::string& why, const std::string& pos
 
 void RunAccount::take_up(std::int64_t number, std::span<const Report> steps, Time time) {
   runs_.take_up(number);
+  status_at_ = run().heard - kAnswerWritten;
   clock_at_.reset();
   forget_counts();
   book_.change(steps, run());
@@ -136,7 +145,7 @@ void RunAccount::heard(const icd::RunStatus& status, Time time) {
   const bool seen_to_run = clock.runs && !(run.status_clock && run.status_clock->runs);
   run.last = status;
   run.status_clock = clock;
-  run.heard = time.stamp;
+  run.heard = status_at_ = time.stamp;
   const bool is_late = time.stamp - written_ >= kWriteEvery || time.stamp < written_;
   if (is_news || seen_to_run || is_late) write_down(time.stamp);
 }

@@ -32,6 +32,9 @@ class RunAccount {
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
   const Run& run() const { return runs_.present(); }
+  /// When the present run's last status was heard: what was answered since may be of the next one. Seconds
+  /// since 1970; not later than it was, where that was before this program's life.
+  double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
   /// The run was heard of less than kFresh ago.
   bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= kFresh; }
@@ -95,7 +98,8 @@ class RunAccount {
   Runs runs_;
   std::string post_;
   Leap leap_;
-  double written_ = 0;            // Run::heard as it is on disk
+  double written_ = 0;  // Run::heard as it is on disk
+  double status_at_ = 0;
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
   std::optional<Instant> dumb_at_;
   std::optional<Instant> clock_at_;  // when one of the run's clocks was heard, if in this program's life

@@ -62,6 +62,11 @@ const Profile kProfiles[] = {
                                trouble.new_runs = true;
                                trouble.power_cut = 0.01;
                              })},
+    {"NewRunsOfOneName", with(kFaults,
+                              [](Trouble& trouble) {
+                                trouble.new_runs = trouble.one_name = true;
+                                trouble.power_cut = 0.01;
+                              })},
     {"Courses", with(kFaults,
                      [](Trouble& trouble) {
                        trouble.courses = true;

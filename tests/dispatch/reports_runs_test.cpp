@@ -110,6 +110,7 @@ TEST(ANewRun, TakesTheSameReportAsANewOne) {
   Scene scene;
   scene.post(1);
   scene.answer(recorded());
+  scene.hear(19, 0);
   scene.hear(25, 0, 3);
   scene.post(1);
   EXPECT_EQ(scene.state(2), Sending);

@@ -29,7 +29,7 @@ HttpAnswer CommandPost::record(const icd::ArtifactReport& report, Seconds now) {
   const double late = clocks_ == Clocks::Differing ? 50 : 0;
   const double clock = stands ? 3.14 : std::max(0.0, now - started_ - late);
   return {201, "application/json",
-          icd::sentence("{\"id\": ", recorded_.size(), ", \"run\": \"", stands ? 1 : run_,
+          icd::sentence("{\"id\": ", recorded_.size(), ", \"run\": \"", one_name_ ? 1 : run_,
                         "\", \"team\": \"adit\", \"run_clock\": ", clock, ", \"report_status\": \"", status,
                         "\", \"score_change\": ", points, "}")};
 }

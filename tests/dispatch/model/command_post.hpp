@@ -29,7 +29,8 @@ class CommandPost {
   /// server does, each shows always the same, and every run is called "1".
   enum class Clocks { Running, Differing, Standing };
 
-  explicit CommandPost(Clocks clocks = Clocks::Running) : clocks_(clocks) {}
+  explicit CommandPost(Clocks clocks = Clocks::Running, bool one_name = false)
+      : clocks_(clocks), one_name_(one_name || clocks == Clocks::Standing) {}
 
   HttpAnswer record(const icd::ArtifactReport& report, Seconds now);
   icd::RunStatus status(Seconds now) const;
@@ -43,6 +44,7 @@ class CommandPost {
 
  private:
   const Clocks clocks_;
+  const bool one_name_;
   Phase phase_ = Phase::Running;
   std::int64_t run_ = 1;  // as it is told apart here
   Seconds started_ = 0;

@@ -20,7 +20,9 @@ constexpr double kRefusedWrite = 0.02;
 }  // namespace
 
 World::World(const Trouble& trouble, std::uint64_t seed)
-    : trouble_(trouble), random_(seed), posts_there_(trouble.courses ? 2 : 1, CommandPost(trouble.clocks)) {
+    : trouble_(trouble),
+      random_(seed),
+      posts_there_(trouble.courses ? 2 : 1, CommandPost(trouble.clocks, trouble.one_name)) {
   tells_ = std::getenv("ADIT_MODEL_STORY") != nullptr;
   disk_.cut = [this] {
     if (!calm_ && reports_ && chance() < trouble_.power_cut) throw PowerCut{};

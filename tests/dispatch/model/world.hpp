@@ -30,6 +30,7 @@ struct Trouble {
   double disk_full = 0;  // for some seconds
   bool other_sender = false, admin_stops = false, new_runs = false;
   CommandPost::Clocks clocks = CommandPost::Clocks::Running;
+  bool one_name = false;       // for all runs
   bool courses = false;        // the settings name one Command Post, another, or none that is there; and back
   bool operator_acts = false;  // and declares a new run that Adit has not noticed yet
   Review review = Review::Off;

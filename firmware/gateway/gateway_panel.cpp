@@ -18,15 +18,14 @@ constexpr std::chrono::seconds kIdentify{10};  // by the button
 }  // namespace
 
 void Gateway::assert_states() {
-  const forward::Channel& scoring = flow_.scoring().channel();
   const bool serving = listeners_.serves() && flow_.scoring().trouble().empty();
   lights_.set(State::Serving, serving);
   lights_.set(State::NotServing, !serving);
-  lights_.set(State::ScoringConnected, scoring.connected());
   const auto posts = endpoints();
+  lights_.set(State::ScoringConnected, posts[0].connected);
   lights_.set(State::ScoringFailing, !posts[0].trouble.empty());
   lights_.set(State::ReportWaiting, !flow_.reports().waiting_here().empty());
-  lights_.set(State::MappingConnected, flow_.telemetry().channel().connected());
+  lights_.set(State::MappingConnected, posts[1].connected);
   lights_.set(State::MappingFailing, !posts[1].trouble.empty());
   const auto all = alarms();
   const auto calling = std::ranges::count_if(all, alarms::calls);

@@ -180,12 +180,8 @@ void find_box_troubles(const Facts& facts, Found& found) {
   add(found, facts.settings_trouble,
       {.id = "settings_not_used", .what = "The saved settings are not used", .action = kOpenSetUp});
   add(found, facts.board_trouble, {.id = "board_not_used", .what = "The board's file is not used"});
-  for (std::size_t i = 0; i < facts.notices.size(); ++i) {
-    add(found, facts.notices[i],
-        {.id = sentence("notice:", i + 1),
-         .subject = std::to_string(i + 1),
-         .what = "The start was not clean"});
-  }
+  for (const auto& [name, why] : facts.notices)
+    add(found, why, {.id = "notice:" + name, .subject = name, .what = "The box is not well"});
   find_update_troubles(facts.update, found);
 }
 

@@ -120,12 +120,12 @@ struct Facts {
 
   std::string ledger_refusal = {}, ledger_damage = {};
   Disk disk = {};
-  std::optional<bool> time_set = {};      // nothing: the box cannot tell
-  std::string ntp_trouble = {};           // why NTP is not as the settings have it; or ""
-  std::string change_trouble = {};        // of the last change of the settings
-  std::string settings_trouble = {};      // why the saved ones are not used
-  std::string board_trouble = {};         // why the board's file is not
-  std::vector<std::string> notices = {};  // of who started the box
+  std::optional<bool> time_set = {};                // nothing: the box cannot tell
+  std::string ntp_trouble = {};                     // why NTP is not as the settings have it; or ""
+  std::string change_trouble = {};                  // of the last change of the settings
+  std::string settings_trouble = {};                // why the saved ones are not used
+  std::string board_trouble = {};                   // why the board's file is not
+  std::map<std::string, std::string> notices = {};  // of root's programs, by their names
   UpdateFact update = {};
   std::string rests = {};  // why the box takes nothing and sends nothing; or ""
 };

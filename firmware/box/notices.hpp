@@ -1,12 +1,12 @@
 #pragma once
 
+#include <map>
 #include <string>
-#include <vector>
 
 namespace adit::box {
 
-/// What those who started the box have to tell its operator, a sentence a file of this folder; in the order
-/// of the files' names. A folder that is not there, or cannot be read, has none.
-std::vector<std::string> read_notices(const std::string& folder);
+/// What root's programs have to tell the box's operator, a sentence a file of this folder; by the files'
+/// names. A folder that is not there, or cannot be read, has none.
+std::map<std::string, std::string> read_notices(const std::string& folder);
 
 }  // namespace adit::box

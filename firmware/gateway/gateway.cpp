@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "box/candidate.hpp"
+#include "box/notices.hpp"
 #include "dispatch/another_post.hpp"
 #include "gateway/report_rows.hpp"
 #include "host/interfaces.hpp"
@@ -200,6 +201,7 @@ void Gateway::every_second() {
   look_at_clock();
   flow_.tick(disk_writer_);
   links_.look();
+  notices_ = box::read_notices(parts_.notices_folder);
   look_for_alarms();
   show_lights();
   network_.every_second();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <expected>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -55,8 +56,7 @@ struct Parts {
   ledger::Ledger ledger;
   std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
   settings::Board board;
-  std::string board_trouble;         // why what the board's file says does not count; or ""
-  std::vector<std::string> notices;  // of those who started the box
+  std::string board_trouble;  // why what the board's file says does not count; or ""
   std::unique_ptr<panel::Lines> lines;
   std::unique_ptr<panel::ButtonLine> button;  // null: there is none
   std::string panel_socket = {};              // of adit-panel, which has both; or ""
@@ -67,6 +67,7 @@ struct Parts {
   std::string watch_folder;               // where adit-network --watch tells who else has our addresses
   std::string clock_folder;               // where adit-clock tells its status
   std::string spare_folder;               // where adit-spare tells its status
+  std::string notices_folder;             // where root's programs leave notices, at a start or later
   std::optional<forward::Legacy> legacy;  // of the gateway before, where there was one
 };
 
@@ -185,7 +186,8 @@ class Gateway final : public api::Source, public api::Operator {
   bool makes_way_ = false;
   mutable ReadAnswers answers_;  // of the view's reports
   std::string notified_;
-  panel::Lights told_lights_{};  // what pages were told that the lights show
+  std::map<std::string, std::string> notices_;  // box/notices.hpp
+  panel::Lights told_lights_{};                 // what pages were told that the lights show
 };
 
 }  // namespace adit::gateway

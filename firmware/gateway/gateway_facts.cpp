@@ -83,7 +83,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.change_trouble = parts_.trouble;
   facts.settings_trouble = parts_.loaded.trouble;
   facts.board_trouble = parts_.board_trouble;
-  facts.notices = parts_.notices;
+  facts.notices = notices_;
   const api::UpdateView update = updates_.update();
   facts.update.on_trial = update.trial;
   facts.update.version = update.last.version;

@@ -34,7 +34,8 @@ command_line::Program command_line_of(Options& options) {
             "of adit-panel, which holds lights and button; without it aditd holds them itself, and nobody "
             "shows that it hangs",
             &options.panel},
-           {"--notices", "DIR", "sentences for the operator, a file each, of whatever started the box",
+           {"--notices", "DIR",
+            "sentences for the operator, a file each, of the programs that start the box and watch it",
             &options.notices},
            {"--version", "", "prints the version", &options.version},
            {"--help", "", "prints this", &options.help}},

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <utility>
 
-#include "box/notices.hpp"
 #include "box/open_panel.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
@@ -78,7 +77,6 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .ledger_rest = LedgerReturn::kRest,
                .board = std::move(known.board),
                .board_trouble = std::move(known.trouble),
-               .notices = box::read_notices(options.notices),
                .lines = std::move(panel.lines),
                .button = std::move(panel.button),
                .panel_socket = options.panel,
@@ -89,6 +87,7 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .watch_folder = options.watch,
                .clock_folder = options.clock,
                .spare_folder = options.spare,
+               .notices_folder = options.notices,
                .legacy = std::nullopt};
 }
 

@@ -13,6 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::Pair;
 using testing::SizeIs;
 
 class NoticesTest : public testing::Test {
@@ -31,7 +32,8 @@ class NoticesTest : public testing::Test {
 TEST_F(NoticesTest, AreTheFirstLinesOfTheFilesInTheOrderOfTheirNames) {
   write("state", "the state partition is unusable\nand more\n");
   write("clock", "the clock has stopped");
-  EXPECT_THAT(read_notices(folder_), ElementsAre("the clock has stopped", "the state partition is unusable"));
+  EXPECT_THAT(read_notices(folder_), ElementsAre(Pair("clock", "the clock has stopped"),
+                                                 Pair("state", "the state partition is unusable")));
 }
 
 TEST_F(NoticesTest, AreNoneWhereThereIsNoFolderOrNothingInIt) {
@@ -50,7 +52,7 @@ TEST_F(NoticesTest, AreFewAndShortWhateverIsThere) {
   for (int i = 0; i < 20; ++i) write("notice" + std::to_string(i), std::string(10'000, 'x'));
   const auto notices = read_notices(folder_);
   EXPECT_THAT(notices, SizeIs(8));
-  EXPECT_THAT(notices.front(), SizeIs(500));
+  EXPECT_THAT(notices.begin()->second, SizeIs(500));
 }
 
 }  // namespace

@@ -291,9 +291,17 @@ class AlarmsOfTheBox(WithAlarms):
 
     def test_whoever_started_the_box_left_a_notice(self):
         stage = self.with_a_file("notices/card", "the card's settings are not used\n")
-        self.sees(stage, "notice:1", "bad", "box", "The start was not clean", "the card's settings are not used")
+        self.sees(stage, "notice:card", "bad", "box", "The box is not well", "the card's settings are not used")
         (stage.folder / "notices/card").unlink()
-        self.gone_after_a_restart(stage, "notice:1")
+        self.goes(stage, "notice:card")
+
+    def test_a_notice_is_left_while_it_runs(self):
+        stage = began(self.stage())
+        (stage.folder / "notices").mkdir(exist_ok=True)
+        (stage.folder / "notices/disks").write_text("2 disks hold an Adit\n")
+        self.sees(stage, "notice:disks", "bad", "box", "The box is not well", "2 disks hold an Adit")
+        (stage.folder / "notices/disks").unlink()
+        self.goes(stage, "notice:disks")
 
     def with_a_file(self, name, text):
         stage = self.stage()

@@ -184,12 +184,14 @@ bool Reports::is_unclaimed(const Report& report) const {
 }
 
 /// The first answer that names the present run, `name`, tells what was recorded in it: what was held as a
-/// repeat of that gets its answer. All else is of the run before, and none of its repeats is one.
+/// repeat of that gets its answer. What another name was given is of the run before, and none of its repeats
+/// is one. What was given none stays: nothing is sent twice for that.
 void Reports::claim(const std::string& name, Time time) {
   std::vector<Report> steps;
   for (const auto& [number, report] : book_.all()) {
-    if (!is_unclaimed(report) || run_in(report.answer) == name) continue;
-    const Run* const its = account_.of_name(run_in(report.answer));
+    const std::string other = is_unclaimed(report) ? run_in(report.answer) : "";
+    if (other.empty() || other == name) continue;
+    const Run* const its = account_.of_name(other);
     if (its != nullptr) steps.emplace_back(report).run = its->number;
   }
   std::vector<std::pair<std::int64_t, std::int64_t>> joined;

@@ -1,0 +1,141 @@
+// What was answered as one run went over into another.
+#include <gmock/gmock.h>
+
+#include "dispatch/scene.hpp"
+
+namespace adit::dispatch {
+namespace {
+
+using enum ReportState;
+using testing::HasSubstr;
+
+/// A status shows a new run for certain, and a report was answered since the one before: which of the two
+/// runs that was, no status tells. No answer had named the first before it.
+class AnsweredAtTheTurn : public testing::Test {
+ protected:
+  AnsweredAtTheTurn() {
+    scene_.wait(5);
+    scene_.record(1, "1");
+    scene_.wait(5);
+    scene_.hear(25, 0, 3);
+  }
+  Scene scene_;
+};
+
+TEST_F(AnsweredAtTheTurn, IsHeldWhereItIsPostedAgain) {
+  ASSERT_EQ(scene_.reports().run().number, 2);
+  const ClientId again = scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.report(2).same_as, 1);
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("the reports left went up from 20 to 25"));
+  scene_.post(1);
+  EXPECT_EQ(scene_.count(), 2u) << "it joins the one that is held";
+  scene_.wait(21);
+  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("waits for the operator's word"));
+}
+
+TEST_F(AnsweredAtTheTurn, IsOneOfTheNewRunWhereItsNameIsThatRuns) {
+  const ClientId again = scene_.post(1);
+  scene_.record(2, "1");
+  EXPECT_EQ(scene_.reports().run().number, 2);
+  EXPECT_EQ(scene_.state(2), Withdrawn);
+  EXPECT_EQ(scene_.report(1).run, 2);
+  EXPECT_EQ(scene_.told(again).body, recorded(0, "scored", "1").body);
+  EXPECT_EQ(scene_.told(scene_.post(1)).status, 201);
+  EXPECT_EQ(scene_.count(), 3u);
+}
+
+TEST_F(AnsweredAtTheTurn, IsOneOfTheRunBeforeWhereAnotherNameIsHeard) {
+  scene_.post(1);
+  scene_.record(2, "2");
+  EXPECT_EQ(scene_.reports().run().number, 2);
+  EXPECT_EQ(scene_.report(1).run, 1);
+  EXPECT_EQ(scene_.output().ledger.at(1).run, 1);
+  EXPECT_EQ(scene_.send_next(), 2) << "the new run has nothing of it";
+  EXPECT_EQ(scene_.report(2).same_as, 0);
+}
+
+TEST_F(AnsweredAtTheTurn, IsSentWhereItIsPostedAgainOnceThatIsKnown) {
+  scene_.record(2, "2");
+  scene_.post(1);
+  EXPECT_EQ(scene_.state(3), Sending);
+}
+
+TEST_F(AnsweredAtTheTurn, IsSentOnTheOperatorsWord) {
+  scene_.post(1);
+  ASSERT_TRUE(scene_.reports().send(2, scene_.time()));
+  EXPECT_EQ(scene_.send_next(), 2);
+  scene_.answer(recorded(0, "scored", "2"));
+  EXPECT_EQ(scene_.state(2), Answered);
+  EXPECT_EQ(scene_.report(1).run, 1);
+}
+
+TEST_F(AnsweredAtTheTurn, IsHeldOverARestart) {
+  scene_.restart();
+  scene_.hear(25, 0, 4);
+  scene_.post(1);
+  EXPECT_EQ(scene_.state(2), Received);
+  scene_.record(2, "1");
+  EXPECT_EQ(scene_.state(2), Withdrawn);
+}
+
+TEST_F(AnsweredAtTheTurn, IsHeldWhereItWasPostedBeforeTheRunWasKnown) {
+  scene_.wait(16);
+  scene_.post(1);
+  scene_.hear(25, 0, 20);
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(2), Received);
+}
+
+TEST_F(AnsweredAtTheTurn, StaysHeldWhereNoAnswerNamesARun) {
+  scene_.post(1);
+  scene_.record(2, "");
+  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
+}
+
+TEST(AnsweredAtTheTurnAndCut, IsHeld) {
+  Scene scene;
+  scene.wait(5);
+  scene.post(1);
+  scene.answer(recorded(0, "scored", "1", 105));
+  scene.restart();
+  scene.wait(5);
+  scene.hear(25, 0, 3);
+  ASSERT_EQ(scene.reports().run().number, 2);
+  scene.post(1);
+  EXPECT_EQ(scene.state(2), Received);
+}
+
+TEST(AnsweredBeforeTheLastStatus, IsOfTheRunBefore) {
+  Scene scene;
+  scene.wait(5);
+  scene.post(1);
+  scene.answer(recorded());
+  scene.wait(5);
+  scene.hear(19, 0);
+  scene.wait(5);
+  scene.hear(25, 0, 3);
+  EXPECT_EQ(scene.report(1).run, 1);
+  scene.post(1);
+  EXPECT_EQ(scene.state(2), Sending);
+}
+
+TEST(AnsweredAtTheTurnWithoutAName, IsNotSentAgainWhateverIsNamedLater) {
+  Scene scene;
+  scene.wait(5);
+  scene.record(1, "");
+  scene.wait(5);
+  scene.hear(25, 0, 3);
+  const ClientId again = scene.post(1);
+  ASSERT_EQ(scene.state(2), Received);
+  scene.record(2, "2");
+  EXPECT_EQ(scene.report(1).run, 2);
+  EXPECT_EQ(scene.send_next(), 0);
+  EXPECT_EQ(scene.state(2), Withdrawn);
+  EXPECT_EQ(scene.told(again).status, 201);
+}
+
+}  // namespace
+}  // namespace adit::dispatch

@@ -19,6 +19,7 @@ import neighbour
 import networkd
 import programs
 from alarming import WithAlarms
+from filling import Filler
 from networkd import AditNetwork
 from programs import wait_until
 from reporting import another, began, submit
@@ -35,10 +36,9 @@ def setUpModule():
 class AlarmsOfTheBox(WithAlarms):
     def test_the_disk_is_nearly_full(self):
         stage = self.stage(disk="12m")
-        filler, room = stage.box.state / "filler", os.statvfs(stage.box.state)
-        filler.write_bytes(bytes(room.f_bavail * room.f_frsize - (512 << 10)))
+        filler = Filler(stage.box.state, leaves=512 << 10)
         self.sees(stage, "disk_full", "bad", "box", "The disk is nearly full")
-        filler.unlink()
+        filler.make_room()
         self.goes(stage, "disk_full")
 
     def test_the_box_rests(self):
@@ -67,13 +67,6 @@ class AlarmsOfTheBox(WithAlarms):
         self.goes(stage, lost)
         self.gone_after_a_restart(stage, "ledger_damaged")
 
-    def fills(self, folder, leaves=0):
-        """A file that takes all the room of a file system, but so many bytes."""
-        filler, room = folder / "filler", os.statvfs(folder)
-        with open(filler, "wb") as file:
-            file.write(bytes(max(room.f_bavail * room.f_frsize - leaves, 0)))
-        return filler
-
     def runtime(self, size="8m"):
         """A runtime folder that is a file system of its own, as with systemd."""
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))
@@ -86,32 +79,32 @@ class AlarmsOfTheBox(WithAlarms):
         self.runtime()
         stage = self.stage(disk="12m")
         self.assertEqual(submit(stage).status_code, 201)
-        filler = self.fills(stage.box.state)
+        filler = Filler(stage.box.state)
         for number in range(1, 500):  # what the ledger has of its own has room for some
             if submit(stage, another(number)).status_code != 201:
                 break
         self.sees(stage, "ledger_unwritable", "bad", "box", "No report is taken", "the ledger cannot be written", light="health")
-        filler.unlink()
+        filler.make_room()
         wait_until(lambda: submit(stage, another(number)).status_code == 201, "room to be found")
         self.goes(stage, "ledger_unwritable")
 
     def test_the_run_is_not_kept(self):
         stage = self.stage(disk="12m")
-        filler = self.fills(stage.box.state, 2 << 20)
+        filler = Filler(stage.box.state, leaves=2 << 20)
         self.sees(stage, "run_not_kept", "bad", "box", "The run's map is not kept", "will not outlive a restart")
-        filler.unlink()
+        filler.make_room()
         self.goes(stage, "run_not_kept")
 
     def test_maps_and_states_cannot_be_kept(self):
         runtime = self.runtime("4m")
         stage = self.stage()
-        filler = self.fills(runtime)
+        filler = Filler(runtime)
         self.assertEqual(self.send_map(stage, "r1", 1, 100000).status_code, 503)
         self.sees(stage, "map_not_kept", "bad", "box", "The last map was not taken", panel=False)
         robot = self.robot(stage, "r1")
         self.sees(stage, "state_not_kept", "bad", "box", "States and markers are not taken", "they cannot be kept", panel=False)
         robot.quiet()
-        filler.unlink()
+        filler.make_room()
         self.robot(stage, "r1")
         self.goes(stage, "state_not_kept")
         wait_until(lambda: self.send_map(stage, "r1", 1).status_code == 200, "a map to be taken")

@@ -1,7 +1,6 @@
 """A disk that is full and a ledger that is damaged: no report is taken that is not written down, and it is said."""
 
 import contextlib
-import errno
 import os
 import pathlib
 import signal
@@ -14,6 +13,7 @@ import requests
 
 import hosts
 import programs
+from filling import Filler
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, began, left_unanswered, submit
 
@@ -24,27 +24,6 @@ FULL = {**QUICK, "disk": "6m", "post_options": ("--rate", "0", "--reports", "999
 
 def setUpModule():
     hosts.needs_namespaces()
-
-
-class Filler:
-    """A file that takes up all the room there is."""
-
-    def __init__(self, folder):
-        self.path = folder / "filler"
-        self.fill()
-
-    def fill(self):
-        for size in (65536, 4096, 1):
-            with open(self.path, "ab", buffering=0) as file:
-                try:
-                    while file.write(b"x" * size):
-                        pass
-                except OSError as error:
-                    if error.errno != errno.ENOSPC:
-                        raise
-
-    def make_room(self):
-        self.path.unlink()
 
 
 class Disk(unittest.TestCase):

@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import os
 import pathlib
 import random
 import subprocess
@@ -15,6 +14,7 @@ import requests
 import hosts
 import programs
 from alarming import WithAlarms
+from filling import Filler
 from programs import Box, Stage, wait_until
 from reporting import QUICK, REPORT, another, began, left_unanswered, submit
 
@@ -275,10 +275,9 @@ class Spare(WithAlarms):
             try:
                 stage.plug_in_spare()
                 stage.adit("take", stage.export, "--code", code, check=False)
-                filler, room = state / "filler", os.statvfs(state)
-                filler.write_bytes(bytes(room.f_bavail * room.f_frsize - (4 << 10)))
+                filler = Filler(state)
                 self.assertEqual(stage.box.ask("POST /adit/spare/take-over", body={"unplugged": True})[0], 503)
-                filler.unlink()
+                filler.make_room()
                 self.assertEqual(stage.box.ask("POST /adit/spare/take-over", body={"unplugged": True})[0], 200)
                 wait_until(stage.settled, "the spare to have taken over")
                 began(stage)

@@ -164,6 +164,8 @@ class Container(Nspawn):
         super().__init__(network, folder, TREE)
         self.state = folder / "var"
         self.state.mkdir()
+        folders = f"{SOURCE}/rootfs/overlay/usr/lib/adit/folders"  # as before systemd starts
+        subprocess.run(["sh", "-c", '. "$0"; make_folders "$1"', folders, self.state], check=True)
         self.options = ("--read-only", f"--bind={self.state}:/var")
         with open(folder / "install.log", "wb") as said:
             for component in ("service", "appliance"):

@@ -1,6 +1,5 @@
 """What a start of the machine costs, and what its units may do: printed, and kept for rootfs/README.md."""
 
-import lzma
 import re
 
 from stage import note
@@ -24,19 +23,6 @@ def memory_in_use(box):
     return used
 
 
-def packed_image(board):
-    """Its bytes under xz, and how many there may be."""
-    packed = board.image().with_suffix(".img.xz")
-    if packed.exists():
-        size, most = packed.stat().st_size, 40e6
-    else:
-        squeezer = lzma.LZMACompressor(preset=0)
-        size = sum(len(squeezer.compress(some)) for some in blocks(board.image())) + len(squeezer.flush())
-        most = 60e6
-    note("image, compressed", f"{size / 1e6:.1f} MB")
-    return size, most
-
-
 def exposures(box):
     """What systemd-analyze says of each unit of Adit's that a boot starts, and the most that it may say."""
     units = box.console.ask("cd /usr/lib/systemd/system; ls adit*.service").split()
@@ -45,9 +31,3 @@ def exposures(box):
         exposure = float(re.search(r"(\d+\.\d)", said).group(1))
         note(f"exposure of {unit}", exposure)
         yield unit, exposure, 1.5 if unit == "adit.service" else 3.0
-
-
-def blocks(path):
-    with open(path, "rb") as file:
-        while some := file.read(1 << 20):
-            yield some

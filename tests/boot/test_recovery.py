@@ -85,8 +85,12 @@ class Recovery(Story):
         figures.of_a_later_start(self.box)
         self.assertLessEqual(figures.memory_in_use(self.box), 64)
 
-    def test_the_image_is_small(self):
-        self.assertLessEqual(*figures.packed_image(self.box.board))
+    def test_what_has_to_be_there_before_any_address_was_there_before_systemd(self):
+        for unit in "adit-nftables", "adit-network-start":
+            said = self.box.console.ask(f"systemctl show -P ConditionResult -P ActiveState {unit}").split()
+            self.assertEqual(said, ["inactive", "no"])
+        self.assertIn("chain from_team", self.box.console.ask("nft list table inet adit"))
+        self.box.console.ask("systemctl is-active adit-devices.service; test -e /dev/watchdog0 -a -e /dev/disk/by-partlabel/adit-env")
 
     def test_no_unit_may_more_than_it_needs(self):
         seen = list(figures.exposures(self.box))

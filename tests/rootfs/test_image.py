@@ -91,11 +91,12 @@ class Parts(unittest.TestCase):
 
 
 class Root(unittest.TestCase):
-    def test_an_image_is_at_most_40_mb_compressed(self):
+    def test_a_slot_is_small(self):
+        """Compressed, the image of an arm64 board is a third of that (rootfs/README.md)."""
         for board in BOARDS:
             with self.subTest(board):
-                for image in (IMAGES / board).glob("*.img.xz"):
-                    self.assertLessEqual(image.stat().st_size, 40_000_000)
+                slot = [IMAGES / board / "work/root.squashfs", *(IMAGES / board / "work/slot").rglob("*")]
+                self.assertLessEqual(sum(path.stat().st_size for path in slot if path.is_file()), 100_000_000)
 
     def test_nothing_runs_with_the_rights_of_another_and_no_package_manager_is_there(self):
         for board in BOARDS:

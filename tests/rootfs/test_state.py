@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
-"""Which partition becomes the box's state: usr/lib/adit/state, with a disk's folder of sysfs and programs that are made here. tests/boot
-starts it from a real disk; but QEMU has no eMMC, whose boot areas lie in that folder too."""
+"""What the initrd calls in the root: which partition becomes the box's state (usr/lib/adit/state), with a disk's folder of sysfs and programs
+that are made here, and what is there before any address (usr/lib/adit/early). tests/boot starts both from a real disk; but QEMU has no eMMC,
+whose boot areas lie in that folder too."""
 import os
 import subprocess
 import tempfile
@@ -9,23 +10,57 @@ from pathlib import Path
 
 from recipe import TOP, skip
 
-SCRIPT = TOP / "rootfs/overlay/usr/lib/adit/state"
+SCRIPTS = TOP / "rootfs/overlay/usr/lib/adit"
 SECTORS = {"env": 2048, "boot": 81920, "boot-a": 131072, "boot-b": 131072, "root-a": 262144, "root-b": 262144}
 OWN = ["unshare", "--mount"] if os.geteuid() == 0 else ["unshare", "--map-root-user", "--mount"]
-# It writes to /run and to the console: those of a mount namespace of its own.
-CALL = """mount -t tmpfs tmpfs /run && { [ ! -e /dev/console ] || mount --bind "$1/console" /dev/console; } || exit 99
-PATH="$1/bin:$PATH" sh "$2" "$1/mmcblk0"; cat /run/adit-notices/state 2>/dev/null"""
+# It writes to /run, /var and the console: those of a mount namespace of its own.
+CALL = """mount -t tmpfs tmpfs /run && mount -t tmpfs tmpfs /var && eval "$3" && { [ ! -e /dev/console ] || mount --bind "$1/console" /dev/console; } || exit 99
+PATH="$1/bin:$PATH" sh "$2" "$1/mmcblk0"; cat /run/adit-notices/state 2>/dev/null
+for folder in run var; do find /$folder ! -type l -printf '%P %m\\n' -o -printf '%P %l\\n' | sort >$1/$folder; done"""
+VALID, ERRORS = 1, 2  # s_state, as the kernel's ext4 has it
+MOUNTED = ["mount -t ext4 -o noatime,nosuid,nodev,errors=remount-ro /dev/mmcblk0p7 /var"]
+REPAIRED = ["e2fsck -p /dev/mmcblk0p7"]
+FOLDERS = {"cache": "755", "cache/private": "700", "lib": "755", "lib/private": "700", "lib/rauc": "755", "log": "755", "log/private": "700",
+           "run": "../run", "tmp": "1777"}
 RECORD = 'echo "${0##*/} $*" >>"${0%/*}/../called"\n'
 if subprocess.run([*OWN, "mount", "-t", "tmpfs", "tmpfs", "/run"], capture_output=True).returncode:
     skip("this machine gives nobody a mount namespace")
 
 
-class State(unittest.TestCase):
+class Script(unittest.TestCase):
+    name = ""
+
     def setUp(self):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-        self.disk = self.folder / "mmcblk0"
         (self.folder / "bin").mkdir()
         (self.folder / "console").touch()
+
+    def program(self, name, does=""):
+        path = self.folder / "bin" / name
+        path.write_text("#!/bin/sh\n" + RECORD + does)
+        path.chmod(0o755)
+
+    def run_it(self, before=":"):
+        """The notice that it leaves; `before` is what somebody else has done to /run and /var."""
+        done = subprocess.run([*OWN, "sh", "-c", CALL, "state", self.folder, SCRIPTS / self.name, before], capture_output=True, text=True)
+        self.assertEqual(done.stderr, "")
+        return done.stdout
+
+    def called(self, name):
+        lines = (self.folder / "called").read_text().splitlines()
+        return [line for line in lines if line.split()[0] in name.split()]
+
+    def left(self, folder):
+        """The modes and links in /run or /var, by their paths."""
+        return dict(line.rsplit(" ", 1) for line in (self.folder / folder).read_text().splitlines())
+
+
+class State(Script):
+    name = "state"
+
+    def setUp(self):
+        super().setUp()
+        self.disk = self.folder / "mmcblk0"
         self.disk.mkdir()
         self.end = 32768
         for number, (name, sectors) in enumerate(SECTORS.items(), 1):
@@ -33,9 +68,9 @@ class State(unittest.TestCase):
         for area in "mmcblk0boot0", "mmcblk0boot1", "mmcblk0rpmb":
             self.area(area, size="8192\n", uevent=f"MAJOR=179\nDEVNAME={area}\nDEVTYPE=disk\n")
         self.room(2_000_000)
-        for name in "modprobe", "mount", "systemd-growfs":
+        for name in "modprobe", "mount", "systemd-growfs", "e2fsck":
             self.program(name)
-        self.program("e2fsck", 'for last; do :; done; [ "$last" = /dev/mmcblk0p7 ] || exit 8\n')
+        self.state_is(VALID)
         self.makes(7)
 
     def area(self, name, **files):
@@ -52,11 +87,6 @@ class State(unittest.TestCase):
     def room(self, sectors):
         (self.disk / "size").write_text(f"{self.end + sectors + 34}\n")
 
-    def program(self, name, does=""):
-        path = self.folder / "bin" / name
-        path.write_text("#!/bin/sh\n" + RECORD + does)
-        path.chmod(0o755)
-
     def makes(self, number):
         """What systemd-repart does: the kernel does not hear the label from it."""
         new = f"{self.disk}/mmcblk0p{number}"
@@ -64,19 +94,18 @@ class State(unittest.TestCase):
                                     (("partition", number), ("start", self.end), ("size", 1_000_000), ("uevent", f"PARTN={number}"))]
         self.program("systemd-repart", "\n".join(lines) + "\n")
 
-    def run_it(self):
-        """The notice that it leaves."""
-        done = subprocess.run([*OWN, "sh", "-c", CALL, "state", self.folder, SCRIPT], capture_output=True, text=True)
-        self.assertEqual(done.stderr, "")
-        return done.stdout
+    def state_is(self, flags):
+        """What the superblock says."""
+        self.program("hexdump", f'for last; do :; done; [ "$last" = /dev/mmcblk0p7 ] && printf {flags}\n')
 
-    def called(self, name):
-        lines = (self.folder / "called").read_text().splitlines()
-        return [line for line in lines if line.split()[0] == name]
+    def has_state(self):
+        self.partition(7, 1_000_000, "adit-state")
+        self.room(0)
 
     def is_state(self, device):
-        self.assertEqual({line.split()[-1] for line in self.called("e2fsck")}, {device})
+        self.assertEqual({line.split()[-1] for line in self.called("hexdump")}, {device})
         self.assertEqual([line.split()[-2:] for line in self.called("mount")], [[device, "/var"]])
+        self.assertEqual(self.called("e2fsck"), [])
 
     def test_the_first_start_takes_what_it_made_and_no_boot_area_of_an_emmc(self):
         self.assertEqual(self.run_it(), "")
@@ -84,8 +113,7 @@ class State(unittest.TestCase):
         self.assertEqual(self.called("systemd-growfs"), ["systemd-growfs /var"])
 
     def test_a_later_start_takes_the_one_of_its_label_and_makes_none(self):
-        self.partition(7, 1_000_000, "adit-state")
-        self.room(0)
+        self.has_state()
         self.assertEqual(self.run_it(), "")
         self.is_state("/dev/mmcblk0p7")
         self.assertEqual(self.called("systemd-repart") + self.called("systemd-growfs"), [])
@@ -112,10 +140,90 @@ class State(unittest.TestCase):
         self.assertEqual(self.called("e2fsck"), [])
         self.assertTrue(self.called("mount")[0].endswith("tmpfs /var"))
 
+    def test_one_on_which_the_kernel_found_errors_is_repaired_before_it_is_mounted(self):
+        self.has_state()
+        for flags in (ERRORS, VALID | ERRORS):
+            with self.subTest(flags):
+                self.state_is(flags)
+                self.assertEqual(self.run_it(), "")
+                self.assertEqual(self.called("e2fsck mount"), [*REPAIRED, *MOUNTED])
+                (self.folder / "called").unlink()
+
+    def test_one_that_cannot_be_mounted_is_repaired_and_mounted(self):
+        self.has_state()
+        self.program("mount", 'grep -q ^e2fsck "${0%/*}/../called" || { echo "mount: bad superblock" >&2; exit 1; }\n')
+        for unreadable in (False, True):
+            with self.subTest(unreadable):
+                if unreadable:
+                    self.program("hexdump", "exit 1\n")
+                self.assertEqual(self.run_it(), "")
+                self.assertEqual(self.called("e2fsck mount"), [*MOUNTED, *REPAIRED, *MOUNTED])
+                (self.folder / "called").unlink()
+
+    def test_one_that_can_be_repaired_by_force_alone(self):
+        self.state_is(ERRORS)
+        self.program("e2fsck", '[ "$1" = -f ] || exit 4\n')
+        self.assertEqual(self.run_it(), "")
+        self.assertEqual(self.called("e2fsck mount"), [*REPAIRED, "e2fsck -f -y /dev/mmcblk0p7", *MOUNTED])
+
     def test_one_beyond_repair_is_left_as_it_is(self):
+        self.state_is(ERRORS)
         self.program("e2fsck", "exit 8\n")
         self.assertIn("it cannot be repaired", self.run_it())
         self.assertTrue(self.called("mount")[0].endswith("tmpfs /var"))
+        self.assertIn("tmp", self.left("var"), "in memory")
+
+    def test_a_new_one_has_the_folders_that_the_system_expects(self):
+        self.assertEqual(self.run_it(), "")
+        var = self.left("var")
+        self.assertEqual({name: var[name] for name in FOLDERS}, FOLDERS)
+
+    def test_a_cut_between_two_folders_is_made_good(self):
+        self.assertEqual(self.run_it("mkdir -p /var/cache /var/lib/rauc"), "")
+        self.assertEqual({name: self.left("var")[name] for name in FOLDERS}, FOLDERS)
+
+    def test_what_a_service_left_behind_is_gone_and_the_rest_is_as_it_was(self):
+        self.has_state()
+        self.assertEqual(self.run_it("mkdir -p /var/tmp/systemd-private-1/tmp /var/tmp/systemd-private-2 /var/lib/adit"), "")
+        self.assertEqual(set(self.left("var")), {"", "lib", "lib/adit", "tmp"})
+
+
+FIREWALL = 'nft -D others="drop" -f /usr/share/adit/nftables.conf'
+ADDRESSES = "adit-network --start --team team0 --command-post darpa0"
+
+
+class Early(Script):
+    name = "early"
+
+    def setUp(self):
+        super().setUp()
+        for name in "nft", "adit-network":
+            self.program(name)
+
+    def leaves_out(self, *services, card=": >/run/adit-card-is-empty"):
+        self.run_it(card)
+        self.assertEqual({name.partition("/")[2] for name in self.left("run") if name.startswith("adit-early/")}, set(services))
+        return (self.folder / "called").read_text().splitlines()
+
+    def test_both_services_are_left_out_for_it_has_done_their_work(self):
+        self.assertEqual(self.leaves_out("adit-nftables", "adit-network-start"), [FIREWALL, ADDRESSES])
+        self.assertEqual((self.left("run")["systemd/network"], self.left("var")["lib/adit-network"]), ("755", "755"))
+
+    def test_as_their_units_would(self):
+        for unit, command in ("adit-nftables", FIREWALL), ("adit-network-start", ADDRESSES):
+            said = (TOP / f"services/{unit}.service").read_text().replace("\\", "").replace('"others="drop""', 'others="drop"')
+            self.assertIn(f"ExecStart={command}\n", said)
+            condition = (TOP / f"rootfs/overlay/usr/lib/systemd/system/{unit}.service.d/early.conf").read_text()
+            self.assertIn("ConditionPathExists=!/run/adit-early/%N\n", condition)
+
+    def test_what_fails_here_is_left_to_its_service(self):
+        self.program("nft", "exit 1\n")
+        self.assertEqual(self.leaves_out("adit-network-start"), [FIREWALL, ADDRESSES])
+        self.program("adit-network", "exit 1\n")
+        self.leaves_out()
+
+    def test_a_card_may_bring_other_addresses_and_nobody_is_ahead_of_it(self):
+        self.assertEqual(self.leaves_out("adit-nftables", card=":"), [FIREWALL])
 
 
 if __name__ == "__main__":

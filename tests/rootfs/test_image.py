@@ -91,6 +91,13 @@ class Parts(unittest.TestCase):
 
 
 class Root(unittest.TestCase):
+    def test_an_image_is_at_most_40_mb_compressed(self):
+        """Where there is one: a release's, or whoever's made it without --no-xz."""
+        for board in BOARDS:
+            with self.subTest(board):
+                for image in (IMAGES / board).glob("*.img.xz"):
+                    self.assertLessEqual(image.stat().st_size, 40_000_000)
+
     def test_a_slot_is_small(self):
         """Compressed, the image of an arm64 board is a third of that (rootfs/README.md)."""
         for board in BOARDS:

@@ -1,6 +1,7 @@
 """A file system that is full."""
 
 import errno
+import os
 
 
 class Filler:
@@ -11,15 +12,18 @@ class Filler:
         self.fill()
 
     def fill(self):
+        """Never more than that, not even for a moment."""
         with open(self.path, "ab", buffering=0) as file:
-            for size in (65536, 4096, 1):
-                try:
-                    while file.write(bytes(size)):
-                        pass
-                except OSError as error:
-                    if error.errno != errno.ENOSPC:
-                        raise
-            file.truncate(max(file.tell() - self.leaves, 0))
+            try:
+                while (room := self.room()) > 0:
+                    file.write(bytes(min(room, 65536)))
+            except OSError as error:  # somebody else has taken the last of it
+                if error.errno != errno.ENOSPC:
+                    raise
+
+    def room(self):
+        there_is = os.statvfs(self.path.parent)
+        return there_is.f_bavail * there_is.f_frsize - self.leaves
 
     def make_room(self):
         self.path.unlink()

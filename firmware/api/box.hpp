@@ -78,7 +78,7 @@ struct BoardRow {
 };
 
 struct About {
-  std::string version, build;  // build: "9f1c2ab0d3e4, GCC 12.2.0, Release"
+  std::string version, build;  // build: "9f1c2ab0d3e4, Clang 19.1.4, Release"
   std::string licence;         // of Adit itself
   Time started = 0;
   double uptime = 0;

@@ -11,10 +11,10 @@ target_link_options(adit_options INTERFACE -pie -Wl,-z,relro,-z,now -Wl,--gc-sec
 # Small, but for what says otherwise: headers.cmake has the ways to be compiled.
 set(CMAKE_CXX_FLAGS_RELEASE "-Os -DNDEBUG")
 
-if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)  # what ships, by Clang: see ships.cmake
-  if(NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)
-    message(FATAL_ERROR "${CMAKE_BINARY_DIR} is of another compiler than ships.cmake names: remove it, and say --preset again")
-  endif()
+if(CMAKE_TOOLCHAIN_FILE AND NOT CMAKE_CXX_COMPILER_ID STREQUAL Clang)  # in a folder from before: CMake keeps to a compiler
+  message(FATAL_ERROR "${CMAKE_BINARY_DIR} is of another compiler than ${CMAKE_TOOLCHAIN_FILE} names: remove it, and say --preset again")
+endif()
+if(CMAKE_INTERPROCEDURAL_OPTIMIZATION)  # what ships: see ships.cmake
   set(CMAKE_CXX_FLAGS_RELEASE "-Oz -DNDEBUG")
   # As one program, not in parts. Nothing asks for a type at run time, and the types' names are long; the stack is unwound where
   # something throws, not at each instruction.
@@ -26,7 +26,7 @@ endif()
 set(ADIT_SANITIZE "" CACHE STRING "Sanitizers to build with, as -fsanitize takes them (address,undefined or thread)")
 if(ADIT_SANITIZE)
   target_compile_options(adit_options INTERFACE -fsanitize=${ADIT_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer
-    # GCC's own manual: what follows a value's way through the code gives false alarms beside -fsanitize. The release build looks.
+    # GCC's own manual: what follows a value's way through the code gives false alarms beside -fsanitize. The preset gcc looks.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-error> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
   if(ADIT_SANITIZE MATCHES thread)  # GCC: its sanitizer knows no fences (ChunkedBytes, Asio)
     target_compile_options(adit_options INTERFACE $<$<CXX_COMPILER_ID:GNU>:-Wno-tsan>)

@@ -4,8 +4,6 @@
 
 namespace adit::robots {
 
-using Json = nlohmann::json;
-
 void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
   const std::scoped_lock lock(mutex_);
   amounts_[{robot, kind}] = amount;
@@ -13,7 +11,7 @@ void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
 
 std::string Posted::json() const {
   const std::scoped_lock lock(mutex_);
-  Json all = Json::array();
+  auto all = nlohmann::json::array();
   for (const auto& [source, posted] : amounts_) {
     all.push_back({{"robot", source.first},
                    {"kind", name_of(source.second)},
@@ -25,13 +23,13 @@ std::string Posted::json() const {
 }
 
 std::string arrivals_of(const Posted& posted, const Endpoint& control) {
-  constexpr std::chrono::seconds kPatience{5};
+  constexpr std::chrono::seconds kLongest{5};
   const auto reply = Connection(control, {})
                          .exchange({.method = "POST",
                                     .target = "/posted",
                                     .fields = {{"Content-Type", "application/json"}},
                                     .body = posted.json()},
-                                   kPatience);
+                                   kLongest);
   if (!reply) return "--control: " + reply.error() + "\n";
   const Json answer = Json::parse(reply->body, nullptr, false);
   if (reply->status != 200 || !answer.is_object() || !answer.contains("table") ||

@@ -57,7 +57,7 @@ void judge_alarms(const Reading& reading, Broken& broken) {
 }  // namespace
 
 void judge_metrics(const Evidence& evidence, const Reading& reading, Broken& broken) {
-  if (reading.metrics.empty()) return;
+  if (reading.metrics.empty() || reading.worked) return;
   for (std::size_t i = reading.asked; i < reading.measured; ++i) {
     const Event& event = evidence.events[i];
     const bool ours = event.what == "/adit/run" || event.what == "/metrics";

@@ -75,6 +75,7 @@ void Reader::look_at(const char* path, std::function<void(const std::string&)> g
   if (client_.busy()) return;
   const std::string headers = "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\n";
   asked_ = world_.history().events().size();
+  jobs_ended_ = world_.jobs_ended();
   client_.ask(http_request("GET", path, headers, ""), {.what = path, .who = "reader"},
               [this, got = std::move(got)](int status) {
                 if (status == 200) got(client_.heard());
@@ -92,9 +93,10 @@ void Reader::viewed(const std::string& body) {
   world_.look_at_heap();
   const std::string lie = disagreement(reading.view, events, reading.asked);
   readings_.push_back(std::move(reading));
-  look_at(kMetrics, [this](const std::string& text) {
+  look_at(kMetrics, [this, jobs = jobs_ended_](const std::string& text) {
     readings_.back().metrics = text;
     readings_.back().measured = world_.history().events().size();
+    readings_.back().worked = world_.jobs_ended() != jobs;
   });
   look_again(lie);
 }

@@ -25,6 +25,7 @@ struct Reading {
   nlohmann::json view;       // of /adit/run
   std::string metrics = {};  // read right after it
   std::size_t measured = 0;  // events that had happened by then
+  bool worked = false;       // a worker ended a job since it was asked
   Stored stored = {};        // when it was heard
   std::string lie = {};      // in what lights or STATUS disagreed with it for as long as they may not
 };
@@ -53,6 +54,7 @@ class Reader {
   double since_ = 0;  // first
   std::string lie_;
   std::size_t asked_ = 0;
+  std::uint64_t jobs_ended_ = 0;  // when it was asked
   std::vector<Reading> readings_;
 };
 

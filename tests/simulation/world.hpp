@@ -66,6 +66,9 @@ class World {
   std::uint64_t steps() const { return steps_; }
   /// Counts the draws of what is random to the box.
   std::uint64_t entropy() { return ++entropy_; }
+  /// The loop hears that a worker has ended a job: no event, but it may change what the gateway shows.
+  void job_ended() { ++jobs_ended_; }
+  std::uint64_t jobs_ended() const { return jobs_ended_; }
 
   /// For each thing that an actor may leave undone, before it does it: whether this one is left out.
   bool omits(const std::string& actor);
@@ -115,7 +118,7 @@ class World {
   const Omissions without_;
   Actions actions_;
   Instant now_;
-  std::uint64_t order_ = 0, steps_ = 0, entropy_ = 0;
+  std::uint64_t order_ = 0, steps_ = 0, entropy_ = 0, jobs_ended_ = 0;
   std::priority_queue<Planned> planned_;
   History history_;
   Descriptors descriptors_;

@@ -87,7 +87,10 @@ class Pool : public std::enable_shared_from_this<Pool> {
     ++idle_;
     jobs_.ended(urgency, loop_.now());
     loop_.post([weak = weak_from_this(), end = std::move(end)] {
-      if (const auto self = weak.lock(); self && !self->over_) end();
+      const auto self = weak.lock();
+      if (!self || self->over_) return;
+      self->world_.job_ended();
+      end();
     });
     begin_one();
   }

@@ -76,7 +76,7 @@ class Console:
             after = len(self.heard)
         self.type(f"echo be''gin{self.asked}; {command}; echo en''d{self.asked} $?")
         begin, end = (f"{word}{self.asked}".encode() for word in ("begin", "end"))
-        found = self.wait_for(begin + rb"\r?\n(.*?)" + end + rb" (\d+)", within, after)
+        found = self.wait_for(begin + rb"\r?\n(.*?)" + end + rb" (\d+)\s", within, after)
         return int(found.group(2)), found.group(1).decode(errors="replace").replace("\r", "")
 
     def ask(self, command, within=120.0):

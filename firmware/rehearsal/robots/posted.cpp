@@ -31,7 +31,7 @@ std::string arrivals_of(const Posted& posted, const Endpoint& control) {
                                     .body = posted.json()},
                                    kLongest);
   if (!reply) return "--control: " + reply.error() + "\n";
-  const Json answer = Json::parse(reply->body, nullptr, false);
+  const auto answer = nlohmann::json::parse(reply->body, nullptr, false);
   if (reply->status != 200 || !answer.is_object() || !answer.contains("table") ||
       !answer["table"].is_string())
     return "--control: what answers is no rehearsal Command Post's control port\n";

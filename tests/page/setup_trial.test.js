@@ -55,6 +55,23 @@ test("says what is wrong by the name of its field", async (t) => {
   assert.ok(await tries(page).isEnabled());
 });
 
+test("keeps what is wrong, whatever was asked for before is answered later", async (t) => {
+  const { page } = await ready(t, "setup#post");
+  await page.getByLabel("Mapping address", { exact: true }).fill("10.100.1");
+  const isTest = (answer, method) => answer.url().endsWith("/adit/test") && answer.request().method() === method;
+  const refused = page.waitForResponse((answer) => isTest(answer, "POST")), late = page.waitForResponse((answer) => isTest(answer, "GET"));
+  await page.route("**/adit/test", async (route) => {
+    if (route.request().method() === "GET") await refused;
+    await route.continue();
+  });
+  await page.reload(); // what was typed stays, and how a test stands is asked for
+  await tries(page).click();
+  await tried(page, "typed", "Mapping address: expected an IPv4 or IPv6 address");
+  await (await late).finished();
+  await page.evaluate(() => fetch("/adit/session").then((answer) => answer.json())); // and the page has read it
+  assert.match(await outcome(page, "typed").innerText(), /Mapping address: expected an IPv4 or IPv6 address/);
+});
+
 test("tries a course before it is switched to, and tells it from the Test of what is in use", async (t) => {
   const { box, ask, page } = await ready(t, "setup#courses", { courses: COURSES });
   const { settings, tag } = (await ask("/adit/settings")).said;

@@ -29,6 +29,23 @@ test("installs an update from a file, and says why one was refused", async (t) =
   assert.deepEqual(page.complaints, []);
 });
 
+test("keeps the sentence of a refusal, whatever the box tells later of how the update stands", async (t) => {
+  const { page } = await come(t);
+  const answered = (method) => page.waitForResponse((answer) => answer.url().endsWith("/adit/update") && answer.request().method() === method);
+  await updating(page).getByLabel("The update").setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
+  const refused = answered("POST");
+  await page.route("**/adit/update", async (route) => {
+    if (route.request().method() === "POST") return route.continue();
+    const answer = await route.fetch();
+    await refused; // what was asked for before is answered after it
+    await route.fulfill({ response: answer });
+  });
+  await updating(page).getByRole("button", { name: "Install it" }).click();
+  await refused;
+  for (let shown = 0; shown < 3; ++shown) await answered("GET"); // once the next is there, the one before it was shown
+  assert.ok(await updating(page).getByText("it is no update").isVisible());
+});
+
 test("installs what is on a stick, and shows how far it is", async (t) => {
   const { page } = await come(t);
   await updating(page).getByRole("button", { name: "Install 0.3.0 from the stick" }).click();

@@ -25,6 +25,7 @@ export let result = "";
 /** Where what runs now was begun; "": it runs since before this page, or elsewhere. */
 let begun = "";
 let isRunning = false;
+let asked = 0;
 
 function updateStep(node, { name, state, said, advice }) {
   const [badged, title, sentence, help] = node.children;
@@ -78,12 +79,16 @@ function show(view) {
   document.dispatchEvent(new Event("tested"));
 }
 
+/** What was asked for before a press says nothing of what it began. */
 async function follow() {
+  const mine = ++asked;
   try {
     const said = await get("/adit/test");
+    if (mine !== asked) return;
     show(said);
     if (said.running) setTimeout(follow, EVERY);
   } catch (error) {
+    if (mine !== asked) return;
     report(places.get(begun || "applied"), error.message, true);
     isRunning = !error.status;
     barTries();
@@ -92,6 +97,7 @@ async function follow() {
 }
 
 async function begin(where, body) {
+  ++asked;
   isRunning = true;
   begun = where;
   barTries();

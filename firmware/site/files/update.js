@@ -62,13 +62,16 @@ export async function offerUpdate(operator) {
   const section = document.getElementById("update"), bar = section.querySelector("progress");
   const [file, install, stick] = section.querySelectorAll(".install > *, input");
   const [told, outcome] = section.querySelectorAll(":scope > p");
-  let timer;
+  let timer, trouble = ""; // of the last press, until the next
+  function sayOutcome(doing = null, refusal = null) {
+    outcome.textContent = trouble || (doing ? `The box is ${doing}.` : refusal ?? "");
+    outcome.dataset.bad = Boolean(trouble || (!doing && refusal));
+  }
   function show(view) {
     const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit } = view;
     const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
     told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : why;
-    outcome.textContent = doing ? `The box is ${doing}.` : refusal ?? "";
-    outcome.dataset.bad = !doing && Boolean(refusal);
+    sayOutcome(doing, refusal);
     bar.hidden = !doing;
     if (progress !== null) bar.value = progress;
     for (const node of [file, install, stick]) node.hidden = !operator || !managed || Boolean(doing);
@@ -83,12 +86,11 @@ export async function offerUpdate(operator) {
     timer = setTimeout(look, 2000);
   }
   function act(action) {
+    trouble = "";
     look();
     action().then(look, (error) => {
-      clearTimeout(timer);
-      timer = setTimeout(look, 9000);
-      outcome.textContent = error.message;
-      outcome.dataset.bad = true;
+      trouble = error.message;
+      sayOutcome();
     });
   }
   install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));

@@ -46,7 +46,7 @@ class Stick:
         here = f"{DEVICES}/{self.device.name}"
         self.shell(UNITS)
         self.shell(f"""test -b {self.device} || busybox mknod {self.device} b {os.major(number)} {os.minor(number)}
-            touch {here}; mountpoint -q {here} 2>/dev/null || mount --bind {self.device} {here}; systemctl start {self.unit()}""")
+            test -b {here} || (touch {here}; mount --bind {self.device} {here}); systemctl start {self.unit()}""")
 
     def pull(self):
         if self.device is None:

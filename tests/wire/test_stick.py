@@ -135,15 +135,13 @@ class Stick(unittest.TestCase):
     def test_with_what_is_no_export_changes_nothing(self):
         stage = self.by_stick()
         self.assertEqual(submit(stage, another(1)).status_code, 201)
+        desk = stage.folder / "desk"  # where the stick was written to, before anybody looks at it
+        desk.mkdir()
+        mounting.run("mount", "-o", "loop", stage.image, desk)
+        (desk / "a.adit-spare").write_bytes(b"PK\x03\x04 a zip file")
+        (desk / "b.adit-spare").write_bytes(b"adit-spare\x07\x00 of a later Adit")
+        mounting.run("umount", desk)
         stage.keepers[0].plug(stage.image)
-        place = stage.keepers[0].slots.place()
-        mounting.run("umount", place)
-        mounting.run("mount", "-o", "loop", stage.image, place)
-        (place / "a.adit-spare").write_bytes(b"PK\x03\x04 a zip file")
-        (place / "b.adit-spare").write_bytes(b"adit-spare\x07\x00 of a later Adit")
-        mounting.run("umount", place)
-        stage.keepers[0].slots.mount_stick()
-        stage.keepers[0].changed.set()
         wait_until(lambda: len(stage.stick()["exports"]) == 2, "both to be found")
         for name, why in (("a", "it is no export of an Adit"), ("b", "a later Adit made this export")):
             self.assertIn(why, stage.adit("take", f"{name}.adit-spare", "--stick", "--code", "1" * 16, "--yes", check=False))

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before } from "node:test";
 import { freePort, ONCE, until } from "./box.js";
-import { BIN, launch, visit } from "./stage.js";
+import { BIN, launch, leave, visit } from "./stage.js";
 
 export { freePort, until };
 
@@ -108,7 +108,7 @@ export async function freshBox(t, options) {
 /** A page of the box, for the length of one test; with a password: logged in, at `path`. */
 export async function come(t, box, path, password, options = {}) {
   const page = await visit(browser, box.url + path, options);
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   if (!password) return page;
   await page.locator("#login").getByLabel("Password").fill(password);
   await page.keyboard.press("Enter");

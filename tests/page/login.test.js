@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { axeFindsNothing } from "./axe.js";
 import { openMore } from "./parts.js";
-import { launch, serve, visit } from "./stage.js";
+import { launch, leave, serve, visit } from "./stage.js";
 
 let browser;
 before(async () => (browser = await launch()));
@@ -13,7 +13,7 @@ async function come(t, path = "", more = [], options) {
   const stage = await serve("calm", 0, ...more);
   t.after(() => stage.end());
   const page = await visit(browser, stage.url + path, options);
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   return { stage, page };
 }
 

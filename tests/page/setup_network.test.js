@@ -3,6 +3,7 @@ import { afterEach, test } from "node:test";
 import { PASSWORD, until } from "./fresh_box.js";
 import { hindrance, NetworkedBox } from "./networked_box.js";
 import { hears, review } from "./setup_page.js";
+import { leave } from "./stage.js";
 
 const why = hindrance();
 const OLD = "http://192.168.7.11:8000/", NEW = "http://192.168.8.11:8000/";
@@ -24,7 +25,7 @@ async function begin(t, takesBackWithin) {
 /** The set-up's first step at `url`, logged in; at the first start, too. */
 async function come(t, url) {
   const page = await box.visit(`${url}setup#network`);
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   await page.waitForSelector("form:not([hidden])");
   if (await page.locator("#first").isVisible()) {
     await page.getByLabel("Code").fill(box.code());

@@ -66,6 +66,12 @@ export async function visit(browser, url, options = {}, prepare = () => {}) {
   return page;
 }
 
+/** Closes it. What a test does with an answer that is under way then fails nobody. */
+export async function leave(page) {
+  if (!page.isClosed()) await page.unrouteAll({ behavior: "ignoreErrors" });
+  await page.context().close();
+}
+
 /** Counts, in the page, what it asked for and has not yet, and what the box told it: an init script, for settled() and hears(). */
 export function countAwaited() {
   globalThis.awaited = globalThis.still = globalThis.heard = 0;

@@ -61,6 +61,14 @@ test("what is on the stick is offered by the box and the time of its name, and a
   assert.deepEqual(page.complaints, []);
 });
 
+test("two presses are one", async (t) => {
+  const { page, section, said } = await spareOf(t);
+  await section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }).dblclick();
+  await said("It is no export of an Adit.");
+  assert.equal(asked(page, "/adit/spare/from-stick"), 1);
+  assert.deepEqual(page.complaints, []);
+});
+
 test("where no stick is written or read, none is spoken of", async (t) => {
   const { page, section } = await spareOf(t);
   await page.route("**/adit/spare", async (route) => {

@@ -46,6 +46,17 @@ test("keeps the sentence of a refusal, whatever the box tells later of how the u
   assert.ok(await updating(page).getByText("it is no update").isVisible());
 });
 
+test("takes two presses for one", async (t) => {
+  const { page } = await come(t);
+  let posts = 0;
+  page.on("request", (request) => (posts += request.method() === "POST" && request.url().endsWith("/adit/update")));
+  await updating(page).getByLabel("The update").setInputFiles(aFile("good"));
+  await updating(page).getByRole("button", { name: "Install it" }).dblclick();
+  await updating(page).getByText("0.2.0 waits for a restart").waitFor();
+  assert.equal(posts, 1);
+  assert.deepEqual(page.complaints, []);
+});
+
 test("installs what is on a stick, and shows how far it is", async (t) => {
   const { page } = await come(t);
   await updating(page).getByRole("button", { name: "Install 0.3.0 from the stick" }).click();

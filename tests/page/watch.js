@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { basename, join } from "node:path";
 import { after, before } from "node:test";
-import { countAwaited, FILES, launch, look, serve, visit } from "./stage.js";
+import { countAwaited, FILES, launch, leave, look, serve, visit } from "./stage.js";
 
 export { axeFindsNothing } from "./axe.js";
 export { openMore, toTab } from "./parts.js";
@@ -21,14 +21,14 @@ export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
     await page.route("**/adit/settings", (route) => route.fulfill({ json: { keys: [] } })); // which a scene has none of
     await prepare?.(page);
   });
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   return { stage, page };
 }
 
 /** Whoever comes to `url` without a session, for the length of one test. */
 export async function visitor(t, url, options = {}, prepare = () => {}) {
   const page = await visit(browser, url, options, prepare);
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   return page;
 }
 

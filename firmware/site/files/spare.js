@@ -9,7 +9,7 @@ const [note, outcome] = section.querySelectorAll(":scope > p"), facts = section.
 const form = section.querySelector("form"), file = section.querySelector("input[type=file]");
 const buttons = Object.fromEntries([...section.querySelectorAll("[data-does]")].map((button) => [button.dataset.does, button]));
 const EVERY = 2000, EVERY_OF_STICK = 300;
-let timer;
+let timer, isBusy = false;
 
 function say(text, bad = false) {
   outcome.textContent = text;
@@ -152,12 +152,16 @@ const DOES = {
   },
 };
 
+/** One at a time: the box would refuse the second press of two. */
 async function act(does) {
+  if (isBusy) return;
+  isBusy = true;
   try {
     await does();
   } catch (error) {
     say(error.message, true);
   }
+  isBusy = false;
   look();
 }
 

@@ -62,10 +62,11 @@ export async function offerUpdate(operator) {
   const section = document.getElementById("update"), bar = section.querySelector("progress");
   const [file, install, stick] = section.querySelectorAll(".install > *, input");
   const [told, outcome] = section.querySelectorAll(":scope > p");
-  let timer, trouble = ""; // of the last press, until the next
+  let timer, isBusy = false, trouble = ""; // of the last press, until the next
   function sayOutcome(doing = null, refusal = null) {
-    outcome.textContent = trouble || (doing ? `The box is ${doing}.` : refusal ?? "");
-    outcome.dataset.bad = Boolean(trouble || (!doing && refusal));
+    const bad = trouble || refusal;
+    outcome.textContent = doing ? `The box is ${doing}.` : bad ?? "";
+    outcome.dataset.bad = !doing && Boolean(bad);
   }
   function show(view) {
     const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit } = view;
@@ -85,13 +86,18 @@ export async function offerUpdate(operator) {
     await get("/adit/update").then(show, () => {});
     timer = setTimeout(look, 2000);
   }
-  function act(action) {
+  /** One at a time: the box would refuse the second press of two. */
+  async function act(action) {
+    if (isBusy) return;
+    isBusy = true;
     trouble = "";
     look();
-    action().then(look, (error) => {
+    await action().catch((error) => {
       trouble = error.message;
       sayOutcome();
     });
+    isBusy = false;
+    look();
   }
   install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
   stick.addEventListener("click", () => act(() => post("/adit/update/stick")));

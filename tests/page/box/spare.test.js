@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { axeFindsNothing } from "../axe.js";
 import { until } from "../box.js";
-import { launch, visit } from "../stage.js";
+import { launch, leave, visit } from "../stage.js";
 import { begin, TOKENS } from "./box.js";
 
 let browser;
@@ -19,7 +19,7 @@ async function box(t) {
 /** Its system page, at the spare box. */
 async function spareOf(t, made) {
   const page = await visit(browser, `${made.url}system.html#spare`, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, acceptDownloads: true, bypassCSP: true });
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   await page.waitForSelector("#spare:not([hidden])");
   return { page, section: page.locator("#spare"), press: (name) => page.locator("#spare").getByRole("button", { name }).click() };
 }

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { withReports } from "./reports.js";
-import { logIn, row } from "./visits.js";
+import { leave, logIn, row } from "./visits.js";
 
 const REPORTS = 1000;
 const STEPS = 40, MOST_CPU = 100; // ms of the main thread for each frame: half a second's worth would be five times that
@@ -41,7 +41,7 @@ test("a thousand reports are counted, reached and searched for duplicates, and t
     await other.evaluate(() => (location.hash = "report=2"));
     await row(other, 2).waitFor();
     await other.waitForFunction(() => document.activeElement.closest("li")?.dataset.key === "2");
-    await other.context().close();
+    await leave(other);
   });
 
   await t.test("as a near duplicate of a new one", async () => {

@@ -1,9 +1,9 @@
 // What every test against the real box needs: a browser for the file, pages that look at the box, and their reports.
 import { after, before } from "node:test";
-import { countAwaited, launch, visit } from "../stage.js";
+import { countAwaited, launch, leave, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
 
-export { hears, settled, shoot } from "../stage.js";
+export { hears, leave, settled, shoot } from "../stage.js";
 export { canBeDeaf } from "../retold.js";
 export { openMore } from "../parts.js";
 
@@ -24,7 +24,7 @@ export async function look(t, made, path = "", { prepare, ...options } = {}) {
     await page.addInitScript(countAwaited);
     await prepare?.(page);
   });
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   await page.waitForSelector("body[data-link=live]");
   return page;
 }
@@ -32,7 +32,7 @@ export async function look(t, made, path = "", { prepare, ...options } = {}) {
 /** The same for who logs in by password, in a browser of his own; `prepare(page)` before it is opened. */
 export async function logIn(t, made, prepare) {
   const page = await visit(browser, `${made.url}login.html`, {}, prepare);
-  t.after(() => page.context().close());
+  t.after(() => leave(page));
   await page.fill("#login input[name=password]", PASSWORD);
   await page.click("#login button");
   await page.waitForSelector("body[data-link=live]");

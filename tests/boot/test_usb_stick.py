@@ -4,6 +4,7 @@ the answer and in the midst of the writing, and is offered again. What another b
 import pathlib
 import subprocess
 import tempfile
+import time
 import unittest
 
 import boards
@@ -131,8 +132,18 @@ class Sticks(Story):
         self.assertIn("this box made the export itself", said)
         self.post("forget")
 
-    def test_a_stick_that_fills_up_is_told_of_and_left_as_it_was(self):
+    def test_one_with_a_loose_plug_is_offered_again_once_it_stays(self):
         self.box.pull_stick("again")
+        for turn in range(8):
+            self.box.plug_stick(self.good, f"loose{turn}", writable=True)
+            time.sleep(0.2 * turn)
+            self.box.pull_stick(f"loose{turn}")
+        self.box.plug_stick(self.good, "firm", writable=True)
+        self.wait_for(lambda said: [each["name"] for each in said["exports"]] == [self.name] and not said["hindrance"],
+                      "the export to be offered")
+
+    def test_a_stick_that_fills_up_is_told_of_and_left_as_it_was(self):
+        self.box.pull_stick("firm")
         self.wait_for(lambda said: "no stick" in said["hindrance"], "it to be gone")
         image, filler = fat(self.folder, "full", size=8), self.folder / "filler"
         for size in range(8 << 20, 0, -8192):

@@ -72,6 +72,21 @@ test("keeps what is wrong, whatever was asked for before is answered later", asy
   assert.match(await outcome(page, "typed").innerText(), /Mapping address: expected an IPv4 or IPv6 address/);
 });
 
+test("follows the test that runs already, where another is refused for it", async (t) => {
+  const { ask, page } = await ready(t, "setup#post");
+  const refused = page.waitForResponse((answer) => answer.status() === 409);
+  await page.route("**/adit/test", async (route) => {
+    if (route.request().method() === "POST") return route.fulfill({ status: 409, json: "a test is running: see GET /adit/test" });
+    await refused;
+    await route.continue();
+  });
+  await page.reload();
+  await ask("/adit/test", {});
+  await tries(page).click();
+  await tried(page, "typed", "a test is running");
+  await step(page, "Test").getByText("failed").waitFor();
+});
+
 test("tries a course before it is switched to, and tells it from the Test of what is in use", async (t) => {
   const { box, ask, page } = await ready(t, "setup#courses", { courses: COURSES });
   const { settings, tag } = (await ask("/adit/settings")).said;

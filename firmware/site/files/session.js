@@ -53,6 +53,16 @@ export async function post(path, body = {}) {
   }
 }
 
+/** `action`, of which one is under way at a time: the box would refuse the second press of two. */
+export function oneAtATime(action) {
+  let isBusy = false;
+  return async (...words) => {
+    if (isBusy) return;
+    isBusy = true;
+    await action(...words).finally(() => (isBusy = false));
+  };
+}
+
 let ahead = 0; // of this device's clock, in ms
 
 /** The box's clock, in seconds since 1970: a phone's own may be anything. */

@@ -1,7 +1,7 @@
 // The spare box: this one rests and is exported, or takes over from another by its export.
 import { confirmed } from "./dialog.js";
 import { make } from "./dom.js";
-import { get, getFile, post } from "./session.js";
+import { get, getFile, oneAtATime, post } from "./session.js";
 import { showStick } from "./spare_stick.js";
 
 const section = document.getElementById("spare");
@@ -9,7 +9,7 @@ const [note, outcome] = section.querySelectorAll(":scope > p"), facts = section.
 const form = section.querySelector("form"), file = section.querySelector("input[type=file]");
 const buttons = Object.fromEntries([...section.querySelectorAll("[data-does]")].map((button) => [button.dataset.does, button]));
 const EVERY = 2000, EVERY_OF_STICK = 300;
-let timer, isBusy = false;
+let timer;
 
 function say(text, bad = false) {
   outcome.textContent = text;
@@ -152,18 +152,14 @@ const DOES = {
   },
 };
 
-/** One at a time: the box would refuse the second press of two. */
-async function act(does) {
-  if (isBusy) return;
-  isBusy = true;
+const act = oneAtATime(async (does) => {
   try {
     await does();
   } catch (error) {
     say(error.message, true);
   }
-  isBusy = false;
   look();
-}
+});
 
 /** Where the box has no such thing, the section is not shown. */
 export async function offerSpare() {

@@ -106,9 +106,11 @@ async function begin(where, body) {
   try {
     await post("/adit/test", body);
   } catch (error) {
-    isRunning = false;
     report(places.get(where), named(error.message, "command_post."), true);
-    return barTries();
+    begun = "";
+    isRunning = error.status === 409; // another's runs, which is followed instead
+    barTries();
+    if (!isRunning) return;
   }
   follow();
 }

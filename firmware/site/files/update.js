@@ -1,6 +1,6 @@
 // The box's versions: which runs, an update of it, the way out of a slot that nobody meant, the restart.
 import { confirmed } from "./dialog.js";
-import { get, post } from "./session.js";
+import { get, oneAtATime, post } from "./session.js";
 
 const restartPlace = document.getElementById("restart");
 const [restartNote, restarted] = restartPlace.querySelectorAll("p"), restart = restartPlace.querySelector("button");
@@ -62,7 +62,7 @@ export async function offerUpdate(operator) {
   const section = document.getElementById("update"), bar = section.querySelector("progress");
   const [file, install, stick] = section.querySelectorAll(".install > *, input");
   const [told, outcome] = section.querySelectorAll(":scope > p");
-  let timer, isBusy = false, trouble = ""; // of the last press, until the next
+  let timer, trouble = ""; // of the last press, until the next
   function sayOutcome(doing = null, refusal = null) {
     const bad = trouble || refusal;
     outcome.textContent = doing ? `The box is ${doing}.` : bad ?? "";
@@ -86,19 +86,15 @@ export async function offerUpdate(operator) {
     await get("/adit/update").then(show, () => {});
     timer = setTimeout(look, 2000);
   }
-  /** One at a time: the box would refuse the second press of two. */
-  async function act(action) {
-    if (isBusy) return;
-    isBusy = true;
+  const act = oneAtATime(async (action) => {
     trouble = "";
     look();
     await action().catch((error) => {
       trouble = error.message;
       sayOutcome();
     });
-    isBusy = false;
     look();
-  }
+  });
   install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
   stick.addEventListener("click", () => act(() => post("/adit/update/stick")));
   restart.addEventListener("click", restartIt);

@@ -38,9 +38,11 @@ def body:
   + ($body | with_entries(select(.key == "description")))
   + {content: {(if $bundle then "application/octet-stream" else "application/json" end): ($body | del(.description))}};
 
+# What it gives is answered with 200: "202 ..." says 202, and "204 ..." that there may be none of it.
 def responses:
-  (.gives | startswith("202 ")) as $accepted
-  | {(if $accepted then "202" else "200" end): {description: .done, content: (.gives | ltrimstr("202 ") | content)}}
+  (.gives | capture("^((?<code>20[24]) )?(?<what>.*)")) as {$code, $what}
+  | {(if $code == "202" then $code else "200" end): {description: .done, content: ($what | content)}}
+  + (if $code == "204" then {($code): {description: "There is none."}} else {} end)
   + ([(.refusals | words[]), (if .who != "Open" then "403" else empty end),
       (if .who | IN("Open", "OwnPage") then empty else "401", "429" end), (if .body then "413", "422" else empty end)]
      | sort | map({(.): reference("responses")}) | add);

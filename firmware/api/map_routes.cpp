@@ -36,7 +36,7 @@ intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
 /// although there is none.
 std::unique_ptr<intake::BodySink> MapRoutes::tile(const Call& call) const {
   auto asked = tile_asked(call.head, call.parameters);
-  if (!asked || asked->at.level >= 0 || finer_ == nullptr) {
+  if (!asked || asked->at.level >= 0 || finer_ == nullptr || !picture::is_in_world(asked->at)) {
     call.responder->answer(asked ? tile_of(source_.map(), *asked) : asked.error());
     return nullptr;
   }

@@ -114,7 +114,10 @@ intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
 }
 
 intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked) {
-  return tile ? guarded(image_of(*tile, asked, "no-cache")) : nothing_drawn();
+  return guarded(tile ? image_of(*tile, asked, "no-cache")
+                      : intake::Answer{.status = icd::Status::NoContent,
+                                       .body = {},
+                                       .headers = {{"Cache-Control", "no-store"}}});
 }
 
 }  // namespace adit::api

@@ -27,7 +27,7 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
 /// The PNG, or why there is none.
 intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked);
 
-/// The same of a finer level, which was drawn; null: nothing is there.
+/// The same of a finer level, which was drawn. Null: 204, for whoever asks cannot know where there is one.
 intake::Answer finer_tile(const picture::Tile& tile, const TileAsked& asked);
 
 /// Of ?since=, 0 without it. An error is the answer.

@@ -89,7 +89,7 @@ constexpr Route kRoutes[] = {
     get("/adit/map", Viewer, by<&MapRoutes::layers>(), "map", "The layers of the picture of the maps.",
         "The layers.", "Map", "400", "since_map_version"),
     get("/adit/map/{kind}/{robot}/{level}/{x}/{y}.png", Viewer, by<&MapRoutes::tile>(), "map",
-        "One tile; what is unknown is transparent.", "The tile.", "image/png", "400 404 503",
+        "One tile; what is unknown is transparent.", "The tile.", "204 image/png", "400 404 503",
         "kind robot level x y at low high from to"),
     get("/adit/reports", Viewer, by<&ReportRoutes::list>(), "reports",
         "Every report of every run, or of one, oldest first.", "The reports.", "[Report]", "400", "run"),

@@ -70,7 +70,7 @@ test("zoomed in shows the cells that were forwarded, and follows where they chan
     await settled(page);
     return ((await wall(page))?.thick ?? 0) >= 4 * up;
   }, "earlier it is as coarse as it is kept");
-  assert.deepEqual(page.complaints.filter((text) => !/getImageData|404/.test(text)), []);
+  assert.deepEqual(page.complaints.filter((text) => !text.includes("getImageData")), []);
 });
 
 test("asks for nothing finer where nothing would be seen of it, and for a tile again only where it changed", async (t) => {
@@ -126,5 +126,7 @@ test("gives the cells of a grid of 5 cm as they are", async (t) => {
   assert.deepEqual(column, Array.from({ length: 256 }, (_, y) => (y >= SIDE / 2 ? -1 : y === 1 ? 255 : 0)));
   assert.equal((await at.ask("GET", "/adit/map/grid/ugv1/-1/0/0.png?from=000000&to=ffffff", { headers: { "If-None-Match": tile.headers.get("ETag") } })).status, 304);
   assert.equal((await at.ask("GET", "/adit/map/grid/ugv1/-1/0/0.png?at=1")).status, 400);
-  for (const none of ["-1/1/0", "-2/0/0", "-3/0/0", "-1/99999999/0"]) assert.equal((await at.ask("GET", `/adit/map/grid/ugv1/${none}.png`)).status, 404, none);
+  for (const [place, status] of [["-1/1/0", 204], ["-2/0/0", 204], ["-3/0/0", 404], ["-1/99999999/0", 404]]) {
+    assert.equal((await at.ask("GET", `/adit/map/grid/ugv1/${place}.png`)).status, status, place);
+  }
 });

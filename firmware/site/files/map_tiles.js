@@ -2,6 +2,7 @@
 // when it is looked at and its version changed (README.md: GET /adit/map).
 
 const AT_ONCE = 4, FINER_AT_ONCE = 2, MOST_IMAGES = 500; // a finer tile may have to be drawn first
+const NONE = [204, 404]; // nothing is known there, of what may be asked for; of anything else
 
 const overlap = (a, b) => a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 
@@ -194,9 +195,9 @@ export class Tiles {
     this.#loadingFiner += Boolean(known.isFiner);
     try {
       const answer = await fetch(name, known.etag ? { headers: { "If-None-Match": known.etag } } : {});
-      const image = answer.ok ? await createImageBitmap(await answer.blob()) : null;
+      const image = answer.status === 200 ? await createImageBitmap(await answer.blob()) : null;
       if (known.isFiner && answer.status === 503) known.name = ""; // asked for again when it is next drawn
-      if (known.name !== name || !(image || answer.status === 404)) return;
+      if (known.name !== name || !(image || NONE.includes(answer.status))) return;
       known.image = image;
       if (known.isFiner) known.etag = answer.headers.get("ETag") ?? "";
       known.isAsOf = spanOf(answer, name);

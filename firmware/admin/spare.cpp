@@ -1,5 +1,6 @@
 #include "admin/spare.hpp"
 
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -59,10 +60,6 @@ Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, 
   if (!rests_.empty()) host::log(host::Level::Warning, "this box rests", {{"why", rests_}});
 }
 
-std::optional<double> Spare::rests_since() const {
-  return file_.rest ? std::optional(file_.rest->since) : std::nullopt;
-}
-
 void Spare::ends(const std::optional<icd::RunStatus>& expected) {
   if (!goes_to_rest_ || !expected) return;
   SpareFile next = file_;
@@ -70,6 +67,10 @@ void Spare::ends(const std::optional<icd::RunStatus>& expected) {
   if (const auto kept = keep(next); !kept)
     host::log(host::Level::Warning, "what the Command Post counted is not known to the spare",
               {{"why", kept.error().sentence}});
+}
+
+bool Spare::is_of_this_rest(const std::string& file) const {
+  return file_.rest && spare::named_for(file).at == std::floor(file_.rest->since);
 }
 
 icd::Checked<void> Spare::keep(const SpareFile& next) {
@@ -83,10 +84,12 @@ api::SpareView Spare::spare() const {
   api::SpareView view;
   view.rests = !rests_.empty();
   view.why = rests_;
-  view.since = rests_since();
   view.asks_code = sealed_ != nullptr;
   view.takes_over = takes_over_;
   view.stick = stick_.view();
+  // What an earlier rest wrote is no export of this one.
+  if (view.stick && !is_of_this_rest(view.stick->written)) view.stick->written.clear();
+  if (file_.rest) view.since = file_.rest->since;
   if (view.rests && file_.rest) view.code = spare::spoken(file_.rest->code);
   if (!taken_in_) return view;
   const spare::About& about = taken_in_->about;
@@ -96,7 +99,8 @@ api::SpareView Spare::spare() const {
                    .reports = about.reports,
                    .open = about.open,
                    .post = about.post,
-                   .run = about.run};
+                   .run = about.run,
+                   .left_out = left_out_};
   return view;
 }
 
@@ -105,7 +109,12 @@ icd::Checked<void> Spare::rest() {
   if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
   SpareFile next = file_;
   if (next.box.empty()) next.box = draw_box();
-  next.rest = {.code = spare::draw_code(random<spare::kCodeDigits>()), .since = loop_.wall_now()};
+  const double now = loop_.wall_now();
+  next.rest = {.code = spare::draw_code(random<spare::kCodeDigits>()),
+               .since = now,
+               .stamp = loop_.stamp_now(),
+               .told = asked_.is_time_set() ? std::optional(now) : std::nullopt};
+  next.rest_count = next.rest_count.value_or(0) + 1;
   if (auto kept = keep(next); !kept) return kept;
   goes_to_rest_ = true;
   host::log(host::Level::Notice, "this box goes to rest, for its spare to take over");
@@ -134,7 +143,7 @@ void Spare::export_to(Sealed done) {
 void Spare::export_to_stick(Done done) {
   seal([this, done = std::move(done)](const icd::Checked<std::string>& file, const std::string& name) {
     if (!file) return done(std::unexpected(file.error()));
-    done(stick_.write(spare::file_name(name, rests_since().value_or(0)), *file));
+    done(stick_.write(spare::file_name(name, file_.rest ? file_.rest->since : 0), *file));
   });
 }
 
@@ -146,6 +155,9 @@ void Spare::seal(const Named& done) {
   if (!content) return refused(Status::ServiceUnavailable, std::move(content.error()));
   content->about.box = file_.box;
   content->about.at = file_.rest->since;
+  content->about.stamp = file_.rest->stamp.value_or(loop_.stamp_now());
+  content->about.rest_count = file_.rest_count;
+  content->about.told_at = file_.rest->told;
   content->about.expected = file_.rest->expected;
   auto text = std::make_shared<std::string>(spare::write(*content));
   if (text->size() > spare::kLargestExport - spare::kSealing)
@@ -205,10 +217,11 @@ icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
   if (!text) return refuse(Status::UnprocessableEntity, std::move(text.error()));
   auto content = spare::read(*text);
   if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
-  if (std::string why = file_.hindrance(content->about.box, content->about.at); !why.empty())
+  if (std::string why = file_.hindrance(content->about); !why.empty())
     return refuse(Status::Conflict, std::move(why));
-  if (auto checked = taking_over_.check(*content); !checked)
-    return refuse(Status::UnprocessableEntity, std::move(checked.error()));
+  auto left_out = taking_over_.check(*content);
+  if (!left_out) return refuse(Status::UnprocessableEntity, std::move(left_out.error()));
+  left_out_ = *std::move(left_out);
   taken_in_ = *std::move(content);
   return {};
 }
@@ -229,7 +242,9 @@ icd::Checked<void> Spare::forget() {
 icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
   if (!taken_in_) return refuse(Status::Conflict, "nothing is taken in: take in the export first");
-  if (auto begun = taking_over_.begin(spare::write(*taken_in_)); !begun)
+  spare::Content content = *taken_in_;
+  if (!asked_.is_time_set()) content.about.told_at.reset();  // nobody can compare them
+  if (auto begun = taking_over_.begin(spare::write(content)); !begun)
     return refuse(Status::ServiceUnavailable, std::move(begun.error()));
   takes_over_ = true;
   restart_.call_at(loop_.now());

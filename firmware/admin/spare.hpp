@@ -20,8 +20,10 @@ class Spare final : public api::Spare {
  public:
   /// What the gateway does for it. Each is called on the loop.
   struct Asked {
-    /// All but what this knows itself: box, at and expected.
+    /// All but what this knows itself: of the box and its rest.
     std::function<std::expected<spare::Content, std::string>()> content;
+    /// The time of day was set by somebody who knows it.
+    std::function<bool()> is_time_set;
     /// The gateway ends, and another takes its place, which looks at the files again.
     std::function<void()> restart;
   };
@@ -33,7 +35,6 @@ class Spare final : public api::Spare {
 
   /// Why the box takes nothing and sends nothing; "": it does.
   const std::string& rests() const { return rests_; }
-  std::optional<double> rests_since() const;
   /// A take-over is not finished.
   bool is_stuck() const { return !trouble_.empty(); }
   /// Nothing is under way any more as this gateway ends: what /api/status would answer now.
@@ -52,6 +53,7 @@ class Spare final : public api::Spare {
 
  private:
   icd::Checked<void> keep(const SpareFile& next);
+  bool is_of_this_rest(const std::string& file) const;
   /// The export's file, and where the team finds the box.
   using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
   void seal(const Named& done);
@@ -72,6 +74,7 @@ class Spare final : public api::Spare {
   bool takes_over_ = false;
   std::shared_ptr<const std::string> sealed_;  // taken in, and not opened yet; null: nothing is
   std::optional<spare::Content> taken_in_;
+  std::vector<std::string> left_out_;  // of its settings: their paths
 };
 
 }  // namespace adit::admin

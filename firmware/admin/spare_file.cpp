@@ -1,6 +1,7 @@
 #include "admin/spare_file.hpp"
 
 #include <algorithm>
+#include <compare>
 
 #include "admin/kept_file.hpp"
 #include "codec/row_file.hpp"
@@ -11,17 +12,19 @@ namespace {
 constexpr codec::FileFormat kFormat = {"format", 1};
 
 constexpr codec::Member kRestMembers[] = {
-    codec::member<&Rest::code>("code"),
-    codec::member<&Rest::since>("since"),
+    codec::member<&Rest::code>("code"),         codec::member<&Rest::since>("since"),
+    codec::member<&Rest::stamp>("stamp"),       codec::member<&Rest::told>("told"),
     codec::member<&Rest::expected>("expected"),
 };
 constexpr codec::Member kTakenMembers[] = {
     codec::member<&TakenFrom::box>("box"),
     codec::member<&TakenFrom::at>("at"),
+    codec::member<&TakenFrom::rest_count>("rest_count"),
 };
 constexpr codec::Member kFileMembers[] = {
     codec::member<&SpareFile::box>("box"),
     codec::member<&SpareFile::rest>("rest"),
+    codec::member<&SpareFile::rest_count>("rest_count"),
     codec::member<&SpareFile::taken>("taken"),
 };
 
@@ -40,12 +43,16 @@ std::expected<void, std::string> SpareFile::write(const std::string& state_folde
   return host::write_file(state_folder + '/' + kName, codec::write_file(*this, kFormat), host::kOursAlone);
 }
 
-std::string SpareFile::hindrance(const std::string& its_box, double at) const {
-  if (its_box == box) return "this box made the export itself: wake it up, if no spare took over";
-  const auto before = std::ranges::find(taken, its_box, &TakenFrom::box);
-  if (before == taken.end() || at > before->at) return "";
-  return at == before->at ? "this box took over from this export already"
-                          : "this box took over from a later export of that box already";
+std::string SpareFile::hindrance(const spare::About& about) const {
+  if (about.box == box) return "this box made the export itself: wake it up, if no spare took over";
+  const auto before = std::ranges::find(taken, about.box, &TakenFrom::box);
+  if (before == taken.end()) return "";
+  // That box's clock may have been set back in between: its count goes before.
+  const bool are_counted = about.rest_count && before->rest_count;
+  const auto order = are_counted ? *about.rest_count <=> *before->rest_count : about.at <=> before->at;
+  if (order > 0) return "";
+  return order == 0 ? "this box took over from this export already"
+                    : "this box took over from a later export of that box already";
 }
 
 }  // namespace adit::admin

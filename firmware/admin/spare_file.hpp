@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <expected>
 #include <optional>
 #include <string>
@@ -7,13 +8,16 @@
 
 #include "codec/row.hpp"
 #include "icd/run_status.hpp"
+#include "spare/content.hpp"
 
 namespace adit::admin {
 
 /// That the box rests.
 struct Rest {
-  std::string code = "";  // of its export
-  double since = 0;       // seconds since 1970
+  std::string code = "";                       // of its export
+  double since = 0;                            // seconds since 1970
+  std::optional<double> stamp = std::nullopt;  // then; nothing: an earlier Adit did not note it
+  std::optional<double> told = std::nullopt;   // spare::About::told_at
   /// What /api/status would have answered once nothing was under way any more; nothing: not known for
   /// certain.
   std::optional<icd::RunStatus> expected = std::nullopt;
@@ -23,7 +27,8 @@ struct Rest {
 /// An export that was taken over from.
 struct TakenFrom {
   std::string box = "";
-  double at = 0;  // when that box came to rest
+  double at = 0;                                          // when that box came to rest
+  std::optional<std::int64_t> rest_count = std::nullopt;  // spare::About
   static const codec::Row kRow;
 };
 
@@ -31,6 +36,7 @@ struct TakenFrom {
 struct SpareFile {
   std::string box = "";  // its own number; "": it drew none yet
   std::optional<Rest> rest = std::nullopt;
+  std::optional<std::int64_t> rest_count = std::nullopt;  // spare::About
   std::vector<TakenFrom> taken = {};
 
   static const codec::Row kRow;
@@ -39,8 +45,8 @@ struct SpareFile {
   static std::expected<SpareFile, std::string> read(const std::string& state_folder);
   std::expected<void, std::string> write(const std::string& state_folder) const;
 
-  /// Why an export of that box must not be taken over from; "": it may.
-  std::string hindrance(const std::string& its_box, double at) const;
+  /// Why that export must not be taken over from; "": it may.
+  std::string hindrance(const spare::About& about) const;
 };
 
 }  // namespace adit::admin

@@ -71,10 +71,19 @@ class FirstLedger {
 };
 
 /// How far the stamps here, which are at `stamp`, are ahead of the first box's: as much time went by since it
-/// came to rest as both boxes' times of day say. `wall`: here.
+/// came to rest as the times of day say. Where they may differ none did for certain: what makes a new run is
+/// silence. `wall`: here.
 double ahead(const spare::About& about, double stamp, double wall) {
-  const double since = std::max(0.0, wall - about.at);
+  const double since = std::max(0.0, wall - about.told_at.value_or(wall));
   return stamp - since - about.stamp;
+}
+
+/// What tells of the machine, not of the team: the first box's may be another.
+void keep_hardware(settings::Settings& here, settings::Settings& taken) {
+  taken.command_post.interface = std::move(here.command_post.interface);
+  taken.team.interface = std::move(here.team.interface);
+  taken.team.listen = std::move(here.team.listen);
+  taken.panel = std::move(here.panel);
 }
 
 }  // namespace
@@ -112,12 +121,13 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
   return note(content.about);
 }
 
-std::expected<void, std::string> TakingOver::check(const spare::Content& content) const {
-  if (const auto saved = settings::parse_saved(content.settings); !saved)
+std::expected<std::vector<std::string>, std::string> TakingOver::check(const spare::Content& content) const {
+  auto saved = settings::parse_saved(content.settings);
+  if (!saved)
     return std::unexpected("its settings cannot be used here: " + settings::sentence_of(saved.error()));
   const FirstLedger there(runtime_, content.ledger);
   if (!there.ledger()) return std::unexpected("its ledger cannot be used here: " + there.ledger().error());
-  return {};
+  return std::move(saved->passed_over);
 }
 
 std::expected<void, std::string> TakingOver::abandon() {
@@ -136,8 +146,9 @@ std::expected<void, std::string> TakingOver::take_ledger(const spare::Content& c
 }
 
 std::expected<void, std::string> TakingOver::take_settings(const spare::Content& content) {
-  const auto saved = settings::parse_saved(content.settings);
+  auto saved = settings::parse_saved(content.settings);
   if (!saved) return std::unexpected("the first box's settings: " + settings::sentence_of(saved.error()));
+  if (auto here = store_.load()) keep_hardware(here->settings, saved->settings);
   for (const std::string& name : token_names(saved->settings)) {
     const auto found = content.tokens.find(name);
     const auto token = found == content.tokens.end() ? std::nullopt : std::optional(found->second);
@@ -150,7 +161,7 @@ std::expected<void, std::string> TakingOver::note(const spare::About& about) {
   SpareFile file = SpareFile::read(state_).value_or(SpareFile{});
   file.rest.reset();
   std::erase_if(file.taken, [&about](const TakenFrom& each) { return each.box == about.box; });
-  file.taken.push_back({.box = about.box, .at = about.at});
+  file.taken.push_back({.box = about.box, .at = about.at, .rest_count = about.rest_count});
   return file.write(state_);
 }
 

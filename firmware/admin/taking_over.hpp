@@ -2,6 +2,7 @@
 
 #include <expected>
 #include <string>
+#include <vector>
 
 #include "admin/store.hpp"
 #include "dispatch/taking_over.hpp"
@@ -22,8 +23,9 @@ class TakingOver {
   TakingOver(Store& store, std::string state_folder, std::string runtime_folder)
       : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
 
-  /// Why this box cannot take over from that one; nothing is changed.
-  std::expected<void, std::string> check(const spare::Content& content) const;
+  /// The paths of those of its settings that this box does not know, and will leave out. An error: why it
+  /// cannot take over from that one. Nothing is changed.
+  std::expected<std::vector<std::string>, std::string> check(const spare::Content& content) const;
   /// `content`: spare::write(). An error: nothing is begun.
   std::expected<void, std::string> begin(const std::string& content);
   /// Takes over reports and runs into the ledger, settings, tokens and the bound of stamps, where that was

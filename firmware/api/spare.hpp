@@ -18,6 +18,7 @@ struct ExportRow {
   std::int64_t reports = 0, open = 0;
   std::string post;
   std::optional<icd::RunStatus> run;
+  std::vector<std::string> left_out = {};  // settings that are not known here: their paths
   static const codec::Row kRow;
 };
 

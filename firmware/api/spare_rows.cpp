@@ -11,6 +11,7 @@ constexpr codec::Member kExportMembers[] = {
     codec::member<&ExportRow::open>("open", "of these, those with which something is still to happen"),
     codec::member<&ExportRow::post>("post", "the Command Post: address and port"),
     codec::member<&ExportRow::run>("run", "as it last heard; null: never"),
+    codec::member<&ExportRow::left_out>("left_out", "of its settings, those that are not known here"),
 };
 
 constexpr codec::Member kStickExportMembers[] = {

@@ -37,6 +37,8 @@ std::string text_of(const api::ExportRow& row) {
          '\n';
   if (row.run)
     out += icd::sentence("  score ", row.run->score, ", ", row.run->remaining_reports, " reports left\n");
+  for (const std::string& path : row.left_out)
+    out += icd::sentence("  left out, for it is not known here: ", host::escaped(path), "\n");
   return out;
 }
 
@@ -102,8 +104,10 @@ std::expected<SpareView, Failure> wait_until(const Adit& adit, bool (*is_so)(con
 
 std::expected<SpareView, Failure> put_to_rest(const Adit& adit, const Options& options,
                                               const Console& console) {
-  if (auto why =
-          doubt(options, console, "From now on this box takes nothing and sends nothing.", "Put it to rest?"))
+  if (auto why = doubt(options, console,
+                       "From now on this box takes nothing and sends nothing. Reports that wait are in the "
+                       "export; maps, states and markers that wait stay here.",
+                       "Put it to rest?"))
     return std::unexpected(*std::move(why));
   if (auto done = post(adit, "/adit/spare/rest", "", "adit spare"); !done)
     return std::unexpected(std::move(done.error()));

@@ -54,9 +54,6 @@ std::expected<spare::Content, std::string> Gateway::content() const {
   spare::Content content;
   content.about.name = team_address();
   content.about.version = box::kVersion;
-  // When it came to rest: it has been silent since then.
-  const double rests = std::max(0.0, loop_.wall_now() - spare_.rests_since().value_or(loop_.wall_now()));
-  content.about.stamp = loop_.stamp_now() - rests;
   content.about.stamps = loop_.stamp_now() + forward::StampFloor::kAhead;
   content.about.reports = static_cast<std::int64_t>(reports.book().all().size());
   content.about.open = static_cast<std::int64_t>(reports.book().open().size());

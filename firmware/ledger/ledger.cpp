@@ -197,6 +197,7 @@ class Ledger::Impl {
   Scratch scratch_;    // before the database, which is in it
   Database database_;  // before the statements, which it outlives
   std::string damage_, refusal_;
+  std::string unread_;        // why what this stands in for cannot be read
   bool flushes_each_ = true;  // as it was opened
   int pages_ = 0;             // in the log
   bool unflushed_ = false;    // something was written whose flush was left for later
@@ -223,12 +224,13 @@ Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& sc
   if (made.path().empty()) return std::unexpected(system_error("making a folder in " + scratch));
   std::string unread;
   if (auto copied = copy_database(folder + kFile, made.path() + kFile); !copied) {
-    unread = "; what is in it cannot be read: " + copied.error().what;
+    unread = "what is in it cannot be read: " + copied.error().what;
     remove_database(made.path() + kFile);
   }
   auto opened = open(made.path());
   if (!opened) return opened;
-  opened->impl_->refusal_ = why + unread;
+  opened->impl_->refusal_ = unread.empty() ? why : why + "; " + unread;
+  opened->impl_->unread_ = unread;
   opened->impl_->scratch_ = std::move(made);
   return opened;
 }
@@ -279,6 +281,8 @@ Result<std::vector<Ledger::Step>> Ledger::history(std::int64_t number) const {
 }
 
 Result<std::string> Ledger::copy() const {
+  if (!impl_->unread_.empty())
+    return std::unexpected(Error{Error::Kind::Failing, "the ledger: " + impl_->unread_});
   sqlite3_int64 size = 0;
   const std::unique_ptr<unsigned char, decltype(&sqlite3_free)> bytes(
       sqlite3_serialize(impl_->database_.get(), "main", &size, 0), &sqlite3_free);

@@ -88,7 +88,8 @@ class Ledger {
   /// All steps of one report, oldest first.
   Result<std::vector<Step>> history(std::int64_t number) const;
 
-  /// The whole ledger as one file's bytes, which open() reads wherever they are.
+  /// The whole ledger as one file's bytes, which open() reads wherever they are. An error, too, where this
+  /// stands in for what cannot be read.
   Result<std::string> copy() const;
   /// Takes over all that `there`, another box's, knows: dispatch::take_over(), with each report's history, as
   /// one transaction and with one flush.

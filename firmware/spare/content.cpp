@@ -19,6 +19,8 @@ constexpr codec::Member kAboutMembers[] = {
     codec::member<&About::version>("version"),
     codec::member<&About::at>("at"),
     codec::member<&About::stamp>("stamp"),
+    codec::member<&About::rest_count>("rest_count"),
+    codec::member<&About::told_at>("told_at"),
     codec::member<&About::stamps>("stamps"),
     codec::member<&About::reports>("reports").from(0),
     codec::member<&About::open>("open").from(0),

@@ -28,7 +28,9 @@ class Box {
   void restart() {
     restarts = 0;
     spare_.emplace(loop_, workers_, taking_over_, state_.path(), stick_.path(), trouble,
-                   Spare::Asked{.content = [] { return content(); }, .restart = [this] { ++restarts; }});
+                   Spare::Asked{.content = [] { return content(); },
+                                .is_time_set = [this] { return is_time_set; },
+                                .restart = [this] { ++restarts; }});
   }
   icd::Checked<std::string> exported() {
     std::optional<icd::Checked<std::string>> file;
@@ -70,7 +72,10 @@ class Box {
     return *this;
   }
 
+  double stamp() const { return loop_.stamp_now(); }
+
   std::string trouble;
+  bool is_time_set = false;
   int restarts = 0;
 
  private:
@@ -198,12 +203,71 @@ TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
       << "it has nothing whole to hand on";
 }
 
+TEST(SpareBox, SaysNothingOfWhatAnEarlierRestWroteToTheStick) {
+  Box box;
+  box.say({});
+  ASSERT_TRUE(box.spare().rest());
+  box.restart();
+  ASSERT_TRUE(box.to_stick());
+  const std::string file = box.for_stick().first;
+  box.say({.nonce = box.asked_of_stick().nonce, .written = file});
+  box.restart();
+  EXPECT_EQ(box.spare().spare().stick->written, file);
+  box.say({.written = "adit-192.168.7.11-20200101T000000Z.adit-spare"});
+  EXPECT_EQ(box.spare().spare().stick->written, "");
+  box.say({.written = "named-by-hand.adit-spare"});
+  EXPECT_EQ(box.spare().spare().stick->written, "");
+}
+
+/// That export, opened by its code.
+spare::About about_of(Box& box) {
+  const auto text = spare::unseal(*box.exported(), *spare::code_in(box.spare().spare().code));
+  return spare::read(*text)->about;
+}
+
+TEST(SpareBox, CountsItsRestsAndKeepsWhenTheyWere) {
+  Box box;
+  for (const std::int64_t count : {1, 2}) {
+    ASSERT_TRUE(box.spare().rest());
+    const double stamp = box.stamp();
+    box.restart();
+    const spare::About about = about_of(box);
+    EXPECT_EQ(about.rest_count, count);
+    EXPECT_NEAR(about.stamp, stamp, 1) << "not that of the export";
+    EXPECT_EQ(about.told_at, std::nullopt) << "nobody set its time of day";
+    ASSERT_TRUE(box.spare().wake());
+    box.restart();
+  }
+  box.is_time_set = true;
+  ASSERT_TRUE(box.spare().rest());
+  box.is_time_set = false;  // since then
+  box.restart();
+  EXPECT_EQ(about_of(box).told_at, about_of(box).at);
+}
+
 TEST(SpareFile, NamesWhatWasTakenOverFromBefore) {
-  const SpareFile file{.box = "own", .rest = std::nullopt, .taken = {{.box = "other", .at = 100}}};
-  EXPECT_EQ(file.hindrance("other", 101), "");
-  EXPECT_EQ(file.hindrance("third", 1), "");
-  EXPECT_THAT(file.hindrance("other", 100), HasSubstr("took over from this export already"));
-  EXPECT_THAT(file.hindrance("other", 99), HasSubstr("a later export of that box already"));
+  const SpareFile file{.box = "own",
+                       .taken = {{.box = "other", .at = 100}, {.box = "counts", .at = 100, .rest_count = 2}}};
+  const auto hindrance = [&file](std::string box, double at, std::optional<std::int64_t> count = {}) {
+    return file.hindrance({.box = std::move(box), .at = at, .rest_count = count});
+  };
+  EXPECT_EQ(hindrance("other", 101), "");
+  EXPECT_EQ(hindrance("third", 1), "");
+  EXPECT_THAT(hindrance("other", 100), HasSubstr("took over from this export already"));
+  EXPECT_THAT(hindrance("other", 99), HasSubstr("a later export of that box already"));
+  EXPECT_EQ(hindrance("counts", 50, 3), "") << "its clock was set back since";
+  EXPECT_THAT(hindrance("counts", 100, 2), HasSubstr("took over from this export already"));
+  EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of that box already"));
+}
+
+TEST(SpareFile, IsReadAsAnEarlierAditWroteIt) {
+  const host::Folder folder;
+  folder.put(SpareFile::kName, R"({"format":1,"box":"b","rest":{"code":"1","since":5,"expected":null},)"
+                               R"("taken":[{"box":"other","at":100}]})");
+  const auto file = SpareFile::read(folder.path());
+  ASSERT_TRUE(file) << file.error();
+  EXPECT_EQ(file->rest->since, 5);
+  EXPECT_EQ(file->taken.at(0).rest_count, std::nullopt);
 }
 
 }  // namespace

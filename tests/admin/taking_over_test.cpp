@@ -111,6 +111,50 @@ TEST_F(TakingOverTest, IsNotFinishedWhereItsLedgerIsNoneAndSaysSo) {
   EXPECT_EQ(taking_over_.finish(loop_), false);
 }
 
+/// What the Command Post said last at the first box is as old here as it was there, however the two clocks
+/// stand to each other: silence that nobody saw makes no new run.
+TEST_F(TakingOverTest, CountsTheTimeOfTheSwapOnlyWhereBothTimesOfDayAreTold) {
+  for (const bool are_told : {false, true}) {
+    const host::Folder folder;
+    auto there = ledger::Ledger::open(folder.path());
+    ASSERT_TRUE(there->write(dispatch::Run{.number = 1, .last = icd::RunStatus{}, .heard = 990}));
+    spare::Content content = this->content();
+    content.ledger = *there->copy();
+    content.about.at = loop_.wall_now() - 5000;
+    content.about.stamp = 1000;
+    if (are_told) content.about.told_at = content.about.at;
+    ASSERT_TRUE(taking_over_.begin(spare::write(content)));
+    ASSERT_EQ(taking_over_.finish(loop_), true);
+    const double stamp = forward::StampFloor(state_.path()).read().least;  // ahead of the clock: as all of it
+    const auto runs = *ledger::Ledger::open(state_.path())->runs();
+    ASSERT_THAT(runs, SizeIs(1));
+    EXPECT_NEAR(stamp - runs.at(0).heard, are_told ? 5010 : 10, 2);
+    fs::remove_all(state_ / "ledger.sqlite");
+  }
+}
+
+TEST_F(TakingOverTest, KeepsWhatIsOfThisMachine) {
+  spare::Content other = content();
+  other.settings = R"({"version":1,"command_post":{"scoring":{"address":"10.100.2.200","port":8000},)"
+                   R"("mapping":{"address":"10.100.2.201","port":8000},"interface":"enp3s0"},)"
+                   R"("team":{"interface":"enp4s0","listen":[{"address":"10.9.9.9","port":80}]},)"
+                   R"("panel":{"chip":"gpiochip0","health":"H"}})";
+  ASSERT_TRUE(taking_over_.begin(spare::write(other)));
+  ASSERT_EQ(taking_over_.finish(loop_), true);
+  const auto settings = store_.load()->settings;
+  EXPECT_EQ(settings.command_post.scoring.address, "10.100.2.200") << "the first box's";
+  EXPECT_EQ(settings.command_post.interface, "darpa0");
+  EXPECT_EQ(settings.team.interface, "team0");
+  EXPECT_EQ(settings.team.listen.at(0).address, "192.168.7.11");
+  EXPECT_TRUE(settings.panel.is_simulated());
+}
+
+TEST_F(TakingOverTest, NamesTheSettingsThatItLeavesOut) {
+  spare::Content other = content();
+  other.settings.insert(other.settings.find("\"version\""), "\"later\": 1, ");
+  EXPECT_EQ(taking_over_.check(other), std::vector<std::string>{"later"});
+}
+
 TEST_F(TakingOverTest, RefusesSettingsThatCannotBeUsedHere) {
   spare::Content other = content();
   other.settings = R"({"version": 9})";

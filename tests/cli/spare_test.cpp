@@ -23,7 +23,7 @@ constexpr const char* kRests =
 constexpr const char* kTakenIn =
     R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":{"name":"10.0.0.1",)"
     R"("version":"1.2.3","at":1.75e9,"reports":4,"open":1,"post":"10.100.1.200:8000","run":{"score":3,)"
-    R"("run_clock":100,"remaining_reports":20,"current_team":"adit"}},"takes_over":false})";
+    R"("run_clock":100,"remaining_reports":20,"current_team":"adit"},"left_out":["later"]},"takes_over":false})";
 
 constexpr const char* kStick =
     R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"

@@ -91,5 +91,20 @@ TEST(LedgerThatTakesOver, IsAsItWasWhereItCannotBeWritten) {
   EXPECT_THAT(*here->reports(), SizeIs(1));
 }
 
+TEST(LedgerThatIsCopied, IsNoneWhereWhatItStandsInForCannotBeRead) {
+  const Folder first, scratch;
+  ASSERT_TRUE(write(*std::make_unique<Ledger>(open_or_fail(first)), waiting(1, 1)));
+  const auto readable = Ledger::stand_in(first.text(), scratch.text(), "the disk is full");
+  ASSERT_TRUE(readable);
+  EXPECT_TRUE(readable->copy());
+  std::filesystem::remove(first / "ledger.sqlite");
+  std::filesystem::create_directory(first / "ledger.sqlite");
+  const auto unread = Ledger::stand_in(first.text(), scratch.text(), "the disk reports errors");
+  ASSERT_TRUE(unread);
+  const auto copy = unread->copy();
+  ASSERT_FALSE(copy) << "a spare would take it for all there was";
+  EXPECT_THAT(copy.error().what, HasSubstr("cannot be read"));
+}
+
 }  // namespace
 }  // namespace adit::ledger

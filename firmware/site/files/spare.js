@@ -32,9 +32,10 @@ const whenOf = (seconds) => new Date(seconds * 1000).toLocaleString();
 function factsOf({ rests, code, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return [];
   if (taken) {
-    const { name, version, at, reports, open, post: where, run } = taken;
+    const { name, version, at, reports, open, post: where, run, left_out: leftOut } = taken;
     return [["Box", name], ["Adit", version], ["Came to rest", `${whenOf(at)}, by its clock`], ["Reports", `${reports}, ${open} of them not finished`],
-      ["Command Post", where], ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"]];
+      ["Command Post", where], ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"],
+      ...(leftOut.length ? [["Left out", `settings that are not known here: ${leftOut.join(", ")}`]] : [])];
   }
   return rests && code ? [["Code", code]] : [];
 }
@@ -98,7 +99,7 @@ const sure = (title, text, word) => confirmed({ title, text, word });
 
 /** Whether the box was put to rest. */
 async function putToRest() {
-  const text = "From then on this box takes nothing and sends nothing, also after a power cut, until it is woken up.";
+  const text = "From then on this box takes nothing and sends nothing, also after a power cut, until it is woken up. Reports that wait are in the export; maps, states and markers that wait stay here.";
   if (!(await sure("Put this box to rest?", text, "Rest and export"))) return false;
   say("The box goes to rest, once what is under way is answered.");
   await post("/adit/spare/rest");

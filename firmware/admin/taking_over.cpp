@@ -78,11 +78,21 @@ double ahead(const spare::About& about, double stamp, double wall) {
   return stamp - since - about.stamp;
 }
 
+/// The same ports, at whatever addresses the machine has on its interface.
+std::vector<settings::Address> at_any(const std::vector<settings::Address>& listen) {
+  std::vector<settings::Address> all;
+  for (settings::Address each : listen) {
+    each.address = each.address.contains(':') ? "::" : "0.0.0.0";
+    if (std::ranges::find(all, each) == all.end()) all.push_back(std::move(each));
+  }
+  return all;
+}
+
 /// What tells of the machine, not of the team: the first box's may be another.
 void keep_hardware(settings::Settings& here, settings::Settings& taken) {
   taken.command_post.interface = std::move(here.command_post.interface);
   taken.team.interface = std::move(here.team.interface);
-  taken.team.listen = std::move(here.team.listen);
+  if (!taken.team.interface.empty()) taken.team.listen = at_any(taken.team.listen);
   taken.panel = std::move(here.panel);
 }
 

@@ -18,6 +18,15 @@ bool is_address(int family, std::string_view text) {
   return !text.contains('\0') && inet_pton(family, std::string(text).c_str(), bytes) == 1;
 }
 
+/// "adit.local": one label, of letters, digits and hyphens (RFC 6762 3).
+bool is_multicast_name(std::string_view name) {
+  constexpr std::string_view kEnd = ".local";
+  if (name.size() <= kEnd.size() || !same(name.substr(name.size() - kEnd.size()), kEnd)) return false;
+  return std::ranges::all_of(name.substr(0, name.size() - kEnd.size()), [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '-';
+  });
+}
+
 bool is_port(std::string_view text) {
   return text.empty() || (text.front() == ':' && text.size() <= 6 &&
                           std::ranges::all_of(text.substr(1), [](char c) { return c >= '0' && c <= '9'; }));
@@ -33,7 +42,7 @@ bool names_this_box(std::string_view host) {
   }
   const std::string_view name = host.substr(0, host.find(':'));
   if (!is_port(host.substr(name.size()))) return false;
-  return same(name, "localhost") || same(name, "adit.local") || is_address(AF_INET, name);
+  return same(name, "localhost") || is_multicast_name(name) || is_address(AF_INET, name);
 }
 
 bool is_same_origin(std::string_view origin, std::string_view host) {

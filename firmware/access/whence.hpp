@@ -5,8 +5,9 @@
 namespace adit::access {
 
 /// Whether a Host header's value names this box in a way that no page from elsewhere can: as an IP literal,
-/// "localhost" or "adit.local", with any port. A name that somebody else's DNS resolves to the box's address
-/// (DNS rebinding) is none of these.
+/// "localhost" or a name in .local, with any port. A name that somebody else's DNS resolves to the box's
+/// address (DNS rebinding) is none of these: .local is told on the box's own network alone (RFC 6762 3),
+/// where a PC has the name that its owner gave it, and one of two boxes another than adit.local.
 bool names_this_box(std::string_view host);
 
 /// Whether an Origin header's value (RFC 6454 7) is a page of the very host that is asked.

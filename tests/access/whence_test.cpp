@@ -10,7 +10,7 @@ using namespace std::string_view_literals;
 TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
   for (const char* host :
        {"10.0.0.1", "10.0.0.1:8000", "192.168.7.11:80", "[fd00::1]", "[fd00::1]:8000", "[::1]:1", "localhost",
-        "localhost:8000", "LocalHost", "adit.local", "Adit.Local:8000"}) {
+        "localhost:8000", "LocalHost", "adit.local", "Adit.Local:8000", "adit12.local", "pc-17.local:8000"}) {
     EXPECT_TRUE(names_this_box(host)) << host;
   }
   for (const char* host : {"",
@@ -19,7 +19,11 @@ TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
                            "evil.example:8000",
                            "10.0.0.1.evil.example",
                            "adit.local.evil.example",
-                           "xadit.local",
+                           ".local",
+                           "a.b.local",
+                           "adit_1.local",
+                           "adit.local.",
+                           "adit.localx",
                            "adit",
                            "localhost.",
                            "fd00::1",

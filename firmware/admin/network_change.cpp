@@ -139,6 +139,7 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
                         {.allow_overlap = settings_.network.allow_overlap,
                          .confirm_within = settings_.network.confirm_within,
                          .command_post = settings_.command_post,
+                         .courses = settings_.courses,
                          .listen = settings_.team.listen,
                          .asker = asker});
 }

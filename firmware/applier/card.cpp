@@ -92,6 +92,7 @@ class Reader {
                                          {.allow_overlap = settings.network.allow_overlap,
                                           .confirm_within = settings.network.confirm_within,
                                           .command_post = settings.command_post,
+                                          .courses = settings.courses,
                                           .listen = settings.team.listen,
                                           .asker = ""});
     if (!findings.errors.empty()) return refuse(kCardNetwork, findings.errors);

@@ -19,16 +19,28 @@ bool is_any(const std::string& address) {
 }
 
 struct Endpoint {
-  const char* name;
+  std::string name;
   std::string address;
   std::optional<std::uint32_t> number;  // nothing: no IPv4 address
 };
 
-std::array<Endpoint, 2> endpoints(const Circumstances& around) {
-  const auto of = [](const char* name, const Address& address) {
-    return Endpoint{name, address.address, settings::ipv4_of(address.address)};
-  };
-  return {of("scoring", around.command_post.scoring), of("mapping", around.command_post.mapping)};
+Endpoint endpoint(std::string name, const Address& address) {
+  return {std::move(name), address.address, settings::ipv4_of(address.address)};
+}
+
+/// Those that are in use.
+std::vector<Endpoint> endpoints(const Circumstances& around) {
+  return {endpoint("scoring endpoint", around.command_post.scoring),
+          endpoint("mapping endpoint", around.command_post.mapping)};
+}
+
+std::vector<Endpoint> all_endpoints(const Circumstances& around) {
+  auto all = endpoints(around);
+  for (const settings::Course& course : around.courses) {
+    all.push_back(endpoint("scoring endpoint of course " + course.name, course.scoring));
+    all.push_back(endpoint("mapping endpoint of course " + course.name, course.mapping));
+  }
+  return all;
 }
 
 /// What of the Command Post's side the team's subnet overlaps: the first that there is, for one is enough to
@@ -41,8 +53,8 @@ std::string overlap_of(const Numbers& wanted, const Circumstances& around) {
     return written(*found);
   const auto own = std::ranges::find_if(wanted.command_post, is_in_the_way);
   if (own != wanted.command_post.end()) return written(*own);
-  for (const auto& [name, address, number] : endpoints(around)) {
-    if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " endpoint ", address);
+  for (const auto& [name, address, number] : all_endpoints(around)) {
+    if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " ", address);
   }
   return "";
 }
@@ -52,7 +64,7 @@ void warn_of_lost_endpoints(const Numbers& wanted, const Circumstances& around,
                             std::vector<std::string>& warnings) {
   for (const auto& [name, address, number] : endpoints(around)) {
     if (!number || wanted.gateway || on_link(wanted, *number) != nullptr) continue;
-    warnings.push_back(icd::sentence("the ", name, " endpoint ", address, " cannot be reached: ",
+    warnings.push_back(icd::sentence("the ", name, " ", address, " cannot be reached: ",
                                      wanted.command_post.empty()
                                          ? "the box has no address on that side"
                                          : icd::sentence("it is in no subnet of ", command_post_text(wanted),

@@ -19,6 +19,7 @@ struct Circumstances {
   bool allow_overlap = false;  // network.allow_overlap
   std::chrono::milliseconds confirm_within{90000};
   settings::CommandPost command_post;
+  std::vector<settings::Course> courses;  // any of which may be used next
   std::vector<settings::Address> listen;  // team.listen
   std::string asker;                      // the address of the one who asks
 };

@@ -65,6 +65,18 @@ TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
               ElementsAre(HasSubstr("192.168.7.0/24 overlaps the mapping endpoint 192.168.7.201 on")));
 }
 
+TEST(NetworkCheck, RefusesATeamWhereACourseThatIsNotInUseHasItsEndpoints) {
+  Circumstances around = usual();
+  around.courses = {{"A", around.command_post.scoring, around.command_post.mapping},
+                    {"B", {"10.100.1.200", 8000}, {"192.168.7.201", 8000}}};
+  EXPECT_THAT(
+      errors(numbers(), around),
+      ElementsAre(HasSubstr("192.168.7.0/24 overlaps the mapping endpoint of course B 192.168.7.201 on")));
+  EXPECT_THAT(errors(numbers("192.168.8.11/24"), around), IsEmpty());
+  around.allow_overlap = true;
+  EXPECT_THAT(errors(numbers(), around), IsEmpty());
+}
+
 TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
   Circumstances around = usual();
   around.allow_overlap = true;

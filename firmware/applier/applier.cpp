@@ -38,7 +38,7 @@ std::expected<void, std::string> Applier::start() {
   change_.emplace(files_, files_.kept());
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
-  if (files_.found_a_change()) {
+  if (found_a_change()) {
     host::log(Level::Warning, "a change that nobody had confirmed was taken back");
     change_->interrupted();
   }
@@ -46,16 +46,25 @@ std::expected<void, std::string> Applier::start() {
   if (folder) {
     folder_ = std::move(*folder);
     watch_folder();
-    take_requests(first);
+    if (first) drop_requests();
   } else {
     host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
   }
   if (!tell()) return std::unexpected("the status cannot be told");
-  after();
+  look();
   return {};
 }
 
+/// Or the start before this one found it, and could not tell networkd.
+bool Applier::found_a_change() const {
+  const auto text = host::read_file(options_.status + '/' + network::kStatusFile);
+  const auto told = network::read<network::Status>(text.value_or(""));
+  const bool was_pending = told && told->pending && told->pending->wanted != files_.kept();
+  return files_.found_a_change() || was_pending;
+}
+
 void Applier::stop() {
+  if (folder_) take_word();
   change_->stop(loop_.now());
   tell();
   loop_.stop();
@@ -77,65 +86,79 @@ void Applier::watch_folder() {
   });
 }
 
+/// Whatever takes its seconds, a word that came meanwhile is heard before the time is up.
 void Applier::look() {
+  if (folder_) take_requests();
   change_->tick(loop_.now());
-  take_requests(false);
   tell();
+  if (folder_) take_probe();
   after();
 }
 
-/// `drop`: they are taken away and not done, but for those that are as right now as they were then.
-void Applier::take_requests(bool drop) {
-  const auto wanted_text = taken(network::kWantedFile), word_text = taken(network::kWordFile),
-             probe_text = taken(network::kProbeFile);
-  take_forget();
+/// But for those that are as right now as they were then.
+void Applier::drop_requests() {
+  for (const char* name : {network::kWantedFile, network::kWordFile, network::kProbeFile}) taken(name);
+}
+
+void Applier::take_requests() {
+  if (!take_forget()) return;
   take_endpoints();
-  if (drop) return;
-  if (wanted_text) {
-    if (const auto wanted = network::read<network::Wanted>(*wanted_text)) {
-      host::log(Level::Notice, "asked for a change",
-                {{"team", network::team_text(wanted->numbers)},
-                 {"command_post", network::command_post_text(wanted->numbers)}});
-      change_->want(*wanted, loop_.now());
-    } else {
-      refused(network::kWantedFile, wanted.error());
-    }
-  }
-  if (word_text) {
-    if (const auto word = network::read<network::Word>(*word_text)) {
-      change_->hear(*word, loop_.now());
-    } else {
-      refused(network::kWordFile, word.error());
-    }
-  }
-  if (probe_text) {
-    tell();  // before the seconds that it takes
-    if (const auto probe = network::read<network::Probe>(*probe_text)) {
-      answer_probe(*probe);
-    } else {
-      refused(network::kProbeFile, probe.error());
-    }
-  }
+  take_wanted();
+  take_word();
 }
 
-/// Taken away once it is done: after a power cut before that it is done again.
-void Applier::take_forget() {
+void Applier::take_wanted() {
+  const auto text = taken(network::kWantedFile);
+  if (!text) return;
+  const auto wanted = network::read<network::Wanted>(*text);
+  if (!wanted) return refused(network::kWantedFile, wanted.error());
+  host::log(Level::Notice, "asked for a change",
+            {{"team", network::team_text(wanted->numbers)},
+             {"command_post", network::command_post_text(wanted->numbers)}});
+  change_->want(*wanted, loop_.now());
+}
+
+void Applier::take_word() {
+  const auto text = taken(network::kWordFile);
+  if (!text) return;
+  const auto word = network::read<network::Word>(*text);
+  if (!word) return refused(network::kWordFile, word.error());
+  change_->hear(*word, loop_.now());
+}
+
+void Applier::take_probe() {
+  const auto text = taken(network::kProbeFile);
+  if (!text) return;
+  const auto probe = network::read<network::Probe>(*text);
+  if (!probe) return refused(network::kProbeFile, probe.error());
+  answer_probe(*probe);
+}
+
+/// Taken away once it is done: after a power cut before that it is done again. False: it is not done.
+bool Applier::take_forget() {
   const auto text = folder_->read(network::kForgetFile);
-  if (text && !*text) return;
-  if (text) forget(**text);
+  if (text && !*text) return true;
+  if (text && !forget(**text)) {
+    is_stuck_ = true;
+    return false;
+  }
   taken(network::kForgetFile);
+  return true;
 }
 
-void Applier::forget(const std::string& text) {
+/// Whether there is nothing more to do about it.
+bool Applier::forget(const std::string& text) {
   if (const auto forget = network::read<network::Forget>(text); !forget) {
-    return refused(network::kForgetFile, forget.error());
+    refused(network::kForgetFile, forget.error());
+    return true;
   }
-  if (const auto forgotten = change_->forget(); !forgotten) {
+  if (const auto forgotten = change_->forget(loop_.now()); !forgotten) {
     host::log(Level::Error, "the addresses are not forgotten as they should be",
               {{"why", forgotten.error()}});
-  } else {
-    host::log(Level::Notice, "the addresses are those that the box came with");
+    return false;
   }
+  host::log(Level::Notice, "the addresses are those that the box came with");
+  return true;
 }
 
 void Applier::take_endpoints() {
@@ -144,9 +167,9 @@ void Applier::take_endpoints() {
   const auto endpoints = network::read<network::Endpoints>(*text);
   if (!endpoints) return refused(network::kEndpointsFile, endpoints.error());
   if (const auto done = files_.lead_to(*endpoints); !done) {
-    host::log(Level::Error, "there are no routes to the endpoints", {{"why", done.error()}});
+    return host::log(Level::Error, "there are no routes to the endpoints", {{"why", done.error()}});
   }
-  change_->set_endpoints(files_.endpoints());
+  change_->set_endpoints(*endpoints);
 }
 
 std::optional<std::string> Applier::taken(const char* name) {

@@ -26,15 +26,21 @@ class Applier {
   /// A pending change is taken back, and the loop ends.
   void stop();
 
-  /// Something that was asked for could not be taken away: to be started again at once would find it again.
-  bool is_stuck() const { return is_stuck_; }
+  /// Nothing is left to be tried again by another start, but not at once: a request that could not be taken
+  /// away or be done, or what networkd has not read.
+  bool is_done() const { return !is_stuck_ && !files_.reload_is_due(); }
 
  private:
   void look();
-  void take_requests(bool drop);
+  void drop_requests();
+  void take_requests();
+  void take_wanted();
+  void take_word();
+  void take_probe();
   void take_endpoints();
-  void take_forget();
-  void forget(const std::string& text);
+  bool take_forget();
+  bool forget(const std::string& text);
+  bool found_a_change() const;
   void after();
   bool tell();
   void answer_probe(const network::Probe& probe);

@@ -47,7 +47,7 @@ int run(const adit::applier::Options& options) {
   const auto interrupted = loop.signal(SIGINT, [&applier] { applier.stop(); });
   if (const auto started = applier.start(); !started) return fail(started.error());
   loop.run();
-  return applier.is_stuck() ? 1 : 0;
+  return applier.is_done() ? 0 : 1;
 }
 
 }  // namespace

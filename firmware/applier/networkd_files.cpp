@@ -9,7 +9,6 @@
 
 #include "host/files.hpp"
 #include "host/log.hpp"
-#include "host/output.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "network/networkd.hpp"
@@ -48,9 +47,8 @@ std::array<NetworkdFiles::Place, 2> NetworkdFiles::places(const network::Numbers
 
 std::expected<void, std::string> NetworkdFiles::settle() {
   if (auto read = this->read(); !read) return read;
-  const auto changed = write();
-  if (!changed) return std::unexpected(changed.error());
-  return *changed ? reload() : std::expected<void, std::string>{};
+  if (auto written = write(Then::Reload); !written) return written;
+  return reload_.run();
 }
 
 std::expected<void, std::string> NetworkdFiles::write_at_start() {
@@ -59,8 +57,7 @@ std::expected<void, std::string> NetworkdFiles::write_at_start() {
               {{"why", read.error()}});
     use_factory();
   }
-  const auto changed = write();
-  return changed ? std::expected<void, std::string>{} : std::unexpected(changed.error());
+  return write(Then::Nothing);
 }
 
 std::expected<void, std::string> NetworkdFiles::read() {
@@ -105,17 +102,14 @@ void NetworkdFiles::read_endpoints() {
   endpoints_ = endpoints.value_or(network::Endpoints{});
 }
 
-std::expected<bool, std::string> NetworkdFiles::write() {
-  bool changed = false;
+std::expected<void, std::string> NetworkdFiles::write(Then then) {
   if (kept_) {
-    const auto written = write_kept(*kept_);
-    if (!written) return written;
-    changed = *written;
+    if (auto written = write_kept(*kept_, then); !written) return written;
   }
-  const auto removed = remove_tried();
-  if (!removed) return removed;
+  const auto removed = remove_tried(then);
+  if (!removed) return std::unexpected(removed.error());
   found_a_change_ = *removed;
-  return changed || *removed;
+  return {};
 }
 
 /// A change can be made all the same.
@@ -137,9 +131,9 @@ std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& nu
   }
   tried_ = numbers;
   for (const Place& place : changes) {
-    if (auto written = host::write_file(place.tried, place.text, host::kForAll); !written) return written;
+    if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
   }
-  return changes.empty() ? std::expected<void, std::string>{} : reload();
+  return reload_.run();
 }
 
 std::string NetworkdFiles::in_use_of(const Place& place) {
@@ -170,7 +164,7 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
     return written;
   kept_ = numbers;
   tried_.reset();
-  if (const auto written = write_kept(numbers); !written) {
+  if (const auto written = write_kept(numbers, Then::Nothing); !written) {
     host::log(host::Level::Error, "kept, but not for networkd: that is tried again at the next start",
               {{"why", written.error()}});
   }
@@ -178,10 +172,9 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
 }
 
 std::expected<void, std::string> NetworkdFiles::take_back() {
-  const auto removed = remove_tried();
-  if (!removed) return std::unexpected(removed.error());
+  if (const auto removed = remove_tried(Then::Reload); !removed) return std::unexpected(removed.error());
   tried_.reset();
-  return *removed || reload_is_due_ ? reload() : std::expected<void, std::string>{};
+  return reload_.run();
 }
 
 /// Where the box came with no addresses, networkd has none of ours.
@@ -192,64 +185,58 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forge
   endpoints_ = {};
   tried_.reset();
   use_factory();
+  reload_.set_due();
   for (const Place& place : places()) {
     if (!kept_ && unlink(place.kept.c_str()) != 0 && errno != ENOENT) {
       return std::unexpected(host::trouble(place.kept, errno));
     }
   }
-  if (const auto written = write(); !written) return std::unexpected(written.error());
-  if (const auto reloaded = reload(); !reloaded) return std::unexpected(reloaded.error());
+  if (const auto written = write(Then::Reload); !written) return std::unexpected(written.error());
+  if (const auto reloaded = reload_.run(); !reloaded) return std::unexpected(reloaded.error());
   return kept_;
 }
 
 std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints& endpoints) {
-  if (endpoints == endpoints_) return {};
+  if (endpoints == endpoints_ && !reload_.is_due()) return {};
   if (auto kept = host::write_file(endpoints_file(), network::write(endpoints), host::kForAll); !kept)
     return kept;
   endpoints_ = endpoints;
-  bool changed = false;
   if (kept_) {
-    const auto written = write_kept(*kept_);
-    if (!written) return std::unexpected(written.error());
-    changed = *written;
+    if (auto written = write_kept(*kept_, Then::Reload); !written) return written;
   }
   const auto& in_use = tried_ ? tried_ : kept_;
   for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
     if (in_use_of(place) == place.text) continue;
-    if (auto written = host::write_file(place.tried, place.text, host::kForAll); !written) return written;
-    changed = true;
+    if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
   }
-  return changed ? reload() : std::expected<void, std::string>{};
+  return reload_.run();
 }
 
-std::expected<bool, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers) {
-  bool changed = false;
+std::expected<void, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers, Then then) {
   for (const Place& place : places(numbers)) {
     if (text_of(place.kept) == place.text) continue;
-    if (const auto written = host::write_file(place.kept, place.text, host::kForAll); !written) {
-      return std::unexpected(written.error());
-    }
-    changed = true;
+    if (auto written = put(place.kept, place.text, then); !written) return written;
   }
-  return changed;
+  return {};
 }
 
-std::expected<bool, std::string> NetworkdFiles::remove_tried() {
+std::expected<void, std::string> NetworkdFiles::put(const std::string& file, const std::string& text,
+                                                    Then then) {
+  if (then == Then::Reload) reload_.set_due();
+  return host::write_file(file, text, host::kForAll);
+}
+
+std::expected<bool, std::string> NetworkdFiles::remove_tried(Then then) {
   bool removed = false;
   for (const Place& place : kept_ ? places(*kept_) : places()) {
     const auto tried = host::slurp(place.tried);
     if (!tried && tried.error() == ENOENT) continue;
     if (tried && !place.text.empty() && tried->text == place.text) continue;  // this is what was confirmed
+    if (then == Then::Reload) reload_.set_due();
     if (unlink(place.tried.c_str()) != 0) return std::unexpected(host::trouble(place.tried, errno));
     removed = true;
   }
   return removed;
-}
-
-std::expected<void, std::string> NetworkdFiles::reload() {
-  auto reloaded = host::run_command({options_.networkctl, "reload"}, kReload);
-  reload_is_due_ = !reloaded;
-  return reloaded;
 }
 
 }  // namespace adit::applier

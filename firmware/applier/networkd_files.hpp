@@ -5,6 +5,7 @@
 
 #include "applier/arp_probe.hpp"
 #include "applier/options.hpp"
+#include "applier/reload.hpp"
 #include "network/change.hpp"
 
 namespace adit::applier {
@@ -13,16 +14,15 @@ namespace adit::applier {
 /// no address is taken that somebody else on its network has.
 class NetworkdFiles final : public network::Hands {
  public:
-  static constexpr std::chrono::seconds kReload{30};
-
   using Prober = decltype(&probe);
 
   /// `options` outlives this.
   explicit NetworkdFiles(const Options& options, Prober prober = &probe)
-      : options_(options), probe_(prober) {}
+      : options_(options), probe_(prober), reload_(options) {}
 
   /// Reads what was confirmed last, or else what the box came with, and makes networkd's folder hold that and
-  /// nothing else: a kill may have come at any point. An error: it is not as it should be.
+  /// nothing else, and networkd read it: a kill may have come at any point. An error: it is not as it should
+  /// be.
   std::expected<void, std::string> settle();
   /// The same before networkd is there. What cannot be read is no reason to be without any address: then it
   /// is what the box came with.
@@ -32,6 +32,8 @@ class NetworkdFiles final : public network::Hands {
   const network::Endpoints& endpoints() const { return endpoints_; }
   /// settle() found a change that nobody had confirmed.
   bool found_a_change() const { return found_a_change_; }
+  /// networkd has not read yet what its files say: settle() does the rest.
+  bool reload_is_due() const { return reload_.is_due(); }
 
   std::expected<void, std::string> apply(const network::Numbers& numbers) override;
   std::expected<void, std::string> keep(const network::Numbers& numbers) override;
@@ -54,23 +56,25 @@ class NetworkdFiles final : public network::Hands {
   std::expected<bool, std::string> read_confirmed();
   void read_endpoints();
   void use_factory();
-  /// Whether anything changed.
-  std::expected<bool, std::string> write();
+  /// What is to come of a file that changes; nothing where networkd has all of it already, or reads it as it
+  /// starts.
+  enum class Then : std::uint8_t { Reload, Nothing };
+  std::expected<void, std::string> write(Then then);
   std::expected<void, std::string> set_aside(const std::string& why);
-  std::expected<bool, std::string> write_kept(const network::Numbers& numbers);
+  std::expected<void, std::string> write_kept(const network::Numbers& numbers, Then then);
+  std::expected<void, std::string> put(const std::string& file, const std::string& text, Then then);
   /// What networkd goes by; "": nothing.
   static std::string in_use_of(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
   /// Whether any was there.
-  std::expected<bool, std::string> remove_tried();
-  std::expected<void, std::string> reload();
+  std::expected<bool, std::string> remove_tried(Then then);
 
   const Options& options_;
   Prober probe_;
+  Reload reload_;
   std::optional<network::Numbers> kept_, tried_;
   network::Endpoints endpoints_;
   bool found_a_change_ = false;
-  bool reload_is_due_ = false;  // the last one failed
 };
 
 }  // namespace adit::applier

@@ -41,8 +41,8 @@ command_line::Program command_line_of(Options& options) {
                {"--version", "", "prints the version", &options.version},
                {"--help", "", "prints this", &options.help}},
       .ending =
-          "Exits 0 once nothing is pending, 1 where it cannot do its work, or what is asked for cannot be "
-          "taken away (and says why), 2 on a wrong command line.",
+          "Exits 0 once nothing is pending, 1 where it cannot do its work, networkd has not read its files, "
+          "or what is asked for cannot be taken away or done (and says why), 2 on a wrong command line.",
   };
 }
 

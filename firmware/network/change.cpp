@@ -26,9 +26,7 @@ void Change::want(const Wanted& wanted, Instant now) {
 }
 
 void Change::hear(const Word& word, Instant now) {
-  if (!status_.pending || word.nonce != status_.pending->nonce) return;
-  tick(now);
-  if (!status_.pending || try_at_) return;
+  if (!status_.pending || word.nonce != status_.pending->nonce || try_at_) return;
   if (word.what == Word::What::Back) return take_back("somebody said so", now);
   const Numbers numbers = status_.pending->wanted;
   if (const auto kept = hands_.keep(numbers); !kept) {
@@ -38,9 +36,12 @@ void Change::hear(const Word& word, Instant now) {
   end(Ended::Confirmed, "");
 }
 
-std::expected<void, std::string> Change::forget() {
+std::expected<void, std::string> Change::forget(Instant now) {
   auto kept = hands_.forget();
-  if (!kept) return std::unexpected(std::move(kept.error()));
+  if (!kept) {
+    if (status_.pending && !try_at_) take_back("all addresses are to be forgotten", now);
+    return std::unexpected(std::move(kept.error()));
+  }
   status_.kept = *kept;
   status_.endpoints = {};
   if (status_.pending) end(Ended::TakenBack, "all addresses were forgotten");
@@ -59,7 +60,8 @@ void Change::tick(Instant now) {
 }
 
 void Change::stop(Instant now) {
-  if (status_.pending && !try_at_) take_back("adit-network was stopped", now);
+  if (try_at_) return try_to_take_back(now);
+  if (status_.pending) take_back("adit-network was stopped", now);
 }
 
 std::optional<Instant> Change::wake() const {
@@ -77,7 +79,7 @@ void Change::try_to_take_back(Instant now) {
   const auto taken = hands_.take_back();
   if (taken) return end(Ended::TakenBack, why_);
   if (++tries_ == kTries) {
-    return end(Ended::TakenBack, why_ + "; it takes effect once the box is restarted: " + taken.error());
+    return end(Ended::TakenBack, why_ + "; it is not in effect yet, and is tried again: " + taken.error());
   }
   try_at_ = now + kTryAgain;
 }

@@ -29,7 +29,7 @@ class Hands {
 /// is applied at once and for now, and only kept once somebody has said so. One at a time.
 class Change {
  public:
-  /// Taking back is tried again this often, this long after the last time.
+  /// Taking back is tried again this often, this long after the last time; then it is left to a later start.
   static constexpr int kTries = 5;
   static constexpr std::chrono::seconds kTryAgain{2};
 
@@ -45,11 +45,13 @@ class Change {
   void interrupted();
 
   void want(const Wanted& wanted, Instant now);
+  /// A word counts until tick() has said that the time is up: whoever was kept from looking looks for words
+  /// first, for they may have come in time.
   void hear(const Word& word, Instant now);
-  /// Ends what is pending, too. An error: it is not done, or not in use before the next start.
-  std::expected<void, std::string> forget();
+  /// Ends what is pending, too. An error: it is not done, or not in use yet.
+  std::expected<void, std::string> forget(Instant now);
   void tick(Instant now);
-  /// There is no more time: what is pending is taken back, once.
+  /// There is no more time: what is pending is taken back, once more where that has failed.
   void stop(Instant now);
 
   /// When tick() is to be called; nothing: no change is under way.

@@ -14,6 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr const char* kNonce = "0123456789abcdef0123456789abcdef";
+/// It fails as long as there is a file "broken"; and a word that is there comes while it takes its time.
+constexpr const char* kNetworkctl = R"(
+ls wanted state >seen
+test ! -e broken || exit 1
+printf 1 >>reloads
+test ! -e word || { sleep 0.2; mv word wanted/word.json; sleep 1.2; }
+)";
 
 class ApplierTest : public testing::Test {
  protected:
@@ -24,17 +31,41 @@ class ApplierTest : public testing::Test {
     options.state = folder / "state";
     options.networkd = folder / "networkd";
     options.factory = folder / "factory.json";
-    options.networkctl =
-        folder.put("networkctl", "#!/bin/sh\ncd " + folder.path() + "\nls wanted state >seen\n", 0700);
+    options.networkctl = folder.put("networkctl", "#!/bin/sh\ncd " + folder.path() + kNetworkctl, 0700);
   }
+  /// From its start to a kill.
+  struct Life {
+    explicit Life(const Options& options) : applier(loop, options), started(applier.start()) {}
+    loop::Loop loop;
+    Applier applier;
+    std::expected<void, std::string> started;
+  };
   /// adit-network's exit status, more or less.
   bool runs_well() {
-    loop::Loop loop;
-    Applier applier(loop, options);
-    const auto started = applier.start();
-    EXPECT_TRUE(started) << started.error();
-    loop.run();
-    return !applier.is_stuck();
+    Life life(options);
+    EXPECT_TRUE(life.started) << life.started.error();
+    life.loop.run();
+    return life.applier.is_done();
+  }
+  /// As aditd does.
+  template <class Request>
+  void ask(const char* file, const Request& request) {
+    fs::rename(folder.put("new", network::write(request)), options.wanted + '/' + file);
+  }
+  void want(std::chrono::milliseconds within = std::chrono::minutes(1)) {
+    ask(network::kWantedFile, network::Wanted{kNonce, within, tried});
+  }
+  void break_networkd() { folder.put("broken", ""); }
+  void mend_networkd() { fs::remove(folder / "broken"); }
+  network::Status status() const {
+    std::ifstream file(options.status + '/' + network::kStatusFile);
+    const auto status = network::read<network::Status>(std::string{std::istreambuf_iterator<char>(file), {}});
+    EXPECT_TRUE(status) << status.error();
+    return status.value_or(network::Status{});
+  }
+  /// How often networkd has read its files.
+  std::size_t reloads() const {
+    return fs::exists(folder / "reloads") ? fs::file_size(folder / "reloads") : 0;
   }
   /// What was in the folders when networkd was told of a change.
   std::string seen() const {
@@ -44,6 +75,9 @@ class ApplierTest : public testing::Test {
 
   host::Folder folder;
   Options options;
+  const network::Numbers kept = network::numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1"),
+                         tried = network::numbers("192.168.8.11/24", "10.100.1.10/24", "10.100.1.1");
+  const network::Endpoints by_gateway{{0x0a6402c8}};
 };
 
 TEST_F(ApplierTest, TakesAwayThatItIsToForgetOnceItHasForgotten) {
@@ -83,6 +117,110 @@ TEST_F(ApplierTest, SaysWhereARequestCannotBeTakenAway) {
   if (WEXITSTATUS(status) == 77) GTEST_SKIP() << "needs to mount";
   EXPECT_EQ(WEXITSTATUS(status), 0);
   EXPECT_TRUE(runs_well()) << "once it can be";
+}
+
+TEST_F(ApplierTest, HearsAWordThatCameInTimeWhileItWasBusy) {
+  EXPECT_TRUE(runs_well());
+  want(network::kLeastWithin);
+  Life life(options);
+  ASSERT_TRUE(status().pending);
+  folder.put("word", network::write(network::Word{kNonce, network::Word::What::Confirm}));
+  ask(network::kEndpointsFile, by_gateway);
+  life.loop.run();
+  EXPECT_EQ(status().ended, network::Ended::Confirmed) << status().why;
+  EXPECT_EQ(status().kept, tried);
+}
+
+TEST_F(ApplierTest, HearsAWordThatCameInTimeThoughItIsStopped) {
+  EXPECT_TRUE(runs_well());
+  want();
+  Life life(options);
+  ask(network::kWordFile, network::Word{kNonce, network::Word::What::Confirm});
+  life.applier.stop();
+  EXPECT_EQ(status().ended, network::Ended::Confirmed);
+}
+
+class NetworkdFailsTest : public ApplierTest {
+ protected:
+  NetworkdFailsTest() {
+    folder.put("state/confirmed.json", network::write_kept(kept));
+    EXPECT_TRUE(runs_well());
+    before = reloads();
+  }
+  /// And only once.
+  void expect_reload_by_the_next_start() {
+    const std::size_t failed = reloads();
+    mend_networkd();
+    EXPECT_TRUE(runs_well());
+    EXPECT_EQ(reloads(), failed + 1);
+    EXPECT_TRUE(runs_well());
+    EXPECT_EQ(reloads(), failed + 1);
+  }
+  std::size_t before = 0;
+};
+
+TEST_F(NetworkdFailsTest, AsAChangeIsTakenBackAfterAKill) {
+  want();
+  EXPECT_TRUE(Life(options).started);
+  break_networkd();
+  EXPECT_FALSE(Life(options).started);
+  EXPECT_TRUE(status().pending) << "it is in use still";
+  mend_networkd();
+  EXPECT_TRUE(runs_well());
+  EXPECT_EQ(reloads(), before + 2);
+  EXPECT_EQ(status().ended, network::Ended::TakenBack);
+  EXPECT_FALSE(status().pending);
+}
+
+TEST_F(NetworkdFailsTest, AsAChangeIsTakenBackAndTheServiceIsStopped) {
+  want();
+  {
+    Life life(options);
+    break_networkd();
+    ask(network::kWordFile, network::Word{kNonce, network::Word::What::Back});
+    life.loop.turn(std::chrono::seconds(5));
+    EXPECT_TRUE(status().pending);
+    life.applier.stop();
+    EXPECT_FALSE(life.applier.is_done());
+    EXPECT_TRUE(status().pending);
+  }
+  expect_reload_by_the_next_start();
+}
+
+TEST_F(NetworkdFailsTest, AsItIsToLeadToOtherEndpoints) {
+  break_networkd();
+  ask(network::kEndpointsFile, by_gateway);
+  EXPECT_FALSE(runs_well());
+  EXPECT_EQ(status().endpoints, network::Endpoints{}) << "aditd asks again";
+  expect_reload_by_the_next_start();
+  EXPECT_EQ(status().endpoints, by_gateway);
+}
+
+TEST_F(NetworkdFailsTest, AsItIsToLeadToOtherEndpointsWhileAChangeWaits) {
+  want();
+  Life life(options);
+  break_networkd();
+  ask(network::kEndpointsFile, by_gateway);
+  life.loop.turn(std::chrono::seconds(5));
+  EXPECT_EQ(status().endpoints, network::Endpoints{});
+  mend_networkd();
+  ask(network::kEndpointsFile, by_gateway);
+  life.loop.turn(std::chrono::seconds(5));
+  EXPECT_EQ(status().endpoints, by_gateway);
+  EXPECT_EQ(reloads(), before + 2);
+}
+
+TEST_F(NetworkdFailsTest, AsAllIsToBeForgotten) {
+  break_networkd();
+  ask(network::kForgetFile, network::Forget{kNonce});
+  EXPECT_FALSE(runs_well());
+  EXPECT_FALSE(Life(options).started);
+  EXPECT_EQ(status().kept, kept) << "they are in use still";
+  mend_networkd();
+  EXPECT_TRUE(runs_well());
+  EXPECT_GT(reloads(), before);
+  EXPECT_EQ(status().kept, std::nullopt);
+  EXPECT_TRUE(fs::is_empty(options.wanted));
 }
 
 }  // namespace

@@ -34,7 +34,8 @@ std::expected<std::optional<Claim>, std::string> somebody(const std::string& int
 class NetworkdFilesTest : public testing::Test {
  protected:
   NetworkdFilesTest() {
-    for (const char* name : {"networkd", "state"}) fs::create_directory(folder / name);
+    for (const char* name : {"networkd", "state", "status"}) fs::create_directory(folder / name);
+    options.status = folder / "status";
     options.networkd = folder / "networkd";
     options.factory = folder / "network.json";
     options.state = folder / "state";
@@ -59,7 +60,8 @@ class NetworkdFilesTest : public testing::Test {
   /// As the next start of adit-network would find it, after the machine was restarted or not.
   void restart(bool machine) {
     if (machine) {
-      fs::remove_all(options.networkd), fs::create_directory(options.networkd);
+      for (const std::string& gone : {options.networkd, options.status})
+        fs::remove_all(gone), fs::create_directory(gone);
       const auto written = NetworkdFiles(options, &nobody).write_at_start();
       EXPECT_TRUE(written) << written.error();
     }
@@ -237,6 +239,7 @@ TEST_F(NetworkdFilesTest, SayWhatDidNotWorkAndTryItAgain) {
   const std::size_t before = reloads();
   EXPECT_TRUE(files->take_back());
   EXPECT_EQ(reloads(), before + 1) << "though the files are gone already";
+  EXPECT_THAT(in(options.status), IsEmpty());
   fs::remove_all(options.networkd);
   EXPECT_THAT(files->apply(first).error(), HasSubstr(options.networkd));
   fs::remove_all(options.state);

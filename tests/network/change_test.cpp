@@ -94,9 +94,17 @@ TEST_F(ChangeTest, TakesItselfBackInTime) {
 
 TEST_F(ChangeTest, IsNotConfirmedTooLate) {
   want();
+  change.tick(at(90));
   confirm(90);
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
+}
+
+TEST_F(ChangeTest, IsConfirmedByAWordThatCameWhileNobodyLooked) {
+  want();
+  confirm(94);
+  change.tick(at(94));
+  EXPECT_EQ(change.status().ended, Ended::Confirmed);
 }
 
 TEST_F(ChangeTest, IsConfirmedByItsOwnNonceAlone) {
@@ -122,6 +130,15 @@ TEST_F(ChangeTest, IsTakenBackWhereItsKeeperStops) {
   change.stop(at(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
+}
+
+TEST_F(ChangeTest, IsTakenBackOnceMoreWhereItsKeeperStopsMeanwhile) {
+  hands.fail_take_back = 1;
+  want();
+  change.tick(at(90));
+  change.stop(at(91));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back", "take back"));
+  EXPECT_EQ(change.status().why, "nobody confirmed it within 90 s");
 }
 
 TEST_F(ChangeTest, IsTakenBackAtOnceWhereItCannotBeApplied) {
@@ -163,7 +180,7 @@ TEST_F(ChangeTest, IsGivenUpWhereItCannotBeTakenBack) {
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
   EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
   EXPECT_FALSE(change.status().pending);
-  EXPECT_THAT(change.status().why, HasSubstr("once the box is restarted: the disk is full"));
+  EXPECT_THAT(change.status().why, HasSubstr("is tried again: the disk is full"));
 }
 
 TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {
@@ -206,7 +223,7 @@ TEST(AFirstChange, IsTakenBackToNothing) {
 TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
   change.set_endpoints({{1, 2}});
   want();
-  EXPECT_TRUE(change.forget());
+  EXPECT_TRUE(change.forget(at(1)));
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.wake(), std::nullopt);
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
@@ -216,11 +233,11 @@ TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "forget"));
 }
 
-TEST_F(ChangeTest, GoesOnWhereItCannotBeForgotten) {
+TEST_F(ChangeTest, IsTakenBackWhereAllIsToBeForgottenAndCannotBe) {
   hands.fail_keep = true;
   want();
-  EXPECT_EQ(change.forget().error(), "the disk is full");
-  EXPECT_TRUE(change.status().pending);
+  EXPECT_EQ(change.forget(at(1)).error(), "the disk is full");
+  EXPECT_EQ(change.status().why, "all addresses are to be forgotten") << "nobody is to confirm it now";
   EXPECT_EQ(change.status().kept, numbers());
 }
 
@@ -243,13 +260,14 @@ TEST(Changes, NeverLeaveInUseWhatNobodyConfirmed) {
       const std::string nonce(32, static_cast<char>('0' + draw(3)));
       const std::string team = "192.168." + std::to_string(20 + draw(3)) + ".11/24";
       const auto before = change.status().pending;
+      const bool is_open = before && change.wake() == before->until;  // and not being taken back
       switch (draw(4)) {
         case 0:
           change.want({nonce, seconds(1), numbers(team)}, now);
           break;
         case 1:
           change.hear({nonce, Word::What::Confirm}, now);
-          if (before && before->nonce == nonce && now < before->until && !hands.fail_keep) {
+          if (is_open && before->nonce == nonce && !hands.fail_keep) {
             confirmed = host_text(before->wanted.team);
           }
           break;

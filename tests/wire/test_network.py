@@ -78,6 +78,21 @@ class WithAStandIn(Change):
         self.has(OLD)
         self.assertEqual(self.box.status()["last"], "taken back")
 
+    def test_a_change_is_taken_back_after_a_kill_though_networkd_fails_at_first(self):
+        self.box.want(team="192.168.8.11")
+        self.has(NEW)
+        self.box.stop()
+        self.break_networkctl()
+        self.assertEqual(self.box.run(), 1)
+        self.assertTrue(self.box.pending())
+        self.box.stand_in()
+        self.assertEqual(self.box.run(), 0)
+        self.has(OLD)
+        self.assertEqual((self.box.pending(), self.box.status()["last"]), (None, "taken back"))
+
+    def break_networkctl(self):
+        self.box.networkctl.write_text("#!/bin/sh\ntest -e /tmp || exit 1\necho no bus >&2\nexit 1\n")
+
     def test_a_change_is_taken_back_when_the_service_is_stopped(self):
         self.box.want(team="192.168.8.11")
         self.has(NEW)
@@ -139,13 +154,16 @@ class WithAStandIn(Change):
         self.assertEqual(self.box.addresses("team0"), [OLD])
 
     def test_a_change_that_cannot_be_applied_is_taken_back_at_once(self):
-        self.box.networkctl.write_text("#!/bin/sh\ntest -e /tmp || exit 1\necho no bus >&2\nexit 1\n")
+        self.break_networkctl()
         self.box.want(team="192.168.8.11")
-        self.ends()
+        self.assertEqual(self.box.process.wait(50), 1, "so that its unit starts it again")
         status = self.box.status()
         self.assertEqual(status["last"], "taken back")
         self.assertIn("no bus", status["why"])
         self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
+        self.assertEqual(self.box.run(), 1)
+        self.box.stand_in()
+        self.assertEqual(self.box.run(), 0)
 
     def test_an_address_that_somebody_has_is_not_taken(self):
         hosts.ip("-n", self.network.team, "address", "add", "192.168.8.11/24", "dev", "eth0")
@@ -204,6 +222,14 @@ class WithAStandIn(Change):
         self.assertTrue(self.box.pending())
         self.box.ask("word.json", nonce=nonce, word="confirm")
         self.ends()
+
+    def test_a_word_that_comes_during_a_probe_is_in_time(self):
+        nonce = self.box.want(within_ms=5000, team="192.168.8.11")
+        self.box.ask("probe.json", sought="10.100.1.77")
+        wait_until(lambda: "probe.json" not in self.box.files("wanted"), "the probe to be begun")
+        self.box.ask("word.json", nonce=nonce, word="confirm")
+        self.ends()
+        self.assertEqual(self.box.status()["last"], "confirmed")
 
     def test_an_interface_that_is_gone_is_told(self):
         hosts.ip("-n", self.network.box, "link", "delete", "darpa0")

@@ -1,0 +1,27 @@
+#include "applier/reload.hpp"
+
+#include "host/log.hpp"
+#include "host/output.hpp"
+#include "host/service.hpp"
+
+namespace adit::applier {
+
+bool Reload::is_due() const {
+  return is_due_ || host::may_exist(file());
+}
+
+void Reload::set_due() {
+  if (is_due()) return;
+  is_due_ = true;
+  if (const auto noted = host::write_file(file(), "", host::kForAll); !noted)
+    host::log(host::Level::Error, "a kill would leave networkd as it is", {{"why", noted.error()}});
+}
+
+std::expected<void, std::string> Reload::run() {
+  if (!is_due()) return {};
+  if (auto read = host::run_command({options_.networkctl, "reload"}, kWithin); !read) return read;
+  is_due_ = false;
+  return host::remove_file(file());
+}
+
+}  // namespace adit::applier

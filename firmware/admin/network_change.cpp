@@ -32,7 +32,7 @@ api::PortRow port_of(const char* side, const std::string& interface) {
   if (found == all.end()) return row;
   row.addresses = found->addresses;
   row.carrier = found->carrier;
-  if (is_team) row.name = host::host_name() + ".local";
+  if (is_team) row.name = host::local_name();
   return row;
 }
 
@@ -120,7 +120,7 @@ api::NetworkView NetworkChange::network() const {
     view.pending = {.until = loop_.wall_now() + left,
                     .wanted = waits->wanted,
                     .previous = status_ ? status_->kept : std::nullopt,
-                    .page = network::page_at(waits->wanted, settings_.team.listen)};
+                    .page = page_at(waits->wanted)};
   }
   if (view.pending) return view;  // how the one before ended says nothing of this one
   if (!not_taken_up_.empty()) {
@@ -141,7 +141,8 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
                          .command_post = settings_.command_post,
                          .courses = settings_.courses,
                          .listen = settings_.team.listen,
-                         .asker = asker});
+                         .asker = asker,
+                         .name = host::local_name()});
 }
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
@@ -175,8 +176,8 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
   if (stays || new_one) return {};
-  return refuse_now(icd::sentence("confirm it at ", network::page_at(wanted, settings_.team.listen),
-                                  ": this came to ", local, ", and says nothing of the new address"));
+  return refuse_now(icd::sentence("confirm it at ", page_at(wanted), ": this came to ", local,
+                                  ", and says nothing of the new address"));
 }
 
 void NetworkChange::lead_to_endpoints() {
@@ -248,6 +249,10 @@ std::optional<alarms::ExchangedAddress> NetworkChange::exchanged() const {
   return std::nullopt;
 }
 
+std::string NetworkChange::page_at(const network::Numbers& numbers) const {
+  return network::page_at(numbers, settings_.team.listen, host::local_name());
+}
+
 alarms::NetworkFact NetworkChange::fact() const {
   alarms::NetworkFact fact;
   const auto waits = pending();
@@ -255,7 +260,7 @@ alarms::NetworkFact NetworkChange::fact() const {
   fact.no_address = !waits && bare && hindrance().empty();
   if (waits) {
     fact.confirm_within = std::chrono::duration<double>(waits->until - loop_.now()).count();
-    fact.page = network::page_at(waits->wanted, settings_.team.listen);
+    fact.page = page_at(waits->wanted);
   }
   for (const bool is_team : {true, false}) {
     const std::string& interface = is_team ? settings_.team.interface : settings_.command_post.interface;

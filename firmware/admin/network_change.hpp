@@ -58,6 +58,7 @@ class NetworkChange final : public api::Network {
   std::optional<alarms::TakenAddress> taken(const std::string& interface, bool is_team) const;
   /// Why nothing can be changed here; "" where it can.
   std::string hindrance() const;
+  std::string page_at(const network::Numbers& numbers) const;
   std::optional<network::Pending> pending() const;
   std::optional<network::Numbers> present() const;
   /// Where `local` is an address by which the confirmation of a change to `wanted` may come.

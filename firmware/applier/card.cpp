@@ -94,7 +94,8 @@ class Reader {
                                           .command_post = settings.command_post,
                                           .courses = settings.courses,
                                           .listen = settings.team.listen,
-                                          .asker = ""});
+                                          .asker = "",
+                                          .name = ""});
     if (!findings.errors.empty()) return refuse(kCardNetwork, findings.errors);
     found_.brought.numbers = *numbers;
   }

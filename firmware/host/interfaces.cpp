@@ -101,9 +101,10 @@ std::optional<Port> port(const std::string& interface) {
   return port_in("/sys/class/net", interface);
 }
 
-std::string host_name() {
+std::string local_name() {
   utsname names{};
-  return uname(&names) == 0 ? names.nodename : "";
+  const std::string name = uname(&names) == 0 ? names.nodename : "";
+  return name.substr(0, name.find('.')) + ".local";
 }
 
 std::vector<settings::Subnet> own_addresses(const std::string& interface) {

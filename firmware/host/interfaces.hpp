@@ -28,8 +28,8 @@ struct Port {
 std::optional<Port> port_in(const std::string& sys_class_net, const std::string& interface);
 std::optional<Port> port(const std::string& interface);
 
-/// What this machine calls itself: "adit".
-std::string host_name();
+/// What this machine is called in mDNS: "adit.local" (RFC 6762 3).
+std::string local_name();
 
 /// All of them in the kernel's order, or why they cannot be told (getifaddrs(3)).
 std::expected<std::vector<Interface>, std::string> interfaces();

@@ -79,7 +79,7 @@ void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present
   const std::string within =
       icd::sentence("within ", std::chrono::ceil<std::chrono::seconds>(around.confirm_within).count(),
                     " s, or it is taken back");
-  const std::string page = page_at(wanted, around.listen);
+  const std::string page = page_at(wanted, around.listen, around.name);
   if (wanted.mode != Mode::Static) {
     warnings.push_back(icd::sentence("the page moves to an address that is not known yet: open ", page,
                                      " and confirm ", within));
@@ -128,10 +128,10 @@ std::vector<Difference> differences(const Numbers& wanted, const std::optional<N
 
 }  // namespace
 
-std::string page_at(const Numbers& numbers, const std::vector<Address>& listen) {
+std::string page_at(const Numbers& numbers, const std::vector<Address>& listen, const std::string& name) {
   const std::uint16_t port = listen.empty() ? kHttp : listen.front().port;
   const std::string host = icd::sentence(
-      "http://", numbers.mode == Mode::Static ? settings::ipv4_text(numbers.team.address) : kHostName);
+      "http://", numbers.mode == Mode::Static ? settings::ipv4_text(numbers.team.address) : name);
   return port == kHttp ? host : icd::sentence(host, ":", port);
 }
 

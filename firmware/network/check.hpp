@@ -22,6 +22,7 @@ struct Circumstances {
   std::vector<settings::Course> courses;  // any of which may be used next
   std::vector<settings::Address> listen;  // team.listen
   std::string asker;                      // the address of the one who asks
+  std::string name;                       // the box's own, for mDNS: "adit.local"
 };
 
 struct Findings {
@@ -34,10 +35,9 @@ struct Findings {
 Findings check(const Numbers& wanted, const std::optional<Numbers>& present,
                const Circumstances& circumstances);
 
-/// What the box is called where its address is not known beforehand (mDNS, RFC 6762).
-inline constexpr const char* kHostName = "adit.local";
-
 /// "http://192.168.8.11:8000", where the page is to be found with these numbers; "http://adit.local:8000".
-std::string page_at(const Numbers& numbers, const std::vector<settings::Address>& listen);
+/// `name`: "adit.local", what the box is called where its address is not known beforehand (mDNS, RFC 6762).
+std::string page_at(const Numbers& numbers, const std::vector<settings::Address>& listen,
+                    const std::string& name);
 
 }  // namespace adit::network

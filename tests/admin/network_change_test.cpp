@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "host/folder.hpp"
+#include "host/interfaces.hpp"
 #include "network/doubles.hpp"
 
 namespace adit::admin {
@@ -90,7 +91,7 @@ TEST_F(NetworkChangeTest, OfTheModeIsConfirmedAtAnyAddressButTheOneThatGoes) {
   for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
     wait(network::with_mode(mode));
     EXPECT_THAT(change.confirm("192.168.7.11").error().sentence,
-                HasSubstr("confirm it at http://adit.local:8000"));
+                HasSubstr("confirm it at http://" + host::local_name() + ":8000"));
     EXPECT_TRUE(change.confirm("169.254.8.11"));
   }
 }

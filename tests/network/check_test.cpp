@@ -20,6 +20,7 @@ Circumstances usual() {
   around.command_post.mapping = {"10.100.1.201", 8000};
   around.listen = {{"0.0.0.0", 8000}};
   around.asker = "192.168.7.12";
+  around.name = "pc-17.local";
   return around;
 }
 
@@ -142,7 +143,7 @@ TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
     const Findings findings = check(with_mode(mode), numbers(), usual());
     EXPECT_THAT(findings.errors, IsEmpty());
     EXPECT_THAT(findings.warnings,
-                ElementsAre(AllOf(HasSubstr("not known yet"), HasSubstr("http://adit.local:8000"))));
+                ElementsAre(AllOf(HasSubstr("not known yet"), HasSubstr("http://pc-17.local:8000"))));
     ASSERT_THAT(findings.changes, SizeIs(3));
     EXPECT_EQ(findings.changes[0].path, "team.mode");
     EXPECT_EQ(findings.changes[0].to, name_of(mode));
@@ -163,7 +164,7 @@ TEST(NetworkCheck, RefusesAnAddressAtWhichNothingListens) {
       ElementsAre(HasSubstr(
           "nothing would be served at 192.168.8.11: the settings' team.listen has only 192.168.7.11")));
   EXPECT_THAT(errors(numbers(), around), IsEmpty());
-  EXPECT_EQ(page_at(numbers(), around.listen), "http://192.168.7.11");
+  EXPECT_EQ(page_at(numbers(), around.listen, around.name), "http://192.168.7.11");
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ const state = form.querySelector(".state"), outcome = form.querySelector(".outco
 const pendingPlace = document.getElementById("pending"), change = form.querySelector(".try");
 const MODE = "team.mode";
 const FIELDS = [
-  [MODE, "Mode", "By DHCP, or with a link-local address alone, the box is found as adit.local."],
+  [MODE, "Mode", "By DHCP, or with a link-local address alone, the box is found by its name: adit.local on the appliance."],
   ["team.address", "Address", "Robots and stations post here: 10.0.0.1/24."],
   ["command_post.addresses", "Addresses", "The box’s own there, not an endpoint’s: 10.100.1.10/24; several with commas."],
   ["command_post.gateway", "Gateway", "The way to endpoints outside of these subnets; empty: none."],

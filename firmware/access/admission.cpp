@@ -19,7 +19,8 @@ bool only_reads(std::string_view method) {
 
 icd::Checked<void> check_whence(const Request& request) {
   if (!names_this_box(request.host)) {
-    return refuse(icd::Status::Forbidden, "Host: expected the box's address, localhost or its name in .local");
+    return refuse(icd::Status::Forbidden,
+                  "Host: expected the box's address, localhost or its name in .local");
   }
   if (!request.origin.empty() && !is_same_origin(request.origin, request.host)) {
     return refuse(icd::Status::Forbidden, "Origin: expected a page of this box");

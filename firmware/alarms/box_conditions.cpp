@@ -180,6 +180,8 @@ void find_box_troubles(const Facts& facts, Found& found) {
   add(found, facts.settings_trouble,
       {.id = "settings_not_used", .what = "The saved settings are not used", .action = kOpenSetUp});
   add(found, facts.board_trouble, {.id = "board_not_used", .what = "The board's file is not used"});
+  add(found, facts.lights_trouble,
+      {.id = "lights_not_set", .what = "The lights are not to be trusted", .why = "they cannot be set: "});
   for (const auto& [name, why] : facts.notices)
     add(found, why, {.id = "notice:" + name, .subject = name, .what = "The box is not well"});
   find_update_troubles(facts.update, found);

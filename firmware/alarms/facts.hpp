@@ -125,6 +125,7 @@ struct Facts {
   std::string change_trouble = {};                  // of the last change of the settings
   std::string settings_trouble = {};                // why the saved ones are not used
   std::string board_trouble = {};                   // why the board's file is not
+  std::string lights_trouble = {};                  // why the panel may show something else; or ""
   std::map<std::string, std::string> notices = {};  // of root's programs, by their names
   UpdateFact update = {};
   std::string rests = {};  // why the box takes nothing and sends nothing; or ""

@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "box/lights.hpp"
 #include "loop/loop.hpp"
@@ -10,7 +12,9 @@
 
 namespace adit::box {
 
-/// Watches the button on the loop, and shows while it is held what letting go would do.
+/// Watches the button on the loop, and shows while it is held what letting go would do. Where it cannot be
+/// read, what was pressed comes to nothing, and it is looked at again: as at the start, a button that is
+/// pressed then is none until it was let go.
 class ButtonWatch {
  public:
   /// `line` may be null: there is no button. `lights` outlives this. A press that has ended is told by
@@ -24,15 +28,17 @@ class ButtonWatch {
 
  private:
   void look();
-  void give_up(const std::string& why);
+  void begin(bool pressed);
+  void lose(const std::string& why);
   void show();
 
   loop::Loop& loop_;
   std::unique_ptr<panel::ButtonLine> line_;
   Lights& lights_;
   std::function<void(panel::Press)> pressed_;
-  panel::Button button_{false, {}};
-  loop::Source edges_, due_;  // after line_: ended before its descriptor is closed
+  std::optional<panel::Button> button_;  // nothing: there is none, or it cannot be read
+  bool is_lost_ = false;                 // which was logged
+  loop::Source edges_, due_;             // after line_: ended before its descriptor is closed
 };
 
 }  // namespace adit::box

@@ -10,40 +10,39 @@ namespace adit::box {
 
 Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
     : loop_(loop),
-      lines_(std::move(lines)),
       began_(loop.now()),
       digits_began_(began_),
       tick_(loop.timer([this] { paint(); })),
       beat_(loop.timer([this] { beat(); })) {
+  painter_.take(std::move(lines));
   if (is_watched()) beat_.call_at(began_);
 }
 
 bool Lights::is_watched() const {
-  return lines_ && lines_->is_watched();
+  return painter_.lines() != nullptr && painter_.lines()->is_watched();
 }
 
 void Lights::let_go() {
   beat_.cancel();
-  lines_.reset();
+  painter_.take(nullptr);
 }
 
-/// It says by itself that the loop turns; also lines that could not be set are set again so.
+/// That it is told the same again says that the loop turns.
 void Lights::beat() {
   beat_.call_at(loop_.now() + panel::Watched::kBeat);
-  light_up(frame().lit);
+  painter_.set(frame().lit, loop_.now());
+  log_trouble();
 }
 
 void Lights::take(std::unique_ptr<panel::Lines> lines) {
-  lines_ = std::move(lines);
+  painter_.take(std::move(lines));
   if (is_watched()) beat_.call_at(loop_.now());
-  lit_.reset();
-  broken_ = false;
   paint();
 }
 
 void Lights::set(panel::State state, bool asserted) {
   until(state).reset();
-  if (states_.set(state, asserted) || !lit_) paint();
+  if (states_.set(state, asserted) || painter_.is_blank()) paint();
 }
 
 void Lights::set_for(panel::State state, loop::Duration length) {
@@ -93,22 +92,23 @@ void Lights::paint() {
   clear_what_is_over();
   shown_ = states_.shown();
   const panel::Frame now = frame();
-  if (lit_ != now.lit) light_up(now.lit);
+  painter_.show(now.lit, loop_.now());
+  log_trouble();
   wake_for_what_is_next(now);
 }
 
-void Lights::light_up(const panel::Lit& lit) {
-  if (!lines_) return;
-  const auto set = lines_->set(lit);
-  if (!set && !std::exchange(broken_, true)) {
-    host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", set.error()}});
+void Lights::log_trouble() {
+  const bool is_in_trouble = !trouble().empty();
+  if (std::exchange(is_in_trouble_, is_in_trouble) == is_in_trouble) return;
+  if (is_in_trouble) {
+    host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", trouble()}});
+  } else {
+    host::log(host::Level::Notice, "the panel's lights can be set again");
   }
-  if (set) broken_ = false;
-  lit_ = set ? std::optional(lit) : std::nullopt;
 }
 
 void Lights::wake_for_what_is_next(const panel::Frame& frame) {
-  std::optional<loop::Instant> next;
+  std::optional<loop::Instant> next = painter_.next();
   const auto no_later_than = [&next](loop::Instant when) { next = std::min(when, next.value_or(when)); };
   // A millisecond more: what is left of one was cut off.
   if (frame.lasts) no_later_than(loop_.now() + *frame.lasts + Milliseconds(1));

@@ -3,16 +3,17 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "loop/loop.hpp"
 #include "panel/lines.hpp"
+#include "panel/painter.hpp"
 #include "panel/states.hpp"
 
 namespace adit::box {
 
-/// Shows states on the panel: patterns are timed by the loop, which is woken only while something blinks, or
-/// while somebody watches the lines for whether it turns.
+/// Shows states on the panel: patterns, and what is set again (panel::Painter), are timed by the loop.
 class Lights {
  public:
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
@@ -31,6 +32,8 @@ class Lights {
   /// For how much longer set_for() asserts it; nothing: it does not.
   std::optional<loop::Duration> left(panel::State state) const;
   const panel::Lights& shown() const { return shown_; }
+  /// Why the panel may show something else; or "".
+  const std::string& trouble() const { return painter_.trouble(); }
 
  private:
   using Milliseconds = panel::Milliseconds;
@@ -39,21 +42,20 @@ class Lights {
   void clear_what_is_over();
   panel::Frame frame() const;
   void paint();
-  void light_up(const panel::Lit& lit);
+  void log_trouble();
   bool is_watched() const;
   void beat();
   void wake_for_what_is_next(const panel::Frame& frame);
 
   loop::Loop& loop_;
-  std::unique_ptr<panel::Lines> lines_;
+  panel::Painter painter_;
   loop::Instant began_, digits_began_;
   loop::Source tick_, beat_;
   panel::States states_;
   std::array<std::optional<loop::Instant>, panel::kStates> until_;  // of those that end by themselves
   std::vector<panel::Step> digits_;
   panel::Lights shown_{};
-  std::optional<panel::Lit> lit_;
-  bool broken_ = false;
+  bool is_in_trouble_ = false;  // which was logged
 };
 
 }  // namespace adit::box

@@ -83,6 +83,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.change_trouble = parts_.trouble;
   facts.settings_trouble = parts_.loaded.trouble;
   facts.board_trouble = parts_.board_trouble;
+  facts.lights_trouble = lights_.trouble();
   facts.notices = notices_;
   const api::UpdateView update = updates_.update();
   facts.update.on_trial = update.trial;

@@ -3,6 +3,7 @@
 #include <sys/epoll.h>
 #include <sys/socket.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <utility>
@@ -28,10 +29,10 @@ Keeper::Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<s
       watched_(loop.now()),
       knows_board_(boards.has_value()),
       listening_(std::move(listening)),
-      tick_(loop.timer([this] { paint(); })),
+      tick_(loop.timer([this] { show(); })),
       callers_(loop.watch(listening_.get(), EPOLLIN, [this](std::uint32_t) { accept(); })) {
   if (boards) use(*boards);
-  paint();
+  show();
 }
 
 /// Whoever connected before has died, or hangs: a service has one process.
@@ -41,15 +42,18 @@ void Keeper::accept() {
   if (client_) lose();
   client_ = std::move(*caller);
   words_ = loop_.watch(client_.get(), EPOLLIN, [this](std::uint32_t) { hear(); });
-  is_for_him_ = !pressed_;
+  is_for_him_ = !pressed_.value_or(false);
+  told_button_ = ButtonIs{false};
+  told_lights_ = {};
   watched_.came(loop_.now());
-  paint();
+  show();
 }
 
 void Keeper::lose() {
   words_ = {};
   client_ = {};
   watched_.gone(loop_.now());
+  tick_.call_at(loop_.now());
 }
 
 void Keeper::hear() {
@@ -66,7 +70,7 @@ void Keeper::hear() {
       take(length > bytes.size() ? std::string_view() : std::string_view(bytes.data(), length));
     }
   }
-  paint();
+  show();
 }
 
 void Keeper::take(std::string_view message) {
@@ -94,57 +98,86 @@ void Keeper::take(const ToUse& message) {
 /// A line can be had once: the old ones are let go of first.
 void Keeper::use(const settings::Panel& panel) {
   edges_ = {};
-  held_ = {};
-  held_ = world_.open(panel);
+  button_.reset();
+  painter_.take(nullptr);
+  Held held = world_.open(panel);
+  painter_.take(std::move(held.lines));
+  button_ = std::move(held.button);
   used_ = panel;
-  shown_.reset();
   watch_button();
 }
 
 void Keeper::watch_button() {
-  pressed_ = is_for_him_ = false;
-  if (!held_.button) return;
-  edges_ = loop_.watch(held_.button->descriptor(), EPOLLIN, [this](std::uint32_t) { look_at_button(); });
+  pressed_ = button_ ? std::nullopt : std::optional(false);
+  if (!button_) return;
+  edges_ = loop_.watch(button_->descriptor(), EPOLLIN, [this](std::uint32_t) {
+    look_at_button();
+    tell_what_is_new();
+  });
   look_at_button();
-  if (pressed_) world_.complain("the button is held since before the start: let it go before it is used");
-  is_for_him_ = !pressed_;
 }
 
+/// A press that was under way when the button was lost comes to nothing; one that is there when it is back is
+/// none until it was let go, as at the start.
 void Keeper::look_at_button() {
-  const auto level = held_.button->pressed();
-  if (!level) {
-    world_.complain("the button cannot be read, and is left alone from now on: " + level.error());
-    edges_ = {};
-    held_.button.reset();
-  }
-  if (level.value_or(false) == std::exchange(pressed_, level.value_or(false))) return;
-  tell_of_button();
+  const auto level = button_->pressed();
+  log_button(level);
+  const bool is_first = !pressed_;
+  pressed_ = level ? std::optional(*level) : std::nullopt;
+  if (!pressed_) return;
+  if (is_first && *pressed_) world_.complain("the button is held already: let it go before it is used");
+  if (is_first || !*pressed_) is_for_him_ = !*pressed_;
+}
+
+void Keeper::log_button(const std::expected<bool, std::string>& level) {
+  if (std::exchange(button_broken_, !level) == !level) return;
+  world_.complain(level ? "the button can be read again"
+                        : "the button cannot be read, and is looked for again: " + level.error());
 }
 
 /// One that is held since before he came is none to him until it was let go.
-void Keeper::tell_of_button() {
-  if (client_ && is_for_him_) {
-    const std::string_view message = message_of_button(pressed_);
-    const int flags = MSG_DONTWAIT | MSG_NOSIGNAL;
-    if (send(client_.get(), message.data(), message.size(), flags) < 0)
-      lose();  // a release is never left out
-  }
-  if (!pressed_) is_for_him_ = true;
+ButtonIs Keeper::button_for_him() const {
+  return pressed_ ? ButtonIs{*pressed_ && is_for_him_} : ButtonIs{};
+}
+
+/// A button that is held is looked at besides: a chip that has vanished tells of no release, and he counts
+/// the time until the factory reset. While he warns of that, he tells of the lights twenty times a second.
+void Keeper::show() {
+  if (pressed_.value_or(false)) look_at_button();
+  paint();
+  tell_what_is_new();
 }
 
 void Keeper::paint() {
-  const Frame frame = watched_.frame(loop_.now());
-  if (held_.lines && shown_ != frame.lit) {
-    const auto set = held_.lines->set(frame.lit);
-    if (!set && !std::exchange(broken_, true)) world_.complain(set.error());
-    if (set) broken_ = false;
-    shown_ = frame.lit;
+  const Instant now = loop_.now();
+  const Frame frame = watched_.frame(now);
+  painter_.show(frame.lit, now);
+  if (const bool broken = !painter_.trouble().empty(); std::exchange(lights_broken_, broken) != broken) {
+    world_.complain(broken ? "the lights cannot be set, and are tried again: " + painter_.trouble()
+                           : "the lights can be set again");
   }
-  if (frame.lasts) {
-    tick_.call_at(loop_.now() + *frame.lasts + Milliseconds(1));  // what is left of one was cut off
+  std::optional<Instant> next = painter_.next();
+  // A millisecond more: what is left of one was cut off.
+  if (const Instant ends = now + frame.lasts.value_or(Milliseconds{}) + Milliseconds(1); frame.lasts)
+    next = std::min(ends, next.value_or(ends));
+  if (next) {
+    tick_.call_at(*next);
   } else {
     tick_.cancel();
   }
+}
+
+void Keeper::tell_what_is_new() {
+  if (const ButtonIs button = button_for_him(); client_ && std::exchange(told_button_, button) != button)
+    tell(message_of(button));
+  if (const LightsAre lights{painter_.trouble()}; client_ && std::exchange(told_lights_, lights) != lights)
+    tell(message_of(lights));
+}
+
+/// Whoever cannot be told is let go of: a release is never left out.
+void Keeper::tell(const std::string& message) {
+  const int flags = MSG_DONTWAIT | MSG_NOSIGNAL;
+  if (send(client_.get(), message.data(), message.size(), flags) < 0) lose();
 }
 
 }  // namespace adit::panel

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <expected>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -8,22 +9,19 @@
 
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
-#include "panel/lines.hpp"
+#include "panel/held.hpp"
 #include "panel/messages.hpp"
+#include "panel/painter.hpp"
 #include "panel/watched.hpp"
 
 namespace adit::panel {
 
 /// Holds the lines of the panel for aditd, and watches it: adit-panel. One aditd at a time is heard, the one
-/// that connected last.
+/// that connected last, and is told of the button, and of lights that cannot be set.
 class Keeper {
  public:
-  struct Held {
-    std::unique_ptr<Lines> lines;        // null: they cannot be had
-    std::unique_ptr<ButtonLine> button;  // null: there is none
-  };
   struct World {
-    std::function<Held(const settings::Panel&)> open;  // says itself what cannot be had
+    std::function<Held(const settings::Panel&)> open;
     std::function<void(const std::string&)> complain;  // a sentence, for the log
   };
 
@@ -44,20 +42,27 @@ class Keeper {
   void use(const settings::Panel& panel);
   void watch_button();
   void look_at_button();
-  void tell_of_button();
+  void log_button(const std::expected<bool, std::string>& level);
+  ButtonIs button_for_him() const;
+  void show();
   void paint();
+  void tell_what_is_new();
+  void tell(const std::string& message);
 
   loop::Loop& loop_;
   World world_;
   Watched watched_;
   const bool knows_board_;
   std::optional<settings::Panel> used_;
-  Held held_;
-  std::optional<Lit> shown_;
-  bool pressed_ = false;     // by what the line says
-  bool is_for_him_ = false;  // the press began after whoever is heard had connected
-  bool complained_ = false;  // of what he tells
-  bool broken_ = false;      // the lights cannot be set, which was told
+  Painter painter_;
+  std::unique_ptr<ButtonLine> button_;   // null: there is none
+  std::optional<bool> pressed_ = false;  // by what the line says; nothing: it cannot be read
+  bool is_for_him_ = false;              // the press began after whoever is heard had connected
+  ButtonIs told_button_{false};          // as he was told
+  LightsAre told_lights_;                // as he was told
+  bool complained_ = false;              // of what he tells
+  bool lights_broken_ = false;           // which was logged
+  bool button_broken_ = false;           // which was logged
   loop::FileDescriptor listening_, client_;
   loop::Source tick_, edges_, callers_, words_;  // ended before their descriptors are closed
 };

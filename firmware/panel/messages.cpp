@@ -1,5 +1,7 @@
 #include "panel/messages.hpp"
 
+#include <algorithm>
+
 #include "codec/write.hpp"
 #include "settings/board.hpp"
 
@@ -7,7 +9,12 @@ namespace adit::panel {
 namespace {
 
 constexpr std::string_view kLit = "lit ", kEnd = "end", kPanel = "panel ", kPressed = "button 1",
-                           kLetGo = "button 0";
+                           kLetGo = "button 0", kGone = "button gone", kWell = "lights 1",
+                           kTrouble = "lights 0 ";
+
+bool is_printable(char c) {
+  return c >= ' ' && c <= '~';
+}
 
 std::string member(std::string_view name, const std::string& text) {
   return codec::json_string(name) + ':' + codec::json_string(text);
@@ -65,14 +72,28 @@ std::expected<Message, std::string> parse_message(std::string_view text) {
   return std::unexpected("no message that is known");
 }
 
-std::string_view message_of_button(bool pressed) {
-  return pressed ? kPressed : kLetGo;
+std::string message_of(const ButtonIs& said) {
+  if (!said.pressed) return std::string(kGone);
+  return std::string(*said.pressed ? kPressed : kLetGo);
 }
 
-std::optional<bool> parse_button(std::string_view text) {
-  if (text == kPressed) return true;
-  if (text == kLetGo) return false;
-  return std::nullopt;
+std::string message_of(const LightsAre& said) {
+  if (said.trouble.empty()) return std::string(kWell);
+  std::string why = said.trouble.substr(0, LightsAre::kLongest);
+  std::ranges::replace_if(why, [](char c) { return !is_printable(c); }, '?');
+  return std::string(kTrouble) + why;
+}
+
+std::optional<Said> parse_said(std::string_view text) {
+  if (text == kPressed) return ButtonIs{true};
+  if (text == kLetGo) return ButtonIs{false};
+  if (text == kGone) return ButtonIs{};
+  if (text == kWell) return LightsAre{};
+  if (!text.starts_with(kTrouble)) return std::nullopt;
+  const std::string_view why = text.substr(kTrouble.size());
+  if (why.empty() || why.size() > LightsAre::kLongest || !std::ranges::all_of(why, is_printable))
+    return std::nullopt;
+  return LightsAre{std::string(why)};
 }
 
 }  // namespace adit::panel

@@ -35,31 +35,6 @@ std::optional<settings::Panel> panel_of_board(const std::string& file) {
   return std::nullopt;
 }
 
-std::unique_ptr<panel::ButtonLine> told(
-    std::expected<std::unique_ptr<panel::ButtonLine>, std::string> button) {
-  if (button) return std::move(*button);
-  complain("the button cannot be had: " + button.error());
-  return nullptr;
-}
-
-/// A real button that cannot be had is none: what anybody could press in its place is no proof that he is at
-/// the box.
-panel::Keeper::Held open_lines(const settings::Panel& panel, const std::string& simulated) {
-  if (panel.is_simulated()) {
-    if (simulated.empty()) return {};
-    return {panel::simulated(simulated), told(panel::simulated_button(simulated + ".button"))};
-  }
-  panel::Keeper::Held held;
-  if (auto lines = panel::open_gpio(panel, kConsumer)) {
-    held.lines = std::move(*lines);
-  } else {
-    complain("the lights cannot be had: " + lines.error());
-    if (!simulated.empty()) held.lines = panel::simulated(simulated);
-  }
-  if (!panel.button.empty()) held.button = told(panel::open_gpio_button(panel, kConsumer));
-  return held;
-}
-
 /// systemd's, or one of its own.
 std::expected<loop::FileDescriptor, std::string> listening(const std::string& socket) {
   const int given = sd_listen_fds(1);
@@ -82,10 +57,12 @@ int run(const panel::PanelOptions& options) {
     return 1;
   }
   loop::Loop loop;
-  panel::Keeper keeper(
-      loop, std::move(*socket), panel_of_board(options.board),
-      {.open = [&](const settings::Panel& panel) { return open_lines(panel, options.simulated); },
-       .complain = &complain});
+  panel::Keeper keeper(loop, std::move(*socket), panel_of_board(options.board),
+                       {.open =
+                            [&](const settings::Panel& panel) {
+                              return panel::hold(panel, kConsumer, options.simulated, &complain);
+                            },
+                        .complain = &complain});
   const auto terminated = loop.signal(SIGTERM, [&] { loop.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&] { loop.stop(); });
   std::optional<loop::Watchdog> watchdog;

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "loop/file_descriptor.hpp"
 #include "panel/messages.hpp"
@@ -49,8 +50,13 @@ class Connection {
     return std::unexpected(unreachable(socket_, error));
   }
 
-  /// A button that nobody answers for any more was let go.
-  bool pressed() {
+  /// As adit-panel said last.
+  std::expected<void, std::string> lights() const {
+    if (trouble_.empty()) return {};
+    return std::unexpected(trouble_);
+  }
+
+  std::expected<bool, std::string> pressed() {
     std::array<char, kLongestMessage> bytes{};
     for (int i = 0; fd_ && i < kMessagesAtOnce; ++i) {
       const ssize_t size = recv(fd_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);
@@ -59,16 +65,23 @@ class Connection {
         lose();
         break;
       }
-      const auto level = parse_button({bytes.data(), static_cast<std::size_t>(size)});
-      if (level) pressed_ = *level;
+      if (const auto said = parse_said({bytes.data(), static_cast<std::size_t>(size)}))
+        std::visit([this](const auto& each) { take(each); }, *said);
     }
-    return pressed_;
+    if (std::exchange(was_lost_, false) || !pressed_) return std::unexpected("adit-panel cannot read it");
+    return *pressed_;
   }
 
   /// Readable where the connection of the moment is: it stays the same one.
   int descriptor() const { return epoll_.get(); }
 
  private:
+  void take(const ButtonIs& said) {
+    pressed_ = said.pressed;
+    if (!pressed_) was_lost_ = true;
+  }
+  void take(const LightsAre& said) { trouble_ = said.trouble; }
+
   bool connect() {
     auto fd = connected_to(socket_);
     if (!fd) {
@@ -91,13 +104,17 @@ class Connection {
 
   void lose() {
     fd_ = loop::FileDescriptor();  // which ends its place in the epoll, too
+    if (pressed_.value_or(false)) was_lost_ = true;
     pressed_ = false;
+    trouble_.clear();
   }
 
   std::string socket_, greeting_;
   loop::FileDescriptor epoll_, fd_;
   std::optional<Clock::time_point> unheard_since_;
-  bool pressed_ = false;
+  std::optional<bool> pressed_ = false;  // nothing: it cannot be read
+  bool was_lost_ = false;                // since it was last asked for: no release is to be seen in it
+  std::string trouble_;                  // with the lights
 };
 
 class RemoteLines final : public Lines {
@@ -113,7 +130,8 @@ class RemoteLines final : public Lines {
 
   std::expected<void, std::string> set(const Lit& lit) override {
     is_started_ = true;
-    return connection_->tell(message_of(ToLight{lit}));
+    if (auto told = connection_->tell(message_of(ToLight{lit})); !told) return told;
+    return connection_->lights();
   }
   bool is_watched() const override { return true; }
 
@@ -139,13 +157,13 @@ loop::FileDescriptor announce(const std::string& socket) {
   return fd ? std::move(*fd) : loop::FileDescriptor();
 }
 
-std::expected<Remote, std::string> remote(const std::string& socket, const settings::Panel& settings,
-                                          loop::FileDescriptor announced) {
+std::expected<Held, std::string> remote(const std::string& socket, const settings::Panel& settings,
+                                        loop::FileDescriptor announced) {
   loop::FileDescriptor epoll(epoll_create1(EPOLL_CLOEXEC));
   if (!epoll) return std::unexpected(unreachable(socket, errno));
   auto connection = std::make_shared<Connection>(socket, message_of(ToUse{settings}), std::move(epoll),
                                                  std::move(announced));
-  return Remote{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
+  return Held{std::make_unique<RemoteLines>(connection), std::make_unique<RemoteButton>(connection)};
 }
 
 }  // namespace adit::panel

@@ -207,6 +207,8 @@ class Button(unittest.TestCase):
         box.stop()
         box.start()
         self.assertEqual(about()["board"], {"name": "my-board", "title": "My board"})
+        told = wait_until(lambda: next((alarm for alarm in self.run_view()["alarms"] if alarm["id"] == "lights_not_set"), None), "the alarm")
+        self.assertIn("panel: chip no-chip: No such file or directory", told["why"])
         self.assertIn("panel: chip no-chip: No such file or directory", box.said())
         self.assertFalse((box.state / "panel.button").exists(), "no other takes a real one's place")
         file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"helth": "H"}}))

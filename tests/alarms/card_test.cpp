@@ -76,6 +76,7 @@ void the_box(std::vector<Facts>& days) {
   facts.ntp_trouble = "the NTP server ADDRESS does not answer";
   facts.change_trouble = "the last change was taken back: port 8000 is in use";
   facts.settings_trouble = facts.board_trouble = "an error in it";
+  facts.lights_trouble = "no such device";
   facts.notices = {{"card", "what happened"}};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
   days.push_back(named());

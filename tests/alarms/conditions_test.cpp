@@ -128,6 +128,8 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.settings_trouble = "version: expected 1"; }},
     {"board_not_used", Bad, Side::Box, "The board's file is not used", "panel",
      [](Facts& facts) { facts.board_trouble = "panel.helth: no such key"; }},
+    {"lights_not_set", Bad, Side::Box, "The lights are not to be trusted", "cannot be set: panel: chip",
+     [](Facts& facts) { facts.lights_trouble = "panel: chip gpiochip0: No such device"; }},
     {"notice:disks", Bad, Side::Box, "The box is not well", "two disks",
      [](Facts& facts) { facts.notices = {{"disks", "there are two disks of Adit's"}}; }},
     {"update_on_trial", Wait, Side::Box, "Version 1.2.0 is on trial", "leave the power on",

@@ -1,14 +1,12 @@
 #include "box/button_watch.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <optional>
 
-#include "box/watched_lines.hpp"
-#include "loop/file_descriptor.hpp"
 #include "loop/turn_until.hpp"
+#include "panel/watched_lines.hpp"
+#include "panel/wire.hpp"
 
 namespace adit::box {
 namespace {
@@ -16,38 +14,9 @@ namespace {
 using namespace std::chrono_literals;
 using panel::Press;
 using panel::State;
-
-/// A wire that a test presses.
-struct Wire {
-  loop::FileDescriptor changed{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
-  bool pressed = false, broken = false;
-  bool open = false;
-  int looked = 0;
-
-  void set(bool is_pressed) {
-    pressed = is_pressed;
-    eventfd_write(changed.get(), 1);
-  }
-};
-
-class WireLine final : public panel::ButtonLine {
- public:
-  explicit WireLine(Wire& wire) : wire_(wire) { wire_.open = true; }
-  WireLine(const WireLine&) = delete;
-  WireLine& operator=(const WireLine&) = delete;
-  ~WireLine() override { wire_.open = false; }
-  int descriptor() const override { return wire_.changed.get(); }
-  std::expected<bool, std::string> pressed() override {
-    eventfd_t count = 0;
-    eventfd_read(wire_.changed.get(), &count);
-    ++wire_.looked;
-    if (wire_.broken) return std::unexpected("gpiochip0: gone");
-    return wire_.pressed;
-  }
-
- private:
-  Wire& wire_;
-};
+using panel::WatchedLines;
+using panel::Wire;
+using panel::WireLine;
 
 class ButtonWatchTest : public testing::Test {
  protected:
@@ -122,17 +91,44 @@ TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
   EXPECT_TRUE(presses.empty());
 }
 
-TEST_F(ButtonWatchTest, LeavesAButtonAloneThatCannotBeRead) {
+TEST_F(ButtonWatchTest, ForgetsAPressWhereTheButtonCannotBeReadAnyMore) {
   watch();
   set(true);
+  loop::turn_for(loop, 3200ms);
+  EXPECT_TRUE(lights.has(State::ButtonHeld));
   wire.broken = true;
   set(false);
-  EXPECT_TRUE(presses.empty());
   EXPECT_FALSE(lights.has(State::ButtonHeld));
+  wire.broken = false;
+  set(false);
+  EXPECT_TRUE(presses.empty()) << "that it is lost is no release";
+}
+
+TEST_F(ButtonWatchTest, LooksAgainForAButtonThatCouldNotBeRead) {
+  wire.broken = true;
+  watch();
+  wire.broken = false;
   const int looked = wire.looked;
-  wire.set(true);
-  loop::turn_for(loop, 200ms);
-  EXPECT_EQ(wire.looked, looked) << "or it would be asked for ever";
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return wire.looked > looked; })) << "though nobody touches it";
+  set(true);
+  wire.set(false);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  EXPECT_EQ(presses, std::vector{Press::Identify});
+}
+
+TEST_F(ButtonWatchTest, IgnoresAButtonThatIsPressedWhenItIsBackUntilItIsLetGo) {
+  watch();
+  wire.broken = true;
+  set(true);
+  wire.broken = false;
+  set(true);
+  loop::turn_for(loop, 3200ms);
+  EXPECT_FALSE(lights.has(State::ButtonHeld));
+  set(false);
+  EXPECT_TRUE(presses.empty());
+  set(true);
+  wire.set(false);
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
 }
 
 TEST_F(ButtonWatchTest, IsNoneWhereThereIsNoLine) {

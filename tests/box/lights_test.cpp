@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <vector>
 
-#include "box/watched_lines.hpp"
 #include "loop/turn_until.hpp"
 #include "panel/watched.hpp"
+#include "panel/watched_lines.hpp"
 
 namespace adit::box {
 namespace {
@@ -16,6 +16,7 @@ using namespace std::chrono_literals;
 using panel::Lit;
 using panel::Pattern;
 using panel::State;
+using panel::WatchedLines;
 
 constexpr std::size_t kHealth = panel::index_of(panel::Light::Health),
                       kMapping = panel::index_of(panel::Light::Mapping),
@@ -126,14 +127,17 @@ TEST_F(LightsTest, GoOnAfterThePanelFails) {
   EXPECT_EQ(seen.shown.size(), 2u);
 }
 
-TEST_F(LightsTest, AreTriedAgainAfterThePanelFailed) {
+TEST_F(LightsTest, AreTriedAgainAfterThePanelFailedThoughNothingChanges) {
   seen.fail = true;
   lights.set(State::Serving, true);
+  EXPECT_EQ(lights.trouble(), "gpiochip0: gone");
   seen.fail = false;
   seen.shown.clear();
   lights.set(State::Serving, true);
-  lights.set(State::Serving, true);
+  EXPECT_TRUE(seen.shown.empty()) << "not as often as it is asked for";
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return !seen.shown.empty(); }));
   EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
+  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.trouble().empty(); }));
 }
 
 TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {

@@ -27,24 +27,27 @@ class OpenPanelTest : public testing::Test {
 };
 
 TEST_F(OpenPanelTest, SimulatesLightsAndButtonWhereNoLineIsNamed) {
-  const OpenPanel opened = open_panel({}, {.socket = "", .folder = folder_.string()});
+  const panel::Held opened = open_panel({}, {.socket = "", .folder = folder_.string()});
   ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
   ASSERT_NE(opened.button, nullptr);
   EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "panel.button"));
 }
 
-TEST_F(OpenPanelTest, SimulatesNoButtonInPlaceOfARealOneThatCannotBeHad) {
+TEST_F(OpenPanelTest, ShowsTheLightsOfLinesThatCannotBeHadAndSaysSoAndSimulatesNoButton) {
   settings::Panel settings;
   settings.chip = std::string("no-such-chip");  // GCC 12 warns of a plain literal here
   settings.health = "H";
   for (const std::string button : {"", "B"}) {
     settings.button = button;
-    const OpenPanel opened = open_panel(settings, {.socket = "", .folder = folder_.string()});
-    ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value())
-        << "the page still sees its lights";
-    EXPECT_EQ(opened.button, nullptr) << "it would be no proof of anybody's presence";
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "panel.button"));
+    const panel::Held opened = open_panel(settings, {.socket = "", .folder = folder_.string()});
+    EXPECT_EQ(opened.lines->set({true, false, false, false}).error(),
+              "panel: chip no-such-chip: No such file or directory");
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
+    EXPECT_EQ(opened.button == nullptr, button.empty());
+    if (opened.button) EXPECT_FALSE(opened.button->pressed().has_value());
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "panel.button"))
+        << "it would be no proof of anybody's presence";
   }
 }
 

@@ -9,7 +9,8 @@ void try_panel(Input text) {
     return std::visit([](const auto& each) { return panel::message_of(each); }, message);
   };
   settles(text, panel::parse_message, write);
-  if (const auto level = panel::parse_button(text)) require(panel::message_of_button(*level) == text);
+  if (const auto said = panel::parse_said(text))
+    require(std::visit([](const auto& each) { return panel::message_of(each); }, *said) == text);
 }
 
 }  // namespace adit::fuzz

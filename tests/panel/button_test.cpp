@@ -16,9 +16,9 @@ using Presses = std::vector<Press>;
 constexpr milliseconds kEver{1'000'000};
 
 /// A button whose loop is never late: it is called at each change and whenever it is due.
-class Held : public testing::Test {
+class HeldButton : public testing::Test {
  protected:
-  explicit Held(bool pressed = false) : button(pressed, Instant{}) {}
+  explicit HeldButton(bool pressed = false) : button(pressed, Instant{}) {}
 
   /// Lets time pass up to `at`.
   void until(milliseconds at) {
@@ -34,7 +34,7 @@ class Held : public testing::Test {
   }
   /// What comes of a press of that length.
   static Presses of(milliseconds length) {
-    Held held;
+    HeldButton held;
     held.level(true, 1s);
     held.level(false, 1s + length);
     held.until(kEver);
@@ -46,7 +46,7 @@ class Held : public testing::Test {
   Presses presses;
 };
 
-TEST_F(Held, MeansWhatItsLengthSaysAtEachBoundary) {
+TEST_F(HeldButton, MeansWhatItsLengthSaysAtEachBoundary) {
   struct Case {
     milliseconds length;
     Presses presses;
@@ -65,7 +65,7 @@ TEST_F(Held, MeansWhatItsLengthSaysAtEachBoundary) {
   for (const Case& row : kCases) EXPECT_EQ(of(row.length), row.presses) << row.length.count();
 }
 
-TEST_F(Held, IsNoPressWhereItOnlyBounces) {
+TEST_F(HeldButton, IsNoPressWhereItOnlyBounces) {
   EXPECT_EQ(of(29ms), Presses{});
   for (int ms = 0; ms < 200; ms += 5) level(ms % 10 == 0, 1s + milliseconds(ms));
   until(kEver);
@@ -73,7 +73,7 @@ TEST_F(Held, IsNoPressWhereItOnlyBounces) {
   EXPECT_EQ(button.phase(), Phase::Idle);
 }
 
-TEST_F(Held, IsOnePressThoughItsContactsBounceAtBothEnds) {
+TEST_F(HeldButton, IsOnePressThoughItsContactsBounceAtBothEnds) {
   for (const auto& [pressed, at] : std::vector<std::pair<bool, milliseconds>>{{true, 1000ms},
                                                                               {false, 1003ms},
                                                                               {true, 1005ms},
@@ -90,7 +90,7 @@ TEST_F(Held, IsOnePressThoughItsContactsBounceAtBothEnds) {
   EXPECT_EQ(presses, Presses{Press::Identify});
 }
 
-TEST_F(Held, GoesOnWhereItsContactOpensForAnInstant) {
+TEST_F(HeldButton, GoesOnWhereItsContactOpensForAnInstant) {
   level(true, 1s);
   level(false, 5s);
   level(true, 5s + 20ms);
@@ -98,7 +98,7 @@ TEST_F(Held, GoesOnWhereItsContactOpensForAnInstant) {
   EXPECT_EQ(presses, Presses{Press::Reset});
 }
 
-TEST_F(Held, ShowsWhatLettingGoWouldDo) {
+TEST_F(HeldButton, ShowsWhatLettingGoWouldDo) {
   level(true, 1s);
   until(1s + 30ms);
   EXPECT_EQ(button.phase(), Phase::Pressed);
@@ -118,7 +118,7 @@ TEST_F(Held, ShowsWhatLettingGoWouldDo) {
   EXPECT_EQ(button.phase(), Phase::Ignored);
 }
 
-TEST_F(Held, ResetsOnceHoweverLongItIsHeld) {
+TEST_F(HeldButton, ResetsOnceHoweverLongItIsHeld) {
   level(true, 1s);
   until(kEver);
   EXPECT_EQ(presses, Presses{Press::Reset});
@@ -132,9 +132,9 @@ TEST_F(Held, ResetsOnceHoweverLongItIsHeld) {
   EXPECT_EQ(presses.back(), Press::Identify) << "and is a button again";
 }
 
-class Stuck : public Held {
+class Stuck : public HeldButton {
  protected:
-  Stuck() : Held(true) {}
+  Stuck() : HeldButton(true) {}
 };
 
 TEST_F(Stuck, DoesNothingUntilItWasLetGo) {

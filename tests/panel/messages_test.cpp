@@ -69,12 +69,34 @@ TEST(Messages, ThatAreNoneAreRefusedWithAReason) {
   EXPECT_EQ(error_of("panel " + std::string(kLongestMessage, ' ')), "longer than any message");
 }
 
-TEST(Messages, OfTheButtonAreTwo) {
-  EXPECT_EQ(parse_button(message_of_button(true)), true);
-  EXPECT_EQ(parse_button(message_of_button(false)), false);
-  for (const std::string_view text : {"", "button", "button 2", "button 1 ", "press"}) {
-    EXPECT_EQ(parse_button(text), std::nullopt) << text;
+TEST(Messages, OfTheOtherWayAreReadAsTheyAreWritten) {
+  for (const std::string_view text :
+       {"button 1", "button 0", "button gone", "lights 1", "lights 0 panel: line H: No such device"}) {
+    const auto said = parse_said(text);
+    ASSERT_TRUE(said) << text;
+    EXPECT_EQ(std::visit([](const auto& each) { return message_of(each); }, *said), text);
   }
+  EXPECT_EQ(parse_said("button gone"), Said(ButtonIs{std::nullopt}));
+  EXPECT_EQ(parse_said("button 1"), Said(ButtonIs{true}));
+  EXPECT_EQ(parse_said("lights 1"), Said(LightsAre{}));
+}
+
+TEST(Messages, OfTheOtherWayThatAreNoneAreRefused) {
+  const std::string longest(LightsAre::kLongest, 'x');
+  EXPECT_TRUE(parse_said("lights 0 " + longest));
+  for (const std::string& text :
+       {std::string(), std::string("button"), std::string("button 2"), std::string("button 1 "),
+        std::string("press"), std::string("lights"), std::string("lights 0"), std::string("lights 0 "),
+        std::string("lights 1 x"), std::string("lights 0 a\nb"), std::string("lights 0 \xff"),
+        "lights 0 " + longest + "x"}) {
+    EXPECT_EQ(parse_said(text), std::nullopt) << text;
+  }
+}
+
+TEST(Messages, TellATroubleAsFarAsItCanBeTold) {
+  EXPECT_EQ(message_of(LightsAre{"a\tb\xff"}), "lights 0 a?b?");
+  EXPECT_EQ(message_of(LightsAre{std::string(5000, 'x')}),
+            "lights 0 " + std::string(LightsAre::kLongest, 'x'));
 }
 
 }  // namespace

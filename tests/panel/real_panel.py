@@ -1,73 +1,16 @@
 #!/usr/bin/python3
 """adit-panel, which holds lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is a simulated one."""
 
-import json
-import os
-import pathlib
 import select
 import signal
 import socket
 import subprocess
 import sys
-import tempfile
 import time
 import unittest
 
-NOWHERE = {"address": "127.0.0.1", "port": 9}
-DARK = "0000"
-PATIENCE = 30.0  # seconds for what takes much less on a machine that does nothing else
-adit_panel = aditd = None
-
-
-class Running(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-panel-")))
-        self.socket, self.shown, self.log = (self.folder / name for name in ("socket", "lights", "log"))
-        self.button = self.folder / "lights.button"
-
-    def begin(self, *command):
-        with self.log.open("ab") as log:
-            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
-        self.addCleanup(process.wait)
-        self.addCleanup(process.kill)
-        return process
-
-    def begin_panel(self, *more):
-        panel = self.begin(adit_panel, "--socket", self.socket, "--simulated", self.shown, *more)
-        self.wait_until(lambda: panel.poll() is not None or self.connects(), "adit-panel to listen")
-        return panel
-
-    def connects(self):
-        """Without telling anything: it listens once it has made its socket."""
-        listening = pathlib.Path("/proc/net/unix").read_text()
-        return f" 00010000 0005 01 " in "".join(line for line in listening.splitlines() if line.endswith(str(self.socket)))
-
-    def wait_until(self, condition, what, within=PATIENCE):
-        """Returns how long it took."""
-        began = time.monotonic()
-        while not condition():
-            self.assertLess(time.monotonic() - began, within, f"{what}:\n{self.said()}")
-            time.sleep(0.005)
-        return time.monotonic() - began
-
-    def said(self):
-        return self.log.read_text(errors="replace")
-
-    def lit(self):
-        try:
-            return "".join("1" if line.endswith(" on") else "0" for line in self.shown.read_text().splitlines())
-        except FileNotFoundError:
-            return ""
-
-    def shows(self, lit):
-        return self.wait_until(lambda: self.lit() == lit, f"the lights to be {lit}")
-
-    def shows_fault(self):
-        """Health lit and then dark, with all others dark, twice; how long until the first of it."""
-        took = self.wait_until(lambda: self.lit() in (DARK, "1000"), "the fault to begin")
-        for lit in ("1000", DARK, "1000"):
-            self.shows(lit)
-        return took
+import running
+from running import DARK, PATIENCE, Running
 
 
 class Watching(Running):
@@ -76,27 +19,6 @@ class Watching(Running):
     def setUp(self):
         super().setUp()
         self.panel = self.begin_panel()
-
-    def connect(self, *told):
-        client = self.enterContext(socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET))
-        client.settimeout(PATIENCE)
-        self.wait_until(lambda: self.has_room_for(client), "adit-panel to take one more")
-        for message in ("panel " + json.dumps({"name": "s", "title": "S", "panel": {}}), *told):
-            client.send(message.encode())
-        return client
-
-    def has_room_for(self, client):
-        try:
-            client.connect(str(self.socket))
-        except BlockingIOError:  # so many wait to be taken
-            return False
-        return True
-
-    def press(self, word):
-        self.wait_until(self.button.exists, "the button")
-        file = os.open(self.button, os.O_WRONLY | os.O_NONBLOCK)
-        os.write(file, f"{word}\n".encode())
-        os.close(file)
 
     def test_what_is_told_is_lit(self):
         client = self.connect("lit 1110")
@@ -196,8 +118,8 @@ class Watching(Running):
         client = self.connect("lit 1110")
         self.shows("1110")
         client.send(b'panel {"name":"s","title":"S","panel":{"chip":"no-such-chip","health":"H","button":"B"}}')
-        self.wait_until(lambda: "the lights cannot be had: panel: chip no-such-chip: No such file" in self.said(), "to be told")
-        self.wait_until(lambda: "the button cannot be had: panel: chip no-such-chip" in self.said(), "to be told of the button")
+        self.wait_until(lambda: "the lights cannot be set, and are tried again: panel: chip no-such-chip: No such file" in self.said(), "to be told")
+        self.wait_until(lambda: "the button cannot be read, and is looked for again: panel: chip no-such-chip" in self.said(), "to be told of the button")
         client.send(b"lit 0110")
         self.shows("0110")
         self.assertFalse(self.button.exists(), "no other takes a real one's place")
@@ -225,25 +147,13 @@ class Starting(Running):
     def test_what_keeps_it_from_starting_is_told(self):
         for words, code, why in (((), 1, "--socket is missing"), (("--socket", "/nowhere/socket"), 1, "/nowhere/socket: No such file"),
                                  (("--socket", "/" + "x" * 200), 1, "File name too long"), (("fault",), 2, "unknown word 'fault'")):
-            done = subprocess.run([adit_panel, *words], capture_output=True, text=True, timeout=PATIENCE)
+            done = subprocess.run([running.adit_panel, *words], capture_output=True, text=True, timeout=PATIENCE)
             self.assertEqual(done.returncode, code)
             self.assertIn(why, done.stderr)
 
 
 class WithAditd(Running):
     """What is killed, stopped, hangs, or is started in another order."""
-
-    def begin_aditd(self, port=0):
-        (self.folder / "secrets").mkdir(mode=0o700, exist_ok=True)
-        settings = self.folder / "settings.json"
-        settings.write_text(json.dumps({"version": 1, "command_post": {"scoring": NOWHERE, "mapping": NOWHERE},
-                                        "team": {"listen": [{"address": "127.0.0.1", "port": port}]}}))
-        return self.begin(aditd, "--settings", settings, "--secrets", self.folder / "secrets", "--state", self.folder / "state",
-                          "--panel", self.socket)
-
-    def is_at_work(self):
-        """Health steady, while scoring blinks: nobody answers at its Command Post. In a fault it is dark."""
-        return self.wait_until(lambda: self.lit()[1:2] == "1", "the lights to be those of an aditd that is well")
 
     def test_the_panel_first(self):
         self.begin_panel()
@@ -337,9 +247,7 @@ class WithAditd(Running):
             self.is_at_work()
             before = self.said().count("the button was pressed")
             for word in ("press", "release"):
-                file = os.open(self.button, os.O_WRONLY | os.O_NONBLOCK)
-                os.write(file, f"{word}\n".encode())
-                os.close(file)
+                self.press(word)
                 time.sleep(0.2)  # somebody's finger
             self.wait_until(lambda: self.said().count("the button was pressed") > before, "aditd to be told")
             panel.kill()
@@ -347,6 +255,6 @@ class WithAditd(Running):
 
 
 if __name__ == "__main__":
-    aditd = sys.argv.pop()
-    adit_panel = sys.argv.pop()
+    running.aditd = sys.argv.pop()
+    running.adit_panel = sys.argv.pop()
     unittest.main()

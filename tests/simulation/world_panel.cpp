@@ -41,8 +41,8 @@ std::unique_ptr<Lines> simulated(std::string) {
   return std::make_unique<Shown>();
 }
 
-std::expected<Remote, std::string> remote(const std::string&, const settings::Panel&, loop::FileDescriptor) {
-  return Remote{std::make_unique<Shown>(), nullptr};
+std::expected<Held, std::string> remote(const std::string&, const settings::Panel&, loop::FileDescriptor) {
+  return Held{std::make_unique<Shown>(), nullptr};
 }
 
 loop::FileDescriptor announce(const std::string&) {

@@ -282,6 +282,16 @@ class AlarmsOfTheBox(WithAlarms):
         (stage.folder / "board.json").unlink()
         self.gone_after_a_restart(stage, "board_not_used")
 
+    def test_the_lights_cannot_be_set(self):
+        """The simulated panel's, while a folder stands in the way of its file."""
+        stage = self.stage()
+        obstacle = stage.box.state / "panel.new"
+        obstacle.mkdir()
+        self.assertEqual(stage.box.ask("POST /adit/identify", body={"seconds": 1})[0], 200)  # something to show
+        self.sees(stage, "lights_not_set", "bad", "box", "The lights are not to be trusted", "Is a directory", panel=False)
+        obstacle.rmdir()
+        self.goes(stage, "lights_not_set")
+
     def test_whoever_started_the_box_left_a_notice(self):
         stage = self.with_a_file("notices/card", "the card's settings are not used\n")
         self.sees(stage, "notice:card", "bad", "box", "The box is not well", "the card's settings are not used")

@@ -6,18 +6,18 @@
 
 #include "panel/lines.hpp"
 
-namespace adit::box {
+namespace adit::panel {
 
 /// Lines that remember what they were told to show, and fail when asked to.
-class WatchedLines final : public panel::Lines {
+class WatchedLines final : public Lines {
  public:
   struct Seen {
-    std::vector<panel::Lit> shown;
+    std::vector<Lit> shown;
     bool fail = false;
     bool is_watched = false;
   };
   explicit WatchedLines(Seen& seen) : seen_(seen) {}
-  std::expected<void, std::string> set(const panel::Lit& lit) override {
+  std::expected<void, std::string> set(const Lit& lit) override {
     seen_.shown.push_back(lit);
     if (seen_.fail) return std::unexpected("gpiochip0: gone");
     return {};
@@ -28,4 +28,4 @@ class WatchedLines final : public panel::Lines {
   Seen& seen_;
 };
 
-}  // namespace adit::box
+}  // namespace adit::panel

@@ -1,0 +1,164 @@
+// adit-panel's part and aditd's, over their socket, on one loop.
+#include "panel/keeper.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+#include "loop/turn_until.hpp"
+#include "panel/remote.hpp"
+#include "panel/unix_socket.hpp"
+#include "panel/watched_lines.hpp"
+#include "panel/wire.hpp"
+
+namespace adit::panel {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+constexpr Lit kTold{true, true, true, false};
+
+class KeeperTest : public testing::Test {
+ protected:
+  KeeperTest() {
+    std::string name = (std::filesystem::temp_directory_path() / "adit-keeper-XXXXXX").string();
+    folder_ = mkdtemp(name.data());
+  }
+  ~KeeperTest() override { std::filesystem::remove_all(folder_); }
+
+  std::string socket() const { return (folder_ / "socket").string(); }
+  void begin() {
+    auto listening = listening_at(socket());
+    ASSERT_TRUE(listening.has_value());
+    keeper_.emplace(
+        loop_, std::move(*listening), settings::Panel{},
+        Keeper::World{.open =
+                          [this](const settings::Panel&) {
+                            return Held{std::make_unique<WatchedLines>(seen_),
+                                        std::make_unique<WireLine>(wire_)};
+                          },
+                      .complain = [this](const std::string& sentence) { said_.push_back(sentence); }});
+  }
+  Held connect() {
+    auto held = remote(socket(), {});
+    EXPECT_TRUE(held.has_value());
+    EXPECT_TRUE(held->lines->set(kTold).has_value());
+    loop_.turn(10ms);
+    return std::move(*held);
+  }
+  /// The wire changes, and its user sees it.
+  void set(bool pressed) {
+    const int looked = wire_.looked;
+    wire_.set(pressed);
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return wire_.looked > looked; }));
+  }
+  long said(std::string_view part) const {
+    return std::ranges::count_if(said_, [&](const std::string& each) { return each.contains(part); });
+  }
+
+  std::filesystem::path folder_;
+  loop::Loop loop_;
+  WatchedLines::Seen seen_;
+  Wire wire_;
+  std::vector<std::string> said_;
+  std::optional<Keeper> keeper_;
+};
+
+TEST_F(KeeperTest, TellsThatTheLightsCannotBeSetAndThatTheyCanAgain) {
+  begin();
+  const Held held = connect();
+  seen_.fail = true;
+  std::expected<void, std::string> set;
+  const auto is_told = [&](bool well) {
+    return loop::turn_until(loop_, [&] {
+      [[maybe_unused]] const auto level = held.button->pressed();
+      set = held.lines->set(kTold);
+      return set.has_value() == well;
+    });
+  };
+  EXPECT_TRUE(is_told(false));
+  EXPECT_EQ(set.error(), "gpiochip0: gone");
+  seen_.fail = false;
+  EXPECT_TRUE(is_told(true));
+  EXPECT_EQ(said("the lights cannot be set"), 1);
+  EXPECT_EQ(said("the lights can be set again"), 1);
+}
+
+TEST_F(KeeperTest, TellsOfAPress) {
+  begin();
+  const Held held = connect();
+  EXPECT_EQ(held.button->pressed(), false);
+  set(true);
+  EXPECT_EQ(held.button->pressed(), true);
+  set(false);
+  EXPECT_EQ(held.button->pressed(), false);
+}
+
+TEST_F(KeeperTest, APressComesToNothingWhereTheButtonIsLost) {
+  begin();
+  const Held held = connect();
+  set(true);
+  EXPECT_EQ(held.button->pressed(), true);
+  wire_.broken = true;
+  set(false);
+  wire_.broken = false;
+  set(false);
+  EXPECT_FALSE(held.button->pressed().has_value()) << "and is no release, however late he looks";
+  EXPECT_EQ(held.button->pressed(), false);
+  EXPECT_EQ(said("the button cannot be read"), 1);
+  EXPECT_EQ(said("the button can be read again"), 1);
+}
+
+TEST_F(KeeperTest, AButtonThatIsLostWithoutAWordWhileItIsHeldIsNoticedAtTheNextBeat) {
+  begin();
+  const Held held = connect();
+  set(true);
+  EXPECT_EQ(held.button->pressed(), true);
+  wire_.broken = true;
+  EXPECT_TRUE(held.lines->set(kTold).has_value());
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return !held.button->pressed().has_value(); }));
+}
+
+TEST_F(KeeperTest, AButtonThatIsPressedWhenItIsBackIsNoneUntilItIsLetGo) {
+  begin();
+  const Held held = connect();
+  wire_.broken = true;
+  set(false);
+  EXPECT_FALSE(held.button->pressed().has_value());
+  wire_.broken = false;
+  set(true);
+  EXPECT_EQ(held.button->pressed(), false);
+  set(false);
+  EXPECT_EQ(held.button->pressed(), false);
+  set(true);
+  EXPECT_EQ(held.button->pressed(), true);
+}
+
+TEST_F(KeeperTest, WhoeverComesIsToldOfAButtonThatIsLost) {
+  wire_.broken = true;
+  begin();
+  const Held held = connect();
+  EXPECT_FALSE(held.button->pressed().has_value());
+}
+
+TEST_F(KeeperTest, APressComesToNothingWhereAditPanelGoes) {
+  begin();
+  const Held held = connect();
+  set(true);
+  EXPECT_EQ(held.button->pressed(), true);
+  keeper_.reset();
+  EXPECT_TRUE(held.lines->set(kTold).has_value()) << "it may come back";
+  wire_.pressed = false;
+  begin();
+  EXPECT_TRUE(held.lines->set(kTold).has_value());
+  EXPECT_FALSE(held.button->pressed().has_value());
+  EXPECT_EQ(held.button->pressed(), false);
+}
+
+}  // namespace
+}  // namespace adit::panel

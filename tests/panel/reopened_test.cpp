@@ -1,0 +1,180 @@
+// What is lost and opened again, of a libgpiod of the test's own.
+#include "panel/reopened.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <poll.h>
+#include <sys/eventfd.h>
+
+#include <cerrno>
+
+#include "loop/file_descriptor.hpp"
+#include "panel/fake_gpiod.hpp"
+#include "panel/held.hpp"
+#include "panel/watched_lines.hpp"
+
+namespace adit::panel {
+namespace {
+
+using namespace std::chrono_literals;
+using testing::HasSubstr;
+
+constexpr Lit kWell{true, true, true, false};
+constexpr const char* kChip = "/dev/gpiochip0";
+constexpr const char* kNames[] = {"HEALTH", "SCORING", "MAPPING", "ATTENTION"};
+
+class Reopened : public testing::Test {
+ protected:
+  Reopened() {
+    fake_gpio() = {};
+    for (const std::string name : {"HEALTH", "SCORING", "MAPPING", "ATTENTION", "BUTTON"})
+      fake_gpio().chips[kChip].lines[name];
+    line("BUTTON").level = true;  // pulled up
+    line("BUTTON").descriptor = edges_.get();
+    come();
+  }
+  static FakeLine& line(const std::string& name) { return fake_gpio().line(name); }
+  /// The chip, whose lines go or come back with it. Whoever has one keeps what is none any more.
+  static void vanish() {
+    fake_gpio().chips[kChip].name = "";
+    for (auto& [name, line] : fake_gpio().chips[kChip].lines) line.fails_with = ENODEV;
+  }
+  static void come() {
+    fake_gpio().chips[kChip].name = "gpiochip0";
+    for (auto& [name, line] : fake_gpio().chips[kChip].lines) {
+      line.fails_with = 0;
+      line.requested = false;
+    }
+  }
+  static std::string lit() {
+    std::string levels;
+    for (const char* name : kNames) levels += line(name).level ? '1' : '0';
+    return levels;
+  }
+
+  std::unique_ptr<Lines> lines() {
+    return reopened_lines(
+        [this] {
+          ++tries_;
+          return open_gpio(settings_, "adit-panel");
+        },
+        [this] { return std::make_unique<WatchedLines>(stand_in_); }, [this] { return now_; });
+  }
+  /// What comes of setting them each half second.
+  std::string set_for(Lines& lines, std::chrono::milliseconds length) {
+    std::expected<void, std::string> done;
+    for (const Instant end = now_ + length; now_ < end; now_ += 500ms) done = lines.set(kWell);
+    return done ? "" : done.error();
+  }
+  std::unique_ptr<ButtonLine> button() {
+    auto made = reopened_button([this] { return open_gpio_button(settings_, "adit-panel"); }, kPace);
+    EXPECT_TRUE(made) << made.error();
+    return std::move(*made);
+  }
+  static bool is_readable_soon(const ButtonLine& button) {
+    pollfd wanted{.fd = button.descriptor(), .events = POLLIN, .revents = 0};
+    return poll(&wanted, 1, 30'000) == 1;
+  }
+  /// By what makes it readable alone, as its user asks it.
+  static std::expected<bool, std::string> look(ButtonLine& button) {
+    EXPECT_TRUE(is_readable_soon(button));
+    return button.pressed();
+  }
+
+  static constexpr std::chrono::milliseconds kPace{20};
+  loop::FileDescriptor edges_{eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)};
+  settings::Panel settings_{.chip = "gpiochip0",
+                            .health = "HEALTH",
+                            .scoring = "SCORING",
+                            .mapping = "MAPPING",
+                            .attention = "ATTENTION",
+                            .button = "BUTTON"};
+  WatchedLines::Seen stand_in_;
+  Instant now_ = Instant{} + 1h;
+  int tries_ = 0;
+};
+
+TEST_F(Reopened, LinesOfAChipThatVanishesAreOpenedAgainWhenItIsBack) {
+  const auto held = lines();
+  EXPECT_EQ(set_for(*held, 5s), "");
+  EXPECT_EQ(tries_, 1);
+  EXPECT_EQ(lit(), "1110");
+  vanish();
+  EXPECT_THAT(set_for(*held, kReopen), HasSubstr("line HEALTH (health) of chip gpiochip0: No such device"));
+  EXPECT_EQ(set_for(*held, 10s), "panel: chip gpiochip0: No such file or directory");
+  EXPECT_EQ(tries_, 1 + 10s / kReopen);
+  EXPECT_EQ(stand_in_.shown.back(), kWell);
+  EXPECT_EQ(fake_gpio().open, 0);
+  for (const char* name : kNames) line(name).level = false;
+  come();
+  EXPECT_EQ(set_for(*held, kReopen), "");
+  EXPECT_EQ(lit(), "1110");
+}
+
+TEST_F(Reopened, LinesOfAChipThatComesLateAreOpenedThen) {
+  vanish();
+  const auto held = lines();
+  EXPECT_EQ(set_for(*held, 1s), "panel: chip gpiochip0: No such file or directory");
+  come();
+  EXPECT_EQ(set_for(*held, kReopen), "");
+  EXPECT_EQ(lit(), "1110");
+}
+
+TEST_F(Reopened, LinesThatFailForAMomentAreKept) {
+  const auto held = lines();
+  EXPECT_EQ(set_for(*held, 1s), "");
+  for (int i = 0; i < 3; ++i) {
+    line("MAPPING").fails_with = EIO;
+    EXPECT_THAT(set_for(*held, 1500ms), HasSubstr("line MAPPING"));
+    line("MAPPING").fails_with = 0;
+    EXPECT_EQ(set_for(*held, 500ms), "");
+  }
+  EXPECT_EQ(tries_, 1);
+}
+
+TEST_F(Reopened, AButtonThatVanishesIsNoticedThoughNobodyTouchesItAndOpenedAgain) {
+  const auto held = button();
+  EXPECT_EQ(held->pressed(), false);
+  const int descriptor = held->descriptor();
+  vanish();
+  EXPECT_EQ(look(*held).error(), "panel: line BUTTON (button) of chip gpiochip0: No such device");
+  EXPECT_EQ(look(*held).error(), "panel: chip gpiochip0: No such file or directory");
+  come();
+  EXPECT_EQ(look(*held), false);
+  line("BUTTON").level = false;
+  eventfd_write(edges_.get(), 1);
+  EXPECT_EQ(look(*held), true);
+  EXPECT_EQ(held->descriptor(), descriptor);
+}
+
+TEST_F(Reopened, AButtonThatComesBackAtOnceWasLostAllTheSame) {
+  const auto held = button();
+  line("BUTTON").level = false;
+  EXPECT_EQ(held->pressed(), true);
+  line("BUTTON").fails_with = EIO;
+  EXPECT_FALSE(held->pressed().has_value());
+  line("BUTTON").fails_with = 0;
+  EXPECT_FALSE(held->pressed().has_value()) << "not before the next time";
+  EXPECT_EQ(look(*held), true);
+}
+
+TEST_F(Reopened, AButtonOfAChipThatComesLateIsOpenedThen) {
+  vanish();
+  const auto held = button();
+  EXPECT_EQ(look(*held).error(), "panel: chip gpiochip0: No such file or directory");
+  come();
+  EXPECT_EQ(look(*held), false);
+}
+
+TEST_F(Reopened, WhatIsHeldOfNamedLinesComesLateToo) {
+  vanish();
+  const Held held = hold(settings_, "adit-panel", "", [](const std::string& why) { FAIL() << why; });
+  EXPECT_EQ(held.lines->set(kWell).error(), "panel: chip gpiochip0: No such file or directory");
+  EXPECT_FALSE(held.button->pressed().has_value());
+  settings_.button = "";
+  EXPECT_EQ(hold(settings_, "adit-panel", "", {}).button, nullptr);
+  EXPECT_EQ(hold({}, "adit-panel", "", {}).lines, nullptr);
+}
+
+}  // namespace
+}  // namespace adit::panel

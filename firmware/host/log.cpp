@@ -1,5 +1,8 @@
 #include "host/log.hpp"
 
+// Else each program has this file's path in it, and another one where it is built in another folder.
+#define SD_JOURNAL_SUPPRESS_LOCATION
+
 #include <sys/uio.h>
 #include <systemd/sd-journal.h>
 #include <unistd.h>

@@ -40,8 +40,7 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
 }
 
 /// Where this cannot be kept, the slot is good all the same: a later start keeps it.
-void keep_proven(const UpdateOptions& options, update::Running running, bool trial) {
-  running.version = version_in(options.os_release);
+void keep_proven(const UpdateOptions& options, const update::Running& running, bool trial) {
   const update::Proven before = load_proven(options.state);
   const update::Proven proven = update::proven_now(before, running, trial);
   if (proven != before) save(options.state, proven);
@@ -65,10 +64,11 @@ void start_adit_update(const std::string& systemctl) {
 
 std::expected<void, std::string> watch_health(const UpdateOptions& options) {
   const Rauc rauc(options.rauc);
-  const auto running = rauc.status();
+  auto running = rauc.status();
   if (!running) return std::unexpected(running.error());
+  running->version = version_in(options.os_release);
   const update::LastUpdate last_update = load_last_update(options.state);
-  const bool trial = update::on_trial(last_update, running->slot, host::boot());
+  const bool trial = update::on_trial(last_update, *running, host::boot());
   const auto late_at = now() + options.within;
   while (true) {
     const auto health = update::judge(trial, ready(options.systemctl), now() >= late_at);

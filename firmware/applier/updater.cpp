@@ -59,7 +59,7 @@ void Updater::find_out() {
   } else {
     tell_of(std::move(last_update));
   }
-  status_.trial = update::on_trial(status_.last, status_.running.slot, boot_);
+  status_.trial = update::on_trial(status_.last, status_.running, boot_);
   status_.stray = update::stray(load_proven(options_.state), status_.running, status_.trial);
   if (!status_.stray.empty()) host::log(Level::Error, "another slot was started", {{"what", status_.stray}});
 }

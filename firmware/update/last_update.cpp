@@ -5,8 +5,8 @@
 namespace adit::update {
 namespace {
 
-/// Whether RAUC came to its end is known for certain only of what it said in time: it goes on by itself where
-/// adit-update is killed or waits no longer, and the power may go before its answer is kept.
+/// Whether RAUC came to its end is known for certain only of what it said: it goes on by itself where
+/// adit-update is killed, and the power may go before its answer is kept.
 bool may_be_whole(Stage stage) {
   return stage == Stage::Installing || stage == Stage::Interrupted || stage == Stage::Failed ||
          stage == Stage::Installed;
@@ -21,7 +21,7 @@ bool waits_for_a_restart(const LastUpdate& last_update, const Running& running, 
 }  // namespace
 
 LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot) {
-  if (on_trial(last_update, running.slot, boot) || waits_for_a_restart(last_update, running, boot)) {
+  if (on_trial(last_update, running, boot) || waits_for_a_restart(last_update, running, boot)) {
     last_update.stage = Stage::Installed;
     last_update.why.clear();
   } else if (last_update.stage == Stage::Installing) {
@@ -36,8 +36,9 @@ LastUpdate settled(LastUpdate last_update, const Running& running, const std::st
   return last_update;
 }
 
-bool on_trial(const LastUpdate& last_update, const std::string& slot, const std::string& boot) {
-  return may_be_whole(last_update.stage) && last_update.boot != boot && last_update.slot == slot;
+bool on_trial(const LastUpdate& last_update, const Running& running, const std::string& boot) {
+  return may_be_whole(last_update.stage) && last_update.boot != boot && last_update.slot == running.slot &&
+         last_update.version == running.version;
 }
 
 }  // namespace adit::update

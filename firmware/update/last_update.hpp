@@ -47,12 +47,12 @@ struct LastUpdate {
   friend bool operator==(const LastUpdate&, const LastUpdate&) = default;
 };
 
-/// What the last update has come to, as found at a start of the program: `slot` runs, in the machine's start
-/// `boot`.
+/// What the last update has come to, as found at a start of the program, in the machine's start `boot`.
 LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot);
 
-/// The slot that runs is the one that was written last, and has not been healthy yet; whatever became known
-/// of the end of the writing, for what was cut off before its end does not start.
-bool on_trial(const LastUpdate& last_update, const std::string& slot, const std::string& boot);
+/// What runs is the last update, and it has not been healthy yet; whatever became known of the end of the
+/// writing, for what was cut off before its end does not start. Where the slot has another version, it was
+/// never written.
+bool on_trial(const LastUpdate& last_update, const Running& running, const std::string& boot);
 
 }  // namespace adit::update

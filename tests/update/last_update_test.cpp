@@ -13,12 +13,12 @@ LastUpdate last_update(Stage stage) {
 
 TEST(LastUpdate, OfAnInstalledUpdateWaitsForTheRestart) {
   EXPECT_EQ(settled(last_update(Stage::Installed), kOld, "first"), last_update(Stage::Installed));
-  EXPECT_FALSE(on_trial(last_update(Stage::Installed), "A", "first"));
+  EXPECT_FALSE(on_trial(last_update(Stage::Installed), kOld, "first"));
 }
 
 TEST(LastUpdate, OfAnUpdateThatRunsIsATrial) {
   EXPECT_EQ(settled(last_update(Stage::Installed), kNew, "second").stage, Stage::Installed);
-  EXPECT_TRUE(on_trial(last_update(Stage::Installed), "B", "second"));
+  EXPECT_TRUE(on_trial(last_update(Stage::Installed), kNew, "second"));
 }
 
 TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
@@ -26,19 +26,29 @@ TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
   EXPECT_EQ(left.stage, Stage::Left);
   EXPECT_EQ(left.version, "0.2.0");
   EXPECT_EQ(left.why, "it did not come up healthy in three starts, and 0.1.0 runs again");
-  EXPECT_FALSE(on_trial(left, "A", "second"));
+  EXPECT_FALSE(on_trial(left, kOld, "second"));
 }
 
 TEST(LastUpdate, OfASlotThatRunsIsATrialWhateverWasSeenOfTheEndOfItsWriting) {
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
-    EXPECT_TRUE(on_trial(last_update(stage), "B", "second")) << name_of(stage);
+    EXPECT_TRUE(on_trial(last_update(stage), kNew, "second")) << name_of(stage);
     const LastUpdate whole = settled(last_update(stage), kNew, "second");
     EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
     EXPECT_EQ(whole.why, "") << name_of(stage);
-    EXPECT_TRUE(on_trial(whole, "B", "second"));
+    EXPECT_TRUE(on_trial(whole, kNew, "second"));
     EXPECT_EQ(settled(whole, kOld, "third").stage, Stage::Left) << name_of(stage);
-    EXPECT_FALSE(on_trial(last_update(stage), "A", "second")) << name_of(stage);
+    EXPECT_FALSE(on_trial(last_update(stage), kOld, "second")) << name_of(stage);
   }
+}
+
+TEST(LastUpdate, OfASlotThatRunsWithAnotherVersionIsNoTrialForItWasNotWritten) {
+  Running before = kNew;
+  before.version = "0.1.0";
+  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Installed}) {
+    EXPECT_FALSE(on_trial(last_update(stage), before, "second")) << name_of(stage);
+  }
+  EXPECT_EQ(settled(last_update(Stage::Installing), before, "second").stage, Stage::Interrupted);
+  EXPECT_EQ(settled(last_update(Stage::Failed), before, "second"), last_update(Stage::Failed));
 }
 
 TEST(LastUpdate, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
@@ -56,7 +66,7 @@ TEST(LastUpdate, OfAnInstallationThatRaucFinishedByItselfWaitsForTheRestart) {
     const LastUpdate whole = settled(last_update(stage), finished, "first");
     EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
     EXPECT_EQ(whole.why, "") << name_of(stage);
-    EXPECT_FALSE(on_trial(whole, "A", "first"));
+    EXPECT_FALSE(on_trial(whole, kOld, "first"));
   }
   EXPECT_EQ(settled(last_update(Stage::Good), finished, "first").stage, Stage::Good);
 }
@@ -65,7 +75,7 @@ TEST(LastUpdate, ThatIsOverStaysAsItWas) {
   for (const Stage stage : {Stage::None, Stage::Left, Stage::Good}) {
     for (const Running& running : {kOld, kNew}) {
       EXPECT_EQ(settled(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
-      EXPECT_FALSE(on_trial(last_update(stage), running.slot, "third")) << name_of(stage);
+      EXPECT_FALSE(on_trial(last_update(stage), running, "third")) << name_of(stage);
     }
   }
   for (const Stage stage : {Stage::Interrupted, Stage::Failed}) {

@@ -1,30 +1,16 @@
 #!/usr/bin/python3
 """Another slot runs than the one that was good last: the boot loader went to it without a word."""
 
-import subprocess
-import time
+import json
 import unittest
 
 import raucs
 from on_a_box import OnABox
 
 
-class Stray(OnABox):
-    def good(self):
-        """`adit-update good`, of a box that has been healthy for long."""
-        since = int((time.clock_gettime(time.CLOCK_MONOTONIC) - 100) * 1e6)
-        self.box.properties.write_text(f"ActiveState=active\nActiveEnterTimestampMonotonic={since}\n")
-        subprocess.run(self.box.command("good"), env=self.box.environment, stderr=subprocess.DEVNULL, timeout=60, check=True)
-
-    def runs(self, slot, version):
-        self.box.start(slot)
-        (self.box.folder / "os-release").write_text(f"VERSION_ID={version}\n")
-
-    def set(self, name, value):
-        subprocess.run([self.box.folder / "bin/fw_setenv", name, value], check=True)
-
+class OnB(OnABox):
     def setUp(self):
-        """0.1.0 was good in A, 0.2.0 came and was good in B, and then B's starts were used up."""
+        """0.1.0 was good in A, 0.2.0 came and was good in B."""
         super().setUp()
         self.good()
         self.box.install(self.newer)
@@ -32,8 +18,20 @@ class Stray(OnABox):
         self.runs("B", "0.2.0")
         self.good()
         self.assertEqual(self.box.update()["stray"], "")
+
+    def back_to_a(self):
+        """B's starts were used up."""
         self.set("BOOT_B_LEFT", "0")
         self.runs("A", "0.1.0")
+
+    def proven(self):
+        return json.loads((self.box.folder / "state/proven.json").read_text())["slot"]
+
+
+class Stray(OnB):
+    def setUp(self):
+        super().setUp()
+        self.back_to_a()
 
     def test_it_is_told_from_start_to_start_until_the_operator_decides(self):
         for _ in range(2):
@@ -72,7 +70,24 @@ class Stray(OnABox):
         (self.box.folder / "state/proven.json").write_text('{"format": 1, "slot": 7')
         self.assertEqual(self.box.update()["stray"], "")
         self.good()
-        self.assertIn('"A"', (self.box.folder / "state/proven.json").read_text())
+        self.assertEqual(self.proven(), "A")
+
+
+class NeverWritten(OnB):
+    def test_a_slot_that_an_update_did_not_reach_is_no_trial_of_it(self):
+        configuration, no = self.box.folder / "system.conf", self.box.folder / "no"
+        raucs.script(no, "exit 1\n")
+        configuration.write_text(f"{configuration.read_text()}\n[handlers]\npre-install={no}\n")
+        self.box.start("B")
+        self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["last"]["stage"], "failed")
+        self.box.began_before()
+        self.back_to_a()
+        for _ in range(2):
+            status = self.box.update()
+            self.assertEqual((status["trial"], status["last"]["stage"]), (False, "failed"))
+            self.assertIn("slot A runs, with 0.1.0, not slot B with 0.2.0", status["stray"])
+            self.good()
+            self.assertEqual(self.proven(), "B")
 
 
 if __name__ == "__main__":

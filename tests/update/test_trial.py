@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """What becomes of an update: on trial, good or left; cut off, or told by nobody."""
 
-import os
 import shutil
 import signal
 import subprocess
@@ -34,7 +33,7 @@ class OnTrial(OnABox):
 
     def test_the_new_slot_is_good_after_a_minute_of_health(self):
         self.box.start("B")
-        subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "2"], check=True)  # the boot loader counts
+        self.set("BOOT_B_LEFT", "2")  # the boot loader counts
         self.assertTrue(self.box.update()["trial"])
         self.ready_for(45)
         self.assertFalse(self.watch(1))
@@ -59,10 +58,12 @@ class OnTrial(OnABox):
         status = self.box.install(self.bundles.make("0.3.0"))
         self.expect_refused(status, "0.2.0 is on trial")
 
+    def is_left(self):
+        self.set("BOOT_B_LEFT", "0")
+        self.runs("A", "0.1.0")
+
     def test_a_slot_that_was_left_is_not_tried_again_and_says_so(self):
-        subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "0"], check=True)
-        (self.box.folder / "os-release").write_text("VERSION_ID=0.1.0\n")
-        self.box.start("A")
+        self.is_left()
         for _ in range(2):  # and says so from then on
             status = self.box.update()
             self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("left", "0.2.0"))
@@ -76,7 +77,7 @@ class OnTrial(OnABox):
         self.box.start("B")
         self.ready_for(60)
         self.assertTrue(self.watch(60))
-        subprocess.run([self.box.folder / "bin/fw_setenv", "BOOT_B_LEFT", "1"], check=True)
+        self.set("BOOT_B_LEFT", "1")
         self.box.properties.write_text("ActiveState=activating\n")
         self.assertFalse(self.watch(3, "--within", "1"))
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "1")
@@ -89,18 +90,7 @@ class OnTrial(OnABox):
 
 class ACutOfThePower(OnABox):
     def test_in_the_middle_of_the_writing_leaves_what_runs_and_what_is_next(self):
-        shutil.copy(self.bundles.make(root_size=(4 << 20) - 4096), self.box.folder / "wanted/update.raucb")
-        self.box.ask("install")
-        # The other slot's new content does not come to its end: the process that writes it is stopped where it begins.
-        os.remove(self.box.slots["root-b"])
-        os.mkfifo(self.box.slots["root-b"])
-        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
-            raucs.wait_until(lambda: self.box.boot_loader()["BOOT_B_LEFT"] == "0", "the other slot marked bad")
-            process.kill()  # before RAUC, whose end it would note
-            process.wait()
-            self.box.halt()
-        os.remove(self.box.slots["root-b"])
-        self.box.slots["root-b"].write_bytes(bytes(4 << 20))
+        self.cut_off()
         self.box.start("A")
         status = self.box.update()
         self.assertEqual(status["last"]["stage"], "interrupted")
@@ -114,7 +104,7 @@ class ACutOfThePower(OnABox):
         self.box.install(self.newer)
         for stage, why in (("installing", ""), ("interrupted", "install it again"), ("failed", "took longer")):
             self.box.began_before(stage=stage, why=why)
-            self.box.start("B")
+            self.runs("B", "0.2.0")
             status = self.box.update()
             self.assertEqual((status["last"]["stage"], status["last"]["why"], status["trial"]), ("installed", "", True))
         self.expect_refused(self.box.install(self.bundles.make("0.3.0")), "is on trial")

@@ -105,7 +105,7 @@ std::optional<icd::Refusal> Updates::hindrance() const {
 std::optional<icd::Refusal> Updates::no_stray() const {
   const api::UpdateView view = update();
   if (!view.managed || !view.stray.empty()) return std::nullopt;
-  return conflicting("the slot that runs is the one that was good last");
+  return conflicting(std::string(update::kNoStray));
 }
 
 icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,

@@ -19,7 +19,6 @@ using host::Level;
 using update::Stage;
 
 constexpr std::chrono::seconds kRestart{30};
-constexpr std::string_view kNoStray = "the slot that runs is the one that was good last";
 
 }  // namespace
 
@@ -134,11 +133,20 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   return why;
 }
 
+/// What was good in the slot that is about to be written is no more: nobody is to go back to it.
+bool Updater::forget_proven_other() {
+  if (load_proven(options_.state).slot == status_.running.other && !save(options_.state, update::Proven{}))
+    return false;
+  status_.stray.clear();
+  return true;
+}
+
 std::string Updater::write(const BundleFile& file, const update::Bundle& bundle) {
   update::LastUpdate last_update{
       .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
   // Were that not kept, the slot would not be on trial.
-  if (!save(options_.state, last_update)) return "it cannot be written down that it is being installed";
+  if (!save(options_.state, last_update) || !forget_proven_other())
+    return "it cannot be written down that it is being installed";
   status_.doing = "installing";
   status_.progress = 0;
   tell_of(last_update);
@@ -164,13 +172,13 @@ std::string Updater::restart() {
 }
 
 std::string Updater::go_back() {
-  if (status_.stray.empty()) return std::string(kNoStray);
+  if (status_.stray.empty()) return std::string(update::kNoStray);
   if (const auto chosen = rauc_.start_other_next(); !chosen) return chosen.error();
   return restart();
 }
 
 std::string Updater::stay() {
-  if (status_.stray.empty()) return std::string(kNoStray);
+  if (status_.stray.empty()) return std::string(update::kNoStray);
   if (!save(options_.state, update::Proven{status_.running.slot, status_.running.version}))
     return "it cannot be written down";
   host::log(Level::Notice, "the slot that runs is to stay", {{"slot", status_.running.slot}});

@@ -6,10 +6,9 @@ namespace adit::update {
 namespace {
 
 /// Whether RAUC came to its end is known for certain only of what it said: it goes on by itself where
-/// adit-update is killed, and the power may go before its answer is kept.
+/// adit-update is killed, and the power may go before its answer is kept. What was left is whole, too.
 bool may_be_whole(Stage stage) {
-  return stage == Stage::Installing || stage == Stage::Interrupted || stage == Stage::Failed ||
-         stage == Stage::Installed;
+  return stage != Stage::None && stage != Stage::Good;
 }
 
 /// RAUC has the slot that it writes started next once all of it is written.

@@ -52,7 +52,7 @@ LastUpdate settled(LastUpdate last_update, const Running& running, const std::st
 
 /// What runs is the last update, and it has not been healthy yet; whatever became known of the end of the
 /// writing, for what was cut off before its end does not start. Where the slot has another version, it was
-/// never written.
+/// never written; one that was left and runs all the same is tried again.
 bool on_trial(const LastUpdate& last_update, const Running& running, const std::string& boot);
 
 }  // namespace adit::update

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "update/last_update.hpp"
 
@@ -8,7 +9,7 @@ namespace adit::update {
 
 /// The slot that came up healthy last and was to stay. Kept over starts of the machine; it changes by an
 /// update that proves good and by the operator's word, and not by the boot loader, which goes to another slot
-/// without a word.
+/// without a word. It is forgotten where that slot is to be written.
 struct Proven {
   std::string slot = "";  // "": none is known yet
   std::string version = "";
@@ -23,5 +24,7 @@ Proven proven_now(Proven before, const Running& running, bool trial);
 /// Which other slot runs than the proven one, and why, as a sentence; "" where there is nothing to tell: it
 /// is the proven one, none is known, or what runs is on `trial`.
 std::string stray(const Proven& proven, const Running& running, bool trial);
+/// Why none is gone back to, nor stayed in, then.
+inline constexpr std::string_view kNoStray = "no other slot was good last";
 
 }  // namespace adit::update

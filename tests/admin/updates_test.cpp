@@ -209,7 +209,7 @@ TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {
 }
 
 TEST_F(UpdatesTest, GoBackOrStayWhereAnotherSlotRunsThanWasGoodLast) {
-  EXPECT_EQ(updates_.go_back(true).error().sentence, "the slot that runs is the one that was good last");
+  EXPECT_EQ(updates_.go_back(true).error().sentence, update::kNoStray);
   EXPECT_EQ(updates_.stay().error().status, icd::Status::Conflict);
   EXPECT_FALSE(asked());
   wait();

@@ -30,7 +30,7 @@ TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
 }
 
 TEST(LastUpdate, OfASlotThatRunsIsATrialWhateverWasSeenOfTheEndOfItsWriting) {
-  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
+  for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Left}) {
     EXPECT_TRUE(on_trial(last_update(stage), kNew, "second")) << name_of(stage);
     const LastUpdate whole = settled(last_update(stage), kNew, "second");
     EXPECT_EQ(whole.stage, Stage::Installed) << name_of(stage);
@@ -72,13 +72,13 @@ TEST(LastUpdate, OfAnInstallationThatRaucFinishedByItselfWaitsForTheRestart) {
 }
 
 TEST(LastUpdate, ThatIsOverStaysAsItWas) {
-  for (const Stage stage : {Stage::None, Stage::Left, Stage::Good}) {
+  for (const Stage stage : {Stage::None, Stage::Good}) {
     for (const Running& running : {kOld, kNew}) {
       EXPECT_EQ(settled(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
       EXPECT_FALSE(on_trial(last_update(stage), running, "third")) << name_of(stage);
     }
   }
-  for (const Stage stage : {Stage::Interrupted, Stage::Failed}) {
+  for (const Stage stage : {Stage::Interrupted, Stage::Failed, Stage::Left}) {
     EXPECT_EQ(settled(last_update(stage), kOld, "third"), last_update(stage)) << name_of(stage);
   }
 }

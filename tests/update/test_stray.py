@@ -73,6 +73,45 @@ class Stray(OnB):
         self.assertEqual(self.proven(), "A")
 
 
+class Overwritten(OnB):
+    """An update goes into the slot that was good last and is not now."""
+
+    def setUp(self):
+        super().setUp()
+        self.back_to_a()
+        self.assertIn("not slot B with 0.2.0", self.box.update()["stray"])
+
+    def expect_nowhere_to_go_back_to(self):
+        self.assertEqual(self.box.status()["stray"], "")
+        self.box.ask("back")
+        self.assertIn("good last", self.box.update()["refusal"])
+        self.assertNotIn("reboot", self.box.calls.read_text())
+        self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "0")
+        self.good()
+        self.assertEqual((self.proven(), self.box.update()["stray"]), ("A", ""))
+
+    def test_by_an_update_that_is_left(self):
+        self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["stray"], "")
+        self.box.began_before()
+        self.back_to_a()
+        self.assertEqual(self.box.update()["last"]["stage"], "left")
+        self.expect_nowhere_to_go_back_to()
+
+    def test_by_one_that_the_power_cut_off(self):
+        self.cut_off()
+        self.runs("A", "0.1.0")
+        self.assertEqual(self.box.update()["last"]["stage"], "interrupted")
+        self.expect_nowhere_to_go_back_to()
+
+    def test_by_one_that_proves_good(self):
+        self.box.install(self.bundles.make("0.3.0"))
+        self.box.began_before()
+        self.runs("B", "0.3.0")
+        self.assertTrue(self.box.update()["trial"])
+        self.good()
+        self.assertEqual((self.proven(), self.box.update()["stray"]), ("B", ""))
+
+
 class NeverWritten(OnB):
     def test_a_slot_that_an_update_did_not_reach_is_no_trial_of_it(self):
         configuration, no = self.box.folder / "system.conf", self.box.folder / "no"

@@ -73,6 +73,21 @@ class OnTrial(OnABox):
         self.assertEqual(self.box.install(self.newer)["last"]["stage"], "installed")  # the operator may try it again
         self.assertEqual(self.box.boot_loader(), {"BOOT_ORDER": "B A", "BOOT_A_LEFT": raucs.ON_TRIAL, "BOOT_B_LEFT": raucs.ON_TRIAL})
 
+    def test_a_slot_that_was_left_and_runs_all_the_same_is_on_trial_again(self):
+        """The boot loader's counts were lost, or somebody at the console has it so."""
+        self.is_left()
+        self.assertEqual(self.box.update()["last"]["stage"], "left")
+        self.set("BOOT_ORDER", "B A")
+        self.set("BOOT_B_LEFT", raucs.PROVEN)
+        self.runs("B", "0.2.0")
+        status = self.box.update()
+        self.assertEqual((status["trial"], status["last"]["stage"], status["last"]["why"]), (True, "installed", ""))
+        self.assertTrue(self.watch(60, "--within", "2"))
+        self.assertEqual(self.box.calls.read_text().splitlines()[-1], "reboot")
+        self.is_left()
+        self.assertEqual(self.box.update()["last"]["stage"], "left")
+        self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "A")
+
     def test_a_slot_that_was_good_once_is_good_as_soon_as_the_service_is_ready(self):
         self.box.start("B")
         self.ready_for(60)

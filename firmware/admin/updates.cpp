@@ -9,6 +9,7 @@
 #include "admin/nonce.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "update/health.hpp"
 
 namespace adit::admin {
 namespace {
@@ -102,6 +103,13 @@ std::optional<icd::Refusal> Updates::hindrance() const {
   return std::nullopt;
 }
 
+std::optional<icd::Refusal> Updates::nothing_installed_now() const {
+  if (auto why = hindrance()) return why;
+  const api::UpdateView view = update();
+  if (view.trial) return conflicting(update::wait_for_trial(view.running.version));
+  return std::nullopt;
+}
+
 std::optional<icd::Refusal> Updates::no_stray() const {
   const api::UpdateView view = update();
   if (!view.managed || !view.stray.empty()) return std::nullopt;
@@ -110,7 +118,7 @@ std::optional<icd::Refusal> Updates::no_stray() const {
 
 icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,
                                                             std::function<void()> resume) {
-  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  if (auto why = nothing_installed_now()) return std::unexpected(std::move(*why));
   if (auto why = no_room(requests_.state_folder(), size)) return std::unexpected(std::move(*why));
   auto upload = UpdateUpload::begin(
       writer_, {.part = requests_.part_file(),
@@ -128,7 +136,7 @@ icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, 
 }
 
 icd::Checked<void> Updates::install_from_stick(bool again) {
-  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  if (auto why = nothing_installed_now()) return std::unexpected(std::move(*why));
   return ask(update::Request::What::Stick, again);
 }
 

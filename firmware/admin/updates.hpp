@@ -52,6 +52,8 @@ class Updates final : public api::Updates {
   bool is_asked() const;
   /// Why nothing can be asked for now; nothing: it can.
   std::optional<icd::Refusal> hindrance() const;
+  /// Why nothing is installed now.
+  std::optional<icd::Refusal> nothing_installed_now() const;
   /// There is no slot to go back to.
   std::optional<icd::Refusal> no_stray() const;
   /// Why the box is not restarted into that: also, unless `anyway`, while a report is under way.

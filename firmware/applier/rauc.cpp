@@ -9,7 +9,8 @@
 namespace adit::applier {
 namespace {
 
-/// A slot of a slow card is written in some minutes.
+/// A slot of a slow card is written in some minutes. For so long its client is waited for, and after that, or
+/// where the client dies, its end.
 constexpr std::chrono::minutes kInstall{20};
 constexpr std::chrono::seconds kRaucAnswer{60};
 /// How often it is asked again while it is busy.
@@ -75,10 +76,14 @@ std::expected<void, std::string> Rauc::start_other_next() const {
   return mark(command_, "mark-good", "other");
 }
 
+std::expected<void, std::string> Rauc::start_booted_next() const {
+  return mark(command_, "mark-active", "booted");
+}
+
 /// Marked bad, it is out of the boot loader's order, which would else try it three times more once no slot
 /// has a try left.
 std::expected<void, std::string> Rauc::leave_other() const {
-  if (auto first = mark(command_, "mark-active", "booted"); !first) return first;
+  if (auto first = start_booted_next(); !first) return first;
   return mark(command_, "mark-bad", "other");
 }
 

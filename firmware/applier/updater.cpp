@@ -10,7 +10,7 @@
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
-#include "icd/sentence.hpp"
+#include "update/health.hpp"
 
 namespace adit::applier {
 namespace {
@@ -19,6 +19,7 @@ using host::Level;
 using update::Stage;
 
 constexpr std::chrono::seconds kRestart{30};
+constexpr const char* kNotKept = "it cannot be written down";
 
 }  // namespace
 
@@ -118,10 +119,7 @@ void Updater::answer(const update::Request& request, host::UntrustedFolder& fold
 std::string Updater::install(const std::expected<BundleFile, std::string>& file, bool again) {
   if (!file) return file.error();
   if (!status_.trouble.empty()) return status_.trouble;
-  if (status_.trial) {
-    return icd::sentence(status_.running.version, " is on trial: wait until it has been healthy for ",
-                         update::kHealthyFor.count(), " s");
-  }
+  if (status_.trial) return update::wait_for_trial(status_.running.version);
   if (const auto why = host::read_file(options_.hindrance)) return why->substr(0, why->find('\n'));
   status_.doing = "checking";
   tell();
@@ -133,20 +131,24 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   return why;
 }
 
-/// What was good in the slot that is about to be written is no more: nobody is to go back to it.
-bool Updater::forget_proven_other() {
+/// What is in the slot that is about to be written counts no more: nobody goes back to it, and it is not
+/// started next, which tells in the end that RAUC has written all of it.
+std::string Updater::give_up_other() {
   if (load_proven(options_.state).slot == status_.running.other && !save(options_.state, update::Proven{}))
-    return false;
+    return kNotKept;
   status_.stray.clear();
-  return true;
+  const auto now = rauc_.status();
+  if (!now) return now.error();
+  const auto first = now->other_next ? rauc_.start_booted_next() : std::expected<void, std::string>{};
+  return first ? "" : first.error();
 }
 
 std::string Updater::write(const BundleFile& file, const update::Bundle& bundle) {
   update::LastUpdate last_update{
       .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
+  if (std::string why = give_up_other(); !why.empty()) return why;
   // Were that not kept, the slot would not be on trial.
-  if (!save(options_.state, last_update) || !forget_proven_other())
-    return "it cannot be written down that it is being installed";
+  if (!save(options_.state, last_update)) return kNotKept;
   status_.doing = "installing";
   status_.progress = 0;
   tell_of(last_update);
@@ -157,6 +159,9 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
   });
   last_update.stage = installed ? Stage::Installed : Stage::Failed;
   last_update.why = installed ? "" : installed.error();
+  if (!installed) {  // RAUC goes on where its client died, or took too long: status() waits for its end
+    if (const auto ended = rauc_.status()) last_update = update::settled(last_update, *ended, boot_);
+  }
   tell_of(last_update);
   return last_update.why;
 }
@@ -179,8 +184,7 @@ std::string Updater::go_back() {
 
 std::string Updater::stay() {
   if (status_.stray.empty()) return std::string(update::kNoStray);
-  if (!save(options_.state, update::Proven{status_.running.slot, status_.running.version}))
-    return "it cannot be written down";
+  if (!save(options_.state, update::Proven{status_.running.slot, status_.running.version})) return kNotKept;
   host::log(Level::Notice, "the slot that runs is to stay", {{"slot", status_.running.slot}});
   status_.stray.clear();
   return "";

@@ -30,7 +30,7 @@ class Updater {
   void answer(const update::Request& request, host::UntrustedFolder& folder);
   /// "", or why it is not done.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
-  bool forget_proven_other();
+  std::string give_up_other();
   std::string write(const BundleFile& file, const update::Bundle& bundle);
   std::string restart();
   std::string go_back();

@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cstdint>
 
+#include "icd/sentence.hpp"
+
 namespace adit::update {
 
 std::string_view value_of(std::string_view name, std::string_view lines) {
@@ -25,6 +27,11 @@ Ready read_ready(std::string_view properties, std::chrono::microseconds now) {
   if (error != std::errc{} || end != since.data() + since.size() || microseconds <= 0) return std::nullopt;
   const std::chrono::microseconds at(microseconds);
   return at <= now ? Ready(now - at) : std::nullopt;
+}
+
+std::string wait_for_trial(std::string_view version) {
+  return icd::sentence(version, " is on trial: wait until it has been healthy for ", kHealthyFor.count(),
+                       " s");
 }
 
 Health judge(bool trial, const Ready& ready, bool late) {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 namespace adit::update {
@@ -26,6 +27,9 @@ enum class Health : std::uint8_t {
 inline constexpr std::chrono::seconds kHealthyFor{60};
 /// For so long a slot on trial may be not good.
 inline constexpr std::chrono::seconds kGoodWithin{300};
+
+/// Why nothing is installed while that version is on trial.
+std::string wait_for_trial(std::string_view version);
 
 /// `late`: kGoodWithin is over. A slot that is not on trial is good as soon as aditd is ready, so that short
 /// lives (a loose plug) do not count against it, and never ends in a restart: what is wrong with it are its

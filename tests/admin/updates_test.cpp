@@ -228,6 +228,17 @@ TEST_F(UpdatesTest, Stay) {
   EXPECT_EQ(asked()->what, update::Request::What::Stay);
 }
 
+TEST_F(UpdatesTest, TakeNoOtherWhileWhatRunsIsOnTrial) {
+  say({.running = {"adit-board", "0.2.0", "B", "A"}, .trial = true});
+  for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false)}) {
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.error().status, icd::Status::Conflict);
+    EXPECT_EQ(refused.error().sentence, "0.2.0 is on trial: wait until it has been healthy for 60 s");
+  }
+  EXPECT_FALSE(asked());
+  EXPECT_TRUE(updates_.restart(false));
+}
+
 TEST_F(UpdatesTest, RestartWhereNothingIsUnderWay) {
   EXPECT_TRUE(updates_.restart(false));
 }

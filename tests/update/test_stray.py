@@ -113,11 +113,14 @@ class Overwritten(OnB):
 
 
 class NeverWritten(OnB):
-    def test_a_slot_that_an_update_did_not_reach_is_no_trial_of_it(self):
+    def refuse_all(self):
         configuration, no = self.box.folder / "system.conf", self.box.folder / "no"
         raucs.script(no, "exit 1\n")
         configuration.write_text(f"{configuration.read_text()}\n[handlers]\npre-install={no}\n")
         self.box.start("B")
+
+    def test_a_slot_that_an_update_did_not_reach_is_no_trial_of_it(self):
+        self.refuse_all()
         self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["last"]["stage"], "failed")
         self.box.began_before()
         self.back_to_a()
@@ -127,6 +130,15 @@ class NeverWritten(OnB):
             self.assertIn("slot A runs, with 0.1.0, not slot B with 0.2.0", status["stray"])
             self.good()
             self.assertEqual(self.proven(), "B")
+
+    def test_nor_is_another_that_waits_there_for_a_restart_taken_for_it(self):
+        self.assertEqual(self.box.install(self.bundles.make("0.3.0"))["last"]["stage"], "installed")
+        self.refuse_all()
+        refused = self.box.install(self.bundles.make("0.4.0"))
+        self.assertIn("Pre-install", refused["refusal"])
+        for status in refused, self.box.update():
+            self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("failed", "0.4.0"))
+        self.assertEqual(self.box.boot_loader()["BOOT_ORDER"].split()[0], "B", "what runs, not what nothing is told of")
 
 
 if __name__ == "__main__":

@@ -126,23 +126,43 @@ class ACutOfThePower(OnABox):
 
 
 class Killed(OnABox):
-    def test_while_rauc_works_waits_for_its_end_once_it_is_restarted_and_tells_it(self):
-        hold = self.box.hold_the_boot_loader()
+    """What waits for RAUC, in the midst of its work."""
+
+    def setUp(self):
+        super().setUp()
+        self.hold = self.box.hold_the_boot_loader()
         shutil.copy(self.newer, self.box.folder / "wanted/update.raucb")
         self.box.ask("install")
-        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
-            raucs.wait_until(lambda: hold.with_name("held").exists(), "RAUC at work")
-            process.kill()
-        with subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL) as process:
-            time.sleep(2)
-            self.assertIsNone(process.poll())
-            self.assertEqual(self.box.status()["doing"], "installing")
-            hold.unlink()
-            self.assertEqual(process.wait(60), 0)
+
+    def begin(self):
+        return subprocess.Popen(self.box.command(), env=self.box.environment, stderr=subprocess.DEVNULL)
+
+    def wait_for_rauc(self):
+        raucs.wait_until(lambda: self.hold.with_name("held").exists(), "RAUC at work")
+
+    def expect_it_waits_for_raucs_end_and_tells_it(self, process):
+        time.sleep(2)
+        self.assertIsNone(process.poll())
+        self.assertEqual(self.box.status()["doing"], "installing")
+        self.hold.unlink()
+        self.assertEqual(process.wait(60), 0)
         status = self.box.status()
-        self.assertEqual((status["doing"], status["progress"], status["trouble"]), ("", None, ""))
+        self.assertEqual((status["doing"], status["progress"], status["trouble"], status["refusal"]), ("", None, "", ""))
         self.assertEqual((status["last"]["stage"], status["last"]["why"]), ("installed", ""))
         self.assertEqual(self.box.boot_loader()["BOOT_ORDER"], "B A")
+
+    def test_adit_update_waits_for_its_end_once_it_is_restarted(self):
+        with self.begin() as process:
+            self.wait_for_rauc()
+            process.kill()
+        with self.begin() as process:
+            self.expect_it_waits_for_raucs_end_and_tells_it(process)
+
+    def test_raucs_client_as_it_is_after_too_long_is_no_end_of_it(self):
+        with self.begin() as process:
+            self.wait_for_rauc()
+            subprocess.run(["pkill", "-KILL", "-P", str(process.pid)], check=True)
+            self.expect_it_waits_for_raucs_end_and_tells_it(process)
 
 
 if __name__ == "__main__":

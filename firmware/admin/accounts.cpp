@@ -62,7 +62,10 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
       folder_(std::move(folder)),
       accounts_(accounts_in(file())),
       devices_(read_known(devices_file(), accounts_), [this] { keep_devices(); }) {
-  if (!first_start()) return;
+  if (!first_start()) {
+    unlink(code_file().c_str());  // left by a kill, or of a card: the consoles show it
+    return;
+  }
   const bool on_label = label_code.has_value();
   code_ = on_label ? std::move(label_code) : kept_code();
   if (on_label) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <future>
 
 #include "host/folder.hpp"
@@ -58,6 +59,15 @@ TEST(Accounts, DevicesEndWithThePasswordThoughAKillKeptThemInTheirFile) {
   Life life(folder);
   EXPECT_FALSE(life.knows(old_operators));
   EXPECT_TRUE(life.knows(viewers));
+}
+
+TEST(Accounts, ACodeIsKeptOnlyWhileItIsAskedFor) {
+  const host::Folder folder;
+  Life(folder).set(Role::Operator, kOld);
+  const std::string code =
+      folder.put(Accounts::kCodeFile, "87654321\n");  // a kill came first, or a card brought it
+  const Life life(folder);
+  EXPECT_FALSE(std::filesystem::exists(code));
 }
 
 TEST(Accounts, TheDeviceThatSetThePasswordStaysKnown) {

@@ -125,9 +125,9 @@ class TwoDisks(Scripts):
 
 
 class Greeting(Scripts):
-    """What the consoles show, with a box of plain files; `sleep` ends it the second time."""
+    """What the consoles show, with a box of plain files, in so many seconds; `sleep` takes none, and ends it."""
 
-    def shown(self, code="12345678", passwords=False, addresses=("10.0.0.1", "192.168.7.11"), consoles="tty0 ttyS0"):
+    def shown(self, code="12345678", passwords="", addresses=("10.0.0.1", "192.168.7.11"), consoles="tty0 ttyS0", seconds=10):
         state, devices = self.folder / "state", self.folder / "dev"
         for path in state, devices, self.folder / "bin":
             shutil.rmtree(path, ignore_errors=True)
@@ -137,29 +137,38 @@ class Greeting(Scripts):
         if code:
             (state / "first-start.code").write_text(code + "\n")
         if passwords:
-            (state / "access.json").write_text("{}")
+            (state / "access.json").write_text(passwords)
         (self.folder / "active").write_text(consoles + "\n")
         said = "".join(f"2: team0    inet {address}/24 brd 10.0.0.255 scope global team0\\n" for address in addresses)
-        for name, does in ("ip", f"printf '{said}'"), ("sleep", "[ -e slept ] && kill $PPID; : >slept"):
+        ends = f"slept=$(($(cat slept) + $1)); echo $slept >slept; [ $slept -lt {seconds} ] || kill $PPID"
+        for name, does in ("ip", f"printf '{said}'"), ("sleep", ends):
             (self.folder / "bin" / name).write_text(f"#!/bin/sh\n{does}\n")
             (self.folder / "bin" / name).chmod(0o755)
-        (self.folder / "slept").unlink(missing_ok=True)
+        (self.folder / "slept").write_text("0")
         self.call(TOP / "rootfs/overlay/usr/lib/adit/greeting", state, self.folder / "active", devices,
                   PATH=f"{self.folder}/bin:/usr/bin:/bin")
         return [(devices / name).read_text() for name in consoles.split()]
 
-    def test_each_console_shows_once_where_the_page_is_and_the_code(self):
+    def test_each_console_shows_where_the_page_is_and_the_code(self):
         screen, serial = self.shown()
         self.assertEqual(screen, serial)
         for words in "http://10.0.0.1", "http://192.168.7.11", "code that it asks for: 12345678":
             self.assertEqual(screen.count(words), 1, screen)
         self.assertNotIn("\n\n", screen.replace("\r", "").strip())
 
-    def test_a_code_that_is_on_the_label_is_not_shown(self):
-        self.assertIn("is on the label", self.shown(code=None)[0])
+    def test_a_serial_line_shows_it_each_minute_to_whoever_comes_later(self):
+        consoles = self.shown(consoles="tty0 ttyS2 ttyMV0 ttyAMA0", seconds=150)
+        self.assertEqual([said.count("12345678") for said in consoles], [1, 3, 3, 3])
+
+    def test_where_no_code_is_written_it_says_so(self):
+        self.assertIn("no code yet", self.shown(code=None)[0])
+
+    def test_passwords_that_aditd_cannot_read_are_none(self):
+        """It asks for a code again, and writes one."""
+        self.assertIn("12345678", self.shown(passwords='{"version":1,"oper')[0])
 
     def test_nothing_is_shown_once_a_password_is_set(self):
-        self.assertEqual(self.shown(passwords=True), ["", ""])
+        self.assertEqual(self.shown(code=None, passwords="{}"), ["", ""])
 
 
 LOCKED = "E: Could not get lock /var/lib/apt/lists/lock. It is held by process 7 (apt)"

@@ -62,6 +62,13 @@ class Machine:
             disk.seek(PARTITIONS[f"adit-boot-{slot}"][0] * MIB)
             disk.write(bytes(MIB))
 
+    def lose(self, *sectors):
+        """Those of adit-env."""
+        with open(self.disk, "r+b") as disk:
+            for sector in sectors:
+                disk.seek(PARTITIONS["adit-env"][0] * MIB + 512 * sector)
+                disk.write(b"\xff" * 512)
+
     def start(self):
         """Power, until the boot loader has decided: "a", "b", or AGAIN."""
         disk = ["-drive", f"if=none,id=card,format=raw,file={self.disk}", "-device", f"{self.board.card},drive=card"]
@@ -116,16 +123,18 @@ class Pc(Machine):
 
     def make_loader(self):
         with open(self.disk, "r+b") as disk:
-            header = subprocess.run(["tar", "--format=ustar", "-b", "1", "-cf", "-", "-C", self.folder, self.one_sector()], check=True,
-                                    capture_output=True).stdout
+            archive = subprocess.run(["tar", "--format=ustar", "-b", "1", "-cf", "-", "-C", self.folder, *self.sectors()], check=True,
+                                     capture_output=True).stdout
             disk.seek(PARTITIONS["adit-env"][0] * MIB)
-            disk.write(header)
+            disk.write(archive)
         self.edit("A_TRY=0")
         super().make_loader()
 
-    def one_sector(self):
-        (self.folder / "grubenv").write_bytes(bytes(512))
-        return "grubenv"
+    def sectors(self):
+        names = "grubenv", "grubenv2"
+        for name in names:
+            (self.folder / name).write_bytes(bytes(512))
+        return names
 
     def make_slot(self, files, slot):
         (files / "slot.cfg").write_text(f'echo "this is slot {slot}"\nsleep 30\n')
@@ -186,14 +195,12 @@ class Slots:
         self.assertEqual([self.machine.start() for _ in range(5)], ["a", "a", "a", AGAIN, "a"])
 
     def test_an_environment_that_is_none_starts_the_first(self):
-        with open(self.machine.disk, "r+b") as disk:
-            disk.seek(PARTITIONS["adit-env"][0] * MIB + (512 if self.kind is Pc else 0))
-            disk.write(b"\xff" * 512)
+        self.machine.lose(*self.counts)
         self.assertEqual(self.machine.start(), "a")
 
 
 class UBoot(Slots, unittest.TestCase):
-    board, kind = boards.QEMU_VIRT, Arm
+    board, kind, counts = boards.QEMU_VIRT, Arm, (0,)
 
 
 class BoardsLoaders(unittest.TestCase):
@@ -230,7 +237,16 @@ class BoardsLoaders(unittest.TestCase):
 
 
 class Grub(Slots, unittest.TestCase):
-    board, kind = boards.PC, Pc
+    board, kind, counts = boards.PC, Pc, (1, 3)
+
+    def test_where_the_first_counts_are_lost_it_goes_on_by_the_second(self):
+        """And counts in them: one that does not come up is not started for ever."""
+        self.machine.rauc("b", primary=True)
+        self.machine.rauc("b", primary=False)
+        self.machine.edit("A_OK=0", "A_TRY=0")  # it was left
+        self.machine.spend("b", 8)
+        self.machine.lose(1)
+        self.assertEqual(self.starts(3), "bb" + AGAIN)
 
 
 if __name__ == "__main__":

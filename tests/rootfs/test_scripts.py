@@ -28,12 +28,18 @@ class GrubsEnvironment(Scripts):
     def setUp(self):
         super().setUp()
         self.partition = self.folder / "adit-env"
-        self.write(b"\0" * SECTOR)
+        self.write(b"\0" * SECTOR, b"\0" * SECTOR)
 
-    def write(self, sector):
-        """Between a tar's header and what the initrd keeps there."""
-        self.before, self.behind = b"grubenv".ljust(SECTOR, b"\0"), bytes(2048 + 512) + MACHINE_ID
-        self.partition.write_bytes(self.before + sector + self.behind)
+    def write(self, first, second):
+        """Behind a tar's headers, and before what the initrd keeps there."""
+        self.rest = [b"grubenv".ljust(SECTOR, b"\0"), b"grubenv2".ljust(SECTOR, b"\0"), bytes(2048) + MACHINE_ID]
+        self.partition.write_bytes(self.rest[0] + first + self.rest[1] + second + self.rest[2])
+
+    def written(self):
+        """Both copies, and what is beside them."""
+        now = self.partition.read_bytes()
+        first, second = (now[at:at + SECTOR] for at in (SECTOR, 3 * SECTOR))
+        return first, second, [now[:SECTOR], now[2 * SECTOR:3 * SECTOR], now[4 * SECTOR:]]
 
     def edit(self, *words):
         return self.call(TOP / "rootfs/boot/grub-editenv", self.partition, *words)
@@ -60,12 +66,27 @@ class GrubsEnvironment(Scripts):
         self.set("B_OK=1", "B_TRY=0")
         self.assertEqual((self.listed()["A_MOST"], self.listed()["B_MOST"]), ("10", "10"))
 
-    def test_it_writes_a_sector_and_not_a_byte_beside_it(self):
+    def test_it_writes_two_sectors_and_not_a_byte_beside_them(self):
         self.set("B_TRY=3")
-        written = self.partition.read_bytes()
-        self.assertEqual((written[:SECTOR], written[2 * SECTOR:]), (self.before, self.behind))
-        self.assertTrue(written[SECTOR:].startswith(FIRST))
-        self.assertEqual(written[SECTOR:2 * SECTOR].rstrip(b"#")[-1:], b"\n")
+        first, second, rest = self.written()
+        self.assertEqual((first, rest), (second, self.rest))
+        self.assertTrue(first.startswith(FIRST))
+        self.assertEqual(first.rstrip(b"#")[-1:], b"\n")
+
+    def test_where_the_first_is_lost_the_second_is_read_and_both_are_written_again(self):
+        self.set("ORDER=B A", "A_OK=0", "B_TRY=0")
+        first, second, _ = self.written()
+        self.write(b"\xff" * SECTOR, second)
+        self.assertEqual(self.listed(), {**DEFAULTS, "ORDER": "B A", "A_OK": "0", "B_MOST": "3"})
+        self.set("B_TRY=0", "ORDER=B A")
+        self.assertEqual(self.written()[:2], (self.written()[0],) * 2)
+        self.assertEqual(self.listed()["A_OK"], "0")
+
+    def test_the_first_is_read_where_grub_has_counted_in_it_alone(self):
+        self.set("A_TRY=0")
+        first, second, _ = self.written()
+        self.write(first.replace(b"A_TRY=0", b"A_TRY=4"), second)
+        self.assertEqual(self.listed()["A_TRY"], "4")
 
     @unittest.skipUnless(shutil.which("grub-editenv"), "no grub-editenv here")
     def test_grubs_own_program_reads_it(self):
@@ -78,7 +99,7 @@ class GrubsEnvironment(Scripts):
     def test_one_that_cannot_be_read_is_made_again_with_what_grub_goes_by(self):
         for damaged in bytes(SECTOR), b"\xff" * SECTOR, b"#" * SECTOR, FIRST[:9] + bytes(SECTOR - 9):
             with self.subTest(damaged[:12]):
-                self.write(damaged)
+                self.write(damaged, damaged)
                 self.assertEqual(self.listed(), DEFAULTS)
                 self.set("A_TRY=1")
                 self.assertEqual(self.listed(), {**DEFAULTS, "A_TRY": "1"})

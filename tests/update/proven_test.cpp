@@ -32,8 +32,7 @@ TEST(Proven, AnotherSlotThatRunsIsToldWithBothVersionsAndWhy) {
   chosen.other_good = true;
   EXPECT_EQ(stray(kA, chosen, false),
             "slot B runs, with 0.1.0, not slot A with 0.2.0, though its starts are not used up: somebody "
-            "chose this "
-            "one");
+            "chose this one, or the boot loader's counts were lost");
 }
 
 TEST(Proven, NothingIsToldOfTheProvenSlotNorOfATrialNorWhereNoneIsKnown) {

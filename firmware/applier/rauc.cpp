@@ -26,7 +26,9 @@ Fault fault_of(const host::Output& said) {
 
 std::expected<std::string, Fault> ask(const std::vector<std::string>& words) {
   host::Output said = host::output_of(words, kRaucAnswer);
-  if (!said.trouble.empty()) return std::unexpected(fault_of(said));
+  Fault fault = fault_of(said);
+  // One that ends well, with a warning that it was busy, lacks a part: which slot is next.
+  if (!said.trouble.empty() || fault.kind == Fault::Kind::Busy) return std::unexpected(std::move(fault));
   return std::move(said.out);
 }
 

@@ -125,6 +125,22 @@ class ACutOfThePower(OnABox):
         self.expect_refused(self.box.install(self.bundles.make("0.3.0")), "is on trial")
 
 
+class Busy(OnABox):
+    def test_an_answer_that_lacks_a_part_as_rauc_was_at_work_is_none(self):
+        """RAUC 1.8 ends well where it only warns: its work ended after it was asked what is next, and before it was asked for the slots."""
+        self.box.install(self.newer)
+        path = self.box.folder / "state/last.json"
+        path.write_text(path.read_text().replace('"installed"', '"installing"'))
+        rauc, real = self.box.folder / "bin/rauc", self.box.folder / "bin/real"
+        rauc.rename(real)
+        raucs.script(rauc, f"[ -e {self.box.folder}/asked ] || [ \"$1\" != status ] || {{ : >{self.box.folder}/asked; {real} \"$@\" | "
+                           "sed 's/\"boot_primary\":\"[^\"]*\",//'; "
+                           "printf '\\n(rauc:7): rauc-WARNING **: 12:00:00.000: already processing a different method\\n' >&2; exit; }\n"
+                           f"exec {real} \"$@\"\n")
+        self.assertEqual(self.box.update()["last"]["stage"], "installed")
+        self.assertTrue((self.box.folder / "asked").exists())
+
+
 class Killed(OnABox):
     """What waits for RAUC, in the midst of its work."""
 

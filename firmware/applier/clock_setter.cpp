@@ -73,17 +73,20 @@ void ClockSetter::tell() {
 
 void ClockSetter::answer(const clock::Request& request) {
   const double at = clocks_.monotonic(), before = clocks_.wall();
+  const double time = request.time + (at - request.at);
   status_.nonce = request.nonce;
   status_.refusal = clock::hindrance(request, at);
   if (status_.refusal.empty()) {
-    const auto set = clocks_.set(request.time + (at - request.at));
+    const auto set = clocks_.set(time);
     status_.refusal = set ? "" : "the clock cannot be set: " + set.error();
   }
   if (status_.refusal.empty()) {
     status_.source = request.source;
+    // Not a guess: the next start would trust the chip more than the Command Post.
+    if (clock::is_set(request.source)) clocks_.set_chip(time);
     host::log(Level::Notice, "the clock was set",
               {{"by", std::string(clock::kSourceWords[static_cast<std::size_t>(request.source)])},
-               {"ahead_by_s", icd::sentence(request.time + (at - request.at) - before)}});
+               {"ahead_by_s", icd::sentence(time - before)}});
   } else {
     host::log(Level::Warning, "refused", {{"why", status_.refusal}});
   }

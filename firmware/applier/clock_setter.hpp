@@ -18,8 +18,10 @@ struct Clocks {
   std::function<double()> wall, monotonic;
   /// Sets the first. An error says why it cannot.
   std::function<std::expected<void, std::string>(double)> set;
+  /// The same time into a clock with a battery, where there is one.
+  std::function<void(double)> set_chip;
 };
-/// Those of this machine. `chip_device`: a clock with a battery, which is set too, where it can be.
+/// Those of this machine. `chip_device`: its clock with a battery.
 Clocks clocks_of_machine(const std::string& chip_device);
 
 /// adit-clock at work: sets the time of day as aditd asks, and tells who set it last.

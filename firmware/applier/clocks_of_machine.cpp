@@ -52,9 +52,9 @@ Clocks clocks_of_machine(const std::string& chip_device) {
             const timespec time{.tv_sec = static_cast<std::time_t>(whole),
                                 .tv_nsec = static_cast<long>(rest * 1e9)};
             if (clock_settime(CLOCK_REALTIME, &time) != 0) return std::unexpected(std::strerror(errno));
-            set_chip(chip_device, time.tv_sec);
             return {};
-          }};
+          },
+          .set_chip = [chip_device](double now) { set_chip(chip_device, static_cast<std::time_t>(now)); }};
 }
 
 }  // namespace adit::applier

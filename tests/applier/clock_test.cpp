@@ -50,7 +50,8 @@ class ClockSetterTest : public testing::Test {
                                               if (!trouble.empty()) return std::unexpected(trouble);
                                               set.push_back(time);
                                               return {};
-                                            }})
+                                            },
+                                            .set_chip = [this](double time) { chip.push_back(time); }})
                           .work();
     EXPECT_TRUE(done) << done.error();
     EXPECT_TRUE(fs::is_empty(options.wanted));
@@ -61,7 +62,7 @@ class ClockSetterTest : public testing::Test {
   host::Folder folder;
   ClockOptions options;
   std::string trouble;
-  std::vector<double> set;
+  std::vector<double> set, chip;
 };
 
 TEST_F(ClockSetterTest, SetsTheTimeThatItHasBecomeSinceItWasAskedFor) {
@@ -98,6 +99,27 @@ TEST_F(ClockSetterTest, KnowsAChipThatAgreesWithTheClock) {
   fs::remove(folder / "status/status.json");
   folder.put("chip/since_epoch", "1790000001\n");
   EXPECT_EQ(work().source, Source::Chip);
+}
+
+TEST_F(ClockSetterTest, WritesNoGuessIntoTheChip) {
+  for (const Source guess : {Source::LastKnown, Source::Robots}) {
+    ask(1.8e9, 99, guess);
+    work();
+  }
+  EXPECT_THAT(set, ElementsAre(1.8e9 + 1, 1.8e9 + 1));
+  EXPECT_THAT(chip, IsEmpty()) << "the next start would take it for the chip's own";
+  for (const Source known : {Source::CommandPost, Source::Operator, Source::Ntp}) {
+    ask(1.8e9, 99, known);
+    work();
+  }
+  EXPECT_THAT(chip, ElementsAre(1.8e9 + 1, 1.8e9 + 1, 1.8e9 + 1));
+}
+
+TEST_F(ClockSetterTest, WritesNothingIntoTheChipWhereTheClockCannotBeSet) {
+  trouble = "Operation not permitted";
+  ask(1.8e9, 99);
+  work();
+  EXPECT_THAT(chip, IsEmpty());
 }
 
 TEST_F(ClockSetterTest, HasChronydMeasureAndKeepTheClockOnceItsTimeWasTaken) {

@@ -225,7 +225,7 @@ void Gateway::look_at_clock() {
   clock_.offered({clock::Source::LastKnown, loop_.wall_now()});
   clock_.offered({clock::Source::CommandPost, known.command_post.value_or(0)});
   clock_.offered({clock::Source::Robots, known.robots.value_or(0)});
-  const double step = loop_.look_at_wall();
+  const double step = loop_.look_at_wall(clock_.is_set().value_or(false));
   if (step == 0) return;
   host::log(host::Level::Notice, "the clock was set", {{"ahead_by_s", icd::sentence(step)}});
   flow_.wall_was_set(step);

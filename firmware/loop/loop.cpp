@@ -205,12 +205,12 @@ void Loop::set_wall(double now) {
 double Loop::wall_ahead() const {
   return impl_->wall().ahead();
 }
-double Loop::look_at_wall() {
+double Loop::look_at_wall(bool system_is_right) {
   const Instant before = now();
   const double system = system_now();
   const Instant after = now();
   // Who was held up between the two clocks looks again in a second.
-  return after - before > kReadTogether ? 0 : impl_->wall().look(system, after);
+  return after - before > kReadTogether ? 0 : impl_->wall().look(system, after, system_is_right);
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

@@ -53,13 +53,14 @@ class Loop {
 
   /// The time of day, for people: seconds since 1970 by the system's clock (wall_clock.hpp).
   double wall_now() const;
-  /// Where the system's clock is known to be wrong: it is `now`, until somebody sets the system's.
+  /// Where the system's clock is known to be wrong: it is `now`, until somebody sets the system's or finds it
+  /// right.
   void set_wall(double now);
   /// By how many seconds it is ahead of the system's.
   double wall_ahead() const;
   /// Looks whether somebody set the system's clock, either way: by how many seconds wall_now() jumps for it.
-  /// To be called each second.
-  double look_at_wall();
+  /// `system_is_right`: whatever set_wall() was told. To be called each second.
+  double look_at_wall(bool system_is_right);
 
   /// Calls `ready` with the EPOLL* events that came on `fd`, which stays the caller's.
   Source watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready);

@@ -6,8 +6,8 @@
 namespace adit::loop {
 
 /// The time of day as the program tells it: the system's clock, or another where that is known to be wrong.
-/// Somebody may set the system's, either way: that counts from the next look() on, so that whoever looks can
-/// bring along what he has noted of the time before. Reads no clock.
+/// Somebody may set the system's, either way, or find that it is right: that counts from the next look() on,
+/// so that whoever looks can bring along what he has noted of the time before. Reads no clock.
 class WallClock {
  public:
   using Instant = std::chrono::steady_clock::time_point;
@@ -21,13 +21,15 @@ class WallClock {
   double now(Instant at) const { return seen_ + seconds(at) + ahead_; }
   /// By how many seconds now() is ahead of the system's.
   double ahead() const { return ahead_; }
-  /// It is `now`, until somebody sets the system's.
+  /// It is `now`, until somebody sets the system's or finds it right.
   void set(double now, Instant at) { ahead_ += now - this->now(at); }
 
-  /// By how many seconds now() jumps for this look; 0: it does not. To be called each second.
-  double look(double system, Instant at) {
+  /// By how many seconds now() jumps for this look; 0: it does not. `is_right`: the system's is, whatever was
+  /// known before. To be called each second.
+  double look(double system, Instant at, bool is_right) {
     const double step = system - seen_ - seconds(at), before = ahead_;
-    if (std::abs(step) < kSet) return 0;
+    const bool gives_way = is_right && before != 0;
+    if (std::abs(step) < kSet && !gives_way) return 0;
     seen_ = system;
     seen_at_ = at;
     ahead_ = 0;

@@ -12,10 +12,10 @@ constexpr double kBegan = 1.7e9;
 class WallClockTest : public testing::Test {
  protected:
   /// Looks after a second by the monotonic clock, of which the system's makes so many.
-  double look(double seconds = 1) {
+  double look(double seconds = 1, bool is_right = false) {
     at_ += milliseconds(1000);
     system_ += seconds;
-    return clock_.look(system_, at_);
+    return clock_.look(system_, at_, is_right);
   }
   double now() const { return clock_.now(at_); }
 
@@ -70,6 +70,13 @@ TEST_F(WallClockTest, IsAheadOfASystemThatIsBehindUntilThatIsSet) {
 TEST_F(WallClockTest, TellsTheRestWhereTheSystemIsSetToAnotherTimeThanWasKnown) {
   clock_.set(kBegan + 5000, at_);
   EXPECT_DOUBLE_EQ(look(1 + 5060), 60);
+}
+
+TEST_F(WallClockTest, GivesWayToASystemThatIsFoundRightAlthoughNobodySetIt) {
+  clock_.set(kBegan + 5000, at_);
+  EXPECT_NEAR(look(1.004, true), -5000, 0.01) << "it is within what is no step";
+  EXPECT_DOUBLE_EQ(now(), kBegan + 1.004);
+  EXPECT_EQ(look(0.996, true), 0);
 }
 
 }  // namespace

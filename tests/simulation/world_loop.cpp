@@ -162,8 +162,8 @@ void Loop::set_wall(double now) {
 double Loop::wall_ahead() const {
   return impl_->wall.ahead();
 }
-double Loop::look_at_wall() {
-  return impl_->wall.look(impl_->world.stamp(), now());
+double Loop::look_at_wall(bool system_is_right) {
+  return impl_->wall.look(impl_->world.stamp(), now(), system_is_right);
 }
 
 Source Loop::watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready) {

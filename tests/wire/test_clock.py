@@ -32,12 +32,15 @@ class Clock(unittest.TestCase):
     def setUp(self):
         self.stage = self.enterContext(Stage())
 
-    def set_clock(self):
-        """adit-clock, as its path unit would start it."""
-        (self.stage.folder / "clock").mkdir(exist_ok=True)
+    def set_clock(self, chip=None):
+        """adit-clock, as its path unit would start it. `chip`: what a clock with a battery shows."""
+        for name in ("clock", "chip"):
+            (self.stage.folder / name).mkdir(exist_ok=True)
+        if chip is not None:
+            (self.stage.folder / "chip" / "since_epoch").write_text(f"{chip:.0f}\n")
         box = self.stage.box
         subprocess.run(["unshare", "--user", "--map-root-user", BIN / "adit-clock", "--wanted", box.state, "--status",
-                        self.stage.folder / "clock", "--chip", self.stage.folder / "none", "--chip-device",
+                        self.stage.folder / "clock", "--chip", self.stage.folder / "chip", "--chip-device",
                         self.stage.folder / "none"], check=True, timeout=30, capture_output=True)
         return json.loads((self.stage.folder / "clock" / "status.json").read_text())
 
@@ -70,6 +73,15 @@ class Clock(unittest.TestCase):
         self.lose_power(first - DAYS)
         now = self.stage.box.ask("GET /adit/run")[1]["now"]
         self.assertAlmostEqual(now, time.time(), delta=60, msg="the machine's clock went on")
+
+    def test_goes_by_a_chip_whatever_was_known_last(self):
+        self.lose_power(time.time() + DAYS)
+        self.assertGreater(self.clock()["now"], time.time() + DAYS - 60, "nobody knows better")
+        self.assertEqual(self.set_clock(chip=time.time())["source"], "chip")
+        wait_until(lambda: self.clock()["managed"], "adit-clock to be known")
+        wait_until(lambda: abs(self.clock()["now"] - time.time()) < 60, "the chip's time to be shown")
+        kept = self.stage.box.state / "stamps"
+        wait_until(lambda: abs(float(kept.read_text().split()[1]) - time.time()) < 60, "it to be the last time known")
 
     def test_leaves_the_clock_alone_where_adit_clock_does_not_run(self):
         clock = self.clock()

@@ -16,6 +16,7 @@ constexpr Member kRunRow[] = {
     member<&RunRow::team>("team"),
     member<&RunRow::began>("began", "seconds since 1970: when the box first knew of it"),
     member<&RunRow::last>("last", "seconds since 1970: when something was last written of it"),
+    member<&RunRow::stamp>("stamp", "`last` by the clock for stamps, which nobody sets; null: not known"),
     member<&RunRow::score>("score", "as last heard"),
     member<&RunRow::remaining_reports>("remaining_reports", "as last heard"),
     member<&RunRow::robots>("robots"),

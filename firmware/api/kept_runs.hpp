@@ -23,6 +23,7 @@ struct RunRow {
   std::int64_t run = 0;  // as in ReportRow
   std::string id = "", course = "", post = "", team = "";
   Time began = 0, last = 0;
+  std::optional<double> stamp = {};  // `last`, by the clock for stamps
   std::optional<std::int64_t> score = {}, remaining_reports = {};
   std::vector<std::string> robots = {};
   std::uint64_t bytes = 0;

@@ -121,6 +121,7 @@ void Archive::make_folder() {
 void Archive::move(double seconds) {
   samples_.move(seconds);
   last_pose_ += seconds;
+  row_.last += seconds;
   if (wiped_) *wiped_ += seconds;
   due_.move(seconds);
   if (opening_) moved_ += seconds;
@@ -159,12 +160,13 @@ void Archive::look_at_disk() {
 
 namespace {
 
-/// The present run as it is now, any other as the disk has it.
-api::RunRow as_now(const api::RunRow& row, const api::RunRow& present) {
-  if (row.key != present.key) return row;
-  api::RunRow now = present;
-  now.bytes = row.bytes;
-  return now;
+/// The present run as it is now, any other as the disk has it. It began by the clock for stamps, as the
+/// ledger has it; it is told by the time of day, as its end is.
+api::RunRow as_told(const api::RunRow& row, const api::RunRow& present) {
+  api::RunRow told = row.key == present.key ? present : row;
+  told.bytes = row.bytes;
+  if (told.began > 0 && told.stamp) told.began += told.last - *told.stamp;
+  return told;
 }
 
 }  // namespace
@@ -173,11 +175,15 @@ api::RunList Archive::list() const {
   api::RunList all{.runs = list_, .bytes = 0, .trouble = trouble_};
   // One that has just begun has nothing on the disk yet.
   if (!key_.empty() && std::ranges::find(list_, key_, &api::RunRow::key) == list_.end()) {
-    all.runs.insert(all.runs.begin(),
-                    {.key = key_, .run = head_.run, .post = head_.post, .began = head_.began});
+    all.runs.insert(all.runs.begin(), {.key = key_,
+                                       .run = head_.run,
+                                       .post = head_.post,
+                                       .began = head_.began,
+                                       .last = loop_.wall_now(),
+                                       .stamp = loop_.stamp_now()});
   }
   for (api::RunRow& row : all.runs) {
-    row = as_now(row, row_);
+    row = as_told(row, row_);
     row.is_present = row.key == key_;
     all.bytes += row.bytes;
   }
@@ -197,9 +203,9 @@ std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::
   std::vector<std::pair<api::Time, double>> coverage;
   for (const auto& [at, pixels] : told.known())
     coverage.emplace_back(at, static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
-  return std::make_shared<const api::KeptRun>(api::KeptRun{as_now(*facts, present), std::move(told.picture()),
-                                                           told.tracks(), told.samples().since(0),
-                                                           std::move(coverage)});
+  return std::make_shared<const api::KeptRun>(api::KeptRun{as_told(*facts, present),
+                                                           std::move(told.picture()), told.tracks(),
+                                                           told.samples().since(0), std::move(coverage)});
 }
 
 }  // namespace

@@ -29,10 +29,12 @@ struct Limits {
 /// How the present run stands.
 struct Seen {
   api::Time now = 0;
+  double stamp = 0;  // the same by the clock for stamps
   const picture::Mosaic& picture;
   std::function<std::vector<api::Track>(api::Time since)> tracks;
-  std::function<Sample()> sample;      // its `throttled`: since the service started
-  std::function<api::RunRow()> facts;  // key and bytes are the archive's
+  std::function<Sample()> sample;  // its `throttled`: since the service started
+  std::function<api::RunRow()>
+      facts;  // `began` by the clock for stamps; key, end and bytes are the archive's
 };
 
 /// Keeps the runs' pictures, tracks and plots on the disk, so that they outlive a restart and a power cut:

@@ -47,6 +47,7 @@ void Archive::note(const Seen& seen) {
   row_ = seen.facts();
   row_.key = key_;
   row_.last = seen.now;
+  row_.stamp = seen.stamp;
 }
 
 void Archive::sample(const Seen& seen) {

@@ -81,7 +81,7 @@ std::vector<api::RunRow> RunsFolder::list() const {
     if (auto row = facts_of(name)) rows.push_back(std::move(*row));
   }
   std::ranges::sort(rows, std::ranges::greater(),
-                    [](const api::RunRow& row) { return std::pair(row.last, row.run); });
+                    [](const api::RunRow& row) { return std::pair(row.stamp.value_or(row.last), row.run); });
   return rows;
 }
 

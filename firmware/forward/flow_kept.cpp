@@ -22,6 +22,7 @@ void Flow::keep_the_run() {
 
 archive::Seen Flow::seen() const {
   return {.now = loop_.wall_now(),
+          .stamp = loop_.stamp_now(),
           .picture = picture_.mosaic(),
           .tracks = [this](api::Time since) { return as_forwarded_.tracks().since(since); },
           .sample = [this] { return sample(); },

@@ -13,6 +13,7 @@ namespace adit::archive {
 struct ARun {
   Head head{.run = 3, .began = 990, .post = "10.100.1.200:8000"};
   picture::Easel easel;
+  double clock_ahead = 0;  // by how many seconds the time of day is ahead of the clock for stamps
   std::vector<api::Track> tracks{{"ugv1", {{.at = 1001, .position = {1, 2, 3}, .heading = 0.5}}}};
   Sample sample{.at = 1002, .sent_mbit = 1.5, .queued_bytes = 7, .scoring_ms = 12, .map_ages = {{"ugv1", 4}}};
   api::RunRow facts{.run = 3, .course = "alpha", .post = "10.100.1.200:8000", .began = 990, .score = 5};
@@ -30,6 +31,7 @@ struct ARun {
   Seen seen() {
     sample.at = now();
     return {.now = now(),
+            .stamp = stamp(),
             .picture = easel.mosaic,
             .tracks =
                 [this](api::Time since) {
@@ -43,6 +45,7 @@ struct ARun {
             .facts = [this] { return facts; }};
   }
   double now() const { return easel.now + 10; }
+  double stamp() const { return now() - clock_ahead; }
 };
 
 /// Of each layer, tile and time: what a page would be shown.

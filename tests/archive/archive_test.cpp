@@ -151,6 +151,31 @@ TEST_F(ArchiveTest, HasThePresentRunAsItIsNowNotAsItWasWrittenLast) {
   EXPECT_THAT(html, testing::HasSubstr("<dt>Score</dt><dd>7</dd>"));
 }
 
+TEST_F(ArchiveTest, TellsWhenARunBeganByTheTimeOfDayThatItsEndIsToldBy) {
+  constexpr double kMonth = 30 * 86400;
+  live(run.head);
+  run.clock_ahead = kMonth;
+  run.easel.now += kMonth;
+  write();
+  const double lasted = run.stamp() - run.head.began;
+  const auto expect_it = [&](const api::RunRow& row, double last) {
+    EXPECT_EQ(row.last, last);
+    EXPECT_EQ(row.last - row.began, lasted);
+  };
+  expect_it(archive->list().runs.at(0), run.now());
+  std::optional<api::RunRow> read;
+  archive->read("3", [&](auto its) { read = its->facts; });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
+  expect_it(*read, run.now());
+  archive->move(-kMonth);
+  expect_it(archive->list().runs.at(0), run.now() - kMonth);
+  live({.run = 4, .began = 2000, .post = run.head.post});
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return archive->list().runs.size() == 2; }));
+  expect_it(archive->list().runs.at(1), run.now());  // as it was written
+  live(run.head);
+  EXPECT_EQ(archive->list().runs.at(0).key, "3") << "it is the same run still";
+}
+
 TEST_F(ArchiveTest, KeepsHowARunStoodWhenTheNextBegan) {
   live(run.head);
   write();

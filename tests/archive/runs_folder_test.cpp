@@ -6,6 +6,7 @@
 
 #include "archive/a_run.hpp"
 #include "host/folder.hpp"
+#include "host/service.hpp"
 
 namespace adit::archive {
 namespace {
@@ -15,11 +16,15 @@ using testing::ElementsAre;
 
 class RunsFolderTest : public testing::Test {
  protected:
-  std::string run(std::int64_t number, double began, std::size_t bytes) {
+  std::string run(std::int64_t number, double began, std::size_t bytes, double clock_ahead = 0) {
     const Head head{.run = number, .began = began, .post = "here:1"};
     const std::string key = *runs.begin(head);
     RunFolder files(runs.folder_of(key), head);
-    const api::RunRow facts{.run = number, .post = "here:1", .began = began, .last = began + 10};
+    const api::RunRow facts{.run = number,
+                            .post = "here:1",
+                            .began = began,
+                            .last = began + 10 + clock_ahead,
+                            .stamp = began + 10};
     EXPECT_TRUE(files.write(
         {.lines = std::string(bytes, 'x'), .facts = codec::write_file(facts, kFactsFormat)}, 1 << 20));
     return key;
@@ -44,6 +49,25 @@ TEST_F(RunsFolderTest, TheOldestRunsGoFirstAndNeverThePresentOne) {
   EXPECT_THAT(keys(), ElementsAre("3", "1"));
   runs.tidy(0, "1");
   EXPECT_THAT(keys(), ElementsAre("1"));
+}
+
+TEST_F(RunsFolderTest, WhichIsTheOldestIsNotForTheTimeOfDayToSay) {
+  run(1, 1000, 1000, 1e6);
+  run(2, 2000, 1000);
+  EXPECT_THAT(keys(), ElementsAre("2", "1"));
+  runs.tidy(2000, "none");
+  EXPECT_THAT(keys(), ElementsAre("2"));
+}
+
+TEST_F(RunsFolderTest, ARunOfAReleaseThatWroteNoStampIsOrderedByTheTimeOfDay) {
+  run(1, 1000, 10);
+  run(2, 2000, 10);
+  const std::string facts = runs.folder_of("2") + "/facts.json";
+  std::string text = *host::read_file(facts);
+  text.erase(text.find("\"stamp\""), text.find("\"score\"") - text.find("\"stamp\""));
+  std::ofstream(facts) << text;
+  EXPECT_THAT(keys(), ElementsAre("2", "1"));
+  EXPECT_EQ(runs.facts_of("2")->last, 2010);
 }
 
 TEST_F(RunsFolderTest, ARunWhoseFactsAreDamagedIsKnownByItsFiles) {

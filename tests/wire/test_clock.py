@@ -160,6 +160,8 @@ class Step(unittest.TestCase):
             times[f"track {track['robot']}"] = track["poses"][0][0]
         for marker in box.ask("GET /adit/markers?since=0")[1]["markers"]:
             times[f"marker {marker['id']}"] = marker["at"]
+        for run in box.ask("GET /adit/runs")[1]["runs"]:
+            times |= {f"{name} of run {run['key']}": run[name] for name in ("began", "last") if run["is_present"]}
         times |= {f"plot {i}": at for i, at in enumerate(box.ask("GET /adit/history")[1]["at"][:1])}
         times |= {f"session {i}": row["seen"] for i, row in enumerate(box.ask("GET /adit/sessions")[1])}
         return {name: self.view()["now"] - at for name, at in times.items() if at is not None}
@@ -168,6 +170,7 @@ class Step(unittest.TestCase):
         box = self.stage.box
         box.ask("POST /adit/password", body={"role": "operator", "code": self.code(), "password": PASSWORD}, token=None)
         session = log_in(box, PASSWORD)
+        self.assertEqual(box.ask("POST /adit/runs", body={})[0], 200)
         self.assertEqual(submit(self.stage).status_code, 201)
         post = requests.Session()
         style = messages.Style()

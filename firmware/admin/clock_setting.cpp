@@ -54,7 +54,7 @@ void ClockSetting::offered(const clock::Offer& offer) {
   const bool came_to_nothing = !not_taken_up_.empty() || !status_->refusal.empty();
   if (came_to_nothing && loop_.now() < asked_at_ + patience_.ask_again) return;  // the operator may insist
   const double of_the_system = loop_.wall_now() - loop_.wall_ahead();
-  const auto time = clock::to_be_set(status_->source, offer, of_the_system);
+  const auto time = clock::to_be_set(status_->trusted(), offer, of_the_system);
   if (!time) return;
   if (const auto asked = ask(offer.source, *time); !asked) not_taken_up_ = asked.error();
 }
@@ -63,7 +63,8 @@ std::expected<void, std::string> ClockSetting::ask(clock::Source source, double 
   const clock::Request request{.nonce = draw_nonce(),
                                .source = source,
                                .time = time,
-                               .at = std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};
+                               .at = std::chrono::duration<double>(loop_.now().time_since_epoch()).count(),
+                               .server = source == clock::Source::Ntp ? ntp_.server : ""};
   auto written = host::write_file(request_, clock::write(request), host::kOursAlone);
   if (!written) return written;
   asked_ = request.nonce;
@@ -97,12 +98,12 @@ void ClockSetting::ask_for_ntp() {
 /// Once its time is set, chronyd keeps it by itself.
 void ClockSetting::follow_ntp() {
   const auto behind = watch_.behind();
-  if (!behind || status_->source == clock::Source::Ntp) return;
+  if (!behind || status_->trusted() == clock::Source::Ntp) return;
   offered({clock::Source::Ntp, loop_.wall_now() - loop_.wall_ahead() + *behind});
 }
 
 bool ClockSetting::is_kept_by_ntp() const {
-  return status_ && status_->source == clock::Source::Ntp && watch_.behind();
+  return status_ && status_->trusted() == clock::Source::Ntp && watch_.behind();
 }
 
 std::string ClockSetting::ntp_trouble() const {
@@ -112,7 +113,7 @@ std::string ClockSetting::ntp_trouble() const {
   if (ntp_.server.empty() || watch_.behind() || loop_.now() < ntp_since_ + kFirstAnswer) return "";
   return icd::sentence(
       "the NTP server ", ntp_.server, " does not answer",
-      status_->source == clock::Source::Ntp ? ", or its time is off by more than a minute" : "");
+      status_->trusted() == clock::Source::Ntp ? ", or its time is off by more than a minute" : "");
 }
 
 std::string ClockSetting::ntp_said() const {

@@ -46,7 +46,7 @@ std::expected<void, std::string> ClockSetter::work() {
         take<clock::Request>(*folder, clock::kRequestFile, [this](const auto& asked) { answer(asked); });
     if (!ntp || !time) return std::unexpected(ntp ? time.error() : ntp.error());
     if (*ntp == Taken::Nothing && *time == Taken::Nothing) return {};
-    status_.trouble = chronyd_.run_with(status_.ntp, status_.source);
+    status_.trouble = chronyd_.run_with(status_.ntp, status_.trusted());
     tell();
   }
 }
@@ -75,13 +75,14 @@ void ClockSetter::answer(const clock::Request& request) {
   const double at = clocks_.monotonic(), before = clocks_.wall();
   const double time = request.time + (at - request.at);
   status_.nonce = request.nonce;
-  status_.refusal = clock::hindrance(request, at);
+  status_.refusal = clock::hindrance(request, at, status_.ntp);
   if (status_.refusal.empty()) {
     const auto set = clocks_.set(time);
     status_.refusal = set ? "" : "the clock cannot be set: " + set.error();
   }
   if (status_.refusal.empty()) {
     status_.source = request.source;
+    if (request.source == clock::Source::Ntp) status_.server = request.server;
     // Not a guess: the next start would trust the chip more than the Command Post.
     if (clock::is_set(request.source)) clocks_.set_chip(time);
     host::log(Level::Notice, "the clock was set",

@@ -32,8 +32,9 @@ namespace adit::clock {
 struct Request {
   std::string nonce = "";  // network::is_nonce()
   Source source = Source::None;
-  double time = 0;  // seconds since 1970
-  double at = 0;    // when that was so: seconds of the machine's monotonic clock
+  double time = 0;          // seconds since 1970
+  double at = 0;            // when that was so: seconds of the machine's monotonic clock
+  std::string server = "";  // that told it, where the source is ntp; else ""
   static const codec::Row kRow;
 };
 
@@ -50,8 +51,13 @@ struct Status {
   std::string nonce = "";        // of the last request that was taken up
   std::string refusal = "";      // why it was not done; "" where it was
   Source source = Source::None;  // who set the time of day last, since the machine started
+  std::string server = "";       // which NTP server's time was taken last, if any
   Ntp ntp = {};                  // what is asked of NTP
   std::string trouble = "";      // why that is not done; "" where it is
+
+  /// As far as `source` is to be trusted still: a server that is asked no more has set it once, as the
+  /// operator does, and the next one's time is to be taken.
+  Source trusted() const { return source == Source::Ntp && server != ntp.server ? Source::Operator : source; }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
@@ -69,7 +75,8 @@ std::expected<Message, std::string> read(std::string_view json) {
   return codec::read_file<Message>(json, kFormat);
 }
 
-/// Why a request is not to be done at that instant of the monotonic clock (seconds); "": it is.
-std::string hindrance(const Request& request, double at);
+/// Why a request is not to be done at that instant of the monotonic clock (seconds), while `ntp` is asked;
+/// "": it is.
+std::string hindrance(const Request& request, double at, const Ntp& ntp);
 
 }  // namespace adit::clock

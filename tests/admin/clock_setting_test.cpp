@@ -70,8 +70,9 @@ TEST_F(ClockSettingTest, AsksForTheOperatorsTimeAsOfThatInstant) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->time, 1.8e9);
   EXPECT_EQ(request->source, Source::Operator);
-  EXPECT_EQ(clock::hindrance(*request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()),
-            "");
+  EXPECT_EQ(
+      clock::hindrance(*request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count(), {}),
+      "");
   say({.nonce = request->nonce, .refusal = "", .source = Source::Operator});
   EXPECT_EQ(setting_.is_set(), true);
   EXPECT_EQ(setting_.clock().refusal, "");
@@ -210,6 +211,19 @@ TEST_F(ClockSettingTest, TakesTheServersTimeWithinTheBoundsOfAnyOther) {
   EXPECT_NEAR(asked()->time, now() + 7776000, 1);
 }
 
+TEST_F(ClockSettingTest, TakesTheFirstTimeOfAnotherServerWhateverTheStep) {
+  ntp_ = {.server = "10.0.0.5", .clients = ""};
+  say({.source = Source::Ntp, .server = "10.0.0.6", .ntp = ntp_});
+  setting_.offered({Source::CommandPost, now() + 600});
+  EXPECT_FALSE(asked()) << "the one before counts as much as the operator";
+  hear(-3600);
+  ASSERT_TRUE(asked());
+  EXPECT_FALSE(setting_.clock().is_kept);
+  EXPECT_EQ(asked()->source, Source::Ntp);
+  EXPECT_EQ(asked()->server, "10.0.0.5");
+  EXPECT_NEAR(asked()->time, now() - 3600, 1);
+}
+
 TEST_F(ClockSettingTest, TakesNoServersTimeThatIsNoTimeOfABox) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::None, .ntp = ntp_});
@@ -223,9 +237,9 @@ TEST_F(ClockSettingTest, TakesNoServersTimeThatIsNoTimeOfABox) {
 
 TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnceItIsGone) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::Ntp, .ntp = ntp_});
+  say({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   ASSERT_TRUE(setting_.set_clock(1.8e9)) << "nobody is heard";
-  say({.nonce = asked()->nonce, .source = Source::Ntp, .ntp = ntp_});
+  say({.nonce = asked()->nonce, .source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   hear(0.001);
   EXPECT_TRUE(setting_.clock().is_kept);
@@ -242,7 +256,7 @@ TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnc
 
 TEST_F(ClockSettingTest, HearsNobodyWhoWasHeardLongAgoOrIsAnother) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
-  say({.source = Source::Ntp, .ntp = ntp_});
+  say({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   for (const clock::Tracking& other :
        {clock::Tracking{.server = 0x0a000006, .heard = now(), .behind = 0},
         clock::Tracking{.server = 0x0a000005, .heard = now() - NtpWatch::kSilence - 1, .behind = 0},

@@ -39,9 +39,10 @@ class ClockSetterTest : public testing::Test {
     return all;
   }
   std::string chrony(const char* name) { return host::read_file(folder / "status/" + name).value_or(""); }
-  void ask(double time, double at, Source source = Source::Operator) {
+  void ask(double time, double at, Source source = Source::Operator, const std::string& server = "") {
     folder.put("wanted/clock.json",
-               clock::write(clock::Request{.nonce = kAsker, .source = source, .time = time, .at = at}));
+               clock::write(clock::Request{
+                   .nonce = kAsker, .source = source, .time = time, .at = at, .server = server}));
   }
   clock::Status work() {
     const auto done = ClockSetter(options, {.wall = [] { return 1.79e9; },
@@ -127,7 +128,7 @@ TEST_F(ClockSetterTest, HasChronydMeasureAndKeepTheClockOnceItsTimeWasTaken) {
   EXPECT_EQ(work().ntp.server, "10.0.0.5");
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
   EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n");
-  ask(1.8e9, 99, Source::Ntp);
+  ask(1.8e9, 99, Source::Ntp, "10.0.0.5");
   EXPECT_EQ(work().source, Source::Ntp);
   EXPECT_THAT(set, ElementsAre(1.8e9 + 1)) << "within the bounds of any other";
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
@@ -139,6 +140,20 @@ TEST_F(ClockSetterTest, HasChronydMeasureAndKeepTheClockOnceItsTimeWasTaken) {
   work();
   EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "else it would be set back";
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
+}
+
+TEST_F(ClockSetterTest, HasChronydMeasureAgainWhereAnotherServerIsAsked) {
+  ask({.server = "10.0.0.5", .clients = ""});
+  ask(1.8e9, 99, Source::Ntp, "10.0.0.5");
+  EXPECT_EQ(work().server, "10.0.0.5");
+  ask({.server = "10.0.0.6", .clients = ""});
+  work();
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=-x\n") << "its first time may be an hour off";
+  ask(1.7999e9, 99, Source::Ntp, "10.0.0.5");
+  EXPECT_THAT(work().refusal, HasSubstr("server:"));
+  ask(1.7999e9, 99, Source::Ntp, "10.0.0.6");
+  EXPECT_EQ(work().server, "10.0.0.6");
+  EXPECT_EQ(chrony("chrony.options"), "CHRONYD=\n");
 }
 
 TEST_F(ClockSetterTest, HasChronydGiveTheTimeOnceItIsSet) {

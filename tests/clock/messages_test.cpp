@@ -41,21 +41,40 @@ TEST(ClockMessages, NtpIsAskedForByAddressesAlone) {
 }
 
 TEST(ClockMessages, ARequestCountsForAMinuteOfTheSameStart) {
-  EXPECT_EQ(hindrance(request(), 100), "");
-  EXPECT_EQ(hindrance(request(), 160), "");
-  EXPECT_THAT(hindrance(request(), 161), HasSubstr("at:"));
-  EXPECT_THAT(hindrance(request(), 99), HasSubstr("at:")) << "of an earlier start";
+  EXPECT_EQ(hindrance(request(), 100, {}), "");
+  EXPECT_EQ(hindrance(request(), 160, {}), "");
+  EXPECT_THAT(hindrance(request(), 161, {}), HasSubstr("at:"));
+  EXPECT_THAT(hindrance(request(), 99, {}), HasSubstr("at:")) << "of an earlier start";
+}
+
+TEST(ClockMessages, AServersTimeCountsWhileThatServerIsAsked) {
+  Request told = request();
+  told.source = Source::Ntp;
+  told.server = "10.0.0.5";
+  EXPECT_EQ(hindrance(told, 100, {.server = "10.0.0.5"}), "");
+  EXPECT_THAT(hindrance(told, 100, {.server = "10.0.0.6"}), HasSubstr("server:"));
+}
+
+TEST(ClockMessages, AServerThatIsAskedNoMoreCountsAsTheOperator) {
+  Status status{.source = Source::Ntp, .server = "10.0.0.5", .ntp = {.server = "10.0.0.5"}};
+  EXPECT_EQ(status.trusted(), Source::Ntp);
+  for (const char* next : {"10.0.0.6", ""}) {
+    status.ntp.server = next;
+    EXPECT_EQ(status.trusted(), Source::Operator) << next;
+  }
+  status.source = Source::Robots;
+  EXPECT_EQ(status.trusted(), Source::Robots);
 }
 
 TEST(ClockMessages, NoTimeOutOfBoundsIsTaken) {
   for (const double time : {0.0, kEarliest - 1, kLatest, 1e300}) {
     Request wrong = request();
     wrong.time = time;
-    EXPECT_THAT(hindrance(wrong, 100), HasSubstr("time:")) << time;
+    EXPECT_THAT(hindrance(wrong, 100, {}), HasSubstr("time:")) << time;
   }
   Request chip = request();
   chip.source = Source::Chip;
-  EXPECT_THAT(hindrance(chip, 100), HasSubstr("source:")) << "the program finds that out itself";
+  EXPECT_THAT(hindrance(chip, 100, {}), HasSubstr("source:")) << "the program finds that out itself";
 }
 
 }  // namespace

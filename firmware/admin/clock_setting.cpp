@@ -64,6 +64,7 @@ std::expected<void, std::string> ClockSetting::ask(clock::Source source, double 
                                .source = source,
                                .time = time,
                                .at = std::chrono::duration<double>(loop_.now().time_since_epoch()).count(),
+                               .boot = status_ ? status_->boot : "",
                                .server = source == clock::Source::Ntp ? ntp_.server : ""};
   auto written = host::write_file(request_, clock::write(request), host::kOursAlone);
   if (!written) return written;

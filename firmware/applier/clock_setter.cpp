@@ -33,6 +33,7 @@ std::expected<void, std::string> ClockSetter::work() {
   } else if (agrees(options_.chip, clocks_.wall())) {
     status_.source = clock::Source::Chip;
   }
+  status_.boot = clocks_.boot;
   if (const auto told = file_.tell(clock::write(status_)); !told) return std::unexpected(told.error());
   auto folder = host::UntrustedFolder::open(options_.wanted);
   if (!folder) {
@@ -75,7 +76,7 @@ void ClockSetter::answer(const clock::Request& request) {
   const double at = clocks_.monotonic(), before = clocks_.wall();
   const double time = request.time + (at - request.at);
   status_.nonce = request.nonce;
-  status_.refusal = clock::hindrance(request, at, status_.ntp);
+  status_.refusal = clock::hindrance(request, at, status_);
   if (status_.refusal.empty()) {
     const auto set = clocks_.set(time);
     status_.refusal = set ? "" : "the clock cannot be set: " + set.error();

@@ -20,6 +20,7 @@ struct Clocks {
   std::function<std::expected<void, std::string>(double)> set;
   /// The same time into a clock with a battery, where there is one.
   std::function<void(double)> set_chip;
+  std::string boot;  // host::boot()
 };
 /// Those of this machine. `chip_device`: its clock with a battery.
 Clocks clocks_of_machine(const std::string& chip_device);

@@ -10,6 +10,7 @@
 
 #include "applier/clock_setter.hpp"
 #include "host/log.hpp"
+#include "host/service.hpp"
 #include "loop/file_descriptor.hpp"
 
 namespace adit::applier {
@@ -54,7 +55,8 @@ Clocks clocks_of_machine(const std::string& chip_device) {
             if (clock_settime(CLOCK_REALTIME, &time) != 0) return std::unexpected(std::strerror(errno));
             return {};
           },
-          .set_chip = [chip_device](double now) { set_chip(chip_device, static_cast<std::time_t>(now)); }};
+          .set_chip = [chip_device](double now) { set_chip(chip_device, static_cast<std::time_t>(now)); },
+          .boot = host::boot()};
 }
 
 }  // namespace adit::applier

@@ -14,6 +14,7 @@ constexpr codec::Member kClockRequest[] = {
     codec::member<&Request::source>("source"),
     codec::member<&Request::time>("time"),
     codec::member<&Request::at>("at"),
+    codec::member<&Request::boot>("boot"),
     codec::member<&Request::server>("server").as(network::kAddressOrNone),
 };
 /// A subnet by its first address, as settings::written() has it, or "".
@@ -28,9 +29,10 @@ constexpr codec::Member kNtp[] = {
     codec::member<&Ntp::clients>("clients").as(codec::kCheckedText<is_subnet_or_none, kExpectedSubnet>),
 };
 constexpr codec::Member kClockStatus[] = {
-    codec::member<&Status::nonce>("nonce"),   codec::member<&Status::refusal>("refusal"),
-    codec::member<&Status::source>("source"), codec::member<&Status::server>("server"),
-    codec::member<&Status::ntp>("ntp"),       codec::member<&Status::trouble>("trouble"),
+    codec::member<&Status::boot>("boot"),       codec::member<&Status::nonce>("nonce"),
+    codec::member<&Status::refusal>("refusal"), codec::member<&Status::source>("source"),
+    codec::member<&Status::server>("server"),   codec::member<&Status::ntp>("ntp"),
+    codec::member<&Status::trouble>("trouble"),
 };
 
 }  // namespace
@@ -39,12 +41,13 @@ constexpr codec::Row Request::kRow = {"", kClockRequest};
 constexpr codec::Row Ntp::kRow = {"", kNtp};
 constexpr codec::Row Status::kRow = {"", kClockStatus};
 
-std::string hindrance(const Request& request, double at, const Ntp& ntp) {
+std::string hindrance(const Request& request, double at, const Status& status) {
   if (request.source == Source::None || request.source == Source::Chip) return "source: nobody who asks";
   if (!(request.time >= kEarliest && request.time < kLatest))
     return "time: expected seconds since 1970, from 2026 to 2100";
+  if (request.boot != status.boot) return "boot: another start of the machine";
   if (!(request.at <= at && request.at >= at - kOldest)) return "at: not within the last minute";
-  if (request.source == Source::Ntp && request.server != ntp.server)
+  if (request.source == Source::Ntp && request.server != status.ntp.server)
     return "server: not the one that is asked";
   return "";
 }

@@ -34,6 +34,7 @@ struct Request {
   Source source = Source::None;
   double time = 0;          // seconds since 1970
   double at = 0;            // when that was so: seconds of the machine's monotonic clock
+  std::string boot = "";    // the machine's start, as the status has it
   std::string server = "";  // that told it, where the source is ntp; else ""
   static const codec::Row kRow;
 };
@@ -48,6 +49,7 @@ struct Ntp {
 };
 
 struct Status {
+  std::string boot = "";         // host::boot(): requests of another start of the machine do not count
   std::string nonce = "";        // of the last request that was taken up
   std::string refusal = "";      // why it was not done; "" where it was
   Source source = Source::None;  // who set the time of day last, since the machine started
@@ -75,8 +77,8 @@ std::expected<Message, std::string> read(std::string_view json) {
   return codec::read_file<Message>(json, kFormat);
 }
 
-/// Why a request is not to be done at that instant of the monotonic clock (seconds), while `ntp` is asked;
-/// "": it is.
-std::string hindrance(const Request& request, double at, const Ntp& ntp);
+/// Why a request is not to be done at that instant of the monotonic clock (seconds), as things stand; "": it
+/// is.
+std::string hindrance(const Request& request, double at, const Status& status);
 
 }  // namespace adit::clock

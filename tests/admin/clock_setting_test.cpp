@@ -63,16 +63,17 @@ TEST_F(ClockSettingTest, SaysWhyItCannotSetTheClockWhereAditClockDoesNotRun) {
 }
 
 TEST_F(ClockSettingTest, AsksForTheOperatorsTimeAsOfThatInstant) {
-  say({});
+  const clock::Status status{.boot = "b"};
+  say(status);
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(setting_.set_clock(1.8e9));
   const auto request = asked();
   ASSERT_TRUE(request);
   EXPECT_EQ(request->time, 1.8e9);
   EXPECT_EQ(request->source, Source::Operator);
-  EXPECT_EQ(
-      clock::hindrance(*request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count(), {}),
-      "");
+  EXPECT_EQ(clock::hindrance(*request, std::chrono::duration<double>(loop_.now().time_since_epoch()).count(),
+                             status),
+            "");
   say({.nonce = request->nonce, .refusal = "", .source = Source::Operator});
   EXPECT_EQ(setting_.is_set(), true);
   EXPECT_EQ(setting_.clock().refusal, "");

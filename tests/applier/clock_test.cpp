@@ -40,9 +40,10 @@ class ClockSetterTest : public testing::Test {
   }
   std::string chrony(const char* name) { return host::read_file(folder / "status/" + name).value_or(""); }
   void ask(double time, double at, Source source = Source::Operator, const std::string& server = "") {
-    folder.put("wanted/clock.json",
-               clock::write(clock::Request{
-                   .nonce = kAsker, .source = source, .time = time, .at = at, .server = server}));
+    folder.put(
+        "wanted/clock.json",
+        clock::write(clock::Request{
+            .nonce = kAsker, .source = source, .time = time, .at = at, .boot = boot, .server = server}));
   }
   clock::Status work() {
     const auto done = ClockSetter(options, {.wall = [] { return 1.79e9; },
@@ -52,7 +53,8 @@ class ClockSetterTest : public testing::Test {
                                               set.push_back(time);
                                               return {};
                                             },
-                                            .set_chip = [this](double time) { chip.push_back(time); }})
+                                            .set_chip = [this](double time) { chip.push_back(time); },
+                                            .boot = boot})
                           .work();
     EXPECT_TRUE(done) << done.error();
     EXPECT_TRUE(fs::is_empty(options.wanted));
@@ -62,13 +64,14 @@ class ClockSetterTest : public testing::Test {
 
   host::Folder folder;
   ClockOptions options;
-  std::string trouble;
+  std::string trouble, boot = "b";
   std::vector<double> set, chip;
 };
 
 TEST_F(ClockSetterTest, SetsTheTimeThatItHasBecomeSinceItWasAskedFor) {
   ask(1.8e9, 97.5);
-  EXPECT_EQ(work(), (clock::Status{.nonce = kAsker, .refusal = "", .source = Source::Operator}));
+  EXPECT_EQ(work(),
+            (clock::Status{.boot = boot, .nonce = kAsker, .refusal = "", .source = Source::Operator}));
   EXPECT_THAT(set, ElementsAre(1.8e9 + 2.5));
 }
 
@@ -81,6 +84,15 @@ TEST_F(ClockSetterTest, RefusesWhatIsOutOfBoundsOldOrNoRequest) {
   work();
   fs::create_symlink("/dev/zero", folder / "wanted/clock.json");
   work();
+  EXPECT_THAT(set, IsEmpty());
+}
+
+TEST_F(ClockSetterTest, RefusesWhatWasAskedForInAnEarlierStart) {
+  ask(1.8e9, 97.5);
+  boot = "c";
+  const clock::Status told = work();
+  EXPECT_THAT(told.refusal, HasSubstr("boot:"));
+  EXPECT_EQ(told.boot, "c") << "so that it is asked again by this one";
   EXPECT_THAT(set, IsEmpty());
 }
 

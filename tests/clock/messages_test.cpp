@@ -7,8 +7,14 @@ namespace {
 
 using testing::HasSubstr;
 
+const Status kStatus{.boot = "b"};
+
 Request request() {
-  return {.nonce = "0123456789abcdef0123456789abcdef", .source = Source::Operator, .time = 1.8e9, .at = 100};
+  return {.nonce = "0123456789abcdef0123456789abcdef",
+          .source = Source::Operator,
+          .time = 1.8e9,
+          .at = 100,
+          .boot = "b"};
 }
 
 TEST(ClockMessages, AreReadAsTheyWereWritten) {
@@ -41,18 +47,19 @@ TEST(ClockMessages, NtpIsAskedForByAddressesAlone) {
 }
 
 TEST(ClockMessages, ARequestCountsForAMinuteOfTheSameStart) {
-  EXPECT_EQ(hindrance(request(), 100, {}), "");
-  EXPECT_EQ(hindrance(request(), 160, {}), "");
-  EXPECT_THAT(hindrance(request(), 161, {}), HasSubstr("at:"));
-  EXPECT_THAT(hindrance(request(), 99, {}), HasSubstr("at:")) << "of an earlier start";
+  EXPECT_EQ(hindrance(request(), 100, kStatus), "");
+  EXPECT_EQ(hindrance(request(), 160, kStatus), "");
+  EXPECT_THAT(hindrance(request(), 161, kStatus), HasSubstr("at:"));
+  EXPECT_THAT(hindrance(request(), 99, kStatus), HasSubstr("at:"));
+  EXPECT_THAT(hindrance(request(), 100, {.boot = "c"}), HasSubstr("boot:")) << "as long after its begin";
 }
 
 TEST(ClockMessages, AServersTimeCountsWhileThatServerIsAsked) {
   Request told = request();
   told.source = Source::Ntp;
   told.server = "10.0.0.5";
-  EXPECT_EQ(hindrance(told, 100, {.server = "10.0.0.5"}), "");
-  EXPECT_THAT(hindrance(told, 100, {.server = "10.0.0.6"}), HasSubstr("server:"));
+  EXPECT_EQ(hindrance(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.5"}}), "");
+  EXPECT_THAT(hindrance(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.6"}}), HasSubstr("server:"));
 }
 
 TEST(ClockMessages, AServerThatIsAskedNoMoreCountsAsTheOperator) {
@@ -70,11 +77,11 @@ TEST(ClockMessages, NoTimeOutOfBoundsIsTaken) {
   for (const double time : {0.0, kEarliest - 1, kLatest, 1e300}) {
     Request wrong = request();
     wrong.time = time;
-    EXPECT_THAT(hindrance(wrong, 100, {}), HasSubstr("time:")) << time;
+    EXPECT_THAT(hindrance(wrong, 100, kStatus), HasSubstr("time:")) << time;
   }
   Request chip = request();
   chip.source = Source::Chip;
-  EXPECT_THAT(hindrance(chip, 100, {}), HasSubstr("source:")) << "the program finds that out itself";
+  EXPECT_THAT(hindrance(chip, 100, kStatus), HasSubstr("source:")) << "the program finds that out itself";
 }
 
 }  // namespace

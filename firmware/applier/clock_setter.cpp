@@ -20,7 +20,7 @@ bool agrees(const std::string& chip, double now) {
   const auto text = host::read_file(chip + "/since_epoch");
   double told = 0;
   if (text) std::from_chars(text->data(), text->data() + text->size(), told);
-  return told >= clock::kEarliest && std::abs(told - now) < kAgrees;
+  return told >= clock::kEarliest && told < clock::kLatest && std::abs(told - now) < kAgrees;
 }
 
 }  // namespace

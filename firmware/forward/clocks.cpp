@@ -9,6 +9,7 @@ namespace adit::forward {
 
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   const StampFloor::Kept kept = floor_.read();
+  boot_ = boot;
   carried.machine_is(boot);
   const auto& clock = carried.clock();
   ran_before_ = clock || kept.floor > 0;
@@ -16,6 +17,7 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
     senders_ = carried.senders();
     loop_.set_stamp(clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count());
     leap_ = {.to = clock->leapt_to, .by = clock->leapt_by};
+    off_ = {.seconds = clock->off, .since = clock->off_since};
   } else {
     begin_start(kept);
   }
@@ -23,11 +25,17 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
     loop_.set_stamp(kept.least);
     senders_ = {};  // they were brought to the clock as it was
   }
-  journal_.begin({.boot = boot,
-                  .at = loop_.now(),
-                  .stamp = loop_.stamp_now(),
-                  .leapt_to = leap_.to,
-                  .leapt_by = leap_.by});
+  journal_.begin(now());
+}
+
+journal::Clock Clocks::now() const {
+  return {.boot = boot_,
+          .at = loop_.now(),
+          .stamp = loop_.stamp_now(),
+          .leapt_to = leap_.to,
+          .leapt_by = leap_.by,
+          .off = off_.seconds,
+          .off_since = off_.since};
 }
 
 /// Of the machine, which may have no clock that went on. How long it was off is told by the time of day,
@@ -38,7 +46,17 @@ void Clocks::begin_start(const StampFloor::Kept& kept) {
   if (kept.floor <= 0 || kept.wall <= 0) return;
   const double went_on = loop_.stamp_now() - (kept.floor - StampFloor::kAhead);
   const double went_by = loop_.wall_now() - kept.wall;
-  leap_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on - went_by)};
+  leap_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on)};
+  off_ = {.seconds = std::clamp(went_by, 0.0, leap_.by), .since = kept.wall};
+}
+
+bool Clocks::hear(double there) {
+  if (off_.seconds <= 0) return false;
+  const double off_there = there - off_.since - (loop_.stamp_now() - leap_.to);
+  leap_.by -= std::clamp(off_there, 0.0, off_.seconds);
+  off_ = {};
+  journal_.clock(now());
+  return true;
 }
 
 icd::Stamp Clocks::stamped(const std::string& sender, std::optional<icd::Stamp> stamp,

@@ -25,8 +25,11 @@ class Clocks {
   /// Goes on where the life before ended, and begins the journal of this one. `boot`: the machine's.
   void carry_on(journal::Carried& carried, const std::string& boot);
 
-  /// With which the clock for stamps began at this start of the machine.
+  /// With which the clock for stamps began at this start of the machine. How long that was off is not known
+  /// before the Command Post bears it out: the machine's clock may be wrong by a year.
   const dispatch::Leap& leap() const { return leap_; }
+  /// It is that time of day at the Command Post. True: leap() is another for it.
+  bool hear(double there);
   /// Whether this box may have sent something in a life before.
   bool ran_before() const { return ran_before_; }
 
@@ -44,7 +47,13 @@ class Clocks {
   std::optional<double> told_by_robots() const { return senders_.told(loop_.stamp_now()); }
 
  private:
+  /// As long as it is not borne out: for so many seconds the machine was off, by its own clock, since that
+  /// time of day.
+  struct Off {
+    double seconds = 0, since = 0;
+  };
   void begin_start(const StampFloor::Kept& kept);
+  journal::Clock now() const;
   void keep(const std::string& sender);
 
   loop::Loop& loop_;
@@ -52,6 +61,8 @@ class Clocks {
   StampFloor floor_;
   lanes::StampShift senders_;
   dispatch::Leap leap_;
+  Off off_;
+  std::string boot_;
   bool ran_before_ = false;
 };
 

@@ -94,7 +94,7 @@ void Flow::carry_on() {
   const bool is_first = !carried.clock();
   clocks_.carry_on(carried, host::boot());
   scoring_.carry_on(carried);
-  scoring_.leapt(clocks_.leap());
+  scoring_.go_by(clocks_);
   maps_.carry_on(carried, clocks_.ran_before());
   telemetry_.carry_on(carried);
   if (legacy_) {

@@ -66,7 +66,7 @@ std::expected<void, std::string> Scoring::open_reports() {
   auto runs = ledger_.runs();
   if (!runs) return std::unexpected(runs.error().what);
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
-  next->leapt(leap_);
+  if (clocks_ != nullptr) next->leapt(clocks_->leap());
   next->open(std::move(*all), std::move(*runs), time(), channel_.address(), *reports_);
   reports_ = std::move(next);
   return {};
@@ -204,6 +204,12 @@ void Scoring::send(const dispatch::Report& report) {
   ledger_.expect(dispatch::Flush::Soon);  // its answer is what comes next
 }
 
+/// Before what it says is judged, which goes by how long nothing was heard.
+void Scoring::hear_time() {
+  const auto there = channel_.time_there();
+  if (clocks_ != nullptr && there && clocks_->hear(*there)) reports_->leapt(clocks_->leap());
+}
+
 /// An answer that cannot be dealt with is as good as none: the report is in doubt in the next life.
 void Scoring::report_answered(const uplink::Outcome& outcome) {
   const bool judged =
@@ -217,6 +223,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
 }
 
 void Scoring::judge_report(const uplink::Outcome& outcome) {
+  hear_time();
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
     const dispatch::ReportEvent event = reports_->answered(
@@ -292,6 +299,7 @@ void Scoring::status_answered(const uplink::Outcome& outcome) {
 }
 
 void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) {
+  hear_time();
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)

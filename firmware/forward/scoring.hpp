@@ -10,6 +10,7 @@
 #include "api/source.hpp"
 #include "dispatch/reports.hpp"
 #include "forward/channel.hpp"
+#include "forward/clocks.hpp"
 #include "forward/known_status.hpp"
 #include "forward/record.hpp"
 #include "forward/report_output.hpp"
@@ -56,8 +57,9 @@ class Scoring {
   /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
   /// the place is another, what is known of the run is forgotten; clients whose reports wait go on waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// Before start(): what the ledger holds was written by a clock that has leapt since.
-  void leapt(const dispatch::Leap& leap) { leap_ = leap; }
+  /// Before start(): what the ledger holds was written by a clock that has leapt since. `clocks` outlives
+  /// this.
+  void go_by(Clocks& clocks) { clocks_ = &clocks; }
   /// Before start(): connects to nobody, and sends nothing.
   void rest() { stopping_ = true; }
   /// Begins with what the ledger holds, and connects. An error: the ledger cannot be read.
@@ -103,6 +105,7 @@ class Scoring {
     loop::Instant until;  // then it is told what is known
   };
 
+  void hear_time();
   /// Reports are written down by the clock for stamps, which nobody sets: rules compare their times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   std::expected<void, std::string> open_reports();
@@ -132,7 +135,7 @@ class Scoring {
   Record& record_;
   std::function<void()> restart_;
   ReportOutput output_;
-  dispatch::Leap leap_;
+  Clocks* clocks_ = nullptr;                    // without them no clock has leapt
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   UriPace report_pace_, status_pace_;

@@ -111,6 +111,7 @@ bool Carried::read_clock(std::string_view said) {
   Clock clock{.boot = std::string(reader.text()), .at = pace::Instant(duration_in(reader)), .stamp = 0};
   clock.stamp = reader.real();
   if (!reader.at_end()) clock.leapt_to = reader.real(), clock.leapt_by = reader.real();
+  if (!reader.at_end()) clock.off = reader.real(), clock.off_since = reader.real();
   if (!reader.ok()) return false;
   machine_is(clock.boot);
   clock_ = std::move(clock);
@@ -291,7 +292,8 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
 std::string said(const Clock& clock) {
   Writer out;
   out.text(clock.boot).number(number_of(clock.at.time_since_epoch())).real(clock.stamp);
-  return out.real(clock.leapt_to).real(clock.leapt_by).finish();
+  out.real(clock.leapt_to).real(clock.leapt_by);
+  return out.real(clock.off).real(clock.off_since).finish();
 }
 
 std::string said(const std::string& sender, const lanes::SenderClock& clock) {

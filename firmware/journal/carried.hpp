@@ -25,6 +25,7 @@ struct Clock {
   pace::Instant at{};
   double stamp = 0;
   double leapt_to = 0, leapt_by = 0;  // dispatch::Leap: with which this start of the machine began
+  double off = 0, off_since = 0;      // forward::Clocks::Off
 };
 
 /// What one life of the gateway hands on to the next: what the records of a journal come to.

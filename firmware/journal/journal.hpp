@@ -40,6 +40,8 @@ class Journal {
   Carried read() const { return folder_.read(); }
   /// This life begins; nothing is told before.
   void begin(const Clock& clock);
+  /// More is known of it.
+  void clock(const Clock& clock) { note(Kind::Clock, said(clock)); }
 
   /// An error: it is not kept, and must not be answered as if it were.
   using Kept = std::expected<void, std::string>;

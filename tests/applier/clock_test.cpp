@@ -46,7 +46,7 @@ class ClockSetterTest : public testing::Test {
             .nonce = kAsker, .source = source, .time = time, .at = at, .boot = boot, .server = server}));
   }
   clock::Status work() {
-    const auto done = ClockSetter(options, {.wall = [] { return 1.79e9; },
+    const auto done = ClockSetter(options, {.wall = [this] { return wall; },
                                             .monotonic = [] { return 100.0; },
                                             .set = [this](double time) -> std::expected<void, std::string> {
                                               if (!trouble.empty()) return std::unexpected(trouble);
@@ -64,6 +64,7 @@ class ClockSetterTest : public testing::Test {
 
   host::Folder folder;
   ClockOptions options;
+  double wall = 1.79e9;
   std::string trouble, boot = "b";
   std::vector<double> set, chip;
 };
@@ -112,6 +113,10 @@ TEST_F(ClockSetterTest, KnowsAChipThatAgreesWithTheClock) {
   fs::remove(folder / "status/status.json");
   folder.put("chip/since_epoch", "1790000001\n");
   EXPECT_EQ(work().source, Source::Chip);
+  fs::remove(folder / "status/status.json");
+  folder.put("chip/since_epoch", "4200000000\n");
+  wall = 4.2e9;
+  EXPECT_EQ(work().source, Source::None) << "in 2103";
 }
 
 TEST_F(ClockSetterTest, WritesNoGuessIntoTheChip) {

@@ -100,11 +100,32 @@ TEST_F(ClocksTest, ALeapIsWhatStampsGoAheadBeyondTheTimeThatWentBy) {
   loop_.set_stamp(before + 6 * kFar);  // as of a start with a clock that went on
   loop_.set_wall(before + 6 * kFar);
   live("another start");
+  live("another start");  // of the service: it is to be borne out still
+  EXPECT_TRUE(clocks_->hear(loop_.wall_now()));
   EXPECT_NEAR(clocks_->leap().by, 5 * kFar, 1);
   EXPECT_NEAR(clocks_->leap().between(before, now()), kFar, 1) << "so long it was off";
   const dispatch::Leap leap = clocks_->leap();
   live("another start");
   EXPECT_EQ(clocks_->leap(), leap) << "the next life of the service has it, too";
+  EXPECT_FALSE(clocks_->hear(loop_.wall_now() + kFar));
+}
+
+TEST_F(ClocksTest, HowLongTheMachineWasOffIsForItsClockAndTheCommandPostToSay) {
+  struct Case {
+    std::optional<double> there;  // ahead of the last time known
+    double off;
+  };
+  for (const Case& each : {Case{{}, 0}, {60, 60}, {-kFar, 0}, {2 * kFar, kFar}}) {
+    live("first");
+    keep();
+    const double before = now(), known = loop_.wall_now();
+    loop_.set_stamp(before + kFar);  // as of a start with a clock that is ahead
+    loop_.set_wall(known + kFar);
+    live("second");
+    if (each.there) clocks_->hear(known + *each.there);
+    EXPECT_NEAR(clocks_->leap().between(before, now()), each.off, 1) << each.there.value_or(0);
+    std::filesystem::remove(folder_.path() + '/' + StampFloor::kFile);
+  }
 }
 
 TEST_F(ClocksTest, AMachineWithoutAClockWasOffForNoTimeThatIsKnown) {

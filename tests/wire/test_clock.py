@@ -28,6 +28,22 @@ def setUpModule():
     hosts.needs_namespaces()
 
 
+class Ahead:
+    """A time of day for the programs that are started in `env`."""
+
+    def __init__(self, folder):
+        self.file = folder / "ahead"
+        self.set(0)
+        library = folder / "set_clock.so"
+        subprocess.run(["clang-19", "-shared", "-fPIC", "-o", library, pathlib.Path(__file__).with_name("set_clock.c"), "-lm"], check=True)
+        self.env = {"LD_PRELOAD": str(library), "ADIT_CLOCK_AHEAD": str(self.file)}
+
+    def set(self, seconds):
+        """In place: the programs see it at once."""
+        with self.file.open("r+b" if self.file.exists() else "wb") as file:
+            file.write(struct.pack("d", seconds))
+
+
 class Clock(unittest.TestCase):
     def setUp(self):
         self.stage = self.enterContext(Stage())
@@ -73,6 +89,21 @@ class Clock(unittest.TestCase):
         self.lose_power(first - DAYS)
         now = self.stage.box.ask("GET /adit/run")[1]["now"]
         self.assertAlmostEqual(now, time.time(), delta=60, msg="the machine's clock went on")
+
+    @unittest.skipUnless(shutil.which("clang-19"), "clang-19 is not here")
+    def test_a_chip_that_is_wrong_makes_no_other_run_of_a_short_cut(self):
+        wait_until(self.stage.box.knows_the_run, "the run to be known")
+        wait_until(lambda: self.run_view()["run"]["run_clock"] > 1, "the run clock to be seen to run", 30)
+        known, ahead = time.time(), Ahead(self.stage.folder)
+        ahead.set(365 * 86400.0)
+        with mock.patch.dict(os.environ, ahead.env):
+            self.lose_power(known)
+        self.assertGreater(self.clock()["now"], known + YEARS / 11, "it begins with what the chip says")
+        wait_until(self.stage.box.knows_the_run, "the run to be known")
+        self.assertEqual(self.run_view()["run_number"], 1)
+
+    def run_view(self):
+        return self.stage.box.ask("GET /adit/run")[1]
 
     def test_goes_by_a_chip_whatever_was_known_last(self):
         self.lose_power(time.time() + DAYS)
@@ -127,17 +158,9 @@ class Step(unittest.TestCase):
         if not shutil.which("clang-19"):
             self.skipTest("clang-19 is not here")
         self.stage = Stage()
-        self.ahead = self.stage.folder / "ahead"
-        self.set_ahead(0)
-        library = self.stage.folder / "set_clock.so"
-        subprocess.run(["clang-19", "-shared", "-fPIC", "-o", library, pathlib.Path(__file__).with_name("set_clock.c"), "-lm"], check=True)
-        self.enterContext(mock.patch.dict(os.environ, LD_PRELOAD=str(library), ADIT_CLOCK_AHEAD=str(self.ahead)))
+        self.ahead = Ahead(self.stage.folder)
+        self.enterContext(mock.patch.dict(os.environ, self.ahead.env))
         self.enterContext(self.stage)
-
-    def set_ahead(self, seconds):
-        """In place: the programs see it at once."""
-        with self.ahead.open("r+b" if self.ahead.exists() else "wb") as file:
-            file.write(struct.pack("d", seconds))
 
     def view(self):
         return self.stage.box.ask("GET /adit/run")[1]
@@ -181,7 +204,7 @@ class Step(unittest.TestCase):
         wait_until(lambda: len(self.ages()) > 8 and "first of layer r1" in self.ages(), "all of it to be shown")
         shown, stored = set(self.ages()), box.on_disk("SELECT received FROM report")
         for ahead in (YEARS, -YEARS, 0.0):
-            self.set_ahead(ahead)
+            self.ahead.set(ahead)
             wait_until(lambda ahead=ahead: abs(self.view()["now"] - time.time() - ahead) < 60, "the step to be seen")
             ages = self.ages()
             self.assertLessEqual(shown - {"plot 0"}, set(ages))
@@ -190,7 +213,7 @@ class Step(unittest.TestCase):
             self.assertEqual(box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
             self.assertEqual(box.on_disk("SELECT received FROM report"), stored)
             self.assertEqual(submit(self.stage).status_code, 201, "the same report: it is known")
-        self.set_ahead(-YEARS)
+        self.ahead.set(-YEARS)
         wait_until(lambda: abs(self.view()["now"] - time.time() + YEARS) < 60, "the step to be seen")
         self.assertEqual(box.stop(), 0)
         self.stage.restart_box()
@@ -198,6 +221,15 @@ class Step(unittest.TestCase):
         for name, age in self.ages().items():
             self.assertTrue(-5 < age < 600, f"{name}: {age:.0f} s ago, after a restart")
         self.assertEqual(self.stage.box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
+
+    def test_a_day_without_power_that_the_command_post_bears_out_is_one(self):
+        wait_until(lambda: (self.view()["run"] or {"run_clock": 0})["run_clock"] > 1, "the run clock to be seen to run")
+        self.assertEqual(self.stage.box.stop(), 0)
+        shutil.rmtree(self.stage.box.state / "journal")
+        self.ahead.set(86400.0)
+        self.stage.restart_box()
+        wait_until(self.stage.box.knows_the_run, "the run to be known")
+        self.assertEqual(self.view()["run_number"], 2, "the run clock went on by seconds")
 
     def code(self):
         return self.stage.box.said().split("code=")[1].split()[0].strip('"')

@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "clock/source.hpp"
 #include "dispatch/report.hpp"
 #include "forward/stamp_floor.hpp"
 #include "icd/markers_update.hpp"
@@ -43,8 +44,11 @@ class Clocks {
   void keep(loop::Writer& writer);
   /// The time of day was set: what was kept of it is wrong.
   void wall_was_set() { floor_.is_due(); }
-  /// The time of day by the stamps of a robot that has spoken for a while: of several, the earliest.
-  std::optional<double> told_by_robots() const { return senders_.told(loop_.stamp_now()); }
+  /// The time of day by the stamps of a robot that has spoken for a while: of several, the earliest that a
+  /// set clock may show.
+  std::optional<double> told_by_robots() const {
+    return senders_.told(loop_.stamp_now(), clock::kEarliest, clock::kLatest);
+  }
 
  private:
   /// As long as it is not borne out: for so many seconds the machine was off, by its own clock, since that

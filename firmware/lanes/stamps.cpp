@@ -45,12 +45,13 @@ std::vector<std::pair<std::string, SenderClock>> StampShift::clocks() const {
   return clocks;
 }
 
-std::optional<double> StampShift::told(double now) const {
+std::optional<double> StampShift::told(double now, double from, double until) const {
   std::optional<double> earliest;
   for (const auto& [sender, clock] : senders_) {
     const double silent = now - clock.latest_given();
     if (clock.latest - clock.theirs < kSpeaks || std::abs(silent) > kSpeaks) continue;
     const double shows = clock.latest + silent;
+    if (!(shows >= from && shows < until)) continue;
     earliest = std::min(earliest.value_or(shows), shows);
   }
   return earliest;

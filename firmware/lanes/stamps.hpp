@@ -47,9 +47,10 @@ class StampShift {
   /// All of them, the one that was silent longest first.
   std::vector<std::pair<std::string, SenderClock>> clocks() const;
   /// What the sender's clock shows now that spoke within kSpeaks, and for as long by a clock that runs as the
-  /// gateway's does; of several, the earliest.
+  /// gateway's does; of several, the earliest that is not before `from` and is before `until`: others are not
+  /// set.
   static constexpr double kSpeaks = 10;  // seconds
-  std::optional<double> told(double now) const;
+  std::optional<double> told(double now, double from, double until) const;
   /// A clock of an earlier life goes on.
   void carry_on(const std::string& sender, const SenderClock& clock);
 

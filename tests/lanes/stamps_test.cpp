@@ -122,14 +122,16 @@ TEST(StampShift, GoesOnInTheNextLifeAsIfNothingHadBeen) {
 
 TEST(StampShift, KnowsWhatTheClockOfARobotShowsThatSpeaksForAWhile) {
   StampShift shift;
-  EXPECT_FALSE(shift.told(kNow));
+  EXPECT_FALSE(shift.told(kNow, 0, 1e9));
   for (int second = 0; second <= 9; ++second) shift.shift("R1", 5000.0 + second, kNow + second);
-  EXPECT_FALSE(shift.told(kNow + 9));
+  EXPECT_FALSE(shift.told(kNow + 9, 0, 1e9));
   shift.shift("R1", 5010.0, kNow + 10);
-  EXPECT_THAT(*shift.told(kNow + 12), DoubleNear(5012, 1e-6));
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(5012, 1e-6));
   for (int second = 0; second <= 10; ++second) shift.shift("R2", 100.0 + second, kNow + second);
-  EXPECT_THAT(*shift.told(kNow + 12), DoubleNear(112, 1e-6)) << "the earliest";
-  EXPECT_FALSE(shift.told(kNow + 21)) << "they say nothing any more";
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(112, 1e-6)) << "the earliest";
+  EXPECT_THAT(*shift.told(kNow + 12, 1000, 1e9), DoubleNear(5012, 1e-6)) << "the other one's is not set";
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1000), DoubleNear(112, 1e-6));
+  EXPECT_FALSE(shift.told(kNow + 21, 0, 1e9)) << "they say nothing any more";
 }
 
 TEST(StampShift, ForgetsInTheNextLifeTheOneThatWasSilentLongest) {

@@ -28,6 +28,10 @@ bool may_be_the_command_post(int status, Body body) {
   return body != Body::Other || status == 404 || status == 429 || status >= 500;
 }
 
+bool is_the_command_post(int status, Body body) {
+  return is_success(status) && body == Body::Json;
+}
+
 MappingVerdict mapping_verdict(int status, Body body) {
   if (is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
   if (status == 429) return MappingVerdict::Throttled;

@@ -13,6 +13,9 @@ Body body_of(std::string_view body);
 /// pages of its server, 429 a page of something before it. A redirect, or any other status with a page, comes
 /// from somebody else: a captive portal, a proxy, a wrong address.
 bool may_be_the_command_post(int status, Body body);
+/// Whether it did for certain, as far as an answer can tell: whatever is in between refuses and fails with
+/// JSON, too.
+bool is_the_command_post(int status, Body body);
 
 /// What became of a message to the mapping endpoint.
 enum class MappingVerdict : std::uint8_t {

@@ -29,6 +29,11 @@ bool comes_from_another(const uplink::Outcome& outcome) {
          !dispatch::may_be_the_command_post(doubt->too_long_status, dispatch::Body::Other);
 }
 
+/// Nobody else's clock is to be taken for the Command Post's.
+bool is_its_own(const uplink::Answered& answered) {
+  return dispatch::is_the_command_post(answered.status, dispatch::body_of(answered.body));
+}
+
 }  // namespace
 
 Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
@@ -119,7 +124,7 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   if (answered != nullptr) {
     last_status_ = answered->status;
     if (last_status_ == 429) ++throttled_;
-    if (answered->date && !foreign_now_) {
+    if (answered->date && is_its_own(*answered)) {
       constexpr double kHalf = 0.5;  // it says whole seconds
       date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
       dated_ = heard_;

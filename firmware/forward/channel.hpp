@@ -66,7 +66,7 @@ class Channel {
   /// How many answers were 429.
   std::uint64_t throttled() const { return throttled_; }
   /// The time of day by the Date of the last answer that had one, in seconds since 1970, now; nothing: no
-  /// answer of the Command Post's own had one.
+  /// answer that is the Command Post's own for certain had one.
   std::optional<double> time_there() const;
   /// When last_status() was heard.
   loop::Instant heard() const { return heard_; }

@@ -54,6 +54,27 @@ TEST_F(ChannelTest, TakesTheServersOwnPageForTheCommandPosts) {
   }
 }
 
+TEST_F(ChannelTest, TakesTheTimeOfNoAnswerThatMayBeSomebodyElses) {
+  struct Case {
+    const char *status, *body;
+    bool is_its_own;
+  };
+  for (const Case& each : {Case{"200 OK", R"({"score": 1})", true},
+                           {"201 Created", "null", true},
+                           {"200 OK", "", false},
+                           {"200 OK", "<html>", false},
+                           {"302 Found", "null", false},
+                           {"403 Forbidden", R"("log in")", false},
+                           {"404 Not Found", "<html>", false},
+                           {"429 Too Many Requests", "<html>", false},
+                           {"502 Bad Gateway", "<html>", false},
+                           {"503 Service Unavailable", R"({"error": "upstream"})", false}}) {
+    const auto channel = asked(
+        icd::Uri::Status, uplink::answer(each.status, each.body, "Date: Sun, 06 Nov 2033 08:49:37 GMT\r\n"));
+    EXPECT_EQ(channel->time_there().has_value(), each.is_its_own) << each.status << ' ' << each.body;
+  }
+}
+
 TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
   uplink::ListeningPeer there([](uplink::Wire& wire) {
     wire.read_request();

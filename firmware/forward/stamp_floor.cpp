@@ -49,7 +49,8 @@ std::optional<StampFloor::Kept> StampFloor::due(double now, double wall) {
 void StampFloor::write(const Kept& kept) {
   std::string text = std::to_string(kept.floor) + '\n' + std::to_string(kept.wall) + '\n';
   if (kept.least > 0) text += std::to_string(kept.least) + '\n';
-  const auto written = host::write_file(file_, text, host::kOursAlone);
+  auto written = host::write_file(file_, text, host::kOursAlone);
+  if (!written && host::write_over(file_, text)) written = {};  // on a full disk
   const std::string why = written ? "" : written.error();
   if (std::exchange(*trouble_, why) == why || written) return;
   host::log(host::Level::Warning, "after a power cut, stamps may run backward", {{"why", written.error()}});

@@ -102,6 +102,14 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
   return {};
 }
 
+std::expected<void, std::string> write_over(const std::string& path, const std::string& text) {
+  const FileDescriptor fd(open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC));
+  const bool is_written = fd && write_all(fd.get(), text) &&
+                          ftruncate(fd.get(), static_cast<off_t>(text.size())) == 0 && fsync(fd.get()) == 0;
+  if (!is_written) return std::unexpected(trouble(path, errno));
+  return {};
+}
+
 void remove_unwritten(const std::string& folder) {
   const auto names = names_in(folder);
   for (const std::string& name : names.value_or(std::vector<std::string>())) {

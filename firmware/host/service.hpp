@@ -39,6 +39,9 @@ inline constexpr int kForAll = 0644, kOursAlone = 0600;
 /// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it
 /// (PATH.writing), fsync, rename, fsync of the folder. One call at a time for a path.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
+/// Writes over the file that is there, which takes no more room on a full disk: of at most 512 bytes, which a
+/// disk writes all or none of.
+std::expected<void, std::string> write_over(const std::string& path, const std::string& text);
 /// Removes what write_file() leaves in a folder when the process dies before the rename. Before the first
 /// write there.
 void remove_unwritten(const std::string& folder);

@@ -83,6 +83,19 @@ TEST_F(StampFloorTest, IsComplainedOfOnceUntilItCanBeWrittenAgain) {
   EXPECT_EQ(logged_by(4), 1u);
 }
 
+/// The disk is full: no new file can be made, but this one is there.
+TEST_F(StampFloorTest, IsKeptWhereThereIsNoRoomForAnotherFile) {
+  StampFloor floor(folder_.string());
+  floor.write({.floor = 1.7e9, .wall = 1.6e9, .least = 1.75e9});
+  fs::create_directories(folder_ / "stamps.writing" / "in the way");
+  const std::uint64_t before = host::logged();
+  floor.write({.floor = 1.8e9, .wall = 1.7e9});
+  EXPECT_EQ(host::logged(), before);
+  EXPECT_EQ(floor.read().floor, 1.8e9);
+  EXPECT_EQ(floor.read().wall, 1.7e9);
+  EXPECT_EQ(floor.read().least, 0) << "nothing is left of what was longer";
+}
+
 TEST_F(StampFloorTest, SaysNothingWhereNothingIsKnown) {
   EXPECT_EQ(StampFloor(folder_.string()).read().floor, 0);
   for (const char* text : {"", "soon", "-5", "nan", "inf", "1e300"}) {

@@ -107,11 +107,19 @@ void Applier::take_requests() {
   take_word();
 }
 
+template <class Request>
+std::optional<Request> Applier::asked(const char* name) {
+  const auto text = taken(name);
+  if (!text) return std::nullopt;
+  auto request = network::read<Request>(*text);
+  if (request) return *std::move(request);
+  refused(name, request.error());
+  return std::nullopt;
+}
+
 void Applier::take_wanted() {
-  const auto text = taken(network::kWantedFile);
-  if (!text) return;
-  const auto wanted = network::read<network::Wanted>(*text);
-  if (!wanted) return refused(network::kWantedFile, wanted.error());
+  const auto wanted = asked<network::Wanted>(network::kWantedFile);
+  if (!wanted) return;
   host::log(Level::Notice, "asked for a change",
             {{"team", network::team_text(wanted->numbers)},
              {"command_post", network::command_post_text(wanted->numbers)}});
@@ -119,19 +127,11 @@ void Applier::take_wanted() {
 }
 
 void Applier::take_word() {
-  const auto text = taken(network::kWordFile);
-  if (!text) return;
-  const auto word = network::read<network::Word>(*text);
-  if (!word) return refused(network::kWordFile, word.error());
-  change_->hear(*word, loop_.now());
+  if (const auto word = asked<network::Word>(network::kWordFile)) change_->hear(*word, loop_.now());
 }
 
 void Applier::take_probe() {
-  const auto text = taken(network::kProbeFile);
-  if (!text) return;
-  const auto probe = network::read<network::Probe>(*text);
-  if (!probe) return refused(network::kProbeFile, probe.error());
-  answer_probe(*probe);
+  if (const auto probe = asked<network::Probe>(network::kProbeFile)) answer_probe(*probe);
 }
 
 /// Taken away once it is done: after a power cut before that it is done again. False: it is not done.
@@ -162,10 +162,8 @@ bool Applier::forget(const std::string& text) {
 }
 
 void Applier::take_endpoints() {
-  const auto text = taken(network::kEndpointsFile);
-  if (!text) return;
-  const auto endpoints = network::read<network::Endpoints>(*text);
-  if (!endpoints) return refused(network::kEndpointsFile, endpoints.error());
+  const auto endpoints = asked<network::Endpoints>(network::kEndpointsFile);
+  if (!endpoints) return;
   if (const auto done = files_.lead_to(*endpoints); !done) {
     return host::log(Level::Error, "there are no routes to the endpoints", {{"why", done.error()}});
   }

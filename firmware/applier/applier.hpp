@@ -46,6 +46,9 @@ class Applier {
   void answer_probe(const network::Probe& probe);
   std::string side_of(std::uint32_t address) const;
   std::optional<std::string> taken(const char* name);
+  /// What is asked for in the file of that name, which is taken away; nothing: nothing that can be done.
+  template <class Request>
+  std::optional<Request> asked(const char* name);
   void watch_folder();
 
   loop::Loop& loop_;

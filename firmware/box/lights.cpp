@@ -98,12 +98,11 @@ void Lights::paint() {
 }
 
 void Lights::log_trouble() {
-  const bool is_in_trouble = !trouble().empty();
-  if (std::exchange(is_in_trouble_, is_in_trouble) == is_in_trouble) return;
-  if (is_in_trouble) {
-    host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", trouble()}});
-  } else {
+  if (!painter_.has_turned()) return;
+  if (trouble().empty()) {
     host::log(host::Level::Notice, "the panel's lights can be set again");
+  } else {
+    host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", trouble()}});
   }
 }
 

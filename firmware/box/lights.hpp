@@ -55,7 +55,6 @@ class Lights {
   std::array<std::optional<loop::Instant>, panel::kStates> until_;  // of those that end by themselves
   std::vector<panel::Step> digits_;
   panel::Lights shown_{};
-  bool is_in_trouble_ = false;  // which was logged
 };
 
 }  // namespace adit::box

@@ -20,18 +20,17 @@ std::size_t longest_answer_to(icd::Uri uri) {
 }
 
 /// No Command Post says so much; what it says is not looked at.
-bool comes_from_another(const uplink::Outcome& outcome) {
-  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
-    return !dispatch::may_be_the_command_post(answered->status, dispatch::body_of(answered->body));
-  }
-  const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
-  return doubt != nullptr && doubt->too_long_status != 0 &&
-         !dispatch::may_be_the_command_post(doubt->too_long_status, dispatch::Body::Other);
+dispatch::Body body_of(const uplink::Outcome& outcome) {
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  return answered != nullptr ? dispatch::body_of(answered->body) : dispatch::Body::Other;
 }
 
-/// Nobody else's clock is to be taken for the Command Post's.
-bool is_its_own(const uplink::Answered& answered) {
-  return dispatch::is_the_command_post(answered.status, dispatch::body_of(answered.body));
+bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
+    return !dispatch::may_be_the_command_post(answered->status, body);
+  const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
+  return doubt != nullptr && doubt->too_long_status != 0 &&
+         !dispatch::may_be_the_command_post(doubt->too_long_status, body);
 }
 
 }  // namespace
@@ -118,13 +117,15 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   heard_ = loop_.now();
   ++ended_;
   last_status_ = 0;
-  foreign_now_ = comes_from_another(outcome);
+  const dispatch::Body body = body_of(outcome);
+  foreign_now_ = comes_from_another(outcome, body);
   if (foreign_now_) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr) {
     last_status_ = answered->status;
     if (last_status_ == 429) ++throttled_;
-    if (answered->date && is_its_own(*answered)) {
+    // Nobody else's clock is to be taken for the Command Post's.
+    if (answered->date && dispatch::is_the_command_post(answered->status, body)) {
       constexpr double kHalf = 0.5;  // it says whole seconds
       date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
       dated_ = heard_;

@@ -51,7 +51,6 @@ const picture::FineBlock* FineTiles::found(const Place& place, const Of& of) {
 }
 
 void FineTiles::tile(const picture::Layer& layer, const picture::TileAt& at, Done done) {
-  if (!picture::is_in_world(at)) return done(nullptr);
   const Place place{layer, picture::coarser(at)};
   const Of now = of(place);
   const auto finer = grids_.finer(layer, 0);

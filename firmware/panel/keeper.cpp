@@ -152,9 +152,10 @@ void Keeper::paint() {
   const Instant now = loop_.now();
   const Frame frame = watched_.frame(now);
   painter_.show(frame.lit, now);
-  if (const bool broken = !painter_.trouble().empty(); std::exchange(lights_broken_, broken) != broken) {
-    world_.complain(broken ? "the lights cannot be set, and are tried again: " + painter_.trouble()
-                           : "the lights can be set again");
+  if (painter_.has_turned()) {
+    world_.complain(painter_.trouble().empty()
+                        ? "the lights can be set again"
+                        : "the lights cannot be set, and are tried again: " + painter_.trouble());
   }
   std::optional<Instant> next = painter_.next();
   // A millisecond more: what is left of one was cut off.

@@ -61,7 +61,6 @@ class Keeper {
   ButtonIs told_button_{false};          // as he was told
   LightsAre told_lights_;                // as he was told
   bool complained_ = false;              // of what he tells
-  bool lights_broken_ = false;           // which was logged
   bool button_broken_ = false;           // which was logged
   loop::FileDescriptor listening_, client_;
   loop::Source tick_, edges_, callers_, words_;  // ended before their descriptors are closed

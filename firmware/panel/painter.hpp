@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "panel/button.hpp"
 #include "panel/lines.hpp"
@@ -34,12 +35,18 @@ class Painter {
   bool is_blank() const { return !tried_; }
   /// Why the lines may not show what they were last set to; or "".
   const std::string& trouble() const { return trouble_; }
+  /// Whether trouble() came or went since this was last asked.
+  bool has_turned() {
+    const bool is_in_trouble = !trouble_.empty();
+    return std::exchange(was_in_trouble_, is_in_trouble) != is_in_trouble;
+  }
 
  private:
   std::unique_ptr<Lines> lines_;
   std::optional<Lit> tried_;
   Instant due_{}, well_since_{};
   std::string trouble_;
+  bool was_in_trouble_ = false;
 };
 
 }  // namespace adit::panel

@@ -33,7 +33,7 @@ FIGURES = pathlib.Path(os.environ.get("ADIT_FIGURES", boards.SOURCE / "build" / 
 
 
 def setUpModule():  # of each module that imports it
-    hosts.needs_namespaces()
+    hosts.needs_root()
     skip_without(boards.QEMU_VIRT)
 
 

@@ -28,7 +28,7 @@ POSE = {"name": "r1", "position": {"x": 4.0, "y": 0.0, "z": 0.0}, "orientation":
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     if container.missing():
         raise unittest.SkipTest(container.missing())
 

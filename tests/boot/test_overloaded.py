@@ -23,7 +23,7 @@ MAY_BE = ("map_behind", "maps_behind", "queue_growing")
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     if container.missing():
         raise unittest.SkipTest(container.missing())
 

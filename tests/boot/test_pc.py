@@ -18,7 +18,7 @@ NOTICE = "/run/adit-notices/disks"
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     stage.skip_without(boards.PC)
 
 

@@ -22,7 +22,7 @@ PATIENCES = (0.5, 1.0, 5.0)  # seconds after which each client hangs up and trie
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     stage.skip_without(BOARD)
 
 

@@ -19,7 +19,7 @@ EARLIEST = 1767225600  # firmware/clock/source.hpp
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     stage.skip_without(boards.PC)
 
 

@@ -16,7 +16,7 @@ from stage import Stage, Story, load_tests  # unittest looks for them here
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     stage.skip_without(boards.PC)
 
 

@@ -21,7 +21,7 @@ NOW, BEFORE = "/packages/now/adit_*.deb", "/packages/before/adit_*.deb"
 
 
 def setUpModule():
-    hosts.needs_namespaces()
+    hosts.needs_root()
     for folder in ("root", "now", "before"):
         if not (pc.BUILT / folder).is_dir():
             raise unittest.SkipTest("tests/package/debian_root has made nothing here")

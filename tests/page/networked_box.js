@@ -1,4 +1,4 @@
-// A box with two interfaces, adit-network at work, and a station on the team's network, each in a network namespace.
+// A box with two interfaces, adit-network at work, and a station on the team's network, each in a network namespace (../alone).
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { chmodSync, existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -15,14 +15,6 @@ const AS_IT_COMES = { team0: "192.168.7.11/24", darpa0: "10.100.1.10/24" };
 const ASKED = ["wanted.json", "word.json", "probe.json", "endpoints.json", "forget.json"];
 
 const ip = (...words) => execFileSync("ip", words, { stdio: "pipe" });
-
-/** Why no namespaces can be had here; "" where they can. */
-export function hindrance() {
-  if (process.getuid() !== 0) return "network namespaces need root";
-  const made = spawnSync("ip", ["netns", "add", BOX]), used = spawnSync("ip", ["netns", "exec", BOX, "true"]);
-  spawnSync("ip", ["netns", "delete", BOX]);
-  return made.status === 0 && used.status === 0 ? "" : `network namespaces cannot be used here: ${made.stderr}${used.stderr}`;
-}
 
 /** team0 of the box to the station, which has an address in each subnet that is tried; darpa0 to nobody. */
 function connect() {

@@ -1,6 +1,7 @@
 """What leaves an interface: every frame, as the host at the other end of its cable gets it."""
 
 import contextlib
+import ctypes
 import os
 import socket
 import struct
@@ -36,6 +37,15 @@ def open_packets(port):
     return packets
 
 
+def only_from(source, packets):
+    """Has the kernel drop frames of other MAC addresses: a scan would fill the socket's buffer with its own."""
+    begins, ends = struct.unpack("!HI", source)
+    load, load_half, is_equal, give = 0x20, 0x28, 0x15, 0x06  # classic BPF
+    code = [(load, 0, 0, 8), (is_equal, 0, 3, ends), (load_half, 0, 0, 6), (is_equal, 0, 1, begins), (give, 0, 0, 65536), (give, 0, 0, 0)]
+    program = ctypes.create_string_buffer(b"".join(struct.pack("HBBI", *each) for each in code))
+    packets.setsockopt(socket.SOL_SOCKET, 26, struct.pack("HP", len(code), ctypes.addressof(program)))  # SO_ATTACH_FILTER
+
+
 class Frame:
     """Of Ethernet; what is told of it is enough to know it again."""
 
@@ -69,10 +79,10 @@ class Capture:
     """All frames that come to `port` of `host`, from `source` alone."""
 
     def __init__(self, host, port, source):
-        self.frames, self.source, self.stopping = [], source, threading.Event()
+        self.frames, self.stopping = [], threading.Event()
         with inside(host):
             self.packets = open_packets(port)
-        self.packets.setsockopt(socket.SOL_SOCKET, 33, 64 << 20)  # SO_RCVBUFFORCE: a scan comes all at once
+        only_from(source, self.packets)
         self.packets.settimeout(0.1)
         self.thread = threading.Thread(target=self._listen)
         self.thread.start()
@@ -81,7 +91,7 @@ class Capture:
         while not self.stopping.is_set():
             with contextlib.suppress(TimeoutError, OSError):
                 data, (_, _, direction, _, _) = self.packets.recvfrom(65536)
-                if direction != socket.PACKET_OUTGOING and data[6:12] == self.source:
+                if direction != socket.PACKET_OUTGOING:
                     self.frames.append(Frame(data))
 
     def since(self, first, settle=0.5):

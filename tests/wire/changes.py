@@ -16,7 +16,6 @@ class Change(unittest.TestCase):
     """`box` is an adit-network."""
 
     def setUp(self):
-        hosts.needs_namespaces()
         self.network = self.enterContext(hosts.Network())
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-network-")))
         self.addCleanup(lambda: self.box.stop())

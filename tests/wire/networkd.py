@@ -8,6 +8,7 @@ import signal
 import subprocess
 import unittest
 
+import hosts
 import programs
 
 NETWORKD = "/lib/systemd/systemd-networkd"
@@ -25,6 +26,7 @@ BUS = """<!DOCTYPE busconfig PUBLIC "-//freedesktop//DTD D-Bus Bus Configuration
 # A /sys that is only read tells networkd that no udev is to be waited for.
 START = """set -e
 mount -o remount,bind,ro /sys
+mkdir -p /run/systemd
 mount -t tmpfs tmpfs /run/systemd
 mkdir -p /run/systemd/network /run/systemd/netif/links /run/systemd/netif/leases /run/systemd/netif/lldp
 chown -R systemd-network: /run/systemd/netif
@@ -35,6 +37,7 @@ exec "$NETWORKD"
 
 
 def needs_networkd():
+    hosts.needs_root()
     for program in (NETWORKD, "/usr/bin/dbus-daemon", "/usr/bin/networkctl"):
         if not os.access(program, os.X_OK):
             raise unittest.SkipTest(f"a real networkd needs {program}")

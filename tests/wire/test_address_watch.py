@@ -17,10 +17,6 @@ TAKEN_FOR = 20  # seconds
 IPV6 = 0x86dd  # these hosts' kernels speak it by themselves; an appliance's does not
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class AddressWatch(unittest.TestCase):
     def setUp(self):
         self.network = self.enterContext(hosts.Network())

@@ -12,10 +12,6 @@ from programs import wait_until
 from reporting import another, began, left_unanswered, submit
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class Alarms(WithAlarms):
     def test_a_run_in_which_all_is_well_has_none(self):
         stage = self.stage()

@@ -29,10 +29,6 @@ CROWD, LOOKS = "192.168.7.21", "192.168.7.22"
 TOKEN = f"Authorization: Bearer {programs.TEAM_TOKEN}\r\n"
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class AlarmsOfTheBox(WithAlarms):
     def test_the_disk_is_nearly_full(self):
         stage = self.stage(disk="12m")

@@ -17,7 +17,6 @@ import zlib
 
 import requests
 
-import hosts
 import maps
 import messages
 from messages import Style
@@ -32,10 +31,6 @@ POINTS = 16_000_000 // 12
 JSON, CBOR, PACKED = Style(), Style("cbor"), Style(body="gzip")
 FINITE = bytes(range(64)) * 4  # what makes any bytes numbers that are finite
 TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 def said_of(data):

@@ -9,7 +9,6 @@ import subprocess
 import sys
 import unittest
 
-import hosts
 import programs
 import refused
 from programs import Stage
@@ -26,10 +25,6 @@ VARIES = [(r"Date: [^\n]*", "Date:"), (r"Age: \d+", "Age:"), (r"Content-Length: 
 
 sys.path.insert(0, str(SHOWN))
 sys.dont_write_bytecode = True
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 def same_each_time(text):

@@ -23,10 +23,6 @@ BAD_DAY = ("--rate", "0", "--seed", "5", "--fault-rate", "reports:record-then-dr
            "--fault-rate", "reports:429=0.1", "--fault-rate", "mapping:drop=0.2")
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 def report(number):
     return {"x": 7.5 * number, "y": -1.25, "z": 0.5, "type": "Drill"}
 

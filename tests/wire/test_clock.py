@@ -13,7 +13,6 @@ from unittest import mock
 
 import requests
 
-import hosts
 import maps
 import messages
 from programs import BIN, Stage, log_in, wait_until
@@ -22,10 +21,6 @@ from reporting import submit
 DAYS = 90 * 86400.0
 YEARS = 10 * 365 * 86400.0
 PASSWORD = "correct horse battery"
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class Ahead:

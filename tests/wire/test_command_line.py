@@ -24,10 +24,6 @@ UTF8 = {**os.environ, "LC_ALL": "C.UTF-8", "TERM": "xterm"}
 UTF8.pop("NO_COLOR", None)
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 def words(stage, *said):
     return [BIN / "adit", *said, "--at", f"{stage.network.box_address}:{programs.PORT}",
             "--token-file", stage.folder / "secrets" / "team.token"]

@@ -20,10 +20,6 @@ SOCKETS = 64
 TOKEN = f"Authorization: Bearer {programs.TEAM_TOKEN}\r\n"
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 def begun(box, source, path, length, headers=""):
     """A connection in the middle of a POST of so many bytes."""
     connection = socket.create_connection((box.network.box_address, box.port), 30, source_address=(source, 0))

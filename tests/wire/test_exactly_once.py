@@ -6,7 +6,6 @@ import unittest
 
 import requests
 
-import hosts
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, at_once, began, insist, left_unanswered, sendings, submit
 
@@ -19,10 +18,6 @@ LOST_AND_NOT_RECORDED = ("drop", "reset-unrecorded", "500")
 ANSWERED = ("ok", "answer-after=0.2", "record-after=0.2", "429", "429=8", "429,retry-after=1")
 # What goes wrong with the run's status as well, while it is asked for.
 LOST_STATUS = ("500", "drop", "reset", "garbage", "half-answer", "429", "401", "answer-after=1")
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class ExactlyOnce(unittest.TestCase):

@@ -8,7 +8,6 @@ import unittest
 import cbor2
 import requests
 
-import hosts
 import maps
 import messages
 from delivered import Delivered
@@ -24,10 +23,6 @@ JSON, CBOR, CBOR_IN_GZIP = Style(), Style("cbor"), Style("cbor", body="gzip")
 # struct's letter, and a value that has a fraction where there can be one, by PointField's datatype.
 DATATYPES = {1: ("b", -5), 2: ("B", 250), 3: ("h", -300), 4: ("H", 60000), 5: ("i", -70000), 6: ("I", 4000000000),
              7: ("f", 0.5), 8: ("d", 1e-3)}
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 def as_bytes(value):

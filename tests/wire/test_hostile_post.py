@@ -8,7 +8,6 @@ import unittest
 
 import requests
 
-import hosts
 import maps
 import messages
 import programs
@@ -18,10 +17,6 @@ from reporting import QUICK, REPORT, began, submit
 
 CBOR = Style("cbor")
 OVERWHELMING = ("length-huge", "chunk-huge", "header-flood", "endless-body", "1xx-flood", "json-deep")
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 def state(name, x=1.0):

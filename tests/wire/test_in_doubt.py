@@ -7,16 +7,11 @@ import unittest
 
 import requests
 
-import hosts
 import programs
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, at_once, began, insist, sendings, submit
 
 DEADLINE = 3.0  # seconds until a client is told how its report stands
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 def status(stage):

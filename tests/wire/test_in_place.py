@@ -22,10 +22,6 @@ PIECES = 40  # of an upload
 SLOW = {"command_post__rates__reports_hz": 0.02}  # the second report waits for it to be raised
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class Upload(threading.Thread):
     """A map that goes up in pieces, the last of them when the test says so."""
 

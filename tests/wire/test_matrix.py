@@ -2,7 +2,6 @@
 
 import unittest
 
-import hosts
 import maps
 import messages
 import programs
@@ -11,10 +10,6 @@ from messages import Style
 
 POSITION = {"x": 1.25, "y": -2.5, "z": 0.125}
 TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class Matrix(Delivered):

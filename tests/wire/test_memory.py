@@ -12,7 +12,6 @@ import zlib
 import cbor2
 import requests
 
-import hosts
 import maps
 import messages
 import programs
@@ -73,10 +72,6 @@ def largest_markers():
               "color": color, "points": [{"x": n / 7, "y": -n / 7, "z": 0.3} for n in range(100_000)]}
     yield JSON, json.dumps({"markers": [marker]}).encode()
     yield CBOR, cbor2.dumps({"markers": [marker | {"colors": [color] * 100_000}]})
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class Memory(unittest.TestCase):

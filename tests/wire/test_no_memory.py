@@ -9,7 +9,6 @@ import unittest
 
 import requests
 
-import hosts
 import maps
 import messages
 import programs
@@ -18,10 +17,6 @@ from programs import Stage, wait_until
 
 CBOR = Style("cbor")
 LEFT = 24 << 20  # bytes that the process may still ask for
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class NoMemory(unittest.TestCase):

@@ -14,10 +14,6 @@ OTHER_PORT = 8100  # of the second Command Post, or of none
 MEASURED = ("--as-measured", "--rate", "0", "--reports", "20")
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 def endpoints(port):
     return {"scoring": {"address": hosts.SCORING, "port": port}, "mapping": {"address": hosts.MAPPING, "port": port}}
 

@@ -10,7 +10,6 @@ import zlib
 import cbor2
 import requests
 
-import hosts
 import maps
 import messages
 import programs
@@ -98,10 +97,6 @@ NOT_JSON = [(b"", "nothing"), (b"{", "cut short"), (b'{"x":01}', "a leading zero
             (b'{"x":"\x01"}', "a raw control character"), (b'{"x":"\\q"}', "a bad escape"),
             (b'{"x":"\\ud800"}', "a lone surrogate"), (b'\xef\xbb\xbf{}', "a byte order mark"), (b'{"x":1}\x00', "a NUL"),
             (b"[" * 65 + b"]" * 65, "nesting over 64"), (b'{"x":NaN}', "NaN"), (b'{"x":"\xff"}', "no UTF-8")]
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class Refusals(unittest.TestCase):

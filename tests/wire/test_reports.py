@@ -24,10 +24,6 @@ SILENCE = "answer-after=60"  # recorded, and no answer comes
 DEAF = "record-after=60"  # not recorded while a test lasts, and no answer comes
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class ScriptedPost(programs.Program):
     def __init__(self, stage, *words):
         self.seen = stage.folder / "scripted.jsonl"

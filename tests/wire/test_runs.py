@@ -19,10 +19,6 @@ CBOR = Style("cbor")
 UPRIGHT = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class Runs(unittest.TestCase):
     def stage(self, **overrides):
         stage = self.enterContext(Stage(**overrides))

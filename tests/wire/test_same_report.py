@@ -6,14 +6,9 @@ import signal
 import time
 import unittest
 
-import hosts
 import programs
 from programs import Stage, wait_until
 from reporting import QUICK, REPORT, another, at_once, began, is_taken, left_unanswered, sendings, submit
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 def moved(metres):

@@ -254,10 +254,6 @@ class Sockets(unittest.TestCase):
 class TeamPort(unittest.TestCase):
     """team0 goes and comes back as another interface, as an adapter does that is pulled and plugged in again."""
 
-    @classmethod
-    def setUpClass(cls):
-        hosts.needs_namespaces()
-
     def setUp(self):
         self.network = self.enterContext(hosts.Network())
         folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-port-")))

@@ -11,7 +11,6 @@ from unittest import mock
 
 import requests
 
-import hosts
 import programs
 from alarming import WithAlarms
 from filling import Filler
@@ -19,10 +18,6 @@ from programs import Box, Stage, wait_until
 from reporting import QUICK, REPORT, another, began, left_unanswered, submit
 
 FINISHED = ("answered", "settled", "withdrawn")
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class Swap(Stage):

@@ -20,10 +20,6 @@ OTHER_PORT = 9000
 TYPED = {"scoring": "typed-scoring-1", "mapping": "typed-mapping-1"}  # tokens that the box was never given
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 class Trial(unittest.TestCase):
     def setUp(self):
         rates = {f"{kind}_hz": 1 for kind in ("reports", "status", "map", "state", "markers")}

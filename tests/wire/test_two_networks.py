@@ -30,7 +30,6 @@ class Appliance(unittest.TestCase):
     post_address = hosts.BOX_DARPA  # of the box
 
     def setUp(self):
-        hosts.needs_namespaces()
         networkd.needs_networkd()
         self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-appliance-")))
         self.folder.chmod(0o755)

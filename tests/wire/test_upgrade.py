@@ -9,17 +9,12 @@ import unittest
 
 import requests
 
-import hosts
 import left_behind
 from programs import Stage, wait_until
 
 ARCHIVES = sorted(pathlib.Path(__file__).parent.glob("left_by_*.tar.xz"))
 TABLES_THEN = 3  # the version of the ledger's tables that the earliest of them can work with
 KEPT = "SELECT number, type, x, y, z, sender, received, status, content_type, answer FROM report WHERE status = 201"
-
-
-def setUpModule():
-    hosts.needs_namespaces()
 
 
 class Upgrade(unittest.TestCase):

@@ -24,10 +24,6 @@ CBOR = Style("cbor")
 TURNED = {"x": 0.0, "y": 0.0, "z": 0.6, "w": 0.8}
 
 
-def setUpModule():
-    hosts.needs_namespaces()
-
-
 def pose(name, x):
     return {"poses": [{"name": name, "position": {"x": x, "y": 0.0, "z": 0.0}, "orientation": TURNED}]}
 

@@ -17,7 +17,6 @@ class WholeBox(Change):
     """aditd asks, adit-network does; the team's host is who sits at the page."""
 
     def setUp(self):
-        hosts.needs_namespaces()
         self.stage = self.enterContext(programs.Stage(network__confirm_within_ms=20000, **{
             "team__listen": [{"address": "0.0.0.0", "port": programs.PORT}]}))
         self.network, self.folder = self.stage.network, self.stage.folder / "network"

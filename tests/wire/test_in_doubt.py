@@ -1,29 +1,21 @@
 """A report of which nobody can tell whether it was recorded: it is in doubt, its client is told so, the operator sees
-why and decides, and all else goes on."""
+why and decides, and all else goes on. What leaves a report in doubt is in dispatch/evidence_test and dispatch/reports_doubt_test."""
 
 import contextlib
 import time
 import unittest
 
-import requests
-
-import programs
-from programs import Stage, wait_until
-from reporting import QUICK, REPORT, another, at_once, began, insist, sendings, submit
+from programs import Stage
+from reporting import QUICK, REPORT, another, began, insist, sendings, submit
 
 DEADLINE = 3.0  # seconds until a client is told how its report stands
 
 
-def status(stage):
-    headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
-    return requests.get(stage.box.url + "/api/status", headers=headers, timeout=60)
-
-
 class InDoubt(unittest.TestCase):
     @contextlib.contextmanager
-    def stage(self, *options):
+    def stage(self):
         overrides = {**QUICK, "reports__answer_within_ms": int(DEADLINE * 1000)}
-        with Stage(post_options=("--rate", "0", *options), **overrides) as stage:
+        with Stage(**overrides) as stage:
             yield began(stage)
 
     def attention_says(self, stage, *words):
@@ -45,60 +37,6 @@ class InDoubt(unittest.TestCase):
         self.assertEqual(sendings(stage), 1)
         return number
 
-    def test_another_sender_while_it_was_on_its_way(self):
-        with self.stage() as stage:
-            stage.post.will("other-sender,record-then-drop")
-            self.is_in_doubt(stage, "remaining_reports went from 45 to 43",
-                             "does somebody else report with this token?",
-                             "the operator decides: send it, or call it done")
-
-    def test_another_sender_earlier_in_the_run(self):
-        with self.stage() as stage:
-            stage.post.control("POST /other-sender")
-            wait_until(lambda: status(stage) and "somebody else reports with this token" in stage.box.attention(),
-                       "the other sender to be noticed")
-            stage.post.will("drop")
-            self.is_in_doubt(stage, "somebody else reports with this token")
-
-    def test_a_count_that_contradicts(self):
-        for fault, why in (("remaining=+3,drop", "a new run began"),
-                           ("remaining=-3,record-then-drop", "does somebody else report with this token?")):
-            with self.subTest(fault), self.stage() as stage:
-                stage.post.will(fault)
-                self.is_in_doubt(stage, why)
-
-    def test_a_new_run_meanwhile(self):
-        for body in ({}, {"team": "other"}):  # the run clock goes back; another team
-            with self.subTest(body), self.stage() as stage:
-                # So long that the new run's clock is behind what the box last heard, however busy the machine is.
-                wait_until(lambda stage=stage: stage.box.ask("GET /adit/run")[1]["run"]["run_clock"] > 8, "the run to go on")
-                stage.post.will("drop", status=["500"] * 1000)  # nothing is found out before the new run
-                told, _ = at_once(lambda: submit(stage), lambda: self.begin_new_run(stage, body))
-                self.assertEqual(told.status_code, 504, told.text)
-                self.attention_says(stage, "report 1 is in doubt", "a new run began", "the operator decides")
-                self.assertEqual(submit(stage, another(1)).status_code, 201)
-                time.sleep(1.0)
-                self.assertEqual((sendings(stage), stage.post.recorded(REPORT)), (1, []))
-                self.assertEqual(stage.box.ask("GET /adit/run")[1]["run_number"], 2)
-
-    def begin_new_run(self, stage, body):
-        wait_until(lambda: [row["state"] for row in stage.box.reports()] == ["in doubt"], "the report to be in doubt")
-        stage.post.control("POST /new-run", body)
-        stage.post.control("DELETE /faults")
-
-    def test_an_administrative_stop_that_is_known(self):
-        with self.stage() as stage:
-            stage.post.control("POST /stop")
-            self.assertEqual(submit(stage, another(1)).json()["report_status"], "admin stop")
-            stage.post.will("record-then-drop")
-            self.is_in_doubt(stage, "not known for certain")
-
-    def test_reports_that_are_not_being_scored(self):
-        for options in (("--not-started",), ("--reports", "0")):
-            with self.subTest(options), self.stage(*options) as stage:
-                stage.post.will("record-then-drop")
-                self.is_in_doubt(stage, "reports are not being scored")
-
     def test_a_status_that_cannot_be_had_and_then_can(self):
         with self.stage() as stage:
             stage.post.will("record-then-drop", status=["500", "drop", "401"] + ["500"] * 100)
@@ -112,7 +50,8 @@ class InDoubt(unittest.TestCase):
     def test_the_operator_calls_it_done(self):
         with self.stage() as stage:
             stage.post.will("other-sender,record-then-drop")
-            number = self.is_in_doubt(stage)
+            number = self.is_in_doubt(stage, "remaining_reports went from 45 to 43", "does somebody else report with this token?",
+                                      "the operator decides: send it, or call it done")
             self.assertEqual(stage.box.judge(number, "done"), (200, {"report": number}))
             self.assertNotIn("in doubt", stage.box.attention())
             told = submit(stage)
@@ -122,14 +61,13 @@ class InDoubt(unittest.TestCase):
             self.assertEqual(len(stage.post.recorded(REPORT)), 1)
 
     def test_the_operator_sends_it(self):
-        for fault, records in (("other-sender,record-then-drop", 2), ("remaining=+3,drop", 1)):
-            with self.subTest(fault), self.stage() as stage:
-                stage.post.will(fault)
-                number = self.is_in_doubt(stage)
-                self.assertEqual(stage.box.judge(number, "send"), (200, {"report": number}))
-                self.assertEqual(submit(stage).status_code, 201)
-                self.assertEqual(len(stage.post.recorded(REPORT)), records, "once more, on the operator's word")
-                self.assertNotIn("in doubt", stage.box.attention())
+        with self.stage() as stage:
+            stage.post.will("other-sender,record-then-drop")
+            number = self.is_in_doubt(stage)
+            self.assertEqual(stage.box.judge(number, "send"), (200, {"report": number}))
+            self.assertEqual(submit(stage).status_code, 201)
+            self.assertEqual(len(stage.post.recorded(REPORT)), 2, "once more, on the operator's word")
+            self.assertNotIn("in doubt", stage.box.attention())
 
 
 if __name__ == "__main__":

@@ -1,22 +1,18 @@
-"""Artifact reports: on disk first, one at a time, the Command Post's answer, and nothing but JSON for the client."""
+"""Artifact reports: they wait for no map, and what becomes of them and their clients as the box or the Command Post comes and goes."""
 
 import concurrent.futures
-import contextlib
 import json
-import pathlib
 import signal
-import sys
 import time
 import unittest
 
 import requests
 
-import hosts
 import maps
 import messages
 import programs
 from programs import Stage, wait_until
-from reporting import QUICK, REPORT, another, at_once, began, left_unanswered, sendings, submit
+from reporting import QUICK, another, began, left_unanswered, sendings, submit
 
 PATIENT = {**QUICK, "command_post__timeouts__scoring_answer_ms": 20000}  # towards the Command Post
 TOKEN = {"Authorization": f"Bearer {programs.TEAM_TOKEN}"}
@@ -24,102 +20,7 @@ SILENCE = "answer-after=60"  # recorded, and no answer comes
 DEAF = "record-after=60"  # not recorded while a test lasts, and no answer comes
 
 
-class ScriptedPost(programs.Program):
-    def __init__(self, stage, *words):
-        self.seen = stage.folder / "scripted.jsonl"
-        script = pathlib.Path(__file__).with_name("scripted_post.py")
-        super().__init__(stage.network, stage.network.post, stage.folder / "scripted.log",
-                         [sys.executable, "-B", script, f"{hosts.SCORING}:{programs.PORT}", self.seen, *words])
-        wait_until(lambda: "listening" in self.said(), "the scripted Command Post")
-
-    def reports(self):
-        return [json.loads(line) for line in self.seen.read_text().splitlines()] if self.seen.exists() else []
-
-
-@contextlib.contextmanager
-def scripted(*words):
-    """The box, and a Command Post that answers as these words say."""
-    with Stage(post_options=None, **{**QUICK, "reports__answer_within_ms": 600000}) as stage:
-        stage.scripted = ScriptedPost(stage, *words)
-        try:
-            wait_until(lambda: requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=30).status_code == 200,
-                       "the box to know the run")  # at once: it was alone for a moment
-            yield stage
-        finally:
-            stage.scripted.stop(signal.SIGKILL)
-
-
-class Answers(unittest.TestCase):
-    def is_json(self, answer, status):
-        self.assertEqual(answer.status_code, status, answer.text)
-        self.assertEqual(answer.headers["Content-Type"], "application/json")
-        self.assertNotIn("WWW-Authenticate", answer.headers)
-        self.assertIsInstance(answer.json(), (str, dict))
-
-    def test_the_client_gets_the_command_posts_own_status_and_bytes(self):
-        with scripted() as stage:
-            answer = submit(stage, {**REPORT, "name": "robot1"})
-            self.is_json(answer, 201)
-            self.assertEqual(answer.json()["url"], "http://<ipaddress>:<port>/api/artifact_reports/1")
-            self.assertIn('": ', answer.text, "its spaces too")
-            self.assertEqual(stage.scripted.reports(), [REPORT], "the robot's name stays here")
-            self.assertEqual(stage.box.on_disk(), ["answered"])
-
-    def test_a_report_that_the_command_post_will_not_have_is_refused_and_may_be_posted_again(self):
-        for word, said in (("422:Missing field: 'y'", "Missing field: 'y'"), ("400:No JSON.", "No JSON."),
-                           ("413:too large", "too large")):
-            with self.subTest(word), scripted(word) as stage:
-                answer = submit(stage)
-                self.is_json(answer, int(word[:3]))
-                self.assertIn(said, answer.json())
-                self.assertEqual(stage.box.on_disk(), ["refused"])
-                self.is_json(submit(stage), 201)
-                self.assertEqual(len(stage.scripted.reports()), 2)
-
-    def test_where_nobody_may_enter_the_report_is_kept_and_its_client_told_at_once(self):
-        for word in ("401:Invalid token.", "403", "404", "405", "407"):
-            with self.subTest(word), scripted(word) as stage:
-                told = submit(stage)  # which waits for less than the box would
-                self.is_json(told, 503)
-                self.assertIn("is kept and waiting", told.json())
-                self.is_json(submit(stage), 201)
-                self.assertEqual(len(stage.scripted.reports()), 2)
-
-    def test_an_answer_that_may_be_anybodys_is_not_believed(self):
-        for word in ("302", "400", "408", "502", "503", "200", "201"):
-            with self.subTest(word), scripted(word) as stage:
-                self.is_json(submit(stage), 201)
-                self.assertEqual(stage.box.on_disk("SELECT tries FROM report"), [1])
-                self.assertEqual(len(stage.scripted.reports()), 2)
-
-    def test_status_is_answered_from_what_is_known_for_a_second(self):
-        with Stage() as stage:
-            url = began(stage).box.url + "/api/status"
-            before, began_at = len(stage.post.requests("/api/status")), time.monotonic()
-            first = requests.get(url, headers=TOKEN, timeout=30)
-            self.assertEqual((first.status_code, first.json()["remaining_reports"]), (200, 45))
-            told = {requests.get(url, headers=TOKEN, timeout=30).text for _ in range(20)} - {first.text}
-            asked = len(stage.post.requests("/api/status")) - before
-            self.assertLessEqual(asked, 1 + time.monotonic() - began_at)
-            wait_until(lambda: len(stage.post.requests("/api/status")) - before >= len(told), "each new one to be the Command Post's")
-
-    def test_status_without_a_command_post_is_a_json_error(self):
-        with Stage(post_options=None) as stage:
-            answer = requests.get(stage.box.url + "/api/status", headers=TOKEN, timeout=60)
-            self.assertIn(answer.status_code, (502, 503))
-            self.assertIsInstance(answer.json(), str)
-
-
 class Order(unittest.TestCase):
-    def test_reports_go_one_at_a_time_and_not_faster_than_allowed(self):
-        with Stage(post_options=("--rate", "1"), command_post__rates__reports_hz=1) as stage:
-            stage.post.will("answer-after=0.3")
-            posted = time.monotonic()
-            answers = at_once(*[lambda n=n: submit(stage, another(n)) for n in (1, 2, 3)])
-            self.assertEqual([answer.status_code for answer in answers], [201] * 3)
-            self.assertGreater(time.monotonic() - posted, 2.0)
-            self.assertEqual([request["status"] for request in stage.post.requests("/api/artifact_reports")], [201] * 3)
-
     def test_a_report_overtakes_maps_that_fill_the_link(self):
         with Stage(command_post__budget_mbit=1) as stage:
             cbor = messages.Style("cbor")

@@ -3,7 +3,6 @@
 import base64
 import dataclasses
 import gzip
-import itertools
 import json
 import zlib
 
@@ -28,22 +27,6 @@ class Style:
         words = [self.format, self.data, self.body]
         words += [name for name in ("ros", "browser", "chunked", "expect") if getattr(self, name)]
         return "+".join(word for word in words if word)
-
-
-def styles():
-    """Every format x compression, plain and as each kind of client sends it."""
-    base = [Style(format=form, data=data, body=body)
-            for form, data, body in itertools.product(("json", "cbor"), ("plain", "gzip"), ("", "gzip", "deflate"))]
-    odd = [Style(data="integers"), Style(format="cbor", data="integers"), Style(ros=True, data="integers"),
-           Style(format="cbor", ros=True), Style(browser=True), Style(format="cbor", chunked=True),
-           Style(expect=True), Style(format="cbor", data="integers", body="gzip", ros=True)]
-    return base + odd
-
-
-def text_styles():
-    """For messages without bulk data."""
-    return [Style(format=form, body=body) for form in ("json", "cbor") for body in ("", "gzip", "deflate")] + [
-        Style(ros=True), Style(browser=True), Style(chunked=True), Style(format="cbor", ros=True)]
 
 
 def stamp(seconds, style):

@@ -1,15 +1,93 @@
 """The table of refusals in firmware/intake/clients/README.md: what is sent, and what Adit says to it."""
 
+import copy
 import json
 import re
 
 import cbor2
 import requests
 
+import maps
+import messages
 import programs
 from programs import Stage
 from reporting import QUICK, REPORT, began, submit
-from test_refusals import FIELDS, MISSING, STATE, changed
+
+JSON = messages.Style()
+GRID = messages.map_update(maps.made_grid(80, 60), "r1", 5.0, JSON)
+CLOUD = messages.map_update(maps.made_cloud(100), "r1", 5.0, JSON)
+PLACE = {"position": {"x": 1, "y": 2, "z": 3}, "orientation": {"x": 0, "y": 0, "z": 0, "w": 1}}
+STATE = {"header": {"stamp": 5.0, "frame_id": "darpa"}, "poses": [{"name": "r1", **PLACE}]}
+MARKERS = {"markers": [{"ns": "path", "id": 1, "type": 2, "action": 0, "pose": PLACE, "scale": {"x": 1, "y": 1, "z": 1},
+                        "color": {"r": 1, "g": 0, "b": 0, "a": 1}}]}
+MISSING = object()
+
+
+def changed(message, path, value):
+    """A copy with the member at `path` ("msg.info.width") set, or taken out."""
+    made = copy.deepcopy(message)
+    at = made
+    *folders, last = [int(word) if word.isdigit() else word for word in path.split(".")]
+    for name in folders:
+        at = at[name]
+    if value is MISSING:
+        del at[last]
+    else:
+        at[last] = value
+    return made
+
+
+# (URI, message, field, value)
+FIELDS = [
+    ("/map/update", GRID, "type", "Octomap"),
+    ("/map/update", GRID, "type", MISSING),
+    ("/map/update", GRID, "name", "a name too long"),
+    ("/map/update", GRID, "msg.header.frame_id", "world"),
+    ("/map/update", GRID, "msg.header.stamp", -1),
+    ("/map/update", GRID, "msg.info.width", 79),
+    ("/map/update", GRID, "msg.info.width", "80"),
+    ("/map/update", GRID, "msg.info.height", 0),
+    ("/map/update", GRID, "msg.info.resolution", 0),
+    ("/map/update", GRID, "msg.info.origin.position.y", MISSING),
+    ("/map/update", GRID, "msg.compression", "lz4"),
+    ("/map/update", GRID, "msg.compression", "gzip"),
+    ("/map/update", GRID, "msg.data", "not base64!"),
+    ("/map/update", GRID, "msg.data", MISSING),
+    ("/map/update", GRID, "msg.data", [101] * 4800),
+    ("/map/update", GRID, "msg.data", ["a"] * 4800),
+    ("/map/update", GRID, "msg", MISSING),
+    ("/map/update", CLOUD, "msg.point_step", 0),
+    ("/map/update", CLOUD, "msg.point_step", 11),
+    ("/map/update", CLOUD, "msg.point_step", 13),
+    ("/map/update", CLOUD, "msg.fields.0.offset", 4294967295),
+    ("/map/update", CLOUD, "msg.fields.1.name", "w"),
+    ("/map/update", CLOUD, "msg.fields.2.datatype", 5),
+    ("/map/update", CLOUD, "msg.fields.2.datatype", 9),
+    ("/map/update", CLOUD, "msg.fields.0.datatype", 8),
+    ("/map/update", CLOUD, "msg.fields.0.count", 0),
+    ("/map/update", CLOUD, "msg.fields.0.count", 2),
+    ("/map/update", CLOUD, "msg.fields.1.name", "x"),
+    ("/map/update", CLOUD, "msg.fields", []),
+    ("/state/update", STATE, "poses", MISSING),
+    ("/state/update", STATE, "poses.0.name", MISSING),
+    ("/state/update", STATE, "poses.0.name", "bad-name"),
+    ("/state/update", STATE, "poses.0.position.x", "1"),
+    ("/state/update", STATE, "header.stamp", "now"),
+    ("/state/update", STATE, "header.frame_id", "map"),
+    ("/markers/update", MARKERS, "markers", MISSING),
+    ("/markers/update", MARKERS, "markers.0.type", 99),
+    ("/markers/update", MARKERS, "markers.0.id", 1.5),
+    ("/markers/update", MARKERS, "markers.0.ns", 5),
+    ("/markers/update", MARKERS, "markers.0.points", [{"x": 1}]),
+    ("/markers/update", MARKERS, "markers.0.action", 1),
+    ("/markers/update", MARKERS, "markers.0.pose", MISSING),
+    ("/markers/update", MARKERS, "markers.0.color.a", 2),
+    ("/markers/update", MARKERS, "markers.0.lifetime", -1),
+    ("/api/artifact_reports", REPORT, "y", MISSING),
+    ("/api/artifact_reports", REPORT, "x", "1"),
+    ("/api/artifact_reports", REPORT, "type", "test"),
+    ("/api/artifact_reports", REPORT, "type", 5),
+]
 
 SHORT = {**QUICK, "reports__answer_within_ms": 300}
 STATE_BODY = json.dumps(STATE)
@@ -79,7 +157,7 @@ def of_requests():
         for uri in ("/api/artifact_reports", "/map/update", "/state/update", "/markers/update"):
             fields = [each[1:] for each in FIELDS if each[0] == uri]
             yield uri, [(f"`{path}` {shown(value)}", ask(stage, "POST", uri, json.dumps(changed(message, path, value))))
-                        for message, path, value, _ in fields]
+                        for message, path, value in fields]
 
 
 def of_reports():

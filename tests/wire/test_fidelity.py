@@ -10,6 +10,7 @@ import requests
 
 import maps
 import messages
+import programs
 from delivered import Delivered
 from messages import Style
 from programs import wait_until
@@ -122,6 +123,21 @@ class Fidelity(Delivered):
             with self.subTest(name):
                 arrived = self.deliver("/map/update", None, style, encode(message))
                 self.same_map(arrived, update, grid.data, {"info": info})
+
+    def test_recorded_maps(self):
+        found = maps.recorded()
+        if not found:
+            self.skipTest("ADIT_MAPS names no folder of recorded maps")
+        for source in found:
+            for style in (JSON, Style("json", "gzip"), CBOR, Style("cbor", "gzip"), Style("cbor", body="gzip", ros=True)):
+                with self.subTest(style=str(style), map=source.label):
+                    update = messages.map_update(source, "replay", self.seconds, style)
+                    self.same_map(self.deliver("/map/update", update, style), update, source.data, source.head())
+
+    def test_any_of_the_teams_tokens_is_good(self):
+        for token in (programs.TEAM_TOKEN, programs.SCORING_TOKEN, programs.MAPPING_TOKEN):
+            answer = messages.post(self.session, self.stage.box.url, "/state/update", {"poses": [{"name": "r1", **POSE}]}, JSON, token)
+            self.assertEqual(answer.status_code, 200)
 
     def check_cloud(self, cloud, origin, going_up):
         """It comes as `cloud` says and goes up as `going_up`, bytes, with that origin; None: without one."""

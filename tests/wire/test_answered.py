@@ -22,7 +22,7 @@ import messages
 from messages import Style
 from programs import Stage, wait_until
 
-ENDS = int(os.environ.get("ADIT_ENDS", "24"))  # in all, a third of each kind
+ENDS = int(os.environ.get("ADIT_ENDS", "12"))  # in all, a third of each kind
 SEED = 20210921
 ROBOTS = 5
 CELLS = 2500  # a side

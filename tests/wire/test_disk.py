@@ -1,4 +1,4 @@
-"""A disk that is full and a ledger that is damaged: no report is taken that is not written down, and it is said."""
+"""A disk that is full or read-only: no report is taken that is not written down, and it is said."""
 
 import contextlib
 import os
@@ -14,7 +14,7 @@ import requests
 import programs
 from filling import Filler
 from programs import Stage, wait_until
-from reporting import QUICK, REPORT, another, began, left_unanswered, submit
+from reporting import QUICK, another, began, submit
 
 
 FULL = {**QUICK, "disk": "6m", "post_options": ("--rate", "0", "--reports", "9999"),
@@ -37,76 +37,21 @@ class Disk(unittest.TestCase):
     def test_a_disk_that_fills_up(self):
         with Stage(**FULL) as stage:
             self.assertEqual(submit(began(stage)).status_code, 201)
-            self.recovers(stage, Filler(stage.box.state))
-
-    def test_a_disk_that_is_full_at_the_start(self):
-        with Stage(**FULL) as stage:
-            self.assertEqual(submit(began(stage)).status_code, 201)
-            self.assertEqual(stage.box.stop(), 0)
             filler = Filler(stage.box.state)
-            stage.restart_box()
-            self.recovers(began(stage), filler)
-
-    def recovers(self, stage, filler):
-        taken = self.until_refused(stage, 1)
-        refused = another(1 + taken)
-        self.assertEqual(stage.post.recorded(refused), [], "what was not taken was not sent")
-        self.assertIn("no report is taken: the ledger cannot be written: ", stage.box.attention())
-        self.assertEqual(submit(stage).json()["score_change"], 1, "what was answered before is still answered")
-        filler.make_room()
-        again = wait_until(lambda: (answer := submit(stage, refused)).status_code == 201 and answer, "room to be found")
-        self.assertNotIn("Adit-Reconciled", again.headers)
-        self.assertEqual(len(stage.post.recorded(refused)), 1)
-        wait_until(lambda: stage.box.attention() == "", "nothing to be left to do")
-        stage.box.stop(signal.SIGKILL)
-        stage.restart_box()
-        self.assertEqual(submit(stage, refused).content, again.content)
-        self.assertEqual(len(stage.post.recorded()), 2 + taken)
-
-    def test_a_disk_that_fills_up_while_an_answer_is_awaited(self):
-        with Stage(**{**FULL, "command_post__timeouts__scoring_answer_ms": 20000}) as stage:
-            self.assertEqual(began(stage).box.stop(), 0)
-            Filler(stage.box.state)
-            stage.restart_box()  # its log has no room ahead of need
-            Filler(began(stage).box.state).make_room()
-            stage.post.will("answer-after=3")
-            with self.assertRaises(OSError):
-                submit(stage, timeout=1)
-            filler = Filler(stage.box.state)
-            answer = submit(stage)
-            self.assertEqual((answer.status_code, answer.json()["score_change"]), (201, 1), "it is true all the same")
-            self.assertIn("the ledger cannot be written", stage.box.attention())
-            self.assertEqual(stage.box.on_disk(), ["sending"])
+            taken = self.until_refused(stage, 1)
+            refused = another(1 + taken)
+            self.assertEqual(stage.post.recorded(refused), [], "what was not taken was not sent")
+            self.assertIn("no report is taken: the ledger cannot be written: ", stage.box.attention())
+            self.assertEqual(submit(stage).json()["score_change"], 1, "what was answered before is still answered")
             filler.make_room()
-            wait_until(lambda: stage.box.attention() == "", "the answer to be written down after all")
+            again = wait_until(lambda: (answer := submit(stage, refused)).status_code == 201 and answer, "room to be found")
+            self.assertNotIn("Adit-Reconciled", again.headers)
+            self.assertEqual(len(stage.post.recorded(refused)), 1)
+            wait_until(lambda: stage.box.attention() == "", "nothing to be left to do")
             stage.box.stop(signal.SIGKILL)
             stage.restart_box()
-            self.assertEqual(submit(stage).content, answer.content)
-            self.assertEqual(len(stage.post.recorded(REPORT)), 1)
-
-    def test_a_damaged_ledger_is_set_aside_and_all_goes_on(self):
-        with Stage(**QUICK) as stage:
-            began(stage)
-            self.assertEqual(submit(stage).status_code, 201)
-            self.assertEqual(stage.box.stop(), 0)
-            damaged = self.damage(stage.box.state / "ledger.sqlite")
-            stage.restart_box()
-            self.assertIn("damaged", stage.box.attention())
-            aside = stage.box.state / "ledger.sqlite.damaged-1"
-            self.assertEqual(aside.read_bytes(), damaged, "kept for whoever wants to read it")
-            self.may_be_lost(stage)
-
-    def may_be_lost(self, stage):
-        """What is posted may be what was lost: the operator decides, and then all is as before."""
-        self.assertIn("reports from 1 on may be lost from the ledger", stage.box.attention())
-        left_unanswered(stage)
-        self.assertIn("report 1001 is held: ", stage.box.attention())
-        self.assertEqual(stage.box.judge(1001, "withdraw")[0], 200)
-        self.assertEqual(len(stage.post.recorded()), 1, "it was sent before")
-        self.assertEqual(stage.box.judge(1000, "done")[0], 200)
-        self.assertEqual(submit(stage, another(1)).status_code, 201)
-        self.assertEqual(stage.box.on_disk(), ["settled", "withdrawn", "answered"])
-        self.assertEqual(len(stage.post.recorded()), 2)
+            self.assertEqual(submit(stage, refused).content, again.content)
+            self.assertEqual(len(stage.post.recorded()), 2 + taken)
 
     def test_a_state_folder_that_is_read_only(self):
         runtime = self.enterContext(tempfile.TemporaryDirectory())  # elsewhere, as with systemd
@@ -149,15 +94,6 @@ class Disk(unittest.TestCase):
     @staticmethod
     def remount(stage, how, *where):
         subprocess.run([*where, "mount", "--options-mode=ignore", "-o", f"remount,{how}", stage.box.state], check=True)
-
-    @staticmethod
-    def damage(path: pathlib.Path):
-        """Its middle overwritten. What is in it then."""
-        size = path.stat().st_size
-        with open(path, "r+b") as file:
-            file.seek(4096)
-            file.write(os.urandom(size - 4096))
-        return path.read_bytes()
 
 
 if __name__ == "__main__":

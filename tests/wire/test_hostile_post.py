@@ -13,7 +13,7 @@ import messages
 import programs
 from messages import Style
 from programs import Stage, wait_until
-from reporting import QUICK, REPORT, began, submit
+from reporting import QUICK, began, submit
 
 CBOR = Style("cbor")
 OVERWHELMING = ("length-huge", "chunk-huge", "header-flood", "endless-body", "1xx-flood", "json-deep")
@@ -90,17 +90,6 @@ class HostilePost(unittest.TestCase):
                    "the maps to be taken")
         self.assertEqual((stage.box.process.poll(), stage.box.process.pid), (None, before))
 
-    def test_a_report_whose_answer_is_huge_is_found_out_and_recorded_once(self):
-        stage = began(self.stage(**QUICK))
-        for number, fault in enumerate(("length-huge", "endless-body", "json-deep"), 1):
-            with self.subTest(fault):
-                report = {**REPORT, "x": 100.0 * number}
-                stage.post.will(fault)
-                answer = submit(stage, report)
-                self.assertEqual(answer.status_code, 201, answer.text)
-                self.assertEqual(len(stage.post.recorded(report)), 1)
-        self.assertIsNone(stage.box.process.poll())
-
     def test_the_message_that_fails_alone_is_set_aside_and_sent_again_by_hand(self):
         stage = self.stage()
         stage.post.will(mapping=["500,robot=r2,for=600"])
@@ -129,19 +118,6 @@ class HostilePost(unittest.TestCase):
                    "the map, sent again")
         self.assertEqual(self.view(stage)["aside"], [])
         self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/discard", body={})[0], 409)
-
-    def test_an_outage_sets_nothing_aside(self):
-        stage = self.stage()
-        stage.post.will(mapping=["500,for=8"])
-        self.send_map(stage, "r1")
-        self.send_map(stage, "r2")
-        self.send(stage, "/state/update", state("r1"))
-        self.send(stage, "/markers/update", marker(1))
-        wait_until(lambda: {request["message"]["name"] for request in self.taken(stage, "/map/update")} ==
-                   {"r1", "r2"}, "both maps")
-        wait_until(lambda: self.taken(stage, "/state/update") and self.taken(stage, "/markers/update"),
-                   "state and markers")
-        self.assertEqual(self.view(stage)["aside"], [])
 
     def test_the_status_is_known_at_once_while_a_report_waits_for_its_answer(self):
         stage = began(self.stage(command_post__timeouts__scoring_answer_ms=60000, reports__answer_within_ms=60000))

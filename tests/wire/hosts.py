@@ -119,7 +119,17 @@ def enter(path):
 
 
 def needs_root():
-    """Skips if this process is no root, or one that an ordinary user is in its own namespace (../alone), with no other user's id."""
+    """Skips if this process is not root, or only within the namespace of an ordinary user (../alone)."""
+    if os.geteuid() != 0 or _ids()[1] != "0":
+        raise unittest.SkipTest("needs root")
+
+
+def needs_other_users():
+    """Skips in the namespace of an ordinary user for whom ../alone got no ids of other users."""
+    if _ids()[2:] == ["1"]:
+        raise unittest.SkipTest("needs root, or newuidmap and a range in /etc/subuid: it starts a program as another user")
+
+
+def _ids():
     with open("/proc/self/uid_map", encoding="ascii") as ids:
-        if os.geteuid() != 0 or ids.read().split()[2] == "1":
-            raise unittest.SkipTest("needs root: it starts programs as other users")
+        return ids.read().split()

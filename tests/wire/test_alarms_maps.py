@@ -1,4 +1,4 @@
-"""Alarms of maps, of their queue and of robots."""
+"""Alarms of maps that do not arrive, and whom they blame."""
 
 import signal
 import time
@@ -37,36 +37,6 @@ class Maps(WithAlarms):
         stage.post.control("DELETE /faults")
         self.goes(stage, "maps_behind")
 
-    def test_the_queue_is_growing(self):
-        stage = self.stage(queues__map_bytes=8 << 20, command_post__budget_mbit=0.1)
-        end, seed = time.monotonic() + 120, 0
-        while not self.alarm(stage, "queue_growing"):
-            seed += 1
-            self.assertLess(time.monotonic(), end)
-            self.send_map(stage, f"r{seed}", seed, 12000)
-            wait_until(lambda at=time.monotonic(): time.monotonic() - at > 3 or self.alarm(stage, "queue_growing"), "the next one's time")
-        self.sees(stage, "queue_growing", "wait", "network", "The map queue is growing", "more comes in than goes out")
-        stage.box.save(lambda settings: settings["command_post"].update(budget_mbit=100))
-        self.goes(stage, "queue_growing", 120)
-
-    def fill(self, stage, name, most):
-        """Maps of one robot after the other, until that alarm is there."""
-        for seed in range(1, most):
-            if self.alarm(stage, name):
-                return
-            self.send_map(stage, f"r{seed}", seed, 12000)
-        wait_until(lambda: self.alarm(stage, name), name)
-
-    def test_the_queue_is_nearly_full_and_then_full(self):
-        stage = self.stage(queues__map_bytes=1 << 20, command_post__budget_mbit=0.1)
-        self.fill(stage, "queue_nearly_full", 8)
-        self.sees(stage, "queue_nearly_full", "bad", "network", "The map queue is nearly full", "1 MB wait at most")
-        self.fill(stage, "queue_full", 100)
-        self.sees(stage, "queue_full", "bad", "network", "The queue is full", "cloud")
-        stage.box.save(lambda settings: settings["command_post"].update(budget_mbit=100))
-        self.goes(stage, "queue_nearly_full", 120)
-        self.goes(stage, "queue_full", 120)
-
     def test_a_message_is_set_aside(self):
         stage = self.stage()
         stage.post.will(mapping=["500,robot=r2,for=600"])
@@ -80,13 +50,6 @@ class Maps(WithAlarms):
         number = self.view(stage)["aside"][0]["number"]
         self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/discard", body={})[0], 200)
         self.goes(stage, "set_aside")
-
-    def test_an_unknown_robot_posts(self):
-        stage = self.stage(robots=[{"name": "r1"}])
-        self.robot(stage, "r9")
-        self.sees(stage, "robot_unknown:r9", "ask", "robot", "Robot r9 is unknown", "set-up has r1")
-        stage.box.save(lambda settings: settings["robots"].append({"name": "r9"}))
-        self.goes(stage, "robot_unknown:r9")
 
 
 if __name__ == "__main__":

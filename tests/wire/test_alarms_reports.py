@@ -1,13 +1,12 @@
-"""Alarms of reports and of the count of them, and how one is acknowledged."""
+"""Alarms of reports and of the count of them."""
 
-import signal
 import unittest
 
 import hosts
 import programs
 from alarming import WithAlarms
 from programs import wait_until
-from reporting import another, began, left_unanswered, submit
+from reporting import another, left_unanswered, submit
 
 
 class Reports(WithAlarms):
@@ -61,27 +60,6 @@ class Reports(WithAlarms):
                   "somebody else reports with this token")
         self.assertEqual(stage.box.ask("POST /adit/runs", body={})[0], 200)
         self.goes(stage, "run_unreliable")
-
-    def test_an_acknowledgement_outlives_the_service_and_hides_nothing_new(self):
-        stage = self.stage(reports__review="all")
-        left_unanswered(stage)
-        self.sees(stage, "report_held:1", "ask", "box", "Report 1 is held")
-        self.acknowledged(stage, "report_held:1")
-        wait_until((stage.box.state / "acknowledged.json").exists, "it to be kept")
-        for how in (signal.SIGTERM, signal.SIGKILL):
-            stage.box.stop(how)
-            stage.restart_box()
-            wait_until(lambda: self.alarm(stage, "report_held:1"), "it to be found again")
-            self.assertTrue(self.alarm(stage, "report_held:1")["acknowledged"])
-            wait_until(lambda: self.light(stage) == "on", "the attention light to stay lit")
-        left_unanswered(began(stage), another(1))
-        self.sees(stage, "report_held:2", "ask", "box", "Report 2 is held")
-        stage.box.stop()
-        (stage.box.state / "acknowledged.json").write_text("damaged")
-        stage.restart_box()
-        self.sees(began(stage), "report_held:1", "ask", "box", "Report 1 is held")
-        self.assertFalse(self.alarm(stage, "report_held:1")["acknowledged"])
-        self.assertEqual(stage.box.said().count("which alarms were acknowledged cannot be read"), 1)
 
 
 if __name__ == "__main__":

@@ -13,7 +13,6 @@ import messages
 import programs
 from delivered import Delivered
 from messages import Style
-from programs import wait_until
 
 POSITION = {"x": 1.25, "y": -2.0, "z": 11.0}
 TURNED = {"x": 0.0, "y": -0.0, "z": 0.6, "w": 0.8}
@@ -111,7 +110,7 @@ def every_datatype(order):
 
 
 class Fidelity(Delivered):
-    """Against a Command Post that is strict; FidelityAsMeasured repeats it against one that behaves as the real ones do."""
+    """Against a Command Post that is strict; test_fidelity_long.py repeats it against one that behaves as the real ones do."""
 
     def test_grids(self):
         grid = maps.made_grid(80, 60)
@@ -265,42 +264,6 @@ class Fidelity(Delivered):
     def test_the_status(self):
         answer = requests.get(self.stage.box.url + "/api/status", headers=messages.headers(JSON), timeout=30)
         self.assertIn(answer.text, [request["answer"] for request in self.stage.post.requests("/api/status")])
-
-
-class FidelityAsMeasured(Fidelity):
-    post_options = ("--rate", "0", "--as-measured")
-
-
-def large_marker(points, colors):
-    """Of a transcript's line, long lists are how many elements they have."""
-    marker = said(whole_marker(5)) | {"type": 6, "ns": "voxels"}
-    marker["points"] = [{"x": n / 7, "y": -n / 3, "z": 0.3} for n in range(points)]
-    marker["colors"] = [{"r": n % 256 / 255, "g": 0.2, "b": 0.3, "a": 1.0} for n in range(colors)]
-    return marker
-
-
-class LargeMarkers(Delivered):
-    def test_the_largest_marker_there_can_be_goes_up(self):
-        marker = large_marker(100_000, 100_000)
-        for style in (CBOR, CBOR_IN_GZIP):
-            with self.subTest(str(style)):
-                arrived = self.deliver("/markers/update", {"markers": [marker]}, style)["markers"]
-                arrived[0]["header"] = self.without_stamp(arrived[0]["header"])
-                many = {"elements": 100_000}
-                self.same(arrived, [{**marker, "points": many, "colors": many}])
-
-    def test_a_large_one_outlives_the_service(self):
-        self.stage.post.will(mapping=["500,for=60"])
-        marker = {"markers": [large_marker(60_000, 0)]}
-        answer = messages.post(self.session, self.stage.box.url, "/markers/update", marker, CBOR)
-        self.assertEqual((answer.status_code, answer.text), (200, "null"))
-        self.stage.box.process.kill()
-        self.stage.box.process.wait()
-        self.stage.post.control("DELETE /faults")
-        self.stage.restart_box()
-        taken = wait_until(lambda: [request for request in self.stage.post.requests("/markers/update")
-                                    if request["status"] == 200], "the marker to be taken")
-        self.assertEqual(taken[-1]["message"]["markers"][-1]["points"], {"elements": 60_000})
 
 
 if __name__ == "__main__":

@@ -39,6 +39,15 @@ class Ahead:
             file.write(struct.pack("d", seconds))
 
 
+def sees_the_run_clock_run(box):
+    """By two statuses: one alone, which comes late on a busy machine, shows no clock that runs."""
+    def run():
+        return box.ask("GET /adit/run")[1]["run"]
+
+    first = wait_until(run, "the run to be known")["run_clock"]
+    wait_until(lambda: run()["run_clock"] > max(first, 1), "the run clock to be seen to run")
+
+
 class Clock(unittest.TestCase):
     def setUp(self):
         self.stage = self.enterContext(Stage())
@@ -87,8 +96,7 @@ class Clock(unittest.TestCase):
 
     @unittest.skipUnless(shutil.which("clang-19"), "clang-19 is not here")
     def test_a_chip_that_is_wrong_makes_no_other_run_of_a_short_cut(self):
-        wait_until(self.stage.box.knows_the_run, "the run to be known")
-        wait_until(lambda: self.run_view()["run"]["run_clock"] > 1, "the run clock to be seen to run", 30)
+        sees_the_run_clock_run(self.stage.box)
         known, ahead = time.time(), Ahead(self.stage.folder)
         ahead.set(365 * 86400.0)
         with mock.patch.dict(os.environ, ahead.env):
@@ -218,7 +226,7 @@ class Step(unittest.TestCase):
         self.assertEqual(self.stage.box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
 
     def test_a_day_without_power_that_the_command_post_bears_out_is_one(self):
-        wait_until(lambda: (self.view()["run"] or {"run_clock": 0})["run_clock"] > 1, "the run clock to be seen to run")
+        sees_the_run_clock_run(self.stage.box)
         self.assertEqual(self.stage.box.stop(), 0)
         shutil.rmtree(self.stage.box.state / "journal")
         self.ahead.set(86400.0)

@@ -9,8 +9,8 @@ class Full(WithAlarms):
     def test_the_queue_is_full(self):
         stage = self.stage(queues__map_bytes=1 << 20)
         stage.post.will(mapping=["429,for=600"])  # so that nothing leaves, however long it is looked at
-        for seed in range(1, 100):
-            if self.send_map(stage, f"r{seed}", seed, 12000).status_code == 429:
+        for seed in range(1, 100):  # so small that without the two that are in flight it is nearly full still
+            if self.send_map(stage, f"r{seed}", seed, 3000).status_code == 429:
                 break
         self.sees(stage, "queue_full", "bad", "network", "The queue is full", "cloud")
         self.sees(stage, "queue_nearly_full", "bad", "network", "The map queue is nearly full", "1 MB wait at most")

@@ -2,13 +2,20 @@
 # of a build would go into them. A file includes what it uses all the same: the linter reads each by itself.
 #   adit_way(fast HEADERS <vector> OPTIONS -O3 LIBRARIES ZLIB::ZLIB)
 # OPTIONS hold for every target of that way (adit_compiled), and are those of the headers.
+find_program(ADIT_JQ jq REQUIRED)  # for renewed
 function(adit_way name)
   cmake_parse_arguments(WAY "" "" "HEADERS;OPTIONS;LIBRARIES" ${ARGN})
-  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers/${name}.cpp CONTENT "")
-  add_library(adit_way_${name} OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers/${name}.cpp)
+  set(source ${CMAKE_BINARY_DIR}/headers/${name}.cpp)
+  set(stamp ${CMAKE_BINARY_DIR}/headers/${name}.hpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_custom_target(adit_renewed_${name} BYPRODUCTS ${stamp} COMMENT "Checking precompiled header ${name}" VERBATIM
+    COMMAND ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/renewed ${stamp} ${CMAKE_BINARY_DIR}/compile_commands.json ${source})
+  add_library(adit_way_${name} OBJECT EXCLUDE_FROM_ALL ${source})
+  set_target_properties(adit_way_${name} PROPERTIES UNITY_BUILD OFF)
+  add_dependencies(adit_way_${name} adit_renewed_${name})
   target_compile_options(adit_way_${name} PUBLIC ${WAY_OPTIONS})
   target_link_libraries(adit_way_${name} PRIVATE adit_options ${WAY_LIBRARIES})
-  target_precompile_headers(adit_way_${name} PRIVATE ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/assertions.hpp ${WAY_HEADERS}
+  target_precompile_headers(adit_way_${name} PRIVATE ${stamp} ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/assertions.hpp ${WAY_HEADERS}
     <algorithm> <array> <charconv> <chrono> <cmath> <cstdint> <expected> <functional> <map> <memory> <optional> <span> <string>
     <string_view> <utility> <vector>)
 endfunction()

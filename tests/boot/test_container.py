@@ -332,7 +332,3 @@ class Everyday(Contained):
         programs.wait_until(self.box.knows_the_run, "the Command Post to be heard again by the confirmed address", 60)
         boots = self.box.run("journalctl", "--list-boots", "-q", "--no-pager").stdout
         self.assertEqual(len(boots.splitlines()), 2, boots)
-
-
-if __name__ == "__main__":
-    unittest.main()

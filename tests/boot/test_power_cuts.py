@@ -97,7 +97,3 @@ class PowerCuts(Story):
         console.wait_for_shell()
         console.ask(here)
         self.assertGreaterEqual(int(console.ask(count)), kept)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -113,7 +113,3 @@ class Recovery(Story):
         self.box.console.wait_for(rb"Starting kernel", 400, heard)
         self.box.wait_until(self.box.answers, "the box to answer", 400)
         note(f"serves again after {why}", self.box.took(began))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -142,7 +142,3 @@ class Scripts(unittest.TestCase):
         for shell, found in (("zsh", "zsh/site-functions/_*"), ("fish", "fish/vendor_completions.d/*")):
             for script in sorted(made().glob(found)) if shutil.which(shell) else []:
                 subprocess.run([shell, "-n", script], check=True)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -78,7 +78,3 @@ class Versions(unittest.TestCase):
         version = told["aditd"].split()[1]
         self.assertRegex(version, r"^\d+\.\d+\.\d+$")
         self.assertEqual(told, {name: f"{name} {version}\n" for name in PROGRAMS})
-
-
-if __name__ == "__main__":
-    unittest.main()

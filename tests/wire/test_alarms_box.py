@@ -380,7 +380,3 @@ class AlarmsOfTheBox(WithAlarms):
             wait_until(lambda: self.alarm(stage, "strangers"), "strangers")
         self.sees(stage, "strangers", "wait", "robot", "Too many strangers are connected", CROWD)
         self.goes(stage, "strangers", 90)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -163,7 +163,3 @@ class Disk(unittest.TestCase):
             file.seek(4096)
             file.write(os.urandom(size - 4096))
         return path.read_bytes()
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -111,7 +111,3 @@ class Matrix(Delivered):
 
 class MatrixAsMeasured(Matrix):
     post_options = ("--rate", "0", "--as-measured")
-
-
-if __name__ == "__main__":
-    unittest.main()

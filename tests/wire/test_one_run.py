@@ -131,7 +131,3 @@ class OneRun(unittest.TestCase):
             switch(stage, "A")
             wait_until(lambda: stage.post.recorded(REPORT), "what waited")
             self.assertEqual(len(stage.post.recorded(REPORT)), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

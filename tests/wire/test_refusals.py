@@ -214,7 +214,3 @@ class Refusals(unittest.TestCase):
         self.assertEqual(answer.headers["Access-Control-Allow-Origin"], "*")
         self.assertIn("POST", answer.headers["Access-Control-Allow-Methods"])
         self.assertIn("authorization", answer.headers["Access-Control-Allow-Headers"].lower())
-
-
-if __name__ == "__main__":
-    unittest.main()

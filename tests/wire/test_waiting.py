@@ -353,7 +353,3 @@ def replay(scene, markers):
             scene.pop(key, None)
         else:
             scene[key] = marker["pose"]["position"]["x"]
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -24,8 +24,7 @@ def tried(ask):
     for at in range(0, len(script), PIECE):
         ask(f"echo {script[at:at + PIECE]} >>/run/adit-try.64")
     ask("busybox base64 -d /run/adit-try.64 >/run/systemd/adit-try.sh")
-    # Without a daemon-reload, which a new unit does not need: PID 1 does not feed the hardware watchdog during it, and an emulated machine
-    # on a busy host takes longer for it than the 20 s after which that restarts the machine.
+    # A new unit needs no daemon-reload, which would keep PID 1 from feeding the hardware watchdog for as long as it takes.
     for line in (COPY.replace("\\\n", ""), "ip address add 203.0.113.1/32 dev lo", "systemctl start adit-try.service",
                  "ip address del 203.0.113.1/32 dev lo"):
         ask(line)

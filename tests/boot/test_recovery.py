@@ -1,8 +1,10 @@
 """What is killed, hangs or panics: each comes back by itself, and the lights do not pretend."""
 
+import dataclasses
 import time
 import unittest
 
+import boards
 import console
 import figures
 import leds
@@ -16,7 +18,7 @@ LATER = "/run/systemd/system/adit.service.d"  # what has systemd wait before it 
 class Recovery(Story):
     @classmethod
     def setUpClass(cls):
-        cls.tell(Stage())
+        cls.tell(Stage(board=dataclasses.replace(boards.QEMU_VIRT, words="adit.console")))  # with the image's own hardware watchdog
 
     def pid(self):
         return int(self.box.console.ask(PID))

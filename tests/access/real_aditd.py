@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The login of the real program: real_aditd.py ADITD. On loopback, with no Command Post."""
 
 import contextlib
@@ -21,7 +20,7 @@ TOKENS = {"scoring": "scoring-token-1", "mapping": "mapping-token-1", "team": "t
 OPERATOR, VIEWER = "correct horse battery", "look, do not touch"
 NOWHERE = {"address": "127.0.0.1", "port": 9}
 MOST_GUESSERS = 20
-aditd = None
+aditd = sys.argv[1]
 
 
 def wait_until(condition, what, within=30.0):
@@ -326,8 +325,3 @@ class Login(unittest.TestCase):
         self.assertEqual(box.ask("GET /adit/run", Authorization=f"Bearer {TOKENS['team']}")[0], 200)
         self.assertEqual(box.set_first(password="another password")[0], 200)
         box.log_in("another password")
-
-
-if __name__ == "__main__":
-    aditd = sys.argv.pop(1)
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """The button and the lights of the real program, with a simulated panel: real_button.py ADITD. On loopback."""
 
 import json
@@ -6,7 +5,6 @@ import os
 import pathlib
 import re
 import stat
-import sys
 import tempfile
 import time
 import unittest
@@ -217,8 +215,3 @@ class Button(unittest.TestCase):
         self.assertIsNone(about()["board"])
         told = next(alarm for alarm in self.run_view()["alarms"] if alarm["id"] == "board_not_used")
         self.assertIn("panel.helth: no such key; did you mean health?", told["why"])
-
-
-if __name__ == "__main__":
-    real_aditd.aditd = sys.argv.pop(1)
-    unittest.main()

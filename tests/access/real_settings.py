@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Setting up the real program by its API: real_settings.py ADITD. On loopback."""
 
 import base64
@@ -10,7 +9,6 @@ import re
 import signal
 import socket
 import stat
-import sys
 import tempfile
 import threading
 import time
@@ -318,8 +316,3 @@ class SetUp(unittest.TestCase):
         self.assertEqual((now["saved"], now["settings"]["robots"]), (False, []))
         report, = self.box.ask("GET /adit/reports", **self.me)[1]
         self.assertEqual(report["type"], "Drill")
-
-
-if __name__ == "__main__":
-    real_aditd.aditd = sys.argv.pop(1)
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """A card as somebody prepares it on a PC: a FAT image, mounted as boot.mount has it: real_card.py ADIT_IMPORT SOURCE. Skipped
 (77) where nothing can be mounted."""
 
@@ -15,7 +14,12 @@ TOKEN = "a-token-of-the-card-0123456789"
 SETTINGS = {"version": 1, "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},
                                            "mapping": {"address": "10.100.1.201", "port": 8000}},
             "team": {"listen": [{"address": "0.0.0.0", "port": 8000}], "connections": 40}}
-adit_import = source = None
+adit_import, source = sys.argv[1], pathlib.Path(sys.argv[2])
+
+
+def setUpModule():
+    if not can_mount():
+        raise unittest.SkipTest("no FAT image can be mounted here")
 
 
 def run(*command, **options):
@@ -123,11 +127,3 @@ def can_mount():
             return False
         run("umount", place)
         return True
-
-
-if __name__ == "__main__":
-    source, adit_import = pathlib.Path(sys.argv.pop()), sys.argv.pop()
-    if not can_mount():
-        print("skipped: no FAT image can be mounted here")
-        sys.exit(77)
-    unittest.main()

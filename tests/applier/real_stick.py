@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """adit-spare and USB sticks: images of real file systems, mounted, for which a stand-in for systemd-mount calls mount(8):
 real_stick.py ADIT_SPARE. Skipped (77) where nothing can be mounted; FAT, where the kernel has none."""
 
@@ -18,7 +17,14 @@ from mounting import Slots, be_alone, can_mount, make, run
 NAME = "adit-10.0.0.1-20261123T231600Z.adit-spare"
 EXPORT = b"adit-spare\x01\x00" + secrets.token_bytes(1 << 20)
 PART = "adit-spare.part"
-adit_spare = None
+adit_spare = sys.argv[1]
+
+
+def setUpModule():
+    if os.geteuid() == 0:
+        be_alone()
+    if not can_mount("ext4"):
+        raise unittest.SkipTest("no file system can be mounted here")
 
 
 class Sticks(unittest.TestCase):
@@ -272,13 +278,3 @@ class FatStick(Stick):
     def setUpClass(cls):
         if not can_mount("vfat"):
             raise unittest.SkipTest("this kernel mounts no FAT")
-
-
-if __name__ == "__main__":
-    adit_spare = sys.argv.pop(1)
-    if os.geteuid() == 0:
-        be_alone()
-    if not can_mount("ext4"):
-        print("skipped: no file system can be mounted here")
-        sys.exit(77)
-    unittest.main()

@@ -50,6 +50,17 @@ class Disk:
                 play(log, at, disk, sector * SECTOR, length)
         return lost
 
+    def has_flushed(self, text):
+        """Whether no power cut can lose these bytes, since it is on: they were written and, after that, there was a flush."""
+        writes = list(entries(self.log))
+        flushed = max((index for index, (flags, *_) in enumerate(writes) if flags & FLUSH), default=0)
+        with open(self.log, "rb") as log:
+            for _, _, length, at in writes[:flushed]:
+                log.seek(at)
+                if text in log.read(length):
+                    return True
+        return False
+
     # What stands on the boot partition, as somebody with a card reader sees it.
     def put(self, name, text):
         """Puts a file on the FAT partition: put("adit/settings.json", "...")."""

@@ -11,6 +11,7 @@ import unittest
 
 import boards
 import cables
+import console
 import disk
 import eavesdropper
 import hosts
@@ -117,7 +118,7 @@ class Stage:
             stderr=subprocess.STDOUT,
             text=True,
         )
-        said, _ = robots.communicate(timeout=seconds + 180)
+        said, _ = robots.communicate(timeout=seconds + 180 * console.PATIENCE)
         return robots.returncode, said
 
     def __exit__(self, *_):

@@ -119,7 +119,3 @@ class Overloaded(Contained):
              f"{'; '.join(looks.alarms.values()) or 'none'}")
         self.assertEqual(set(looks.alarms) - set(MAY_BE), set(), looks.alarms)
         self.assertLess(looks.faults, 15, "the lights say that it hangs")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -81,7 +81,3 @@ class Pc(Updating, Story):
         self.settled("good", NEWER, within=300)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.counts()["B_TRY"], "0")
-
-
-if __name__ == "__main__":
-    unittest.main()

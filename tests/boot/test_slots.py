@@ -247,7 +247,3 @@ class Grub(Slots, unittest.TestCase):
         self.machine.spend("b", 8)
         self.machine.lose(1)
         self.assertEqual(self.starts(3), "bb" + AGAIN)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -97,7 +97,3 @@ class TimeOfDay(Dials, Story):
 
     def test_units_are_as_they_should_be(self):
         self.assertEqual(self.box.console.ask("systemctl --failed --plain --no-legend --no-pager"), "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -101,7 +101,3 @@ class Updates(Updating, Story):
     def test_and_all_is_as_it_was(self):
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"])
         self.stage.began()
-
-
-if __name__ == "__main__":
-    unittest.main()

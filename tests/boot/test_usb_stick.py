@@ -156,7 +156,3 @@ class Sticks(Story):
         self.assertRegex(self.outcome()["refusal"], "room")
         self.box.pull_stick("full")
         self.assertEqual(names_on(image), {"filler"})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,6 +2,7 @@
 
 import http.client
 
+import console
 import programs
 
 
@@ -17,7 +18,7 @@ class Updating:
 
     def send(self, path):
         """As the page does."""
-        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=300)
+        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=300 * console.PATIENCE)
         headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/octet-stream"}
         with open(path, "rb") as file:
             connection.request("POST", "/adit/update", file, {**headers, "Content-Length": str(path.stat().st_size)})

@@ -138,11 +138,16 @@ class Scripts(unittest.TestCase):
             self.skipTest("there is no shellcheck here")
         subprocess.run(["shellcheck", "-s", "bash", *sorted((made() / "bash-completion/completions").iterdir())], check=True)
 
-    def test_are_read_by_their_shells(self):
-        for shell, found in (("zsh", "zsh/site-functions/_*"), ("fish", "fish/vendor_completions.d/*")):
-            for script in sorted(made().glob(found)) if shutil.which(shell) else []:
-                subprocess.run([shell, "-n", script], check=True)
+    def are_read_by(self, shell, pattern):
+        if not shutil.which(shell):
+            self.skipTest(f"there is no {shell} here")
+        scripts = sorted(made().glob(pattern))
+        self.assertTrue(scripts)
+        for script in scripts:
+            subprocess.run([shell, "-n", script], check=True)
 
+    def test_are_read_by_zsh(self):
+        self.are_read_by("zsh", "zsh/site-functions/_*")
 
-if __name__ == "__main__":
-    unittest.main()
+    def test_are_read_by_fish(self):
+        self.are_read_by("fish", "fish/vendor_completions.d/*")

@@ -74,7 +74,3 @@ class BesideNetworkManager(Story):
         for port in pc.PORTS.values():
             programs.wait_until(lambda port=port: self.stage.managed(port) not in ("unmanaged", "not there"), f"NetworkManager to have {port} again", 60)
         self.assertEqual(self.stage.managed(pc.OFFICE), "connected")
-
-
-if __name__ == "__main__":
-    unittest.main()

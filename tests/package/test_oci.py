@@ -86,7 +86,3 @@ class Image(unittest.TestCase):
         settings = {"destination": "/settings.json", "type": "bind", "source": str(self.folder / "settings.json"), "options": ["bind", "ro"]}
         _, running, _ = self.start("aditd", "--settings", "/settings.json", "--secrets", "/tmp/secrets", "--state", "/tmp/state", mounts=[settings])
         self.assertEqual(self.answer(running).status_code, 200)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -223,7 +223,3 @@ class Packages(Story):
         self.box.apt("purge adit", remove_ledger="true")
         self.assertEqual(self.box.shell(f"ls -d {STATE} /var/lib/adit /etc/adit 2>/dev/null || true"), "")
         self.assertEqual(self.stage.office(), self.stage.office_before)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "./stage.js";
 import { retell } from "./retold.js";
-import { axeFindsNothing, hears, said, settled, shoot, showsTheClock, text, toTab, watch } from "./watch.js";
+import { axeFindsNothing, hears, said, settled, showsTheClock, text, toTab, watch } from "./watch.js";
 
 const SIZES = [[390, 844], [768, 1024], [1280, 720], [1920, 1080], [3840, 2160]];
 
@@ -195,20 +195,6 @@ test("wears the theme that was chosen, here and on the other pages, and the syst
   for (const path of ["", "system", "setup", "display"]) {
     await page.goto(stage.url + path);
     assert.deepEqual(await worn(), ["red", "rgb(8, 0, 0)"], path);
-  }
-});
-
-test("is kept as pictures, for people to look at", async (t) => {
-  for (const path of ["", "display"]) {
-    const { page } = await watch(t, "reports", { path });
-    for (const [width, height] of SIZES.filter(([width]) => width !== 768)) {
-      await page.setViewportSize({ width, height });
-      for (const colorScheme of ["dark", "light"]) {
-        await page.emulateMedia({ colorScheme });
-        await settled(page);
-        await shoot(page, `${path || "page"}-${width}x${height}-${colorScheme}`);
-      }
-    }
   }
 });
 

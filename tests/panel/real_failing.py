@@ -1,9 +1,7 @@
-#!/usr/bin/python3
 """adit-panel with lights that cannot be set: real_failing.py ADIT_PANEL ADITD. The panel is a simulated one, which cannot be
 written while a folder stands in the way of its file."""
 
 import contextlib
-import sys
 import threading
 import time
 import unittest
@@ -90,9 +88,3 @@ class Failing(Running):
             self.wait_until(lambda: "the panel's lights cannot be set" in self.said(), "aditd to say so")
         self.is_at_work()
         self.wait_until(lambda: "the panel's lights can be set again" in self.said(), "aditd to say so")
-
-
-if __name__ == "__main__":
-    running.aditd = sys.argv.pop()
-    running.adit_panel = sys.argv.pop()
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """adit-panel, which holds lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is a simulated one."""
 
 import select
@@ -252,9 +251,3 @@ class WithAditd(Running):
             self.wait_until(lambda: self.said().count("the button was pressed") > before, "aditd to be told")
             panel.kill()
             panel.wait(PATIENCE)
-
-
-if __name__ == "__main__":
-    running.aditd = sys.argv.pop()
-    running.adit_panel = sys.argv.pop()
-    unittest.main()

@@ -88,7 +88,3 @@ class Arrivals(unittest.TestCase):
             self.assertEqual(answer.status_code, 422)
             self.assertIn(name, answer.text)
         self.assertEqual(self.post.tell("posted", {}).status_code, 422)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -248,7 +248,3 @@ class Scoring(unittest.TestCase):
             self.assertEqual([post.report(REPORT).status_code for _ in range(5)], [201] * 5)
         with CommandPost("--as-measured", rate=1) as post:
             self.assertEqual(two_at_once(lambda: post.report(REPORT)), [201, 429])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -29,7 +29,7 @@ class CommandPost:
             self.write(f"{name}.token", token + "\n")
         self.transcript = os.path.join(self.folder.name, "transcript")
         any_port = "127.0.0.1:0"
-        self.command = [os.environ["ADIT_REHEARSAL"], "--scoring", any_port, "--mapping", any_port,
+        self.command = [os.path.join(os.environ["ADIT_BIN"], "adit-rehearsal"), "--scoring", any_port, "--mapping", any_port,
                         "--control", any_port, "--secrets", self.folder.name, *options]
         if rate is not None:
             self.command += ["--rate", str(rate)]

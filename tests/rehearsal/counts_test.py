@@ -58,7 +58,3 @@ class Counts(unittest.TestCase):
                                   check=False)
         self.assertEqual(done.returncode, 2)
         self.assertIn("--counts: expected starts, last-bytes or answers, got 'never'", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

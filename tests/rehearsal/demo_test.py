@@ -152,7 +152,3 @@ class Demo(unittest.TestCase):
                 self.assertIn(why, self.refused(*words))
         self.assertIn("/proc/demo cannot be written to: name another folder by --folder", self.refused(folder="/proc/demo"))
         self.assertIn("is there, and not a demo's", self.refused(folder=self.folder.parent))
-
-
-if __name__ == "__main__":
-    unittest.main()

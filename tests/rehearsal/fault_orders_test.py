@@ -153,7 +153,3 @@ class Process(unittest.TestCase):
             self.assertIn('"POST /api/artifact_reports report ": 201\n', out)
             self.assertIn("  /api/artifact_reports: other-sender,500 (1 times)\n", out)
             self.assertIn("scored, 0, by another sender\n", out)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -119,7 +119,3 @@ class TheRun(OneRequest):
                          [(1, "other sender", None), (2, "client", 1), (3, "other sender", None)])
         self.assertEqual([line["by"] for line in self.post.lines("reports.jsonl")],
                          ["other sender", "client", "other sender"])
-
-
-if __name__ == "__main__":
-    unittest.main()

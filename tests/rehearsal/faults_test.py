@@ -139,7 +139,3 @@ class Aims(unittest.TestCase):
             self.assertEqual((answer.status_code, answer.json()),
                              (429, "Cloud updates too frequent. Reduce to <1Hz."))
             self.assertEqual(post.record()["accepted"], [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -100,7 +100,3 @@ class Record(unittest.TestCase):
             self.assertEqual(post.lines("reports.jsonl"), reports)
             self.assertEqual([line["number"] for line in post.lines() if line["status"] == 201], [2, 4])
             self.assertEqual(post.record()["report_count"], 3)
-
-
-if __name__ == "__main__":
-    unittest.main()

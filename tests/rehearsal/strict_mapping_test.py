@@ -242,7 +242,3 @@ class Refused(unittest.TestCase):
             time.sleep(1)
             for path, body in bodies.items():
                 self.assertEqual(post.mapping_request("POST", path, body).status_code, 200, path)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -133,7 +133,3 @@ class Refusals(unittest.TestCase):
             time.sleep(1)
             self.assertEqual(report().status_code, 201, "one that was refused does not count")
             self.assertEqual(post.record()["report_count"], sum(answer.status_code == 201 for answer in answers))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -156,7 +156,3 @@ class Transcript(unittest.TestCase):
         header, body = read_pcd(self.path("clouds/000001-X2.pcd"))
         self.assertEqual(body, POINTS)
         self.assertEqual([float(word) for word in header["VIEWPOINT"][:3]], list(POSE["position"].values()))
-
-
-if __name__ == "__main__":
-    unittest.main()

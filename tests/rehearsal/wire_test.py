@@ -225,7 +225,3 @@ class Process(unittest.TestCase):
         with CommandPost("--control", "[::1]:0") as post:
             self.assertRegex(post.control, r"^\[::1\]:\d+$")
             self.assertEqual(post.record()["state"], "running")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,23 +1,29 @@
 """What the tests of the recipe share: where things are, and what a board says of itself."""
 import re
 import subprocess
-import sys
+import unittest
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 BOARDS = sorted(path.parent.name for path in TOP.glob("board/*/board.conf"))
 IMAGES = TOP / "build/image"
-
-
-def skip(why: str) -> None:
-    print(f"skipped: {why}")
-    sys.exit(77)
+GROUP = "health", "scoring", "mapping", "attention", "button"  # of a panel
+# The commands that every boot loader knows that a board may have (board/espressobin/README.md).
+KNOWN = {"booti", "echo", "env", "load", "part", "reset", "setenv", "size", "sleep", "source", "test", "true"}
 
 
 def conf(board: str, name: str) -> list[str]:
     """The words of a variable of board.conf, which is Bash."""
     script = f'. "{TOP}/board/{board}/board.conf"; printf "%s\\n" "${{{name}[@]}}"'
     return [word for word in subprocess.run(["bash", "-c", script], check=True, capture_output=True, text=True).stdout.split("\n") if word]
+
+
+def some(found, otherwise: str = "") -> list:
+    """The list of what was found. If it is empty, a loop over it checks nothing: the test is skipped with the reason `otherwise`, or fails."""
+    found = list(found)
+    if not found:
+        raise unittest.SkipTest(otherwise) if otherwise else AssertionError("there is nothing to check")
+    return found
 
 
 def built() -> list[str]:

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Which cards need adit-import: rootfs/initrd/card, over folders as whoever has a card leaves them. A card that is wrongly called empty
 would be one whose settings are never taken; one that is wrongly not costs a second."""
 import subprocess
@@ -38,7 +37,3 @@ class Card(unittest.TestCase):
 
     def test_a_token_that_is_still_to_be_wiped_keeps_it_from_being_so(self):
         self.assertFalse(self.is_empty("adit/secrets/scoring.token.taken"))
-
-
-if __name__ == "__main__":
-    unittest.main()

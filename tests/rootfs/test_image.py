@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """The image that was built here: small, the same bytes each time, with nothing in it that is not on its list of parts."""
 import datetime
 import gzip
@@ -11,13 +10,16 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from recipe import IMAGES, TOP, built, conf, skip
+from recipe import GROUP, IMAGES, KNOWN, TOP, built, conf, nodes, some
 
 ARCHITECTURE = subprocess.run(["dpkg", "--print-architecture"], check=True, capture_output=True, text=True).stdout.strip()
 ID = re.compile(r"SPDXRef-[A-Za-z0-9.-]+")
+NEEDED = re.compile(r"^(ethernet|mmc|gpio|watchdog|usb|i2c|switch\d*|mdio|phy)@")  # kinds of nodes of a device tree
 BOARDS = built()
-if not BOARDS:
-    skip("no image was built here; toolchain/image builds one")
+
+
+def setUpModule():
+    some(BOARDS, "no image was built here; toolchain/image builds one")
 
 
 def parts_of(board: str) -> dict:
@@ -79,7 +81,7 @@ class Parts(unittest.TestCase):
                 names = {package["name"] for package in parts_of(board)["packages"]}
                 owners = dict(line.split("\t") for line in (work / "parts.spdx.json.owners").read_text().splitlines())
                 adit = {line.rpartition(f"{work.name}/root/")[2] for line in (work / "install.log").read_text().splitlines()}
-                for path in elf_files(work / "root"):
+                for path in some(elf_files(work / "root")):
                     owner = owners.get(path) or owners.get(re.sub("^usr/", "", path))
                     self.assertTrue(owner in names or path in adit, f"{path} is of no part")
 
@@ -93,10 +95,9 @@ class Parts(unittest.TestCase):
 class Root(unittest.TestCase):
     def test_an_image_is_at_most_40_mb_compressed(self):
         """Where there is one: a release's, or whoever's made it without --no-xz."""
-        for board in BOARDS:
-            with self.subTest(board):
-                for image in (IMAGES / board).glob("*.img.xz"):
-                    self.assertLessEqual(image.stat().st_size, 40_000_000)
+        for image in some((image for board in BOARDS for image in (IMAGES / board).glob("*.img.xz")), "no image was compressed here"):
+            with self.subTest(image.name):
+                self.assertLessEqual(image.stat().st_size, 40_000_000)
 
     def test_a_slot_is_small(self):
         """Compressed, the image of an arm64 board is a third of that (rootfs/README.md)."""
@@ -125,10 +126,9 @@ class Root(unittest.TestCase):
 
     def test_the_programs_of_a_board_like_this_machine_find_each_function(self):
         """Those of the stand-ins, too: linked as they are at their start, with nothing left for later."""
-        for board in BOARDS:
+        alike = (board for board in BOARDS if conf(board, "architecture") == [ARCHITECTURE])
+        for board in some(alike, f"no image of a board of {ARCHITECTURE} was built here"):
             root = IMAGES / board / "work/root"
-            if conf(board, "architecture") != [ARCHITECTURE]:
-                continue
             for program in "aditd", "adit", "rauc":
                 with self.subTest(board, program=program):
                     said = subprocess.run(["chroot", root, f"/usr/bin/{program}", "--version"], capture_output=True, text=True,
@@ -140,20 +140,106 @@ class Root(unittest.TestCase):
             root = IMAGES / board / "work/root"
             there = {path.name for path in root.rglob("*.so*")}
             with self.subTest(board):
-                files = [root / path for path in elf_files(root) if not path.endswith(".ko")]
+                files = some(root / path for path in elf_files(root) if not path.endswith(".ko"))
                 said = subprocess.run(["readelf", "-d", *files], capture_output=True, text=True).stdout
                 self.assertLessEqual(set(re.findall(r"\(NEEDED\).*\[(.*)\]", said)), there)
 
     def test_every_program_that_a_unit_starts_is_there(self):
         for board in BOARDS:
             root = IMAGES / board / "work/root"
-            for unit in root.glob("usr/lib/systemd/system/**/*"):
+            for unit in some(root.glob("usr/lib/systemd/system/**/*")):
                 if not unit.is_file() or unit.is_symlink():
                     continue
                 for line in re.findall(r"^Exec\w+=[-@:+!|]*([^\s$]+)", unit.read_text(), re.M):
                     with self.subTest(board, unit=unit.name):
                         places = [root / line.lstrip("/")] if line.startswith("/") else [root / "usr/bin" / line, root / "usr/sbin" / line]
                         self.assertTrue(any(os.path.lexists(place) for place in places), line)
+
+
+class Loaders(unittest.TestCase):
+    def test_the_loader_in_the_image_knows_each_command_and_has_the_environment(self):
+        packages = IMAGES.glob("debian-arm64/*/u-boot-rockchip_*.deb")
+        package, *_ = some(packages, "u-boot-rockchip was not fetched here: the image of an arm64 board does")
+        file = "./usr/lib/u-boot/rock-pi-e-rk3328/u-boot-nodtb.bin"
+        opened = subprocess.run(["dpkg-deb", "--fsys-tarfile", package], stdout=subprocess.PIPE, check=True).stdout
+        loader = subprocess.run(["tar", "-xO", file], input=opened, stdout=subprocess.PIPE, check=True).stdout
+        for command in KNOWN | {"mmc"}:
+            self.assertIn(command.encode() + b"\0", loader, command)
+        for line in (TOP / "board/rock-pi-e/u-boot.env").read_text().splitlines():
+            if not line.startswith("#"):
+                self.assertRegex(loader, re.escape(line.encode()) + b" ?\0")
+
+    def test_what_is_loaded_does_not_overlap(self):
+        boards = (board for board in BOARDS if (TOP / "board" / board / "u-boot.env").exists())
+        for board in some(boards, "no image of a board with U-Boot was built here"):
+            slot = IMAGES / board / "work/slot"
+            kernel = slot.joinpath("Image").read_bytes()[16:24]  # Linux, Documentation/arm64/booting.rst: image_size
+            sizes = {"scriptaddr": 1 << 16, "kernel_addr_r": int.from_bytes(kernel, "little") + (2 << 20),  # it is moved to whole 2 MiB
+                     "ramdisk_addr_r": (slot / "initrd").stat().st_size}
+            if (slot / "board.dtb").exists():
+                sizes["fdt_addr_r"] = (slot / "board.dtb").stat().st_size + (64 << 10)  # U-Boot adds to it
+            with self.subTest(board):
+                self.check_apart(board, sizes)
+
+    def check_apart(self, board, sizes):
+        text = (TOP / "board" / board / "u-boot.env").read_text()
+        places = sorted((int(re.search(rf"^{name}=(0x[0-9a-f]+)$", text, re.M)[1], 16), size, name) for name, size in sizes.items())
+        for (start, size, name), (after, _, other) in zip(places, places[1:]):
+            self.assertLessEqual(start + size, after, f"{name} runs into {other}")
+        self.assertLess(sum(places[-1][:2]) - places[0][0], 192 << 20, "the smallest board has 256 MB, and U-Boot is at its end")
+
+
+class Drivers(unittest.TestCase):
+    def test_each_device_that_is_needed_has_a_driver_in_the_image_or_in_the_kernel(self):
+        for board, dtb in self.device_trees():
+            root = IMAGES / board / "work/root"
+            modules = next(root.glob("usr/lib/modules/*"))
+            aliases = re.findall(r"^alias (of:\S+) (\S+)$", (modules / "modules.alias").read_text(), re.M)
+            kernel = next((IMAGES / board / "work/slot").glob("Image")).read_bytes()
+            tree = nodes(dtb).items()
+            for path, properties in some((path, has) for path, has in tree if NEEDED.match(path.rsplit("/", 1)[-1]) and "compatible" in has):
+                names = properties["compatible"].strip('"').split("\\0")
+                with self.subTest(f"{board} {path}", compatible=names):
+                    module = any(self.fits(alias, name) for alias, _ in aliases for name in names)
+                    builtin = any(b"\0" + name.encode() + b"\0" in kernel for name in names)
+                    self.assertTrue(module or builtin or names[0].startswith("ethernet-phy-id"))
+
+    def test_what_finds_the_root_is_in_the_initrd(self):
+        for board in BOARDS:
+            with self.subTest(board):
+                order = (IMAGES / board / "work/initrd.modules").read_text()
+                builtin = next((IMAGES / board / "work/root").glob("usr/lib/modules/*/modules.builtin")).read_text()
+                for module in [*conf(board, "initrd_modules"), "squashfs"]:
+                    self.assertRegex(order + builtin, "/" + re.sub("[-_]", "[-_]", module) + r"\.ko")
+
+    def test_the_lines_of_the_panel_have_their_names_in_the_device_tree(self):
+        for board, dtb in self.device_trees():
+            panel = json.loads((TOP / "board" / board / "board.json").read_text()).get("panel")
+            if not panel:
+                continue
+            names = {name for properties in nodes(dtb).values() for name in properties.get("gpio-line-names", "").strip('"').split("\\0")}
+            with self.subTest(board):
+                self.assertLessEqual({panel[light] for light in GROUP}, names)
+
+    def test_the_ports_are_where_the_device_tree_has_them(self):
+        for board, dtb in self.device_trees():
+            tree = nodes(dtb)
+            for link in some((TOP / "board" / board).glob("*.link")):
+                with self.subTest(board, link=link.name):
+                    kind, what = re.search(r"^(Path|OriginalName)=(.*)$", link.read_text(), re.M).groups()
+                    if kind == "Path":  # platform-ff540000.ethernet is the node ethernet@ff540000
+                        address, device = re.fullmatch(r"platform-([0-9a-f]+)\.(\w+)", what).groups()
+                        self.assertIn(f"/{device}@{address}", tree)
+                    else:
+                        self.assertIn(f'"{what}"', [properties.get("label") for properties in tree.values()])
+
+    def device_trees(self):
+        trees = ((board, IMAGES / board / "work/slot/board.dtb") for board in BOARDS)
+        return some(((board, dtb) for board, dtb in trees if dtb.exists()), "no image of a board with a device tree was built here")
+
+    @staticmethod
+    def fits(alias: str, name: str) -> bool:
+        return re.fullmatch(r"of:N\*T\*C" + re.escape(name) + r"(C\*)?", alias) is not None
 
 
 class Again(unittest.TestCase):
@@ -174,7 +260,3 @@ class Again(unittest.TestCase):
             for name in "root.squashfs", "boot.vfat", "parts.spdx.json":
                 self.assertEqual(digest(work / name), digest(there / name), name)
             self.assertEqual(digest(work / "disk.img"), digest(IMAGES / board / f"adit-{board}-{version}.img"))
-
-
-if __name__ == "__main__":
-    unittest.main()

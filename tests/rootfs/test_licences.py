@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What Debian's packages say of their licences becomes an SPDX expression, or none at all."""
 import sys
 import unittest
@@ -39,7 +38,3 @@ class Expressions(unittest.TestCase):
     def test_prose_is_not_guessed_at(self):
         self.assertEqual(Licences().expression("This is free software; see the GPL.\n"), "NOASSERTION")
         self.assertEqual(Licences().expression(""), "NOASSERTION")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """Scripts of the recipe and of the box, called with files and folders that are made here: GRUB's environment, two disks, toolchain/image's
 options."""
 import os
@@ -274,7 +273,3 @@ class Options(Scripts):
     def test_or_else_for_the_certificate_that_updates_are_signed_for(self):
         self.assertEqual(self.told(ADIT_KEYRING="", ADIT_SIGNING_CERT="one.pem")[1], "one.pem")
         self.assertEqual(self.told(ADIT_KEYRING="", ADIT_SIGNING_CERT="")[1], "build/image/keys/cert.pem")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,3 @@
-#!/usr/bin/env python3
 """What the initrd calls in the root: which partition becomes the box's state (usr/lib/adit/state), with a disk's folder of sysfs and programs
 that are made here, and what is there before any address (usr/lib/adit/early). tests/boot starts both from a real disk; but QEMU has no eMMC,
 whose boot areas lie in that folder too."""
@@ -8,7 +7,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from recipe import TOP, skip
+from recipe import TOP
 
 SCRIPTS = TOP / "rootfs/overlay/usr/lib/adit"
 SECTORS = {"env": 2048, "boot": 81920, "boot-a": 131072, "boot-b": 131072, "root-a": 262144, "root-b": 262144}
@@ -23,8 +22,11 @@ REPAIRED = ["e2fsck -p /dev/mmcblk0p7"]
 FOLDERS = {"cache": "755", "cache/private": "700", "lib": "755", "lib/private": "700", "lib/rauc": "755", "log": "755", "log/private": "700",
            "run": "../run", "tmp": "1777"}
 RECORD = 'echo "${0##*/} $*" >>"${0%/*}/../called"\n'
-if subprocess.run([*OWN, "mount", "-t", "tmpfs", "tmpfs", "/run"], capture_output=True).returncode:
-    skip("this machine gives nobody a mount namespace")
+
+
+def setUpModule():
+    if subprocess.run([*OWN, "mount", "-t", "tmpfs", "tmpfs", "/run"], capture_output=True).returncode:
+        raise unittest.SkipTest("this machine gives nobody a mount namespace")
 
 
 class Script(unittest.TestCase):
@@ -224,7 +226,3 @@ class Early(Script):
 
     def test_a_card_may_bring_other_addresses_and_nobody_is_ahead_of_it(self):
         self.assertEqual(self.leaves_out("adit-nftables", card=":"), [FIREWALL])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -11,7 +11,7 @@ import tempfile
 import time
 import unittest
 
-ADIT_UPDATE = os.environ["ADIT_UPDATE"]
+ADIT_UPDATE = os.path.join(os.environ["ADIT_BIN"], "adit-update")
 BOARD = "adit-test-board"
 ROOT_SIZE, BOOT_SIZE = 3 << 20, 1 << 20
 # A bundle is read through dm-verity as on a box, where the machine has the device mapper; else through its checksums.

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """An update as an operator makes it: uploaded to a real aditd, installed by adit-update with a real RAUC."""
 
 import contextlib
@@ -31,7 +30,7 @@ class Aditd:
             "team": {"listen": [{"address": "127.0.0.1", "port": 0}]}}))
         with open(self.log, "wb") as log:
             self.process = subprocess.Popen(
-                [os.environ["ADITD"], "--settings", box.folder / "settings.json", "--secrets", secrets, "--state",
+                [os.path.join(os.environ["ADIT_BIN"], "aditd"), "--settings", box.folder / "settings.json", "--secrets", secrets, "--state",
                  box.folder / "wanted", "--update", box.folder / "status"], stdout=log, stderr=log,
                 env={**os.environ, "ASAN_OPTIONS": "quarantine_size_mb=1"})  # else what is freed stays resident there
         found = raucs.wait_until(lambda: re.search(r"listening .*port=(\d+)", self.log.read_text()), "aditd to listen")
@@ -158,7 +157,3 @@ class OverTheApi(unittest.TestCase):
         status, said = self.refused_at_once(4096, HEAD)
         self.assertEqual(status, 422)
         self.assertIn("cut short", said)
-
-
-if __name__ == "__main__":
-    unittest.main()

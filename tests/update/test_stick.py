@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Updates on USB sticks."""
 
 import os
@@ -69,7 +68,3 @@ class AStick(OnABox):
     def test_that_is_gone_is_said(self):
         self.box.ask("stick")
         self.expect_refused(self.box.update(), "there is no update on a stick")
-
-
-if __name__ == "__main__":
-    unittest.main()

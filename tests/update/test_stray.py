@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Another slot runs than the one that was good last: the boot loader went to it without a word."""
 
 import json
@@ -139,7 +138,3 @@ class NeverWritten(OnB):
         for status in refused, self.box.update():
             self.assertEqual((status["last"]["stage"], status["last"]["version"]), ("failed", "0.4.0"))
         self.assertEqual(self.box.boot_loader()["BOOT_ORDER"].split()[0], "B", "what runs, not what nothing is told of")
-
-
-if __name__ == "__main__":
-    unittest.main()

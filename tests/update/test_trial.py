@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """What becomes of an update: on trial, good or left; cut off, or told by nobody."""
 
 import shutil
@@ -179,7 +178,3 @@ class Killed(OnABox):
             self.wait_for_rauc()
             subprocess.run(["pkill", "-KILL", "-P", str(process.pid)], check=True)
             self.expect_it_waits_for_raucs_end_and_tells_it(process)
-
-
-if __name__ == "__main__":
-    unittest.main()

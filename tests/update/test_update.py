@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """adit-update with a real RAUC: what is installed and what is refused."""
 
 import json
@@ -210,7 +209,3 @@ class AlwaysTrue(unittest.TestCase):
             self.assertEqual(box.update()["last"]["stage"], "")
             (box.folder / "state/last.json").write_text(json.dumps({"format": 9}))
             self.assertEqual(box.update()["last"]["stage"], "")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,4 +1,5 @@
-"""Runs one module of tests, alone (../alone); exit status 77 where all of it was skipped, as ctest is told."""
+"""Runs a module of tests: run.py [DIRECTORY/]MODULE[.CLASS] [ARGUMENTS]. It says of each test that is skipped why ("... skipped 'reason'").
+Exit status 77 if all of it was skipped, as ctest is told; 1 if it has no tests."""
 
 import os
 import pathlib
@@ -6,13 +7,17 @@ import signal
 import sys
 import unittest
 
+ALONE = ("wire", "boot", "package")  # directories whose tests make networks: ../alone
+
 if __name__ == "__main__":
-    if "ADIT_ALONE" not in os.environ:
+    module = pathlib.Path(sys.argv[1]).absolute()
+    if module.parent.name in ALONE and "ADIT_ALONE" not in os.environ:
         os.execv(pathlib.Path(__file__).parents[1] / "alone", ["alone", sys.executable, "-B", *sys.argv])
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that what was made is taken away
-    result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromName(sys.argv[1]))
-    skipped_all = result.testsRun > 0 and len(result.skipped) >= result.testsRun
-    nothing_ran = result.testsRun == 0 and bool(result.skipped)
-    if not result.wasSuccessful():
+    del sys.argv[0]  # the module reads its arguments as a program does
+    sys.path.insert(0, str(module.parent))
+    result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromName(module.name))
+    ran = result.testsRun - sum(isinstance(test, unittest.TestCase) for test, _ in result.skipped)  # a class's is in neither
+    if not result.wasSuccessful() or not (ran or result.skipped):
         sys.exit(1)
-    sys.exit(77 if skipped_all or nothing_ran else 0)
+    sys.exit(0 if ran else 77)

@@ -221,7 +221,3 @@ class AddressWatch(unittest.TestCase):
         late = self.other(self.network.team, "team0")
         late.take(self.network.box_address)
         self.is_taken(self.network.box_address, late.mac, "team0")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -47,7 +47,3 @@ class Alarms(WithAlarms):
         self.assertEqual(len(self.view(stage)["alarms"]), 1)
         stage.network.pull_cable(False)
         self.goes(stage, "cable_out:command_post")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -29,7 +29,3 @@ class Acknowledged(WithAlarms):
         self.sees(began(stage), "report_held:1", "ask", "box", "Report 1 is held")
         self.assertFalse(self.alarm(stage, "report_held:1")["acknowledged"])
         self.assertEqual(stage.box.said().count("which alarms were acknowledged cannot be read"), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

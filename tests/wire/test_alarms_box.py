@@ -89,7 +89,3 @@ class Box(WithAlarms):
         self.sees(stage, "notice:disks", "bad", "box", "The box is not well", "2 disks hold an Adit")
         (stage.folder / "notices/disks").unlink()
         self.goes(stage, "notice:disks")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -54,7 +54,3 @@ class Clients(WithAlarms):
         self.sees(stage, "robot_unknown:r9", "ask", "robot", "Robot r9 is unknown", "set-up has r1")
         stage.box.save(lambda settings: settings["robots"].append({"name": "r9"}))
         self.goes(stage, "robot_unknown:r9")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -17,7 +17,3 @@ class Full(WithAlarms):
         stage.post.control("DELETE /faults")
         self.goes(stage, "queue_nearly_full", 120)
         self.goes(stage, "queue_full", 120)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -73,7 +73,3 @@ class Kept(WithAlarms):
         self.goes(stage, "state_not_kept")
         wait_until(lambda: self.send_map(stage, "r1", 1).status_code == 200, "a map to be taken")
         self.goes(stage, "map_not_kept")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -50,7 +50,3 @@ class Maps(WithAlarms):
         number = self.view(stage)["aside"][0]["number"]
         self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/discard", body={})[0], 200)
         self.goes(stage, "set_aside")
-
-
-if __name__ == "__main__":
-    unittest.main()

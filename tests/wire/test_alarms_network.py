@@ -93,7 +93,3 @@ class Networks(WithAlarms):
         with contextlib.suppress(OSError):
             return stage.box.ask("GET /adit/run", timeout=2)[0] == 200
         return False
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -19,7 +19,3 @@ class Queue(WithAlarms):
         self.sees(stage, "queue_growing", "wait", "network", "The map queue is growing", "more comes in than goes out")
         stage.box.save(lambda settings: settings["command_post"].update(budget_mbit=100))
         self.goes(stage, "queue_growing", 120)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -60,7 +60,3 @@ class Reports(WithAlarms):
                   "somebody else reports with this token")
         self.assertEqual(stage.box.ask("POST /adit/runs", body={})[0], 200)
         self.goes(stage, "run_unreliable")
-
-
-if __name__ == "__main__":
-    unittest.main()

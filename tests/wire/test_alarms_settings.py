@@ -69,7 +69,3 @@ class Settings(WithAlarms):
         self.sees(began(stage), "settings_not_used", "bad", "box", "The saved settings are not used", "are set aside")
         stage.box.save(lambda settings: settings["reports"].update(near_metres=8))
         self.goes(stage, "settings_not_used")
-
-
-if __name__ == "__main__":
-    unittest.main()

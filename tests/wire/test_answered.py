@@ -215,7 +215,3 @@ class Answered(unittest.TestCase):
               f"{sum(len(lost) for *_, lost in losses)} lost, {len(doubled)} reports doubled", flush=True)
         self.assertEqual((losses, doubled), ([], []))
         self.assertGreater(counts["map"], ENDS)
-
-
-if __name__ == "__main__":
-    unittest.main()

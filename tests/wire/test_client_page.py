@@ -88,7 +88,3 @@ class ClientPage(unittest.TestCase):
         for _, _, sentence in refused.ELSEWHERE:
             for part in re.split("N |: |; ", sentence):  # numbers, and what the code puts together
                 self.assertIn(part.strip(), code)
-
-
-if __name__ == "__main__":
-    unittest.main()

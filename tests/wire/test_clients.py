@@ -149,7 +149,3 @@ class Bare(unittest.TestCase):
                     with self.subTest(name, what=what):
                         self.assertEqual(self.run_there(stage, name, [what], "mapping").ended(), (ANSWERED, "null\n"))
             self.assertEqual(stage.post.violations(), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -236,7 +236,3 @@ class Step(unittest.TestCase):
 
     def code(self):
         return self.stage.box.said().split("code=")[1].split()[0].strip('"')
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -357,7 +357,3 @@ class Letters(Case):
             terminal = self.at_a_terminal(stage, "status", env={**UTF8, "LC_ALL": "C"})
             terminal.end()
             self.assertIn("H\\xc3\\xb6hle", terminal.seen, "a terminal without UTF-8 gets ASCII")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -103,7 +103,3 @@ class Crowd(unittest.TestCase):
         self.assertIn(f"requests are under way at once, most of {ADDRESSES[0]}", stage.box.attention())
         self.assertEqual(self.metric(stage, 'adit_connections_ended_total{why="no_room"}'), 1)
         self.assertEqual(len(busy), 4)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -94,7 +94,3 @@ class Disk(unittest.TestCase):
     @staticmethod
     def remount(stage, how, *where):
         subprocess.run([*where, "mount", "--options-mode=ignore", "-o", f"remount,{how}", stage.box.state], check=True)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -68,7 +68,3 @@ class ExactlyOnce(unittest.TestCase):
             said = [(alarm["severity"], alarm["subject"]) for alarm in stage.box.ask("GET /adit/run")[1]["alarms"]]
             self.assertIn(("wait", "1"), said, "Adit itself asks what became of it")
             self.assertEqual(submit(stage).status_code, 201)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -264,7 +264,3 @@ class Fidelity(Delivered):
     def test_the_status(self):
         answer = requests.get(self.stage.box.url + "/api/status", headers=messages.headers(JSON), timeout=30)
         self.assertIn(answer.text, [request["answer"] for request in self.stage.post.requests("/api/status")])
-
-
-if __name__ == "__main__":
-    unittest.main()

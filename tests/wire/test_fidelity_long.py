@@ -42,7 +42,3 @@ class LargeMarkers(Delivered):
         taken = wait_until(lambda: [request for request in self.stage.post.requests("/markers/update")
                                     if request["status"] == 200], "the marker to be taken")
         self.assertEqual(taken[-1]["message"]["markers"][-1]["points"], {"elements": 60_000})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -134,7 +134,3 @@ class HostilePost(unittest.TestCase):
             self.assertIn("remaining_reports", json.loads(answer.text))
             self.assertFalse(report.done(), "the report was waited for")
             stage.box.stop()  # which tells the client
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -68,7 +68,3 @@ class InDoubt(unittest.TestCase):
             self.assertEqual(submit(stage).status_code, 201)
             self.assertEqual(len(stage.post.recorded(REPORT)), 2, "once more, on the operator's word")
             self.assertNotIn("in doubt", stage.box.attention())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -237,7 +237,3 @@ class Closing:
     def close(self):
         self.post.process.kill()
         self.post.process.wait()
-
-
-if __name__ == "__main__":
-    unittest.main()

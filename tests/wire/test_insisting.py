@@ -65,7 +65,3 @@ class TheLastAnswers(unittest.TestCase):
         recorded = [{"x": x, "y": 0.0} for x in (1.0, 2.0, 3.0)]
         posted = [self.posted(1.0, 0), self.posted(2.0, 0, status=409), self.posted(3.0, 0, status=None)]
         self.assertEqual(last_answers(posted, recorded), [(1.0, 0.0)])
-
-
-if __name__ == "__main__":
-    unittest.main()

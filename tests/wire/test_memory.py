@@ -136,7 +136,3 @@ class Memory(unittest.TestCase):
             self.assertLess(peak, 2 * REST, "with the bodies that wait for their turn")
             self.assertLessEqual({each.result().status_code for each in under_way}, {413, 422, 429})
             wait_until(lambda: self.resident(stage, "RssAnon") < REST // 2, "it to give back what it took")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -234,7 +234,3 @@ class WithAStandIn(Change):
     def test_an_interface_that_is_gone_is_told(self):
         hosts.ip("-n", self.network.box, "link", "delete", "darpa0")
         self.assertEqual(self.probe()["address"], "")
-
-
-if __name__ == "__main__":
-    unittest.main()

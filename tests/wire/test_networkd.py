@@ -127,7 +127,3 @@ class WithNetworkd(Change):
             self.network.pull_cable(False)
         self.assertNotIn("Deleted", seen())
         self.assertEqual(self.box.addresses("darpa0"), ["10.100.1.10/24"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -66,7 +66,3 @@ class NoMemory(unittest.TestCase):
         wait_until(lambda: [request for request in self.stage.post.requests("/map/update") if request["status"] == 200],
                    "a map to be taken")
         self.assertIsNone(self.box.process.poll())
-
-
-if __name__ == "__main__":
-    unittest.main()

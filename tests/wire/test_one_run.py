@@ -58,7 +58,3 @@ class OneRun(unittest.TestCase):
     def states_if_over(self, stage, over):
         states = [row["state"] for row in stage.box.reports()]
         return states if states[-1] in over else None
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -67,7 +67,3 @@ class Refusals(unittest.TestCase):
         said = self.stage.box.said() + json.dumps(self.stage.box.ask("GET /adit/run"))
         for token in (programs.SCORING_TOKEN, programs.MAPPING_TOKEN, programs.TEAM_TOKEN):
             self.assertNotIn(token, said)
-
-
-if __name__ == "__main__":
-    unittest.main()

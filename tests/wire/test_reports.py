@@ -113,7 +113,3 @@ class Ends(unittest.TestCase):
             self.assertIn("is kept", waiting.result().json())
             self.assertEqual(stage.box.stop(), 0)
             self.assertEqual(stage.box.on_disk(), ["answered", "waiting"])
-
-
-if __name__ == "__main__":
-    unittest.main()

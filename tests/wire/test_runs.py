@@ -157,7 +157,3 @@ class Runs(unittest.TestCase):
         full.unlink()
         wait_until(lambda: "will not outlive a restart" not in stage.box.attention(), "the notice to go")
         self.wait_until_kept(stage)
-
-
-if __name__ == "__main__":
-    unittest.main()

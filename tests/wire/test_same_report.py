@@ -71,7 +71,3 @@ class Barred(unittest.TestCase):
             self.assertEqual((again.status_code, again.json()["score_change"]), (201, 1))
             self.assertEqual((len(stage.post.recorded()), sendings(stage)), (1, 2))
             wait_until(lambda: stage.box.attention() == "", "nothing to be left to do")
-
-
-if __name__ == "__main__":
-    unittest.main()

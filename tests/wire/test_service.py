@@ -122,7 +122,3 @@ class Service(unittest.TestCase):
         self.heard("READY=1")
         panel = self.folder / "state" / "panel"
         programs.wait_until(lambda: panel.exists() and "health on" in panel.read_text(), "the simulated panel")
-
-
-if __name__ == "__main__":
-    unittest.main()

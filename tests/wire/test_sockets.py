@@ -310,7 +310,3 @@ class TeamPort(unittest.TestCase):
         self.manager.ready(self.manager.start(None))
         self.assertTrue(self.is_answered(80) and self.is_answered(8000))
         self.assertIn("its interface is gone", self.manager.log())
-
-
-if __name__ == "__main__":
-    unittest.main()

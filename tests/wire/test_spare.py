@@ -281,7 +281,3 @@ class Spare(WithAlarms):
                 stage.box.stop()
             finally:
                 subprocess.run(["umount", "--lazy", state], check=False)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -146,7 +146,3 @@ class Stick(unittest.TestCase):
         self.assertIn("there is no such export on a stick",
                       stage.adit("take", "c.adit-spare", "--stick", "--code", "1" * 16, "--yes", check=False))
         self.assertEqual(submit(stage, another(2)).status_code, 201)
-
-
-if __name__ == "__main__":
-    unittest.main()

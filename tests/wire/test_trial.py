@@ -176,7 +176,3 @@ class Trial(unittest.TestCase):
             self.assertEqual(steps["scoring token"]["state"], "skipped")
             self.flows_on()
         self.assertEqual(self.throttled(self.post), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

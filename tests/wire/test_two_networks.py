@@ -213,7 +213,3 @@ class Overlapping(Appliance):
         for frame in self.heard.since(0):
             self.assertTrue(frame.tcp or frame.is_arp, frame)
             self.assertNotIn("10.100.1.12", frame.arp if frame.is_arp else frame.tcp)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -67,7 +67,3 @@ class Upgrade(unittest.TestCase):
         version = stage.box.on_disk("PRAGMA user_version")[0]
         self.assertLessEqual(version >> 16 or version, TABLES_THEN)
         self.assertEqual(json.loads((stage.box.state / "settings.json").read_text())["version"], 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -131,7 +131,3 @@ class Waiting(unittest.TestCase):
             self.post_map(stage, maps.made_grid(20, 20), "r1")
         stage.post.process.send_signal(signal.SIGCONT)
         wait_until(lambda: self.taken(stage, "/map/update") and self.taken(stage, "/state/update"), "them to arrive")
-
-
-if __name__ == "__main__":
-    unittest.main()

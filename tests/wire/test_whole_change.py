@@ -144,7 +144,3 @@ class WholeBox(Change):
         for name in ("scoring token", "mapping token"):
             self.assertEqual(steps[name]["state"], "bad", steps)
             self.assertIn("token is refused", steps[name]["said"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -4,7 +4,7 @@ import { axeFindsNothing } from "../axe.js";
 import { becomes, box, canvas, changed, picture } from "../pictures.js";
 import { until } from "../box.js";
 import { begin } from "./box.js";
-import { hears, look, openMore, settled, shoot } from "./visits.js";
+import { hears, look, openMore } from "./visits.js";
 
 // One run for all of these: five robots explore, and the operator reports.
 let made;
@@ -163,37 +163,6 @@ test("has nothing that axe finds wrong during a run, in the dark and by day", as
   await openMore(page);
   await page.getByRole("button", { name: "New run" }).click();
   await isWell("new run");
-});
-
-/** Until all of the map is drawn: finer tiles come as long as robots map, so they stand still until they are thawed. */
-async function keepsStill(page) {
-  made.freezeRobots();
-  await settled(page);
-}
-
-test("is kept as pictures, for people to look at", async (t) => {
-  t.after(() => made.thawRobots());
-  for (const path of ["", "display"]) {
-    const page = await look(t, made, path);
-    for (const [name, width, height] of [["phone", 390, 844], ["1080p", 1920, 1080]]) {
-      await page.setViewportSize({ width, height });
-      for (const colorScheme of ["dark", "light"]) {
-        await page.emulateMedia({ colorScheme });
-        await keepsStill(page);
-        await shoot(page, `${path || "run"}-${name}-${colorScheme}`);
-        made.thawRobots();
-      }
-    }
-  }
-  const page = await look(t, made, "", { colorScheme: "dark" });
-  await page.getByRole("button", { name: /^Show both on the map/ }).first().click();
-  for (const [width, height, name] of [[390, 844, "phone"], [1280, 720, "720p"]]) {
-    await page.setViewportSize({ width, height });
-    await page.locator("#map").scrollIntoViewIfNeeded();
-    await keepsStill(page);
-    await shoot(page, `run-pair-${name}-dark`);
-    made.thawRobots();
-  }
 });
 
 test("says that the box is lost, and comes back by itself with all that was known", async (t) => {

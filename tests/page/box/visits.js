@@ -3,7 +3,7 @@ import { after, before } from "node:test";
 import { countAwaited, launch, leave, visit } from "../stage.js";
 import { begin, PASSWORD, TOKENS } from "./box.js";
 
-export { hears, leave, settled, shoot } from "../stage.js";
+export { hears, leave, settled } from "../stage.js";
 export { canBeDeaf } from "../retold.js";
 export { openMore } from "../parts.js";
 

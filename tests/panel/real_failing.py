@@ -28,7 +28,13 @@ class Failing(Running):
     @contextlib.contextmanager
     def broken(self):
         obstacle = self.shown.with_name(self.shown.name + ".new")
-        obstacle.mkdir()
+
+        def is_made():
+            with contextlib.suppress(FileExistsError):  # adit-panel is writing the file
+                obstacle.mkdir()
+            return obstacle.is_dir()
+
+        self.wait_until(is_made, "adit-panel to have written its file")
         try:
             yield
         finally:

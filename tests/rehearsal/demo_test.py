@@ -4,6 +4,7 @@ import fcntl
 import os
 import pty
 import re
+import shlex
 import signal
 import struct
 import subprocess
@@ -28,6 +29,12 @@ def until(true, what, seconds=60):
     raise AssertionError(f"{what} did not come")
 
 
+def like_a_terminals_shell():
+    """In a child: Ctrl-C reaches it, also if this test runs in the background of a script, where SIGINT is ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+
 class Window:
     """A terminal of so many rows and columns, on which the demo runs."""
 
@@ -37,7 +44,7 @@ class Window:
         self.resize(rows, columns)
         os.set_blocking(self.screen, False)
         self.process = subprocess.Popen([DEMO, *words], stdin=end, stdout=end, stderr=end, start_new_session=True,
-                                        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+                                        preexec_fn=like_a_terminals_shell)
         os.close(end)
 
     def resize(self, rows, columns):
@@ -135,6 +142,18 @@ class Demo(unittest.TestCase):
         until((self.folder / "adit-rehearsal.log").exists, "its first program")
         window.process.send_signal(signal.SIGINT)
         until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
+        self.assertTrue(self.nothing_runs())
+
+    def test_in_the_background_of_a_script_sigterm_ends_it(self):
+        command = f"{shlex.join([str(DEMO), '--folder', str(self.folder)])} & echo $!; wait"  # bash: it ignores SIGINT
+        script = subprocess.Popen(["bash", "-c", command], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(script.stdout.close)
+        self.addCleanup(self.end, script)
+        demo = int(script.stdout.readline())
+        next(line for line in script.stdout if line.startswith("Reports "))
+        os.kill(demo, signal.SIGTERM)
+        script.wait(60)
+        self.assertIn("Kept in", script.stdout.read())
         self.assertTrue(self.nothing_runs())
 
     def test_where_it_listens_is_where_the_page_is(self):

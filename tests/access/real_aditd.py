@@ -16,6 +16,10 @@ import threading
 import time
 import unittest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+import patience  # noqa: E402, after the path is set
+from patience import patient  # noqa: E402
+
 TOKENS = {"scoring": "scoring-token-1", "mapping": "mapping-token-1", "team": "team-token-1"}
 OPERATOR, VIEWER = "correct horse battery", "look, do not touch"
 NOWHERE = {"address": "127.0.0.1", "port": 9}
@@ -24,14 +28,8 @@ aditd = sys.argv[1]
 
 
 def wait_until(condition, what, within=30.0):
-    """The first true value of `condition()`; an error that says `what` after `within` seconds."""
-    end = time.monotonic() + within
-    while time.monotonic() < end:
-        with contextlib.suppress(OSError):  # aditd may be restarting
-            if value := condition():
-                return value
-        time.sleep(0.02)
-    raise AssertionError(f"waited {within:g} s in vain for {what}")
+    """As patience.wait_until; aditd may be restarting."""
+    return patience.wait_until(condition, what, within, OSError)
 
 
 class Box:
@@ -66,7 +64,7 @@ class Box:
 
     def stop(self):
         self.process.send_signal(signal.SIGTERM)
-        self.process.wait(30)
+        self.process.wait(patient(30))
 
     def said(self):
         return self.log.read_text()
@@ -77,7 +75,7 @@ class Box:
     def ask(self, request, body=None, whence="127.0.0.1", **headers):
         """ask("GET /adit/run", Cookie="adit=..."): status, JSON, headers. `_` in a header's name is `-`."""
         method, _, path = request.partition(" ")
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=30, source_address=(whence, 0))
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=patient(30), source_address=(whence, 0))
         with contextlib.closing(connection):
             sent = {"Content-Type": "application/json"} if body is not None else {}
             sent.update({name.replace("_", "-"): value for name, value in headers.items()})
@@ -274,7 +272,7 @@ class Login(unittest.TestCase):
         for _ in range(10):  # a machine that does much besides may answer all logins before it lets this test go on
             connections = []
             for _ in range(12):
-                connection = http.client.HTTPConnection("127.0.0.1", box.port, timeout=30)
+                connection = http.client.HTTPConnection("127.0.0.1", box.port, timeout=patient(30))
                 connection.request("POST", "/adit/login", json.dumps({"password": OPERATOR}),
                                    {"Content-Type": "application/json"})
                 connections.append(connection)

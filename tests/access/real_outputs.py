@@ -16,6 +16,7 @@ import urllib.parse
 
 import command_post
 import real_aditd
+from patience import patient
 from real_aditd import wait_until
 from real_settings import grid, state
 
@@ -145,7 +146,7 @@ class Outputs(unittest.TestCase):
 
     def raw(self, method, path, headers, body=None):
         """Status, head and body; of events the first."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.box.port, timeout=30)
+        connection = http.client.HTTPConnection("127.0.0.1", self.box.port, timeout=patient(30))
         with contextlib.closing(connection):
             sent = {name.replace("_", "-"): value for name, value in headers.items()}
             if body is not None:
@@ -224,7 +225,7 @@ class Outputs(unittest.TestCase):
             for word in (SCORING, MAPPING, TEAM, CODE):
                 settings.write_text(json.dumps({"version": 1, "team": {"interface": f"{word} {word}"}, word: word}))
                 ended = subprocess.run([real_aditd.aditd, "--settings", settings, "--secrets", self.box.folder / "secrets",
-                                        "--state", folder], capture_output=True, timeout=60)
+                                        "--state", folder], capture_output=True, timeout=patient(60))
                 self.assertNotEqual(ended.returncode, 0)
                 self.shows_none("why it does not start", ended.stdout + ended.stderr)
 

@@ -16,6 +16,7 @@ import unittest
 
 import command_post
 import real_aditd
+from patience import patient
 from real_aditd import wait_until
 
 TEAM = {"Authorization": f"Bearer {real_aditd.TOKENS['team']}"}
@@ -104,7 +105,7 @@ class SetUp(unittest.TestCase):
         told, port = [], self.box.port
 
         def post():
-            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=60)
+            connection = http.client.HTTPConnection("127.0.0.1", port, timeout=patient(60))
             with contextlib.closing(connection):
                 connection.request("POST", "/api/artifact_reports", json.dumps(REPORT),
                                    {**TEAM, "Content-Type": "application/json"})
@@ -135,7 +136,7 @@ class SetUp(unittest.TestCase):
         self.assertFalse((self.box.state / "settings.json.before").exists(), "it has proven itself")
         for ends in (signal.SIGTERM, signal.SIGKILL):
             self.box.process.send_signal(ends)
-            self.box.process.wait(30)
+            self.box.process.wait(patient(30))
             self.box.start()
             self.assertEqual(self.box.port, port, ends)
             self.assertEqual(self.box.ask("POST /adit/settings/check", {"settings": {}}, **self.me)[0], 200, ends)

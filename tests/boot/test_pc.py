@@ -3,7 +3,6 @@
 import pathlib
 import re
 import tempfile
-import unittest
 
 import boards
 import hosts

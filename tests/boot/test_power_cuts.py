@@ -3,7 +3,6 @@ twice."""
 
 import os
 import time
-import unittest
 
 import boards
 import hosts

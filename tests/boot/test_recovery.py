@@ -2,7 +2,6 @@
 
 import dataclasses
 import time
-import unittest
 
 import boards
 import console

@@ -1,7 +1,6 @@
 """A PC whose clock has lost its battery: who sets the time of day, and what a power cut makes of it."""
 
 import time
-import unittest
 
 import requests
 

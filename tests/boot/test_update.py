@@ -4,7 +4,6 @@ refused. Settings and reports come along."""
 import pathlib
 import re
 import tempfile
-import unittest
 
 import boards
 from bundles import bundle, stick

@@ -5,7 +5,6 @@ import pathlib
 import subprocess
 import tempfile
 import time
-import unittest
 
 import boards
 import hosts

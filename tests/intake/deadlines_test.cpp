@@ -38,7 +38,7 @@ class Deadlines : public testing::Test {
     return std::jthread([&dripper, text](const std::stop_token& stop) {
       for (const char byte : text) {
         if (stop.stop_requested() || !dripper.send({&byte, 1})) return;
-        std::this_thread::sleep_for(milliseconds(50));
+        std::this_thread::sleep_for(patient(milliseconds(50)));
       }
     });
   }
@@ -67,7 +67,7 @@ class ReadingDeadlines : public Deadlines {
 
 TEST_F(HeadDeadlines, CloseAClientThatSaysNothing) {
   EXPECT_TRUE(client.closes());
-  EXPECT_GE(passed(), milliseconds(495));
+  EXPECT_GE(passed(), patient(milliseconds(495)));
 }
 
 TEST_F(HeadDeadlines, CloseAClientThatDripsItsHeaders) {
@@ -101,9 +101,9 @@ TEST_F(RateDeadlines, LetABodyThatKeepsComingTakeItsTime) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 120000\r\n\r\n");
   for (int i = 0; i < 30; ++i) {
     ASSERT_TRUE(client.send(piece));
-    std::this_thread::sleep_for(milliseconds(50));
+    std::this_thread::sleep_for(patient(milliseconds(50)));
   }
-  EXPECT_GE(passed(), milliseconds(1500));
+  EXPECT_GE(passed(), patient(milliseconds(1500)));
   EXPECT_EQ(client.reply()->status, 200);
 }
 
@@ -126,7 +126,7 @@ TEST_F(StrangersBodyDeadlines, CloseAClientThatDripsItsBody) {
 TEST_F(StrangersBodyDeadlines, AreNotThoseOfWhoHasShownAToken) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nAuthorization: Bearer x\r\nContent-Length: 20\r\n\r\n");
   drip(client, std::string(20, 'x')).join();
-  EXPECT_GE(passed(), milliseconds(1000));
+  EXPECT_GE(passed(), patient(milliseconds(1000)));
   EXPECT_EQ(client.reply()->status, 200);
 }
 
@@ -137,8 +137,8 @@ TEST_F(ReadingDeadlines, LetAClientThatReadsSteadilyTakeItsTime) {
   client.send(request("GET", "/later"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
   served.on_loop([&] { handler.responders[0]->answer({.body = answer, .headers = {}}); });
-  EXPECT_EQ(client.read_slowly(200'000, milliseconds(50), answer.size()), answer.size());
-  EXPECT_GE(passed(), milliseconds(2000));
+  EXPECT_EQ(client.read_slowly(200'000, patient(milliseconds(50)), answer.size()), answer.size());
+  EXPECT_GE(passed(), patient(milliseconds(2000)));
   EXPECT_EQ(served.ended(Ended::Slow), 0u);
 }
 
@@ -154,7 +154,7 @@ TEST_F(RateDeadlines, CloseAClientThatStopsReading) {
 TEST_F(RateDeadlines, DoNotRunWhileTheGatewayHoldsTheBodyBack) {
   client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n01234");
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
-  std::this_thread::sleep_for(milliseconds(1200));
+  std::this_thread::sleep_for(patient(milliseconds(1200)));
   client.send("56789");
   served.on_loop([&] { handler.flows[0]->resume(); });
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 2; }));
@@ -172,7 +172,7 @@ TEST_F(RateDeadlines, RunAgainOnceTheBodyMayFlow) {
 TEST_F(IdleDeadlines, DoNotRunWhileTheAnswerIsAwaited) {
   client.send(request("GET", "/later"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
-  std::this_thread::sleep_for(milliseconds(900));
+  std::this_thread::sleep_for(patient(milliseconds(900)));
   served.on_loop([&] { handler.responders[0]->answer({.body = "1", .headers = {}}); });
   EXPECT_EQ(client.reply()->body, "1");
 }
@@ -181,7 +181,7 @@ TEST_F(IdleDeadlines, CloseAConnection) {
   client.send(request("GET", "/echo"));
   ASSERT_TRUE(client.reply());
   EXPECT_EQ(client.rest(), "");
-  EXPECT_GE(passed(), milliseconds(595));
+  EXPECT_GE(passed(), patient(milliseconds(595)));
 }
 
 TEST_F(HeadDeadlines, OfSomeLeaveOthersServed) {
@@ -193,7 +193,7 @@ TEST_F(HeadDeadlines, OfSomeLeaveOthersServed) {
   for (int i = 0; i < 10; ++i) {
     client.send(request("POST", "/echo", {}, "fine"));
     EXPECT_EQ(client.reply()->status, 200);
-    std::this_thread::sleep_for(milliseconds(50));
+    std::this_thread::sleep_for(patient(milliseconds(50)));
   }
   for (auto& each : slow) EXPECT_TRUE(each->closes());
 }

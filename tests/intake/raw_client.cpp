@@ -12,6 +12,8 @@
 #include <charconv>
 #include <thread>
 
+#include "patience.hpp"
+
 namespace adit::intake {
 namespace {
 
@@ -94,7 +96,7 @@ bool RawClient::send(std::string_view bytes) {
 
 std::size_t RawClient::send_until_stalled(std::string_view bytes, std::chrono::milliseconds patience) {
   std::size_t total = 0;
-  while (total < bytes.size() && wait(fd_.get(), POLLOUT, Clock::now() + patience)) {
+  while (total < bytes.size() && wait(fd_.get(), POLLOUT, Clock::now() + patient(patience))) {
     const ssize_t sent =
         ::send(fd_.get(), bytes.data() + total, bytes.size() - total, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (sent <= 0) break;
@@ -113,7 +115,7 @@ RawClient::Got RawClient::receive(Clock::time_point until) {
 }
 
 std::optional<Reply> RawClient::reply(std::chrono::milliseconds patience, bool to_head) {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + patient(patience);
   while (true) {
     const auto head_end = received_.find("\r\n\r\n");
     if (head_end != std::string::npos) {
@@ -139,7 +141,7 @@ std::optional<Reply> RawClient::reply(std::chrono::milliseconds patience, bool t
 }
 
 bool RawClient::wait_for(std::string_view text, std::chrono::milliseconds patience) {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + patient(patience);
   while (received_.find(text) == std::string::npos) {
     if (receive(until) != Got::Bytes) return false;
   }
@@ -148,7 +150,7 @@ bool RawClient::wait_for(std::string_view text, std::chrono::milliseconds patien
 }
 
 std::optional<std::string> RawClient::rest(std::chrono::milliseconds patience) {
-  const auto until = Clock::now() + patience;
+  const auto until = Clock::now() + patient(patience);
   while (true) {
     const Got got = receive(until);
     if (got == Got::End) return std::move(received_);

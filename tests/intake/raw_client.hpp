@@ -25,6 +25,7 @@ struct Reply {
 
 /// A client that does just what it is told, byte by byte, over a blocking socket. Its patience is less than
 /// that of a server, by default, for a body: what comes in time did not come by the server's own deadline.
+/// ADIT_PATIENCE multiplies it, and the deadlines of a Served.
 class RawClient {
  public:
   /// From `source`, which is any of 127.0.0.0/8.

@@ -4,16 +4,17 @@
 #include <memory>
 
 #include "loop/workers.hpp"
+#include "patience.hpp"
 
 namespace adit::loop {
 
 /// More than anything takes that a test waits for, on a busy machine too.
 inline constexpr std::chrono::seconds kTestPatience{30};
 
-/// Turns the loop until `done`, or until `patience` is at its end. Whether it is done.
+/// Turns the loop until `done`, or for `within` times ADIT_PATIENCE. Whether it is done.
 template <class Done>
-[[nodiscard]] bool turn_until(Loop& loop, const Done& done, Duration patience = kTestPatience) {
-  const Instant end = loop.now() + patience;
+[[nodiscard]] bool turn_until(Loop& loop, const Done& done, Duration within = kTestPatience) {
+  const Instant end = loop.now() + patient(within);
   while (!done() && loop.now() < end) loop.turn(std::chrono::milliseconds{5});
   return done();
 }

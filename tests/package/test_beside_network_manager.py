@@ -1,7 +1,6 @@
 """The package on a PC whose network is NetworkManager's, as on a desktop with Debian or Ubuntu: the two ports are taken out of its hands as
 it runs and stay so over its restarts, the third stays in them."""
 
-import unittest
 
 import pc
 import programs

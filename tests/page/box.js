@@ -6,6 +6,8 @@ import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync 
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
+import { inspect } from "node:util";
+import { patient } from "./patience.js";
 import { BIN } from "./stage.js";
 
 export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
@@ -14,13 +16,13 @@ export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
 /** A connection of its own for a request: a box that restarts, after a reset, closes those that are kept. */
 export const ONCE = { Connection: "close" };
 
-/** What `look()` gives, once it is something. */
+/** The first true value of `look()`. After `within` ms times ADIT_PATIENCE: an Error with `what` and the value seen last. */
 export async function until(look, what, within = 60_000) {
-  for (const end = Date.now() + within; Date.now() < end; await sleep(50)) {
+  for (const end = Date.now() + patient(within); ; await sleep(50)) {
     const found = await look();
     if (found) return found;
+    if (Date.now() >= end) throw new Error(`waited ${patient(within) / 1000} s in vain for ${what}; seen last: ${inspect(found)}`);
   }
-  throw new Error(`waited in vain for ${what}`);
 }
 
 class Program {

@@ -6,7 +6,7 @@ import os
 import subprocess
 import tempfile
 
-from patience import patient, wait_until
+from patience import wait_until
 
 CHROMIUM = os.environ.get("CHROMIUM", "/usr/bin/chromium-headless-shell")
 # What a user finds by its words: a field by its label, a button by its text, both in the open dialog if there is one.

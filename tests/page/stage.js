@@ -6,6 +6,7 @@ import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
 import { chromium } from "playwright-core";
+import { patient } from "./patience.js";
 
 /** The folder of the programs that are tested. */
 export const BIN = resolve(process.env.ADIT_BIN);
@@ -35,6 +36,7 @@ export async function serve(scene, port = 0, ...more) {
 export const launch = (executablePath = CHROMIUM) =>
   chromium.launch({
     executablePath,
+    timeout: patient(30_000),
     args: ["--disable-gpu", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
       .concat(process.getuid() === 0 ? ["--no-sandbox"] : []),
   });
@@ -51,7 +53,7 @@ export async function look(browser, url, options = {}, prepare = () => {}) {
 /** Opens a page; what it complained of and where it went is in `page.complaints` and `page.requests`. */
 export async function visit(browser, url, options = {}, prepare = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
-  context.setDefaultTimeout(120_000);
+  context.setDefaultTimeout(patient(120_000));
   const page = await context.newPage();
   page.complaints = [];
   page.requests = [];

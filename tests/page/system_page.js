@@ -27,3 +27,20 @@ export const untilRows = (page, count) => page.waitForFunction((count) => docume
 export async function fill(form, fields) {
   for (const [name, value] of Object.entries(fields)) await form.locator(`[name=${name}]`).fill(value);
 }
+
+/** Presses `button`, which makes a POST to a path of `paths`; again before the POST is answered, and again before the page shows what came
+ *  of it. Gives the presses and POSTs, counted on. */
+export async function pressThrice(page, paths, button) {
+  const count = { presses: 0, posts: 0 };
+  const press = () => ++count.presses && button.click();
+  let isAnswered = false;
+  await page.route(paths, async (route) => {
+    const isPost = route.request().method() === "POST";
+    count.posts += isPost;
+    if (isPost ? count.presses === 1 : isAnswered && count.presses === 2) await press();
+    await route.fulfill({ response: await route.fetch() });
+    isAnswered ||= isPost;
+  });
+  await press();
+  return count;
+}

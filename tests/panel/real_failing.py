@@ -4,7 +4,6 @@ written while a folder stands in the way of its file."""
 import contextlib
 import threading
 import time
-import unittest
 
 import running
 from running import DARK, Running
@@ -26,7 +25,13 @@ class Failing(Running):
     @contextlib.contextmanager
     def broken(self):
         obstacle = self.shown.with_name(self.shown.name + ".new")
-        obstacle.mkdir()
+
+        def is_made():
+            with contextlib.suppress(FileExistsError):  # adit-panel is writing the file
+                obstacle.mkdir()
+            return obstacle.is_dir()
+
+        self.wait_until(is_made, "adit-panel to have written its file")
         try:
             yield
         finally:

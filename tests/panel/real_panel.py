@@ -6,7 +6,6 @@ import socket
 import subprocess
 import sys
 import time
-import unittest
 
 import running
 from running import DARK, PATIENCE, Running

@@ -10,9 +10,12 @@ import tempfile
 import time
 import unittest
 
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+import patience  # noqa: E402, after the path is set
+
 NOWHERE = {"address": "127.0.0.1", "port": 9}
 DARK = "0000"
-PATIENCE = 30.0  # seconds for what takes much less on a machine that does nothing else
+PATIENCE = patience.patient(30.0)  # seconds for what takes much less on a machine that does nothing else
 adit_panel, aditd = sys.argv[1:]
 
 
@@ -39,12 +42,13 @@ class Running(unittest.TestCase):
         listening = pathlib.Path("/proc/net/unix").read_text()
         return f" 00010000 0005 01 " in "".join(line for line in listening.splitlines() if line.endswith(str(self.socket)))
 
-    def wait_until(self, condition, what, within=PATIENCE):
-        """Returns how long it took."""
+    def wait_until(self, condition, what, within=30.0):
+        """As patience.wait_until; how long it took."""
         began = time.monotonic()
-        while not condition():
-            self.assertLess(time.monotonic() - began, within, f"{what}:\n{self.said()}")
-            time.sleep(0.005)
+        try:
+            patience.wait_until(condition, what, within)
+        except AssertionError as error:
+            self.fail(f"{error}:\n{self.said()}")
         return time.monotonic() - began
 
     def said(self):

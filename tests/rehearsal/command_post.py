@@ -5,16 +5,21 @@ import copy
 import gzip
 import json
 import os
+import pathlib
 import re
 import signal
 import socket
 import struct
 import subprocess
+import sys
 import tempfile
 import time
 
 import cbor2
 import requests
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import patient  # noqa: E402, after the path is set
 
 SCORING_TOKEN = "flux230{showroom"
 MAPPING_TOKEN = "dark-adit#000042"
@@ -65,7 +70,7 @@ class CommandPost:
     def stop(self, how=signal.SIGTERM):
         """Gives the exit code and what was printed."""
         self.process.send_signal(how)
-        out, err = self.process.communicate(timeout=90)
+        out, err = self.process.communicate(timeout=patient(90))
         return self.process.returncode, out, err
 
     # The scoring endpoint
@@ -98,7 +103,7 @@ class CommandPost:
         headers = {name.replace("_", "-"): value for name, value in headers.items()}
         with requests.Session() as session:  # a connection of its own
             session.trust_env = False
-            return session.request(method, f"http://{where}{path}", data=data, headers=headers, timeout=60)
+            return session.request(method, f"http://{where}{path}", data=data, headers=headers, timeout=patient(60))
 
     # The control port
     def tell(self, action, body=None):
@@ -136,7 +141,7 @@ def two_at_once(first, second=None):
 def connect(where):
     """A bare TCP connection."""
     host, port = where.rsplit(":", 1)
-    return socket.create_connection((host, int(port)), timeout=30)
+    return socket.create_connection((host, int(port)), timeout=patient(30))
 
 
 def read_answer(stream):

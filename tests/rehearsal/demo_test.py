@@ -4,14 +4,18 @@ import fcntl
 import os
 import pty
 import re
+import shlex
 import signal
 import struct
 import subprocess
+import sys
 import tempfile
 import termios
-import time
 import unittest
 from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[1]))
+from patience import patient, wait_until  # noqa: E402, after the path is set
 
 DEMO = Path(__file__).resolve().parents[2] / "firmware/rehearsal/demo/demo"
 SIZE = struct.Struct("4H")  # winsize: rows, columns, and pixels that nobody counts
@@ -19,13 +23,10 @@ HOME, BELOW = b"\x1b[H", b"\x1b[J"
 TO_THE_END = re.compile(r"\x1b\[K")
 
 
-def until(true, what, seconds=60):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end:
-        if found := true():
-            return found
-        time.sleep(0.05)
-    raise AssertionError(f"{what} did not come")
+def like_a_terminals_shell():
+    """In a child: Ctrl-C reaches it, also if this test runs in the background of a script, where SIGINT is ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 class Window:
@@ -37,7 +38,7 @@ class Window:
         self.resize(rows, columns)
         os.set_blocking(self.screen, False)
         self.process = subprocess.Popen([DEMO, *words], stdin=end, stdout=end, stderr=end, start_new_session=True,
-                                        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0))
+                                        preexec_fn=like_a_terminals_shell)
         os.close(end)
 
     def resize(self, rows, columns):
@@ -61,7 +62,7 @@ class Window:
             whole = [frame for frame in self.read().split(HOME)[1:] if BELOW in frame]
             return [TO_THE_END.sub("", line.decode()) for line in whole[-1].replace(BELOW, b"").split(b"\r\n")] if whole else None
 
-        return until(drawn, "a picture")
+        return wait_until(drawn, "a picture")
 
     def rows_of(self, frame):
         return sum(max(1, -(-len(line) // self.columns)) for line in frame)
@@ -79,7 +80,7 @@ class Demo(unittest.TestCase):
     def end(self, process):
         if process.poll() is None:
             process.terminate()
-            process.wait(60)
+            process.wait(patient(60))
 
     def nothing_runs(self):
         """Each program of a demo holds its folder."""
@@ -92,7 +93,7 @@ class Demo(unittest.TestCase):
 
     def refused(self, *words, folder=None):
         done = subprocess.run([DEMO, "--folder", folder or self.folder, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
-                              timeout=120, check=False)
+                              timeout=patient(120), check=False)
         self.assertNotIn(done.returncode, (0, 130), done.stdout)
         return done.stderr
 
@@ -100,14 +101,14 @@ class Demo(unittest.TestCase):
         window = self.window(24, 80)
         for rows, columns in (24, 80), (16, 50):
             window.resize(rows, columns)
-            until(lambda: window.rows_of(window.next_frame()) < rows, f"a picture of {rows} rows")
-            frame = until(lambda: [line for line in window.next_frame() if line.startswith("Run ")] and window.next_frame(), "the summary")
+            wait_until(lambda: window.rows_of(window.next_frame()) < rows, f"a picture of {rows} rows")
+            frame = wait_until(lambda: [line for line in window.next_frame() if line.startswith("Run ")] and window.next_frame(), "the summary")
             self.assertLess(window.rows_of(frame), rows, frame)
             self.assertRegex("\n".join(frame), r"^The page:     http://127\.0\.0\.1:80\d\d/\nIts password: rehearsal-\w+\n")
         self.assertIn(f"another demo runs in {self.folder}", self.refused())
         self.assertIsNone(window.process.poll(), "and the one that runs is not upset")
         os.write(window.screen, b"\x03")  # Ctrl-C
-        until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
+        wait_until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
         self.assertEqual(window.process.returncode, 0)
         self.assertIn(f"Kept in {self.folder}", window.read().decode().replace("\r\n", "\n"))
         self.assertTrue(self.nothing_runs())
@@ -116,7 +117,7 @@ class Demo(unittest.TestCase):
         window = self.window(24, 80)
         window.next_frame()
         os.close(window.screen)
-        window.process.wait(60)
+        window.process.wait(patient(60))
         self.assertTrue(self.nothing_runs())
 
     def test_it_ends_with_its_pipe(self):
@@ -127,14 +128,26 @@ class Demo(unittest.TestCase):
             if line.startswith("Reports "):
                 break
         process.stdout.close()
-        process.wait(60)
+        process.wait(patient(60))
         self.assertTrue(self.nothing_runs())
 
     def test_stopped_while_it_starts_it_leaves_nothing(self):
         window = self.window(24, 80)
-        until((self.folder / "adit-rehearsal.log").exists, "its first program")
+        wait_until((self.folder / "adit-rehearsal.log").exists, "its first program")
         window.process.send_signal(signal.SIGINT)
-        until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
+        wait_until(lambda: (window.read(), window.process.poll() is not None)[1], "its end")
+        self.assertTrue(self.nothing_runs())
+
+    def test_in_the_background_of_a_script_sigterm_ends_it(self):
+        command = f"{shlex.join([str(DEMO), '--folder', str(self.folder)])} & echo $!; wait"  # bash: it ignores SIGINT
+        script = subprocess.Popen(["bash", "-c", command], stdout=subprocess.PIPE, text=True)
+        self.addCleanup(script.stdout.close)
+        self.addCleanup(self.end, script)
+        demo = int(script.stdout.readline())
+        next(line for line in script.stdout if line.startswith("Reports "))
+        os.kill(demo, signal.SIGTERM)
+        script.wait(patient(60))
+        self.assertIn("Kept in", script.stdout.read())
         self.assertTrue(self.nothing_runs())
 
     def test_where_it_listens_is_where_the_page_is(self):

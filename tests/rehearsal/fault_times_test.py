@@ -2,7 +2,6 @@
 
 import select
 import time
-import unittest
 
 from command_post import connect, read_answer
 from faulted import REPORT, REPORT_BYTES, STATUS_BYTES, OneRequest, exchange, recorded

@@ -5,6 +5,7 @@ import time
 import unittest
 
 from command_post import SCORING_TOKEN, CommandPost, connect
+from patience import wait_until
 
 REPORT = {"x": 1.5, "y": -2.0, "z": 0.25, "type": "Drill"}
 BODY = json.dumps(REPORT).encode()
@@ -47,7 +48,4 @@ class OneRequest(unittest.TestCase):
         self.assertTrue(is_so() or time.monotonic() >= end, why)
 
     def wait_until_recorded(self):
-        deadline = time.monotonic() + 30
-        while not recorded(self.post):
-            self.assertLess(time.monotonic(), deadline, "never recorded")
-            time.sleep(0.02)
+        wait_until(lambda: recorded(self.post), "it to be recorded")

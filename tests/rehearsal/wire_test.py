@@ -14,6 +14,7 @@ import unittest
 import cbor2
 
 from command_post import MAPPING_TOKEN, SCORING_TOKEN, CommandPost, cloud, connect, grid, marker, read_answer, state
+from patience import wait_until
 
 STATUS = f"GET /api/status HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer {SCORING_TOKEN}\r\n\r\n".encode()
 
@@ -106,9 +107,7 @@ class Http(unittest.TestCase):
         with CommandPost() as post:
             with connect(post.mapping) as stream:
                 stream.sendall(map_header("Content-Length: 100") + b"\xa3")
-            deadline = time.monotonic() + 30
-            while not post.record()["requests"] and time.monotonic() < deadline:
-                time.sleep(0.01)
+            wait_until(lambda: post.record()["requests"], "it to be noted")
             record = post.record()
             self.assertEqual(record["requests"], [{"uri": "(others)", "status": 0, "count": 1}])
             self.assertEqual(record["violation_count"], 0)
@@ -152,15 +151,8 @@ class Http(unittest.TestCase):
             flood = [connect(post.scoring) for _ in range(200)]
             for stream in idle + flood:
                 stream.close()
-            deadline = time.monotonic() + 30
-            while time.monotonic() < deadline:
-                try:
-                    self.assertEqual(post.status().status_code, 200)
-                    break
-                except OSError:
-                    time.sleep(0.05)
-            else:
-                self.fail("no room again after a flood of connections")
+            status = wait_until(lambda: post.status().status_code, "room again after a flood of connections", tolerates=OSError)
+            self.assertEqual(status, 200)
 
 
 class Process(unittest.TestCase):

@@ -30,7 +30,7 @@ class OnABox(unittest.TestCase):
         """`adit-update good`, of a box that has been healthy for long."""
         since = int((time.clock_gettime(time.CLOCK_MONOTONIC) - 100) * 1e6)
         self.box.properties.write_text(f"ActiveState=active\nActiveEnterTimestampMonotonic={since}\n")
-        subprocess.run(self.box.command("good"), env=self.box.environment, stderr=subprocess.DEVNULL, timeout=60, check=True)
+        subprocess.run(self.box.command("good"), env=self.box.environment, stderr=subprocess.DEVNULL, timeout=raucs.patient(60), check=True)
 
     def runs(self, slot, version):
         self.box.start(slot)

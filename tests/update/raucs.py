@@ -7,9 +7,12 @@ import pathlib
 import secrets
 import shutil
 import subprocess
+import sys
 import tempfile
-import time
 import unittest
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import patient, wait_until  # noqa: E402, after the path is set
 
 ADIT_UPDATE = os.path.join(os.environ["ADIT_BIN"], "adit-update")
 BOARD = "adit-test-board"
@@ -37,15 +40,6 @@ def needs_rauc():
 def script(path, text):
     path.write_text("#!/bin/sh\n" + text)
     path.chmod(0o755)
-
-
-def wait_until(condition, what, within=60.0):
-    end = time.monotonic() + within
-    while time.monotonic() < end:
-        if value := condition():
-            return value
-        time.sleep(0.005)
-    raise AssertionError(f"waited {within:g} s in vain for {what}")
 
 
 class Keys:
@@ -171,7 +165,7 @@ class Box:
 
     def update(self):
         """Runs adit-update to its end, and gives what it tells."""
-        done = subprocess.run(self.command(), env=self.environment, capture_output=True, timeout=120, check=False)
+        done = subprocess.run(self.command(), env=self.environment, capture_output=True, timeout=patient(120), check=False)
         assert done.returncode == 0, done.stderr.decode()
         return self.status()
 

@@ -41,7 +41,7 @@ class Aditd:
         self.process.wait()
 
     def ask(self, method, path, body=None, kind="application/octet-stream", **headers):
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=raucs.patient(60))
         with contextlib.closing(connection):
             headers = {"Authorization": f"Bearer {TOKEN}", **({"Content-Type": kind} if method == "POST" else {}), **headers}
             connection.request(method, path, body, headers)
@@ -137,7 +137,7 @@ class OverTheApi(unittest.TestCase):
 
     def refused_at_once(self, length, begins):
         """The answer to a bundle of which no more than its beginning was sent."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=60)
+        connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=raucs.patient(60))
         with contextlib.closing(connection):
             connection.putrequest("POST", "/adit/update")
             for name, value in (("Authorization", f"Bearer {TOKEN}"), ("Content-Type", "application/octet-stream"),

@@ -2,7 +2,6 @@
 
 import os
 import shutil
-import unittest
 
 import raucs
 from on_a_box import OnABox

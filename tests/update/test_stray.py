@@ -1,7 +1,6 @@
 """Another slot runs than the one that was good last: the boot loader went to it without a word."""
 
 import json
-import unittest
 
 import raucs
 from on_a_box import OnABox

@@ -4,7 +4,6 @@ import shutil
 import signal
 import subprocess
 import time
-import unittest
 
 import raucs
 from on_a_box import OnABox

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "loop/turn_until.hpp"
+#include "patience.hpp"
 #include "peer.hpp"
 #include "uplink/connection.hpp"
 
@@ -23,7 +24,7 @@ inline icd::BearerToken token() {
 /// A loop, and what a test does with connections on it.
 class Asking : public testing::Test {
  protected:
-  static constexpr std::chrono::seconds kPatience{20};
+  static inline const std::chrono::seconds kPatience = patient(std::chrono::seconds{20});
 
   /// Sends and waits for the outcome, which never comes from within send() and never tells the token.
   Outcome ask(Connection& connection, Request request) {

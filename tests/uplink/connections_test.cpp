@@ -97,9 +97,9 @@ TEST_F(TwoRequests, AConnectionThatWasNotNeededEnds) {
 TEST_F(TwoRequests, SilenceCountsForTheSecondOnceTheFirstIsAnswered) {
   ASSERT_TRUE(one_has_arrived());
   Request second = post("second");
-  second.answer_within = milliseconds(1000);
+  second.answer_within = patient(milliseconds(1000));
   send(std::move(second));
-  const loop::Instant answered = loop_.now() + milliseconds(1500);
+  const loop::Instant answered = loop_.now() + patient(milliseconds(1500));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return loop_.now() > answered; }));
   EXPECT_FALSE(outcomes_[1]);
   let_.release(2);

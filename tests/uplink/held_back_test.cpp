@@ -57,8 +57,8 @@ TEST_F(HeldBack, TheLastByteLeavesNoSoonerThanItMay) {
 TEST_F(HeldBack, ThePeerIsNotSilentMeanwhile) {
   const ListeningPeer peer(answers_after({}));
   Request request = post("body");
-  request.answer_within = milliseconds(1000);
-  request.last_byte_not_before = loop_.now() + milliseconds(1500);
+  request.answer_within = patient(milliseconds(1000));
+  request.last_byte_not_before = loop_.now() + patient(milliseconds(1500));
   EXPECT_EQ(answered(ask(peer.endpoint(), std::move(request))).status, 200);
 }
 

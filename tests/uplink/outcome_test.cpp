@@ -56,12 +56,12 @@ TEST_F(AnsweredRequests, DoNotTellTheTokenToWhoeverReadsTheAnswerOfAnEchoingServ
 
 TEST_F(AnsweredRequests, AreThoseWhosePeerReadsSlowlyButReads) {
   const ListeningPeer peer([](Wire& wire) {
-    wire.read_slowly(milliseconds(25));
+    wire.read_slowly(patient(milliseconds(25)));
     wire.read_request();
     wire.write(answer("200 OK", "null"));
   });
   Request request = post(megabytes(20));
-  request.answer_within = milliseconds(1200);  // and the whole takes longer
+  request.answer_within = patient(milliseconds(1200));  // and the whole takes longer
   const Outcome outcome = ask(peer.endpoint(), std::move(request));
   EXPECT_EQ(answered(outcome).status, 200) << why(outcome);
 }

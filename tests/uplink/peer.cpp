@@ -12,10 +12,10 @@
 #include <stdexcept>
 #include <utility>
 
+#include "patience.hpp"
+
 namespace adit::uplink {
 namespace {
-
-constexpr timeval kPatience{20, 0};
 
 std::size_t length_in(const std::string& head) {
   const std::string_view field = "\r\nContent-Length: ";
@@ -26,8 +26,9 @@ std::size_t length_in(const std::string& head) {
 }  // namespace
 
 Wire::Wire(loop::FileDescriptor fd) : fd_(std::move(fd)) {
-  ::setsockopt(fd_.get(), SOL_SOCKET, SO_RCVTIMEO, &kPatience, sizeof kPatience);
-  ::setsockopt(fd_.get(), SOL_SOCKET, SO_SNDTIMEO, &kPatience, sizeof kPatience);
+  const timeval within{patient(std::chrono::seconds{20}).count(), 0};
+  ::setsockopt(fd_.get(), SOL_SOCKET, SO_RCVTIMEO, &within, sizeof within);
+  ::setsockopt(fd_.get(), SOL_SOCKET, SO_SNDTIMEO, &within, sizeof within);
 }
 
 std::size_t Wire::read_some(std::size_t most) {

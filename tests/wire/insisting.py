@@ -9,11 +9,12 @@ import time
 
 import requests
 
+from programs import patient
 from reporting import submit
 
 # Given up by its client after this long; what it was told by then must be true all the same.
-GIVES_UP = 15.0
-DOUBTED = 1.0  # seconds after which the operator looks at a report in doubt
+GIVES_UP = patient(15.0)
+DOUBTED = patient(1.0)  # seconds after which the operator looks at a report in doubt
 ENDS = {"answered", "settled", "refused", "withdrawn"}
 
 

@@ -143,7 +143,7 @@ class AditNetwork:
     def run(self):
         """Starts it and waits for its end."""
         self.start()
-        return self.process.wait(20)
+        return self.process.wait(programs.patient(20))
 
     def ask(self, file, **members):
         """As aditd does: by a rename. Gives the request's nonce."""
@@ -157,7 +157,7 @@ class AditNetwork:
         temporary.rename(self.wanted / file)
 
     def want(self, within_ms=60000, **numbers):
-        nonce = self.ask("wanted.json", confirm_within_ms=within_ms, numbers=self.numbers(**numbers))
+        nonce = self.ask("wanted.json", confirm_within_ms=min(programs.MOST_MS, round(programs.patient(within_ms))), numbers=self.numbers(**numbers))
         self.start()
         programs.wait_until(lambda: self.status() and (self.pending() or self.status()["last_nonce"] == nonce),
                             "the change to be taken up")

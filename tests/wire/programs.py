@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import json
+import math
 import os
 import pathlib
 import re
@@ -11,10 +12,14 @@ import signal
 import socket
 import sqlite3
 import subprocess
+import sys
 import tempfile
 import time
 
 import hosts
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
+from patience import patient, wait_until  # noqa: E402, after the path is set
 
 BIN = pathlib.Path(os.environ["ADIT_BIN"])
 SCORING_TOKEN = "flux230{showroom"
@@ -23,19 +28,15 @@ TEAM_TOKEN = "team-own-token-1"
 FIELDS = ("x", "y", "z", "type")  # of a report
 PORT = 8000
 ARTIFACTS = pathlib.Path(__file__).with_name("artifacts.csv")
+MOST_MS = 600_000  # of a time-out
 CONTROL_PORT = 8002  # on the Command Post's loopback
-STOPS_WITHIN = 30.0  # seconds: on a busy machine more than TimeoutStopSec= of adit.service
+STOPS_WITHIN = patient(30.0)  # seconds: on a busy machine more than TimeoutStopSec= of adit.service
 
 
-def wait_until(condition, what, within=60.0):
-    """The first true value of `condition()`; an error that says `what` after `within` seconds."""
-    end = time.monotonic() + within
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.01)
-    raise AssertionError(f"waited {within:g} s in vain for {what}")
+def patient_fault(fault):
+    """Of "answer-after=2" the seconds, times ADIT_PATIENCE; retry-after takes whole ones alone."""
+    fault = re.sub(r"(?<=(?:rd|er)-after=)[\d.]+", lambda found: f"{patient(float(found[0])):g}", fault)
+    return re.sub(r"(?<=retry-after=)\d+", lambda found: str(math.ceil(patient(int(found[0])))), fault)
 
 
 def secrets_folder(folder):
@@ -89,7 +90,7 @@ class CommandPost(Program):
         """Asks the control port: control("POST /new-run", {"run": "2"})."""
         method, _, path = request.partition(" ")
         connection = http.client.HTTPConnection("127.0.0.1", self.control_port)
-        connection.sock = self.network.connect(self.network.post, "127.0.0.1", self.control_port, 30)
+        connection.sock = self.network.connect(self.network.post, "127.0.0.1", self.control_port, patient(30))
         with contextlib.closing(connection):
             connection.request(method, path, None if body is None else json.dumps(body))
             answer = connection.getresponse()
@@ -99,8 +100,9 @@ class CommandPost(Program):
         return said
 
     def will(self, *faults, **of_others):
-        """What goes wrong with the next requests: will("drop", "ok", status=["500"])."""
-        self.control("POST /faults", {"reports": list(faults), **of_others})
+        """What goes wrong with the next requests: will("drop", "ok", status=["500"]). Its seconds are multiplied by ADIT_PATIENCE."""
+        self.control("POST /faults", {aim: [patient_fault(fault) for fault in given]
+                                      for aim, given in {"reports": faults, **of_others}.items()})
 
     def recorded(self, report=None):
         """The reports that it recorded for its client; all, or those that are as `report` is."""
@@ -148,7 +150,7 @@ class Page:
         sent = {"Authorization": f"Bearer {token}"} if token else {}
         if body is not None:
             sent["Content-Type"] = "application/json"
-        connection = http.client.HTTPConnection(self.network.box_address, self.port, timeout=timeout)
+        connection = http.client.HTTPConnection(self.network.box_address, self.port, timeout=patient(timeout))
         with contextlib.closing(connection):
             connection.request(method, path, None if body is None else json.dumps(body), {**sent, **dict(headers)})
             answer = connection.getresponse()
@@ -193,7 +195,7 @@ class Page:
 
 def log_in(page, password):
     """The headers that a browser sends from then on, as the operator."""
-    connection = http.client.HTTPConnection(page.network.box_address, page.port, timeout=20)
+    connection = http.client.HTTPConnection(page.network.box_address, page.port, timeout=patient(20))
     with contextlib.closing(connection):
         connection.request("POST", "/adit/login", json.dumps({"password": password}),
                            {"Content-Type": "application/json"})
@@ -242,7 +244,8 @@ class Box(Program, Page):
 
 
 def settings(network, overrides):
-    """Fast rates, so that tests do not wait for the ICD's one request a second; `overrides` by dotted path."""
+    """Fast rates, so that tests do not wait for the ICD's one request a second; `overrides` by dotted path. Those in milliseconds are
+    multiplied by ADIT_PATIENCE, up to the most that a setting may be."""
     rates = {f"{kind}_hz": 200 for kind in ("reports", "status", "map", "state", "markers")}
     document = {
         "version": 1,
@@ -259,7 +262,7 @@ def settings(network, overrides):
         *folders, last = re.split(r"__", path)
         for name in folders:
             at = at.setdefault(name, {})
-        at[last] = value
+        at[last] = min(MOST_MS, round(patient(value))) if last.endswith("_ms") else value
     return document
 
 

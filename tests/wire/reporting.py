@@ -2,11 +2,11 @@
 
 import concurrent.futures
 import json
-import time
 
 import requests
 
 import programs
+from programs import patient, wait_until
 
 REPORT = {"x": 1011.242, "y": -244.433, "z": -10.011, "type": "Backpack"}
 
@@ -21,25 +21,22 @@ def another(number):
 
 
 def submit(stage, report=None, timeout=60, **headers):
-    """One try. `headers` in addition: submit(stage, Adit_Resubmit="yes")."""
+    """One try, of `timeout` seconds times ADIT_PATIENCE. `headers` in addition: submit(stage, Adit_Resubmit="yes")."""
     given = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/json"}
     given |= {name.replace("_", "-"): value for name, value in headers.items()}
     return requests.post(stage.box.url + "/api/artifact_reports", data=json.dumps(report or REPORT), headers=given,
-                         timeout=timeout)
+                         timeout=patient(timeout))
 
 
-def insist(stage, report=None, hang_up_after=0.3, pause=0.0, until=lambda answer: True, within=60):
+def insist(stage, report=None, hang_up_after=0.3, pause=0.01, until=lambda answer: True, within=60):
     """Hangs up and tries again until an answer comes that is good enough."""
-    end = time.monotonic() + within
-    while time.monotonic() < end:
-        try:
-            answer = submit(stage, report, hang_up_after)
-            if until(answer):
-                return answer
-        except requests.RequestException:
-            pass
-        time.sleep(pause)
-    raise AssertionError(f"tried for {within} s in vain")
+    def good_answer():
+        answer = submit(stage, report, hang_up_after)
+        if not until(answer):
+            raise requests.HTTPError(f"answered {answer.status_code}: {answer.text}")
+        return [answer]  # one of 400 or more is false
+
+    return wait_until(good_answer, "an answer that is good enough", within, requests.RequestException, pause)[0]
 
 
 def left_unanswered(stage, report=None, patience=0.5):
@@ -60,7 +57,7 @@ def is_taken(stage, report):
 
 def began(stage):
     """The stage, once reports can be sent."""
-    programs.wait_until(stage.box.knows_the_run, "the box to know the run")
+    wait_until(stage.box.knows_the_run, "the box to know the run")
     return stage
 
 

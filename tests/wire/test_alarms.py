@@ -2,7 +2,6 @@
 everywhere (alarming.py), and is seen to go. The other conditions are in test_alarms_*.py; their words in tests/alarms/conditions_test."""
 
 import signal
-import unittest
 
 import programs
 from alarming import WithAlarms

@@ -1,7 +1,6 @@
 """An alarm that is acknowledged, over the ends of the service."""
 
 import signal
-import unittest
 
 from alarming import WithAlarms
 from programs import wait_until

@@ -2,7 +2,6 @@
 
 import contextlib
 import socket
-import unittest
 
 import hosts
 import programs

@@ -1,6 +1,5 @@
 """Alarms of a queue of maps that is full: for a minute after the last map that was refused."""
 
-import unittest
 
 from alarming import WithAlarms
 

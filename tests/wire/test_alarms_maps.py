@@ -2,7 +2,6 @@
 
 import signal
 import time
-import unittest
 
 from alarming import WithAlarms
 from programs import wait_until

@@ -3,7 +3,6 @@
 import contextlib
 import json
 import time
-import unittest
 
 import hosts
 import neighbour

@@ -1,7 +1,6 @@
 """The alarm of a queue of maps that grows, which takes most of a minute; test_alarms_full.py has those of one that is full."""
 
 import time
-import unittest
 
 from alarming import WithAlarms
 from programs import wait_until

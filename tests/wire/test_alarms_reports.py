@@ -1,6 +1,5 @@
 """Alarms of reports and of the count of them."""
 
-import unittest
 
 import hosts
 import programs

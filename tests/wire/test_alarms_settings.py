@@ -1,6 +1,5 @@
 """Alarms of settings and tokens."""
 
-import unittest
 
 import programs
 from alarming import WithAlarms

@@ -7,7 +7,7 @@ import unittest
 
 import requests
 
-from programs import Stage
+from programs import Stage, patient, wait_until
 from reporting import QUICK, REPORT, another, at_once, began, insist, submit
 
 
@@ -24,7 +24,7 @@ class ExactlyOnce(unittest.TestCase):
             self.assertEqual(waited.content, insisted.content)
             self.assertEqual(waited.headers["Content-Type"], "application/json")
             self.assertEqual(submit(stage).content, waited.content, "asked for once more")
-            time.sleep(0.3)  # what might still be sent would be by now
+            time.sleep(patient(0.3))  # what might still be sent would be by now
             recorded = stage.post.recorded(REPORT)
             self.assertEqual(len(recorded), 1, "recorded exactly once")
             self.assertEqual(len(stage.post.recorded()), 2)
@@ -40,7 +40,7 @@ class ExactlyOnce(unittest.TestCase):
             self.assertEqual(said[name], record[name], name)
         self.assertEqual(said["score_change"], 1)
         self.assertIs(said["adit"]["reconciled"], True)
-        self.assertGreater(said["run_clock"], record["run_clock"] - 1.0)
+        self.assertGreater(said["run_clock"], record["run_clock"] - patient(1.0))
         self.assertIn("remaining_reports went from 44 to 43 and the score from 0 to 1", said["adit"]["evidence"])
         self.assertEqual((said["id"], said["url"]), (None, None), "not known, and not made up")
 

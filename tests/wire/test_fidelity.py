@@ -3,7 +3,6 @@
 import copy
 import itertools
 import struct
-import unittest
 
 import cbor2
 import requests

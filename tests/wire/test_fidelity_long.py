@@ -1,6 +1,5 @@
 """Fidelity against a Command Post that behaves as the real ones do, and of the largest markers."""
 
-import unittest
 
 import messages
 import test_fidelity

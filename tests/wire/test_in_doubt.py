@@ -5,7 +5,7 @@ import contextlib
 import time
 import unittest
 
-from programs import Stage
+from programs import Stage, patient, wait_until
 from reporting import QUICK, REPORT, another, began, insist, sendings, submit
 
 DEADLINE = 3.0  # seconds until a client is told how its report stands
@@ -32,7 +32,7 @@ class InDoubt(unittest.TestCase):
         number = int(told.headers["Adit-Report"])
         self.attention_says(stage, f"report {number} is in doubt", *why)
         insist(stage, another(7), 10, until=lambda answer: answer.status_code == 201)
-        time.sleep(1.0)  # longer than it takes to find out what can be found out
+        time.sleep(patient(1.0))  # longer than it takes to find out what can be found out
         self.attention_says(stage, f"report {number} is in doubt", *why)
         self.assertEqual(sendings(stage), 1)
         return number
@@ -45,7 +45,7 @@ class InDoubt(unittest.TestCase):
             found = insist(stage, until=lambda answer: answer.status_code == 201)
             self.assertEqual(found.headers["Adit-Reconciled"], "yes")
             self.assertEqual((sendings(stage), len(stage.post.recorded(REPORT))), (1, 1))
-            self.assertEqual(stage.box.attention(), "")
+            wait_until(lambda: stage.box.attention() == "", "the alarm of a status that fails for long to pass")
 
     def test_the_operator_calls_it_done(self):
         with self.stage() as stage:

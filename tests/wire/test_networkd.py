@@ -1,7 +1,6 @@
 """Changes of the box's addresses by a real systemd-networkd."""
 
 import pathlib
-import unittest
 
 import dhcp
 import hosts

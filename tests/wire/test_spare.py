@@ -6,7 +6,6 @@ import pathlib
 import random
 import subprocess
 import time
-import unittest
 from unittest import mock
 
 import requests

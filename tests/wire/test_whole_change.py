@@ -4,7 +4,6 @@ import contextlib
 import http.client
 import json
 import threading
-import unittest
 
 import hosts
 import networkd

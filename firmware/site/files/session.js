@@ -53,7 +53,8 @@ export async function post(path, body = {}) {
   }
 }
 
-/** `action`, of which one is under way at a time: the box would refuse the second press of two. */
+/** `action`, one at a time: presses meanwhile do nothing. It should end by showing the box's new state, or the second press of a
+ *  double click asks the box again if the first answer comes between the two. */
 export function oneAtATime(action) {
   let isBusy = false;
   return async (...words) => {

@@ -159,7 +159,7 @@ const act = oneAtATime(async (does) => {
   } catch (error) {
     say(error.message, true);
   }
-  look();
+  await look();
 });
 
 /** Where the box has no such thing, the section is not shown. */

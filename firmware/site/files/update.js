@@ -93,7 +93,7 @@ export async function offerUpdate(operator) {
       trouble = error.message;
       sayOutcome();
     });
-    look();
+    await look();
   });
   install.addEventListener("click", () => file.files[0] && act(() => post("/adit/update", file.files[0])));
   stick.addEventListener("click", () => act(() => post("/adit/update/stick")));

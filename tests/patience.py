@@ -1,0 +1,39 @@
+"""How long tests wait. On a slow machine toolchain/ctest sets ADIT_PATIENCE, which multiplies all time-outs."""
+
+import math
+import os
+import sys
+import time
+
+
+def factor_of(text):
+    try:
+        factor = float(text)
+    except ValueError:
+        factor = 0
+    if not 1 <= factor < math.inf:
+        sys.exit(f"ADIT_PATIENCE: expected a number of at least 1, not '{text}'")
+    return factor
+
+
+FACTOR = factor_of(os.environ.get("ADIT_PATIENCE", "1"))
+
+
+def patient(time_out):
+    """`time_out`, in any unit, times ADIT_PATIENCE."""
+    return time_out * FACTOR
+
+
+def wait_until(condition, what, within=60.0, tolerates=(), every=0.01):
+    """The first true value of `condition()`, asked `every` so many seconds. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what` and what was seen
+    last, a value or an exception of the types that `tolerates` names."""
+    end = time.monotonic() + patient(within)
+    while True:
+        try:
+            if seen := condition():
+                return seen
+        except tolerates as error:
+            seen = error
+        if time.monotonic() >= end:
+            raise AssertionError(f"waited {patient(within):g} s in vain for {what}; seen last: {seen!r:.1000}")
+        time.sleep(every)

@@ -9,7 +9,7 @@
 namespace adit::lanes {
 namespace {
 
-constexpr std::size_t kRoom = 1 << 20;
+constexpr std::size_t kMergeRoom = 1 << 20;
 
 TEST(PrecisionFor, IsTheFinestAtWhichOneMessageHoldsAll) {
   constexpr PointsAt kHolds{100, 150, 200};
@@ -34,7 +34,7 @@ class PrecisionOf : public testing::Test {
   }
   Precision next() { return lane_.take()->precision; }
 
-  MapLane lane_{kRoom};
+  MapLane lane_{kMergeRoom};
   std::uint64_t number_ = 0;
 };
 

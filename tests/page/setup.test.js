@@ -6,55 +6,6 @@ import { test } from "node:test";
 import { come, freePort, freshBox, LOOKING, PASSWORD, TOKENS, until } from "./fresh_box.js";
 import { complaints, COURSES, field, fill, hears, ready, review, step, type } from "./setup_page.js";
 
-test("leads from an empty box to a first report through it", async (t) => {
-  const box = await freshBox(t);
-  const page = await come(t, box, "");
-  await page.waitForURL(/login\.html/);
-  await page.getByLabel("Code").fill(box.code());
-  await page.getByLabel("New password").fill(PASSWORD);
-  await page.getByLabel("Repeat the password").fill(PASSWORD);
-  await page.keyboard.press("Enter");
-  await page.waitForURL(/\/setup$/);
-  await hears(page, "Not set up yet: the scoring and the mapping token are missing.");
-
-  await page.getByRole("heading", { name: "Team network" }).waitFor();
-  await page.getByRole("button", { name: "Next" }).click();
-  await page.getByRole("heading", { name: "Command Post" }).waitFor();
-  await fill(page, { "Scoring port": String(box.scoring), "Mapping port": String(box.mapping) });
-  await page.getByRole("button", { name: "Next" }).click();
-  assert.deepEqual((await review(page)).map(([path, , to]) => [path, to]), [["Scoring port", String(box.scoring)], ["Mapping port", String(box.mapping)]]);
-  await page.getByRole("button", { name: "Apply", exact: true }).click();
-
-  await page.getByRole("heading", { name: "Tokens" }).waitFor();
-  await page.getByLabel("Scoring endpoint’s token", { exact: true }).fill(TOKENS.scoring);
-  await page.getByLabel("Mapping endpoint’s token", { exact: true }).fill(`  ${TOKENS.mapping} `);
-  await page.getByRole("button", { name: "Next" }).click();
-  await page.getByRole("heading", { name: "Robots" }).waitFor();
-  assert.ok(await page.locator("#missing").isHidden());
-  await page.getByRole("button", { name: "Add a robot" }).click();
-  await page.keyboard.type("ugv1");
-  await page.getByLabel("Alias").fill("husky-1");
-  await page.getByRole("button", { name: "Next" }).click();
-  await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await page.getByRole("heading", { name: "Test" }).waitFor();
-  await page.getByRole("button", { name: "Test it" }).click();
-  await page.getByText("All is well. No report was spent.").waitFor();
-  await page.getByRole("button", { name: "To the run" }).click();
-
-  await page.waitForSelector("body[data-link=live]");
-  const record = async () => (await fetch(`http://127.0.0.1:${box.control}/record`)).json();
-  const before = JSON.stringify(await record());
-  assert.doesNotMatch(before, /"type": ?"Drill"/, "the test spent no report");
-  await page.getByRole("button", { name: "New report" }).click();
-  await page.locator("#compose .types").getByRole("button", { name: "Drill", exact: true }).click();
-  for (const [name, value] of [["x", "12.5"], ["y", "-3"], ["z", "0"]]) await page.fill(`#compose input[name=${name}]`, value);
-  await page.locator("#compose .go").click();
-  await page.locator("#compose .send").click();
-  const ask = await box.operator();
-  await until(async () => (await ask("/adit/reports")).said.some(({ state }) => state === "answered"), "an answer to the report");
-  assert.deepEqual(complaints(page, "401"), []);
-});
-
 /** Runs the Test, and gives of each endpoint each step's state. */
 async function tried(page) {
   await page.getByRole("button", { name: "Test it" }).click();

@@ -87,7 +87,3 @@ class FirstReport(unittest.TestCase):
     def recorded(post):
         with urllib.request.urlopen(f"http://{post.control}/record") as answer:
             return [tuple(report[name] for name in ("type", "x", "y", "z")) for report in json.load(answer)["reports"]]
-
-
-if __name__ == "__main__":
-    unittest.main(verbosity=2)

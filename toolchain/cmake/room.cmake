@@ -50,5 +50,5 @@ function(adit_room_test name)
     adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
   adit_compiled(adit_${name}_test test)
   gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT 120 LABELS ${name})
+    PROPERTIES TIMEOUT 300 PROCESSORS 2 LABELS ${name})
 endfunction()

@@ -9,6 +9,7 @@
 
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
+#include "loop/turn_until.hpp"
 
 namespace adit::intake {
 
@@ -62,9 +63,9 @@ class Served {
   /// Waits until `condition`, asked on the loop, holds.
   template <class Condition>
   bool eventually(Condition condition, std::chrono::milliseconds within = std::chrono::seconds(10)) {
-    const auto until = std::chrono::steady_clock::now() + within;
+    const auto until = loop::kernel_now() + within;
     while (!on_loop(condition)) {
-      if (std::chrono::steady_clock::now() > until) return false;
+      if (loop::kernel_now() > until) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return true;

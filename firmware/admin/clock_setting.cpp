@@ -52,7 +52,7 @@ icd::Checked<void> ClockSetting::set_clock(double time) {
 void ClockSetting::offered(const clock::Offer& offer) {
   if (!status_ || waits_) return;
   const bool came_to_nothing = !not_taken_up_.empty() || !status_->refusal.empty();
-  if (came_to_nothing && loop_.now() < asked_at_ + patience_.ask_again) return;  // the operator may insist
+  if (came_to_nothing && loop_.now() < asked_at_ + kAskAgain) return;  // the operator may insist
   const double of_the_system = loop_.wall_now() - loop_.wall_ahead();
   const auto time = clock::to_be_set(status_->trusted(), offer, of_the_system);
   if (!time) return;
@@ -79,7 +79,7 @@ void ClockSetting::every_second(const clock::Ntp& ntp) {
   const auto text = host::read_file(status_file_);
   status_ = text ? clock::read<clock::Status>(*text) : std::unexpected(text.error());
   note_what_became_of_it();
-  if (waits_ && loop_.now() >= asked_at_ + patience_.taken_up_within) give_up();
+  if (waits_ && loop_.now() >= asked_at_ + kTakenUpWithin) give_up();
   if (ntp_ != ntp || ntp_since_ == loop::Instant{}) ntp_since_ = loop_.now();
   if (std::exchange(ntp_, ntp) != ntp) ntp_asked_at_ = {};
   watch_.every_second(status_ ? ntp_.server : "");
@@ -90,7 +90,7 @@ void ClockSetting::every_second(const clock::Ntp& ntp) {
 
 void ClockSetting::ask_for_ntp() {
   const bool has_been = ntp_asked_at_ != loop::Instant{};
-  if (has_been && loop_.now() < ntp_asked_at_ + patience_.ask_again) return;
+  if (has_been && loop_.now() < ntp_asked_at_ + kAskAgain) return;
   ntp_asked_at_ = loop_.now();
   const auto written = host::write_file(ntp_request_, clock::write(ntp_), host::kOursAlone);
   if (!written) host::log(host::Level::Error, "NTP cannot be asked for", {{"why", written.error()}});

@@ -16,18 +16,15 @@ class ClockSetting final : public api::Clock {
  public:
   static constexpr std::uint16_t kChronyd = 323;  // its port on this machine
 
-  struct Patience {
-    /// A request: when it is older, adit-clock refuses it. A busy box takes half a minute.
-    loop::Duration taken_up_within = std::chrono::seconds(60);
-    /// What is not taken up, or came to nothing, is asked for again.
-    loop::Duration ask_again = std::chrono::seconds(60);
-  };
+  /// A request: when it is older, adit-clock refuses it. A busy box takes half a minute.
+  static constexpr std::chrono::seconds kTakenUpWithin{60};
+  /// What is not taken up, or came to nothing, is asked for again.
+  static constexpr std::chrono::seconds kAskAgain{60};
 
   /// `state_folder`: where requests are left; `status_folder`: where they are answered. `loop` outlives this.
   ClockSetting(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
-               std::uint16_t chronyd, Patience patience)
+               std::uint16_t chronyd)
       : loop_(loop),
-        patience_(patience),
         request_(state_folder + '/' + clock::kRequestFile),
         ntp_request_(state_folder + '/' + clock::kNtpFile),
         status_file_(status_folder + '/' + clock::kStatusFile),
@@ -55,7 +52,6 @@ class ClockSetting final : public api::Clock {
   std::string ntp_said() const;
 
   loop::Loop& loop_;
-  const Patience patience_;
   std::string request_, ntp_request_, status_file_;
   NtpWatch watch_;
   clock::Ntp ntp_;  // as the settings have it

@@ -62,7 +62,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           network_requests_, network_, [this] { api_.changed(); }),
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
-      clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd, {}),
+      clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd),
       spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder,
              parts_.take_over_trouble,
              {.content = [this] { return content(); },

@@ -5,12 +5,8 @@
 
 namespace adit::loop {
 
-Watchdog::Watchdog(Loop& loop, Duration within, std::function<void()> feed, Duration longest_job)
-    : loop_(loop),
-      every_(within / 4),
-      longest_job_(longest_job),
-      feed_(std::move(feed)),
-      due_(loop.timer([this] { look(); })) {
+Watchdog::Watchdog(Loop& loop, Duration within, std::function<void()> feed)
+    : loop_(loop), every_(within / 4), feed_(std::move(feed)), due_(loop.timer([this] { look(); })) {
   look();
 }
 
@@ -26,7 +22,7 @@ void Watchdog::ask() {
 /// Whoever has not answered for a whole round is not asked again before it has.
 void Watchdog::look() {
   due_.call_at(loop_.now() + every_);
-  if (!std::ranges::all_of(workers_, [this](Workers* each) { return each->are_well(longest_job_); })) return;
+  if (!std::ranges::all_of(workers_, [](Workers* each) { return each->are_well(kLongestJob); })) return;
   feed_();
   ask();
 }

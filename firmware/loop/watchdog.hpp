@@ -20,7 +20,7 @@ class Watchdog {
   static constexpr std::chrono::minutes kLongestJob{10};
 
   /// Calls `feed` four times in each `within` from now on.
-  Watchdog(Loop& loop, Duration within, std::function<void()> feed, Duration longest_job = kLongestJob);
+  Watchdog(Loop& loop, Duration within, std::function<void()> feed);
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
@@ -32,7 +32,7 @@ class Watchdog {
   void ask();
 
   Loop& loop_;
-  const Duration every_, longest_job_;
+  const Duration every_;
   const std::function<void()> feed_;
   std::vector<Workers*> workers_;
   Source due_;

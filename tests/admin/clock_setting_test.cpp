@@ -5,11 +5,12 @@
 #include "admin/fake_chronyd.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
-#include "loop/turn_until.hpp"
+#include "loop/simulated_time.hpp"
 
 namespace adit::admin {
 namespace {
 
+using namespace std::chrono_literals;
 using clock::Source;
 using testing::HasSubstr;
 
@@ -35,21 +36,22 @@ class ClockSettingTest : public testing::Test {
   void hear(double behind) {
     chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = behind};
     const int before = chronyd_.answers;
-    ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    ASSERT_TRUE(time_.pass_until(loop_, [&] {
       setting_.every_second(ntp_);
       return chronyd_.answers > before;
     }));
-    ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    ASSERT_TRUE(time_.pass_until(loop_, [&] {
       setting_.every_second(ntp_);
       return setting_.ntp_trouble().empty() && (asked() || setting_.clock().is_kept);
     }));
   }
 
   host::Folder state_, run_;
+  loop::SimulatedTime time_;
   loop::Loop loop_;
   clock::Ntp ntp_;
   FakeChronyd chronyd_{loop_};
-  ClockSetting setting_{loop_, state_.path(), run_.path(), chronyd_.port(), {}};
+  ClockSetting setting_{loop_, state_.path(), run_.path(), chronyd_.port()};
 };
 
 TEST_F(ClockSettingTest, SaysWhyItCannotSetTheClockWhereAditClockDoesNotRun) {
@@ -122,60 +124,43 @@ TEST_F(ClockSettingTest, TellsWhyItWasNotSet) {
   EXPECT_TRUE(setting_.set_clock(1.8e9));
 }
 
-/// It asks again soon.
-class SoonAgain : public ClockSettingTest {
- protected:
-  /// The Command Post tells its time all the while: the next request, if one comes.
-  std::optional<clock::Request> next_after(const std::string& nonce, double ahead) {
-    std::optional<clock::Request> next;
-    (void)loop::turn_until(loop_, [&] {
-      hasty_.every_second(ntp_);
-      hasty_.offered({Source::CommandPost, now() + ahead});
-      next = asked();
-      return next && next->nonce != nonce;
-    });
-    return next;
-  }
-
-  ClockSetting hasty_{
-      loop_,
-      state_.path(),
-      run_.path(),
-      chronyd_.port(),
-      {.taken_up_within = std::chrono::milliseconds(50), .ask_again = std::chrono::milliseconds(50)}};
-};
-
-TEST_F(SoonAgain, AsksAgainWhereABusyBoxDidNotTakeItUpInTime) {
+TEST_F(ClockSettingTest, AsksAgainWhereABusyBoxDidNotTakeItUpInTime) {
   say({});
-  const auto first = next_after("", 600);
+  setting_.offered({Source::CommandPost, now() + 600});
+  const auto first = asked();
   ASSERT_TRUE(first);
-  ASSERT_TRUE(loop::turn_until(loop_, [&] {
-    hasty_.every_second(ntp_);
-    return !hasty_.clock().refusal.empty();
-  }));
-  EXPECT_THAT(hasty_.clock().refusal, HasSubstr("did not take it up"));
+  time_.pass(ClockSetting::kTakenUpWithin - 1ms);
+  setting_.every_second(ntp_);
+  EXPECT_EQ(setting_.clock().refusal, "");
+  time_.pass(1ms);
+  setting_.every_second(ntp_);
+  EXPECT_THAT(setting_.clock().refusal, HasSubstr("did not take it up"));
   EXPECT_FALSE(asked()) << "it would be old";
-  const auto second = next_after(first->nonce, 600);
+  setting_.offered({Source::CommandPost, now() + 600});
+  const auto second = asked();
   ASSERT_TRUE(second);
   EXPECT_NE(second->nonce, first->nonce);
-  ASSERT_TRUE(loop::turn_until(loop_, [&] {
-    hasty_.every_second(ntp_);
-    return !hasty_.clock().refusal.empty();
-  }));
+  time_.pass(ClockSetting::kTakenUpWithin);
+  setting_.every_second(ntp_);
+  EXPECT_NE(setting_.clock().refusal, "");
   say({.nonce = second->nonce, .refusal = "", .source = Source::CommandPost});
-  hasty_.every_second(ntp_);
-  EXPECT_EQ(hasty_.clock().refusal, "") << "it was late, but it is set";
+  EXPECT_EQ(setting_.clock().refusal, "") << "it was late, but it is set";
 }
 
-TEST_F(SoonAgain, AsksAgainWhatWasRefused) {
+TEST_F(ClockSettingTest, AsksAgainWhatWasRefused) {
   say({});
-  const auto first = next_after("", 600);
+  setting_.offered({Source::CommandPost, now() + 600});
+  const auto first = asked();
   ASSERT_TRUE(first);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   say({.nonce = first->nonce, .refusal = "at: not within the last minute", .source = Source::None});
-  const auto second = next_after(first->nonce, 600);
-  ASSERT_TRUE(second);
-  EXPECT_NE(second->nonce, first->nonce);
+  time_.pass(ClockSetting::kAskAgain - 1ms);
+  setting_.offered({Source::CommandPost, now() + 600});
+  EXPECT_FALSE(asked());
+  time_.pass(1ms);
+  setting_.offered({Source::CommandPost, now() + 600});
+  ASSERT_TRUE(asked());
+  EXPECT_NE(asked()->nonce, first->nonce);
 }
 
 TEST_F(ClockSettingTest, AsksForNtpAsTheSettingsHaveItAndWhenTheyChange) {
@@ -229,7 +214,7 @@ TEST_F(ClockSettingTest, TakesNoServersTimeThatIsNoTimeOfABox) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::None, .ntp = ntp_});
   chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = -now()};
-  ASSERT_TRUE(loop::turn_until(loop_, [&] {
+  ASSERT_TRUE(time_.pass_until(loop_, [&] {
     setting_.every_second(ntp_);
     return chronyd_.answers > 1;  // the first has been read
   }));
@@ -264,7 +249,7 @@ TEST_F(ClockSettingTest, HearsNobodyWhoWasHeardLongAgoOrIsAnother) {
         clock::Tracking{}}) {
     chronyd_.told = other;
     const int before = chronyd_.answers;
-    ASSERT_TRUE(loop::turn_until(loop_, [&] {
+    ASSERT_TRUE(time_.pass_until(loop_, [&] {
       setting_.every_second(ntp_);
       return chronyd_.answers > before + 1;
     }));

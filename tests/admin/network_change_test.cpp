@@ -7,6 +7,7 @@
 
 #include "host/folder.hpp"
 #include "host/interfaces.hpp"
+#include "loop/simulated_time.hpp"
 #include "network/doubles.hpp"
 
 namespace adit::admin {
@@ -31,11 +32,7 @@ class NetworkChangeTest : public testing::Test {
   /// As adit-network does; it is read again once it is no longer fresh.
   void tell() {
     std::ofstream(folder / network::kStatusFile) << network::write(status);
-    wait_until_not_fresh();
-  }
-  void wait_until_not_fresh() {
-    const auto end = loop.now() + 2 * NetworkChange::kFresh;
-    while (loop.now() < end) loop.turn(std::chrono::milliseconds(10));
+    time.pass(NetworkChange::kFresh);
   }
   std::optional<network::Endpoints> asked() const {
     std::ifstream file(folder / network::kEndpointsFile);
@@ -50,6 +47,7 @@ class NetworkChangeTest : public testing::Test {
   }
 
   host::Folder folder;
+  loop::SimulatedTime time;
   loop::Loop loop;
   settings::Settings settings;
   network::Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
@@ -131,7 +129,7 @@ class AddressesTakenTest : public NetworkChangeTest {
   void watch_tells(const std::vector<network::TakenAddress>& taken,
                    const std::vector<network::TakenAddress>& exchanged = {}) {
     std::ofstream(folder / network::kTakenFile) << network::write(network::Taken{taken, exchanged});
-    wait_until_not_fresh();
+    time.pass(NetworkChange::kFresh);
   }
   network::TakenAddress on(const char* interface, const char* address, loop::Duration ago = {}) {
     return {interface, address, "02:00:00:00:00:07",
@@ -184,7 +182,7 @@ TEST_F(AddressesTakenTest, AreTheCommandPostsAtTheTeamsPortWhereTheSettingsNameI
 
 TEST_F(AddressesTakenTest, OfADamagedFileAreNone) {
   std::ofstream(folder / network::kTakenFile) << R"({"version":1,"taken":[{"interface":"team0")";
-  wait_until_not_fresh();
+  time.pass(NetworkChange::kFresh);
   EXPECT_TRUE(taken().empty());
 }
 

@@ -4,11 +4,11 @@
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "loop/simulated_time.hpp"
 
 namespace adit::admin {
 namespace {
 
-using namespace std::chrono_literals;
 using testing::ElementsAre;
 using testing::HasSubstr;
 
@@ -31,12 +31,15 @@ class SpareStickTest : public testing::Test {
     status.nonce = asked()->nonce;
     ASSERT_TRUE(host::remove_file(state_ / spare::kStickRequestFile));
     say(status);
-    const auto until = loop_.now() + 10s;
-    while (!stick_.view()->doing.empty() && status.doing.empty() && loop_.now() < until) loop_.turn(10ms);
+    if (status.doing.empty()) EXPECT_TRUE(is_over());
+  }
+  bool is_over() {
+    return time_.pass_until(loop_, [this] { return stick_.view()->doing.empty(); }, std::chrono::seconds(10));
   }
   static std::string why(const icd::Checked<void>& done) { return done ? "" : done.error().sentence; }
 
   host::Folder state_, run_;
+  loop::SimulatedTime time_;
   loop::Loop loop_;
   std::vector<std::string> taken_;
   SpareStick stick_{loop_, state_.path(), run_.path(),
@@ -74,7 +77,7 @@ TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
   say({.nonce =
            spare::read_message<spare::StickStatus>(*host::read_file(run_ / spare::kStickStatusFile))->nonce,
        .written = kName});
-  while (!stick_.view()->doing.empty()) loop_.turn(10ms);
+  EXPECT_TRUE(is_over());
   EXPECT_EQ(stick_.view()->written, kName);
   EXPECT_TRUE(taken_.empty());
 }

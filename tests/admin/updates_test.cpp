@@ -5,10 +5,10 @@
 
 #include <csignal>
 #include <fstream>
-#include <thread>
 
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "loop/simulated_time.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::admin {
@@ -31,7 +31,7 @@ class UpdatesTest : public testing::Test {
     ASSERT_TRUE(host::write_file(run_ / update::kStatusFile, update::write(status), 0644));
   }
   /// Until what was read of the status is too old.
-  static void wait() { std::this_thread::sleep_for(Updates::kFresh + 20ms); }
+  void wait() { time_.pass(Updates::kFresh); }
   std::optional<update::Request> asked() const {
     const auto text = host::read_file(state_ / update::kRequestFile);
     const auto request = text ? update::read<update::Request>(*text) : std::unexpected(text.error());
@@ -55,6 +55,7 @@ class UpdatesTest : public testing::Test {
   }
 
   host::Folder state_, run_;
+  loop::SimulatedTime time_;
   loop::Loop loop_;
   loop::Writer writer_{loop_};
   std::string under_way_;

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "loop/turn_until.hpp"
+#include "loop/simulated_time.hpp"
 #include "panel/watched_lines.hpp"
 #include "panel/wire.hpp"
 
@@ -24,14 +24,13 @@ class ButtonWatchTest : public testing::Test {
     button.emplace(loop, std::make_unique<WireLine>(wire), lights,
                    [this](Press press) { presses.push_back(press); });
   }
-  /// Until it has been seen, and for longer than it may bounce.
+  /// For longer than it may bounce.
   void set(bool pressed) {
-    const int before = wire.looked;
     wire.set(pressed);
-    EXPECT_TRUE(loop::turn_until(loop, [&] { return wire.looked > before; }));
-    loop::turn_for(loop, 100ms);
+    time.pass(loop, 100ms);
   }
 
+  loop::SimulatedTime time;
   loop::Loop loop;
   WatchedLines::Seen seen;
   Lights lights{loop, std::make_unique<WatchedLines>(seen)};
@@ -44,40 +43,32 @@ TEST_F(ButtonWatchTest, TellsOfAPressOnceItIsOver) {
   watch();
   set(true);
   EXPECT_TRUE(presses.empty());
-  wire.set(false);
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  set(false);
   EXPECT_EQ(presses, std::vector{Press::Identify});
   const int looked = wire.looked;
-  loop::turn_for(loop, 100ms);
+  time.pass(loop, 1s);
   EXPECT_EQ(wire.looked, looked) << "nobody looks at a button that nobody touches";
 }
 
 TEST_F(ButtonWatchTest, IgnoresABounce) {
   watch();
-  bool was_one = false;  // on a busy machine it may last as long as a press
-  for (int attempt = 0; attempt < 100 && !was_one; ++attempt) {
-    presses.clear();
-    const auto began = loop.now();
-    for (int i = 0; i < 10; ++i) {
-      wire.set(i % 2 == 0);
-      loop.turn(0ms);
-    }
-    was_one = loop.now() - began < panel::Button::kBounce;
-    loop::turn_for(loop, 100ms);
+  for (int i = 0; i < 10; ++i) {
+    wire.set(i % 2 == 0);
+    time.pass(loop, panel::Button::kBounce - 1ms);
   }
-  EXPECT_TRUE(was_one);
+  time.pass(loop, 100ms);
   EXPECT_TRUE(presses.empty());
 }
 
 TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
   watch();
   lights.set(State::Serving, true);
-  set(true);
-  loop::turn_for(loop, 2400ms);
+  wire.set(true);
+  time.pass(loop, panel::Button::kHold - 1ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.has(State::ButtonHeld); }));
-  wire.set(false);
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  time.pass(loop, 2ms);
+  EXPECT_TRUE(lights.has(State::ButtonHeld));
+  set(false);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   EXPECT_EQ(presses, std::vector{Press::ShowAddress});
 }
@@ -85,7 +76,7 @@ TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
 TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
   wire.pressed = true;
   watch();
-  loop::turn_for(loop, 3200ms);
+  time.pass(loop, 3200ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   set(false);
   EXPECT_TRUE(presses.empty());
@@ -94,7 +85,7 @@ TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
 TEST_F(ButtonWatchTest, ForgetsAPressWhereTheButtonCannotBeReadAnyMore) {
   watch();
   set(true);
-  loop::turn_for(loop, 3200ms);
+  time.pass(loop, 3200ms);
   EXPECT_TRUE(lights.has(State::ButtonHeld));
   wire.broken = true;
   set(false);
@@ -109,10 +100,10 @@ TEST_F(ButtonWatchTest, LooksAgainForAButtonThatCouldNotBeRead) {
   watch();
   wire.broken = false;
   const int looked = wire.looked;
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return wire.looked > looked; })) << "though nobody touches it";
+  time.pass(loop, 2s);
+  EXPECT_GT(wire.looked, looked) << "though nobody touches it";
   set(true);
-  wire.set(false);
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  set(false);
   EXPECT_EQ(presses, std::vector{Press::Identify});
 }
 
@@ -122,18 +113,18 @@ TEST_F(ButtonWatchTest, IgnoresAButtonThatIsPressedWhenItIsBackUntilItIsLetGo) {
   set(true);
   wire.broken = false;
   set(true);
-  loop::turn_for(loop, 3200ms);
+  time.pass(loop, 3200ms);
   EXPECT_FALSE(lights.has(State::ButtonHeld));
   set(false);
   EXPECT_TRUE(presses.empty());
   set(true);
-  wire.set(false);
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  set(false);
+  EXPECT_EQ(presses, std::vector{Press::Identify});
 }
 
 TEST_F(ButtonWatchTest, IsNoneWhereThereIsNoLine) {
   button.emplace(loop, nullptr, lights, [this](Press press) { presses.push_back(press); });
-  loop::turn_for(loop, 50ms);
+  time.pass(loop, 50ms);
   EXPECT_TRUE(presses.empty());
 }
 
@@ -150,8 +141,7 @@ TEST_F(ButtonWatchTest, GoesOnWithAnotherLine) {
   EXPECT_FALSE(wire.open);
   button->take(std::make_unique<WireLine>(wire));
   set(true);
-  wire.set(false);
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !presses.empty(); }));
+  set(false);
   EXPECT_EQ(presses, std::vector{Press::Identify});
 }
 

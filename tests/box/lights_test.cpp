@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "loop/turn_until.hpp"
+#include "loop/simulated_time.hpp"
 #include "panel/watched.hpp"
 #include "panel/watched_lines.hpp"
 
@@ -30,6 +30,7 @@ class LightsTest : public testing::Test {
     }
   }
 
+  loop::SimulatedTime time;
   loop::Loop loop;
   WatchedLines::Seen seen;
   Lights lights{loop, std::make_unique<WatchedLines>(seen)};
@@ -53,43 +54,35 @@ TEST_F(LightsTest, AreAllDarkAtFirst) {
 TEST_F(LightsTest, BlinkByTheLoopsTimer) {
   be_well();
   lights.set(State::NeedsOperator, true);
-  loop::Duration took = 1h;
-  // A busy machine takes longer now and then.
-  for (int attempt = 0; attempt < 10 && took > 1500ms; ++attempt) {
-    const auto began = loop.now();
-    seen.shown.clear();
-    EXPECT_TRUE(loop::turn_until(loop, [&] { return seen.shown.size() >= 9; }));
-    for (std::size_t i = 1; i < 9; ++i) EXPECT_NE(seen.shown[i][kAttention], seen.shown[i - 1][kAttention]);
-    took = loop.now() - began;
-    EXPECT_GT(took, 800ms);
-  }
-  EXPECT_LT(took, 1500ms) << "eight steps of 125 ms";
+  seen.shown.clear();
+  time.pass(loop, 1010ms);
+  ASSERT_EQ(seen.shown.size(), 8u) << "steps of 125 ms";
+  for (std::size_t i = 1; i < 8; ++i) EXPECT_NE(seen.shown[i][kAttention], seen.shown[i - 1][kAttention]);
 }
 
 TEST_F(LightsTest, KeepTheirTimeWhileTheyAreToldTheSameOverAndOver) {
   lights.set(State::NeedsOperator, true);
   seen.shown.clear();
-  const auto began = loop.now();
-  EXPECT_TRUE(loop::turn_until(loop, [&] {
+  for (int i = 0; i < 101; ++i) {
     lights.set(State::NeedsOperator, true);
-    loop.turn(10ms);
-    return seen.shown.size() >= 6 && loop.now() - began > 1s;
-  }));
-  EXPECT_LE(static_cast<long>(seen.shown.size()), 1 + (loop.now() - began) / 125ms);
+    time.pass(loop, 10ms);
+  }
+  EXPECT_EQ(seen.shown.size(), 8u);
 }
 
 TEST_F(LightsTest, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheOthersAgain) {
   be_well();
-  lights.set_for(State::Identify, 1h);
+  lights.set_for(State::Identify, 3s);
   constexpr panel::Lights kTwice = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
   EXPECT_EQ(lights.shown(), kTwice);
   lights.set(State::MappingConnected, false);
   EXPECT_EQ(lights.shown(), kTwice) << "whatever happens meanwhile";
   EXPECT_GT(lights.left(State::Identify).value_or(0ms), 0ms);
   const auto showed = [&](const Lit& lit) { return std::ranges::find(seen.shown, lit) != seen.shown.end(); };
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return showed(Lit{}) && showed(Lit{true, true, true, true}); }));
-  lights.set_for(State::Identify, 100ms);
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.shown() != kTwice; }));
+  time.pass(loop, 3s - 1ms);
+  EXPECT_TRUE(showed(Lit{}) && showed(Lit{true, true, true, true}));
+  EXPECT_EQ(lights.shown(), kTwice);
+  time.pass(loop, 1ms);
   EXPECT_EQ(lights.left(State::Identify), std::nullopt);
   EXPECT_FALSE(lights.has(State::Identify));
   EXPECT_EQ(lights.shown()[kMapping], Pattern::Off);
@@ -98,17 +91,16 @@ TEST_F(LightsTest, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheOthers
 
 TEST_F(LightsTest, PlayDigitsOnceFromTheirBeginningOnAttentionAlone) {
   be_well();
-  loop.turn(30ms);
+  time.pass(loop, 30ms);
   const Lit dark{}, digit{false, false, false, true}, well{true, true, true, false};
   const std::vector all{dark, digit, dark, digit, dark, well};
   seen.shown.clear();
-  // A busy machine may sleep through one.
-  for (int attempt = 0; attempt < 20 && seen.shown != all; ++attempt) {
-    seen.shown.clear();
-    lights.play_digits({{false, 100ms}, {true, 100ms}, {false, 100ms}, {true, 200ms}, {false, 100ms}});
-    EXPECT_EQ(lights.shown()[kAttention], Pattern::Digits);
-    EXPECT_TRUE(loop::turn_until(loop, [&] { return !lights.has(State::Address); }));
-  }
+  lights.play_digits({{false, 100ms}, {true, 100ms}, {false, 100ms}, {true, 200ms}, {false, 100ms}});
+  EXPECT_EQ(lights.shown()[kAttention], Pattern::Digits);
+  time.pass(loop, 599ms);
+  EXPECT_TRUE(lights.has(State::Address));
+  time.pass(loop, 1ms);
+  EXPECT_FALSE(lights.has(State::Address));
   EXPECT_EQ(seen.shown, all);
 }
 
@@ -135,9 +127,12 @@ TEST_F(LightsTest, AreTriedAgainAfterThePanelFailedThoughNothingChanges) {
   seen.shown.clear();
   lights.set(State::Serving, true);
   EXPECT_TRUE(seen.shown.empty()) << "not as often as it is asked for";
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !seen.shown.empty(); }));
+  time.pass(loop, panel::Painter::kAgain);
   EXPECT_EQ(seen.shown, (std::vector{Lit{true, false, false, false}}));
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return lights.trouble().empty(); }));
+  time.pass(loop, panel::Painter::kMended - 1ms);
+  EXPECT_EQ(lights.trouble(), "gpiochip0: gone") << "it may be a loose contact";
+  time.pass(loop, panel::Painter::kConfirm);
+  EXPECT_EQ(lights.trouble(), "");
 }
 
 TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
@@ -145,24 +140,25 @@ TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
   be_well();
   lights.let_go();
   lights.take(std::make_unique<WatchedLines>(watched));
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return watched.shown.size() >= 4; }));
+  const std::size_t taken = watched.shown.size();
+  time.pass(loop, 3 * panel::Watched::kBeat + 1ms);
+  EXPECT_EQ(watched.shown.size(), taken + 4) << "at once, and with each beat";
   for (const Lit& lit : watched.shown) EXPECT_EQ(lit, (Lit{true, true, true, false}));
   watched.fail = true;
   const std::size_t before = watched.shown.size();
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return watched.shown.size() > before + 1; })) << "and tried again";
+  time.pass(loop, 2 * panel::Watched::kBeat);
+  EXPECT_GT(watched.shown.size(), before + 1) << "and tried again";
   lights.let_go();
   watched.shown.clear();
   lights.set(State::NeedsOperator, true);
-  loop.turn(10ms);
+  time.pass(loop, 1s);
   EXPECT_TRUE(watched.shown.empty());
 }
 
 TEST_F(LightsTest, AreNotToldTheSameAgainWhereNobodyWatches) {
   be_well();
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return !seen.shown.empty(); }));
   const std::size_t told = seen.shown.size();
-  const auto began = loop.now();
-  EXPECT_TRUE(loop::turn_until(loop, [&] { return loop.now() - began > 2 * panel::Watched::kBeat; }));
+  time.pass(loop, 2 * panel::Watched::kBeat);
   EXPECT_EQ(seen.shown.size(), told);
 }
 

@@ -3,76 +3,69 @@
 #include "intake/raw_client.hpp"
 #include "intake/scripted_handler.hpp"
 #include "intake/served.hpp"
+#include "loop/simulated_time.hpp"
 
 namespace adit::intake {
 namespace {
 
-using std::chrono::milliseconds;
-using Clock = std::chrono::steady_clock;
+using namespace std::chrono_literals;
 
-/// Those that a test is about are near, and the others are far away.
+const Listen kHere{.address = "127.0.0.1", .interface = {}};
+
 class Deadlines : public testing::Test {
  protected:
-  struct Near {
-    milliseconds stranger_within{60000}, rate_over{60000}, idle{60000};
-    bool asks_token = false;
-  };
-  explicit Deadlines(const Near& near)
-      : served(handler, {.address = "127.0.0.1",
-                         .interface = {},
-                         .stranger_within = near.stranger_within,
-                         .rate_over = near.rate_over,
-                         .idle = near.idle}) {
-    handler.asks_token = near.asks_token;
+  explicit Deadlines(bool asks_token = false) {
+    handler.asks_token = asks_token;
+    EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 1; }));
   }
 
+  /// Time passes, and the server does what is due. Before it, it has seen whatever was sent.
+  void pass(loop::Duration length) {
+    settle();
+    time.pass(length);
+    settle();
+  }
+  /// More turns than a few connections have things to do: a turn does one.
+  void settle() {
+    for (int turns = 0; turns < 20; ++turns) served.on_loop([] {});
+  }
+  /// Sends `text` by bytes, and so much time passes after each.
+  void drip(std::string_view text, loop::Duration every) {
+    for (const char byte : text) {
+      EXPECT_TRUE(client.send({&byte, 1}));
+      pass(every);
+    }
+  }
+  bool is_open() { return !client.rest(0ms); }
+  /// Of the next answer; 0: there is none.
+  int status() {
+    const auto reply = client.reply();
+    return reply ? reply->status : 0;
+  }
+
+  loop::SimulatedTime time;
   ScriptedHandler handler;
-  Served served;
-  Clock::time_point started = Clock::now();
+  Served served{handler, kHere};
   RawClient client{served.port()};
-
-  milliseconds passed() const { return std::chrono::duration_cast<milliseconds>(Clock::now() - started); }
-
-  /// Sends `text` a byte every 50 ms from a thread of its own, until that is let go of.
-  std::jthread drip(RawClient& dripper, std::string text) {
-    return std::jthread([&dripper, text](const std::stop_token& stop) {
-      for (const char byte : text) {
-        if (stop.stop_requested() || !dripper.send({&byte, 1})) return;
-        std::this_thread::sleep_for(patient(milliseconds(50)));
-      }
-    });
-  }
 };
 
-class HeadDeadlines : public Deadlines {
+class StrangersDeadlines : public Deadlines {
  protected:
-  HeadDeadlines() : Deadlines({.stranger_within = milliseconds(500)}) {}
-};
-class StrangersBodyDeadlines : public Deadlines {
- protected:
-  StrangersBodyDeadlines() : Deadlines({.stranger_within = milliseconds(500), .asks_token = true}) {}
-};
-class RateDeadlines : public Deadlines {
- protected:
-  RateDeadlines() : Deadlines({.rate_over = milliseconds(1000)}) {}
-};
-class IdleDeadlines : public Deadlines {
- protected:
-  IdleDeadlines() : Deadlines({.rate_over = milliseconds(500), .idle = milliseconds(600)}) {}
-};
-class ReadingDeadlines : public Deadlines {
- protected:
-  ReadingDeadlines() : Deadlines({.rate_over = milliseconds(2000), .idle = milliseconds(1000)}) {}
+  StrangersDeadlines() : Deadlines(true) {}
 };
 
-TEST_F(HeadDeadlines, CloseAClientThatSaysNothing) {
+TEST_F(Deadlines, CloseAClientThatSaysNothing) {
+  pass(kHere.stranger_within - 1ms);
+  EXPECT_TRUE(is_open());
+  pass(1ms);
   EXPECT_TRUE(client.closes());
-  EXPECT_GE(passed(), patient(milliseconds(495)));
+  EXPECT_EQ(served.ended(Ended::Slow), 1u);
 }
 
-TEST_F(HeadDeadlines, CloseAClientThatDripsItsHeaders) {
-  const std::jthread dripping =
-      drip(client, request("GET", "/echo", "X-Long: " + std::string(60, 'x') + "\r\n"));
+TEST_F(Deadlines, CloseAClientThatDripsItsHeaders) {
+  drip("GET /echo", kHere.stranger_within / 10);
+  EXPECT_TRUE(is_open());
+  drip(" ", kHere.stranger_within / 10);
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 408);
@@ -80,111 +73,128 @@ TEST_F(HeadDeadlines, CloseAClientThatDripsItsHeaders) {
   EXPECT_TRUE(client.closes());
 }
 
-TEST_F(IdleDeadlines, CloseAClientThatDripsTheHeadersOfItsSecondRequest) {
+TEST_F(Deadlines, CloseAClientThatDripsTheHeadersOfItsSecondRequest) {
   client.send(request("GET", "/echo"));
   ASSERT_TRUE(client.reply());
-  const std::jthread dripping = drip(client, "GET /" + std::string(400, 'x'));  // for longer than it waits
+  drip("GET /echo", kHere.rate_over / 10);
+  EXPECT_TRUE(is_open());
+  drip(" ", kHere.rate_over / 10);
   EXPECT_TRUE(client.closes());
 }
 
-TEST_F(RateDeadlines, CloseAClientThatStopsInTheMiddleOfItsBody) {
+TEST_F(Deadlines, CloseAClientThatStopsInTheMiddleOfItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\nbegun");
-  const auto reply = client.reply();
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 408);
+  pass(kHere.rate_over / 2);
+  EXPECT_TRUE(is_open());
+  pass(kHere.rate_over / 2);
+  EXPECT_EQ(status(), 408);
   EXPECT_TRUE(client.closes());
   EXPECT_TRUE(served.eventually([&] { return handler.gone == 1 && handler.exchanges == 0; }));
 }
 
-TEST_F(RateDeadlines, LetABodyThatKeepsComingTakeItsTime) {
-  const std::string piece(4000, 'x');  // 80 kB a second, where a kilobyte would do
-  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 120000\r\n\r\n");
+TEST_F(Deadlines, LetABodyThatKeepsComingTakeItsTime) {
+  const std::string piece(2000, 'x');  // 2 kB a second, where a kilobyte would do
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 60000\r\n\r\n");
   for (int i = 0; i < 30; ++i) {
     ASSERT_TRUE(client.send(piece));
-    std::this_thread::sleep_for(patient(milliseconds(50)));
+    pass(1s);
   }
-  EXPECT_GE(passed(), patient(milliseconds(1500)));
-  EXPECT_EQ(client.reply()->status, 200);
+  EXPECT_EQ(status(), 200);
 }
 
-TEST_F(RateDeadlines, CloseAClientThatDripsItsBody) {
+TEST_F(Deadlines, CloseAClientThatDripsItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100000\r\n\r\n");
-  const std::jthread dripping = drip(client, std::string(400, 'x'));
-  const auto reply = client.reply();
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 408);
+  drip("xxx", kHere.rate_over / 4);
+  EXPECT_TRUE(is_open());
+  drip("x", kHere.rate_over / 4);
+  EXPECT_EQ(status(), 408);
 }
 
-TEST_F(StrangersBodyDeadlines, CloseAClientThatDripsItsBody) {
+TEST_F(StrangersDeadlines, CloseAClientThatDripsItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\n");
-  const std::jthread dripping = drip(client, std::string(100, 'x'));
-  const auto reply = client.reply();
-  ASSERT_TRUE(reply);
-  EXPECT_EQ(reply->status, 408);
+  drip("xxxx", kHere.stranger_within / 5);
+  EXPECT_TRUE(is_open());
+  drip("x", kHere.stranger_within / 5);
+  EXPECT_EQ(status(), 408);
 }
 
-TEST_F(StrangersBodyDeadlines, AreNotThoseOfWhoHasShownAToken) {
-  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nAuthorization: Bearer x\r\nContent-Length: 20\r\n\r\n");
-  drip(client, std::string(20, 'x')).join();
-  EXPECT_GE(passed(), patient(milliseconds(1000)));
-  EXPECT_EQ(client.reply()->status, 200);
+TEST_F(StrangersDeadlines, AreNotThoseOfWhoHasShownAToken) {
+  client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nAuthorization: Bearer x\r\nContent-Length: 7\r\n\r\n");
+  drip("xxxxxxx", kHere.stranger_within / 5);
+  EXPECT_EQ(status(), 200);
 }
 
-/// 4 MB a second of an answer that is larger than all that the kernel keeps of it: longer than an idle
-/// connection is kept.
-TEST_F(ReadingDeadlines, LetAClientThatReadsSteadilyTakeItsTime) {
+/// An answer that is larger than all that the kernel keeps of it, for longer than an idle connection is kept.
+TEST_F(Deadlines, LetAClientThatReadsSteadilyTakeItsTime) {
   const std::string answer(12u << 20, 'x');
   client.send(request("GET", "/later"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
   served.on_loop([&] { handler.responders[0]->answer({.body = answer, .headers = {}}); });
-  EXPECT_EQ(client.read_slowly(200'000, patient(milliseconds(50)), answer.size()), answer.size());
-  EXPECT_GE(passed(), patient(milliseconds(2000)));
+  loop::Duration took{};
+  const auto read = client.read_slowly(800'000, answer.size(), [&] { pass(5s), took += 5s; });
+  EXPECT_EQ(read, answer.size());
+  EXPECT_GT(took, kHere.idle);
   EXPECT_EQ(served.ended(Ended::Slow), 0u);
 }
 
-TEST_F(RateDeadlines, CloseAClientThatStopsReading) {
+TEST_F(Deadlines, CloseAClientThatStopsReading) {
   client.send(request("GET", "/later"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
   served.on_loop(
-      [&] { handler.responders[0]->answer({.body = std::string(64u << 20, 'x'), .headers = {}}); });
-  EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 0; }));
+      [&] { handler.responders[0]->answer({.body = std::string(16u << 20, 'x'), .headers = {}}); });
+  const auto connections = [&] { return served.on_loop([&] { return served.server().connections(); }); };
+  for (int halves = 0; halves < 6 && connections() != 0; ++halves) pass(kHere.rate_over / 2);
+  EXPECT_EQ(connections(), 0u);
   EXPECT_EQ(served.ended(Ended::Slow), 1u);
 }
 
-TEST_F(RateDeadlines, DoNotRunWhileTheGatewayHoldsTheBodyBack) {
+TEST_F(Deadlines, DoNotRunWhileTheGatewayHoldsTheBodyBack) {
   client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n01234");
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
-  std::this_thread::sleep_for(patient(milliseconds(1200)));
+  pass(2 * kHere.idle);
   client.send("56789");
   served.on_loop([&] { handler.flows[0]->resume(); });
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 2; }));
   served.on_loop([&] { handler.flows[1]->resume(); });
-  EXPECT_EQ(client.reply()->status, 200);
+  EXPECT_EQ(status(), 200);
 }
 
-TEST_F(RateDeadlines, RunAgainOnceTheBodyMayFlow) {
+TEST_F(Deadlines, RunAgainOnceTheBodyMayFlow) {
   client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n01234");
   ASSERT_TRUE(served.eventually([&] { return handler.flows.size() == 1; }));
   served.on_loop([&] { handler.flows[0]->resume(); });
-  EXPECT_EQ(client.reply()->status, 408);
+  for (int halves = 0; halves < 2; ++halves) pass(kHere.rate_over / 2);
+  EXPECT_EQ(status(), 408);
 }
 
-TEST_F(IdleDeadlines, DoNotRunWhileTheAnswerIsAwaited) {
+TEST_F(Deadlines, DoNotRunWhileTheAnswerIsAwaited) {
   client.send(request("GET", "/later"));
   ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
-  std::this_thread::sleep_for(patient(milliseconds(900)));
+  pass(2 * kHere.idle);
   served.on_loop([&] { handler.responders[0]->answer({.body = "1", .headers = {}}); });
-  EXPECT_EQ(client.reply()->body, "1");
+  const auto reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->body, "1");
 }
 
-TEST_F(IdleDeadlines, CloseAConnection) {
+TEST_F(Deadlines, CloseAnIdleConnection) {
   client.send(request("GET", "/echo"));
   ASSERT_TRUE(client.reply());
+  pass(kHere.idle - 1ms);
+  EXPECT_TRUE(is_open());
+  pass(1ms);
   EXPECT_EQ(client.rest(), "");
-  EXPECT_GE(passed(), patient(milliseconds(595)));
 }
 
-TEST_F(HeadDeadlines, OfSomeLeaveOthersServed) {
+TEST_F(Deadlines, RefuseASmallBodyThatDoesNotComeAfterASecond) {
+  client.send("POST /refuse HTTP/1.1\r\nHost: adit\r\nContent-Length: 500\r\n\r\n");
+  pass(1s - 1ms);
+  EXPECT_FALSE(client.reply(0ms));
+  pass(1ms);
+  EXPECT_EQ(status(), 401);
+}
+
+TEST_F(Deadlines, OfSomeLeaveOthersServed) {
   std::vector<std::unique_ptr<RawClient>> slow;
   for (int i = 0; i < 10; ++i) {
     slow.push_back(std::make_unique<RawClient>(served.port()));
@@ -192,10 +202,18 @@ TEST_F(HeadDeadlines, OfSomeLeaveOthersServed) {
   }
   for (int i = 0; i < 10; ++i) {
     client.send(request("POST", "/echo", {}, "fine"));
-    EXPECT_EQ(client.reply()->status, 200);
-    std::this_thread::sleep_for(patient(milliseconds(50)));
+    EXPECT_EQ(status(), 200);
+    pass(kHere.stranger_within / 10);
   }
   for (auto& each : slow) EXPECT_TRUE(each->closes());
+}
+
+TEST(RealDeadlines, CloseAClientThatSaysNothing) {
+  ScriptedHandler handler;
+  Listen soon = kHere;
+  soon.stranger_within = 50ms;
+  const Served served(handler, soon);
+  EXPECT_TRUE(RawClient(served.port()).closes());
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <thread>
 
 #include "patience.hpp"
 
@@ -158,7 +157,7 @@ std::optional<std::string> RawClient::rest(std::chrono::milliseconds patience) {
   }
 }
 
-std::size_t RawClient::read_slowly(std::size_t step, std::chrono::milliseconds every, std::size_t size) {
+std::size_t RawClient::read_slowly(std::size_t step, std::size_t size, const std::function<void()>& between) {
   std::string bytes(step, ' ');
   std::size_t total = 0, head = 0;
   while (head == 0 || total < head + size) {
@@ -168,7 +167,7 @@ std::size_t RawClient::read_slowly(std::size_t step, std::chrono::milliseconds e
     if (got <= 0) break;
     if (head == 0) head = bytes.find("\r\n\r\n") + 4;
     total += static_cast<std::size_t>(got);
-    std::this_thread::sleep_for(every);
+    between();
   }
   return total - std::min(total, head);
 }

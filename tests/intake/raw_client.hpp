@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -41,9 +42,9 @@ class RawClient {
                              bool to_head = false);
   /// Reads until `text` has come.
   bool wait_for(std::string_view text, std::chrono::milliseconds patience = std::chrono::seconds(10));
-  /// Takes `step` bytes every so often, until `size` of an answer's body have come or the
+  /// Takes `step` bytes and calls `between`, until `size` of an answer's body have come or the
   /// connection ends; how many came.
-  std::size_t read_slowly(std::size_t step, std::chrono::milliseconds every, std::size_t size);
+  std::size_t read_slowly(std::size_t step, std::size_t size, const std::function<void()>& between);
   /// All bytes until the server ends the connection; nothing where it does not in `patience`.
   std::optional<std::string> rest(std::chrono::milliseconds patience = std::chrono::seconds(10));
   /// Whether the server ends the connection.

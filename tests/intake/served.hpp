@@ -9,17 +9,16 @@
 
 #include "intake/server.hpp"
 #include "loop/loop.hpp"
+#include "loop/turn_until.hpp"
 #include "patience.hpp"
 
 namespace adit::intake {
 
-/// A Server on a Loop of its own thread; the test is the client. ADIT_PATIENCE multiplies its deadlines.
+/// A Server on a Loop of its own thread; the test is the client.
 class Served {
  public:
   explicit Served(Handler& handler, Listen listen = {}) {
     if (listen.address.empty()) listen.address = "127.0.0.1";
-    for (auto* const deadline : {&listen.stranger_within, &listen.rate_over, &listen.idle})
-      *deadline = patient(*deadline);
     listen.ended = [this](Ended why, const std::string&) { ++ended_[static_cast<std::size_t>(why)]; };
     std::promise<void> started;
     thread_ = std::thread([this, &started, &handler, listen] {
@@ -65,9 +64,9 @@ class Served {
   /// Waits until `condition`, asked on the loop, holds.
   template <class Condition>
   bool eventually(Condition condition, std::chrono::milliseconds within = std::chrono::seconds(10)) {
-    const auto until = std::chrono::steady_clock::now() + patient(within);
+    const auto until = loop::kernel_now() + patient(within);
     while (!on_loop(condition)) {
-      if (std::chrono::steady_clock::now() > until) return false;
+      if (loop::kernel_now() > until) return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return true;

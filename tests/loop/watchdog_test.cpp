@@ -5,34 +5,36 @@
 #include <future>
 #include <thread>
 
+#include "loop/simulated_time.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::loop {
 namespace {
 
-using std::chrono::milliseconds;
+using namespace std::chrono_literals;
 
-constexpr milliseconds kWithin{200}, kLongestJob{800};
+constexpr Duration kWithin = 8min, kRound = kWithin / 4;
 
 class WatchdogTest : public testing::Test {
  protected:
-  /// How often it is fed while the loop turns for that long.
-  int fed_in(Duration length) {
-    fed = 0;
-    turn_for(loop, length);
-    return fed;
-  }
-  bool turn_until_fed(int times) {
-    fed = 0;
-    return turn_until(loop, [&] { return fed >= times; });
-  }
-  /// Whether it is fed three times in each `within` and more; on a busy machine, after some time.
-  bool is_fed_often() {
-    for (int attempt = 0; attempt < 20; ++attempt) {
-      const Instant began = loop.now();
-      if (turn_until_fed(6) && loop.now() - began < 2 * kWithin) return true;
+  /// How often it is fed in so many rounds.
+  int fed_in(int rounds) {
+    const int before = fed;
+    for (int i = 0; i < rounds; ++i) {
+      time.pass(kRound);
+      time.pass(loop, 1ms);
     }
-    return false;
+    return fed - before;
+  }
+  /// Whether it is fed in each of so many rounds, as long as `workers` have their time to answer.
+  bool is_fed(int rounds, const std::vector<Workers*>& workers) {
+    for (int i = 0; i < rounds; ++i) {
+      for (const Workers* each : workers) {
+        if (!turn_until(loop, [each] { return each->are_well(Watchdog::kLongestJob); })) return false;
+      }
+      if (fed_in(1) != 1) return false;
+    }
+    return true;
   }
   /// A job that has begun, and ends when it is let go.
   std::shared_ptr<std::promise<void>> hang(Workers& workers) {
@@ -45,51 +47,53 @@ class WatchdogTest : public testing::Test {
     return let_go;
   }
 
+  static constexpr int kLongestJob = Watchdog::kLongestJob / kRound;  // rounds
+  SimulatedTime time;
   Loop loop;
   int fed = 0;
-  Watchdog watchdog{loop, kWithin, [this] { ++fed; }, kLongestJob};
+  Watchdog watchdog{loop, kWithin, [this] { ++fed; }};
 };
 
 TEST_F(WatchdogTest, IsFedFromTheStartAndFarMoreOftenThanItMust) {
   EXPECT_EQ(fed, 1);
-  EXPECT_TRUE(is_fed_often());
+  EXPECT_EQ(fed_in(8), 8);
 }
 
 TEST_F(WatchdogTest, IsFedByNobodyButTheLoop) {
-  fed = 0;
-  std::this_thread::sleep_for(kWithin * 2);
-  EXPECT_EQ(fed, 0);
+  time.pass(kWithin * 2);
+  EXPECT_EQ(fed, 1);
 }
 
 TEST_F(WatchdogTest, IsFedWhileEveryWorkerAnswers) {
   Workers workers(loop, 3);
   watchdog.ask_also({&workers});
-  EXPECT_TRUE(is_fed_often());
+  EXPECT_TRUE(is_fed(8, {&workers}));
   watchdog.ask_also({});
 }
 
 TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
   Workers workers(loop, 2);
   watchdog.ask_also({&workers});
+  int done = 0;
   std::function<void()> again = [&] {
-    workers.submit(
-        Urgency::OnTheWay, [] { std::this_thread::sleep_for(milliseconds(1)); }, [&again] { again(); });
+    workers.submit(Urgency::OnTheWay, [] { std::this_thread::sleep_for(1ms); }, [&] { ++done, again(); });
   };
   for (int i = 0; i < 8; ++i) again();
-  EXPECT_TRUE(is_fed_often());
+  for (int round = 0; round < kLongestJob + 2; ++round) {
+    ASSERT_TRUE(turn_until(loop, [&, before = done] { return done >= before + 8; }));
+    EXPECT_EQ(fed_in(1), 1) << round;
+  }
   watchdog.ask_also({});
 }
 
 TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
   Workers workers(loop, 2);
   watchdog.ask_also({&workers});
-  turn_for(loop, kWithin);
   const auto let_go = hang(workers);
-  EXPECT_TRUE(turn_until_fed(2)) << "a job may take a while";
-  turn_for(loop, kLongestJob);
-  EXPECT_EQ(fed_in(kWithin * 3), 0) << "the other worker answers, this one does not";
+  EXPECT_TRUE(is_fed(kLongestJob - 1, {&workers})) << "a job may take a while";
+  EXPECT_EQ(fed_in(4), 0) << "the other worker answers, this one does not";
   let_go->set_value();
-  EXPECT_TRUE(is_fed_often()) << "it was only slow";
+  EXPECT_TRUE(is_fed(4, {&workers})) << "it was only slow";
   watchdog.ask_also({});
 }
 
@@ -97,12 +101,11 @@ TEST_F(WatchdogTest, StarvesWhereAWriterHangsThoughTheWorkersAnswer) {
   Workers workers(loop, 2);
   Writer writer(loop);
   watchdog.ask_also({&workers, &writer});
-  EXPECT_TRUE(is_fed_often());
   const auto let_go = hang(writer);
-  turn_for(loop, kLongestJob);
-  EXPECT_EQ(fed_in(kWithin * 3), 0);
+  EXPECT_TRUE(is_fed(kLongestJob - 1, {&workers, &writer}));
+  EXPECT_EQ(fed_in(4), 0);
   let_go->set_value();
-  EXPECT_TRUE(is_fed_often());
+  EXPECT_TRUE(is_fed(4, {&workers, &writer}));
   watchdog.ask_also({});
 }
 
@@ -110,14 +113,20 @@ TEST_F(WatchdogTest, AsksThoseThatTookOver) {
   Workers before(loop, 1);
   watchdog.ask_also({&before});
   const auto let_go = hang(before);
-  EXPECT_TRUE(turn_until_fed(1));
-  turn_for(loop, kLongestJob);
-  EXPECT_EQ(fed_in(kWithin), 0);
+  fed_in(kLongestJob + 1);
+  EXPECT_EQ(fed_in(1), 0);
   Workers after(loop, 1);
   watchdog.ask_also({&after});
-  EXPECT_TRUE(is_fed_often());
+  EXPECT_TRUE(is_fed(4, {&after}));
   let_go->set_value();
   watchdog.ask_also({});
+}
+
+TEST(Watchdog, IsFedInRealTime) {
+  Loop loop;
+  int fed = 0;
+  const Watchdog watchdog(loop, 40ms, [&fed] { ++fed; });
+  EXPECT_TRUE(turn_until(loop, [&fed] { return fed == 4; }));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "loop/turn_until.hpp"
+#include "loop/simulated_time.hpp"
 #include "panel/remote.hpp"
 #include "panel/unix_socket.hpp"
 #include "panel/watched_lines.hpp"
@@ -55,13 +55,14 @@ class KeeperTest : public testing::Test {
   void set(bool pressed) {
     const int looked = wire_.looked;
     wire_.set(pressed);
-    EXPECT_TRUE(loop::turn_until(loop_, [&] { return wire_.looked > looked; }));
+    EXPECT_TRUE(time_.pass_until(loop_, [&] { return wire_.looked > looked; }));
   }
   long said(std::string_view part) const {
     return std::ranges::count_if(said_, [&](const std::string& each) { return each.contains(part); });
   }
 
   std::filesystem::path folder_;
+  loop::SimulatedTime time_;
   loop::Loop loop_;
   WatchedLines::Seen seen_;
   Wire wire_;
@@ -75,7 +76,7 @@ TEST_F(KeeperTest, TellsThatTheLightsCannotBeSetAndThatTheyCanAgain) {
   seen_.fail = true;
   std::expected<void, std::string> set;
   const auto is_told = [&](bool well) {
-    return loop::turn_until(loop_, [&] {
+    return time_.pass_until(loop_, [&] {
       [[maybe_unused]] const auto level = held.button->pressed();
       set = held.lines->set(kTold);
       return set.has_value() == well;
@@ -121,7 +122,7 @@ TEST_F(KeeperTest, AButtonThatIsLostWithoutAWordWhileItIsHeldIsNoticedAtTheNextB
   EXPECT_EQ(held.button->pressed(), true);
   wire_.broken = true;
   EXPECT_TRUE(held.lines->set(kTold).has_value());
-  EXPECT_TRUE(loop::turn_until(loop_, [&] { return !held.button->pressed().has_value(); }));
+  EXPECT_TRUE(time_.pass_until(loop_, [&] { return !held.button->pressed().has_value(); }));
 }
 
 TEST_F(KeeperTest, AButtonThatIsPressedWhenItIsBackIsNoneUntilItIsLetGo) {

@@ -8,8 +8,8 @@
 namespace adit::applier {
 namespace {
 
-constexpr Mac kOwn = {2, 0, 0, 0, 0, 1}, kOther = {2, 0, 0, 0, 0, 2};
-constexpr std::uint32_t kAddress = 0x0a64010a, kElsewhere = 0x0a64010b;
+constexpr Mac kOurMac = {2, 0, 0, 0, 0, 1}, kOther = {2, 0, 0, 0, 0, 2};
+constexpr std::uint32_t kOurAddress = 0x0a64010a, kTheirAddress = 0x0a64010b;
 
 std::vector<std::uint8_t> packet(std::uint8_t operation, const Mac& sender, std::uint32_t from,
                                  std::uint32_t about) {
@@ -25,37 +25,41 @@ std::vector<std::uint8_t> packet(std::uint8_t operation, const Mac& sender, std:
 }
 
 TEST(AnArpProbe, AsksFromNobodysAddress) {
-  const auto probe = arp_probe(kOwn, kAddress);
-  EXPECT_EQ(std::vector(probe.begin(), probe.end()), packet(1, kOwn, 0, kAddress));
+  const auto probe = arp_probe(kOurMac, kOurAddress);
+  EXPECT_EQ(std::vector(probe.begin(), probe.end()), packet(1, kOurMac, 0, kOurAddress));
 }
 
 TEST(AClaim, IsWhateverComesFromTheAddress) {
-  EXPECT_EQ(claimant(packet(2, kOther, kAddress, kElsewhere), kAddress, kOwn), kOther) << "a reply";
-  EXPECT_EQ(claimant(packet(1, kOther, kAddress, kElsewhere), kAddress, kOwn), kOther) << "a request";
-  EXPECT_EQ(claimant(packet(1, kOther, kAddress, kAddress), kAddress, kOwn), kOther) << "an announcement";
-  EXPECT_EQ(claimant(packet(1, kOther, 0, kAddress), kAddress, kOwn), kOther) << "a probe at the same time";
+  EXPECT_EQ(claimant(packet(2, kOther, kOurAddress, kTheirAddress), kOurAddress, kOurMac), kOther)
+      << "a reply";
+  EXPECT_EQ(claimant(packet(1, kOther, kOurAddress, kTheirAddress), kOurAddress, kOurMac), kOther)
+      << "a request";
+  EXPECT_EQ(claimant(packet(1, kOther, kOurAddress, kOurAddress), kOurAddress, kOurMac), kOther)
+      << "an announcement";
+  EXPECT_EQ(claimant(packet(1, kOther, 0, kOurAddress), kOurAddress, kOurMac), kOther)
+      << "a probe at the same time";
 }
 
 TEST(AClaim, IsNothingElse) {
-  EXPECT_EQ(claimant(packet(1, kOwn, 0, kAddress), kAddress, kOwn), std::nullopt) << "one's own";
-  EXPECT_EQ(claimant(packet(2, kOwn, kAddress, kElsewhere), kAddress, kOwn), std::nullopt);
-  EXPECT_EQ(claimant(packet(1, kOther, kElsewhere, kAddress), kAddress, kOwn), std::nullopt)
+  EXPECT_EQ(claimant(packet(1, kOurMac, 0, kOurAddress), kOurAddress, kOurMac), std::nullopt) << "one's own";
+  EXPECT_EQ(claimant(packet(2, kOurMac, kOurAddress, kTheirAddress), kOurAddress, kOurMac), std::nullopt);
+  EXPECT_EQ(claimant(packet(1, kOther, kTheirAddress, kOurAddress), kOurAddress, kOurMac), std::nullopt)
       << "somebody asks for it";
-  EXPECT_EQ(claimant(packet(2, kOther, kElsewhere, kAddress), kAddress, kOwn), std::nullopt);
-  EXPECT_EQ(claimant(packet(1, kOther, 0, kElsewhere), kAddress, kOwn), std::nullopt);
-  EXPECT_EQ(claimant(packet(3, kOther, kAddress, kElsewhere), kAddress, kOwn), std::nullopt)
+  EXPECT_EQ(claimant(packet(2, kOther, kTheirAddress, kOurAddress), kOurAddress, kOurMac), std::nullopt);
+  EXPECT_EQ(claimant(packet(1, kOther, 0, kTheirAddress), kOurAddress, kOurMac), std::nullopt);
+  EXPECT_EQ(claimant(packet(3, kOther, kOurAddress, kTheirAddress), kOurAddress, kOurMac), std::nullopt)
       << "of another operation";
   for (const std::size_t byte : {0u, 1u, 2u, 4u, 5u, 6u}) {
-    auto bad = packet(2, kOther, kAddress, kElsewhere);
+    auto bad = packet(2, kOther, kOurAddress, kTheirAddress);
     bad[byte] ^= 0x40;
-    EXPECT_EQ(claimant(bad, kAddress, kOwn), std::nullopt) << byte;
+    EXPECT_EQ(claimant(bad, kOurAddress, kOurMac), std::nullopt) << byte;
   }
-  auto good = packet(2, kOther, kAddress, kElsewhere);
+  auto good = packet(2, kOther, kOurAddress, kTheirAddress);
   for (std::size_t size = 0; size < good.size(); ++size) {
-    EXPECT_EQ(claimant(std::span(good).first(size), kAddress, kOwn), std::nullopt) << size;
+    EXPECT_EQ(claimant(std::span(good).first(size), kOurAddress, kOurMac), std::nullopt) << size;
   }
   good.resize(46);  // Ethernet's padding
-  EXPECT_EQ(claimant(good, kAddress, kOwn), kOther);
+  EXPECT_EQ(claimant(good, kOurAddress, kOurMac), kOther);
   EXPECT_EQ(text_of(kOther), "02:00:00:00:00:02");
 }
 

@@ -18,7 +18,7 @@
 namespace adit::forward {
 namespace {
 
-icd::MapUpdate grid_of(std::uint32_t side, icd::Stamp stamp) {
+icd::MapUpdate grid_at_stamp(std::uint32_t side, icd::Stamp stamp) {
   icd::OccupancyGrid grid;
   grid.header.stamp = stamp;
   grid.resolution = 0.25;
@@ -65,10 +65,10 @@ TEST_F(OvertakenMap, IsKnownAsOvertakenBeforeTheNewerOneIsForgotten) {
   settings_.command_post.mapping = {peer.endpoint().address, peer.endpoint().port};
   Maps maps(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), record_, aside_,
             random_, journal_, [](const icd::MapUpdate&) {});
-  aside_.add(grid_of(10, 1), 422, "no", 100, {});
+  aside_.add(grid_at_stamp(10, 1), 422, "no", 100, {});
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
   Watched watched(aside_folder_.path(), folder_.path());
-  maps.take(grid_of(20, 2), 10, nullptr, [](const icd::Checked<void>&) {});
+  maps.take(grid_at_stamp(20, 2), 10, nullptr, [](const icd::Checked<void>&) {});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return watched.names().size() >= 2; }));
   EXPECT_EQ(watched.names().front(), "1.json");
   EXPECT_TRUE(aside_.rows().front().overtaken);

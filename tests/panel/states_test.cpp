@@ -12,8 +12,8 @@ namespace {
 constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
                kFlash = Pattern::Flash, kWink = Pattern::Wink;
 
-constexpr std::initializer_list<State> kWell = {State::Serving, State::ScoringConnected,
-                                                State::MappingConnected};
+constexpr std::initializer_list<State> kWellStates = {State::Serving, State::ScoringConnected,
+                                                      State::MappingConnected};
 
 Lights shown(std::initializer_list<State> asserted) {
   States states;
@@ -24,7 +24,7 @@ Lights shown(std::initializer_list<State> asserted) {
 /// All is well but for these.
 Lights well_but(std::initializer_list<State> more) {
   States states;
-  for (const State state : kWell) states.set(state, true);
+  for (const State state : kWellStates) states.set(state, true);
   for (const State state : more) states.set(state, true);
   return states.shown();
 }
@@ -34,7 +34,7 @@ Lights all(Pattern pattern) {
 }
 
 TEST(States, OfABoxThatIsWellAreThreeSteadyLights) {
-  EXPECT_EQ(shown(kWell), (Lights{kOn, kOn, kOn, kOff}));
+  EXPECT_EQ(shown(kWellStates), (Lights{kOn, kOn, kOn, kOff}));
 }
 
 TEST(States, AreShownEachOnItsOwnLight) {

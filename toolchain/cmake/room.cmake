@@ -49,6 +49,11 @@ function(adit_room_test name)
   target_link_libraries(adit_${name}_test PRIVATE
     adit_options adit_${name} ${TEST_ROOMS} ${TEST_LIBRARIES} GTest::gmock GTest::gtest_main)
   adit_compiled(adit_${name}_test test)
-  gtest_discover_tests(adit_${name}_test TEST_PREFIX "${name}: " NO_PRETTY_VALUES DISCOVERY_TIMEOUT 60
-    PROPERTIES TIMEOUT 300 PROCESSORS 2 LABELS ${name})
+  adit_google_test(${name} adit_${name}_test)
+endfunction()
+
+# A program of GoogleTest's as one test: a process for each of its tests would take twice as long in all.
+function(adit_google_test room program)
+  add_test(NAME "${room}: ${program}" COMMAND ${program} --gtest_brief=1)
+  set_tests_properties("${room}: ${program}" PROPERTIES TIMEOUT 900 COST 300 PROCESSORS 6 LABELS "${room};rooms")
 endfunction()

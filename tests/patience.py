@@ -25,8 +25,8 @@ def patient(time_out):
 
 
 def wait_until(condition, what, within=60.0, tolerates=(), every=0.01):
-    """The first true value of `condition()`, asked `every` so many seconds. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what` and what was seen
-    last, a value or an exception of the types that `tolerates` names."""
+    """The first true value of `condition()`, asked every so many seconds. After `within` seconds times ADIT_PATIENCE: an AssertionError with
+    `what` and what was seen last, a value or an exception of the types that `tolerates` names."""
     end = time.monotonic() + patient(within)
     while True:
         try:

@@ -1,15 +1,14 @@
 """A root shell on the machine's console, which whoever has the card may ask for (rootfs/README.md). For what no user of
 the box can see or do: hung and killed processes, what holds memory, where the time goes."""
 
-import os
 import re
 import socket
 import threading
 import time
 
 import qmp
+from patience import patient
 
-PATIENCE = float(os.environ.get("ADIT_PATIENCE", "1"))  # the factor for all time-outs
 
 
 class Console:
@@ -43,7 +42,7 @@ class Console:
 
     def wait_for(self, pattern, within, after=0):
         """The match of a regular expression in what was said after the `after`th byte."""
-        within *= PATIENCE
+        within = patient(within)
         end = time.monotonic() + within
         with self.news:
             while True:
@@ -64,7 +63,7 @@ class Console:
     def wait_for_shell(self, within=180.0):
         """Until it answers. What is typed before there is a shell is lost, and stops the boot loader if it is typed to
         that."""
-        end = time.monotonic() + within * PATIENCE
+        end = time.monotonic() + patient(within)
         self.wait_for(rb"Adit: slot .*/ # ", within)
         while True:
             try:

@@ -157,7 +157,7 @@ class Machine(programs.Page):
             except (OSError, http.client.HTTPException):
                 return False  # the box is away, or turned this one away
         try:
-            return programs.wait_until(is_so, what, within * console.PATIENCE)
+            return programs.wait_until(is_so, what, within)
         except AssertionError as error:
             raise AssertionError(f"{error}\n--- console:\n{self.said_last()}") from None
 

@@ -11,12 +11,12 @@ import unittest
 
 import boards
 import cables
-import console
 import disk
 import eavesdropper
 import hosts
 import machine
 import programs
+from patience import patient
 
 # What a card of this board's image is set up with; the rest is as in programs.settings(), but that a machine which is
 # emulated on a busy one is given time.
@@ -118,7 +118,7 @@ class Stage:
             stderr=subprocess.STDOUT,
             text=True,
         )
-        said, _ = robots.communicate(timeout=seconds + 180 * console.PATIENCE)
+        said, _ = robots.communicate(timeout=seconds + patient(180))
         return robots.returncode, said
 
     def __exit__(self, *_):

@@ -7,7 +7,6 @@ import unittest
 import requests
 
 import cables
-import console
 import container
 import dhcp_server
 import eavesdropper
@@ -20,6 +19,7 @@ import programs
 import stage
 import sticks
 from contained import Contained
+from patience import patient
 from reporting import REPORT, another, submit
 from stage import load_tests, note  # unittest looks for them here
 
@@ -76,7 +76,7 @@ class Everyday(Contained):
     def test_a_restart_loses_no_connection_attempt(self):
         network, before, tried = self.stage.network, self.box.pid(), 0
         self.box.run("systemctl", "restart", "--no-block", "adit.service")
-        end = time.monotonic() + 60 * console.PATIENCE
+        end = time.monotonic() + patient(60)
         while tried <= 100 or self.box.pid() in (0, before) or not self.box.answers():
             self.assertLess(time.monotonic(), end, "it is not started again")
             for _ in range(20):

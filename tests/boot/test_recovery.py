@@ -4,10 +4,10 @@ import dataclasses
 import time
 
 import boards
-import console
 import figures
 import leds
 import machine
+from patience import patient
 from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks for them here
 
 PID = "systemctl show -p MainPID --value adit.service"
@@ -72,7 +72,7 @@ class Recovery(Story):
     def test_connections_of_the_team_wait_while_it_is_started_again(self):
         network, before, tried = self.stage.network, self.pid(), 0
         self.box.console.ask("systemctl restart --no-block adit.service")
-        end = time.monotonic() + 180 * console.PATIENCE
+        end = time.monotonic() + patient(180)
         while tried <= 30 or self.pid() in (0, before) or not self.box.answers():
             self.assertLess(time.monotonic(), end, "it is not started again")
             for _ in range(16):

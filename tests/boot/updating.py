@@ -2,8 +2,8 @@
 
 import http.client
 
-import console
 import programs
+from patience import patient
 
 
 class Updating:
@@ -18,7 +18,7 @@ class Updating:
 
     def send(self, path):
         """As the page does."""
-        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=300 * console.PATIENCE)
+        connection = http.client.HTTPConnection(self.stage.network.box_address, self.box.port, timeout=patient(300))
         headers = {"Authorization": f"Bearer {programs.TEAM_TOKEN}", "Content-Type": "application/octet-stream"}
         with open(path, "rb") as file:
             connection.request("POST", "/adit/update", file, {**headers, "Content-Length": str(path.stat().st_size)})

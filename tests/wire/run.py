@@ -7,15 +7,13 @@ import signal
 import sys
 import unittest
 
-ALONE = ("wire", "boot", "package")  # directories whose tests make networks: ../alone
-
 if __name__ == "__main__":
     module = pathlib.Path(sys.argv[1]).absolute()
-    if module.parent.name in ALONE and "ADIT_ALONE" not in os.environ:
+    if module.parent.name == "wire" and "ADIT_ALONE" not in os.environ:
         os.execv(pathlib.Path(__file__).parents[1] / "alone", ["alone", sys.executable, "-B", *sys.argv])
     signal.signal(signal.SIGTERM, signal.default_int_handler)  # so that what was made is taken away
     del sys.argv[0]  # the module reads its arguments as a program does
-    sys.path.insert(0, str(module.parent))
+    sys.path[:0] = [str(module.parent), str(pathlib.Path(__file__).parents[1])]
     result = unittest.TextTestRunner(verbosity=2).run(unittest.defaultTestLoader.loadTestsFromName(module.name))
     ran = result.testsRun - sum(isinstance(test, unittest.TestCase) for test, _ in result.skipped)  # a class's is in neither
     if not result.wasSuccessful() or not (ran or result.skipped):

@@ -7,7 +7,7 @@ import unittest
 
 import requests
 
-from programs import Stage, patient, wait_until
+from programs import Stage, patient
 from reporting import QUICK, REPORT, another, at_once, began, insist, submit
 
 

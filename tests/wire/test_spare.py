@@ -1,12 +1,9 @@
 """A spare box takes over: each report is recorded exactly once, whenever the first box was cut off, and by whatever the export went."""
 
 import contextlib
-import json
-import pathlib
 import random
 import subprocess
 import time
-from unittest import mock
 
 import requests
 

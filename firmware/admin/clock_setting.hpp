@@ -18,7 +18,7 @@ class ClockSetting final : public api::Clock {
 
   /// A request: when it is older, adit-clock refuses it. A busy box takes half a minute.
   static constexpr std::chrono::seconds kTakenUpWithin{60};
-  /// What is not taken up, or came to nothing, is asked for again.
+  /// After this time a request that adit-clock did not take up, or that failed, is made again.
   static constexpr std::chrono::seconds kAskAgain{60};
 
   /// `state_folder`: where requests are left; `status_folder`: where they are answered. `loop` outlives this.

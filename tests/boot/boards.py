@@ -93,7 +93,7 @@ def flashes(fixed, written):
 
 
 # The hardware watchdog counts the host's time, of which an emulated machine may have a tenth: after its 20 s it would restart a machine whose
-# PID 1 starts or reloads. It has ten minutes, but where it is what is tested (test_recovery.py).
+# PID 1 starts or reloads. So it counts to ten minutes, except in its own test (test_recovery.py).
 WORDS = "adit.console systemd.watchdog_sec=600"
 
 QEMU_VIRT = Board(

@@ -19,7 +19,7 @@ class Deadlines : public testing::Test {
     EXPECT_TRUE(served.eventually([&] { return served.server().connections() == 1; }));
   }
 
-  /// Time passes, and the server does what is due. Before it, it has seen whatever was sent.
+  /// Time passes, and the server acts on it. Before that, the server has read all that the client sent.
   void pass(loop::Duration length) {
     settle();
     time.pass(length);

@@ -18,7 +18,7 @@ FIND = """(kind, words) => {
     : [...top.querySelectorAll(words)];
   return all.find((each) => each.checkVisibility() && each.getBoundingClientRect().width);
 }"""
-# Where it can be pressed: the middle of an enabled element that has stood still (presses.js) and that no other covers; else null.
+# The middle of the element, if a press there reaches it: it is enabled, has stood still (presses.js), and lies on top. Else null.
 PLACE = f"""async (kind, words) => {{
   const found = ({FIND})(kind, words);
   if (!found || found.disabled) return null;

@@ -39,7 +39,7 @@ class Board:
         wanted = [self.emulator, "qemu-img", "mcopy", "setpriv", *self.needs]
         absent = [program for program in wanted if not (shutil.which(program) or os.path.exists(program))]
         if absent:
-            return f"not on this machine: {', '.join(absent)}; toolchain/setup test installs it"
+            return f"not on this machine: {', '.join(absent)}; toolchain/setup full installs it"
         if not any(self.images.glob(f"adit-{self.name}-*.img")):
             return f"there is no image: toolchain/image {self.name} makes it"
         return "" if os.path.exists("/dev/net/tun") else "no taps here: /dev/net/tun is missing"

@@ -16,8 +16,7 @@ import threading
 import time
 import unittest
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
-import patience  # noqa: E402, after the path is set
+import patience
 from patience import patient  # noqa: E402
 
 TOKENS = {"scoring": "scoring-token-1", "mapping": "mapping-token-1", "team": "team-token-1"}

@@ -5,7 +5,6 @@ import contextlib
 import threading
 import time
 
-import running
 from running import DARK, Running
 
 GLITCH = 0.4  # seconds

@@ -10,8 +10,7 @@ import tempfile
 import time
 import unittest
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
-import patience  # noqa: E402, after the path is set
+import patience
 
 NOWHERE = {"address": "127.0.0.1", "port": 9}
 DARK = "0000"

@@ -5,21 +5,18 @@ import copy
 import gzip
 import json
 import os
-import pathlib
 import re
 import signal
 import socket
 import struct
 import subprocess
-import sys
 import tempfile
 import time
 
 import cbor2
 import requests
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
-from patience import patient  # noqa: E402, after the path is set
+from patience import patient
 
 SCORING_TOKEN = "flux230{showroom"
 MAPPING_TOKEN = "dark-adit#000042"

@@ -8,14 +8,12 @@ import shlex
 import signal
 import struct
 import subprocess
-import sys
 import tempfile
 import termios
 import unittest
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[1]))
-from patience import patient, wait_until  # noqa: E402, after the path is set
+from patience import patient, wait_until
 
 DEMO = Path(__file__).resolve().parents[2] / "firmware/rehearsal/demo/demo"
 SIZE = struct.Struct("4H")  # winsize: rows, columns, and pixels that nobody counts

@@ -7,12 +7,10 @@ import pathlib
 import secrets
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
-from patience import patient, wait_until  # noqa: E402, after the path is set
+from patience import patient, wait_until
 
 ADIT_UPDATE = os.path.join(os.environ["ADIT_BIN"], "adit-update")
 BOARD = "adit-test-board"

@@ -55,5 +55,5 @@ endfunction()
 # A program of GoogleTest's as one test: a process for each of its tests would take twice as long in all.
 function(adit_google_test room program)
   add_test(NAME "${room}: ${program}" COMMAND ${program} --gtest_brief=1)
-  set_tests_properties("${room}: ${program}" PROPERTIES TIMEOUT 900 COST 300 PROCESSORS 6 LABELS "${room};rooms")
+  set_tests_properties("${room}: ${program}" PROPERTIES COST 300 PROCESSORS 6 LABELS "${room};rooms")
 endfunction()

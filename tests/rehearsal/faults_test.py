@@ -1,11 +1,14 @@
 """What a Command Post can be told to do wrong with a request, over real sockets."""
 
+import json
 import unittest
+from concurrent.futures import ThreadPoolExecutor
 
 import requests
 
 from command_post import CommandPost, grid
 from faulted import REPORT, REPORT_BYTES, OneRequest, exchange, recorded
+from patience import wait_until
 
 
 class OneFault(OneRequest):
@@ -80,6 +83,24 @@ class OneFault(OneRequest):
                 received, _ = exchange(self.post.scoring)
                 self.assertIn(part, received)
                 self.assertEqual(recorded(self.post), number)
+
+    def test_the_record_and_the_transcript_have_each_report_that_a_status_counts(self):
+        allotment = self.post.status().json()["remaining_reports"]
+        for number in range(1, 6):
+            self.post.faults(reports=["endless-body"])  # 4 MiB take a while to make
+            with ThreadPoolExecutor(1) as pool:
+                answer = pool.submit(exchange, self.post.scoring)
+                left = allotment - number
+                wait_until(lambda: self.post.status().json()["remaining_reports"] == left, "a status that counts it", every=0)
+                record = self.post.record()
+                self.assertEqual((record["remaining_reports"], record["report_count"]), (left, number))
+                self.assertEqual(answer.result()[1], "closed")
+        written = 0
+        for line in self.post.lines():
+            if line["uri"] == "/api/artifact_reports":
+                written += 1
+            else:
+                self.assertEqual(json.loads(line["answer"])["remaining_reports"], allotment - written)
 
     def test_a_fault_may_be_of_one_robots_messages(self):
         self.post.faults(reports=["500,robot=Backpack"])

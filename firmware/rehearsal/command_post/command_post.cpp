@@ -106,7 +106,6 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
-  if (fault.other_sender) other_sender(std::nullopt);
   Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, manner_)
                                                 : judge_safely(*side.endpoint, request);
   spoil(fault, request, judgement);
@@ -115,6 +114,9 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
 }
 
 Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
+  if (fault.other_sender) other_sender(std::nullopt);
+  std::unique_lock scoring_lock(scoring_mutex_, std::defer_lock);
+  if (&side == &scoring_) scoring_lock.lock();
   Judgement judgement = judge(side, aim, fault, request);
   std::uint64_t number = 0;
   {
@@ -126,6 +128,7 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
   if (judgement.map)
     arrivals_.note(*judgement.map, std::chrono::floor<std::chrono::milliseconds>(request.ended));
   if (judgement.report) keep(std::move(*judgement.report), kByClient, number);
+  if (scoring_lock) scoring_lock.unlock();
   if (verbose_) show(number, request, judgement);
   if (judgement.outcome.kind == Outcome::Kind::Dies) {
     std::fprintf(stderr, "adit-rehearsal: mapping killed by %s\n", record_.killed_by().c_str());
@@ -135,6 +138,7 @@ Outcome CommandPost::decide(Side& side, std::optional<Aim> aim, const Fault& fau
 }
 
 OrderedJson CommandPost::record() const {
+  const std::lock_guard lock(scoring_mutex_);
   OrderedJson record = record_.json(run_.standing(Clock::now()));
   record["maps"] = arrivals_.json();
   return record;
@@ -152,6 +156,7 @@ OrderedJson CommandPost::other_sender(const std::optional<Json>& sent) {
   const Json report =
       sent ? *sent : Json{{"x", far}, {"y", far + ++by_others_}, {"z", 0.0}, {"type", "Rope"}};
   const Point position{report["x"].get<double>(), report["y"].get<double>(), report["z"].get<double>()};
+  const std::lock_guard lock(scoring_mutex_);
   const Run::Ruling ruling = run_.submit(report["type"].get<std::string>(), position, Clock::now());
   OrderedJson body = report_body(ruling, report, kNoAuthority);
   keep(body, kByOther, nullptr);

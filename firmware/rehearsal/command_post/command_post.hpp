@@ -65,6 +65,9 @@ class CommandPost {
   Side scoring_;
   Side mapping_;
   std::unique_ptr<Transcript> transcript_;
+  /// Held from the moment at which the run counts a report until the record and the transcript have it, and
+  /// while a status is answered. No status therefore counts a report that the record does not have.
+  mutable std::mutex scoring_mutex_;
   std::mutex number_mutex_;
   std::uint64_t number_;
   std::atomic<int> by_others_ = 0;

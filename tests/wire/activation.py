@@ -19,10 +19,10 @@ HAND_OVER = 'export LISTEN_PID=$$; exec "$@" {moves}'
 FIRST_HIGH = 100  # where descriptors wait for the shell to move them down
 
 
-def listening(address="127.0.0.1", port=0, family=socket.AF_INET):
-    opened = socket.socket(family, socket.SOCK_STREAM)
+def listening():
+    opened = socket.socket()
     opened.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-    opened.bind((address, port))
+    opened.bind(("127.0.0.1", 0))
     opened.listen(1024)
     return opened
 

@@ -107,19 +107,3 @@ class WithAlarms(unittest.TestCase):
         if not self.view(stage)["alarms"]:
             self.assertEqual(self.status(stage)[1], 0)
             wait_until(lambda: self.light(stage) == "off", "the attention light to be dark")
-
-    def gone_after_a_restart(self, stage, name, **overrides):
-        self.assertEqual(stage.box.stop(), 0)
-        stage.restart_box(**overrides)
-        began(stage)
-        wait_until(lambda: self.view(stage)["lights"], "the first look")
-        self.assertIsNone(self.alarm(stage, name))
-        self.assertNotIn(f'id="{name}"', self.metrics(stage))
-
-    def acknowledged(self, stage, name):
-        """It is quiet: its light no longer blinks, and what is new is as loud as ever."""
-        self.assertEqual(stage.box.ask("POST /adit/alarms/acknowledge", body={"id": name}), (200, {"acknowledged": name}))
-        self.assertTrue(self.alarm(stage, name)["acknowledged"])
-        wait_until(lambda: self.light(stage) == "on", "the attention light to stay lit")
-        self.assertIn("(acknowledged)", self.status(stage)[0])
-        self.assertEqual(stage.box.ask("POST /adit/alarms/acknowledge", body={"id": "no_such"})[0], 409)

@@ -101,11 +101,10 @@ class Networkd:
 class AddressWatch(programs.Program):
     """adit-network --watch on the box, or on another host that has two such interfaces; by its unit it is no root."""
 
-    def __init__(self, network, folder, host=None, told=None):
-        """`told`: where adit-network tells of the endpoints."""
+    def __init__(self, network, folder, host=None):
         self.folder = folder
         folder.mkdir(exist_ok=True)
-        super().__init__(network, host or network.box, folder / "log", [programs.BIN / "adit-network", "--watch", "--status", folder, "--told", told or folder])
+        super().__init__(network, host or network.box, folder / "log", [programs.BIN / "adit-network", "--watch", "--status", folder, "--told", folder])
         programs.wait_until((folder / "taken.json").exists, "adit-network --watch")
 
     def taken(self, what="taken"):

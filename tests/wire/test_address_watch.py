@@ -1,8 +1,8 @@
-"""Other hosts that take the box's addresses while it uses them, and adit-network --watch, which says so."""
+"""Other hosts that take the box's addresses while it uses them, and adit-network --watch, which says so. Who counts, and when, is in
+applier/takers_test and applier/exchanged_test."""
 
 import json
 import pathlib
-import random
 import tempfile
 import unittest
 
@@ -13,7 +13,6 @@ import neighbour
 from programs import wait_until
 
 SECOND = "10.100.1.11"  # of darpa0's addresses
-TAKEN_FOR = 20  # seconds
 IPV6 = 0x86dd  # these hosts' kernels speak it by themselves; an appliance's does not
 
 
@@ -40,9 +39,6 @@ class AddressWatch(unittest.TestCase):
     def is_free(self, address, interface="darpa0"):
         wait_until(lambda: (interface, address) not in self.watch.taken(), f"{address} to be free")
 
-    def seen(self):
-        return [each["seen_ms"] for each in json.loads((self.watch.folder / "taken.json").read_text())["taken"]]
-
     def asked(self):
         """Whom the box has asked for on darpa0."""
         return [frame.arp[1] for frame in self.heard.frames if frame.is_arp and frame.arp[0] == neighbour.NOBODY]
@@ -62,22 +58,6 @@ class AddressWatch(unittest.TestCase):
         other.take(self.network.box_address)
         self.is_taken(self.network.box_address, other.mac, "team0")
         self.assertEqual(self.asked().count(hosts.BOX_DARPA) + self.asked().count(SECOND), len(self.asked()))
-
-    def test_one_that_is_silent_afterwards_is_asked_and_has_it_still(self):
-        other = self.other()
-        other.take(hosts.BOX_DARPA)
-        self.is_taken(hosts.BOX_DARPA, other.mac)
-        first = self.seen()[0]
-        wait_until(lambda: self.seen()[0] > first + 1000 * TAKEN_FOR, "it to be heard again")
-        self.is_taken(hosts.BOX_DARPA, other.mac)
-
-    def test_one_that_was_there_first_is_found_as_the_box_comes(self):
-        """It says nothing by itself."""
-        self.assertEqual(self.watch.stop(), 0)
-        other = self.other()
-        other.has(SECOND)
-        self.watch = self.watched("later")
-        self.is_taken(SECOND, other.mac)
 
     def test_one_that_a_cable_brings_is_found(self):
         wait_until(lambda: self.asked().count(SECOND) >= 3, "the first questions to be over")
@@ -103,12 +83,6 @@ class AddressWatch(unittest.TestCase):
                 self.assertNotEqual(mac, capture.mac_of(theirs, port))
                 self.is_taken(address, ":".join(f"{byte:02x}" for byte in mac), port, mine)
 
-    def test_who_announces_our_address_has_taken_it(self):
-        other = self.other()
-        other.announces(hosts.BOX_DARPA)
-        self.is_taken(hosts.BOX_DARPA, other.mac)
-        self.is_free(hosts.BOX_DARPA)
-
     def test_nobody_else_has(self):
         """Not who asks for it, nor who probes for it, nor what is no ARP, nor whoever is in another VLAN of the same cable."""
         other = self.other()
@@ -126,24 +100,6 @@ class AddressWatch(unittest.TestCase):
         other.announces(SECOND)  # what comes after them has been heard
         self.is_taken(SECOND, other.mac)
         self.assertEqual(list(self.watch.taken()), [("darpa0", SECOND)])
-
-    def test_frames_of_our_own_are_none_of_another_machine(self):
-        """Those of team0 that a switch brings to darpa0, too."""
-        other = self.other()
-        for port in "team0", "darpa0":
-            other.says(hosts.BOX_DARPA, hosts.BOX_DARPA, mac=capture.mac_of(self.network.box, port))
-        other.announces(SECOND)
-        self.is_taken(SECOND, other.mac)
-        self.assertEqual(list(self.watch.taken()), [("darpa0", SECOND)])
-
-    def test_an_address_that_the_box_gives_up_is_no_longer_taken(self):
-        other = self.other()
-        other.take(SECOND)
-        self.is_taken(SECOND, other.mac)
-        hosts.ip("-n", self.network.box, "address", "delete", f"{SECOND}/24", "dev", "darpa0")
-        wait_until(lambda: self.watch.taken() == {}, "it to be none of the box's")
-        hosts.ip("-n", self.network.box, "address", "add", f"{SECOND}/24", "dev", "darpa0")
-        self.is_taken(SECOND, other.mac)
 
     def test_an_interface_goes_and_comes_again(self):
         hosts.ip("-n", self.network.team, "link", "delete", "eth0")
@@ -181,43 +137,3 @@ class AddressWatch(unittest.TestCase):
         self.network.exchange_cables()
         wait_until(lambda: self.exchanged() == [], "each in its own port")
         self.assertEqual(self.watch.taken(), {})
-
-    def test_a_robot_that_says_it_is_the_command_post_is_not_believed(self):
-        """Which answers at its own port when it is asked there."""
-        self.tell_of_endpoints()
-        robot = self.other(self.network.team, "team0")
-        robot.has(hosts.SCORING)
-        wait_until(lambda: self.asked().count(hosts.SCORING) >= 3, "it to be asked for where it belongs, again and again")
-        self.assertEqual(self.exchanged(), [])
-        self.assertEqual(self.asked().count(hosts.MAPPING), 0, "nobody says so of this one")
-
-    def test_where_the_networks_overlap_nobody_is_sought_at_the_teams_port(self):
-        hosts.ip("-n", self.network.box, "address", "add", "10.100.1.11/24", "dev", "team0")
-        self.tell_of_endpoints()
-        heard = capture.Capture(self.network.team, "eth0", capture.mac_of(self.network.box, "team0"))
-        self.addCleanup(heard.stop)
-        hosts.ip("-n", self.network.team, "link", "set", "eth0", "down")
-        hosts.ip("-n", self.network.team, "link", "set", "eth0", "up")
-        own = {self.network.box_address, "10.100.1.11"}
-        asked = lambda: [frame.arp[1] for frame in heard.frames if frame.is_arp and frame.arp[0] == neighbour.NOBODY]
-        wait_until(lambda: all(asked().count(each) >= 3 for each in own), "its own to be asked for as the cable comes")
-        self.assertEqual(set(asked()), own)
-
-    def test_a_flood_fills_nothing(self):
-        """Of packets from our address, each of another machine; and of questions whether it is free."""
-        other = self.other()
-        draw = random.Random(17)
-        with capture.inside(other.name), capture.open_packets("darpa0") as packets:
-            for number in range(20000):
-                mac = bytes([2, *draw.randbytes(5)])
-                sender = hosts.BOX_DARPA if number % 2 else neighbour.NOBODY
-                packets.send(neighbour.arp(mac, sender, hosts.BOX_DARPA))
-        wait_until(lambda: ("darpa0", hosts.BOX_DARPA) in self.watch.taken(), "it to be heard")
-        self.assertEqual(len(self.watch.taken()), 1)
-        self.assertLess((self.watch.folder / "taken.json").stat().st_size, 400)
-        self.assertLessEqual(len(self.watch.said().splitlines()), 3, self.watch.said())
-        asked = len(self.asked())
-        self.assertLess(asked, 40, "one each five seconds for an address, and five as it comes")
-        late = self.other(self.network.team, "team0")
-        late.take(self.network.box_address)
-        self.is_taken(self.network.box_address, late.mac, "team0")

@@ -1,5 +1,5 @@
 """A box without a clock of its own: it goes on from the last time known, its stamps never go back, and its clock is set on a
-word of the operator. adit-clock is the real one, without the right to set this machine's clock."""
+word of the operator. Who may set it is in clock/source_test and admin/clock_setting_test. adit-clock is the real one, without the right to set this machine's clock."""
 
 import json
 import os
@@ -37,15 +37,6 @@ class Ahead:
         """In place: the programs see it at once."""
         with self.file.open("r+b" if self.file.exists() else "wb") as file:
             file.write(struct.pack("d", seconds))
-
-
-def sees_the_run_clock_run(box):
-    """By two statuses: one alone, which comes late on a busy machine, shows no clock that runs."""
-    def run():
-        return box.ask("GET /adit/run")[1]["run"]
-
-    first = wait_until(run, "the run to be known")["run_clock"]
-    wait_until(lambda: run()["run_clock"] > max(first, 1), "the run clock to be seen to run")
 
 
 class Clock(unittest.TestCase):
@@ -94,36 +85,6 @@ class Clock(unittest.TestCase):
         now = self.stage.box.ask("GET /adit/run")[1]["now"]
         self.assertAlmostEqual(now, time.time(), delta=60, msg="the machine's clock went on")
 
-    @unittest.skipUnless(shutil.which("clang-19"), "clang-19 is not here")
-    def test_a_chip_that_is_wrong_makes_no_other_run_of_a_short_cut(self):
-        sees_the_run_clock_run(self.stage.box)
-        known, ahead = time.time(), Ahead(self.stage.folder)
-        ahead.set(365 * 86400.0)
-        with mock.patch.dict(os.environ, ahead.env):
-            self.lose_power(known)
-        self.assertGreater(self.clock()["now"], known + YEARS / 11, "it begins with what the chip says")
-        wait_until(self.stage.box.knows_the_run, "the run to be known")
-        self.assertEqual(self.run_view()["run_number"], 1)
-
-    def run_view(self):
-        return self.stage.box.ask("GET /adit/run")[1]
-
-    def test_goes_by_a_chip_whatever_was_known_last(self):
-        self.lose_power(time.time() + DAYS)
-        self.assertGreater(self.clock()["now"], time.time() + DAYS - 60, "nobody knows better")
-        self.assertEqual(self.set_clock(chip=time.time())["source"], "chip")
-        wait_until(lambda: self.clock()["managed"], "adit-clock to be known")
-        wait_until(lambda: abs(self.clock()["now"] - time.time()) < 60, "the chip's time to be shown")
-        kept = self.stage.box.state / "stamps"
-        wait_until(lambda: abs(float(kept.read_text().split()[1]) - time.time()) < 60, "it to be the last time known")
-
-    def test_leaves_the_clock_alone_where_adit_clock_does_not_run(self):
-        clock = self.clock()
-        self.assertFalse(clock["managed"])
-        self.assertIn("adit-clock", clock["why"])
-        self.assertEqual(self.stage.box.ask("POST /adit/clock", body={"time": time.time()})[0], 409)
-        self.assertFalse((self.stage.box.state / "clock.json").exists())
-
     def test_asks_for_the_operators_time_and_tells_what_became_of_it(self):
         self.assertEqual(self.set_clock()["source"], "none")
         wait_until(lambda: self.clock()["managed"], "adit-clock to be known")
@@ -136,22 +97,6 @@ class Clock(unittest.TestCase):
         self.assertIn("not permitted", self.set_clock()["refusal"])
         self.assertFalse((self.stage.box.state / "clock.json").exists())
         wait_until(lambda: "not permitted" in self.clock()["refusal"], "the refusal to be told")
-
-    def test_asks_for_the_command_posts_date_where_nobody_knows_better(self):
-        self.assertEqual(self.set_clock()["source"], "none")
-        asked = self.stage.box.state / "clock.json"
-        wait_until(asked.exists, "somebody's time to be asked for")
-        request = json.loads(asked.read_text())
-        self.assertEqual(request["source"], "command_post")
-        self.assertAlmostEqual(request["time"], time.time(), delta=10)
-
-    def test_names_the_field_of_a_time_that_no_box_has(self):
-        self.set_clock()
-        wait_until(lambda: self.clock()["managed"], "adit-clock to be known")
-        for wrong in (0, 5e9, "now"):
-            status, said = self.stage.box.ask("POST /adit/clock", body={"time": wrong})
-            self.assertEqual(status, 422, said)
-            self.assertIn("time", said)
 
 
 class Step(unittest.TestCase):
@@ -224,15 +169,6 @@ class Step(unittest.TestCase):
         for name, age in self.ages().items():
             self.assertTrue(-5 < age < 600, f"{name}: {age:.0f} s ago, after a restart")
         self.assertEqual(self.stage.box.ask("GET /adit/session", session, token=None)[1]["role"], "operator")
-
-    def test_a_day_without_power_that_the_command_post_bears_out_is_one(self):
-        sees_the_run_clock_run(self.stage.box)
-        self.assertEqual(self.stage.box.stop(), 0)
-        shutil.rmtree(self.stage.box.state / "journal")
-        self.ahead.set(86400.0)
-        self.stage.restart_box()
-        wait_until(self.stage.box.knows_the_run, "the run to be known")
-        self.assertEqual(self.view()["run_number"], 2, "the run clock went on by seconds")
 
     def code(self):
         return self.stage.box.said().split("code=")[1].split()[0].strip('"')

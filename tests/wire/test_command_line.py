@@ -1,4 +1,4 @@
-"""`adit`, beside a real aditd and a real Command Post: at a terminal, in a pipe, and for scripts."""
+"""`adit`, beside a real aditd and a real Command Post: at a terminal, in a pipe, and for scripts. Each command by itself is in tests/cli."""
 
 import contextlib
 import fcntl
@@ -9,13 +9,11 @@ import select
 import signal
 import socket
 import subprocess
-import sys
 import termios
 import threading
 import time
 import unittest
 
-import hosts
 import programs
 from programs import BIN, Stage, wait_until
 from reporting import QUICK, REPORT, another, began, is_taken, sendings, submit
@@ -155,46 +153,6 @@ class InDoubt(Case):
             self.assertEqual(terminal.end(), 0)
             wait_until(lambda: sendings(stage) == 2, "it to be sent again")
 
-    def test_is_sent_by_a_script_that_says_so(self):
-        with self.stage(reports__answer_within_ms=2000) as stage:
-            number = self.in_doubt(stage)
-            sent = adit(stage, "reports", "send", str(number), "--yes", "--json")
-            self.assertEqual((sent.returncode, json.loads(sent.stdout)), (0, {"report": number}))
-            wait_until(lambda: sendings(stage) == 2, "it to be sent again")
-
-
-class Runs(Case):
-    def listed(self, stage):
-        return json.loads(adit(stage, "runs", "--json").stdout)["runs"]
-
-    def test_are_listed_printed_and_deleted_only_where_it_is_meant(self):
-        with self.stage() as stage:
-            is_taken(stage, REPORT)
-            first = wait_until(lambda: (all := self.listed(stage)) and all[0]["bytes"] > 0 and all, "a run to be kept")[0]["key"]
-            self.assertEqual(adit(stage, "run", "new").returncode, 0)
-            wait_until(lambda: len(self.listed(stage)) == 2, "two runs")
-            self.assertRegex(adit(stage, "runs").stdout, rf"\n +{first} .* {hosts.SCORING}:{programs.PORT} ")
-            self.assertIn("Command Post", adit(stage, "runs", "show", first).stdout)
-            to = stage.folder / "run.html"
-            self.assertEqual(adit(stage, "runs", "report", first, "--to", str(to)).returncode, 0)
-            self.assertIn(REPORT["type"], to.read_text())
-
-            nobody = adit(stage, "runs", "delete", first)
-            self.assertEqual((nobody.returncode, nobody.stdout), (1, ""))
-            self.assertTrue(nobody.stderr.endswith("It is not deleted; if that is meant: --yes\n"), nobody.stderr)
-            terminal = self.at_a_terminal(stage, "runs", "delete", first)
-            terminal.shows("Delete it? [y/N] ")
-            terminal.type("n\n")
-            self.assertEqual(terminal.end(), 1)
-            self.assertEqual(len(self.listed(stage)), 2)
-            terminal = self.at_a_terminal(stage, "runs", "delete", first)
-            terminal.shows("Delete it? [y/N] ")
-            terminal.type("y\n")
-            self.assertEqual(terminal.end(), 0)
-            self.assertEqual([run["is_present"] for run in self.listed(stage)], [True])
-            present = adit(stage, "runs", "delete", self.listed(stage)[0]["key"], "--yes")
-            self.assertEqual(present.returncode, 1, present.stderr)
-
 
 class Watching(Case):
     def test_at_a_terminal(self):
@@ -240,16 +198,6 @@ class Watching(Case):
             watch.send_signal(signal.SIGTERM)
             self.assertEqual(watch.wait(30), 0)
 
-    def test_for_scripts(self):
-        with self.stage() as stage:
-            watch = subprocess.Popen(words(stage, "watch", "--json"), stdout=subprocess.PIPE, env=UTF8)
-            views = [json.loads(watch.stdout.readline()) for _ in range(3)]
-            watch.send_signal(signal.SIGINT)
-            watch.stdout.close()
-            self.assertEqual(watch.wait(30), 0)
-            self.assertLess(views[0]["now"], views[2]["now"])
-            self.assertEqual(views[0]["run"]["remaining_reports"], 45)
-
     def on_a_line(self, stage, line, *said):
         """What `adit watch` prints there, in a file."""
         self.addCleanup(line.close)
@@ -261,31 +209,6 @@ class Watching(Case):
         self.addCleanup(watch.kill)
         return path
 
-    def test_is_told_what_changes_and_does_not_ask_again(self):
-        with self.stage() as stage:
-            line = Line(stage)
-            said = self.on_a_line(stage, line, "--json")
-            views = lambda: [json.loads(text) for text in said.read_text().split("\n")[:-1]]
-            wait_until(lambda: len(views()) >= 1, "the view")
-            whole = line.came
-            is_taken(stage, REPORT)
-            wait_until(lambda: any(report["state"] == "answered" for report in views()[-1]["reports"]), "the report")
-            wait_until(lambda: len(views()) >= 5, "views")
-            self.assertEqual(line.targets(), ["/adit/events"], "it asked once")
-            self.assertLess(line.came - whole, 3 * whole, "what it was told then are changes")
-            self.assertEqual(set(views()[-1]), set(stage.box.ask("GET /adit/run")[1]))
-
-    def test_takes_the_line_up_again_and_misses_nothing(self):
-        with self.stage() as stage:
-            line = Line(stage)
-            said = self.on_a_line(stage, line)
-            wait_until(lambda: "reports left" in said.read_text(), "all of it once")
-            line.cut()
-            is_taken(stage, REPORT)
-            wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
-            self.assertEqual(set(line.targets()), {"/adit/events"})
-            self.assertGreaterEqual(len(line.targets()), 2)
-
     def test_of_a_box_on_a_slow_line(self):
         with self.stage() as stage:
             line = Line(stage, bytes_at_once=128, pause=0.2)  # the view takes longer than an answer may
@@ -295,13 +218,6 @@ class Watching(Case):
             wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
             self.assertNotIn("cannot be asked", said.read_text())
             self.assertEqual(line.targets(), ["/adit/events"])
-
-    def test_of_an_adit_that_is_not_there(self):
-        with self.stage() as stage:
-            stage.box.stop()
-            watch = adit(stage, "watch")
-            self.assertEqual((watch.returncode, watch.stdout), (2, ""))
-            self.assertIn("cannot be asked", watch.stderr)
 
 
 class ForScripts(Case):
@@ -320,25 +236,6 @@ class ForScripts(Case):
             self.assertTrue(json.loads(checked.stdout)["good"])
             status = json.loads(adit(stage, "status", "--json").stdout)
             self.assertEqual(set(status), set(stage.box.ask("GET /adit/run")[1]), "what GET /adit/run says")
-
-    def test_a_key_of_the_settings(self):
-        with self.stage() as stage:
-            shown = adit(stage, "settings", "show", "reports.review")
-            self.assertEqual(shown.stdout.splitlines()[0], '  reports.review  "off"')
-            self.assertIn("near duplicates", shown.stdout)
-            wrong = adit(stage, "settings", "show", "reports.reviw")
-            self.assertEqual((wrong.returncode, wrong.stderr),
-                             (2, "adit: no such key of the settings: reports.reviw; did you mean reports.review?\n"))
-
-    def test_numbers_of_reports_are_completed(self):
-        os.environ["ADIT_SOURCE"] = os.environ.get("ADIT_SOURCE", str(programs.ARTIFACTS.parents[2]))
-        sys.path.insert(0, str(programs.ARTIFACTS.parents[1] / "command_line"))
-        import shells
-        with self.stage(reports__review="all") as stage:
-            submit(stage, timeout=60)  # 503: held
-            line = " ".join(map(str, words(stage, "reports", "send")[1:3] + words(stage)[1:]))
-            self.assertEqual(shells.by_bash(f"adit {line} "), ["1"])
-            self.assertEqual(shells.by_bash(f"adit {line.replace('send', 'done')} "), [])
 
 
 class Letters(Case):

@@ -5,8 +5,6 @@ import json
 import time
 import unittest
 
-import requests
-
 from programs import Stage, patient
 from reporting import QUICK, REPORT, another, at_once, began, insist, submit
 
@@ -57,14 +55,3 @@ class ExactlyOnce(unittest.TestCase):
 
     def test_answered(self):
         self.is_its_own(*self.played("ok"))
-
-    def test_a_client_that_hangs_up_again_and_again_is_never_turned_away(self):
-        with Stage(**{**QUICK, "reports__doubt_for_ms": 12000, "reports__answer_within_ms": 30000}) as stage:
-            began(stage).post.will("drop")
-            posted = time.monotonic()
-            while time.monotonic() - posted < 6:
-                with self.assertRaises(requests.Timeout):  # and no ConnectionError
-                    submit(stage, timeout=0.3)
-            said = [(alarm["severity"], alarm["subject"]) for alarm in stage.box.ask("GET /adit/run")[1]["alarms"]]
-            self.assertIn(("wait", "1"), said, "Adit itself asks what became of it")
-            self.assertEqual(submit(stage).status_code, 201)

@@ -1,5 +1,6 @@
 """Settings are saved while six robots upload maps, a client waits for its report and a page is open: a saved setting restarts
-what it changes, and nothing else. Nobody is cut, nobody is told to come again, and all arrives."""
+what it changes, and nothing else. Nobody is cut, and all arrives. The parts by themselves are in tests/gateway/listeners_test and
+forward/scoring_endpoint_test."""
 
 import contextlib
 import http.client
@@ -7,12 +8,11 @@ import threading
 import time
 import unittest
 
-import hosts
 import maps
 import messages
 import programs
 from messages import Style
-from programs import MAPPING_TOKEN, PORT, TEAM_TOKEN, CommandPost, Stage, wait_until
+from programs import PORT, TEAM_TOKEN, CommandPost, Stage, wait_until
 from reporting import another, began, submit
 
 CBOR = Style("cbor")
@@ -157,24 +157,6 @@ class InPlace(unittest.TestCase):
         self.assertEqual(len(stage.post.recorded()), 2)
         self.assertEqual(stage.post.violations() + other.violations(), [])
 
-    def test_a_report_under_way_counts_where_it_was_sent_and_the_next_goes_elsewhere(self):
-        stage = self.stage()
-        other = self.enterContext(contextlib.closing(Closing(stage))).post
-        stage.post.will("answer-after=2")
-        report = Report(stage, another(1))
-        report.start()
-        wait_until(lambda: stage.box.reports() and stage.box.reports()[0]["state"] == "sending", "it to be under way")
-
-        def elsewhere(settings):
-            settings["command_post"]["scoring"]["port"] = OTHER_PORT
-
-        stage.box.save(elsewhere)
-        report.join()
-        self.assertEqual(report.status, 201)
-        self.assertEqual(submit(stage, another(2)).status_code, 201)
-        self.assertEqual(([made["x"] for made in stage.post.recorded()], [made["x"] for made in other.recorded()]),
-                         ([another(1)["x"]], [another(2)["x"]]))
-
     def test_what_cannot_be_listened_at_is_taken_back_and_cuts_nobody(self):
         stage = self.stage(**SLOW)
         page, report, uploads = Page(stage), self.report_that_waits(stage), self.at_work(stage)
@@ -197,34 +179,6 @@ class InPlace(unittest.TestCase):
         self.assertNotIn("taken back", stage.box.attention())
         report.join()
         self.assertEqual(report.status, 201)
-
-    def test_who_is_connected_where_nobody_is_served_any_more_is_answered(self):
-        stage = self.stage(team__listen=[{"address": self.address(), "port": PORT},
-                                         {"address": self.address(), "port": SECOND_PORT}])
-        upload = Upload(stage, "r1", SECOND_PORT)
-        upload.start()
-        self.assertTrue(upload.begun.wait(30))
-
-        def fewer(settings):
-            del settings["team"]["listen"][1]
-
-        stage.box.save(fewer)
-        with self.assertRaises(ConnectionRefusedError):
-            http.client.HTTPConnection(stage.network.box_address, SECOND_PORT, timeout=5).connect()
-        self.all_are_taken([upload])
-
-    def test_a_token_counts_from_then_on(self):
-        stage = self.stage()
-        uploads = self.at_work(stage)
-        stage.box.apply("POST /adit/tokens", {"name": "mapping", "token": "wrong-token"})
-        self.all_are_taken(uploads)
-        wait_until(lambda: "mapping token is refused" in stage.box.attention(), "it to be refused")
-        stage.box.apply("POST /adit/tokens", {"name": "mapping", "token": MAPPING_TOKEN})
-        wait_until(lambda: len(self.arrived(stage.post)) == 6, "all maps")
-
-    @staticmethod
-    def address():
-        return hosts.Network().box_address
 
 
 class Closing:

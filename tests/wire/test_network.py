@@ -1,14 +1,13 @@
-"""adit-network on the box: changes of its addresses that take themselves back, and whether anybody else has them."""
+"""adit-network on the box: changes of its addresses that take themselves back, and whether anybody else has them. Other courses are in
+network/change_test, applier/applier_test and applier/networkd_files_test."""
 
 import json
 import os
-import signal
 import subprocess
 
 import hosts
 import networkd
 from changes import Change, NEW, OLD
-from programs import wait_until
 
 
 class WithAStandIn(Change):
@@ -54,21 +53,6 @@ class WithAStandIn(Change):
         hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0")
         subprocess.run(["ip", "netns", "exec", self.network.box, self.box.networkctl, "reload"], check=True)
 
-    def test_an_unconfirmed_change_is_lost_in_a_power_cut(self):
-        self.box.want(team="192.168.8.11")
-        self.has(NEW)
-        self.box.stop()
-        self.restart_the_machine()
-        self.has(OLD)
-        self.assertIsNone(self.box.pending())
-
-    def test_what_was_asked_before_a_power_cut_is_not_done_after_it(self):
-        self.box.ask("wanted.json", confirm_within_ms=60000, numbers=self.box.numbers(team="192.168.8.11"))
-        self.restart_the_machine()
-        self.has(OLD)
-        self.assertEqual(self.box.files("wanted"), [])
-        self.assertIsNone(self.box.pending())
-
     def test_a_change_is_taken_back_after_a_kill(self):
         self.box.want(team="192.168.8.11")
         self.has(NEW)
@@ -77,53 +61,12 @@ class WithAStandIn(Change):
         self.has(OLD)
         self.assertEqual(self.box.status()["last"], "taken back")
 
-    def test_a_change_is_taken_back_after_a_kill_though_networkd_fails_at_first(self):
-        self.box.want(team="192.168.8.11")
-        self.has(NEW)
-        self.box.stop()
-        self.break_networkctl()
-        self.assertEqual(self.box.run(), 1)
-        self.assertTrue(self.box.pending())
-        self.box.stand_in()
-        self.assertEqual(self.box.run(), 0)
-        self.has(OLD)
-        self.assertEqual((self.box.pending(), self.box.status()["last"]), (None, "taken back"))
-
-    def break_networkctl(self):
-        self.box.networkctl.write_text("#!/bin/sh\ntest -e /tmp || exit 1\necho no bus >&2\nexit 1\n")
-
-    def test_a_change_is_taken_back_when_the_service_is_stopped(self):
-        self.box.want(team="192.168.8.11")
-        self.has(NEW)
-        os.kill(self.pid(), signal.SIGTERM)
-        self.ends()
-        self.has(OLD)
-
-    def pid(self):
-        """Of adit-network itself: `ip netns exec` becomes it."""
-        return self.box.process.pid
-
     def test_a_change_is_taken_back_by_one_word(self):
         nonce = self.box.want(team="192.168.8.11")
         self.has(NEW)
         self.box.ask("word.json", nonce=nonce, word="back")
         self.ends()
         self.has(OLD)
-
-    def test_another_nonce_confirms_nothing(self):
-        self.box.want(within_ms=1500, team="192.168.8.11")
-        self.box.ask("word.json", word="confirm")
-        self.ends()
-        self.has(OLD)
-
-    def test_the_other_interface_is_not_touched(self):
-        with self.monitored() as seen:
-            nonce = self.box.want(team="192.168.8.11")
-            self.has(NEW)
-            self.box.ask("word.json", nonce=nonce, word="back")
-            self.ends()
-        self.assertIn("team0", seen())
-        self.assertNotIn("darpa0", seen())
 
     def test_what_is_wrong_or_hostile_is_refused_and_taken_away(self):
         secret = self.folder / "secret"
@@ -152,18 +95,6 @@ class WithAStandIn(Change):
         self.assertNotIn("of root", self.box.said())
         self.assertEqual(self.box.addresses("team0"), [OLD])
 
-    def test_a_change_that_cannot_be_applied_is_taken_back_at_once(self):
-        self.break_networkctl()
-        self.box.want(team="192.168.8.11")
-        self.assertEqual(self.box.process.wait(50), 1, "so that its unit starts it again")
-        status = self.box.status()
-        self.assertEqual(status["last"], "taken back")
-        self.assertIn("no bus", status["why"])
-        self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
-        self.assertEqual(self.box.run(), 1)
-        self.box.stand_in()
-        self.assertEqual(self.box.run(), 0)
-
     def test_an_address_that_somebody_has_is_not_taken(self):
         hosts.ip("-n", self.network.team, "address", "add", "192.168.8.11/24", "dev", "eth0")
         self.box.want(team="192.168.8.11")
@@ -173,32 +104,12 @@ class WithAStandIn(Change):
         self.assertIn("192.168.8.11 is in use already on team0", status["why"])
         self.assertEqual(self.box.addresses("team0"), [OLD])
 
-    def test_what_was_confirmed_is_forgotten(self):
-        (self.folder / "network.json").write_text(json.dumps({"version": 1, "numbers": self.box.numbers("10.0.0.1", [])}))
-        self.box.ask("forget.json")
-        self.assertEqual(self.box.run(), 0)
-        self.assertEqual((self.box.addresses("team0"), self.box.addresses("darpa0")), (["10.0.0.1/24"], []))
-        self.assertEqual(self.box.files("state"), [])
-        self.assertEqual(self.box.status()["kept"], self.box.numbers("10.0.0.1", []))
-        self.restart_the_machine()
-        self.assertEqual(self.box.addresses("team0"), ["10.0.0.1/24"])
-
-    def test_what_was_to_be_forgotten_before_a_power_cut_is_forgotten_after_it(self):
-        self.box.ask("forget.json")
-        self.restart_the_machine()
-        self.assertIsNone(self.box.status()["kept"])
-        self.assertEqual(self.box.files("state"), [])
-
     def probe(self, sought=""):
         nonce = self.box.ask("probe.json", sought=sought)
         self.assertEqual(self.box.run(), 0)
         probed = self.box.probed()
         self.assertEqual(probed["nonce"], nonce)
         return probed
-
-    def test_nobody_else_has_the_address(self):
-        self.assertEqual({**self.probe(), "nonce": ""},
-                         {"version": 1, "nonce": "", "address": "10.100.1.10", "claimant": "", "own": "", "found_on": "", "trouble": ""})
 
     def test_somebody_else_has_the_address(self):
         hosts.ip("-n", self.network.post, "address", "add", "10.100.1.10/24", "dev", "eth0")
@@ -213,22 +124,6 @@ class WithAStandIn(Change):
         self.assertEqual(self.probe("10.100.1.77")["found_on"], "")
         hosts.ip("-n", self.network.team, "address", "add", "10.100.1.77/24", "dev", "eth0")
         self.assertEqual(self.probe("10.100.1.77")["found_on"], "team0")
-
-    def test_a_probe_does_not_wait_for_a_change(self):
-        nonce = self.box.want(team="192.168.8.11")
-        asked = self.box.ask("probe.json", sought="")
-        wait_until(lambda: (self.box.probed() or {}).get("nonce") == asked, "the probe's answer")
-        self.assertTrue(self.box.pending())
-        self.box.ask("word.json", nonce=nonce, word="confirm")
-        self.ends()
-
-    def test_a_word_that_comes_during_a_probe_is_in_time(self):
-        nonce = self.box.want(within_ms=5000, team="192.168.8.11")
-        self.box.ask("probe.json", sought="10.100.1.77")
-        wait_until(lambda: "probe.json" not in self.box.files("wanted"), "the probe to be begun")
-        self.box.ask("word.json", nonce=nonce, word="confirm")
-        self.ends()
-        self.assertEqual(self.box.status()["last"], "confirmed")
 
     def test_an_interface_that_is_gone_is_told(self):
         hosts.ip("-n", self.network.box, "link", "delete", "darpa0")

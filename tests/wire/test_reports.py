@@ -1,4 +1,5 @@
-"""Artifact reports: they wait for no map, and what becomes of them and their clients as the box or the Command Post comes and goes."""
+"""Artifact reports: they wait for no map, and what becomes of them and their clients as the box or the Command Post comes and goes.
+What is told when is in dispatch/reports_clients_test and dispatch/reports_restart_test."""
 
 import concurrent.futures
 import json
@@ -40,26 +41,6 @@ class Ends(unittest.TestCase):
     def arrives(self, stage):
         wait_until(lambda: sendings(stage) == 1 or stage.post.control("GET /faults")["reports"] == [],
                    "the report to arrive")
-
-    def test_a_report_waits_on_disk_while_the_command_post_is_away_and_its_client_is_told(self):
-        with Stage(post_options=None, reports__answer_within_ms=700) as stage:
-            answer = submit(stage)
-            self.assertEqual(answer.status_code, 503)
-            self.assertIn("kept and waiting", answer.json())
-            self.assertEqual(stage.box.on_disk(), ["waiting"])
-            stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
-            wait_until(lambda: stage.box.on_disk() == ["answered"], "the report to be sent now")
-            self.assertEqual(len(stage.post.recorded()), 1)
-
-    def test_a_report_survives_a_kill_and_goes_out_after_it(self):
-        with Stage(post_options=None) as stage:
-            left_unanswered(stage)
-            wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
-            stage.box.stop(signal.SIGKILL)
-            stage.post = programs.CommandPost(stage.network, stage.folder, "--rate", "0")
-            stage.restart_box()
-            wait_until(lambda: stage.box.on_disk() == ["answered"], "the report to go out")
-            self.assertEqual(len(stage.post.recorded()), 1)
 
     def test_a_kill_while_an_answer_is_awaited_is_found_out_after_it(self):
         for fault, ends in ((SILENCE, "settled"), (DEAF, "answered")):

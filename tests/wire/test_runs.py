@@ -1,6 +1,5 @@
 """What a run has to show outlives the service: picture, tracks and plots after a kill, each run by itself."""
 
-import shutil
 import signal
 import time
 import unittest
@@ -93,31 +92,6 @@ class Runs(unittest.TestCase):
         self.assertGreaterEqual(len(kept), len(plots["at"]) - 4)  # those of the last seconds are not on the disk yet
         self.assertEqual({robot["robot"] for robot in again["robots"]} & {"ugv1", "ugv2"}, {"ugv1", "ugv2"})
 
-    def test_the_slider_reaches_back_over_a_restart(self):
-        stage = self.stage()
-        self.drive(stage, robots=("ugv1",))
-        self.wait_until_kept(stage)
-        then, before = time.time(), self.drawn(stage)
-        self.drive(stage, seed=2, robots=("ugv1",))
-        wait_until(lambda: self.drawn(stage) != before, "the second map to be drawn")
-        stage.box.stop(signal.SIGTERM)
-        stage.restart_box()
-        wait_until(lambda: self.drawn(stage), "the picture of the life before")
-        now = self.ask(stage, "/adit/run")["now"]
-        self.assertEqual(self.drawn(stage, at=f"?at={then + now - time.time()}"), before)
-
-    def test_a_run_begins_blank_and_an_earlier_one_stays_on_the_disk(self):
-        stage = self.stage()
-        self.drive(stage)
-        self.wait_until_kept(stage)
-        self.assertEqual(stage.box.ask("POST /adit/runs", {"Content-Type": "application/json"})[0], 200)
-        wait_until(lambda: not self.drawn(stage), "the picture to be blank")
-        stage.box.stop(signal.SIGTERM)
-        self.assertEqual(len(list((stage.box.state / "runs").iterdir())), 2)
-        stage.restart_box()
-        wait_until(stage.box.knows_the_run, "the run to be known")
-        self.assertEqual(self.drawn(stage), {})
-
     def test_an_earlier_run_is_listed_looked_at_again_printed_and_deleted(self):
         stage = self.stage(courses=[{"name": "alpha", "scoring": {"address": hosts.SCORING, "port": programs.PORT},
                                      "mapping": {"address": hosts.MAPPING, "port": programs.PORT}}],
@@ -147,13 +121,3 @@ class Runs(unittest.TestCase):
         self.assertEqual(stage.box.ask(f"GET {base}/map")[0], 404)
         self.assertFalse((stage.box.state / "runs" / str(first)).exists())
         self.assertEqual([report["type"] for report in stage.box.reports()], ["Drill"])
-
-    def test_a_disk_without_room_is_told_and_stops_nothing(self):
-        stage = self.stage(disk="24m")
-        self.drive(stage)
-        full = stage.box.state / "full"
-        full.write_bytes(b"x" * (shutil.disk_usage(stage.box.state).free - (2 << 20)))
-        wait_until(lambda: "will not outlive a restart" in stage.box.attention(), "the notice")
-        full.unlink()
-        wait_until(lambda: "will not outlive a restart" not in stage.box.attention(), "the notice to go")
-        self.wait_until_kept(stage)

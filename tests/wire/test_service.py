@@ -79,46 +79,17 @@ class Service(unittest.TestCase):
         self.notify.settimeout(30)
         self.heard("WATCHDOG=1")
 
-    def test_stops_and_starts_again(self):
-        for number in (signal.SIGTERM, signal.SIGINT):
-            process = self.start()
-            self.heard("READY=1")
-            process.send_signal(number)
-            self.assertEqual(process.wait(programs.STOPS_WITHIN), 0)
-
     def test_names_every_fault_of_its_settings(self):
         self.write_settings(comand_post={}, team={"listen": [{"address": "nowhere", "port": 70000}]})
         self.refuses("comand_post", "team.listen[0].address", "team.listen[0].port")
-
-    def test_names_the_secret_that_is_open_to_others(self):
-        (self.folder / "secrets" / "scoring.token").chmod(0o644)
-        self.refuses("scoring.token")
 
     def test_starts_without_a_token_and_says_which_is_missing(self):
         (self.folder / "secrets" / "scoring.token").unlink()
         self.start()
         self.assertIn("No scoring token is set", self.heard("READY=1"))
 
-    def test_says_which_address_it_cannot_listen_on(self):
-        taken = socket.create_server(("127.0.0.1", 0))
-        self.addCleanup(taken.close)
-        port = taken.getsockname()[1]
-        self.write_settings(team={"listen": [{"address": "127.0.0.1", "port": port}]})
-        self.refuses("127.0.0.1", str(port), "Address already in use")
-
-    def test_keeps_its_ledger_to_itself(self):
-        self.start()
-        self.heard("READY=1")
-        self.refuses("ledger")
-
     def test_sets_a_damaged_ledger_aside_and_shows_it(self):
         (self.folder / "state" / "ledger.sqlite").write_bytes(b"no ledger at all" * 100)
         self.start()
         self.assertIn("may be lost from the ledger", self.heard("READY=1"))
         self.assertTrue(list((self.folder / "state").glob("ledger.sqlite.damaged*")))
-
-    def test_shows_its_lights_where_there_are_none(self):
-        self.start()
-        self.heard("READY=1")
-        panel = self.folder / "state" / "panel"
-        programs.wait_until(lambda: panel.exists() and "health on" in panel.read_text(), "the simulated panel")

@@ -110,39 +110,3 @@ class Stick(unittest.TestCase):
             again = submit(stage, another(number))
             self.assertEqual((again.status_code, again.content), (201, answer.content), "byte for byte")
         self.assertTrue(stage.all_recorded([another(number) for number in (1, 2, 3)]))
-
-    def test_that_is_pulled_out_too_early_is_told_of_and_another_one_does(self):
-        stage = self.by_stick()
-        self.assertEqual(submit(stage, another(1)).status_code, 201)
-        keeper = stage.keepers[0]
-        keeper.plug(stage.image)
-        wait_until(lambda: not stage.stick()["hindrance"], "the stick to be found")
-        slots = keeper.slots
-        hook = slots.folder / "hook"
-        hook.write_text(f'rm -r {hook} {slots.folder}/block/sda1 {slots.folder}/dev/sda1; umount --lazy "$2"\n')
-        said = stage.adit("export", "--stick", "--yes", check=False)
-        self.assertIn("the box rests, and its export is not on the stick: the stick was pulled out", said)
-        self.assertIn("there is no stick in the box", stage.adit("export", "--stick", "--yes", check=False))
-        second = stage.folder / "second.img"
-        mounting.make("ext4", second)
-        keeper.plug(second)
-        wait_until(lambda: not stage.stick()["hindrance"], "the second stick to be found")
-        self.assertIn("which may be unplugged", stage.adit("export", "--stick", "--yes"))
-
-    def test_with_what_is_no_export_changes_nothing(self):
-        stage = self.by_stick()
-        self.assertEqual(submit(stage, another(1)).status_code, 201)
-        desk = stage.folder / "desk"  # where the stick was written to, before anybody looks at it
-        desk.mkdir()
-        mounting.run("mount", "-o", "loop", stage.image, desk)
-        (desk / "a.adit-spare").write_bytes(b"PK\x03\x04 a zip file")
-        (desk / "b.adit-spare").write_bytes(b"adit-spare\x07\x00 of a later Adit")
-        mounting.run("umount", desk)
-        stage.keepers[0].plug(stage.image)
-        wait_until(lambda: len(stage.stick()["exports"]) == 2, "both to be found")
-        for name, why in (("a", "it is no export of an Adit"), ("b", "a later Adit made this export")):
-            self.assertIn(why, stage.adit("take", f"{name}.adit-spare", "--stick", "--code", "1" * 16, "--yes", check=False))
-        self.assertIn("several exports", stage.adit("take", "--stick", "--code", "1" * 16, "--yes", check=False))
-        self.assertIn("there is no such export on a stick",
-                      stage.adit("take", "c.adit-spare", "--stick", "--code", "1" * 16, "--yes", check=False))
-        self.assertEqual(submit(stage, another(2)).status_code, 201)

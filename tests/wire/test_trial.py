@@ -159,20 +159,3 @@ class Trial(unittest.TestCase):
                 told += file.read_bytes().decode(errors="replace")
         for token in TYPED.values():
             self.assertNotIn(token, told)
-
-    def test_what_cannot_be_is_refused_and_nothing_is_asked(self):
-        for body, sentence in (({"scoring": {"address": "0.0.0.0"}}, "scoring.address: 0.0.0.0 is no address of one machine"),
-                               ({"course": "B"}, "course: no course is called B"),
-                               ({"scorign": {}}, "no such member")):
-            status, said = self.box.ask("POST /adit/test", body=body)
-            self.assertEqual(status, 422)
-            self.assertIn(sentence, said)
-        self.assertEqual(self.box.ask("GET /adit/test")[1]["endpoints"], [])
-
-    def test_nobody_answers_there_and_the_run_goes_on(self):
-        with self.a_run():
-            _, steps = self.tried(scoring={"port": OTHER_PORT})
-            self.assertIn("no server at that port", steps["scoring reach"]["said"])
-            self.assertEqual(steps["scoring token"]["state"], "skipped")
-            self.flows_on()
-        self.assertEqual(self.throttled(self.post), [])

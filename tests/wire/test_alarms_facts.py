@@ -1,0 +1,100 @@
+"""Each source of facts about alarms reaches /adit/run: files of other programs, reports, clients, messages that are set aside, a full disk.
+The rules and the words of each alarm are in tests/alarms/conditions_test."""
+
+import json
+import os
+import pathlib
+import subprocess
+import tempfile
+import time
+
+from unittest import mock
+
+from alarming import WithAlarms
+from filling import Filler
+from networkd import AditNetwork
+from programs import wait_until
+from reporting import left_unanswered
+
+UPDATE = {"format": 1, "trouble": "", "running": {"compatible": "adit-x", "version": "1.2.0", "slot": "B", "other": "A"},
+          "nonce": "", "refusal": "", "doing": "", "progress": None,
+          "last": {"stage": "installed", "version": "1.2.0", "slot": "B", "boot": "b", "why": ""},
+          "trial": False, "stray": "", "stick": None, "stick_trouble": ""}
+NETWORK = {"version": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": AditNetwork.numbers(),
+           "endpoints": [], "pending": None, "last": None, "last_nonce": "", "why": ""}
+
+
+def pending():
+    until = time.clock_gettime_ns(time.CLOCK_MONOTONIC) // 1_000_000 + 60_000
+    return {"nonce": "0" * 32, "until_ms": until, "confirm_within_ms": 60000, "wanted": AditNetwork.numbers(team="192.168.8.11")}
+
+
+class Facts(WithAlarms):
+    def write(self, stage, name, text):
+        file = stage.folder / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        (file.parent / ".new").write_text(text)
+        (file.parent / ".new").rename(file)
+
+    def test_files_of_other_programs(self):
+        stage = self.stage()
+        update, network = "update/status.json", "network/status/status.json"
+        for name, text, without, alarm, severity, why in (
+                (update, {**UPDATE, "trial": True}, UPDATE, "update_on_trial", "wait", ""),
+                (update, {**UPDATE, "stray": "B was good last"}, UPDATE, "other_slot", "ask", "B was good last"),
+                (network, {**NETWORK, "pending": pending()}, NETWORK, "network_change", "ask", "192.168.8.11"),
+                (network, {**NETWORK, "kept": {**NETWORK["kept"], "command_post": {"addresses": [], "gateway": ""}}}, NETWORK,
+                 "no_address", "bad", ""),
+                ("notices/disks", "2 disks hold an Adit", "", "notice:disks", "bad", "2 disks hold an Adit")):
+            with self.subTest(alarm):
+                self.write(stage, name, text if isinstance(text, str) else json.dumps(text))
+                found = wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
+                self.assertEqual(found["severity"], severity)
+                self.assertIn(why, found["why"])
+                self.write(stage, name, without if isinstance(without, str) else json.dumps(without))
+                wait_until(lambda alarm=alarm: not self.alarm(stage, alarm), f"the end of {alarm}")
+
+    def test_reports_and_clients(self):
+        stage = self.stage(robots=[{"name": "r1"}], reports__review="all", post_options=("--rate", "0", "--reports", "5"))
+        left_unanswered(stage)
+        self.robot(stage, "r9")
+        self.assertEqual(stage.box.ask("GET /api/status", token="an-old-token")[0], 401)
+        wait_until(lambda: self.view(stage)["run"]["run_clock"] > 0, "the run to begin")
+        stage.post.control("POST /other-sender")
+        for alarm in ("report_held:1", "robot_unknown:r9", "wrong_tokens", "reports_left", "run_unreliable"):
+            wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
+        self.assertEqual(stage.box.judge(1, "send")[0], 200)
+        wait_until(lambda: not self.alarm(stage, "report_held:1"), "the end of report_held:1")
+
+    def test_a_message_is_set_aside(self):
+        stage = self.stage()
+        stage.post.will(mapping=["500,robot=r2,for=600"])
+        self.send_map(stage, "r2")
+        for seed in range(300):  # others pass all the while
+            self.send_map(stage, f"r{3 + seed % 3}", seed)
+            if self.alarm(stage, "set_aside"):
+                break
+            time.sleep(0.2)
+        self.sees(stage, "set_aside", "ask", "command_post", "1 message is set aside", "would not take it")
+        number = self.view(stage)["aside"][0]["number"]
+        self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/discard", body={})[0], 200)
+        self.goes(stage, "set_aside")
+
+    def test_maps_and_states_cannot_be_kept(self):
+        """In a runtime folder that is a file system of its own, as with systemd."""
+        runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))
+        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=4m", "adit-wire", runtime], check=True)
+        self.addCleanup(subprocess.run, ["umount", "--lazy", runtime], check=False)
+        self.enterContext(mock.patch.dict(os.environ, RUNTIME_DIRECTORY=str(runtime)))
+        stage = self.stage()
+        filler = Filler(runtime)
+        self.assertEqual(self.send_map(stage, "r1", 1, 100000).status_code, 503)
+        self.sees(stage, "map_not_kept", "bad", "box", "The last map was not taken", panel=False)
+        robot = self.robot(stage, "r1")
+        self.sees(stage, "state_not_kept", "bad", "box", "States and markers are not taken", "they cannot be kept", panel=False)
+        robot.quiet()
+        filler.make_room()
+        self.robot(stage, "r1")
+        self.goes(stage, "state_not_kept")
+        wait_until(lambda: self.send_map(stage, "r1", 1).status_code == 200, "a map to be taken")
+        self.goes(stage, "map_not_kept")

@@ -134,6 +134,7 @@ TEST_F(UpdateRoutesTest, RefuseABodyThatIsNoBundle) {
   };
   EXPECT_THAT(refused(kBytes, 0).body, HasSubstr("Content-Length"));
   EXPECT_THAT(refused(kBytes, std::nullopt).body, HasSubstr("Content-Length"));
+  EXPECT_EQ(refused(kBytes, 1u << 30).status, icd::Status::ContentTooLarge);
   EXPECT_THAT(refused(kBytes, 5, "/adit/update?again=yes").body, HasSubstr("again: expected 0 or 1"));
   EXPECT_EQ(updates.received.size, 0u);
 }

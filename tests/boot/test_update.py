@@ -1,5 +1,5 @@
-"""Updates: one from a stick that stays, one that is uploaded, cannot start and is left again, and those that are
-refused. Settings and reports come along."""
+"""Updates: one from a stick that stays, one that is uploaded, cannot start and is left again. Settings and
+reports come along. What is refused is in update/test_update.py."""
 
 import pathlib
 import re
@@ -21,15 +21,6 @@ class Updates(Updating, Story):
         cls.tell(Stage())
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-bundles-")))
 
-    def is_refused(self, path, *words):
-        self.send(path)
-        refusal = self.box.wait_until(
-            lambda: (now := self.stands())["doing"] is None and now["refusal"], "a refusal"
-        )
-        for word in words:
-            self.assertIn(word, str(refusal))
-        self.assertEqual((self.stands()["version"], self.stands()["slot"]), (RUNS, "A"))
-
     def install(self, ask, version):
         """`ask`: that asks for it."""
         began = self.box.moment()
@@ -47,12 +38,6 @@ class Updates(Updating, Story):
         self.assertEqual((self.stands()["managed"], self.stands()["version"], self.stands()["slot"]), (True, RUNS, "A"))
         status, said = self.box.ask("POST /api/artifact_reports", body=REPORT, timeout=60)
         self.assertEqual(status, 201, said)
-
-    def test_one_for_another_board_is_refused(self):
-        self.is_refused(bundle(self.folder, "7.2.0", board="rock-pi-e"), "rock-pi-e")
-
-    def test_an_older_one_is_refused(self):
-        self.is_refused(bundle(self.folder, "0.0.1"), "0.0.1")
 
     def test_a_newer_one_on_a_stick_is_offered_and_not_installed_by_itself(self):
         newer = bundle(self.folder, NEWER)

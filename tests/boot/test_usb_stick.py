@@ -81,16 +81,6 @@ class Sticks(Story):
         self.box.pull_stick("protected")
         self.wait_for(lambda said: "no stick" in said["hindrance"], "it to be gone")
 
-    def test_a_stick_of_another_file_system_is_told_of(self):
-        image, empty = self.folder / "squash.img", self.folder / "empty"
-        empty.mkdir()
-        subprocess.run(["mksquashfs", empty, image, "-quiet", "-no-progress"], check=True, stdout=subprocess.DEVNULL)
-        self.box.plug_stick(image, "unknown")
-        self.wait_for(lambda said: "expected FAT32 or ext4" in said["hindrance"], "the unknown stick to be found")
-        self.assertNotIn("squashfs /run/adit-stick", self.box.console.ask("cut -d' ' -f3,2 /proc/mounts"))
-        self.box.pull_stick("unknown")
-        self.wait_for(lambda said: "no stick" in said["hindrance"], "it to be gone")
-
     def test_an_export_is_on_a_fat_stick_that_is_pulled_out_at_the_moment_of_the_answer(self):
         newer = bundle_of_nothing(self.folder, "9.9.9", boards.PC.name)
         image = fat(self.folder, "good", newer)
@@ -140,18 +130,3 @@ class Sticks(Story):
         self.box.plug_stick(self.good, "firm", writable=True)
         self.wait_for(lambda said: [each["name"] for each in said["exports"]] == [self.name] and not said["hindrance"],
                       "the export to be offered")
-
-    def test_a_stick_that_fills_up_is_told_of_and_left_as_it_was(self):
-        self.box.pull_stick("firm")
-        self.wait_for(lambda said: "no stick" in said["hindrance"], "it to be gone")
-        image, filler = fat(self.folder, "full", size=8), self.folder / "filler"
-        for size in range(8 << 20, 0, -8192):
-            filler.write_bytes(bytes(size))
-            if subprocess.run(["mcopy", "-i", f"{image}@@1M", filler, "::"], stderr=subprocess.DEVNULL, check=False).returncode == 0:
-                break
-        self.box.plug_stick(image, "full", writable=True)
-        self.wait_for(lambda said: not said["hindrance"], "the full stick to be found")
-        self.post("to-stick")
-        self.assertRegex(self.outcome()["refusal"], "room")
-        self.box.pull_stick("full")
-        self.assertEqual(names_on(image), {"filler"})

@@ -86,12 +86,6 @@ class OverTheApi(unittest.TestCase):
         self.box.update()
         self.assertEqual(self.box.calls.read_text(), "reboot\n")
 
-    def test_a_refusal_is_told(self):
-        self.aditd.ask("POST", "/adit/update", self.bundles.make("0.0.1").read_bytes())
-        self.box.update()
-        said = raucs.wait_until(lambda: self.aditd.ask("GET", "/adit/update")[1]["refusal"], "the refusal")
-        self.assertIn("older than what runs", said)
-
     def test_a_large_one_takes_no_memory_and_a_broken_off_one_leaves_nothing(self):
         before = self.aditd.resident()
         status, _ = self.aditd.ask("POST", "/adit/update", HEAD + os.urandom(60 << 20))
@@ -108,52 +102,3 @@ class OverTheApi(unittest.TestCase):
         raucs.wait_until(lambda: self.left() == ["update.raucb.part"], "its beginning")
         connection.close()
         raucs.wait_until(lambda: self.left() == [], "nothing of it to be left")
-
-    def test_a_disk_that_fills_up_as_it_comes_has_its_room_again(self):
-        wanted = self.box.folder / "wanted"
-        self.aditd.stop()
-        shutil.rmtree(self.box.folder / "secrets")
-        subprocess.run(["mount", "-t", "tmpfs", "-o", "size=96m", "adit-full", wanted], check=True)
-        self.addCleanup(subprocess.run, ["umount", wanted], check=True)
-        self.aditd = Aditd(self.box)
-        self.addCleanup(self.aditd.stop)
-        for _ in range(2):
-            status, said = self.aditd.ask("POST", "/adit/update", self.fills_the_disk(wanted, 40 << 20), **{"Content-Length": str(40 << 20)})
-            self.assertEqual((status, said), (503, "the bundle cannot be written: No space left on device"))
-            self.assertEqual(self.left(), [])
-            (wanted / "filler").unlink()
-        self.assertEqual(self.aditd.ask("POST", "/adit/update", self.bundles.make().read_bytes())[0], 200)
-        self.assertEqual(self.left(), ["update.json", "update.raucb"])
-
-    def fills_the_disk(self, folder, size):
-        """The pieces of a bundle; somebody else takes all room while they come."""
-        yield HEAD + bytes((1 << 20) - len(HEAD))
-        raucs.wait_until(lambda: self.left() == ["update.raucb.part"], "its beginning")
-        with contextlib.suppress(OSError), open(folder / "filler", "wb", buffering=0) as filler:
-            while filler.write(bytes(1 << 16)):
-                pass
-        for _ in range((size >> 20) - 1):
-            yield bytes(1 << 20)
-
-    def refused_at_once(self, length, begins):
-        """The answer to a bundle of which no more than its beginning was sent."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.aditd.port, timeout=raucs.patient(60))
-        with contextlib.closing(connection):
-            connection.putrequest("POST", "/adit/update")
-            for name, value in (("Authorization", f"Bearer {TOKEN}"), ("Content-Type", "application/octet-stream"),
-                                ("Content-Length", str(length))):
-                connection.putheader(name, value)
-            connection.endheaders(begins)
-            answer = connection.getresponse()
-            self.assertEqual(self.left(), [])
-            return answer.status, json.loads(answer.read())
-
-    def test_one_of_a_gigabyte_is_refused_before_it_is_sent(self):
-        self.assertEqual(self.refused_at_once(1 << 30, b"x")[0], 413)
-
-    def test_what_is_no_bundle_is_refused_by_its_first_bytes(self):
-        image = b"\xfd7zXZ" + bytes(100)  # somebody took the disk image for the update
-        self.assertEqual(self.refused_at_once(35 << 20, image), (422, "it is no update: expected a file adit-BOARD-VERSION.raucb"))
-        status, said = self.refused_at_once(4096, HEAD)
-        self.assertEqual(status, 422)
-        self.assertIn("cut short", said)

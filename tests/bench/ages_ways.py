@@ -4,6 +4,7 @@ import json
 import os
 import shutil
 import sys
+import tempfile
 
 LISTEN, MAPPING, SCORING = ("10.91.1.2", 8000), ("10.91.2.2", 9001), ("10.91.2.2", 9000)
 TOKEN = "token-of-the-bench"  # of all three
@@ -26,13 +27,13 @@ class Way:
 
 
 class Adit(Way):
-    def __init__(self, name, program, reports_hz=1):
+    def __init__(self, name, program, reports_hz=1, state=None):
+        """`state`: the ledger's folder, if that is not to be in memory."""
         super().__init__(name)
-        self.program = program
-        self.reports_hz = reports_hz
+        self.program, self.reports_hz, self.state = program, reports_hz, state
 
     def command(self, folder):
-        os.mkdir(f"{folder}/state")
+        state = tempfile.mkdtemp(dir=self.state or folder)
         settings = {"version": 1,
                     "command_post": {"scoring": {"address": SCORING[0], "port": SCORING[1]},
                                      "mapping": {"address": MAPPING[0], "port": MAPPING[1]},
@@ -41,7 +42,7 @@ class Adit(Way):
         with open(f"{folder}/settings.json", "w", encoding="utf-8") as file:
             json.dump(settings, file)
         return [self.program, "--settings", f"{folder}/settings.json", "--secrets", f"{folder}/../secrets",
-                "--state", f"{folder}/state"]
+                "--state", state]
 
 
 class Nginx(Way):
@@ -61,10 +62,12 @@ http {{
   access_log off; client_max_body_size 256m; client_body_temp_path {folder}/body; proxy_temp_path {folder}/proxy;
   fastcgi_temp_path {folder}/f; uwsgi_temp_path {folder}/u; scgi_temp_path {folder}/s;
   limit_req_status 429; {zones}
+  keepalive_requests 1000000;
+  upstream scoring {{ server {SCORING[0]}:{SCORING[1]}; keepalive 4; }}
   server {{
     listen {LISTEN[0]}:{LISTEN[1]};
     {places}
-    location / {{ proxy_pass http://{SCORING[0]}:{SCORING[1]}; }}
+    location / {{ proxy_pass http://scoring; proxy_http_version 1.1; proxy_set_header Connection ""; }}
   }}
 }}
 """)

@@ -10,7 +10,6 @@
 #include "codec/gzip.hpp"
 #include "codec/gzip_whole.hpp"
 #include "pack/pack.hpp"
-#include "sizes_bounds.hpp"
 
 namespace adit::bench {
 namespace {
@@ -80,10 +79,6 @@ std::vector<PackingWay> ways_for_clouds() {
   ways.push_back(adit("Adit, exact", false));
   ways.push_back(adit("Adit, 1mm", false, {.unit = pack::kMillimetre}));
   ways.push_back(adit("Adit, 8mm", false, {.unit = pack::kEightMillimetres}));
-#ifdef ADIT_BOUNDS
-  ways.push_back({"as Cloudini, 1 mm", true, false, by_differences_and_zstd});
-  ways.push_back({"Draco, 1 mm", true, false, by_draco});
-#endif
   return ways;
 }
 

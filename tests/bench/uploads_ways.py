@@ -52,8 +52,8 @@ class Way:
 class Adit(Way):
     """As it ships, but that the link is wide: what is measured is Adit, not its pace."""
 
-    def __init__(self, name, folder, post, program, map_hz=1):
-        self.program, self.map_hz = program, map_hz
+    def __init__(self, name, folder, post, program):
+        self.program = program
         super().__init__(name, folder, post)
 
     def command(self):
@@ -62,8 +62,7 @@ class Adit(Way):
             with open(os.open(self.folder / f"secrets/{token}.token", os.O_CREAT | os.O_WRONLY, 0o600), "w", encoding="ascii") as file:
                 file.write(TOKEN)
         post = {"address": "127.0.0.1", "port": self.post}
-        settings = {"version": 1, "command_post": {"scoring": post, "mapping": post, "budget_mbit": 100_000,
-                                                    "rates": {"map_hz": self.map_hz}},
+        settings = {"version": 1, "command_post": {"scoring": post, "mapping": post, "budget_mbit": 100_000},
                     "team": {"listen": [{"address": "127.0.0.1", "port": self.port}]}}
         (self.folder / "settings.json").write_text(json.dumps(settings), encoding="ascii")
         (self.folder / "state").mkdir()

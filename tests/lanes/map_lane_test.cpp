@@ -260,7 +260,8 @@ TEST(MapLane, CountsTheMemoryThatIsHeld) {
 
 TEST(MapLane, IsNotSlowedDownByAFloodOfTinyClouds) {
   MapLane lane{kPlenty};
-  for (std::uint64_t i = 0; i < 100'000; ++i) lane.add(i, cloud_update("R1", {1}), at(1));
+  const auto tiny = cloud_update("R1", {1});
+  for (std::uint64_t i = 0; i < 100'000; ++i) lane.add(i, tiny, at(1));
   EXPECT_EQ(lane.take()->updates.size(), kPlenty / 12);
 }
 

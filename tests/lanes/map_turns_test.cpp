@@ -70,7 +70,7 @@ TEST_P(MapTurns, WhoWaitsLetsOnlyThoseGoFirstWhoWaitedAlreadyAndEachOnce) {
   Race race;
   Waits waits;
   const int senders = 2 + pick(8);
-  for (int slot = 0; slot < 500; ++slot) {
+  for (int slot = 0; slot < 120; ++slot) {
     race.now = slot;
     const auto post = [&](const std::string& who) {
       race.post(patch(who, race.number));
@@ -91,7 +91,7 @@ TEST_P(MapTurns, ARobotsNewestMapIsAsOldAsThereAreSendersWhateverOneOfThemDoes) 
   Race race;
   std::vector<std::string> names = {"hostile"};
   while (names.size() < 3 + GetParam() % 6) names.push_back("R" + std::to_string(names.size()));
-  for (int slot = 0; slot < 200; ++slot) {
+  for (int slot = 0; slot < 100; ++slot) {
     race.now = slot;
     for (int i = 0; i < 6; ++i) race.post(patch("hostile", race.number));
     for (std::size_t i = 1; i < names.size(); ++i) {  // its whole map, now and then
@@ -110,7 +110,7 @@ TEST_P(MapTurns, WhoSendsLargeMapsGetsNoMoreOfTheLinkThanTheOthers) {
   const std::vector<std::string> names = {"hostile", "R1", "R2", "R3"};
   std::map<std::string, std::size_t> slots;
   std::size_t all = 0;
-  while (all < 2000) {
+  while (all < 400) {
     for (const auto& name : names) race.post(patch(name, race.number));
     const auto next = *race.lane.take();
     const std::size_t cost = next.map.name->text() == "hostile" ? 1 + random() % kLargest : 1 + random() % 2;

@@ -46,10 +46,10 @@ class SamePoints : public testing::TestWithParam<std::uint64_t> {};
 
 TEST_P(SamePoints, AreReadOfACloudOfAnyFields) {
   Generator make{GetParam()};
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 6; ++round) {
     const icd::PointCloud2 fields = make.fields(/*is_bigendian=*/false);
     const double cell = round % 3 == 0 ? 0.05 : 1e-9;  // surveyed, or of noise
-    expect_same_points(make.cloud(fields, make.any(0, 4000), [&](std::size_t) {
+    expect_same_points(make.cloud(fields, make.any(0, 2000), [&](std::size_t) {
       auto at = make.on_wall({-20, 3, 1000}, 30);
       for (double& metres : at) metres = std::round(metres / cell) * cell;
       return at;
@@ -79,7 +79,14 @@ TEST(SamePointsOf, ACloudThatIsOrderedInSeveralBlocks) {
     const auto* const raw = reinterpret_cast<const std::uint8_t*>(values.data());
     bytes.insert(bytes.end(), raw, raw + sizeof values);
   }
-  expect_same_points(update_of(fields, bytes));
+  const ReadBack after = read_back(pack(update_of(fields, bytes)));
+  const auto points_of = [](const std::string& data) {
+    std::vector<std::array<std::uint32_t, 3>> points(data.size() / 12);
+    std::memcpy(points.data(), data.data(), 12 * points.size());
+    std::ranges::sort(points);
+    return points;
+  };
+  EXPECT_TRUE(points_of(after.data) == points_of({bytes.begin(), bytes.end()}));
 }
 
 TEST(SamePointsOf, RecordedClouds) {

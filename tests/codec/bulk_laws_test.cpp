@@ -24,7 +24,7 @@ std::string random_base64(Randomness& random) {
                                         "\\", "\"",   "\"}",  "-",       "_",       " ",     "\n",
                                         "é",  "\xff", "\x80", "\\uD83D", "\\u003d", "A=",    "\x01"};
   std::string text;
-  for (std::size_t left = random() % (random() % 8 == 0 ? 9000 : 120); left > 0; --left) {
+  for (std::size_t left = random() % (random() % 8 == 0 ? 4000 : 120); left > 0; --left) {
     text += one_of(kBase64, random);
   }
   const bool damaged = random() % 2 == 0;
@@ -45,7 +45,7 @@ std::string random_list(Randomness& random) {
   std::string text = random() % 4 == 0 ? "[ " : "[";
   for (std::size_t runs = random() % 20; runs > 0; --runs) {
     const std::string same = random() % 3 == 0 ? "-1" : element();
-    for (std::size_t left = 1 + random() % (random() % 16 == 0 ? 5000 : 12); left > 0; --left)
+    for (std::size_t left = 1 + random() % (random() % 16 == 0 ? 1500 : 12); left > 0; --left)
       text += same + comma;
   }
   text += element() + ']';
@@ -126,7 +126,7 @@ CborList random_cbor_list(Randomness& random) {
     if (value >= 24 || random() % 8 == 0) element.insert(0, 1, '\x18');
     if (value == 255 && random() % 2 == 0) element = random() % 4 == 0 ? from_hex("3800") : from_hex("20");
     if (random() % 10 == 0) element = from_hex("c1 1900") + static_cast<char>(value);  // with a tag
-    for (std::size_t left = 1 + random() % (random() % 16 == 0 ? 9000 : 9); left > 0; --left, ++count) {
+    for (std::size_t left = 1 + random() % (random() % 16 == 0 ? 2000 : 9); left > 0; --left, ++count) {
       elements += element;
       list.bytes.append(std::array{value});
     }

@@ -89,11 +89,11 @@ TEST(CompressedBody, ThatIsDamagedIsRefusedWith400) {
 }
 
 TEST(CompressedBody, OfABombIsRefusedWith413LongBeforeItsEnd) {
-  const std::string blanks = deflated(std::string().append(50'000'000, ' '), kGzip);
-  const std::string data = deflated(std::string(R"({"msg":{"data":")").append(50'000'000, 'A'), kGzip);
+  const std::string blanks = deflated(std::string().append(10'000'000, ' '), kGzip);
+  const std::string data = deflated(std::string(R"({"msg":{"data":")").append(10'000'000, 'A'), kGzip);
   const Limits limits{.text_bytes = 10'000, .data_bytes = 100'000};
   for (const std::string& bomb : {blanks, data}) {
-    ASSERT_LT(bomb.size(), 60'000U);
+    ASSERT_LT(bomb.size(), 12'000U);
     for (const Split split : {Split::Nothing, Split::MapData}) {
       const auto document = decode({Format::Json, ContentCoding::Gzip}, split, bomb, limits);
       ASSERT_FALSE(document);

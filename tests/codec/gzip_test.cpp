@@ -125,8 +125,8 @@ TEST(Gunzip, RefusesABadChecksumAndABadLength) {
 }
 
 TEST(Gunzip, StopsAGzipBombSoonAfterItsLimit) {
-  const Bytes bomb = test::compressed(Bytes(50'000'000, 0));
-  ASSERT_LT(bomb.size(), 100'000U);
+  const Bytes bomb = test::compressed(Bytes(10'000'000, 0));
+  ASSERT_LT(bomb.size(), 20'000U);
   const auto inflated = inflate_all(icd::ChunkedBytes(bomb), 1000);
   EXPECT_EQ(inflated.sentence, "msg.data: expected at most 1000 bytes, got more");
   EXPECT_TRUE(inflated.bytes.empty());

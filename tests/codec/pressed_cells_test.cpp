@@ -132,7 +132,7 @@ TEST(PressedCells, AreNoneOfAGridThatSaysItLastOrIsGzippedOrOfACloud) {
 TEST(PressedCells, AreRefusedLikeAnyOtherAndTakenAsTheSameMap) {
   Randomness random(21);
   int good = 0;
-  constexpr int kRounds = 300;
+  constexpr int kRounds = 120;
   for (int round = 0; round < kRounds; ++round) {
     const Grid grid = random_grid(random);
     const auto firsts = bodies(grid, Says::First), lasts = bodies(grid, Says::Last);

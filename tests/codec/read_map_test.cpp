@@ -75,7 +75,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
 
 /// Data that says at its end that it is of a wrong size.
 TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
-  constexpr std::size_t kLarge = 16'000'000, kEnoughForTheRest = 300;  // bytes; allocations
+  constexpr std::size_t kLarge = 4'000'000, kEnoughForTheRest = 300;  // bytes; allocations
   icd::Rules rules;
   rules.map_bytes = kLarge;
   Bytes noise(kLarge + 1);

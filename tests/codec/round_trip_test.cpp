@@ -164,7 +164,7 @@ std::string encoded(const std::string& body, const Coding& coding) {
 
 TEST(RoundTrip, OfMapsInEveryStyleOfClients) {
   Random random(7);
-  for (int round = 0; round < 12; ++round) {
+  for (int round = 0; round < 6; ++round) {
     for (const Style& style : kStyles) {
       const bool cloud = style.for_clouds && round % 2 == 0;
       icd::MapUpdate map = cloud ? test::random_cloud(random) : test::random_grid(random);
@@ -210,7 +210,7 @@ TEST(RoundTrip, OfStateAndMarkersAsJsonThatClientsWrite) {
 TEST(RoundTrip, SurvivesDamagedBodies) {
   Random random(9);
   int taken = 0;
-  for (int round = 0; round < 4000; ++round) {
+  for (int round = 0; round < 1200; ++round) {
     const json good = round % 2 == 0 ? test::good_grid() : test::good_cloud();
     const auto format = round % 4 < 2 ? Format::Json : Format::Cbor;
     std::string body = format == Format::Json ? test::as_json(good) : test::as_cbor(good);
@@ -225,7 +225,7 @@ TEST(RoundTrip, SurvivesDamagedBodies) {
     ++taken;
     test::expect_same(map_of(kCborBody, write_map_update(*map).to_string(), random), *map);
   }
-  EXPECT_GT(taken, 100);
+  EXPECT_GT(taken, 30);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ TEST_F(AFlushThatFailed, WithWhatWasLeftForLaterIsMadeGood) {
 TEST(LedgerFlushes, MoreThanOnceOnlyWhereTheLogIsRestarted) {
   const Folder folder;
   auto ledger = open_or_fail(folder);
-  constexpr int kWrites = 3000;
+  constexpr int kWrites = 1200;
   int more_than_one = 0, most = 0;
   for (int number = 1; number <= kWrites; ++number) {
     const int made = flushes_of([&] { return write(ledger, backpack(number)); });
@@ -130,11 +130,11 @@ TEST(LedgerLog, IsOverwrittenInPlaceAndNeverGrowsOrShrinks) {
   auto ledger = open_or_fail(folder);
   const std::uintmax_t size = log_size(folder);
   EXPECT_EQ(size, 4u << 20);
-  for (int number = 1; number <= 3000; ++number) {
+  for (int number = 1; number <= 1200; ++number) {
     ASSERT_TRUE(write(ledger, backpack(number)));
     ASSERT_EQ(log_size(folder), size) << "at report " << number;
   }
-  EXPECT_LT(std::filesystem::file_size(folder.file()), size) << "3,000 reports are that small";
+  EXPECT_LT(std::filesystem::file_size(folder.file()), size) << "1,200 reports are that small";
 }
 
 TEST(LedgerLog, IsGoneAfterAnOrderlyEnd) {

@@ -42,7 +42,7 @@ TEST(MapUpload, IsStoredAsItArrives) {
 TEST(MapUpload, OfAGridIsPressedAsItArrivesAndLittleOfItHeldOrStored) {
   for (const bool is_compressed : {false, true}) {
     Team team;
-    const std::string body = grid_body(6000, 6000);
+    const std::string body = grid_body(3000, 3000);
     const std::string sent = is_compressed ? gzipped(body) : body;
     const auto reply = team.ask(map_head(sent, is_compressed ? kGzip : "") + sent);
     ASSERT_TRUE(reply);
@@ -55,7 +55,7 @@ TEST(MapUpload, OfAGridIsPressedAsItArrivesAndLittleOfItHeldOrStored) {
 TEST(MapUpload, MakesTheClientWaitWhileItCannotBeStored) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_pieces = false; });
-  const std::string body = cloud_body(3'000'000);
+  const std::string body = cloud_body(1'300'000);
   RawClient client(team.served.port());
   client.send(map_head(body));
   const std::size_t sent = client.send_until_stalled(body, milliseconds(500));
@@ -92,7 +92,7 @@ TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
 TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_pieces = false; });
-  const std::string body = cloud_body(3'000'000);
+  const std::string body = cloud_body(1'000'000);
   const std::string sent = gzipped(body);
   RawClient client(team.served.port());
   client.send(map_head(sent, kGzip) + sent);

@@ -41,7 +41,7 @@ TEST(MapUpload, TakesAWholeBodyThatIsCompressed) {
 TEST(MapUpload, MakesTheClientWaitWhileTheWorkerIsBusy) {
   Team team;
   Team::Busy busy(team);
-  const std::string body = grid_body(6000, 6000);
+  const std::string body = grid_body(4000, 4000);
   RawClient client(team.served.port());
   client.send(map_head(body));
   const std::size_t sent = client.send_until_stalled(body, milliseconds(500));

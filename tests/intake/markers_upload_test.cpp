@@ -221,7 +221,7 @@ TEST(MarkersUpload, IsRefusedWhereItHasMoreValuesThanAnyMarkerHas) {
   Team team;
   const auto many = [](const std::string& head, const std::string& one, const std::string& tail) {
     std::string body = head;
-    for (int n = 0; n < 1'100'000 && body.size() + one.size() + tail.size() < MarkersUpload::kMost; ++n)
+    for (int n = 0; n < 1'010'000 && body.size() + one.size() + tail.size() < MarkersUpload::kMost; ++n)
       body += one;
     return body + tail;
   };
@@ -235,15 +235,13 @@ TEST(MarkersUpload, IsRefusedWhereItHasMoreValuesThanAnyMarkerHas) {
       {kCborType, many(cbor_head, "\xa0", "\xff")},
       {kCborType, many(cbor_head + "\xbf", "\x60" + zero, "\xff\xff")},
       {kCborType, many(cbor_head + std::string(kChunks), "\x60", "\xff\xff")}};
-  for (const auto& [type, body] : bodies) {
-    for (const bool zipped : {false, true}) {
-      const auto reply =
-          team.ask(authorized("POST", "/markers/update", std::string(type) + (zipped ? kGzip : ""),
-                              zipped ? gzipped(body) : body));
-      ASSERT_TRUE(reply);
-      EXPECT_EQ(reply->status, 413) << reply->body;
-      EXPECT_NE(reply->body.find("1000000 values"), std::string::npos) << reply->body;
-    }
+  for (bool zipped = false; const auto& [type, body] : bodies) {
+    const auto reply = team.ask(authorized(
+        "POST", "/markers/update", std::string(type) + (zipped ? kGzip : ""), zipped ? gzipped(body) : body));
+    ASSERT_TRUE(reply);
+    EXPECT_EQ(reply->status, 413) << reply->body;
+    EXPECT_NE(reply->body.find("1000000 values"), std::string::npos) << reply->body;
+    zipped = !zipped;
   }
   for (const std::string_view path : {"/state/update", "/map/update"}) {
     const auto reply = team.ask(authorized(

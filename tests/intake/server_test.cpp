@@ -170,7 +170,7 @@ TEST_F(ServerTest, AnswersAClientThatHasEndedItsOwnDirection) {
 }
 
 TEST_F(ServerTest, HoldsABodyBackUntilItIsAskedForMore) {
-  const std::string body(40u << 20, 'x');
+  const std::string body(16u << 20, 'x');
   client.send("POST /held HTTP/1.1\r\nHost: adit\r\nContent-Length: " + std::to_string(body.size()) +
               "\r\n\r\n");
   std::size_t sent = client.send_until_stalled(body, milliseconds(300));

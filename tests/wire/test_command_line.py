@@ -196,7 +196,7 @@ class Watching(Case):
             wait_until(lambda: "Adit answers again\n" in said.read_text(), "its return to be told")
             self.assertNotIn("\x1b", said.read_text())
             watch.send_signal(signal.SIGTERM)
-            self.assertEqual(watch.wait(30), 0)
+            self.assertEqual(watch.wait(programs.patient(30)), 0)
 
     def on_a_line(self, stage, line, *said):
         """What `adit watch` prints there, in a file."""

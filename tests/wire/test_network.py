@@ -8,6 +8,7 @@ import subprocess
 import hosts
 import networkd
 from changes import Change, NEW, OLD
+from patience import patient
 
 
 class WithAStandIn(Change):
@@ -48,7 +49,7 @@ class WithAStandIn(Change):
             for path in (self.folder / name).iterdir():
                 path.unlink()
         self.box.start("--start")
-        self.assertEqual(self.box.process.wait(30), 0, self.box.said())
+        self.assertEqual(self.box.process.wait(patient(30)), 0, self.box.said())
         self.assertEqual(self.box.run(), 0, self.box.said())
         hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0")
         subprocess.run(["ip", "netns", "exec", self.network.box, self.box.networkctl, "reload"], check=True)

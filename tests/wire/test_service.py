@@ -49,7 +49,7 @@ class Service(unittest.TestCase):
 
     def refuses(self, *words):
         process = self.start()
-        _, said = process.communicate(timeout=30)
+        _, said = process.communicate(timeout=programs.patient(30))
         self.assertEqual(process.returncode, 1, said)
         for word in words:
             self.assertIn(word, said)

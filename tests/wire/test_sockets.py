@@ -119,7 +119,7 @@ class Sockets(unittest.TestCase):
 
     def restart(self, manager, number, document=None):
         manager.process.send_signal(number)
-        manager.process.wait(30)
+        manager.process.wait(programs.patient(30))
         manager.ready(manager.start(document))
 
     def is_refused(self, port):
@@ -172,7 +172,7 @@ class Sockets(unittest.TestCase):
         self.assertEqual(ask(door.getsockname()[1])[0], 200)
         manager = self.manager()
         manager.start(settings(("127.0.0.1", 0), ("192.0.2.1", free_port())))
-        self.assertEqual(manager.process.wait(30), 1)
+        self.assertEqual(manager.process.wait(programs.patient(30)), 1)
         self.assertIn("Cannot assign requested address", manager.log())
 
     def test_a_kept_descriptor_that_is_no_socket_is_thrown_away(self):
@@ -211,7 +211,7 @@ class Sockets(unittest.TestCase):
             for _ in range(3):
                 clients.go_on()
                 manager.process.send_signal(number)
-                manager.process.wait(30)
+                manager.process.wait(programs.patient(30))
                 came = len(clients.visits)
                 time.sleep(1.0)  # RestartSec=
                 programs.wait_until(lambda: len(clients.visits) > came + 10, "some to come while it is away")  # noqa: B023
@@ -279,7 +279,7 @@ class TeamPort(unittest.TestCase):
         self.manager.ready(self.manager.start(self.settings()))
         self.assertTrue(self.is_answered(80) and self.is_answered(8000))
         self.replug()
-        self.assertEqual(self.manager.process.wait(30), 0)
+        self.assertEqual(self.manager.process.wait(programs.patient(30)), 0)
         self.manager.doors.append(self.door())  # as systemd restarts adit.socket; what it has of the old one is deaf
         self.manager.ready(self.manager.start(None))
         self.assertTrue(self.is_answered(80) and self.is_answered(8000))

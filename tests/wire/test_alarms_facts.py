@@ -10,6 +10,8 @@ import time
 
 from unittest import mock
 
+import hosts
+import programs
 from alarming import WithAlarms
 from filling import Filler
 from networkd import AditNetwork
@@ -65,6 +67,23 @@ class Facts(WithAlarms):
             wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
         self.assertEqual(stage.box.judge(1, "send")[0], 200)
         wait_until(lambda: not self.alarm(stage, "report_held:1"), "the end of report_held:1")
+
+    def test_settings_another_command_post_and_a_full_queue(self):
+        stage = self.stage(queues__map_bytes=1 << 20)
+        stage.post.will("429=100", mapping=["429,for=600"])
+        left_unanswered(stage)
+        self.assertIn(429, (self.send_map(stage, f"r{seed}", seed, 3000).status_code for seed in range(1, 100)))
+        stage.box.save(lambda settings: settings["command_post"]["scoring"].update(port=8009))
+        for alarm in ("queue_full", "queue_nearly_full", f"reports_elsewhere:{hosts.SCORING}:{programs.PORT}"):
+            wait_until(lambda alarm=alarm: self.alarm(stage, alarm), alarm)
+        self.assertEqual(stage.box.stop(), 0)
+        (stage.box.state / "settings.json").write_text("{")
+        stage.restart_box()
+        wait_until(lambda: self.alarm(stage, "settings_not_used"), "settings_not_used")
+        held = stage.box.ask("GET /adit/settings")[1]
+        held["settings"]["team"]["listen"].append({"address": "192.168.99.99", "port": 1234})
+        stage.box.apply("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
+        wait_until(lambda: self.alarm(stage, "settings_not_changed"), "settings_not_changed")
 
     def test_a_message_is_set_aside(self):
         stage = self.stage()

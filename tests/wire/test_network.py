@@ -1,7 +1,6 @@
 """adit-network on the box: changes of its addresses that take themselves back, and whether anybody else has them. Other courses are in
 network/change_test, applier/applier_test and applier/networkd_files_test."""
 
-import json
 import os
 import subprocess
 

@@ -1,6 +1,5 @@
 """A pulled cable delays and loses nothing; networks that overlap do not touch; nothing listens towards the Command Post."""
 
-import socket
 import subprocess
 import time
 import unittest

@@ -74,7 +74,8 @@ class Ends(unittest.TestCase):
             self.assertIn("is kept", waiting.result().json())
 
     def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
-        with (Stage(**PATIENT) as stage, requests.Session() as kept,
+        # A status that is in flight when the Command Post stops would keep the report waiting.
+        with (Stage(**PATIENT | {"command_post__rates__status_hz": 0.01}) as stage, requests.Session() as kept,
               concurrent.futures.ThreadPoolExecutor(2) as clients):
             began(stage)
             kept.get(stage.box.url + "/api/status", headers=TOKEN, timeout=30)  # a connection that stays

@@ -16,7 +16,7 @@ namespace {
 using nlohmann::json;
 using testing::StartsWith;
 
-/// Drawn once, which takes longer than what is tried with it.
+/// The scene, drawn once: drawing takes longer than the tests.
 const picture::Mosaic& drawn_scene() {
   static const picture::Mosaic drawn = [] {
     picture::Mosaic map;

@@ -85,7 +85,8 @@ void AlignedGrid::row_ended(std::size_t row) {
   if (next_ == rows_.cells.size() || rows_.cells[next_].end != row + 1) return;
   make_line();
   for (; next_ < rows_.cells.size() && rows_.cells[next_].end == row + 1; ++next_) {
-    left_out_ += sheet_.raise(columns_.first_pixel, rows_.first_pixel + static_cast<int>(next_), line_);
+    if (without_tile_ > kMostDabs) continue;
+    without_tile_ += sheet_.raise(columns_.first_pixel, rows_.first_pixel + static_cast<int>(next_), line_);
   }
   std::ranges::fill(highest_, std::uint8_t{0});
 }

@@ -21,7 +21,7 @@ class AlignedGrid {
 
   /// A part of a row, in the order of the data.
   void draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells);
-  std::size_t left_out() const { return left_out_; }
+  std::size_t left_out() const { return left_out_ + without_tile_; }
 
  private:
   struct Cells {
@@ -53,6 +53,7 @@ class AlignedGrid {
   std::vector<std::uint8_t> line_;     // the same for each pixel
   std::size_t next_ = 0;               // the first of rows_.cells that is not yet drawn
   std::size_t left_out_ = 0;
+  std::size_t without_tile_ = 0;  // pixels
 };
 
 }  // namespace adit::picture

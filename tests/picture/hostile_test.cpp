@@ -20,13 +20,14 @@ std::size_t base_tiles(const Drawing& drawing) {
 
 TEST(HostileGrid, OfAnySizeAndPlaceTakesNoMoreThanTheMostTiles) {
   const Cells cells(10'000, 0);
-  for (const double resolution : {kSmallest, 1e-300, 1e-9, 1e-3, 1.0, 50.0, 1e3, 1e9, 1e300, kLargest}) {
+  for (const double resolution : {kSmallest, 1e-300, 1e-9, 1e-3, 1.0, 1e3, 1e9, 1e300, kLargest}) {
     for (const double x : {0.0, -8191.9, 1e9, kLargest, -kLargest}) {
       for (const double yaw : {0.0, 0.3}) {
         const auto map = grid_of(100, resolution, {{x, -x / 2, x}, turned_by(yaw)}, cells);
         const auto drawing = draw(map, {});
         ASSERT_TRUE(drawing);
         EXPECT_LE(base_tiles(*drawing), Sheet::kMostTiles);
+        EXPECT_LE(drawing->left_out, kMostDabs + 2 * kWorldPixels + cells.size()) << "or it takes long";
         if (drawing->area) {
           EXPECT_GE(drawing->area->left, -kWorldMetres);
           EXPECT_LE(drawing->area->top, kWorldMetres);

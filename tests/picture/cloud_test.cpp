@@ -135,16 +135,13 @@ TEST(Cloud, TellsItsHeightsWithoutTheFewThatStandOut) {
 }
 
 TEST(Cloud, OfVeryManyPointsSomeAreLookedAtEvenly) {
-  std::vector<float> values;
-  const std::size_t points = kMostPoints + kMostPoints / 2;
-  for (std::size_t i = 0; i < points; ++i) {
-    values.push_back(static_cast<float>(i) * 200 / static_cast<float>(points));
-    values.push_back(0);
-    values.push_back(1);
-  }
   const icd::PointCloud2 cloud = icd::xyz();
-  std::vector<std::uint8_t> bytes(values.size() * sizeof(float));
-  std::memcpy(bytes.data(), values.data(), bytes.size());
+  const std::size_t points = kMostPoints + kMostPoints / 8;
+  std::vector<std::uint8_t> bytes(points * cloud.point_step);  // all at y = z = 0
+  for (std::size_t i = 0; i < points; ++i) {
+    const float x = static_cast<float>(i) * 200 / static_cast<float>(points);
+    std::memcpy(bytes.data() + i * cloud.point_step, &x, sizeof x);
+  }
   Easel easel;
   EXPECT_EQ(easel.draw(with_data({{}, cloud, {}}, bytes)).left_out, 0U);
   for (double x = 0.1; x < 199; x += 0.25) ASSERT_NE(easel.seen(x, 0), 0) << x;

@@ -86,12 +86,13 @@ TEST(TurnedGrid, HasNoGapsWhateverItsCells) {
     for (const double yaw : {0.01, 0.5, kPi / 4, 1.2, -2.0}) {
       const auto side = static_cast<std::uint32_t>(std::ceil(20 / resolution));
       const auto map =
-          grid_of(side, resolution, {{1, 2, 0}, turned_by(yaw)}, Cells(std::size_t{side} * side, 0));
+          grid_of(side, resolution, {{33, 34, 0}, turned_by(yaw)}, Cells(std::size_t{side} * side, 0));
       const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
       Easel easel;
       easel.draw(map);
-      for (double row = 0.3 / resolution; row < side - 0.3 / resolution; row += 0.1 / resolution) {
-        for (double column = 0.3 / resolution; column < side - 0.3 / resolution; column += 0.1 / resolution) {
+      const double step = 0.17 / resolution;  // so that each pixel is looked at
+      for (double row = 0.3 / resolution; row < side - 0.3 / resolution; row += step) {
+        for (double column = 0.3 / resolution; column < side - 0.3 / resolution; column += step) {
           const auto at = place(grid, yaw, column, row);
           ASSERT_EQ(easel.seen(at.x, at.y), kFree) << resolution << " m, turned by " << yaw;
         }

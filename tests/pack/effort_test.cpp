@@ -108,8 +108,7 @@ TEST(Effort, IsFoundOutOfTheCloudItself) {
   const auto noise = [&](std::size_t) {
     return std::array{make.real(0, 1), make.real(0, 1), make.real(0, 1)};
   };
-  icd::MapUpdate alike = update_of(padded, Bytes(64 * 50'000)),
-                 plain = make.cloud(icd::xyz(), 250'000, noise);
+  icd::MapUpdate alike = update_of(padded, Bytes(64 * 50'000)), plain = make.cloud(icd::xyz(), 50'000, noise);
   const Hurry hurry{60 * kMegabyte, 1, kSlot};
   EXPECT_EQ(effort_for(alike.data, hurry), Effort::Quick);
   EXPECT_EQ(effort_for(plain.data, hurry), Effort::None);

@@ -51,13 +51,10 @@ std::vector<Grid> grids() {
           Grid("one cell", 1, 1),      Grid("few cells", 20, 20)};
 }
 
-TEST(PackCells, GivesBackEachCellAndIsNeverLargerThanThey) {
-  for (const Grid& grid : grids()) expect_sound(grid, packed(grid));
-}
-
-TEST(PackCells, MakesTheSameOfAGridHoweverItIsKept) {
+TEST(PackCells, GivesBackEachCellAndIsNeverLargerThanThey_HoweverTheyAreKept) {
   for (const Grid& grid : grids()) {
     const icd::MapData expected = packed(grid);
+    expect_sound(grid, expected);
     for (const int level : {1, 6}) {
       const auto data =
           packed(grid, kept(grid, *codec::gzip_whole(grid.cells, level, 2 * grid.cells.size() + 100)));
@@ -68,16 +65,17 @@ TEST(PackCells, MakesTheSameOfAGridHoweverItIsKept) {
 }
 
 TEST(PackCells, LeavesWhatIsSmallerAsItIsKept) {
-  const Grid grid = graded(cave(500, 500, 7));
+  const Grid grid = graded(cave(250, 250, 7));
   const icd::MapData smallest = kept(grid, *codec::gzip_whole(grid.cells, 12, grid.cells.size()));
   ASSERT_LT(smallest.bytes.size(), packed(grid).bytes.size());
   EXPECT_EQ(packed(grid, smallest), smallest);
 }
 
 TEST(PackCells, TakesLibdeflateWhereAGridRepeatsItselfElsewhere) {
-  for (const Grid& grid : {graded(cave(700, 600, 8)), noise(600, 600, 2)}) {
-    EXPECT_LE(packed(grid).bytes.size(), by_libdeflate(grid, level_for(grid.cells.size()))) << grid.what;
-    EXPECT_LE(packed(grid).bytes.size(), by_libdeflate(grid, 6)) << grid.what;
+  for (const Grid& grid : {graded(cave(400, 300, 8)), noise(300, 300, 2)}) {
+    const std::size_t size = packed(grid).bytes.size();
+    EXPECT_LE(size, by_libdeflate(grid, level_for(grid.cells.size()))) << grid.what;
+    EXPECT_LE(size, by_libdeflate(grid, 6)) << grid.what;
   }
 }
 

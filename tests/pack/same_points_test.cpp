@@ -66,27 +66,24 @@ TEST_P(SamePoints, AreReadWhereCoordinatesAreOfAnyBits) {
   }));
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, SamePoints, testing::Range<std::uint64_t>(1, 13));
+INSTANTIATE_TEST_SUITE_P(Seeds, SamePoints, testing::Range<std::uint64_t>(1, 6));
 
 TEST(SamePointsOf, ACloudThatIsOrderedInSeveralBlocks) {
-  Generator make{1};
-  const icd::PointCloud2 fields = icd::xyz();
-  Bytes bytes;
-  for (int i = 0; i < 530'000; ++i) {
-    const auto at = make.on_wall({0, 0, 0}, 100);
-    std::array<float, 3> values{};
-    std::ranges::transform(at, values.begin(), [](double metres) { return static_cast<float>(metres); });
-    const auto* const raw = reinterpret_cast<const std::uint8_t*>(values.data());
-    bytes.insert(bytes.end(), raw, raw + sizeof values);
+  std::mt19937 random{1};
+  Bytes bytes(12 * 530'000);
+  for (std::size_t at = 0; at < bytes.size(); at += 4) {
+    const auto metres = static_cast<float>(random() % 10'000) / 100;
+    std::memcpy(bytes.data() + at, &metres, sizeof metres);
   }
-  const ReadBack after = read_back(pack(update_of(fields, bytes)));
-  const auto points_of = [](const std::string& data) {
-    std::vector<std::array<std::uint32_t, 3>> points(data.size() / 12);
-    std::memcpy(points.data(), data.data(), 12 * points.size());
-    std::ranges::sort(points);
-    return points;
+  const ReadBack after = read_back(pack(update_of(icd::xyz(), bytes)));
+  const auto sum_of = [](std::string_view points) {  // whatever their order
+    std::size_t sum = 0;
+    for (; !points.empty(); points.remove_prefix(12))
+      sum += std::hash<std::string_view>()(points.substr(0, 12));
+    return sum;
   };
-  EXPECT_TRUE(points_of(after.data) == points_of({bytes.begin(), bytes.end()}));
+  ASSERT_EQ(after.data.size(), bytes.size());
+  EXPECT_EQ(sum_of(after.data), sum_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 TEST(SamePointsOf, RecordedClouds) {

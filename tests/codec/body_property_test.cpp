@@ -70,7 +70,7 @@ std::string json_of(const ordered_json& document, Randomness& random) {
 
 TEST(AnyDocument, MeansTheSameToUsAndToAnotherParserInBothFormats) {
   Randomness random(1);
-  for (int round = 0; round < 3000; ++round) {
+  for (int round = 0; round < 1000; ++round) {
     const ordered_json document = random_document(random);
     const std::string json = json_of(document, random);
     const auto from_json = decode_in_random_chunks(kJsonBody, Split::MapData, json, random);
@@ -111,9 +111,8 @@ TEST(AnyDocument, IsWrittenSoThatItReadsBackTheSame) {
 /// A map whose data, between random members, is written in each of the four forms.
 TEST(AnyMapData, OfAnySizeAndFormArrivesAsItsBytes) {
   Randomness random(3);
-  const std::vector<std::size_t> sizes = {0,    1,    2,     3,     4,     5,       255,
-                                          256,  257,  4095,  4096,  4097,  6143,    6144,
-                                          6145, 8191, 65535, 65536, 65537, 100'000, 300'001};
+  const std::vector<std::size_t> sizes = {0,    1,    2,    3,    4,    5,    255,   256,   257,   4095,
+                                          4096, 4097, 6143, 6144, 6145, 8191, 65535, 65536, 65537, 131'073};
   for (const std::size_t size : sizes) {
     std::vector<std::uint8_t> data(size);
     for (auto& byte : data) byte = static_cast<std::uint8_t>(random());
@@ -176,7 +175,7 @@ bool ends_for_nlohmann_json(const std::string& body) {
 TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
   Randomness random(4);
   int taken = 0;
-  constexpr int kRounds = 30000;
+  constexpr int kRounds = 10'000;
   RecordProperty("cases", kRounds);
   for (int round = 0; round < kRounds; ++round) {
     std::string body = json_of(random_document(random), random);
@@ -187,14 +186,14 @@ TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
     ASSERT_EQ(decode_in_random_chunks(kJsonBody, Split::Nothing, body, random).has_value(), good) << body;
     taken += good ? 1 : 0;
   }
-  EXPECT_GT(taken, 1000);  // both verdicts were common enough to mean something
-  EXPECT_LT(taken, 29000);
+  EXPECT_GT(taken, kRounds / 30);  // both verdicts were common enough to mean something
+  EXPECT_LT(taken, kRounds - kRounds / 30);
 }
 
 /// What is read when it is whole, and what is read as it comes.
 TEST(AnyJson, IsTheSameWhetherDataIsSplitFromItOrNot) {
   Randomness random(6);
-  constexpr int kRounds = 20000;
+  constexpr int kRounds = 6000;
   RecordProperty("cases", kRounds);
   int quick = 0;
   for (int round = 0; round < kRounds; ++round) {
@@ -212,13 +211,13 @@ TEST(AnyJson, IsTheSameWhetherDataIsSplitFromItOrNot) {
     ASSERT_EQ(bounded.has_value(), decode(kJsonBody, Split::MapData, body, {.values = values}).has_value());
     quick += quick_json(body, values) ? 1 : 0;
   }
-  EXPECT_GT(quick, 1000);  // both ways were taken often
-  EXPECT_LT(quick, 19000);
+  EXPECT_GT(quick, kRounds / 20);  // both ways were taken often
+  EXPECT_LT(quick, kRounds - kRounds / 20);
 }
 
 TEST(AnyDamagedBody, IsJudgedTheSameHoweverItIsCut) {
   Randomness random(5);
-  constexpr int kRounds = 20000;
+  constexpr int kRounds = 6000;
   RecordProperty("cases", kRounds);
   for (int round = 0; round < kRounds; ++round) {
     ordered_json document = random_document(random);

@@ -92,14 +92,14 @@ TEST(Json, IsReadAsStrictlyWhereItIsPlain) {
     return icd::sentence("{\"k\": ", one, ",\"\":", other, "}");
   };
   int well_formed = 0;
-  for (int i = 0; i < 100000; ++i) {
+  for (int i = 0; i < 20'000; ++i) {
     std::string text = document(document, 3);
     if (below(2) == 0) text.insert(below(text.size() + 1), 1, bytes[below(bytes.size())]);
     if (below(4) == 0) text.erase(below(text.size()), 1);
     ASSERT_EQ(parse_json(text).has_value(), is_json(text)) << text;
     well_formed += is_json(text) ? 1 : 0;
   }
-  EXPECT_GT(well_formed, 1000);
+  EXPECT_GT(well_formed, 200);
   EXPECT_FALSE(parse_json("\xEF\xBB\xBF{}")) << "a byte order mark is no JSON";
   EXPECT_FALSE(parse_json("{} 1"));
   EXPECT_TRUE(parse_json(std::string(64, '[') + std::string(64, ']')));

@@ -210,7 +210,7 @@ Value read_again(const Value& value) {
 
 TEST(Patch, MakesOfAnyViewTheNextOne) {
   Random random(7);
-  for (int life = 0; life < 15; ++life) {
+  for (int life = 0; life < 6; ++life) {
     Way told = way(), now = told;
     Value known = read_again(json(told));
     for (int step = 0; step < 100; ++step) {

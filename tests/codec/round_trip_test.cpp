@@ -15,7 +15,7 @@ using test::Bytes;
 using test::json;
 using test::Random;
 
-constexpr int kRounds = 100;
+constexpr int kRounds = 40;
 constexpr BodyKind kCborBody = {.format = Format::Cbor, .coding = ContentCoding::Identity};
 
 template <class Message>
@@ -210,7 +210,7 @@ TEST(RoundTrip, OfStateAndMarkersAsJsonThatClientsWrite) {
 TEST(RoundTrip, SurvivesDamagedBodies) {
   Random random(9);
   int taken = 0;
-  for (int round = 0; round < 1200; ++round) {
+  for (int round = 0; round < 400; ++round) {
     const json good = round % 2 == 0 ? test::good_grid() : test::good_cloud();
     const auto format = round % 4 < 2 ? Format::Json : Format::Cbor;
     std::string body = format == Format::Json ? test::as_json(good) : test::as_cbor(good);
@@ -225,7 +225,7 @@ TEST(RoundTrip, SurvivesDamagedBodies) {
     ++taken;
     test::expect_same(map_of(kCborBody, write_map_update(*map).to_string(), random), *map);
   }
-  EXPECT_GT(taken, 30);
+  EXPECT_GT(taken, 10);
 }
 
 }  // namespace

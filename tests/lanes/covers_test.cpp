@@ -117,11 +117,14 @@ TEST(Covers, IsReflexive) {
 TEST(Covers, IsTransitive) {
   std::mt19937_64 random{3};
   int chains = 0;
-  for (int i = 0; i < 600'000; ++i) {
-    const auto a = any_grid(random), b = any_grid(random), c = any_grid(random);
-    if (!covers(a, b) || !covers(b, c)) continue;
-    ++chains;
-    ASSERT_TRUE(covers(a, c));
+  for (int i = 0; i < 40'000; ++i) {
+    const auto a = any_grid(random), b = any_grid(random);
+    for (int left = covers(a, b) ? 50 : 0; left > 0; --left) {
+      const auto c = any_grid(random);
+      if (!covers(b, c)) continue;
+      ++chains;
+      ASSERT_TRUE(covers(a, c));
+    }
   }
   EXPECT_GT(chains, 30);
 }

@@ -198,7 +198,7 @@ TEST_P(CloudLaws, TheNewestPostedIsWhatIsSentLastWhereTheyAreWhole) {
   EXPECT_EQ(course.last, course.newest);
 }
 
-INSTANTIATE_TEST_SUITE_P(Courses, CloudLaws, testing::Range(std::uint64_t{1}, std::uint64_t{101}));
+INSTANTIATE_TEST_SUITE_P(Courses, CloudLaws, testing::Range(std::uint64_t{1}, std::uint64_t{41}));
 
 }  // namespace
 }  // namespace adit::lanes

@@ -101,7 +101,7 @@ TEST(MarkerChanges, DeletesNothingThatADeleteAllHasDeleted) {
 
 TEST(MarkerChanges, ReplayingTheMergedChangesGivesTheSameSceneAsReplayingBoth) {
   AnyChanges any{1};
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     const Scene scene = replay({}, any.changes());
     const auto older = any.changes(), newer = any.changes();
     const auto both = merged(older, newer);
@@ -119,7 +119,7 @@ std::vector<icd::Marker> in_order(const MarkerChanges& changes) {
 
 TEST(MarkerChanges, ComeToTheSameWhereTheOlderOnesComeLate) {
   AnyChanges any{3};
-  for (int i = 0; i < 5000; ++i) {
+  for (int i = 0; i < 1500; ++i) {
     const Scene scene = replay({}, any.changes());
     const auto older = any.changes(), newer = any.changes(), newest = any.changes();
     MarkerChanges late, changes;

@@ -90,7 +90,7 @@ const Profile kProfiles[] = {
 /// Steps for each profile; ADIT_MODEL_STEPS and ADIT_MODEL_SEED make more of it.
 std::int64_t steps_wanted() {
   const char* const text = std::getenv("ADIT_MODEL_STEPS");
-  return text != nullptr ? std::atoll(text) : 80'000;
+  return text != nullptr ? std::atoll(text) : 40'000;
 }
 
 std::uint64_t first_seed() {

@@ -59,6 +59,12 @@ void Channel::give_up() {
   for (const auto& request : std::vector(under_way_)) ended(request, doubt);
 }
 
+void Channel::give_way() {
+  icd::require(under_way_.size() == 1);
+  under_way_.clear();
+  connection_->give_up();
+}
+
 bool Channel::turns() {
   if (!next_ || busy()) return false;
   if (connection_) finished_bytes_ += connection_->sent_bytes();

@@ -38,6 +38,9 @@ class Channel {
   void send(icd::Uri uri, std::string_view content_type, icd::ChunkedBytes body,
             std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before = {});
   bool busy() const { return !under_way_.empty(); }
+  /// Ends the only request under way: its connection is reset, its `done` is never called, and its answer is
+  /// never read. The next request goes by a new connection.
+  void give_way();
   /// Gets ready to send a request ahead of the answer to the only one that is under way.
   void get_ready();
   /// It is ready to. Not where it is to lead elsewhere: then what is under way is the last.

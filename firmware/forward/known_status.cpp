@@ -16,8 +16,8 @@ bool KnownStatus::is_fresh(loop::Instant now) const {
   return fresh_ && asked_ && now - *asked_ < kFresh;
 }
 
-std::optional<intake::Answer> KnownStatus::answer(loop::Instant now) const {
-  if (!asked_ || now - *asked_ > kOldest) return std::nullopt;
+std::optional<intake::Answer> KnownStatus::answer(loop::Instant now, std::chrono::seconds oldest) const {
+  if (!asked_ || now - *asked_ > oldest) return std::nullopt;
   const auto age = std::chrono::floor<std::chrono::seconds>(now - *asked_).count();
   return intake::Answer{.status = icd::Status::Ok,
                         .content_type = std::string(codec::kJson),

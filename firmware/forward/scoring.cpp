@@ -148,6 +148,16 @@ bool Scoring::may_ask_soon(loop::Instant now) const {
   return !channel_.busy() && !reports_->wish(time()).report && status_pace_.ready() <= now + kAskerWaits;
 }
 
+/// What can be told until the Command Post is asked again. It may be older if only reports are in the way of
+/// that: the Command Post has just spoken of the run, or a report is under way to it.
+std::optional<intake::Answer> Scoring::known_status() const {
+  const dispatch::Wish wish = reports_->wish(time());
+  const bool reports_go_first =
+      reports_->sending() != nullptr ? channel_.connected() : wish.report && !wish.status;
+  return known_status_.answer(loop_.now(),
+                              reports_go_first ? KnownStatus::kOldestBehindReports : KnownStatus::kOldest);
+}
+
 void Scoring::poll() {
   poll_due_ = true;
   pump();
@@ -166,10 +176,11 @@ intake::Answer Scoring::no_status() const {
 
 void Scoring::pump() {
   if (!stopping_ && channel_.turns()) endpoint_turned();
-  if (stopping_ || channel_.busy() || !channel_.has_token()) return;
+  if (stopping_ || !channel_.has_token()) return;
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
   const dispatch::Wish wish = reports_->wish(at);
+  if (!is_free(wish, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
   if (wish.report) candidates[0] = {now, report_pace_.ready()};
   if (!askers_.empty() || poll_due_) {
@@ -180,7 +191,24 @@ void Scoring::pump() {
   const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
   if (turn.candidate == 0) send_next();
-  if (turn.candidate == 1) ask_status();
+  if (turn.candidate == 1) ask_status(/*decides=*/wish.status.has_value());
+}
+
+/// Whether nothing is under way. What is gives way to a report if that may go and needs no answer to it. If
+/// it has had too little time for that, this is asked again.
+bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
+  if (!channel_.busy()) return true;
+  if (!asked_status_ || asked_status_->decides || !wish.report) return false;
+  const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, report_pace_.ready());
+  if (gives_way > now) {
+    wake_.call_at(gives_way);
+    return false;
+  }
+  channel_.give_way();
+  asked_status_.reset();
+  status_pace_.lost(now);
+  poll_due_ = true;
+  return true;
 }
 
 void Scoring::send_next() {
@@ -257,8 +285,8 @@ std::optional<loop::Instant> Scoring::first_asker() const {
 
 /// Those who have waited until `now`: what is known, or else what is under way is waited for a little longer.
 void Scoring::tell_askers(loop::Instant now) {
-  const auto known = known_status_.answer(loop_.now());
-  const loop::Instant longest = asked_status_ ? *asked_status_ + kSlow : now;
+  const auto known = known_status();
+  const loop::Instant longest = asked_status_ ? asked_status_->at + kSlow : now;
   std::erase_if(askers_, [&](Asker& asker) {
     if (asker.until > now) return false;
     if (!known && longest > now) {
@@ -281,16 +309,16 @@ void Scoring::tick() {
   pump();
 }
 
-void Scoring::ask_status() {
+void Scoring::ask_status(bool decides) {
   poll_due_ = false;
-  asked_status_ = loop_.now();
+  asked_status_ = {.at = loop_.now(), .decides = decides};
   status_pace_.sent(loop_.now());
   channel_.send(icd::Uri::Status, "", {},
                 [this](const uplink::Outcome& outcome) { status_answered(outcome); });
 }
 
 void Scoring::status_answered(const uplink::Outcome& outcome) {
-  const loop::Instant asked = *std::exchange(asked_status_, std::nullopt);
+  const loop::Instant asked = std::exchange(asked_status_, std::nullopt)->at;
   poll_.call_at(loop_.now() + kAskEvery);
   loop::guarded("the answer to a status", [&] { judge_status(outcome, asked); });
   watch_deadlines();
@@ -328,7 +356,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
 
 /// Better than a failure that may be over in a second.
 intake::Answer Scoring::known_or(intake::Answer failure) const {
-  return known_status_.answer(loop_.now()).value_or(std::move(failure));
+  return known_status().value_or(std::move(failure));
 }
 
 void Scoring::answer_askers(const intake::Answer& answer) {

@@ -25,7 +25,8 @@
 namespace adit::forward {
 
 /// The scoring endpoint: sends reports, one at a time, by the rules of dispatch::Reports (promise 1), and
-/// asks for the run's status, but never ahead of a report that may go.
+/// asks for the run's status, but never ahead of a report that may go. A status that no report needs gives
+/// way to a report if it is not answered in time.
 class Scoring {
  public:
   /// So long a client that asks for the status waits for the Command Post; then it gets the last known one.
@@ -35,6 +36,8 @@ class Scoring {
   static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
   /// After a report the status is asked for once its client has been answered.
   static constexpr std::chrono::milliseconds kAskAfterReport{50};
+  /// So long a report waits for the answer to a status that no report needs; then that is given up.
+  static constexpr std::chrono::milliseconds kGivesWayAfter{200};
 
   /// `restart`: see whole.hpp; after it this object must not go on.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
@@ -99,6 +102,11 @@ class Scoring {
   }
 
  private:
+  /// The status that was asked for, and is still to be answered.
+  struct AskedStatus {
+    loop::Instant at;
+    bool decides;  // whether a report can go, or what became of one
+  };
   /// Somebody who asked for the status.
   struct Asker {
     std::shared_ptr<intake::Responder> responder;
@@ -113,11 +121,12 @@ class Scoring {
   void take(const dispatch::Posted& posted, dispatch::ClientId client);
   void poll();
   void pump();
+  bool is_free(const dispatch::Wish& wish, loop::Instant now);
   void send(const dispatch::Report& report);
   void send_next();
   void report_answered(const uplink::Outcome& outcome);
   void judge_report(const uplink::Outcome& outcome);
-  void ask_status();
+  void ask_status(bool decides);
   void status_answered(const uplink::Outcome& outcome);
   void judge_status(const uplink::Outcome& outcome, loop::Instant asked);
   void answer_askers(const intake::Answer& answer);
@@ -125,6 +134,7 @@ class Scoring {
   void tell_askers(loop::Instant now);
   std::optional<loop::Instant> first_asker() const;
   bool may_ask_soon(loop::Instant now) const;
+  std::optional<intake::Answer> known_status() const;
   void deadline_came();
   intake::Answer no_status() const;
   intake::Answer known_or(intake::Answer failure) const;
@@ -147,7 +157,7 @@ class Scoring {
   std::optional<icd::RunStatus> run_;
   std::optional<api::Time> run_heard_;
   KnownStatus known_status_;
-  std::optional<loop::Instant> asked_status_;  // when that which is under way was asked for
+  std::optional<AskedStatus> asked_status_;
   bool stopping_ = false;
 };
 

@@ -46,12 +46,18 @@ void Connection::Impl::send(Request request, std::function<void(Outcome)> done) 
 
 void Connection::Impl::abandon() {
   warm_ = false;
-  done_ = nullptr;
-  exchange_.reset();
+  give_up();
   timer_ = {};
   tell_ = {};
   look_ = {};
-  close();
+}
+
+void Connection::Impl::give_up() {
+  done_ = nullptr;
+  outcome_.reset();
+  if (exchange_) sent_ = exchange_->sent();
+  exchange_.reset();
+  end();
 }
 
 void Connection::Impl::begin_sending() {
@@ -222,6 +228,9 @@ void Connection::open() {
 void Connection::close() {
   icd::require(!busy());
   impl_->end();
+}
+void Connection::give_up() {
+  impl_->give_up();
 }
 void Connection::is_next() {
   impl_->is_next();

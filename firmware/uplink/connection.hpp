@@ -95,6 +95,8 @@ class Connection {
   void open();
   /// Closes it. Requires !busy().
   void close();
+  /// Closes it, by a reset. `done` of the request under way is never called, and its answer is never read.
+  void give_up();
 
   /// Requires !busy(). `done` is called once, from the loop, never from within send(); it may send the next
   /// request and may destroy this connection. Destroyed while busy, the connection never calls it.

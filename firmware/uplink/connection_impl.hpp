@@ -29,6 +29,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void send(Request request, std::function<void(Outcome)> done);
   void is_next();
   std::optional<Sent> has_arrived() const;
+  void give_up();
   /// The Connection is gone, though a callback may still hold this.
   void abandon();
 

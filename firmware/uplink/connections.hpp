@@ -27,6 +27,11 @@ class Connections {
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const { return first_.busy() || (second_ && second_->busy()); }
 
+  /// Connection::give_up() of the request under way, if there is one.
+  void give_up() {
+    if (busy()) latest_->give_up();
+  }
+
   /// Makes a connection for the next request, if one is under way: tries it once for each.
   void get_ready();
   /// Whether one request is under way, and a connection for the next one is open.

@@ -26,6 +26,13 @@ TEST(KnownStatus, IsFreshForASecondAndAnAnswerForFifteen) {
   EXPECT_FALSE(known.answer(at(15'001)));
 }
 
+TEST(KnownStatus, IsAnAnswerForAMinuteWhileReportsGoFirst) {
+  KnownStatus known;
+  known.heard("{}", at(0));
+  EXPECT_TRUE(known.answer(at(60'000), KnownStatus::kOldestBehindReports));
+  EXPECT_FALSE(known.answer(at(60'001), KnownStatus::kOldestBehindReports));
+}
+
 TEST(KnownStatus, TellsItsAgeInWholeSeconds) {
   KnownStatus known;
   known.heard("{\"score\": 1}", at(0));

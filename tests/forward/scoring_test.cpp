@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
+#include <semaphore>
 #include <thread>
 
 #include "../uplink/peer.hpp"
-#include "host/folder.hpp"
+#include "forward/around.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -33,30 +35,45 @@ class Asker final : public intake::Responder {
   std::optional<intake::Answer> heard;
 };
 
-/// What it hears who asks before the first answer has come.
-std::optional<intake::Answer> heard_from(uplink::Peer::Script post) {
-  uplink::ListeningPeer peer{std::vector<uplink::Peer::Script>{std::move(post)}};
-  settings::Settings settings;
-  settings.command_post.scoring = {peer.endpoint().address, peer.endpoint().port};
-  const host::Folder ledger_folder, journal_folder;
-  loop::Loop loop;
-  std::mt19937_64 random{1};
-  Record record{[] {}};
-  journal::Journal journal{loop, journal_folder.path()};
-  journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
-  auto ledger = std::move(*ledger::Ledger::open(ledger_folder.path()));
-  Scoring scoring{loop, ledger, settings, icd::BearerToken::parse("a-token"), record, random, journal, [] {}};
-  if (!scoring.start()) return std::nullopt;
-  const auto asker = std::make_shared<Asker>();
-  scoring.status(asker);
-  const bool heard = loop::turn_until(loop, [&] {
-    scoring.tick();
-    return asker->heard.has_value();
-  });
-  return heard ? asker->heard : std::nullopt;
-}
+class ToPost : public testing::Test, protected AroundScoring {
+ protected:
+  /// Starts, and asks for the status.
+  void lead_to(std::vector<uplink::Peer::Script> scripts) {
+    peer_.emplace(std::move(scripts));
+    settings_.command_post.scoring = {peer_->endpoint().address, peer_->endpoint().port};
+    settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
+    settings_.command_post.timeouts.scoring_answer =
+        10min;  // no time-out of Adit's ends what these tests wait for
+    journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
+    scoring_.emplace(loop_, ledger_, settings_, icd::BearerToken::parse("a-token"), record_, random_,
+                     journal_, [] { FAIL() << "restarts"; });
+    ASSERT_TRUE(scoring_->start());
+  }
+  bool comes(const std::function<bool()>& done) {
+    return loop::turn_until(loop_, [&] {
+      scoring_->tick();
+      return done();
+    });
+  }
+  std::shared_ptr<Asker> report(double x) {
+    auto client = std::make_shared<Asker>();
+    scoring_->take(icd::ArtifactReport{.type = "Backpack", .position = {x, 2, 3}},
+                   intake::Sender{.address = "10.0.0.5"}, client);
+    return client;
+  }
+  /// What it hears who asks for the status before the first answer has come.
+  std::optional<intake::Answer> heard_from(uplink::Peer::Script post) {
+    lead_to({std::move(post)});
+    const auto asker = std::make_shared<Asker>();
+    scoring_->status(asker);
+    return comes([&] { return asker->heard.has_value(); }) ? asker->heard : std::nullopt;
+  }
 
-TEST(Scoring, TellsAStatusThatCameLateWithTheAgeOfItsQuestion) {
+  std::optional<uplink::ListeningPeer> peer_;
+  std::optional<Scoring> scoring_;
+};
+
+TEST_F(ToPost, TellsAStatusThatCameLateWithTheAgeOfItsQuestion) {
   const auto heard = heard_from(serving(kStatus, 1200ms));
   ASSERT_TRUE(heard.has_value());
   EXPECT_EQ(heard->status, icd::Status::Ok);
@@ -66,10 +83,76 @@ TEST(Scoring, TellsAStatusThatCameLateWithTheAgeOfItsQuestion) {
   EXPECT_EQ(heard->headers.front().value, "1");
 }
 
-TEST(Scoring, DoesNotPassOnWhatIsNoStatus) {
+TEST_F(ToPost, DoesNotPassOnWhatIsNoStatus) {
   const auto heard = heard_from(serving(R"("ok")", 0ms));
   ASSERT_TRUE(heard.has_value());
   EXPECT_EQ(heard->status, icd::Status::BadGateway);
+}
+
+constexpr const char* kRecorded =
+    R"({"url":"","id":1,"x":1.0,"y":2.0,"z":3.0,"type":"Backpack","submitted_datetime":"","team":"a",)"
+    R"("run":"","report_status":"scored","score_change":1,"run_clock":11.0,"remaining_reports":23})";
+
+TEST_F(ToPost, AReportDoesNotWaitForAStatusThatIsNotAnswered) {
+  std::atomic<bool> asked_again = false, was_reset = false;
+  const auto answers_once = [&](uplink::Wire& wire) {
+    wire.read_request();
+    wire.write(uplink::answer("200 OK", kStatus));
+    asked_again = wire.read_request().starts_with("GET");
+    wire.wait_for_close();
+    was_reset = wire.was_reset();
+  };
+  const auto records = [&](uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      const bool is_report = request.starts_with("POST");
+      wire.write(is_report ? uplink::answer("201 CREATED", kRecorded) : uplink::answer("200 OK", kStatus));
+    }
+  };
+  lead_to({answers_once, records});
+  ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
+  scoring_->link_is_back();  // asks again
+  ASSERT_TRUE(comes([&] { return asked_again.load(); }));
+  const auto client = report(1);
+  ASSERT_TRUE(comes([&] { return client->heard.has_value(); }));
+  EXPECT_EQ(client->heard->status, icd::Status::Created);
+  EXPECT_TRUE(was_reset);
+}
+
+TEST_F(ToPost, AStatusThatDecidesAReportInDoubtIsWaitedFor) {
+  settings_.reports.doubt_for = 100ms;
+  std::atomic<int> reports = 0;
+  std::atomic<bool> holds = false, is_held = false, was_waited_for = false;
+  std::binary_semaphore let{0};
+  const auto loses_a_report = [&](uplink::Wire& wire) {
+    wire.read_request();
+    wire.write(uplink::answer("200 OK", kStatus));
+    if (wire.read_request().starts_with("POST")) ++reports;
+  };
+  const auto says_nothing_of_it = [&](uplink::Wire& wire) {
+    const bool is_report = wire.read_request().starts_with("POST");
+    if (is_report) ++reports;
+    const bool hold = !is_report && holds.exchange(false);
+    if (hold) {
+      is_held = true;
+      let.acquire();
+    }
+    const bool is_open =
+        wire.write(is_report ? uplink::answer("201 CREATED", kRecorded) : uplink::answer("500 Error", "{}"));
+    if (hold) was_waited_for = is_open;
+  };
+  lead_to({loses_a_report, says_nothing_of_it});
+  ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
+  const auto lost = report(1);
+  ASSERT_TRUE(comes([&] { return reports == 1; }));
+  loop::turn_for(loop_, 500ms);  // asked for in vain: others may go
+  holds = true;
+  ASSERT_TRUE(comes([&] { return is_held.load(); }));
+  const auto next = report(100);
+  loop::turn_for(loop_, 3 * Scoring::kGivesWayAfter);
+  EXPECT_FALSE(next->heard);
+  let.release();
+  EXPECT_TRUE(comes([&] { return reports == 2; }));
+  EXPECT_TRUE(was_waited_for);
 }
 
 }  // namespace

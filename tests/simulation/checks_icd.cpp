@@ -11,9 +11,11 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kOldest = 15;     // seconds since a status was asked for that is still told
-constexpr double kOnItsWay = 1;    // second, in which an answer reaches its client
-constexpr double kConnecting = 3;  // seconds that a question may wait before its first byte leaves
+constexpr double kOldest = 15;               // seconds since a status was asked for that is still told
+constexpr double kOldestBehindReports = 60;  // after a report was under way
+constexpr double kGoFirst = 15;              // seconds: so long after it others may still go first
+constexpr double kOnItsWay = 1;              // second, in which an answer reaches its client
+constexpr double kConnecting = 3;            // seconds that a question may wait before its first byte leaves
 constexpr int kTimeout = 408, kTooMany = 429, kStops = 503;
 
 /// What the Command Post said of the run, as it was understood.
@@ -24,11 +26,11 @@ struct Known {
 };
 
 /// `slow`: as Known's, by the time of the answer.
-bool may_be(const Known& known, const Event& answer, double slow) {
+bool may_be(const Known& known, const Event& answer, double slow, double oldest_told) {
   const double oldest = answer.at - known.asked;
   const double youngest = oldest - kOnItsWay - (slow - known.slow);
-  return *known.says == answer.says && youngest <= kOldest && answer.stamp <= oldest + kConnecting + slow &&
-         answer.stamp >= std::floor(youngest);
+  return *known.says == answer.says && youngest <= oldest_told &&
+         answer.stamp <= oldest + kConnecting + slow && answer.stamp >= std::floor(youngest);
 }
 
 }  // namespace
@@ -64,9 +66,11 @@ void clean(const Evidence& evidence, Broken& broken) {
 void status_true(const Evidence& evidence, Broken& broken) {
   std::vector<Known> known;                         // of this life
   std::map<std::uint64_t, std::size_t> known_then;  // when a client asked
-  double asked = 0, slow = 0;
+  double asked = 0, slow = 0, last_report = -1e9;
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::Begins) known.clear(), known_then.clear();
+    const bool is_under_way = event.kind == Kind::Leaves || event.kind == Kind::Replied;
+    if (event.what == kReports && is_under_way) last_report = event.at;
     if (event.kind == Kind::Slow) slow += event.stamp;
     if (event.what != kStatus) continue;
     if (event.kind == Kind::Leaves) asked = event.at;
@@ -76,9 +80,11 @@ void status_true(const Evidence& evidence, Broken& broken) {
     if (event.kind != Kind::Answered || event.status != 200) continue;
     // Nothing older than what was known when it asked.
     const std::size_t newest = known_then.contains(event.request) ? known_then[event.request] : 0;
+    const bool is_behind = event.at - last_report <= kGoFirst + kOnItsWay + slow;
+    const double oldest = is_behind ? kOldestBehindReports : kOldest;
     bool found = false;
     for (std::size_t i = newest == 0 ? 0 : newest - 1; i < known.size(); ++i)
-      found = found || may_be(known[i], event, slow);
+      found = found || may_be(known[i], event, slow, oldest);
     if (found) continue;
     if (event.says.empty()) {
       broken.push_back(

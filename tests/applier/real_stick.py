@@ -45,11 +45,12 @@ class Sticks(unittest.TestCase):
         self.slots.plug(image, name)
         return image
 
-    def put(self, name, data, stick="sda1"):
+    def put(self, files, stick="sda1"):
         """As somebody does at a PC."""
         run("umount", self.place(stick))
         run("mount", "-o", "loop", self.folder / "dev" / stick, self.place(stick))
-        (self.place(stick) / name).write_bytes(data)
+        for name, data in files.items():
+            (self.place(stick) / name).write_bytes(data)
         run("umount", self.place(stick))
         self.mount_stick(stick)
 
@@ -88,7 +89,7 @@ class Sticks(unittest.TestCase):
 class Stick(Sticks):
     def test_has_the_export_whole_and_may_be_pulled_out(self):
         image = self.plug()
-        self.put("photo", b"of a cave")
+        self.put({"photo": b"of a cave"})
         status = self.write()
         self.assertEqual((status["refusal"], status["written"], status["exports"]), ("", NAME, [NAME]))
         self.assertEqual(self.calls.read_text().splitlines(), ["umount sda1", "mount rw sda1", "umount sda1", "mount ro sda1"])
@@ -108,7 +109,7 @@ class Stick(Sticks):
 
     def test_without_room_is_left_as_it_was(self):
         self.plug(size=3 << 20)
-        self.put("photo", bytes(1 << 20))
+        self.put({"photo": bytes(1 << 20)})
         before = set(os.listdir(self.place()))
         self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "and the export has")
         self.assertEqual((self.calls.read_text(), set(os.listdir(self.place()))), ("", before))
@@ -153,7 +154,7 @@ class Stick(Sticks):
 
     def test_that_is_in_use_is_told_of_and_left_alone(self):
         self.plug()
-        self.put("adit-box-1.0.0.raucb", bytes(100))
+        self.put({"adit-box-1.0.0.raucb": bytes(100)})
         with open(self.place() / "adit-box-1.0.0.raucb", "rb"):  # as adit-update reads it
             self.expect_refused(self.write(), "the stick is in use")
         self.assertTrue(self.is_read_only())
@@ -208,10 +209,7 @@ class Stick(Sticks):
     def test_gives_the_export_that_is_asked_for(self):
         self.plug()
         other = "export (1).adit-spare"
-        self.put(NAME, EXPORT)
-        self.put(other, EXPORT + b"other")
-        self.put("._" + NAME, b"of a Mac")
-        self.put("adit-spare.txt", b"a note")
+        self.put({NAME: EXPORT, other: EXPORT + b"other", "._" + NAME: b"of a Mac", "adit-spare.txt": b"a note"})
         self.assertEqual(self.run_it()["exports"], [NAME, other], "the latest first")
         self.assertEqual(self.ask("take", other)["refusal"], "")
         self.assertEqual((self.folder / "status/export.adit-spare").read_bytes(), EXPORT + b"other")
@@ -244,8 +242,7 @@ class Stick(Sticks):
 
     def test_shows_no_more_than_eight(self):
         self.plug()
-        for day in range(10, 22):
-            self.put(f"adit-10.0.0.1-202611{day}T000000Z.adit-spare", EXPORT[:100])
+        self.put({f"adit-10.0.0.1-202611{day}T000000Z.adit-spare": EXPORT[:100] for day in range(10, 22)})
         self.assertEqual(self.run_it()["exports"][::7], [f"adit-10.0.0.1-202611{day}T000000Z.adit-spare" for day in (21, 14)])
 
     def test_is_written_nothing_that_is_no_export(self):

@@ -42,7 +42,7 @@ TEST(MapUpload, IsStoredAsItArrives) {
 TEST(MapUpload, OfAGridIsPressedAsItArrivesAndLittleOfItHeldOrStored) {
   for (const bool is_compressed : {false, true}) {
     Team team;
-    const std::string body = grid_body(3000, 3000);
+    const std::string body = grid_body(1500, 1500);
     const std::string sent = is_compressed ? gzipped(body) : body;
     const auto reply = team.ask(map_head(sent, is_compressed ? kGzip : "") + sent);
     ASSERT_TRUE(reply);
@@ -92,7 +92,7 @@ TEST(MapUpload, ThatIsSmallIsNotStoredBeforeItIsWhole) {
 TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
   Team team;
   team.served.on_loop([&] { team.desk.stores_pieces = false; });
-  const std::string body = cloud_body(1'000'000);
+  const std::string body = cloud_body(300'000);
   const std::string sent = gzipped(body);
   RawClient client(team.served.port());
   client.send(map_head(sent, kGzip) + sent);
@@ -112,8 +112,8 @@ TEST(MapUpload, ThatIsCompressedIsStoredAsItIsInflatedAndNoMoreOfItHeld) {
 TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
   Team team;
   team.served.on_loop([&] { team.desk.room = 1'000'000; });
-  const std::string sent = gzipped(cloud_body(2'700'000));
-  ASSERT_GT(12u * 2'700'000u, MapUpload::kWithoutRoom);
+  const std::string sent = gzipped(cloud_body(2'400'000));
+  ASSERT_GT(12u * 2'400'000u, MapUpload::kWithoutRoom);
   for (int i = 0; i < 2; ++i) {
     const auto reply = team.ask(map_head(sent, kGzip) + sent);
     ASSERT_TRUE(reply);
@@ -121,7 +121,7 @@ TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
     EXPECT_NE(reply->body.find("no room for this map"), std::string::npos) << reply->body;
   }
   EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
-  const std::string small = gzipped(cloud_body(1'400'000));
+  const std::string small = gzipped(cloud_body(500'000));
   EXPECT_EQ(team.ask(map_head(small, kGzip) + small)->status, 200) << "what was held is given back";
 }
 

@@ -76,14 +76,17 @@ void is_taken(std::string_view headers, const std::string& body, bool colored) {
   });
 }
 
-std::string largest_in_cbor() {
-  json colored = marker("points");
-  colored["colors"] = "colors";
-  const std::string points =
-      put(cbor_of({{"markers", {colored}}}), "points", list_of(icd::kMostMarkerPoints, kPoint));
-  std::string cbor = put(points, "colors", list_of(icd::kMostMarkerPoints, kColor));
-  EXPECT_GT(cbor.size(), 7u << 20);
-  return cbor;
+const std::string& largest_in_cbor() {
+  static const std::string made = [] {
+    json colored = marker("points");
+    colored["colors"] = "colors";
+    const std::string points =
+        put(cbor_of({{"markers", {colored}}}), "points", list_of(icd::kMostMarkerPoints, kPoint));
+    std::string cbor = put(points, "colors", list_of(icd::kMostMarkerPoints, kColor));
+    EXPECT_GT(cbor.size(), 7u << 20);
+    return cbor;
+  }();
+  return made;
 }
 
 TEST(MarkersUpload, HasRoomForTheLargestMarkerThereCanBe) {

@@ -25,15 +25,17 @@ def patient(time_out):
 
 
 def wait_until(condition, what, within=60.0, tolerates=(), every=0.01):
-    """The first true value of `condition()`, asked every so many seconds. After `within` seconds times ADIT_PATIENCE: an AssertionError with
-    `what` and what was seen last, a value or an exception of the types that `tolerates` names."""
-    end = time.monotonic() + patient(within)
+    """The first true value of `condition()`, asked every so many seconds at first, and less often the longer it takes, down to a tenth as
+    often: to ask takes time from the same processors. After `within` seconds times ADIT_PATIENCE: an AssertionError with `what` and what
+    was seen last, a value or an exception of the types that `tolerates` names."""
+    began = time.monotonic()
     while True:
         try:
             if seen := condition():
                 return seen
         except tolerates as error:
             seen = error
-        if time.monotonic() >= end:
+        waited = time.monotonic() - began
+        if waited >= patient(within):
             raise AssertionError(f"waited {patient(within):g} s in vain for {what}; seen last: {seen!r:.1000}")
-        time.sleep(every)
+        time.sleep(min(max(every, waited / 10), 10 * every))

@@ -27,6 +27,15 @@ bool has_started(const Run& run) {
   return run.last->run_clock > 0 || (run.answer_clock && run.answer_clock->shows > 0);
 }
 
+/// Of two that were taken for different ones. Where no status was heard, the operator says so.
+bool are_certainly_different(const Run& before, const Run& now) {
+  const bool are_heard = before.last && now.last;
+  if (are_heard && are_other_teams(before.last->current_team, now.last->current_team)) return true;
+  if (!before.id.empty() && !now.id.empty()) return before.id != now.id;
+  if (now.may_be != 0) return false;
+  return !are_heard || now.last->run_clock < before.last->run_clock - kClockJitter;
+}
+
 }  // namespace
 
 bool are_other_teams(const std::string& one, const std::string& other) {
@@ -54,6 +63,15 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& re
   }
   if (reply.run_clock <= 0) return std::nullopt;  // it has none
   return clock_of_another(run.answer_clock, reply.run_clock, silence);
+}
+
+bool tells_of_another(const Run& run) {
+  return run.status_clock && run.status_clock->runs;
+}
+
+NextMap next_map(const Run& before, const Run& now) {
+  if (!are_certainly_different(before, now)) return NextMap::MayBeTheSame;
+  return now.began >= before.heard ? NextMap::Empty : NextMap::Earlier;
 }
 
 }  // namespace adit::dispatch

@@ -32,6 +32,20 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& stat
 /// answers.
 std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, double silence);
 
+/// A status of another run would show it: the clock of this one's was seen to run.
+bool tells_of_another(const Run& run);
+
+/// The map that a Command Post has.
+enum class NextMap {
+  MayBeTheSame,  // as before, or an empty one
+  Empty,         // but for what was sent since the last status of the run before
+  Earlier,       // that of a run from before
+};
+
+/// Once `now` is the present run in place of `before`. More reports left are no sign by themselves: one more
+/// may have been granted.
+NextMap next_map(const Run& before, const Run& now);
+
 /// Both are teams, and different ones.
 bool are_other_teams(const std::string& one, const std::string& other);
 

@@ -96,19 +96,39 @@ void Flow::changed() {
   told_.changed();
 }
 
-/// A new run begins with a blank picture, here and at the Command Post. The first one that is known in a life
-/// may have begun before it, and so may one at another Command Post, or one that is taken up again.
+/// Once another run is the present one. The first one that is known in a life may have begun before it, and
+/// so may one at another Command Post.
+dispatch::NextMap Flow::next_map(std::int64_t before, const dispatch::Run& run) const {
+  const dispatch::Run* const known = reports().runs().find(before);
+  const bool is_here = known != nullptr && reports().runs().is_here(before) && is_by_settings(run);
+  return is_here ? dispatch::next_map(*known, run) : dispatch::NextMap::MayBeTheSame;
+}
+
+/// It is at the Command Post that the settings name.
+bool Flow::is_by_settings(const dispatch::Run& run) const {
+  return run.post == address_text(settings_.command_post.scoring);
+}
+
+/// A status was heard: its clock goes on.
+bool Flow::status_came() {
+  const auto& clock = reports().run().status_clock;
+  const double shows = clock ? clock->shows : 0;
+  return std::exchange(clock_shown_, shows) != shows;
+}
+
+/// A new run begins with a blank picture.
 void Flow::picture_the_run() {
   if (!has_started_) return;
-  const std::int64_t run = reports().run().number;
-  const std::int64_t before = std::exchange(pictured_run_, run);
-  if (before == run) return;
+  const dispatch::Run& run = reports().run();
+  const std::int64_t before = std::exchange(pictured_run_, run.number);
+  const bool is_heard = status_came();
+  if (before == run.number) {
+    if (is_heard && is_by_settings(run) && dispatch::tells_of_another(run)) maps_.heard();
+    return;
+  }
   if (before == 0) return keep_the_run();
-  const std::string& post = reports().run().post;
   archive_->end_run(seen());
-  const bool is_here =
-      reports().runs().is_at(before, post) && post == address_text(settings_.command_post.scoring);
-  maps_.change_run(/*is_new=*/is_here && run > before);
+  maps_.change_run(next_map(before, run));
   as_forwarded_.begin_run(loop_.wall_now());
   picture_.begin_run();
   keep_the_run();

@@ -155,6 +155,9 @@ class Flow final : public intake::Desk {
             std::function<void(icd::Checked<void>)> done);
   void changed();
   void picture_the_run();
+  dispatch::NextMap next_map(std::int64_t before, const dispatch::Run& run) const;
+  bool is_by_settings(const dispatch::Run& run) const;
+  bool status_came();
   void keep_the_run();
   archive::Seen seen() const;
   archive::Sample sample() const;
@@ -181,6 +184,7 @@ class Flow final : public intake::Desk {
   Telemetry telemetry_;
   Meter meter_;
   std::int64_t pictured_run_;  // Legacy's
+  double clock_shown_ = 0;     // by the last status of it
   std::string rests_;          // why nothing is taken and sent; "": it is
   bool has_started_ = false;   // until then the ledger has not said which run it is
   std::unique_ptr<archive::Archive> archive_;

@@ -63,6 +63,7 @@ std::expected<void, std::string> Flow::start() {
   if (auto started = scoring_.start(); !started) return started;
   telemetry_.start();
   has_started_ = true;
+  status_came();  // what the life before heard is none
   if (!archive_->has_begun() && pictured_run_ == reports().run().number) keep_the_run();
   picture_the_run();
   return {};

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "dispatch/run_watch.hpp"
 #include "forward/aside.hpp"
 #include "forward/channel.hpp"
 #include "forward/map_arrival.hpp"
@@ -61,9 +62,10 @@ class Maps {
   /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// Another run is on: what the Command Post took of the one before it may have no more. `is_new`: it begins
-  /// at the same Command Post, with an empty map.
-  void change_run(bool is_new);
+  /// A status shows that the present run is on.
+  void heard();
+  /// Another run is on: what the Command Post took of the one before it may have no more.
+  void change_run(dispatch::NextMap next);
   /// A map that the spool kept under this number.
   void restore(std::uint64_t number, icd::MapUpdate update);
 
@@ -115,6 +117,7 @@ class Maps {
   void take_settings();
   void leads_elsewhere();
   void pack_again();
+  bool is_heard_from() const;
   void carry_on_grids(const journal::Carried& carried, bool ran_before);
   bool is_told(const icd::MapUpdate& update);
   void compare();

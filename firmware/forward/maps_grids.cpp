@@ -30,16 +30,30 @@ bool Maps::is_told(const icd::MapUpdate& update) {
   return true;
 }
 
-void Maps::change_run(bool is_new) {
-  points_.forget();
-  loop::guarded("maps for another run", [&] {
-    pack_again();
-    if (!is_new) return lane_.canvases().change_run();
+/// While maps still go to another Command Post than the settings name, what is heard is not that one's.
+bool Maps::is_heard_from() const {
+  return channel_.address() == address_text(settings_.command_post.mapping);
+}
+
+void Maps::heard() {
+  if (!is_heard_from()) return;
+  loop::guarded("what was sent in this run", [this] {
     std::vector<const icd::MapUpdate*> under_way;
     for (const Place& place : {prepared_, following_}) {
       if (place) under_way.push_back(&place->waiting.map);
     }
-    lane_.canvases().begin_run(under_way);
+    lane_.canvases().heard(under_way);
+  });
+}
+
+void Maps::change_run(dispatch::NextMap next) {
+  points_.forget();
+  loop::guarded("maps for another run", [&] {
+    pack_again();
+    lanes::Canvases& canvases = lane_.canvases();
+    if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
+    if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
+    canvases.change_run();
   });
 }
 

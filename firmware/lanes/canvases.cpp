@@ -1,6 +1,7 @@
 #include "lanes/canvases.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 namespace adit::lanes {
@@ -10,7 +11,35 @@ std::string text_of(const std::optional<icd::RobotName>& name) {
   return name ? name->text() : "";
 }
 
+void add(Canvases::Posted& to, const std::string& name, const Extent& extent) {
+  if (to.size() >= Canvases::kMostNames && !to.contains(name)) {
+    to[Canvases::kAnyName] = Extent::everywhere();
+    return;
+  }
+  const auto [its, is_new] = to.try_emplace(name, extent);
+  if (!is_new) its->second = around(its->second, extent);
+}
+
+void add(Canvases::Posted& to, const Canvases::Posted& from) {
+  for (const auto& [name, extent] : from) add(to, name, extent);
+}
+
+/// Where something of that name is, or may be; nothing: nowhere.
+std::optional<Extent> extent_in(const Canvases::Posted& sent, const std::string& name) {
+  std::optional<Extent> all;
+  for (const std::string& key : {std::string(Canvases::kAnyName), name}) {
+    const auto found = sent.find(key);
+    if (found != sent.end()) all = all ? around(*all, found->second) : found->second;
+  }
+  return all;
+}
+
 }  // namespace
+
+void Canvases::carry_on(Posted before) {
+  before_ = posted_ = std::move(before);
+  sent_.clear();
+}
 
 void Canvases::lead_to(std::string command_post) {
   command_post_ = std::move(command_post);
@@ -28,46 +57,34 @@ std::optional<std::pair<std::string, Extent>> Canvases::grows(const icd::MapUpda
   return {{name, around(before->second, extent)}};
 }
 
-/// That name at this Command Post.
-std::string Canvases::here(const std::optional<icd::RobotName>& name) const {
-  return text_of(name) + '@' + command_post_;
+/// What a life before sent may have arrived just before this one began.
+Canvases::Sent& Canvases::here() {
+  const auto found = sent_.find(command_post_);
+  if (found != sent_.end()) return found->second;
+  return sent_.emplace(command_post_, Sent{.all = before_, .newer = before_, .older = {}}).first->second;
 }
 
-/// Where something of that name was sent, or may have been; nothing: nowhere.
-std::optional<Extent> Canvases::sent(const std::optional<icd::RobotName>& name) const {
-  std::optional<Extent> all;
-  const auto add = [&](const std::map<std::string, Extent>& extents, const std::string& key) {
-    const auto found = extents.find(key);
-    if (found != extents.end()) all = all ? around(*all, found->second) : found->second;
-  };
-  if (!began_.contains(command_post_)) {
-    add(before_, kAnyName);
-    add(before_, text_of(name));
+void Canvases::heard(std::span<const icd::MapUpdate* const> under_way) {
+  Posted newer;
+  for (const icd::MapUpdate* map : under_way) {
+    if (map->is_grid()) add(newer, text_of(map->name), extent_of(std::get<icd::OccupancyGrid>(map->msg)));
   }
-  add(sent_, kAnyName);
-  add(sent_, here(name));
-  return all;
-}
-
-void Canvases::note(const std::optional<icd::RobotName>& name, const Extent& extent) {
-  const std::string key = here(name);
-  if (sent_.size() >= kMostNames && !sent_.contains(key)) {
-    sent_[kAnyName] = Extent::everywhere();
-    return;
-  }
-  const auto [its, is_new] = sent_.try_emplace(key, extent);
-  if (!is_new) its->second = around(its->second, extent);
+  Sent& sent = here();
+  sent.older = std::exchange(sent.newer, std::move(newer));
 }
 
 /// A life to come takes for sent what was posted in earlier runs, too: it does not know when they ended.
-void Canvases::begin_run(std::span<const icd::MapUpdate* const> under_way) {
+void Canvases::begin_run() {
   canvases_.clear();
-  began_.insert(command_post_);
-  std::erase_if(sent_, [&](const auto& sent) { return sent.first.ends_with('@' + command_post_); });
-  for (const icd::MapUpdate* map : under_way) {
-    if (!map->is_grid()) continue;
-    note(map->name, extent_of(std::get<icd::OccupancyGrid>(map->msg)));
-  }
+  Sent& sent = here();
+  Posted all = sent.older;
+  add(all, sent.newer);
+  sent.all = std::move(all);
+}
+
+void Canvases::take_up_run() {
+  canvases_.clear();
+  add(here().all, posted_);
 }
 
 const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
@@ -79,8 +96,11 @@ const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
 void Canvases::sends(WaitingMap& next) {
   const auto& grid = std::get<icd::OccupancyGrid>(next.map.msg);
   const Extent extent = extent_of(grid);
-  const std::optional<Extent> before = sent(next.map.name);
-  note(next.map.name, extent);
+  const std::string name = text_of(next.map.name);
+  Sent& sent = here();
+  const std::optional<Extent> before = extent_in(sent.all, name);
+  add(sent.newer, name, extent);
+  add(sent.all, name, extent);
 
   auto its = canvases_.find(next.map.name);
   const bool is_whole_map = next.parts.empty() && before && extent.holds(*before);

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -16,9 +15,9 @@
 namespace adit::lanes {
 
 /// What was last sent of each robot's grids, so that a gap between grids can be sent with them: its cells
-/// have the newest value that was packed, or were never sent in this run. Where that is not known, for the
-/// memory's bound, for a try that failed, or from before a restart or another Command Post, nothing is
-/// filled.
+/// have the newest value that was packed, or were never sent to the map that the Command Post has now. Where
+/// that is not known, for the memory's bound, for a try that failed, or from before a restart, another
+/// Command Post or a run that the present one may be still, nothing is filled.
 ///
 /// What was packed and came back goes before all newer ones, and is drawn again: what is sent in a gap is not
 /// older than what arrived.
@@ -31,24 +30,30 @@ class Canvases {
   explicit Canvases(std::size_t most_tiles = kMostTiles) : most_tiles_(most_tiles) {}
 
   /// Where grids of a name were ever posted, so that no other place can have been sent; kAnyName for all.
+  /// Also where they were sent.
   using Posted = std::map<std::string, Extent>;
   static constexpr const char* kAnyName = "*";
 
   /// Maps go to this Command Post from now on.
   void lead_to(std::string command_post);
   /// What the lives before may have sent.
-  void carry_on(Posted before) { before_ = posted_ = std::move(before); }
+  void carry_on(Posted before);
   /// That grid comes: what must be known to a life to come before the grid is taken; nothing if that is
   /// known.
   std::optional<std::pair<std::string, Extent>> grows(const icd::MapUpdate& grid) const;
   void grown(const std::pair<std::string, Extent>& posted) {
     posted_.insert_or_assign(posted.first, posted.second);
   }
-  /// Another run is on, with a map of its own, which is not known.
+  /// A status of the present run was heard. It may have been asked for before what was sent since the last
+  /// one arrived, but not before what was sent until then, except for what is still `under_way`.
+  void heard(std::span<const icd::MapUpdate* const> under_way);
+  /// Another run is on, or the same still: what is in the Command Post's cells is not known.
   void change_run() { canvases_.clear(); }
-  /// A run begins at this Command Post with an empty map, but for the grids among `under_way`, which may
-  /// arrive in it. At others, what was sent stays.
-  void begin_run(std::span<const icd::MapUpdate* const> under_way);
+  /// A run is on that began with an empty map after the last status of the one before it. What was sent since
+  /// the status before that may have arrived in it. At other Command Posts what was sent stays.
+  void begin_run();
+  /// A run from before is on again: its map may have whatever was posted.
+  void take_up_run();
 
   /// Of grids of that name; null where nothing is known.
   const Canvas* find(const std::optional<icd::RobotName>& name) const;
@@ -60,17 +65,19 @@ class Canvases {
   void lay(const std::optional<icd::RobotName>& name, const Ground& drawn);
 
  private:
-  std::optional<Extent> sent(const std::optional<icd::RobotName>& name) const;
-  std::string here(const std::optional<icd::RobotName>& name) const;
-  void note(const std::optional<icd::RobotName>& name, const Extent& extent);
+  /// To one Command Post.
+  struct Sent {
+    Posted all;           // that may be in its present map
+    Posted newer, older;  // since the last status of the present run; between that and the one before
+  };
+  Sent& here();
   void forget_oldest();
 
   std::size_t most_tiles_;
   std::string command_post_;
   std::map<std::optional<icd::RobotName>, Canvas> canvases_;
-  Posted before_, posted_;              // by the end of the life before, and by now
-  std::set<std::string> began_;         // Command Posts that have nothing of the life before
-  std::map<std::string, Extent> sent_;  // in this life, by name@Command Post
+  Posted before_, posted_;            // by the end of the life before, and by now
+  std::map<std::string, Sent> sent_;  // by Command Post
   std::uint64_t numbers_ = 0, laid_ = 0;
 };
 

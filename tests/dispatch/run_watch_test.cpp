@@ -129,5 +129,53 @@ TEST(AnotherRun, ShowsByTheClockOfAnAnswerThatHasOne) {
   EXPECT_THAT(why(another_run(run_at(600), reply("", 0), 1)), IsEmpty());
 }
 
+/// What follows run_at(600) where a status shows that.
+NextMap map_after(const icd::RunStatus& status, const std::string& id = "", std::int64_t may_be = 0) {
+  Run before = run_at(600), now{.number = 2, .id = id, .began = 70, .last = status, .may_be = may_be};
+  before.heard = 60;
+  return next_map(before, now);
+}
+
+TEST(TheNextMap, IsEmptyWhereTheRunIsAnotherForCertain) {
+  EXPECT_EQ(map_after({3, 601, 14, "other"}), NextMap::Empty);
+  EXPECT_EQ(map_after({3, 601, 14, "other"}, "1"), NextMap::Empty) << "each team has its own run 1";
+  EXPECT_EQ(map_after({3, 601, 14, "subt"}, "2"), NextMap::Empty);
+  EXPECT_EQ(map_after({0, 2, 25, "subt"}), NextMap::Empty);
+}
+
+TEST(TheNextMap, MayBeTheSameWhereOnlyAClockTellsOfAnotherRun) {
+  EXPECT_EQ(map_after({3, 540, 14, "subt"}, "", 1), NextMap::MayBeTheSame);
+  EXPECT_EQ(map_after({3, 605, 14, "subt"}, "", 1), NextMap::MayBeTheSame);
+  EXPECT_EQ(map_after({3, 540, 14, "subt"}, "1", 1), NextMap::MayBeTheSame);
+  EXPECT_EQ(map_after({3, 540, 14, "subt"}, "2", 1), NextMap::Empty) << "its name tells";
+}
+
+TEST(TheNextMap, MayBeTheSameWhereOnlyMoreReportsAreLeft) {
+  EXPECT_EQ(map_after({3, 601, 15, "subt"}), NextMap::MayBeTheSame) << "somebody may have granted one more";
+  EXPECT_EQ(map_after({3, 599.5, 15, "subt"}), NextMap::MayBeTheSame) << "a jitter";
+}
+
+TEST(TheNextMap, IsEmptyWhereTheOperatorSaysSo) {
+  dispatch::Run before = run_at(600);
+  before.heard = 60;
+  EXPECT_EQ(next_map(before, {.number = 2, .began = 70}), NextMap::Empty);
+}
+
+TEST(TheNextMap, IsThatOfARunThatIsTakenUpAgain) {
+  dispatch::Run before = run_at(600), now = run_at(300);
+  before.heard = 80;
+  now.last->current_team = "other";
+  now.began = 70;
+  EXPECT_EQ(next_map(before, now), NextMap::Earlier);
+}
+
+TEST(ARun, TellsOfAnotherOnceTheClockOfItsStatusWasSeenToRun) {
+  dispatch::Run run = run_at(600);
+  EXPECT_TRUE(tells_of_another(run));
+  run.status_clock->runs = false;
+  EXPECT_FALSE(tells_of_another(run)) << "whatever that of its answers does";
+  EXPECT_FALSE(tells_of_another({}));
+}
+
 }  // namespace
 }  // namespace adit::dispatch

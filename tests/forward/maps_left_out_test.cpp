@@ -125,7 +125,7 @@ TEST_F(PointsLeftOut, AreNotThoseOfAMessageThatFailed) {
 
 TEST_F(PointsLeftOut, GoAgainInAnotherRun) {
   arrive({0.1F});
-  maps_->change_run(/*is_new=*/true);
+  maps_->change_run(dispatch::NextMap::Empty);
   arrive({0.2F});
   EXPECT_THAT(taken_, ElementsAre(Points{0.1F}, Points{0.2F}));
 }
@@ -142,7 +142,7 @@ TEST_F(PointsLeftOut, GoAgainWhereTheRunBeganWhileTheRestWasUnderWay) {
   post_.waits();
   take({0.2F, 5});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return post_.came == 2; }));
-  maps_->change_run(/*is_new=*/true);
+  maps_->change_run(dispatch::NextMap::Empty);
   post_.go_on();
   ASSERT_TRUE(none_waits());
   EXPECT_THAT(taken_, ElementsAre(Points{0.1F}, Points{0.2F, 5}));

@@ -40,6 +40,15 @@ class CanvasesTest : public testing::Test {
     return together;
   }
 
+  /// After the first, which is never stitched.
+  std::size_t go_together_from_now_on(int x, int y) {
+    go_together(300, 300);
+    return go_together(x, y);
+  }
+  void hear(int statuses) {
+    for (int i = 0; i < statuses; ++i) lane_.canvases().heard({});
+  }
+
   MapLane lane_{0};
   Canvases::Posted posted_;
   std::uint64_t number_ = 0;
@@ -60,22 +69,60 @@ TEST_F(CanvasesTest, DoNotKnowWhatWasSentOnAnotherLattice) {
   EXPECT_EQ(go_together(70, 70), 2) << "there nothing was, tiles away";
 }
 
-TEST_F(CanvasesTest, BeginARunWithAnEmptyMapButForWhatIsUnderWay) {
-  lane_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
+TEST_F(CanvasesTest, BeginARunWithWhatWasSentSinceTheSecondLastStatus) {
   go_together(0, 0);
-  EXPECT_EQ(go_together(4, 4), 1) << "of an earlier life";
+  hear(1);
+  lane_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1) << "the status may have been asked for before it arrived";
+  hear(2);
+  lane_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 2);
+}
+
+TEST_F(CanvasesTest, BeginARunWithWhatWasUnderWayAtTheSecondLastStatus) {
   add(window_at(100, 100));
   const WaitingMap under_way = taken();
   const icd::MapUpdate* const maps[] = {&under_way.map};
-  lane_.canvases().begin_run(maps);
-  go_together(300, 300);
-  EXPECT_EQ(go_together(4, 4), 2);
-  EXPECT_EQ(go_together(102, 102), 1) << "what lies in its corner is not known";
+  lane_.canvases().heard(maps);
+  hear(1);
+  lane_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(102, 102), 1) << "what lies in its corner is not known";
+  hear(2);
+  lane_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(102, 102), 2);
+}
+
+TEST_F(CanvasesTest, BeginARunWithWhatALifeBeforeMayHaveSentInIt) {
+  for (const int statuses : {0, 1, 2}) {
+    lane_ = MapLane{0};
+    lane_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
+    hear(statuses);
+    lane_.canvases().begin_run();
+    EXPECT_EQ(go_together_from_now_on(4, 4), statuses == 2 ? 2 : 1) << statuses;
+  }
+}
+
+TEST_F(CanvasesTest, KnowNoMoreWhatLiesThereWhereTheRunMayBeAnother) {
+  go_together(0, 0);
+  hear(2);
+  lane_.canvases().change_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1);
+  EXPECT_EQ(go_together(340, 340), 2) << "there nothing was";
+}
+
+TEST_F(CanvasesTest, TakeWhateverWasPostedForSentInARunFromBefore) {
+  go_together(0, 0);
+  hear(2);
+  lane_.canvases().begin_run();
+  hear(2);
+  lane_.canvases().take_up_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1);
 }
 
 TEST_F(CanvasesTest, DoNotKnowAfterARestartWhatWasSentBefore) {
   go_together(0, 0);
-  lane_.canvases().begin_run({});
+  hear(2);
+  lane_.canvases().begin_run();
   lane_ = MapLane{0};
   lane_.canvases().carry_on(posted_);
   go_together(300, 300);
@@ -104,7 +151,8 @@ TEST_F(CanvasesTest, KnowWhatOneCommandPostHasWhenARunBeginsAtAnother) {
   lane_.canvases().lead_to("10.100.1.201:8000");
   go_together(0, 0);
   lane_.canvases().lead_to("10.100.2.201:8000");
-  lane_.canvases().begin_run({});
+  hear(2);
+  lane_.canvases().begin_run();
   go_together(100, 100);
   EXPECT_EQ(go_together(0, 0), 2);
   EXPECT_EQ(go_together(-1990, -1990), 2);

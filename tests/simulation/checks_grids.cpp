@@ -12,6 +12,7 @@
 #include "simulation/courses.hpp"
 #include "simulation/map_messages.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -70,11 +71,12 @@ void for_each_cell(const Extent& extent, Visit visit) {
 
 /// The grids of one name, and what the Command Post has of them. What two Command Posts have is taken
 /// together where an operator `switches` between them: then a cell that one of them lacks is not missed. Nor
-/// is one of which an earlier run had more, for a run begins with an empty map, and one that was sent by a
-/// life of which the box knows nothing.
+/// is one that was sent by a life of which the box knows nothing. What was sent in an earlier run may be
+/// missed, for a run begins with an empty map.
 class GridsOfOneName {
  public:
   explicit GridsOfOneName(bool has_more_maps) : has_more_maps_(has_more_maps) {}
+  void begin_run(std::size_t place) { run_began_ = place; }
   void post(const Asked& asked, const Item& item) {
     posted_.push_back({&asked, item.serial, Extent::from(item.says)});
   }
@@ -101,10 +103,13 @@ class GridsOfOneName {
       Owners owners = owners_of(cell, value, event.at);
       const auto had = has_.find(key_of(cell));
       const bool was_sent = had != has_.end();
-      if (value == kNoValue && was_sent && has_more_maps_)  // perhaps of another map alone
+      const bool is_earlier = was_sent && had->second.place < run_began_;
+      const bool is_blank = value == kNoValue && owners.empty() && is_earlier;
+      const std::size_t since = is_blank ? had->second.place : place;
+      if (value == kNoValue && was_sent && (has_more_maps_ || is_earlier))
         owners.insert(owners.end(), had->second.owners.begin(), had->second.owners.end());
       is_strange = is_strange || (owners.empty() && (value != kNoValue || was_sent));
-      if (!owners.empty()) has_[key_of(cell)] = {place, owners};
+      if (!owners.empty()) has_[key_of(cell)] = {since, owners};
     });
     if (is_strange)
       broken.push_back(icd::sentence("GridArrived: cells that nobody posted were taken from '", event.who,
@@ -234,6 +239,7 @@ class GridsOfOneName {
   }
 
   bool has_more_maps_;
+  std::size_t run_began_ = 0;  // by which event
   std::deque<PostedGrid> posted_;
   std::map<Key, Has> has_;
 };
@@ -260,25 +266,13 @@ bool knows_nothing(const Evidence& evidence) {
   });
 }
 
-/// While no gateway ran the time of day was set: the next life sees that the run has gone on by less, and
-/// holds it for another (dispatch/run_watch.hpp), which begins with an empty map.
-bool may_hold_for_another(const Evidence& evidence) {
-  bool is_running = false;
-  return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    if (event.kind == Kind::Begins) is_running = true;
-    if (event.kind == Kind::Ended) is_running = false;
-    return event.kind == Kind::ClockSet && !is_running && event.life > 0;
-  });
-}
-
 }  // namespace
 
 void grid_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMap);
-  const bool has_more_maps = knows_nothing(evidence) || may_hold_for_another(evidence) ||
-                             std::ranges::any_of(evidence.events, [](const Event& event) {
-                               return event.what == kCourse || event.kind == Kind::NewRun;
-                             });
+  const bool has_more_maps =
+      knows_nothing(evidence) ||
+      std::ranges::any_of(evidence.events, [](const Event& event) { return event.what == kCourse; });
   std::map<std::string, GridsOfOneName> names;
   const auto of = [&](const std::string& name) -> GridsOfOneName& {
     return names.try_emplace(name, has_more_maps).first->second;
@@ -290,6 +284,9 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
   std::map<std::uint64_t, std::vector<PostedGrid*>> last_sent;  // by connection
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
+    if (event.kind == Kind::NewRun && event.what != kSameMap) {
+      for (auto& [name, grids] : names) grids.begin_run(i);
+    }
     if (event.what != kMap) continue;
     std::vector<PostedGrid*>& sent = last_sent[event.request];
     if (event.kind == Kind::Replied) {

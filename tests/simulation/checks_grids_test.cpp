@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 
+#include <functional>
+
 #include "simulation/checks.hpp"
 #include "simulation/map_messages.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -40,6 +43,22 @@ class ChecksGridsTest : public testing::Test {
       }
     }
   }
+  void begin_run(const char* what) {
+    Event& event = add(Actor::Post, Kind::NewRun, {});
+    event.what = what;
+    event.says.clear();
+  }
+  /// All of it is known, and then two corners are taken in one message with nothing between them, twice.
+  void know_and_blank(const std::function<void()>& between) {
+    post(all_);
+    taken(all_);
+    between();
+    for (int i = 0; i < 2; ++i) {
+      post({low_.serial + 10 * i, low_.extent});
+      post({high_.serial + 10 * i, high_.extent});
+      taken(all_.extent, {{low_.serial + 10 * i, low_.extent}, {high_.serial + 10 * i, high_.extent}});
+    }
+  }
   void taken(const Grid& grid) { taken(grid.extent, {grid}); }
 
   Broken broken() const {
@@ -59,7 +78,7 @@ class ChecksGridsTest : public testing::Test {
 
   const Grid replaced_ = with_value_of_a_gap(), over_it_{1001, {50, 1, 12, 12, 4}},
              low_{1002, {50, -12, -12, 4, 4}}, high_{1003, {50, 20, 20, 4, 4}},
-             newest_{1004, {50, 0, 0, 9, 9}};
+             newest_{1004, {50, 0, 0, 9, 9}}, all_{1005, {50, -12, -12, 20, 20}};
 
  private:
   Event& add(Actor actor, Kind kind, const Extent& extent) {
@@ -92,6 +111,22 @@ TEST_F(ChecksGridsTest, AnOlderGridAmongGapsIsInTheMessage) {
   taken({50, -12, -12, 20, 20}, {replaced_, low_, high_});
   taken(newest_);
   EXPECT_THAT(broken(), testing::ElementsAre(testing::HasSubstr("lies over its newer 1001")));
+}
+
+TEST_F(ChecksGridsTest, ACellThatIsKnownBecomesNotUnknown) {
+  know_and_blank([] {});
+  EXPECT_THAT(broken(), testing::Each(testing::HasSubstr("cells that nobody posted")));
+  EXPECT_THAT(broken(), testing::SizeIs(2));
+}
+
+TEST_F(ChecksGridsTest, ACellThatIsKnownBecomesNotUnknownWhereOneMoreReportWasGranted) {
+  know_and_blank([this] { begin_run(kSameMap); });
+  EXPECT_THAT(broken(), testing::SizeIs(2));
+}
+
+TEST_F(ChecksGridsTest, ACellThatWasKnownInAnEarlierRunMayBeUnknown) {
+  know_and_blank([this] { begin_run(""); });
+  EXPECT_THAT(broken(), testing::IsEmpty());
 }
 
 }  // namespace

@@ -204,7 +204,8 @@ void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken
       reading.view.at("alarms"), [](const Json& alarm) { return !is_of_the_past(alarm); }));
   // Of reports that Adit cannot account for he is told.
   const bool beside = std::ranges::any_of(evidence.events, [](const Event& event) {
-    return event.kind == Kind::Another || (event.kind == Kind::NewRun && event.who.ends_with(kNameless));
+    const bool is_told = event.what != kSameMap && !event.who.ends_with(kNameless);
+    return event.kind == Kind::Another || (event.kind == Kind::NewRun && !is_told);
   });
   if (called > 0 && judged == 0 && !beside && reading.view.at("aside").empty())
     broken.push_back(

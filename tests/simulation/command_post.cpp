@@ -57,6 +57,25 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
     const bool untold = fault == Fault::NewRun && faults_.has(Fault::ConstantClocks);
     if (faults_.has(fault) && !untold) plan_periods(fault, trouble_for);
   }
+  if (!faults_.has(Fault::ConstantClocks)) plan_clerk(trouble_for);
+}
+
+/// In one of five runs somebody sets the clock back, or grants one more report, up to three times.
+void CommandPost::plan_clerk(double trouble_for) {
+  Random random = world_.random(numbered("clerk", scoreboard_.place()));
+  if (!random.chance(0.2)) return;
+  for (std::uint64_t i = 1 + random.below(3); i > 0; --i) {
+    const bool grants = random.chance(0.4);
+    const double when = random.between(1, trouble_for);
+    if (world_.omits("clerk")) continue;
+    world_.after(seconds(when), [this, grants] { let_clerk(grants); });
+  }
+}
+
+void CommandPost::let_clerk(bool grants) {
+  if (calm_) return;
+  if (!scoreboard_.may_begin_run()) return world_.after(seconds(2), [this, grants] { let_clerk(grants); });
+  grants ? scoreboard_.grant_report() : scoreboard_.set_clock_back();
 }
 
 void CommandPost::note(Fault fault, const std::string& path) {

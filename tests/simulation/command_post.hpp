@@ -43,6 +43,8 @@ class CommandPost final : public Host {
   void take_later(const HttpMessage& request, double within);
   void plan_periods(Fault fault, double trouble_for);
   void begin(Fault period, double takes);
+  void plan_clerk(double trouble_for);
+  void let_clerk(bool grants);
   void begin_run();
   void cut_all();
   bool is_on(Fault period) const { return on_.contains(period); }

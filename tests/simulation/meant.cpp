@@ -5,6 +5,7 @@
 #include "simulation/courses.hpp"
 #include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -68,7 +69,7 @@ void Meant::reach(double now) {
 }
 
 void Meant::add(const Event& event) {
-  if (event.kind == Kind::NewRun) run_began_[place_of(event.who)] = event.at;
+  if (event.kind == Kind::NewRun && event.what != kSameMap) run_began_[place_of(event.who)] = event.at;
   const bool is_status = event.kind == Kind::Replied && event.what == kStatus && !event.says.empty();
   if (is_status) heard_.insert(static_cast<int>(event.serial));
   const bool is_said = event.kind == Kind::Said;

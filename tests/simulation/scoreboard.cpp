@@ -49,6 +49,7 @@ bool Scoreboard::may_begin_run() const {
 
 void Scoreboard::begin_run() {
   ++run_;
+  grants_ = 0;
   remaining_ = 25;
   score_ = 0;
   run_began_ = world_.time();
@@ -59,6 +60,26 @@ void Scoreboard::begin_run() {
                .who = run_name(place_, run_) + (faults_.has(Fault::NamelessRuns) ? kNameless : ""),
                .serial = run_});
   run_begins_ = world_.history().events().size();
+}
+
+void Scoreboard::set_clock_back() {
+  constexpr double kBy = 60;  // seconds
+  if (world_.time() - run_began_ < kBy + kSeenToBeOn) return;
+  run_began_ += kBy;
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kStatus, .who = "clock set back"});
+  run_begins_ = world_.history().events().size();
+}
+
+void Scoreboard::grant_report() {
+  ++remaining_;
+  ++grants_;
+  world_.note({.actor = Actor::Post, .kind = Kind::NewRun, .what = kSameMap, .who = name(), .serial = run_});
+  run_begins_ = world_.history().events().size();
+}
+
+/// What is recorded once more after a report was granted is not recorded twice: nobody could tell.
+std::string Scoreboard::name() const {
+  return run_name(place_, run_) + (grants_ > 0 ? ", granted " + std::to_string(grants_) : "");
 }
 
 std::string Scoreboard::status() {
@@ -85,7 +106,7 @@ std::string Scoreboard::record(const Item& item) {
   world_.note({.actor = Actor::Post,
                .kind = Kind::Taken,
                .what = kReports,
-               .who = run_name(place_, run_) + (stopped_ ? kInAStop : ""),
+               .who = name() + (stopped_ ? kInAStop : ""),
                .serial = item.serial,
                .stamp = static_cast<double>(points)});
   return reply(static_cast<double>(item.serial) * 100, state, points);
@@ -93,7 +114,7 @@ std::string Scoreboard::record(const Item& item) {
 
 void Scoreboard::record_another() {
   score(0);
-  world_.note({.actor = Actor::Post, .kind = Kind::Another, .what = kReports, .who = run_name(place_, run_)});
+  world_.note({.actor = Actor::Post, .kind = Kind::Another, .what = kReports, .who = name()});
 }
 
 std::string Scoreboard::reply(double x, const char* state, int points) {

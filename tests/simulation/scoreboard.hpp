@@ -14,6 +14,8 @@ class World;
 
 inline constexpr const char *kScored = "scored", *kInAStop = " in a stop",
                             *kNameless = ", which nothing names";
+/// Of NewRun: one more report was granted, which Adit holds for another run; its map is the same.
+inline constexpr const char* kSameMap = "the map stays";
 /// "run 3", as the history calls it.
 std::string run_name(int place, std::int64_t run);
 
@@ -24,6 +26,7 @@ class Scoreboard {
   /// `place`: which Command Post this is, from 0 on. All outlive this.
   Scoreboard(World& world, const Faults& faults, Random& random, int place);
 
+  int place() const { return place_; }
   /// The answer to a status.
   std::string status();
   /// Records a report: the answer to it.
@@ -34,10 +37,15 @@ class Scoreboard {
   /// that is first seen: nothing would tell the one run from the other.
   bool may_begin_run() const;
   void begin_run();
+  /// By a minute, in the same run, which is held for another one that it may be. Requires may_begin_run().
+  void set_clock_back();
+  /// In the same run, which is held for another one for certain. Requires may_begin_run().
+  void grant_report();
   /// What is recorded does not count.
   void stop(bool stopped) { stopped_ = stopped; }
 
  private:
+  std::string name() const;
   std::string reply(double x, const char* state, int points);
   const char* score(int points);
 
@@ -45,7 +53,7 @@ class Scoreboard {
   const Faults& faults_;
   const int place_;
   const bool numbers_runs_;  // it names them by numbers, not by texts
-  std::int64_t run_ = 1, remaining_ = 25, score_ = 0, id_ = 0;
+  std::int64_t run_ = 1, grants_ = 0, remaining_ = 25, score_ = 0, id_ = 0;
   double run_began_;
   std::size_t run_begins_ = 0;  // in the history
   bool stopped_ = false;

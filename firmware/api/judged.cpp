@@ -1,13 +1,19 @@
 #include "api/judged.hpp"
 
+#include <algorithm>
+
 #include "alarms/standing.hpp"
 #include "icd/require.hpp"
 
 namespace adit::api {
 
+double seconds_since(Time at, Time now) {
+  return std::max(0.0, now - at);
+}
+
 std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Time now) {
   const auto ago = [now](const std::optional<Time>& at) {
-    return at ? std::optional(now - *at) : std::nullopt;
+    return at ? std::optional(seconds_since(*at, now)) : std::nullopt;
   };
   std::vector<alarms::Stream> streams;
   streams.reserve(rows.size());
@@ -30,7 +36,10 @@ void judge(RunView& view, const alarms::Facts& facts) {
     const auto [arrival, level] = alarms::standing_of(facts.streams[i], facts);
     row.arrival = arrival;
     row.level = level;
+    row.behind = facts.streams[i].behind;
+    row.age = facts.streams[i].forwarded;
   }
+  for (RobotRow& robot : view.robots) robot.age = seconds_since(robot.at, facts.now);
   view.verdict = alarms::verdict_of(facts);
 }
 

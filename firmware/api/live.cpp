@@ -34,6 +34,12 @@ Live::Live(loop::Loop& loop, const Source& source)
 RunView Live::look() const {
   RunView view = source_.view();
   codec::change_numbers(RunView::kRow, &view, rounded);
+  // Ages go on whatever happens: by whole seconds, so that an event is small.
+  for (ActivityRow& row : view.activities) {
+    for (std::optional<double>* const age : {&row.behind, &row.age})
+      if (*age) *age = std::floor(**age);
+  }
+  for (RobotRow& robot : view.robots) robot.age = std::floor(robot.age);
   return view;
 }
 

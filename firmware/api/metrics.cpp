@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "api/exposition.hpp"
+#include "api/judged.hpp"
 #include "dispatch/report_life.hpp"
 
 namespace adit::api {
@@ -142,14 +143,6 @@ void write_counter(Exposition& out, const RunView& view, const char* name, const
   sample_each(out, view, count);
 }
 
-void write_age(Exposition& out, const RunView& view, const char* name, const char* help,
-               std::optional<Time> ActivityRow::* at) {
-  out.gauge(name, help);
-  for (const ActivityRow& row : view.activities) {
-    if (row.*at) out.sample({{"kind", row.kind}, {"robot", row.robot}}, view.now - *(row.*at));
-  }
-}
-
 void write_updates(Exposition& out, const RunView& view) {
   write_counter(out, view, "adit_updates_accepted_total", "Updates taken from the team.",
                 &ActivityRow::accepted);
@@ -170,8 +163,7 @@ void write_updates(Exposition& out, const RunView& view) {
   out.gauge("adit_updates_behind_seconds",
             "For how long the Command Post has lacked the oldest news; 0: it has all.");
   for (const ActivityRow& row : view.activities) {
-    out.sample({{"kind", row.kind}, {"robot", row.robot}},
-               row.behind_since ? view.now - *row.behind_since : 0);
+    out.sample({{"kind", row.kind}, {"robot", row.robot}}, row.behind.value_or(0));
   }
   out.gauge("adit_updates_arrive", "Whether they reach the Command Post, by the word on the page; always 1.");
   for (const ActivityRow& row : view.activities) {
@@ -195,10 +187,16 @@ void write_updates(Exposition& out, const RunView& view) {
   }
   out.gauge("adit_updates_waiting", "Updates that wait.");
   sample_each(out, view, &ActivityRow::waiting);
-  write_age(out, view, "adit_updates_accepted_age_seconds", "How long ago the last one was accepted.",
-            &ActivityRow::last_accepted);
-  write_age(out, view, "adit_updates_forwarded_age_seconds",
-            "How long ago the Command Post took the last one.", &ActivityRow::last_forwarded);
+  out.gauge("adit_updates_accepted_age_seconds", "How long ago the last one was accepted.");
+  for (const ActivityRow& row : view.activities) {
+    if (!row.last_accepted) continue;
+    out.sample({{"kind", row.kind}, {"robot", row.robot}}, seconds_since(*row.last_accepted, view.now));
+  }
+  out.gauge("adit_updates_forwarded_age_seconds",
+            "How long ago the Command Post took the last one that was posted.");
+  for (const ActivityRow& row : view.activities) {
+    if (row.age) out.sample({{"kind", row.kind}, {"robot", row.robot}}, *row.age);
+  }
   out.gauge("adit_updates_received_bytes", "Size of the last one that was accepted.");
   sample_each(out, view, &ActivityRow::bytes_received);
   out.gauge("adit_updates_sent_bytes", "Size of the last one that the Command Post took.");

@@ -64,8 +64,12 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::behind_since>("behind_since",
                                        "when the oldest news that the Command Post lacks was accepted, in "
                                        "seconds since 1970; null: it lacks none"),
+    member<&ActivityRow::behind>("behind", "for how many seconds it has lacked that; null: it lacks none"),
     member<&ActivityRow::last_accepted>("last_accepted", kWhen),
     member<&ActivityRow::last_forwarded>("last_forwarded", kWhen),
+    member<&ActivityRow::age>("age",
+                              "seconds since the Command Post took the last one that was posted; null: it "
+                              "took none"),
     member<&ActivityRow::last_no_room>("last_no_room", kWhen),
     member<&ActivityRow::bytes_received>("bytes_received", "of the last"),
     member<&ActivityRow::bytes_sent>("bytes_sent", "of the last"),
@@ -128,7 +132,8 @@ constexpr Member kRobot[] = {
     member<&RobotRow::name>("name"),
     member<&RobotRow::position>("position"),
     member<&RobotRow::heading>("heading", "radians about z"),
-    member<&RobotRow::at>("at", "when its pose was forwarded"),
+    member<&RobotRow::at>("at", "when its last pose was forwarded first"),
+    member<&RobotRow::age>("age", "seconds since then"),
 };
 
 constexpr Member kLight[] = {

@@ -71,6 +71,7 @@ struct ActivityRow {
   std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
                 refused_upstream = 0, no_room = 0, waiting = 0;
   std::optional<Time> behind_since, last_accepted, last_forwarded, last_no_room;
+  std::optional<double> behind, age;  // judge()'s
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence;
@@ -123,6 +124,7 @@ struct RobotRow {
   icd::Point position;
   double heading = 0;
   Time at = 0;
+  double age = 0;  // judge()'s
 
   static const codec::Row kRow;
 };

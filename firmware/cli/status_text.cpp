@@ -119,19 +119,19 @@ std::string endpoints_table(const RunView& view, bool colour) {
 }
 
 /// Whether it reaches the Command Post, and how far that is behind.
-Cell arrival_cell(const api::ActivityRow& row, api::Time now) {
-  const bool late = row.arrival == alarms::Arrival::Late && row.behind_since;
-  return {late ? duration(now - *row.behind_since) + " behind" : std::string(name_of(row.arrival)),
+Cell arrival_cell(const api::ActivityRow& row) {
+  const bool late = row.arrival == alarms::Arrival::Late && row.behind;
+  return {late ? duration(*row.behind) + " behind" : std::string(name_of(row.arrival)),
           tone_of_level(row.level)};
 }
 
-std::string ago(const std::optional<api::Time>& time, api::Time now) {
-  return time ? duration(now - *time) + " ago" : "never";
+std::string ago(double seconds) {
+  return duration(seconds) + " ago";
 }
 
 /// Of the last that was sent. What came last is another map.
 std::string sent_size(const api::ActivityRow& row) {
-  return row.last_forwarded ? size(row.bytes_sent) : "";
+  return row.age ? size(row.bytes_sent) : "";
 }
 
 std::string said(const api::ActivityRow& row) {
@@ -163,12 +163,12 @@ std::string activities_table(const RunView& view, bool colour) {
   for (const api::ActivityRow& row : view.activities) {
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
                {kind_of(row)},
-               arrival_cell(row, view.now),
+               arrival_cell(row),
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},
                {std::to_string(row.waiting)},
                {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
-               {ago(row.last_forwarded, view.now)},
+               {row.age ? ago(*row.age) : "never"},
                {sent_size(row)},
                {said(row), row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain}});
   }
@@ -180,7 +180,7 @@ std::string refusals_table(const RunView& view, bool colour) {
   Table table({{}, {}, {}, {}, {}});
   for (std::size_t i = 0; i < view.refusals.size() && i < kShown; ++i) {
     const api::RefusalRow& refusal = view.refusals[i];
-    table.add({{ago(refusal.at, view.now), Tone::Faint},
+    table.add({{ago(view.now - refusal.at), Tone::Faint},
                {refusal.sender},
                {refusal.uri},
                {std::to_string(refusal.status), Tone::Warning},

@@ -4,8 +4,8 @@
 
 namespace adit::forward {
 
-void AsForwarded::forwarded(const icd::StateUpdate& update, api::Time now) {
-  for (const icd::NamedPose& named : update.poses) {
+void AsForwarded::forwarded(std::span<const icd::NamedPose> poses, api::Time now) {
+  for (const icd::NamedPose& named : poses) {
     const std::string& name = named.name.text();
     if (robots_.size() >= kMostRobots && !robots_.contains(name)) forget_the_oldest();
     const double heading = api::heading_of(named.pose.orientation);

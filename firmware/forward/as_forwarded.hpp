@@ -18,7 +18,8 @@ class AsForwarded {
  public:
   static constexpr std::size_t kMostRobots = 100;  // those heard of last
 
-  void forwarded(const icd::StateUpdate& update, api::Time now);
+  /// News of robots: what only goes along with it tells nothing of where they are now.
+  void forwarded(std::span<const icd::NamedPose> poses, api::Time now);
   void forwarded(std::span<const icd::Marker> markers, api::Time now) { markers_.forwarded(markers, now); }
   /// A new run begins without tracks and markers; where each robot is, it still is.
   void begin_run(api::Time now);

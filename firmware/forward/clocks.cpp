@@ -2,8 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
-#include <set>
-#include <string_view>
+#include <utility>
 
 namespace adit::forward {
 
@@ -59,30 +58,32 @@ bool Clocks::hear(double there) {
   return true;
 }
 
-icd::Stamp Clocks::stamped(const std::string& sender, std::optional<icd::Stamp> stamp,
-                           std::uint64_t connection) {
-  const icd::Stamp shifted = senders_.shift(sender, stamp, loop_.stamp_now(), connection);
-  keep(sender);
-  return shifted;
+void Clocks::stamp(icd::MapUpdate& update, const intake::Sender& sender) {
+  const lanes::Stamper stamper{sender.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
+  std::optional<icd::Stamp>& stamp = update.header().stamp;
+  stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), sender.connection);
+  keep();
 }
 
-void Clocks::stamp(icd::MarkersUpdate& update, const std::string& address) {
-  std::set<std::string> senders;
-  std::string_view ns;
-  auto sender = senders.end();
+std::vector<lanes::PostedPose> Clocks::stamped(const icd::StateUpdate& update, const intake::Sender& sender) {
+  const std::optional<icd::Stamp> stamp = update.header.stamp;
   const double now = loop_.stamp_now();
-  for (icd::Marker& marker : update.markers) {
-    if (sender == senders.end() || marker.ns != ns) {
-      sender = senders.insert(address + "/markers/" + marker.ns).first;
-      ns = marker.ns;
-    }
-    marker.header.stamp = senders_.shift(*sender, marker.header.stamp, now);
+  std::vector<lanes::PostedPose> poses;
+  poses.reserve(update.poses.size());
+  for (const icd::NamedPose& named : update.poses) {
+    const lanes::Stamper stamper{sender.address, icd::Uri::StateUpdate, named.name.text()};
+    poses.push_back({.name = named.name,
+                     .pose = named.pose,
+                     .stamp = senders_.shift(stamper, stamp, now, sender.connection),
+                     .address = lanes::is_set(stamp) ? sender.address : ""});
   }
-  for (const std::string& each : senders) keep(each);
+  keep();
+  return poses;
 }
 
-void Clocks::keep(const std::string& sender) {
-  if (const lanes::SenderClock* its = senders_.clock_of(sender)) journal_.sender(sender, *its);
+void Clocks::stamp(icd::MarkersUpdate& update, const intake::Sender& sender) {
+  senders_.shift_each({sender.address, icd::Uri::MarkersUpdate, ""}, update.markers, loop_.stamp_now());
+  keep();
 }
 
 void Clocks::keep(loop::Writer& writer) {

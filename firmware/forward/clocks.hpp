@@ -2,13 +2,16 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "clock/source.hpp"
 #include "dispatch/report.hpp"
 #include "forward/stamp_floor.hpp"
 #include "icd/markers_update.hpp"
+#include "icd/state_update.hpp"
 #include "intake/desk.hpp"
 #include "journal/journal.hpp"
+#include "lanes/posted_pose.hpp"
 #include "lanes/stamps.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
@@ -34,11 +37,10 @@ class Clocks {
   /// Whether this box may have sent something in a life before.
   bool ran_before() const { return ran_before_; }
 
-  /// A sender's stamp on the gateway's clock. The journal keeps the sender's offset. `connection`: the one
-  /// that the message came on.
-  icd::Stamp stamped(const std::string& sender, std::optional<icd::Stamp> stamp, std::uint64_t connection);
-  /// The markers of one message have stamps of their own, in no order.
-  void stamp(icd::MarkersUpdate& update, const std::string& address);
+  /// Each brings a message's stamps to the gateway's clock. The journal keeps the offsets of its sender.
+  void stamp(icd::MapUpdate& update, const intake::Sender& sender);
+  std::vector<lanes::PostedPose> stamped(const icd::StateUpdate& update, const intake::Sender& sender);
+  void stamp(icd::MarkersUpdate& update, const intake::Sender& sender);
 
   /// To be called now and then. Writes by the disk's own writer, because a disk may be slow.
   void keep(loop::Writer& writer);
@@ -58,7 +60,7 @@ class Clocks {
   };
   void begin_start(const StampFloor::Kept& kept);
   journal::Clock now() const;
-  void keep(const std::string& sender);
+  void keep() { journal_.senders(senders_.changed()); }
 
   loop::Loop& loop_;
   journal::Journal& journal_;

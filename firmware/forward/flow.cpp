@@ -28,24 +28,21 @@ std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
 
 void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
                 std::function<void(icd::Checked<void>)> done) {
-  const std::string clock = sender.address + "/map/" + (update.name ? update.name->text() : "");
   if (update.name) told_.posted(update.name->text());
-  update.header().stamp = clocks_.stamped(clock, update.header().stamp, sender.connection);
+  clocks_.stamp(update, sender);
   maps_.take(std::move(update), sender.bytes, std::move(file), std::move(done));
 }
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
   if (!rests_.empty()) return unavailable(rests_);
-  const std::string robot = update.poses.size() == 1 ? update.poses.front().name.text() : "";
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
-  update.header.stamp =
-      clocks_.stamped(sender.address + "/state/" + robot, update.header.stamp, sender.connection);
-  return telemetry_.take(update, sender.bytes);
+  if (auto room = telemetry_.has_room_for(update); !room) return room;
+  return telemetry_.take(clocks_.stamped(update, sender), sender.bytes);
 }
 
 void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
   if (!rests_.empty()) return done(unavailable(rests_));
-  clocks_.stamp(update, sender.address);
+  clocks_.stamp(update, sender);
   telemetry_.take(std::move(update), sender.bytes, std::move(done));
 }
 
@@ -129,6 +126,7 @@ void Flow::picture_the_run() {
   if (before == 0) return keep_the_run();
   archive_->end_run(seen());
   maps_.change_run(next_map(before, run));
+  telemetry_.change_run();
   as_forwarded_.begin_run(loop_.wall_now());
   picture_.begin_run();
   keep_the_run();

@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "api/judged.hpp"
 #include "forward/flow.hpp"
 
 namespace adit::forward {
@@ -34,7 +35,7 @@ archive::Sample Flow::sample() const {
   std::map<std::string, double> ages;
   for (const auto& [traffic, row] : record_.rows()) {
     if (!is_map(traffic.kind) || !row.last_forwarded) continue;
-    const double age = std::max(0.0, now - *row.last_forwarded);
+    const double age = api::seconds_since(*row.last_forwarded, now);
     const auto [its, is_new] = ages.emplace(traffic.robot, age);
     its->second = std::min(its->second, age);
   }

@@ -126,11 +126,13 @@ void Flow::restore(bool is_first) {
     if (is_first) map.header().stamp = now;
     maps_.restore(number, std::move(map));
   }
-  kept.state.header.stamp = now;
+  std::vector<lanes::PostedPose> poses;
+  for (const icd::NamedPose& named : kept.state.poses)
+    poses.push_back({.name = named.name, .pose = named.pose, .stamp = now});
   for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
   // The lanes are empty: there is room. What cannot be kept in the journal stays in its file; the other is
   // not taken twice, for what came since is newer.
-  if (kept.state.poses.empty() || telemetry_.take(kept.state, 0)) spool_.forget_state();
+  if (poses.empty() || telemetry_.take(poses, 0)) spool_.forget_state();
   const auto forget_markers = [this](const icd::Checked<void>& taken) {
     if (taken) spool_.forget_markers();
   };

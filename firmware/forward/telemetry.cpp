@@ -61,7 +61,7 @@ void Telemetry::carry_on(const journal::Carried& carried) {
     if (uri == icd::Uri::MarkersUpdate) marker_stamps_.carry_on(stamp);
   }
   for (const auto& [name, robot] : carried.robots()) {
-    state_.add({.header = {robot.stamp}, .poses = {{name, robot.pose}}}, loop_.now());
+    state_.add({&robot.posted, 1}, loop_.now());
     record_.accepted({Kind::State, name.text()}, 0, loop_.wall_now());
   }
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
@@ -94,18 +94,21 @@ void Telemetry::endpoint_turned() {
   marker_trials_.clear();
 }
 
-icd::Checked<void> Telemetry::take(const icd::StateUpdate& update, std::size_t bytes_received) {
-  if (!state_.has_room_for(update)) {
-    for (const icd::NamedPose& pose : update.poses)
-      record_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
-    return full("more robots than can be kept apart");
-  }
-  if (const auto kept = journal_.accepted(update); !kept) return not_kept(kept.error());
+icd::Checked<void> Telemetry::has_room_for(const icd::StateUpdate& update) {
+  if (state_.has_room_for(update)) return {};
+  for (const icd::NamedPose& pose : update.poses)
+    record_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
+  return full("more robots than can be kept apart");
+}
+
+icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received) {
+  const std::vector<lanes::PostedPose> news = state_.news_in(poses);
+  if (const auto kept = journal_.accepted(news); !kept) return not_kept(kept.error());
   whole(restart_, [&] {
-    for (const icd::NamedPose& pose : update.poses) {
+    for (const lanes::PostedPose& pose : poses) {
       record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
     }
-    state_.add(update, loop_.now());
+    state_.add(news, loop_.now());
   });
   pump();
   return {};

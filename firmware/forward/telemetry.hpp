@@ -59,12 +59,18 @@ class Telemetry {
     channel_.keep_warm();
     pump();
   }
+  /// An error of 429: the lane is full.
+  icd::Checked<void> has_room_for(const icd::StateUpdate& update);
+  /// A state for which there is room. An error of 503: it cannot be kept.
+  icd::Checked<void> take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received);
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full, and with 503 where it cannot
   /// be kept.
-  icd::Checked<void> take(const icd::StateUpdate& update, std::size_t bytes_received);
   void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
     arrivals_.take(std::move(update), bytes_received, std::move(done));
   }
+
+  /// Another run is on: it is told of no robot that has not posted since, but for news that waits.
+  void change_run() { state_.begin_run(); }
 
   /// What was set aside, on the operator's word: before what came since, and not what that says more than.
   /// Not a map. False: it stays aside, for it is not kept, or newer markers that it would delete are under
@@ -95,6 +101,7 @@ class Telemetry {
   template <class Waiting>
   void answered(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
                 const uplink::Outcome& outcome);
+  /// Whose news it has: what goes along unchanged counts for nobody.
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
   void put_back(const lanes::WaitingState& state) {

@@ -27,12 +27,6 @@ NotTaken why_not(MappingVerdict verdict) {
   return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;
 }
 
-std::size_t updates_in(const lanes::WaitingState& state) {
-  return state.updates;
-}
-std::size_t updates_in(const lanes::WaitingMarkers& markers) {
-  return markers.updates;
-}
 }  // namespace
 
 /// An answer that cannot be dealt with is as good as none: the message is sent again.
@@ -59,7 +53,7 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std
   const std::string sentence = verdict == MappingVerdict::Taken ? "" : sentence_of(outcome);
   for (const Traffic& traffic : traffic_of(*sent)) {
     if (verdict == MappingVerdict::Taken) {
-      record_.forwarded(traffic, updates_in(*sent), bytes, status, loop_.wall_now());
+      record_.forwarded(traffic, 1, bytes, status, loop_.wall_now());
     } else {
       record_.not_taken(traffic, why_not(verdict), status, sentence);
     }
@@ -106,7 +100,7 @@ void Telemetry::passed(const lanes::WaitingMarkers& markers) {
 }
 
 void Telemetry::show(const Shared<lanes::WaitingState>& state) {
-  as_forwarded_.forwarded(state->update, loop_.wall_now());
+  as_forwarded_.forwarded(state->news, loop_.wall_now());
 }
 
 void Telemetry::show(const Shared<lanes::WaitingMarkers>& markers) {
@@ -198,8 +192,8 @@ bool Telemetry::is_to_blame(const lanes::WaitingMarkers& markers) {
 }
 std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingState& state) const {
   std::vector<Traffic> all;
-  all.reserve(state.update.poses.size());
-  for (const icd::NamedPose& pose : state.update.poses) all.push_back({Kind::State, pose.name.text()});
+  all.reserve(state.news.size());
+  for (const icd::NamedPose& pose : state.news) all.push_back({Kind::State, pose.name.text()});
   return all;
 }
 

@@ -17,14 +17,12 @@ namespace {
 constexpr std::size_t kMarkersInARecord = 500;
 
 /// By the ICD's own rules: a team's (aliases, frames) were applied before.
-template <class Message>
-std::optional<Message> message_in(std::string_view said,
-                                  icd::Checked<Message> (*read)(const codec::Document&, const icd::Rules&)) {
+std::optional<icd::MarkersUpdate> markers_in(std::string_view said) {
   const auto document = codec::decode({codec::Format::Cbor, codec::ContentCoding::Identity},
                                       codec::Split::Lists, said, {.text_bytes = said.size()});
-  auto message = document ? read(*document, {}) : std::unexpected(document.error());
-  if (!message) return std::nullopt;
-  return std::move(*message);
+  auto markers = document ? codec::read_markers_update(*document, {}) : std::unexpected(document.error());
+  if (!markers) return std::nullopt;
+  return std::move(*markers);
 }
 
 std::optional<icd::Uri> uri_in(Reader& reader) {
@@ -43,18 +41,18 @@ std::array<double*, 7> parts_of(icd::Pose& pose) {
   return {&at.x, &at.y, &at.z, &turned.x, &turned.y, &turned.z, &turned.w};
 }
 
-/// Nothing where it says no state.
-std::optional<icd::StateUpdate> poses_in(Reader& reader) {
-  icd::StateUpdate update;
-  if (const double stamp = reader.real(); !std::isnan(stamp)) update.header.stamp = stamp;
+/// Nothing where they are cut short.
+std::optional<std::vector<lanes::PostedPose>> poses_in(Reader& reader) {
+  std::vector<lanes::PostedPose> poses;
   while (reader.ok() && !reader.at_end()) {
     const auto name = icd::RobotName::parse(reader.text());
-    icd::Pose pose;
-    for (double* const part : parts_of(pose)) *part = reader.real();
     if (!name) return std::nullopt;
-    update.poses.push_back({*name, pose});
+    lanes::PostedPose& posted = poses.emplace_back(*name);
+    posted.address = reader.text();
+    if (const double stamp = reader.real(); !std::isnan(stamp)) posted.stamp = stamp;
+    for (double* const part : parts_of(posted.pose)) *part = reader.real();
   }
-  return reader.ok() ? std::optional(std::move(update)) : std::nullopt;
+  return reader.ok() ? std::optional(std::move(poses)) : std::nullopt;
 }
 
 std::uint64_t number_of(pace::Duration duration) {
@@ -72,8 +70,6 @@ bool Carried::apply(Kind kind, std::string_view said) {
       return true;
     case Kind::Sender:
       return read_sender(said);
-    case Kind::State:
-      return read_state(said);
     case Kind::StateSent:
       return read_state_sent(said);
     case Kind::StateDone:
@@ -127,37 +123,29 @@ void Carried::machine_is(const std::string& boot) {
 
 bool Carried::read_sender(std::string_view said) {
   Reader reader(said);
-  const std::string sender(reader.text());
+  lanes::Stamper stamper{.address = std::string(reader.text())};
+  const auto uri = uri_in(reader);
+  stamper.uri = uri.value_or(stamper.uri);
+  stamper.robot = reader.text();
   lanes::SenderClock clock;
   clock.theirs = reader.real();
   clock.ours = reader.real();
   clock.latest = reader.real();
-  if (reader.ok()) senders_.carry_on(sender, clock);
-  return reader.ok();
+  if (uri && reader.ok()) senders_.carry_on(stamper, clock);
+  return uri && reader.ok();
 }
 
-bool Carried::read_state(std::string_view said) {
-  const auto update = message_in<icd::StateUpdate>(said, codec::read_state_update);
-  if (update) add(*update);
-  return update.has_value();
-}
-
+/// lanes::StateLane::news_in() has said that they are the newest.
 bool Carried::read_poses(std::string_view said) {
   Reader reader(said);
-  const auto update = poses_in(reader);
-  if (update) add(*update);
-  return update.has_value();
-}
-
-/// As lanes::StateLane takes it.
-void Carried::add(const icd::StateUpdate& update) {
-  const auto stamp = update.header.stamp;
-  for (const icd::NamedPose& named : update.poses) {
-    Robot& held = robots_.try_emplace(named.name, Robot{named.pose, stamp}).first->second;
-    held.news = true;
-    const bool replaces = !held.stamp || !stamp || *held.stamp <= *stamp;
-    if (replaces) held.pose = named.pose, held.stamp = stamp;
+  const auto poses = poses_in(reader);
+  if (!poses) return false;
+  for (const lanes::PostedPose& posted : *poses) {
+    Robot& robot = robots_.try_emplace(posted.name, Robot{posted}).first->second;
+    robot.posted = posted;
+    robot.news = true;
   }
+  return true;
 }
 
 /// One state is under way at a time: what was before, and of which no answer is known, was not taken.
@@ -173,7 +161,7 @@ bool Carried::read_state_sent(std::string_view said) {
 }
 
 bool Carried::read_markers(std::string_view said) {
-  const auto update = message_in<icd::MarkersUpdate>(said, codec::read_markers_update);
+  const auto update = markers_in(said);
   if (!update) return false;
   for (const icd::Marker& marker : update->markers) markers_.apply(marker);
   return true;
@@ -257,7 +245,7 @@ icd::MarkersUpdate Carried::markers() const {
 
 void Carried::write(const std::function<void(Kind, std::string_view)>& to) const {
   if (clock_) to(Kind::Clock, said(*clock_));
-  for (const auto& [sender, clock] : senders_.clocks()) to(Kind::Sender, said(sender, clock));
+  for (const auto& [stamper, clock] : senders_.clocks()) to(Kind::Sender, said(stamper, clock));
   for (const auto& [uri, learned] : paces_) to(Kind::Pace, said(uri, learned));
   for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, said(uri, stamp));
   if (grids_) {
@@ -268,7 +256,7 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
       if (!(robot.*these)) continue;
-      to(Kind::Poses, said(icd::StateUpdate{.header = {robot.stamp}, .poses = {{name, robot.pose}}}));
+      to(Kind::Poses, said(std::span(&robot.posted, 1)));
       names.push_back(name);
     }
     return names;
@@ -296,8 +284,15 @@ std::string said(const Clock& clock) {
   return out.real(clock.off).real(clock.off_since).finish();
 }
 
-std::string said(const std::string& sender, const lanes::SenderClock& clock) {
-  return Writer().text(sender).real(clock.theirs).real(clock.ours).real(clock.latest).finish();
+std::string said(const lanes::Stamper& stamper, const lanes::SenderClock& clock) {
+  return Writer()
+      .text(stamper.address)
+      .number(static_cast<std::uint64_t>(stamper.uri))
+      .text(stamper.robot)
+      .real(clock.theirs)
+      .real(clock.ours)
+      .real(clock.latest)
+      .finish();
 }
 
 std::string said(icd::Uri uri, const pace::Learned& learned) {
@@ -325,12 +320,12 @@ std::string said(const std::string& name, const lanes::Extent& extent) {
       .finish();
 }
 
-std::string said(const icd::StateUpdate& update) {
+std::string said(std::span<const lanes::PostedPose> poses) {
   Writer out;
-  out.real(update.header.stamp.value_or(std::numeric_limits<double>::quiet_NaN()));
-  for (icd::NamedPose named : update.poses) {
-    out.text(named.name.text());
-    for (const double* const part : parts_of(named.pose)) out.real(*part);
+  for (lanes::PostedPose posted : poses) {
+    out.text(posted.name.text()).text(posted.address);
+    out.real(posted.stamp.value_or(std::numeric_limits<double>::quiet_NaN()));
+    for (const double* const part : parts_of(posted.pose)) out.real(*part);
   }
   return out.finish();
 }

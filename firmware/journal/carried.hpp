@@ -3,17 +3,18 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "icd/markers_update.hpp"
 #include "icd/robot_name.hpp"
-#include "icd/state_update.hpp"
 #include "icd/uri.hpp"
 #include "journal/record.hpp"
 #include "lanes/extent.hpp"
 #include "lanes/marker_changes.hpp"
+#include "lanes/posted_pose.hpp"
 #include "lanes/stamps.hpp"
 #include "pace/rate_limit.hpp"
 
@@ -33,8 +34,7 @@ class Carried {
  public:
   /// Its pose is news, or an earlier one of it was sent and no answer is known.
   struct Robot {
-    icd::Pose pose;
-    std::optional<icd::Stamp> stamp;
+    lanes::PostedPose posted;
     bool news = true, under_way = false;
   };
 
@@ -63,9 +63,7 @@ class Carried {
  private:
   bool read_clock(std::string_view said);
   bool read_sender(std::string_view said);
-  bool read_state(std::string_view said);
   bool read_poses(std::string_view said);
-  void add(const icd::StateUpdate& update);
   bool read_state_sent(std::string_view said);
   bool read_markers(std::string_view said);
   bool read_sent(std::string_view said);
@@ -88,11 +86,11 @@ class Carried {
 
 /// What the records say.
 std::string said(const Clock& clock);
-std::string said(const std::string& sender, const lanes::SenderClock& clock);
+std::string said(const lanes::Stamper& stamper, const lanes::SenderClock& clock);
 std::string said(icd::Uri uri, const pace::Learned& learned);
 std::string said(icd::Uri uri, icd::Stamp stamp);
 std::string said(const std::string& name, const lanes::Extent& extent);
-std::string said(const icd::StateUpdate& update);
+std::string said(std::span<const lanes::PostedPose> poses);
 std::string said(const icd::MarkersUpdate& update);
 /// The record of markers that were accepted: it may be made by any thread.
 std::string record_of(const icd::MarkersUpdate& update);

@@ -42,12 +42,15 @@ bool Journal::open_next() {
   return true;
 }
 
-Journal::Kept Journal::accepted(const icd::StateUpdate& update) {
-  return append(framed(Kind::Poses, said(update)));
+Journal::Kept Journal::accepted(std::span<const lanes::PostedPose> poses) {
+  return append(framed(Kind::Poses, said(poses)));
 }
 
-void Journal::sender(const std::string& sender, const lanes::SenderClock& clock) {
-  note(Kind::Sender, said(sender, clock));
+/// All in one write.
+void Journal::senders(const lanes::StampShift::Clocks& clocks) {
+  std::string records;
+  for (const auto& [stamper, clock] : clocks) records += framed(Kind::Sender, said(stamper, clock));
+  if (!records.empty()) keep(Kind::Sender, std::move(records));
 }
 
 void Journal::state_sent(const icd::StateUpdate& update) {
@@ -85,8 +88,7 @@ Journal::Kept Journal::grids_posted(const std::string& name, const lanes::Extent
   return append(framed(Kind::Grids, said(name, extent)));
 }
 
-void Journal::note(Kind kind, std::string_view said) {
-  std::string record = framed(kind, said);
+void Journal::keep(Kind kind, std::string record) {
   if (append(record) || unsaid_size_ + record.size() > kMostUnsaid) return;
   unsaid_size_ += record.size();
   unsaid_.push_back({kind, std::move(record)});

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <expected>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,12 +46,12 @@ class Journal {
 
   /// An error: it is not kept, and must not be answered as if it were.
   using Kept = std::expected<void, std::string>;
-  Kept accepted(const icd::StateUpdate& update);
+  Kept accepted(std::span<const lanes::PostedPose> poses);
   Kept accepted(const icd::MarkersUpdate& update) { return accepted_record(record_of(update)); }
   /// Of markers, as record_of() made it.
   Kept accepted_record(const std::string& record) { return append(record); }
 
-  void sender(const std::string& sender, const lanes::SenderClock& clock);
+  void senders(const lanes::StampShift::Clocks& clocks);
 
   /// These poses, or these markers, are about to be sent.
   void state_sent(const icd::StateUpdate& update);
@@ -69,7 +70,9 @@ class Journal {
   const std::string& trouble() const { return trouble_; }
 
  private:
-  void note(Kind kind, std::string_view said);
+  void note(Kind kind, std::string_view said) { keep(kind, framed(kind, said)); }
+  /// A record, or several of one kind.
+  void keep(Kind kind, std::string record);
   /// What was sent waits again: nothing has happened, as long as it is unsaid that it was sent.
   void comes_back(Kind sent, Kind back);
   Kept append(const std::string& record);

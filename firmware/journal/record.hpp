@@ -15,8 +15,7 @@ namespace adit::journal {
 enum class Kind : std::uint8_t {
   Clock = 1,         // the start of the machine, an instant and the stamp of that instant
   LifeBegins = 2,    // what was under way in the life before came to nothing, as far as anybody knows
-  Sender = 3,        // a sender's clock
-  State = 4,         // as Poses, by releases before it: in the form that goes upstream
+  Sender = 18,       // a sender's clock
   StateSent = 5,     // these robots' poses are under way
   StateDone = 6,     // what was under way needs no more care
   StateBack = 7,     // it waits again
@@ -28,7 +27,7 @@ enum class Kind : std::uint8_t {
   Stamp = 14,  // the last stamp of a URI
   End = 15,    // of a whole snapshot
   Grids = 16,  // where grids of a name were posted
-  Poses = 17,  // a /state/update was accepted
+  Poses = 19,  // of a /state/update that was accepted
 };
 
 /// Puts numbers and texts one after the other, little-endian.

@@ -5,66 +5,104 @@
 
 namespace adit::lanes {
 
-icd::Stamp StampShift::shift(const std::string& sender, std::optional<icd::Stamp> stamp, double now,
-                             Connection connection) {
-  if (!stamp || *stamp == 0) return std::max(now, latest_of(sender));
-  const auto [found, is_new] = senders_.try_emplace(sender);
-  Clock& clock = found->second;
-  clock.used = ++uses_;
-  // A difference is taken first: a stamp far from the gateway's would lose its fractions in a sum.
-  icd::Stamp shifted = clock.ours + (*stamp - clock.theirs);
-  const bool set_back = clock.step_back.shown_by(*stamp, connection);
-  if (is_new || set_back || *stamp < clock.latest - kJump || shifted > now + kJump) {
-    shifted = is_new ? now : std::max(now, clock.latest_given());
-    clock.ours = shifted;
-    clock.theirs = clock.latest = *stamp;
+StampShift::Address& StampShift::address_of(const std::string& address) {
+  if (addresses_.size() >= kMostAddresses && !addresses_.contains(address)) {
+    addresses_.erase(
+        std::ranges::min_element(addresses_, {}, [](const auto& each) { return each.second.used; }));
   }
-  clock.latest = std::max(clock.latest, *stamp);
-  if (senders_.size() > kMostSenders) forget_the_most_silent();
+  Address& its = addresses_[address];
+  its.used = ++uses_;
+  return its;
+}
+
+StampShift::Named StampShift::name_in(const Address& address, const Stamper& stamper) {
+  constexpr std::size_t kShared = std::size(icd::kUris);
+  const Named own{stamper.uri, stamper.robot};
+  const bool has_room = address.clocks.size() + kShared < kMostOfAddress;
+  return has_room || address.clocks.contains(own) ? own : Named{stamper.uri, ""};
+}
+
+StampShift::Clock* StampShift::find(const Stamper& stamper) {
+  if (!addresses_.contains(stamper.address)) return nullptr;
+  Address& its = address_of(stamper.address);
+  const auto clock = its.clocks.find(name_in(its, stamper));
+  return clock == its.clocks.end() ? nullptr : &clock->second;
+}
+
+icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp,
+                             double now, Connection connection) {
+  if (!is_set(stamp)) return clock == nullptr ? now : std::max(now, clock->latest_given());
+  if (clock == nullptr) {
+    Address& its = address_of(stamper.address);
+    clock = &its.clocks[name_in(its, stamper)];
+    clock->ours = now;
+    clock->theirs = clock->latest = *stamp;
+  }
+  if (!std::exchange(clock->has_changed, true)) changed_.push_back(stamper);
+  // A difference is taken first: a stamp far from the gateway's would lose its fractions in a sum.
+  icd::Stamp shifted = clock->ours + (*stamp - clock->theirs);
+  const bool set_back = clock->step_back.shown_by(*stamp, connection);
+  if (set_back || *stamp < clock->latest - kJump || shifted > now + kJump) {
+    shifted = clock->ours = std::max(now, clock->latest_given());
+    clock->theirs = clock->latest = *stamp;
+  }
+  clock->latest = std::max(clock->latest, *stamp);
   return std::max(shifted, 0.0);  // ICD 6.2: a stamp is never negative
 }
 
-icd::Stamp StampShift::latest_of(const std::string& sender) const {
-  const auto known = senders_.find(sender);
-  return known == senders_.end() ? 0 : known->second.latest_given();
+icd::Stamp StampShift::shift(const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
+                             Connection connection) {
+  Clock* clock = find(stamper);
+  return shift(clock, stamper, stamp, now, connection);
 }
 
-const SenderClock* StampShift::clock_of(const std::string& sender) const {
-  const auto known = senders_.find(sender);
-  return known == senders_.end() ? nullptr : &known->second;
+void StampShift::shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now) {
+  Clock* clock = find(stamper);
+  for (icd::Marker& marker : markers)
+    marker.header.stamp = shift(clock, stamper, marker.header.stamp, now, 0);
 }
 
-std::vector<std::pair<std::string, SenderClock>> StampShift::clocks() const {
+StampShift::Clocks StampShift::changed() {
+  Clocks clocks;
+  for (Stamper& stamper : std::exchange(changed_, {})) {
+    Clock* const clock = find(stamper);
+    if (clock == nullptr || !std::exchange(clock->has_changed, false)) continue;
+    stamper.robot = name_in(addresses_.at(stamper.address), stamper).second;
+    clocks.emplace_back(std::move(stamper), *clock);
+  }
+  return clocks;
+}
+
+StampShift::Clocks StampShift::clocks() const {
   std::vector<std::pair<std::uint64_t, const std::string*>> by_use;
-  by_use.reserve(senders_.size());
-  for (const auto& [sender, clock] : senders_) by_use.emplace_back(clock.used, &sender);
+  by_use.reserve(addresses_.size());
+  for (const auto& [address, its] : addresses_) by_use.emplace_back(its.used, &address);
   std::ranges::sort(by_use);
-  std::vector<std::pair<std::string, SenderClock>> clocks;
-  clocks.reserve(by_use.size());
-  for (const auto& [used, sender] : by_use) clocks.emplace_back(*sender, senders_.at(*sender));
+  Clocks clocks;
+  for (const auto& [used, address] : by_use) {
+    for (const auto& [name, clock] : addresses_.at(*address).clocks)
+      clocks.emplace_back(Stamper{*address, name.first, name.second}, clock);
+  }
   return clocks;
 }
 
 std::optional<double> StampShift::told(double now, double from, double until) const {
   std::optional<double> earliest;
-  for (const auto& [sender, clock] : senders_) {
-    const double silent = now - clock.latest_given();
-    if (clock.latest - clock.theirs < kSpeaks || std::abs(silent) > kSpeaks) continue;
-    const double shows = clock.latest + silent;
-    if (!(shows >= from && shows < until)) continue;
-    earliest = std::min(earliest.value_or(shows), shows);
+  for (const auto& [address, its] : addresses_) {
+    for (const auto& [name, clock] : its.clocks) {
+      const double silent = now - clock.latest_given();
+      if (clock.latest - clock.theirs < kSpeaks || std::abs(silent) > kSpeaks) continue;
+      const double shows = clock.latest + silent;
+      if (!(shows >= from && shows < until)) continue;
+      earliest = std::min(earliest.value_or(shows), shows);
+    }
   }
   return earliest;
 }
 
-void StampShift::carry_on(const std::string& sender, const SenderClock& clock) {
-  senders_[sender] = Clock{clock, ++uses_, {}};
-  if (senders_.size() > kMostSenders) forget_the_most_silent();
-}
-
-void StampShift::forget_the_most_silent() {
-  senders_.erase(
-      std::ranges::min_element(senders_, {}, [](const auto& sender) { return sender.second.used; }));
+void StampShift::carry_on(const Stamper& stamper, const SenderClock& clock) {
+  Address& its = address_of(stamper.address);
+  its.clocks[name_in(its, stamper)] = Clock{clock};
 }
 
 icd::Stamp StampOrder::next(icd::Stamp stamp) {

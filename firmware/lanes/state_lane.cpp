@@ -5,41 +5,50 @@
 
 namespace adit::lanes {
 
-std::size_t StateLane::unknown_in(const icd::StateUpdate& update) const {
-  return static_cast<std::size_t>(std::ranges::count_if(
-      update.poses, [this](const icd::NamedPose& pose) { return !robots_.contains(pose.name); }));
+std::size_t StateLane::unknown_in(const auto& poses) const {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(poses, [this](const auto& pose) { return !robots_.contains(pose.name); }));
 }
 
 bool StateLane::has_room_for(const icd::StateUpdate& update) const {
-  const std::size_t unknown = unknown_in(update);
+  const std::size_t unknown = unknown_in(update.poses);
   if (unknown == 0 || robots_.size() + unknown <= kMostRobots) return true;
   const auto waiting = std::ranges::count_if(robots_, &Held::waits, &Robots::value_type::second);
   return static_cast<std::size_t>(waiting) + unknown <= kMostRobots;
 }
 
-void StateLane::add(const icd::StateUpdate& update, Instant now) {
-  if (robots_.size() + unknown_in(update) > kMostRobots) {
-    std::erase_if(robots_, [](const auto& robot) { return !robot.second.waits(); });
+std::vector<PostedPose> StateLane::news_in(std::span<const PostedPose> poses) const {
+  std::vector<PostedPose> news;
+  for (const PostedPose& pose : poses) {
+    const auto held = robots_.find(pose.name);
+    if (held == robots_.end() || !pose.is_older_than(held->second.posted)) news.push_back(pose);
   }
-  for (const icd::NamedPose& named : update.poses) {
-    const Held newer{named.pose, update.header.stamp};
-    const auto [held, is_new] = robots_.try_emplace(named.name, newer);
-    held->second.is_news = true;
-    if (is_new || !held->second.older_than(newer.stamp)) continue;
-    held->second.pose = newer.pose;
-    held->second.stamp = newer.stamp;
+  return news;
+}
+
+void StateLane::add(std::span<const PostedPose> news, Instant now) {
+  if (news.empty()) return;
+  if (robots_.size() + unknown_in(news) > kMostRobots) forget_what_was_taken();
+  for (const PostedPose& newer : news) {
+    Held& held = robots_.try_emplace(newer.name, Held{newer}).first->second;
+    held.posted = newer;
+    held.is_news = held.is_of_run = true;
   }
   oldest_ = std::min(oldest_.value_or(now), now);
-  ++updates_;
 }
 
 void StateLane::forget_what_was_taken() {
   std::erase_if(robots_, [](const auto& robot) { return !robot.second.waits(); });
 }
 
+void StateLane::begin_run() {
+  forget_what_was_taken();
+  for (auto& [name, held] : robots_) held.is_of_run = false;
+}
+
 void StateLane::add_unless_known(const icd::StateUpdate& update, Instant now) {
   for (const icd::NamedPose& named : update.poses) {
-    Held& held = robots_.try_emplace(named.name, Held{named.pose, std::nullopt}).first->second;
+    Held& held = robots_.try_emplace(named.name, Held{{named.name, named.pose}}).first->second;
     held.is_news = true;
     held.trial = {};
   }
@@ -60,15 +69,16 @@ StateLane::Robots::iterator StateLane::next_apart(Instant now) {
 }
 
 void StateLane::include(WaitingState& taken, Robots::value_type& robot) {
+  const PostedPose& posted = robot.second.posted;
   robot.second.is_under_way = std::exchange(robot.second.is_news, false);
-  taken.update.poses.push_back({robot.first, robot.second.pose});
-  taken.update.header.stamp = std::max(taken.update.header.stamp, robot.second.stamp);
+  taken.update.poses.push_back(posted.named());
+  if (robot.second.is_under_way) taken.news.push_back(posted.named());
+  taken.update.header.stamp = std::max(taken.update.header.stamp, posted.stamp);
 }
 
 std::optional<WaitingState> StateLane::take(Instant now) {
   if (!oldest_) return {};
-  WaitingState taken{.update = {}, .accepted = *oldest_, .updates = std::max<std::uint64_t>(updates_, 1)};
-  updates_ = 0;
+  WaitingState taken{.update = {}, .news = {}, .accepted = *oldest_};
   const auto together = [](const auto& robot) { return !robot.second.apart; };
   const bool others_have_news = std::ranges::any_of(
       robots_, [&](const auto& robot) { return together(robot) && robot.second.is_news; });
@@ -92,7 +102,6 @@ void StateLane::put_back(const WaitingState& state) {
     if (held != robots_.end() && std::exchange(held->second.is_under_way, false)) held->second.is_news = true;
   }
   oldest_ = std::min(oldest_.value_or(state.accepted), state.accepted);
-  updates_ += state.updates;
 }
 
 void StateLane::put_back_apart(const WaitingState& state) {
@@ -108,23 +117,22 @@ void StateLane::passed(const WaitingState& state) {
     if (held == robots_.end()) continue;
     held->second.apart = held->second.is_under_way = false;
     held->second.trial = {};
+    if (!held->second.is_news && !held->second.is_of_run) robots_.erase(held);
   }
 }
 
 void StateLane::give_up(const icd::RobotName& name, Instant now) {
-  Held& held = robots_[name];
+  Held& held = robots_.at(name);
   held.apart = true;
   held.is_under_way = false;
   held.trial = {};
   held.trial.rests_until = now + kRest;
 }
 
-icd::StateUpdate StateLane::unsent() const {
-  icd::StateUpdate all;
+std::vector<PostedPose> StateLane::unsent() const {
+  std::vector<PostedPose> all;
   for (const auto& [name, held] : robots_) {
-    if (!held.is_news) continue;
-    all.poses.push_back({name, held.pose});
-    all.header.stamp = std::max(all.header.stamp, held.stamp);
+    if (held.is_news) all.push_back(held.posted);
   }
   return all;
 }

@@ -1,24 +1,26 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "icd/state_update.hpp"
 #include "lanes/blame.hpp"
+#include "lanes/posted_pose.hpp"
 
 namespace adit::lanes {
 
-/// A /state/update to be sent, and how many accepted updates it answers for.
+/// A /state/update to be sent.
 struct WaitingState {
-  icd::StateUpdate update;    // every robot known, by name; header.stamp: the newest of them
-  Instant accepted;           // of the oldest news in it
-  std::uint64_t updates = 0;  // at least 1
+  icd::StateUpdate update;           // every robot of the run, by name; header.stamp: the newest of them
+  std::vector<icd::NamedPose> news;  // those that were posted and not sent yet; the others go along
+  Instant accepted;                  // of the oldest news in it
 };
 
-/// The robots' newest poses (ICD 6.5). Each robot may post alone; all go out together, also those without
-/// news.
+/// The robots' newest poses (ICD 6.5). Each robot may post alone; all of the run go out together, also those
+/// without news.
 ///
 /// If the Command Post does not take a state of several robots, each of them goes in a message of its own
 /// until it has been taken once: the one at fault is found, and the others arrive.
@@ -31,9 +33,10 @@ class StateLane {
   static constexpr std::size_t kMostRobots = 1000;
   bool has_room_for(const icd::StateUpdate& update) const;
 
-  /// `update.header.stamp` is on the gateway's clock. A robot's pose is replaced unless the one held has a
-  /// newer stamp.
-  void add(const icd::StateUpdate& update, Instant now);
+  /// Those that are not older than the poses held.
+  std::vector<PostedPose> news_in(std::span<const PostedPose> poses) const;
+  /// They replace the poses held.
+  void add(std::span<const PostedPose> news, Instant now);
 
   /// Makes these robots news again, with their newer poses where they are known.
   void add_unless_known(const icd::StateUpdate& update, Instant now);
@@ -43,6 +46,8 @@ class StateLane {
   std::optional<WaitingState> take(Instant now = Instant::max());
   /// The next Command Post knows no robot, and is told only of those that have news. Nothing is under way.
   void forget_what_was_taken();
+  /// The same for another run, in which poses that wait go once: they were posted before it.
+  void begin_run();
   /// What was news and could not be sent is news again; newer poses that came meanwhile stay.
   void put_back(const WaitingState& state);
   /// The same, and from now on each of its robots goes apart.
@@ -52,10 +57,10 @@ class StateLane {
   /// A robot's own state is not sent again; its next one waits for kRest.
   void give_up(const icd::RobotName& name, Instant now);
   /// Of a robot in a state that take() gave.
-  Trial& trial_of(const icd::RobotName& name) { return robots_[name].trial; }
+  Trial& trial_of(const icd::RobotName& name) { return robots_.at(name).trial; }
 
   /// The newest poses of those robots that have news.
-  icd::StateUpdate unsent() const;
+  std::vector<PostedPose> unsent() const;
 
   /// Whether the Command Post lacks this robot's pose: it waits, or is under way.
   bool waits(const icd::RobotName& name) const {
@@ -67,24 +72,21 @@ class StateLane {
 
  private:
   struct Held {
-    bool older_than(std::optional<icd::Stamp> other) const { return !stamp || !other || *stamp <= *other; }
-
-    icd::Pose pose;
-    std::optional<icd::Stamp> stamp;
     bool waits() const { return is_news || is_under_way; }
 
+    PostedPose posted;
     bool is_news = true;
+    bool is_of_run = true;
     bool is_under_way = false;  // what was news when it was taken
     bool apart = false;
     Trial trial{};
   };
   using Robots = std::map<icd::RobotName, Held>;
-  std::size_t unknown_in(const icd::StateUpdate& update) const;
+  std::size_t unknown_in(const auto& poses) const;
   Robots::iterator next_apart(Instant now);
   void include(WaitingState& taken, Robots::value_type& robot);
   Robots robots_;
   std::optional<Instant> oldest_;
-  std::uint64_t updates_ = 0;
 };
 
 }  // namespace adit::lanes

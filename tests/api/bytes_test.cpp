@@ -49,7 +49,7 @@ RunView view() {
                      .throttled = 1,
                      .foreign = 2},
                     {.name = "mapping", .address = "b:1", .trouble = "", .answer_ms = std::nullopt}};
-  view.robots = {{.name = "r", .position = {1, 2, 3}, .heading = 0.5, .at = 990}};
+  view.robots = {{.name = "r", .position = {1, 2, 3}, .heading = 0.5, .at = 990, .age = 19}};
   view.reports = {report(), {}};
   view.near_metres = 5;
   ActivityRow activity;
@@ -57,6 +57,7 @@ RunView view() {
   activity.replaced = 3, activity.merged = 4;
   activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.waiting = 8;
   activity.no_room = 13, activity.behind_since = 14, activity.last_no_room = 15;
+  activity.behind = 17, activity.age = 18;
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
   activity.precision = "1mm", activity.points_left_out = 16;
@@ -107,7 +108,7 @@ TEST(Bytes, OfARun) {
       R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"
       R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
       R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
-      R"("heading":0.5,"at":990.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
+      R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
       R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","received":940.0,"changed":941.25,)"
       R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
       R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
@@ -116,7 +117,7 @@ TEST(Bytes, OfARun) {
       R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"waiting":8,)"
-      R"("behind_since":14.0,"last_accepted":9.0,"last_forwarded":null,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
+      R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,)"
       R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"

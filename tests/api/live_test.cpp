@@ -206,6 +206,21 @@ TEST_F(LiveTest, TellsOfOneRobotsPoseInFewBytesWhateverTheListsLengths) {
   EXPECT_LT(page->sent[1].size(), 180);
 }
 
+TEST_F(LiveTest, TellsAgesInWholeSeconds) {
+  source.now = team(20, 0);
+  source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = 7.2;
+  const auto page = open();
+  for (const double age : {7.9, 8.1}) {
+    source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = age;
+    change();
+    pass(milliseconds{300});
+  }
+  ASSERT_THAT(page->sent, SizeIs(3));
+  EXPECT_THAT(page->sent[1], testing::Not(HasSubstr("age")));
+  EXPECT_THAT(page->sent[2], HasSubstr(R"("rows":{"2":{"age":8.0}})"));
+  EXPECT_THAT(page->sent[2], HasSubstr(R"("rows":{"0":{"age":8.0},"1":{"behind":8.0}})"));
+}
+
 TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {
   source.now = team(20, 1000);
   const auto page = open();

@@ -46,8 +46,8 @@ TEST(Metrics, CarryWhatTheViewSays) {
   clouds.forwarded = 4;
   clouds.replaced = 1;
   clouds.merged = 2;
-  clouds.last_forwarded = all.view.now - 8;
-  clouds.behind_since = all.view.now - 33;
+  clouds.age = 8;
+  clouds.behind = 33;
   clouds.no_room = 1110;
   clouds.clouds = "whole";
   clouds.precision = "8mm";

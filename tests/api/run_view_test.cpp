@@ -5,6 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "api/judged.hpp"
 #include "api/scenes.hpp"
 
 namespace adit::api {
@@ -18,6 +19,22 @@ TEST(RunView, HasNoPlaceForAReportThatIsLost) {
   const json parsed = json::parse(codec::to_json(view));
   EXPECT_EQ(parsed["reports"][0]["position"], nullptr);
   EXPECT_TRUE(parsed["reports"][1]["position"].is_object());
+}
+
+/// One for page, `adit status`, metrics and alarms.
+TEST(RunView, HasTheAgesThatTheAlarmsGoBy) {
+  RunView view;
+  view.activities.resize(2);
+  view.activities[0].last_forwarded = view.activities[0].behind_since = 975;
+  view.robots = {{.name = "r", .position = {}, .at = 1010}};
+  alarms::Facts facts{.now = 1000};
+  facts.streams = streams_of(view.activities, facts.now);
+  facts.streams[0].forwarded = 26;
+  judge(view, facts);
+  EXPECT_EQ(view.activities[0].age, 26);
+  EXPECT_EQ(view.activities[0].behind, 25);
+  EXPECT_EQ(view.activities[1].age, std::nullopt);
+  EXPECT_EQ(view.robots[0].age, 0) << "never negative";
 }
 
 TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
@@ -46,7 +63,7 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["robots"][0], (json{{"name", "ANYmal1"},
                                        {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
                                        {"heading", 0.5},
-                                       {"at", 1000.0}}));
+                                       {"at", 1000.0}, {"age", 0.5}}));
   EXPECT_EQ(parsed["identify_until"], nullptr);
   EXPECT_EQ(parsed["setup_open_until"], nullptr);
   EXPECT_EQ(parsed["run_number"], 1);

@@ -95,7 +95,7 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
 
 TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
   api::RunView view = sample_view();
-  view.activities[0].behind_since = 967;
+  view.activities[0].behind = 33;
   view.activities[0].arrival = alarms::Arrival::Late;
   view.activities[0].waiting = 247;
   view.activities[0].no_room = 1110;

@@ -14,8 +14,8 @@ namespace {
 using testing::IsEmpty;
 using testing::SizeIs;
 
-icd::StateUpdate state(const std::string& robot, double x, icd::Quaternion orientation = {}) {
-  return {.header = {}, .poses = {{*icd::RobotName::parse(robot), {{x, 2, 3}, orientation}}}};
+std::vector<icd::NamedPose> state(const std::string& robot, double x, icd::Quaternion orientation = {}) {
+  return {{*icd::RobotName::parse(robot), {{x, 2, 3}, orientation}}};
 }
 
 TEST(AsForwarded, HasEachRobotWhereItWasLast) {

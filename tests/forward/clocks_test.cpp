@@ -25,6 +25,11 @@ class ClocksTest : public testing::Test {
     clocks_->carry_on(carried, boot);
   }
   double now() const { return loop_.stamp_now(); }
+  /// Of a robot's pose.
+  icd::Stamp stamped(double stamp, std::uint64_t connection) {
+    const icd::StateUpdate update{.header = {stamp}, .poses = {{*icd::RobotName::parse("r1"), {}}}};
+    return *clocks_->stamped(update, {.address = "10.0.0.5", .connection = connection}).at(0).stamp;
+  }
   void keep() {
     clocks_->keep(disk_);
     ASSERT_TRUE(loop::turn_until(
@@ -40,19 +45,19 @@ class ClocksTest : public testing::Test {
 
 TEST_F(ClocksTest, ASenderGoesOnAsItDidInTheLifeBefore) {
   live();
-  const icd::Stamp first = clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+  const icd::Stamp first = stamped(50, 1);
   EXPECT_NEAR(first, now(), 0.1);
   live();
-  EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + 0.3, 1e-6);
+  EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6);
 }
 
 TEST_F(ClocksTest, StampsGoOnInTheNextLifeWhateverTheTimeOfDayIsThen) {
   for (const double set : {-kFar, kFar}) {
     live();
-    const icd::Stamp first = clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+    const icd::Stamp first = stamped(50, 1);
     loop_.set_stamp(now() + set);  // as of a start with a clock that was set
     live();
-    EXPECT_NEAR(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), first + 0.3, 1e-6) << set;
+    EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6) << set;
     EXPECT_NEAR(now(), first, 1) << set;
   }
 }
@@ -71,11 +76,11 @@ TEST_F(ClocksTest, AMachineWithoutAClockGoesOnFromTheFloor) {
 
 TEST_F(ClocksTest, ABoxThatTookOverGoesOnAfterTheStampsOfTheOther) {
   live();
-  clocks_->stamped("10.0.0.5/state/r1", 50, 1);
+  stamped(50, 1);
   const double least = now() + kFar;
   StampFloor(folder_.path()).write({.floor = least, .wall = 0, .least = least});
   live();
-  EXPECT_GE(clocks_->stamped("10.0.0.5/state/r1", 50.3, 2), least) << "of a sender that was known, too";
+  EXPECT_GE(stamped(50.3, 2), least) << "of a sender that was known, too";
   live();
   EXPECT_GE(now(), least);
 }
@@ -147,19 +152,31 @@ TEST_F(ClocksTest, AClockThatWasSetBackStaysSoInTheNextLife) {
   EXPECT_NEAR(loop_.wall_now(), before - kFar, 1);
 }
 
-TEST_F(ClocksTest, EachNamespaceOfMarkersHasAClockOfItsOwn) {
+/// Whether it is alone in a state or among others.
+TEST_F(ClocksTest, ARobotHasOneClockAtAnAddress) {
+  live();
+  const icd::StateUpdate both{
+      .header = {50}, .poses = {{*icd::RobotName::parse("r1"), {}}, {*icd::RobotName::parse("r2"), {}}}};
+  const icd::Stamp first = *clocks_->stamped(both, {.address = "10.0.0.5", .connection = 1}).at(0).stamp;
+  loop_.set_stamp(now() + 2);
+  EXPECT_NEAR(stamped(50.5, 1), first + 0.5, 1e-6);
+}
+
+TEST_F(ClocksTest, AMessageOfMarkersTakesOneClockHoweverManyNamespacesItHas) {
   live();
   icd::MarkersUpdate update;
-  for (const auto& [ns, stamp] : {std::pair{"a", 50.0}, std::pair{"b", 900.0}, std::pair{"a", 50.5}}) {
-    icd::Marker marker;
-    marker.ns = ns;
-    marker.header.stamp = stamp;
-    update.markers.push_back(marker);
-  }
-  clocks_->stamp(update, "10.0.0.5");
-  EXPECT_NEAR(*update.markers[0].header.stamp, now(), 0.1);
-  EXPECT_NEAR(*update.markers[1].header.stamp, now(), 0.1);
-  EXPECT_NEAR(*update.markers[2].header.stamp, *update.markers[0].header.stamp + 0.5, 1e-6);
+  for (int i = 0; i < 5000; ++i) update.markers.emplace_back().ns = std::to_string(i);
+  for (icd::Marker& marker : update.markers) marker.header.stamp = 50;
+  clocks_->stamp(update, {.address = "10.0.0.5"});
+  EXPECT_EQ(journal_->read().senders().clocks().size(), 1u);
+}
+
+TEST_F(ClocksTest, AStateOfAnyNumberOfRobotsTakesSoManyClocks) {
+  live();
+  icd::StateUpdate update{.header = {50}, .poses = {}};
+  for (int i = 0; i < 500; ++i) update.poses.push_back({*icd::RobotName::parse(std::to_string(i)), {}});
+  clocks_->stamped(update, {.address = "10.0.0.5"});
+  EXPECT_LE(journal_->read().senders().clocks().size(), lanes::StampShift::kMostOfAddress);
 }
 
 }  // namespace

@@ -17,6 +17,10 @@ namespace {
 
 using testing::ElementsAre;
 
+icd::NamedPose at(const char* robot, double x) {
+  return {*icd::RobotName::parse(robot), {{x, 0, 0}, {}}};
+}
+
 /// Without tokens nothing leaves: what is taken waits.
 class FlowTest : public testing::Test {
  protected:
@@ -43,6 +47,13 @@ class FlowTest : public testing::Test {
     std::optional<icd::Checked<void>> said;
     flow_->take(spool::markers(), sender_, [&](icd::Checked<void> taken) { said = std::move(taken); });
     return said.value();
+  }
+  icd::Checked<void> take_poses(std::vector<icd::NamedPose> poses, double stamp) {
+    return flow_->take({.header = {stamp}, .poses = std::move(poses)}, sender_);
+  }
+  journal::Carried kept() const { return journal::Folder(folder_.path() + "/journal").read(); }
+  double kept_x(const char* robot) const {
+    return kept().robots().at(*icd::RobotName::parse(robot)).posted.pose.position.x;
   }
   std::vector<std::uint64_t> waiting() const {
     std::vector<std::uint64_t> waiting;
@@ -87,6 +98,43 @@ TEST_F(FlowTest, TellsWhichRobotsPost) {
   EXPECT_THAT(posted_, ElementsAre("r1", "r2"));
 }
 
+/// A station that posts now one robot's pose, now several, all on one connection.
+TEST_F(FlowTest, KeepsThePoseThatAStationStampedLast) {
+  ASSERT_TRUE(take_poses({at("a", 0), at("b", 0)}, 100));
+  loop_.set_stamp(loop_.stamp_now() + 2);
+  ASSERT_TRUE(take_poses({at("a", 1)}, 101)) << "a second late";
+  ASSERT_TRUE(take_poses({at("a", 5), at("b", 5)}, 101.5));
+  EXPECT_EQ(kept_x("a"), 5);
+}
+
+TEST_F(FlowTest, KeepsThePoseThatCameLastOfTwoAddresses) {
+  const intake::Sender other{.address = "10.0.0.6", .bytes = 10, .connection = 2};
+  ASSERT_TRUE(take_poses({at("a", 0)}, 100));
+  ASSERT_TRUE(take_poses({at("a", 1)}, 103)) << "its clock runs ahead";
+  ASSERT_TRUE(flow_->take({.header = {50}, .poses = {at("a", 5)}}, other));
+  EXPECT_EQ(kept_x("a"), 5);
+}
+
+/// Each `ns` would be a robot, or whatever a client likes.
+TEST_F(FlowTest, OneMessageOfMarkersTakesNoOtherSendersClock) {
+  const intake::Sender other{.address = "10.0.0.6", .bytes = 10, .connection = 2};
+  ASSERT_TRUE(take_poses({at("a", 0)}, 100));
+  const double first = *kept().robots().at(*icd::RobotName::parse("a")).posted.stamp;
+  icd::MarkersUpdate many;
+  for (int i = 0; i < 2000; ++i) {
+    icd::Marker& marker = many.markers.emplace_back();
+    marker.ns = std::to_string(i);
+    marker.action = icd::MarkerAction::Delete;
+    marker.header.stamp = 50;
+  }
+  std::optional<icd::Checked<void>> said;
+  flow_->take(std::move(many), other, [&](icd::Checked<void> taken) { said = std::move(taken); });
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
+  EXPECT_EQ(kept().senders().clocks().size(), 2u);
+  ASSERT_TRUE(take_poses({at("a", 1)}, 104));
+  EXPECT_NEAR(*kept().robots().at(*icd::RobotName::parse("a")).posted.stamp, first + 4, 1e-6);
+}
+
 TEST_F(FlowTest, QuotesNoToken) {
   flow_->refused(icd::Uri::StateUpdate, sender_, {icd::Status::UnprocessableEntity, "name: got a-secret", 0});
   ASSERT_EQ(flow_->record().refusals().size(), 1);
@@ -113,6 +161,7 @@ class Seen {
     at_ = std::chrono::steady_clock::now();
   }
   int states() const { return of(states_); }
+  std::string last() const { return of(last_); }
   loop::Instant at() const { return of(at_); }
   /// In CBOR: the key, a byte that says that a double follows, and its bytes, the highest first.
   double stamp() const {
@@ -150,9 +199,8 @@ class FlowAfterAnother : public testing::Test {
     EXPECT_TRUE(flow->start());
     return flow;
   }
-  void sends(Flow& flow, const char* sender, double stamp) {
-    icd::StateUpdate update = spool::state();
-    update.header.stamp = stamp;
+  void sends(Flow& flow, const char* sender, double stamp, const char* robot = "r2") {
+    const icd::StateUpdate update{.header = {stamp}, .poses = {at(robot, 0)}};
     const int before = seen_.states();
     ASSERT_TRUE(flow.take(update, {.address = sender}));
     ASSERT_TRUE(loop::turn_until(loop_, [&] { return seen_.states() > before; }));
@@ -185,6 +233,16 @@ TEST_F(FlowAfterAnother, SendsNoEarlierStampAndNoSoonerThoughNothingWasWrittenDo
   sends(*after, "10.0.0.6", 7);
   EXPECT_GE(seen_.stamp(), last);
   EXPECT_GE(seen_.at() - began, std::chrono::milliseconds{990});
+}
+
+TEST_F(FlowAfterAnother, RepeatsThePosesOfTheRunAndOfNoRunBefore) {
+  const auto flow = this->flow(first_, std::nullopt);
+  sends(*flow, "10.0.0.5", 50, "was_here");
+  sends(*flow, "10.0.0.6", 50, "goes_on");
+  EXPECT_THAT(seen_.last(), testing::HasSubstr("was_here"));
+  flow->begin_run();
+  sends(*flow, "10.0.0.6", 52, "goes_on");
+  EXPECT_THAT(seen_.last(), testing::Not(testing::HasSubstr("was_here")));
 }
 
 /// As it may be asked to stop before it sends anything itself.

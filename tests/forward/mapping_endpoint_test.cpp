@@ -62,7 +62,7 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
 TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
   AsForwarded as_forwarded;
   Telemetry news(loop_, workers_, settings_, token_, record_, aside_, random_, journal_, as_forwarded, [] {});
-  ASSERT_TRUE(news.take(spool::state(), 10));
+  ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
 }
 

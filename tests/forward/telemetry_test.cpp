@@ -21,8 +21,8 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-icd::StateUpdate pose(const char* robot, double stamp) {
-  return {.header = {stamp}, .poses = {{*icd::RobotName::parse(robot), {}}}};
+std::vector<lanes::PostedPose> pose(const char* robot, double stamp) {
+  return {{*icd::RobotName::parse(robot), {}, stamp, "10.0.0.5"}};
 }
 
 icd::Marker marker(const char* ns, const char* text, icd::MarkerAction action = icd::MarkerAction::Add) {
@@ -134,7 +134,8 @@ TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
 TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
   TelemetryPost post(true);
   const auto life = life_before(post.peer);
-  life->aside.add(pose("r1", 1), 422, "no", 100, {});
+  life->aside.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).named()}}, 422, "no", 100,
+                  {});
   life->aside.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
   std::promise<void> held;
   life->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
@@ -205,11 +206,12 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
 TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
   TelemetryPost post(true);
   auto life = life_before(post.peer);
+  double stamp = 0;
   for (const std::size_t count : {std::size_t{1}, ScarceMemory::kAll}) {
     for (std::size_t n = 0;; ++n) {
       SCOPED_TRACE(n);
       const int before = post.requests;
-      ASSERT_TRUE(life->news.take(pose("r1", static_cast<double>(n)), 10));
+      ASSERT_TRUE(life->news.take(pose("r1", ++stamp), 10));
       ASSERT_TRUE(life->take(icd::MarkersUpdate{.markers = {marker("path", std::to_string(n).c_str())}}));
       ScarceMemory scarce(n, count);
       const auto all_there = [&] {
@@ -253,8 +255,7 @@ TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {
   const auto life = life_before(post.peer);
   const Traffic robot{Kind::State, "r2"}, other{Kind::State, "r9"}, markers{Kind::Markers, ""};
   EXPECT_FALSE(life->news.waits_since(robot));
-  ASSERT_TRUE(life->news.take(
-      icd::StateUpdate{.header = {.stamp = 7.5}, .poses = {{*icd::RobotName::parse("r2"), {}}}}, 10));
+  ASSERT_TRUE(life->news.take(pose("r2", 7.5), 10));
   ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("", "one")}}));
   EXPECT_TRUE(life->news.waits_since(robot));
   EXPECT_TRUE(life->news.waits_since(markers));
@@ -262,6 +263,40 @@ TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {
   EXPECT_TRUE(
       comes(*life, [&] { return !life->news.waits_since(robot) && !life->news.waits_since(markers); }));
   EXPECT_EQ(life->record.rows().at(robot).forwarded, 1u);
+}
+
+/// What counts, how old it is, and its track follow what the robot itself has posted.
+TEST_F(NewsTest, CountsNoPoseAsForwardedThatOnlyGoesAlongWithAnothersNews) {
+  TelemetryPost post(true);
+  const auto life = life_before(post.peer);
+  const Traffic silent{Kind::State, "r1"}, other{Kind::State, "r2"};
+  const auto forwarded = [&](const Traffic& of) {
+    const auto row = life->record.rows().find(of);
+    return row == life->record.rows().end() ? 0 : row->second.forwarded;
+  };
+  ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
+  ASSERT_TRUE(comes(*life, [&] { return forwarded(silent) == 1; }));
+  const auto last = life->record.rows().at(silent).last_forwarded;
+  const api::Time seen = life->as_forwarded.robots().at(0).at;
+  for (std::uint64_t i = 1; i <= 3; ++i) {
+    ASSERT_TRUE(life->news.take(pose("r2", static_cast<double>(i)), 10));
+    ASSERT_TRUE(comes(*life, [&] { return forwarded(other) == i; }));
+  }
+  EXPECT_EQ(forwarded(silent), 1u);
+  EXPECT_EQ(life->record.rows().at(silent).last_forwarded, last);
+  EXPECT_EQ(life->as_forwarded.robots().at(0).at, seen);
+}
+
+/// Nor as failed, throttled or refused.
+TEST_F(NewsTest, BlamesNoRobotForAStateThatHasNoNewsOfIt) {
+  TelemetryPost post(true);
+  const auto life = life_before(post.peer);
+  ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
+  ASSERT_TRUE(
+      comes(*life, [&] { return life->news.waiting(Kind::State) == 0 && !life->news.channel().busy(); }));
+  ASSERT_TRUE(life->news.take(pose("wipe", 2), 10));  // which is not taken
+  ASSERT_TRUE(comes(*life, [&] { return life->record.rows().at({Kind::State, "wipe"}).failed >= 1; }));
+  EXPECT_EQ(life->record.rows().at({Kind::State, "r1"}).failed, 0u);
 }
 
 }  // namespace

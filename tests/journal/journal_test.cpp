@@ -17,9 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-icd::StateUpdate pose(double x) {
-  return {.header = {x},
-          .poses = {{*icd::RobotName::parse("r1"), {.position = {x, 0, 0}, .orientation = {}}}}};
+std::vector<lanes::PostedPose> pose(double x) {
+  return {{*icd::RobotName::parse("r1"), {.position = {x, 0, 0}, .orientation = {}}, x, "10.0.0.5"}};
 }
 
 icd::MarkersUpdate one_marker(std::int32_t id, std::size_t text = 0) {
@@ -116,7 +115,7 @@ TEST_F(JournalTest, HoldsAllThatWasAnsweredWhereverItsFileIsCut) {
     const auto markers = carried.markers().markers;
     ASSERT_EQ(markers.size(), answered) << "cut at " << cut;
     for (std::size_t i = 0; i < markers.size(); ++i) ASSERT_EQ(markers[i].id, static_cast<int>(i) + 1);
-    const double x = carried.robots().empty() ? 0 : carried.robots().begin()->second.pose.position.x;
+    const double x = carried.robots().empty() ? 0 : carried.robots().begin()->second.posted.pose.position.x;
     ASSERT_GE(x, static_cast<double>(answered));
     ASSERT_LE(x, static_cast<double>(answered) + 1) << "the one that was being written";
   }
@@ -125,7 +124,7 @@ TEST_F(JournalTest, HoldsAllThatWasAnsweredWhereverItsFileIsCut) {
 TEST_F(JournalTest, GoesOnInAnotherFileWhereALifeEndedInTheMiddleOfAWrite) {
   ASSERT_TRUE(life()->accepted(pose(1)));
   std::ofstream(files("journal").front(), std::ios::binary | std::ios::app)
-      << framed(Kind::State, "torn").substr(0, 9);
+      << framed(Kind::Poses, "torn").substr(0, 9);
   ASSERT_TRUE(life()->accepted(one_marker(7)));
   EXPECT_EQ(left().markers(), one_marker(7));
   EXPECT_EQ(left().robots().size(), 1u);
@@ -287,7 +286,7 @@ TEST_F(JournalTest, CostsLittle) {
   std::vector<double> micros;
   for (int i = 0; i < kPosts; ++i) {
     const auto began = std::chrono::steady_clock::now();
-    journal->sender("10.0.0.5/state/r1", {.theirs = 1, .ours = 2, .latest = 3});
+    journal->senders({{{"10.0.0.5", icd::Uri::StateUpdate, "r1"}, {.theirs = 1, .ours = 2, .latest = 3}}});
     ASSERT_TRUE(journal->accepted(pose(i)));
     micros.push_back(
         std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - began).count());

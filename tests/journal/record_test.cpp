@@ -21,7 +21,7 @@ Records records_in(std::string_view bytes) {
 }
 
 const Records kThree = {
-    {Kind::State, "a state"}, {Kind::StateSent, ""}, {Kind::Markers, std::string(300, '\0')}};
+    {Kind::Poses, "a state"}, {Kind::StateSent, ""}, {Kind::Markers, std::string(300, '\0')}};
 
 std::string written(const Records& records) {
   std::string bytes;

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "icd/map_update.hpp"
 #include "icd/xyz.hpp"
 #include "lanes/map_lane.hpp"
+#include "lanes/posted_pose.hpp"
 
 namespace adit::lanes {
 
@@ -19,6 +21,17 @@ inline Instant at(double seconds) {
 /// "" for a merged map.
 inline std::optional<icd::RobotName> robot(std::string_view name) {
   return icd::RobotName::parse(name);
+}
+
+/// Of one client's state, with its stamp.
+inline std::vector<PostedPose> posted(const icd::StateUpdate& update,
+                                      const std::string& address = "10.0.0.5") {
+  std::vector<PostedPose> poses;
+  for (const icd::NamedPose& named : update.poses) {
+    const auto& stamp = update.header.stamp;
+    poses.push_back({named.name, named.pose, stamp, stamp ? address : ""});
+  }
+  return poses;
 }
 
 inline icd::OccupancyGrid grid(double x, double y, std::uint32_t width, std::uint32_t height,

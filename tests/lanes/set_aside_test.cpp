@@ -167,7 +167,7 @@ TEST(SetAside, GivesAwayWhatIsTakenOnce) {
 
 TEST(StateLaneApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
   StateLane lane;
-  lane.add(state_of({"ugv1", "ugv2", "ugv3"}), at(0));
+  lane.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(0));
   lane.put_back_apart(*lane.take());
   std::vector<std::string> passed;
   for (int i = 0; i < 3; ++i) {
@@ -184,24 +184,24 @@ TEST(StateLaneApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
   EXPECT_EQ(passed, (std::vector<std::string>{"ugv1", "ugv3"}));
   EXPECT_TRUE(lane.empty());
 
-  lane.add(state_of({"ugv1", "ugv2", "ugv3"}), at(5));
+  lane.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(5));
   const auto together = lane.take(at(6));
   ASSERT_EQ(together->update.poses.size(), 2) << "those that passed go together again";
   const auto apart = lane.take(at(20));
   ASSERT_EQ(apart->update.poses.size(), 1);
   EXPECT_EQ(apart->update.poses.front().name.text(), "ugv2");
   lane.passed(*apart);
-  lane.add(state_of({"ugv1"}), at(21));
+  lane.add(posted(state_of({"ugv1"})), at(21));
   EXPECT_EQ(lane.take(at(22))->update.poses.size(), 3);
 }
 
 TEST(StateLaneApart, LetsARobotOnTrialRestWhileOthersHaveNews) {
   StateLane lane;
-  lane.add(state_of({"ugv1", "ugv2"}), at(0));
+  lane.add(posted(state_of({"ugv1", "ugv2"})), at(0));
   lane.give_up(*robot("ugv2"), at(0));
   EXPECT_EQ(lane.take(at(1))->update.poses.front().name.text(), "ugv1");
   EXPECT_FALSE(lane.empty()) << "ugv2 has news still";
-  EXPECT_EQ(lane.unsent().poses.size(), 1) << "and ugv1 is under way";
+  EXPECT_EQ(lane.unsent().size(), 1) << "and ugv1 is under way";
 }
 
 TEST(MarkerLaneNarrower, FindsTheOneThatIsAtFault) {
@@ -308,14 +308,14 @@ TEST(MarkerLaneBehind, HasNothingToSendAheadOfADeleteAllThatIsAlone) {
 /// It would go to another Command Post, hours later.
 TEST(StateLane, MakesNoNewsOfWhatWasNoneWhenSendingFails) {
   StateLane lane;
-  lane.add(state_of({"ugv1"}), at(0));
+  lane.add(posted(state_of({"ugv1"})), at(0));
   lane.passed(*lane.take());
-  lane.add(state_of({"ugv2"}), at(1));
+  lane.add(posted(state_of({"ugv2"})), at(1));
   const auto both = *lane.take();
   ASSERT_EQ(both.update.poses.size(), 2u);
   lane.put_back(both);
-  ASSERT_EQ(lane.unsent().poses.size(), 1u);
-  EXPECT_EQ(lane.unsent().poses.front().name.text(), "ugv2");
+  ASSERT_EQ(lane.unsent().size(), 1u);
+  EXPECT_EQ(lane.unsent().front().name.text(), "ugv2");
 }
 
 TEST(StateLane, ForgetsRobotsWithoutNewsWhereItIsFull) {
@@ -324,13 +324,13 @@ TEST(StateLane, ForgetsRobotsWithoutNewsWhereItIsFull) {
   for (std::size_t i = 0; i < StateLane::kMostRobots; ++i) {
     many.poses.push_back({*robot("r" + std::to_string(i)), {}});
   }
-  lane.add(many, at(0));
+  lane.add(posted(many), at(0));
   const auto under_way = *lane.take();
   EXPECT_FALSE(lane.has_room_for(state_of({"ugv1"}))) << "they may come back";
   lane.passed(under_way);
-  lane.add(state_of({"r7"}), at(1));
+  lane.add(posted(state_of({"r7"})), at(1));
   ASSERT_TRUE(lane.has_room_for(state_of({"ugv1"})));
-  lane.add(state_of({"ugv1"}), at(2));
+  lane.add(posted(state_of({"ugv1"})), at(2));
   EXPECT_EQ(lane.take()->update.poses.size(), 2u);
 }
 

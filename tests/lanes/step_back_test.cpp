@@ -89,14 +89,15 @@ TEST(StepBack, IsFollowedWithinOneMessage) {
     SCOPED_TRACE(connections);
     StampShift shift;
     StateLane lane;
-    double offset = 0, clock_was_set = -1;
+    double offset = 0, clock_was_set = -1, sent = -1;
     for (int number = 0; number < 3000; ++number) {
       const double now = 1'650'000'000 + number * 0.1;
       if (number % 100 == 99) offset -= by(random), clock_was_set = number;
       const Connection on = connections == 0 ? number + 1 : number % connections + 1;
-      const auto stamp = shift.shift("R1", now - 1e9 + offset, now, on);
-      lane.add({{stamp}, {{*robot("R1"), {{static_cast<double>(number), 0, 0}, {}}}}}, at(number));
-      const double sent = lane.take()->update.poses.front().pose.position.x;
+      const auto stamp = shift.shift({.address = "10.0.0.5", .robot = "R1"}, now - 1e9 + offset, now, on);
+      const icd::Pose pose{{static_cast<double>(number), 0, 0}, {}};
+      lane.add(lane.news_in(posted({{stamp}, {{*robot("R1"), pose}}})), at(number));
+      if (const auto taken = lane.take()) sent = taken->update.poses.front().pose.position.x;
       ASSERT_GE(sent, number == clock_was_set ? number - 1 : number)
           << "the pose that is sent after this one";
     }

@@ -57,8 +57,8 @@ test("has the worst first: who is silent is filled and says so, who is late has 
 test("says of a robot that sends no map that it has none, and of one whose map never came that it never did", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const like = view.activities.find(({ kind }) => kind === "grid");
-    const now = { ...like, last_forwarded: view.now, last_accepted: view.now };
-    const waits = { ...now, robot: "carter", last_forwarded: null, bytes_sent: 0 };
+    const now = { ...like, age: 0 };
+    const waits = { ...now, robot: "carter", age: null, bytes_sent: 0 };
     return like ? { ...view, activities: [{ ...now, robot: "scout", kind: "state" }, waits, { ...now, robot: "carter", kind: "state" }] } : view;
   });
   const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
@@ -70,7 +70,7 @@ test("says of a robot that sends no map that it has none, and of one whose map n
 test("has a row for one that an alarm alone tells of: nothing was heard of it since the box started", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const alarm = { id: "robot_silent:uav9", subject: "uav9", severity: "bad", side: "robot", since: view.now - 40, what: "uav9 is silent", why: "", action: { word: "", link: "" }, hides: 0, acknowledged: false };
-    const robot = { name: "uav9", position: { x: 1, y: 2, z: 0 }, heading: 0, at: view.now - 94 };
+    const robot = { name: "uav9", position: { x: 1, y: 2, z: 0 }, heading: 0, at: view.now - 94, age: 94 };
     return { ...view, alarms: [alarm], robots: [...view.robots, robot] };
   });
   const { page } = await watch(t, "calm", { prepare, viewport: LARGE });

@@ -7,14 +7,14 @@ export const twenty = (page, { silent = ["uav5"], late = ["uav6"] } = {}) => ret
   const names = [..."12345678"].map((n) => `ugv${n}`).concat([..."123456"].flatMap((n) => [`spot${n}`, `uav${n}`]));
   const began = Date.now() / 1000;
   globalThis.told = { silent, late }; // a test changes it
-  const row = (view, kind, robot, since) => ({ ...view.activities.find((each) => each.kind === "grid" && !each.robot), kind, robot, last_forwarded: view.now - since, last_accepted: view.now - since });
+  const row = (view, kind, robot, since) => ({ ...view.activities.find((each) => each.kind === "grid" && !each.robot), kind, robot, age: since });
   return (view) => {
     if (!view.activities.length) return view;
     const robots = names.flatMap((name, i) => {
       const turn = 1 + (i % 9), since = (view.now - began + i) % turn;
       const [grid, cloud] = [row(view, "grid", name, since), row(view, "cloud", name, since / 2)];
-      if (globalThis.told.silent.includes(name)) for (const each of [grid, cloud]) Object.assign(each, { last_forwarded: began - 94, last_accepted: began - 94, level: "bad", arrival: "silent" });
-      if (globalThis.told.late.includes(name)) Object.assign(grid, { behind_since: began - 12, last_forwarded: began - 13, waiting: 3, level: "wait", arrival: "late" });
+      if (globalThis.told.silent.includes(name)) for (const each of [grid, cloud]) Object.assign(each, { age: view.now - began + 94, level: "bad", arrival: "silent" });
+      if (globalThis.told.late.includes(name)) Object.assign(grid, { behind: view.now - began + 12, age: view.now - began + 13, waiting: 3, level: "wait", arrival: "late" });
       return [grid, cloud, row(view, "state", name, 0.4)];
     });
     return { ...view, activities: [...view.activities.filter(({ robot }) => !robot), ...robots] };

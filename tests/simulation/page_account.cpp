@@ -23,7 +23,10 @@ PageAccount::PageAccount(const std::vector<Event>& events) {
     // A gateway that begins listens.
     const bool begins = event.kind == Kind::Begins ||
                         (event.kind == Kind::Said && event.text.starts_with("notice: listening"));
-    if (begins || event.what == kCourse) begun_.push_back(i);  // or asks another Command Post
+    if (begins || event.what == kCourse) {  // or asks another Command Post
+      begun_.push_back(i);
+      for (auto& [stream, told] : told_) told.is_of_before = true;
+    }
     end_forgotten(i, event);
     read_team(i, event);
     read_upstream(i, event);
@@ -35,6 +38,7 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
   if (event.actor != Actor::Team || !is_of_a_kind) return;
   const Stream stream = stream_of(event.what, event.who);
   if (event.kind == Kind::Invoke) {
+    if (event.what == kState) ++poses_[{stream, event.serial}];
     auto& all = posted_[stream];
     auto& open = open_[event.request];
     // A message of several markers or clouds counts once, each pose of a state by itself.
@@ -65,9 +69,8 @@ void PageAccount::end(std::size_t place, const Event& event) {
 void PageAccount::read_upstream(std::size_t place, const Event& event) {
   if (event.kind == Kind::Leaves) under_way_[event.request].clear();
   if (event.kind == Kind::Left) {
-    auto& all = under_way_[event.request];
-    const Stream stream = stream_of(event.what, event.who);
-    if (std::ranges::find(all, stream) == all.end()) all.push_back(stream);
+    const std::int64_t pose = event.what == kState ? event.serial : 0;
+    under_way_[event.request].try_emplace(stream_of(event.what, event.who), pose);
   }
   if (event.kind != Kind::Replied) return;
   const bool is_page = event.who == kForeign || event.who == kTooLong;
@@ -77,7 +80,19 @@ void PageAccount::read_upstream(std::size_t place, const Event& event) {
   const bool allowed = event.status == 404 || event.status == 429 || event.status >= 500;
   if (never || (is_page && !allowed)) foreign_[endpoint].push_back(place);
   if (event.status >= 300 || is_page) return;
-  for (const Stream& stream : under_way_[event.request]) forwarded_[stream].push_back(place);
+  for (const auto& [stream, pose] : under_way_[event.request]) was_taken(place, stream, pose);
+}
+
+/// A pose counts when it is news: one that was taken before is so only if it was posted again meanwhile.
+void PageAccount::was_taken(std::size_t place, const Stream& stream, std::int64_t pose) {
+  Told& told = told_[stream];
+  if (stream.path != kState || told.pose != pose) {
+    told = {.pose = pose, .times = 1};
+    return forwarded_[stream].push_back(place);
+  }
+  if (!told.is_of_before && told.times >= poses_[{stream, pose}]) return;
+  ++told.times;
+  may_be_forwarded_[stream].push_back(place);
 }
 
 Range PageAccount::accepted(const Stream& stream, Moment from, Moment to) const {
@@ -100,8 +115,12 @@ Range PageAccount::between(const Places& places, Moment from, Moment to) {
 }
 
 Range PageAccount::forwarded(const Stream& stream, Moment from, Moment to) const {
-  const auto found = forwarded_.find(stream);
-  return found == forwarded_.end() ? Range{} : between(found->second, from, to);
+  const auto places = [&](const std::map<Stream, Places>& all) {
+    const auto found = all.find(stream);
+    return found == all.end() ? Range{} : between(found->second, from, to);
+  };
+  const Range sure = places(forwarded_);
+  return {sure.least, sure.most + places(may_be_forwarded_).most};
 }
 
 Range PageAccount::throttled(const std::string& endpoint, Moment from, Moment to) const {

@@ -58,12 +58,21 @@ class PageAccount {
   void end_forgotten(std::size_t place, const Event& event);
   void end(std::size_t place, const Event& event);
   void read_upstream(std::size_t place, const Event& event);
+  void was_taken(std::size_t place, const Stream& stream, std::int64_t pose);
 
   std::map<Stream, std::vector<Posted>> posted_;
   std::map<std::uint64_t, std::vector<std::pair<Stream, std::size_t>>> open_;  // requests: where in posted_
   std::deque<std::pair<double, std::uint64_t>> gone_;                          // when, and which request
-  std::map<std::uint64_t, std::vector<Stream>> under_way_;  // by connection: whose messages
-  std::map<Stream, Places> forwarded_;
+  /// A pose that was taken, which goes along with each state from then on.
+  struct Told {
+    std::int64_t pose = 0;  // its serial
+    int times = 0;          // it counted as forwarded
+    bool is_of_before = false;
+  };
+  std::map<std::pair<Stream, std::int64_t>, int> poses_;               // how often each was posted
+  std::map<std::uint64_t, std::map<Stream, std::int64_t>> under_way_;  // by connection: with a pose's serial
+  std::map<Stream, Told> told_;
+  std::map<Stream, Places> forwarded_, may_be_forwarded_;
   std::map<std::string, Places> throttled_, foreign_;
   Places begun_;
 };

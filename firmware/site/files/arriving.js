@@ -8,8 +8,8 @@ export const kindOf = (row) => KINDS[row.kind] ?? row.kind;
 export const robotOf = (row) => row.robot || "Merged map";
 
 /** Whether what a robot sends of one kind reaches the Command Post: the box's word, and how far that is behind. */
-export function arrival(row, now) {
-  const word = row.arrival === "late" && row.behind_since !== null ? `${age(now - row.behind_since)} behind` : row.arrival;
+export function arrival(row) {
+  const word = row.arrival === "late" && row.behind !== null ? `${age(row.behind)} behind` : row.arrival;
   return { level: row.level, word };
 }
 

@@ -116,7 +116,7 @@ export class MapOfRun {
     this.#tracks.follow(run);
     this.#ill = new Set(run.activities.filter(({ robot, level }) => robot && level === "bad").map(({ robot }) => robot));
     const places = JSON.stringify([run.reports.map(({ number, state, asking }) => [number, state, asking]), run.near_metres,
-      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot, run.now)]), this.#markers.at(run.now).length, [...this.#ill]]);
+      run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot)]), this.#markers.at(run.now).length, [...this.#ill]]);
     if (places === this.#drawn) return;
     this.#drawn = places;
     if (this.#followed) this.#picture.moved();
@@ -294,13 +294,13 @@ export class MapOfRun {
     const rim = [(view.width - this.#view.width) / 2, (view.height - this.#view.height) / 2];
     const labels = new Labels(paint, colours, size, { width: view.width, height: view.height, rim });
     for (const [left, top, right, bottom] of [...takenByMetres(this.#view, size), ...this.#covers.boxes()]) labels.keepOffBox([left + rim[0], top + rim[1], right + rim[0], bottom + rim[1]]);
-    const robotSize = size / 1.8, now = this.#now();
+    const robotSize = size / 1.8;
     keepOffRobots(labels, view, robots, robotSize);
     if (this.#pair) drawPairRings(paint, colours, labels, view, this.#pair, size);
     drawReports(paint, colours, labels, view, this.#run, reports, size / 2);
-    drawRobots(paint, colours, view, robots, robotSize, { now, followed: this.#followed });
+    drawRobots(paint, colours, view, robots, robotSize, this.#followed);
     if (!this.#picture.hasNames) return;
-    nameRobots(labels, view, robots, robotSize, { now, ill: this.isLive() ? this.#ill : new Set() });
+    nameRobots(labels, view, robots, robotSize, this.isLive() ? this.#ill : new Set());
     nameReports(labels, view, reports, size / 2, this.#pair ?? []);
     writeMarkers(labels, view, markers);
   };

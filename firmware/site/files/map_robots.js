@@ -3,7 +3,7 @@ import { kindOf, robotColour } from "./robot_colour.js";
 import { clip } from "./words.js";
 
 const STALE = 10; // s without a newer pose
-export const isStale = (robot, now) => now - robot.at > STALE;
+export const isStale = ({ age }) => age > STALE;
 const REACH = 22; // pixels, at least: as a finger needs
 
 const ARROW = [[1.5, 0], [-1, 0.95], [-0.5, 0], [-1, -0.95]];
@@ -49,9 +49,9 @@ function drawFollowed(paint, colours, view, robot, size) {
   }
 }
 
-export function drawRobots(paint, colours, view, robots, size, { now, followed }) {
+export function drawRobots(paint, colours, view, robots, size, followed) {
   for (const robot of robots) {
-    const isOld = isStale(robot, now);
+    const isOld = isStale(robot);
     if (robot.name === followed) drawFollowed(paint, colours, view, robot, size);
     drawRobot(paint, colours, view, robot, size, isOld, isOld ? colours.soft : robotColour(robot.name));
   }
@@ -63,10 +63,10 @@ export function keepOffRobots(labels, view, robots, size) {
 }
 
 /** `ill`: the names of those whose map does not come; theirs are written first. */
-export function nameRobots(labels, view, robots, size, { now, ill }) {
+export function nameRobots(labels, view, robots, size, ill) {
   const first = (robot) => (ill.has(robot.name) ? 0 : 1);
   for (const robot of robots.toSorted((a, b) => first(a) - first(b))) {
-    const colour = ill.has(robot.name) ? labels.colours.bad : isStale(robot, now) ? labels.colours.soft : labels.colours.ink;
+    const colour = ill.has(robot.name) ? labels.colours.bad : isStale(robot) ? labels.colours.soft : labels.colours.ink;
     labels.write(clip(robot.name, 20), ...view.toPixel(robot.position), { colour, away: size * 1.9 });
   }
 }

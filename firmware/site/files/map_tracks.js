@@ -74,12 +74,12 @@ export class Tracks {
     }
   }
 
-  /** [{name, position, heading, at}] as they were at that time. */
+  /** [{name, position, heading, age}] as they were at that time. */
   robotsAt(time) {
     const robots = [];
     for (const [name, track] of this.#all) {
       const pose = track.findLast(([at]) => at <= time);
-      if (pose) robots.push({ name, at: pose[0], position: { x: pose[1], y: pose[2], z: pose[3] }, heading: pose[4] });
+      if (pose) robots.push({ name, age: time - pose[0], position: { x: pose[1], y: pose[2], z: pose[3] }, heading: pose[4] });
     }
     return robots;
   }

@@ -27,10 +27,9 @@ function details(row) {
 }
 
 /** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `lost`: the box does not answer, so nothing is known. */
-export function stateOf(row, now, lost) {
-  const known = lost ? { level: "quiet", word: "unknown" } : arrival(row, now);
-  const since = row.last_forwarded === null ? null : Math.max(0, now - row.last_forwarded);
-  return { kind: kindOf(row), ...known, age: since, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
+export function stateOf(row, lost) {
+  const known = lost ? { level: "quiet", word: "unknown" } : arrival(row);
+  return { kind: kindOf(row), ...known, age: row.age, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
 }
 
 /** A robot's map at the Command Post: as old as the older of its kinds; one that it stopped to send does not count beside another. null: none arrived. */
@@ -41,18 +40,18 @@ function oldest(kinds) {
   return live.length ? Math.max(...ages) : Math.min(...ages);
 }
 
-function robotState(name, rows, now, lost) {
-  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, now, lost));
+function robotState(name, rows, lost) {
+  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, lost));
   const worst = WORST.map((level) => kinds.find((kind) => kind.level === level)).find(Boolean);
   const isSilent = !lost && rows.some((row) => row.arrival === "silent");
   return { name, level: worst.level, word: worst.word, isSilent, age: oldest(kinds), hasMap: kinds.some(({ kind }) => kind !== "pose"), kinds };
 }
 
 /** {robots: each with {name, level, word, isSilent, age, hasMap, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
-export function robotsOf(activities, now, lost) {
+export function robotsOf(activities, lost) {
   const rows = activities.filter(({ kind }) => KINDS.includes(kind));
   const byName = Map.groupBy(rows.filter(({ robot }) => robot), robotOf);
-  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, now, lost) }));
-  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, now, lost) });
-  return { robots: [...byName].map(([name, its]) => robotState(name, its, now, lost)), shared };
+  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, lost) }));
+  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, lost) });
+  return { robots: [...byName].map(([name, its]) => robotState(name, its, lost)), shared };
 }

@@ -36,11 +36,11 @@ function showSayings(activities) {
 }
 
 /** Robots of which nothing was heard since the box started: an alarm alone tells of them, and their last pose. */
-function unheard({ alarms, robots }, known, now) {
+function unheard({ alarms, robots }, known) {
   const silent = alarms.filter(({ id, subject }) => id === `robot_silent:${subject}` && !known.some(({ name }) => name === subject));
   return silent.map(({ subject: name }) => {
     const last = robots.find((robot) => robot.name === name);
-    return { name, level: "bad", word: "silent", isSilent: true, age: last ? now - last.at : null, hasMap: Boolean(last), kinds: [] };
+    return { name, level: "bad", word: "silent", isSilent: true, age: last ? last.age : null, hasMap: Boolean(last), kinds: [] };
   });
 }
 
@@ -48,8 +48,8 @@ function unheard({ alarms, robots }, known, now) {
 export function showRobots(view, now, lost) {
   const { activities } = view;
   const isAway = troubleOf(view, "mapping")?.level === "bad";
-  const state = robotsOf(activities, now, lost);
-  if (!lost) state.robots.push(...unheard(view, state.robots, now));
+  const state = robotsOf(activities, lost);
+  if (!lost) state.robots.push(...unheard(view, state.robots));
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));

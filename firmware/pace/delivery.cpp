@@ -20,6 +20,15 @@ constexpr int kStands = 4;
 /// What is shorter says little of a rate.
 constexpr std::chrono::milliseconds kTelling{20};
 
+/// Bytes. If Adit gives all the time and TCP has nothing left to send, the socket's buffer is full of bytes
+/// in flight, which are far more.
+constexpr std::size_t kFew = 64u << 10;
+
+/// The link may carry more.
+bool is_starved(const Progress& now) {
+  return now.unsent == 0 && now.in_flight < kFew;
+}
+
 bool has_queue(const Progress& now) {
   return now.round_trip > now.least_round_trip + std::max<Duration>(kQueue, now.least_round_trip / 4);
 }
@@ -32,7 +41,6 @@ void Delivery::begins(const Progress& now) {
   starved_ = false;
 }
 
-/// While a queue stands, the link has enough to do, also where TCP has nothing left: all of it may be there.
 void Delivery::goes_on(const Progress& now) {
   const bool has = has_queue(now);
   if (probes_ && has && !has_queue(began_)) return queue_ended_probe(now);
@@ -41,7 +49,7 @@ void Delivery::goes_on(const Progress& now) {
     return begins(now);
   }
   queued_ = queued_ && has;
-  starved_ = starved_ || (now.starved && !has);
+  starved_ = starved_ || is_starved(now);
   if (now.at - began_.at < std::max<Duration>(kInterval, 2 * now.least_round_trip)) return;
   const double rate = rate_until(now);
   if (rate > 0 && (!starved_ || rate > link_ * kFound)) judge(rate, now.at);

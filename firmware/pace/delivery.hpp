@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 
 #include "pace/rate_limit.hpp"
@@ -11,7 +12,8 @@ namespace adit::pace {
 struct Progress {
   Instant at{};
   std::uint64_t delivered = 0;                // bytes, since the connection began
-  bool starved = false;                       // TCP has no bytes left to send: the link may carry more
+  std::size_t unsent = 0;                     // bytes that TCP still has to send
+  std::size_t in_flight = 0;                  // bytes that it has sent and the peer has not acknowledged
   Duration round_trip{}, least_round_trip{};  // now, and without a queue
 };
 
@@ -20,8 +22,8 @@ struct Progress {
 ///
 /// Like BBR (draft-ietf-ccwg-bbr), with longer intervals. What was delivered while a queue stood is what the
 /// link carries. While one stands, half is given. Now and then a quarter more is given, until a queue stands,
-/// so that a link that is faster again is found out. Where nothing was left to send, an interval says
-/// nothing. All rates in bytes a second.
+/// so that a link that is faster again is found out. An interval in which TCP was given too little to send
+/// says nothing of the link, however late the peer acknowledges. All rates in bytes a second.
 class Delivery {
  public:
   static constexpr std::chrono::milliseconds kInterval{50};  // or two round trips, where that is longer

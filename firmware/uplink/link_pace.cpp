@@ -9,7 +9,8 @@ pace::Progress progress_of(int fd, loop::Instant now) {
   const Transmission seen = transmission(fd);
   return {.at = now,
           .delivered = seen.delivered,
-          .starved = seen.unsent == 0,
+          .unsent = seen.unsent,
+          .in_flight = seen.in_flight,
           .round_trip = seen.round_trip,
           .least_round_trip = seen.least_round_trip};
 }

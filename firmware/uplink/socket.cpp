@@ -177,6 +177,7 @@ Transmission transmission(int fd) {
           .sent_twice = info.tcpi_total_retrans,
           .delivered = std::uint64_t{info.tcpi_delivered} * info.tcpi_snd_mss,
           .unsent = info.tcpi_notsent_bytes,
+          .in_flight = std::size_t{info.tcpi_unacked} * info.tcpi_snd_mss,
           .round_trip = std::chrono::microseconds(info.tcpi_rtt),
           .least_round_trip = std::chrono::microseconds(info.tcpi_min_rtt)};
 }

@@ -58,6 +58,7 @@ struct Transmission {
   std::uint64_t sent_twice = 0;      // segments of this connection so far
   std::uint64_t delivered = 0;       // bytes of this connection so far, about: whole segments
   std::size_t unsent = 0;            // bytes that the kernel holds and has not sent yet
+  std::size_t in_flight = 0;         // bytes that it has sent and the peer has not acknowledged, about
   loop::Duration round_trip{}, least_round_trip{};
 };
 Transmission transmission(int fd);

@@ -63,7 +63,9 @@ class Line {
     smoothed_ += (told_.front().second - smoothed_) / 4;
     most_queued = std::max(most_queued, waits);
     Progress now = progress();
-    now.starved = rests || queue_ + delivery.pace() * kStep >= kWindow;
+    const bool is_full = queue_ + delivery.pace() * kStep >= kWindow;
+    now.unsent = rests || is_full ? 0 : 1;
+    now.in_flight = static_cast<std::size_t>(queue_);
     if (static_cast<int>(time_ / kStep) % 4 == 0) delivery.goes_on(now);
   }
 
@@ -110,7 +112,7 @@ TEST(Delivery, ASenderWithOtherThingsToDoIsNotASlowLink) {
 
 TEST(Delivery, ALongRoundTripAtTheBeginIsNoSlowLink) {
   Delivery delivery(kMost);
-  Progress now{.at = at(10), .round_trip = std::chrono::milliseconds(40)};
+  Progress now{.at = at(10), .unsent = 1, .round_trip = std::chrono::milliseconds(40)};
   delivery.begins(now);
   for (int i = 0; i < 1000; ++i) {
     now.at += std::chrono::milliseconds(4);
@@ -121,9 +123,26 @@ TEST(Delivery, ALongRoundTripAtTheBeginIsNoSlowLink) {
   }
 }
 
+/// Small maps: TCP has sent all of each, and the ACK of the last bytes came late and made the round trip
+/// longer.
+TEST(Delivery, AnEmptySenderWhoseLastAckWasLateIsNoSlowLink) {
+  Delivery delivery(kMost);
+  Progress now{.at = at(10),
+               .in_flight = 1448,
+               .round_trip = std::chrono::milliseconds(6),
+               .least_round_trip = std::chrono::microseconds(100)};
+  delivery.begins(now);
+  for (int i = 0; i < 1000; ++i) {
+    now.at += std::chrono::milliseconds(100);
+    now.delivered += 20'000;
+    delivery.goes_on(now);
+    ASSERT_EQ(delivery.pace(), kMost) << i;
+  }
+}
+
 TEST(Delivery, SilenceIsNoSlowLink) {
   Delivery delivery(kMost);
-  Progress now{.at = at(10), .round_trip = std::chrono::milliseconds(40)};
+  Progress now{.at = at(10), .unsent = 1, .round_trip = std::chrono::milliseconds(40)};
   delivery.begins(now);
   for (int i = 0; i < 1000; ++i) {
     now.at += std::chrono::milliseconds(50);

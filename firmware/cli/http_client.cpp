@@ -2,6 +2,7 @@
 
 #include <poll.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
@@ -59,7 +60,10 @@ std::expected<HttpReply, std::string> exchanged(int fd, uplink::Exchange& exchan
         break;
     }
     const short events = exchange.wants_to_write() ? POLLIN | POLLOUT : POLLIN;
-    if (const int error = wait_for(fd, events, deadline); error != 0) return std::unexpected(reason(error));
+    const auto until =
+        exchange.is_early() ? std::min(deadline, Clock::now() + uplink::Exchange::kLook) : deadline;
+    const int error = wait_for(fd, events, until);
+    if (error != 0 && (error != ETIMEDOUT || Clock::now() >= deadline)) return std::unexpected(reason(error));
   }
 }
 

@@ -76,6 +76,7 @@ void Connection::Impl::time_came() {
   if (phase_ == Phase::Closed) return connect();
   if (phase_ == Phase::Connecting) return connecting_failed("no answer in time");
   if (!exchange_) return idle_ended();
+  if (answer_came()) return;
   exchange_->listen(fd_.get(), loop_.now());
   if (exchange_->is_silent_at(loop_.now()))
     return in_doubt({.why = exchange_->sentence("the peer was silent for too long")});
@@ -132,6 +133,7 @@ void Connection::Impl::began_to_leave() {
 bool Connection::Impl::answer_came() {
   switch (exchange_->read(fd_.get())) {
     case Exchange::Answer::Waiting:
+      if (exchange_->is_early()) listen_again();
       return false;
     case Exchange::Answer::Lost:
       in_doubt(exchange_->doubt());
@@ -150,8 +152,7 @@ void Connection::Impl::is_next() {
 }
 
 std::optional<Sent> Connection::Impl::has_arrived() const {
-  if (!exchange_ || phase_ != Phase::Open || exchange_->sent() < exchange_->total()) return {};
-  if (unacknowledged_bytes(fd_.get()) > 0) return {};
+  if (!exchange_ || phase_ != Phase::Open || !exchange_->has_arrived(fd_.get())) return {};
   return exchange_->left(transmission(fd_.get()), loop_.now());
 }
 

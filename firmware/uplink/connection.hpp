@@ -49,7 +49,8 @@ struct Sent {
   loop::Instant first{}, last{};
 };
 
-/// A whole HTTP answer came. Its body may be anything.
+/// A whole HTTP answer came. Its body may be anything. If it is a 2xx, the peer's TCP has acknowledged the
+/// whole request.
 struct Answered {
   int status = 0;
   std::string content_type;
@@ -62,7 +63,8 @@ struct Answered {
 struct NeverSent {
   std::string why;  // "connecting to 10.100.1.200:8000: Connection refused"
 };
-/// Bytes may have left and no whole answer came: nobody here knows what became of it.
+/// Bytes may have left and no whole answer came, or a 2xx came and the rest of the request never arrived:
+/// nobody here knows what became of it.
 struct InDoubt {
   std::string why;
   int too_long_status = 0;  // of an answer that came and was longer than a Command Post's; else 0

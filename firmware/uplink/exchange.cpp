@@ -31,6 +31,10 @@ iovec piece(const void* data, std::size_t size) {
   return {const_cast<void*>(data), size};
 }
 
+bool is_good(int status) {
+  return status >= 200 && status < 300;
+}
+
 /// The first `bytes` of the pieces, or all.
 std::span<iovec> first_of(std::span<iovec> pieces, std::size_t bytes) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -96,14 +100,21 @@ void Exchange::advance(std::size_t bytes) {
     within_chunk_ -= chunks[chunk_++]->size();
 }
 
+bool Exchange::has_arrived(int fd) const {
+  return sent_ == total_ && unacknowledged_bytes(fd) == 0;
+}
+
 Exchange::Answer Exchange::lost(const std::string& why) {
-  fault_ = sentence(why);
+  fault_ = sentence(is_early_ ? "the peer answered " + std::to_string(status()) +
+                                    " before it had the whole request; then: " + why
+                              : why);
   return Answer::Lost;
 }
 
 Exchange::Answer Exchange::read(int fd) {
   std::array<char, 16384> bytes;  // NOLINT(cppcoreguidelines-pro-type-member-init): read() fills it
   while (true) {
+    if (is_early_ && has_arrived(fd)) return Answer::Whole;
     const auto got = uplink::read(fd, bytes);
     const int error = got ? 0 : got.error();
     if (error == EINTR) continue;
@@ -112,9 +123,12 @@ Exchange::Answer Exchange::read(int fd) {
     // The failed write has taken the connection's error with it, so that this end may be a reset, and no
     // honest end of an answer without a length.
     if (*got == 0 && write_broken_) return lost("the peer closed the connection while the request was sent");
+    if (is_early_) return lost(*got == 0 ? "it closed the connection" : "it sent more than an answer");
     const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});
-    if (state == AnswerParser::State::Whole) return Answer::Whole;
     if (state == AnswerParser::State::Malformed) return lost(parser_.fault());
+    if (state == AnswerParser::State::Incomplete) continue;
+    is_early_ = is_good(status()) && !has_arrived(fd);
+    if (!is_early_) return Answer::Whole;
   }
 }
 
@@ -133,7 +147,8 @@ void Exchange::listen(int fd, loop::Instant now) {
 }
 
 loop::Instant Exchange::next_listening(loop::Instant now) const {
-  const auto next = std::min<loop::Instant>(now + request_.answer_within / kListenings, silent_at());
+  const auto pause = is_early_ ? kLook : request_.answer_within / kListenings;
+  const auto next = std::min<loop::Instant>(now + pause, silent_at());
   return holds_back() ? std::min(next, request_.last_byte_not_before) : next;
 }
 

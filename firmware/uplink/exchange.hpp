@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -27,8 +28,13 @@ class Exchange {
 
   enum class Answer : std::uint8_t { Waiting, Whole, Lost };
   /// Reads all that has come, also where writing has failed: a peer that refuses a request early answers and
-  /// closes, and its answer is there to be read.
+  /// closes, and its answer is there to be read. A 2xx counts once the whole request has arrived. Until then
+  /// it is_early(): call this again after kLook, because the socket does not signal acknowledgements.
   Answer read(int fd);
+  bool is_early() const { return is_early_; }
+  static constexpr std::chrono::milliseconds kLook{10};
+  /// The peer's TCP has acknowledged the whole request.
+  bool has_arrived(int fd) const;
   /// For Whole.
   Answered take_answer() { return parser_.take(); }
   /// Of an answer that goes on, as AnswerParser has it.
@@ -36,7 +42,7 @@ class Exchange {
   std::string take_part() { return parser_.take_part(); }
   /// When the request left, as the kernel says a moment before `now`, once its answer has come.
   Sent left(const Transmission& seen, loop::Instant now) const;
-  bool may_keep_alive() const { return sent_ == total_ && parser_.may_keep_alive(); }
+  bool may_keep_alive() const { return sent_ == total_ && !is_early_ && parser_.may_keep_alive(); }
   /// For Lost.
   InDoubt doubt() const { return {.why = fault_, .too_long_status = parser_.too_long_status()}; }
 
@@ -80,6 +86,7 @@ class Exchange {
   std::size_t chunk_ = 0;         // the first of the body's that is not wholly sent
   std::size_t within_chunk_ = 0;  // bytes of it that are
   bool write_broken_ = false;
+  bool is_early_ = false;  // a 2xx came while the request was on its way
   std::size_t acknowledged_ = 0;
   loop::Instant heard_;
   loop::Instant first_left_;

@@ -188,7 +188,7 @@ void set_pace(int fd, std::uint64_t bytes_per_second) {
 
 std::size_t unacknowledged_bytes(int fd) {
   int bytes = 0;
-  if (::ioctl(fd, SIOCOUTQ, &bytes) != 0) return 0;
+  if (::ioctl(fd, SIOCOUTQ, &bytes) != 0) return std::numeric_limits<std::size_t>::max();
   return static_cast<std::size_t>(std::max(bytes, 0));
 }
 

@@ -66,7 +66,8 @@ Transmission transmission(int fd);
 /// SO_MAX_PACING_RATE, in bytes a second; > 0.
 void set_pace(int fd, std::uint64_t bytes_per_second);
 
-/// Bytes that the kernel holds and the peer has not acknowledged.
+/// Bytes that the kernel holds and the peer has not acknowledged; if the kernel does not say, more than were
+/// sent.
 std::size_t unacknowledged_bytes(int fd);
 
 }  // namespace adit::uplink

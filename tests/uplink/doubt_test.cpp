@@ -138,6 +138,49 @@ TEST_F(DoubtfulRequests, AreThoseWhoseEarlyAnswerEndsInAReset) {
   expect_doubt(peer, "");
 }
 
+/// A 2xx is a promise about a whole request.
+TEST_F(DoubtfulRequests, AreThoseTakenHalfWayByAPeerThatResets) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_some(1 << 16);
+    wire.write(answer("200 OK", "null"));
+  });
+  expect_doubt(peer, "answered 200 before");
+}
+
+TEST_F(DoubtfulRequests, AreThoseTakenHalfWayByAPeerThatReadsNoMore) {
+  std::promise<void> over;
+  const ListeningPeer peer([&over](Wire& wire) {
+    wire.read_head();
+    wire.write(answer("200 OK", "null"));
+    over.get_future().wait();
+  });
+  expect_doubt(peer, kSilent, milliseconds(200));
+  over.set_value();
+}
+
+/// The kernel has taken all of it, and the peer's has not.
+TEST_F(DoubtfulRequests, AreThoseTakenBeforeTheyHaveArrived) {
+  std::promise<void> has_left;
+  Peer peer({[&has_left](Wire& wire) {
+    wire.read_head();
+    has_left.get_future().wait();
+    wire.write(answer("200 OK", "null"));
+  }});
+  peer.hold(8 * 1024);
+  peer.listen();
+  Connection connection(loop_, peer.endpoint(), token());
+  const std::string body(40'000, 'x');
+  std::optional<Outcome> outcome;
+  connection.send(post(body), [&](Outcome got) { outcome = std::move(got); });
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return connection.sent_bytes() > body.size(); }))
+      << connection.sent_bytes();
+  EXPECT_FALSE(connection.has_arrived());
+  has_left.set_value();
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return outcome.has_value(); }));
+  EXPECT_TRUE(std::holds_alternative<InDoubt>(*outcome)) << answered(*outcome).status;
+  EXPECT_THAT(why(*outcome), HasSubstr("answered 200 before"));
+}
+
 /// Whether a connection that `use` uses and then leaves ended in a reset, for the peer of this script.
 class Endings : public Asking {
  protected:

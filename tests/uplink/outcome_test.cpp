@@ -46,6 +46,36 @@ TEST_F(AnsweredRequests, AreThoseRefusedEarlyByAPeerThatStaysAndReadsNoMore) {
   EXPECT_EQ(answered(ask(peer.endpoint(), post(megabytes(20)))).status, 413);
 }
 
+/// A 2xx counts once the whole request is there.
+TEST_F(AnsweredRequests, AreThoseTakenEarlyByAPeerThatReadsOn) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_head();
+    wire.write(answer("200 OK", "null"));
+    wire.wait_for_close();
+  });
+  Connection connection(loop_, peer.endpoint(), token());
+  const std::string body = megabytes(20);
+  const Outcome outcome = ask(connection, post(body));
+  EXPECT_EQ(answered(outcome).status, 200) << why(outcome);
+  EXPECT_EQ(answered(outcome).body, "null");
+  EXPECT_GT(connection.sent_bytes(), body.size());
+  EXPECT_FALSE(connection.connected()) << "nobody looked for what came behind the answer";
+}
+
+TEST_F(AnsweredRequests, AreThoseTakenEarlyWhoseLastByteIsHeldBack) {
+  const ListeningPeer peer([](Wire& wire) {
+    wire.read_head();
+    wire.write(answer("200 OK", "null"));
+    wire.wait_for_close();
+  });
+  Request request = post("body");
+  request.last_byte_not_before = loop_.now() + milliseconds(100);
+  const loop::Instant not_before = request.last_byte_not_before;
+  const Answered got = answered(ask(peer.endpoint(), std::move(request)));
+  EXPECT_EQ(got.status, 200) << got.body;
+  EXPECT_GE(got.sent.last, not_before);
+}
+
 TEST_F(AnsweredRequests, DoNotTellTheTokenToWhoeverReadsTheAnswerOfAnEchoingServer) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_request();

@@ -88,8 +88,7 @@ Peer::Peer(std::vector<Script> scripts, const char* address)
   if (::getaddrinfo(address, "0", &hints, &found) != 0) throw std::runtime_error("bad address");
   listener_ = loop::FileDescriptor(::socket(found->ai_family, SOCK_STREAM | SOCK_CLOEXEC, 0));
   if (!listener_) throw std::runtime_error("the test's peer has no socket");
-  const int small = 256 * 1024;  // so that a body soon fills it
-  ::setsockopt(listener_.get(), SOL_SOCKET, SO_RCVBUF, &small, sizeof small);
+  hold(256 * 1024);  // so that a body soon fills it
   const int bound = ::bind(listener_.get(), found->ai_addr, found->ai_addrlen);
   ::freeaddrinfo(found);
   if (bound != 0) throw std::runtime_error("the test's peer cannot bind");
@@ -98,6 +97,10 @@ Peer::Peer(std::vector<Script> scripts, const char* address)
 Peer::~Peer() {
   ::shutdown(listener_.get(), SHUT_RDWR);  // ends accept()
   if (thread_.joinable()) thread_.join();
+}
+
+void Peer::hold(int bytes) {
+  ::setsockopt(listener_.get(), SOL_SOCKET, SO_RCVBUF, &bytes, sizeof bytes);
 }
 
 void Peer::listen() {

@@ -55,6 +55,8 @@ class Peer {
   Peer(const Peer&) = delete;
   Peer& operator=(const Peer&) = delete;
 
+  /// Of each connection from now on: bytes that nobody has read.
+  void hold(int bytes);
   /// Refuses connections until now.
   void listen();
 

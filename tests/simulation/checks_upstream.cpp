@@ -21,6 +21,8 @@ constexpr double kFloorAhead = 30, kFloorHolds = 35;
 constexpr double kMakesWay = 1;       // seconds until the next gateway has begun
 constexpr double kTriedAgain = 9;     // seconds
 constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
+/// Bytes a second: less than maps get of the smallest budget that an operator sets.
+constexpr std::int64_t kLeastGiven = 1'500'000;
 
 }  // namespace
 
@@ -34,6 +36,10 @@ void paced(const Evidence& evidence, Broken& broken) {
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Given && event.stamp == 0 && event.serial < kLeastGiven) {
+      broken.push_back(icd::sentence("Paced: a line without a limit was given ", event.serial,
+                                     " bytes a second, at ", event.at));
+    }
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay;
     if (event.at < forgotten_until) {
       last.clear();

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kLatest = 8;  // seconds after which nothing is recorded any more
 constexpr double kLongest = 8, kLongestOutage = 25;
+constexpr const char* kEarly = "Early";
 constexpr const char* kPage = "Content-Type: text/html\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
 constexpr Fault kPeriods[] = {Fault::Storm,       Fault::PoliteStorm, Fault::Refused, Fault::Deaf,
@@ -36,6 +37,7 @@ class CommandPost::Conversation final : public Peer {
     if (stream_.is_between()) began_ = left;
     stream_.feed(bytes);
     while (const auto request = stream_.next()) post_.asked(*request, {.first = began_, .last = left}, link_);
+    if (stream_.head()) post_.may_answer_early(*stream_.head(), link_);
   }
   void ended() override {}
 
@@ -50,6 +52,8 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
     : world_(world),
       faults_(faults),
       random_(world.random(numbered("command post", place))),
+      early_(world.random(numbered("early answers", place))),
+      answers_early_(early_.chance(0.125) ? early_.between(0.05, 0.3) : 0),
       scoreboard_(world, faults_, random_, place),
       counting_(world.random("counting")) {
   for (const Fault fault : kPeriods) {
@@ -176,6 +180,17 @@ void CommandPost::answer(const HttpMessage& request, Link& link) {
                                                         : true;
   if (fault != Fault::End && befalls && !world_.omits(name_of(fault))) return misbehave(fault, request, link);
   link.send(take(request), seconds(random_.between(0, 0.01)));
+}
+
+/// With a 200, to a message of which some has not come: it never does, and nothing is taken.
+void CommandPost::may_answer_early(const HttpMessage& head, Link& link) {
+  const bool does = early_.chance(answers_early_);
+  const auto resets = seconds(early_.between(0, 0.5));
+  if (!does || calm_ || is_on(Fault::Mute) || !is_mapping(head) || world_.omits(kEarly)) return;
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = head.path(), .who = kEarly});
+  link.go_deaf();
+  link.send(http_answer("200 OK", kJson, "null"));
+  link.end(Link::How::Reset, resets);
 }
 
 void CommandPost::take_later(const HttpMessage& request, double within) {

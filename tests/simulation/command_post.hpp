@@ -36,6 +36,7 @@ class CommandPost final : public Host {
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
   void answer(const HttpMessage& request, Link& link);
+  void may_answer_early(const HttpMessage& head, Link& link);
   void misbehave(Fault fault, const HttpMessage& request, Link& link);
   std::string bad_answer(Fault fault, const HttpMessage& request);
   /// Records what the request says: its answer.
@@ -52,7 +53,8 @@ class CommandPost final : public Host {
 
   World& world_;
   Faults faults_;
-  Random random_;
+  Random random_, early_;
+  double answers_early_;  // how often, of the pieces in which requests come
   Scoreboard scoreboard_;
   std::uint64_t connection_ = 0;  // on which it was asked last
   Counting counting_;

@@ -40,6 +40,7 @@ constexpr const char* kWords[] = {"asks",
                                   "tells",
                                   "clock is set",
                                   "shows",
+                                  "gives a second",
                                   ""};
 static_assert(std::size(kWords) == static_cast<std::size_t>(Kind::Said) + 1);
 
@@ -52,7 +53,7 @@ void mix(std::uint64_t& hash, std::string_view text) {
 
 bool is_of_the_story(const Event& event) {
   if (event.kind == Kind::Told || event.kind == Kind::Shows) return false;
-  if (event.kind == Kind::Opens || event.kind == Kind::Closes) return false;
+  if (event.kind == Kind::Opens || event.kind == Kind::Closes || event.kind == Kind::Given) return false;
   if (event.actor == Actor::Team && event.who == "reader") return false;
   if (event.kind == Kind::Said) return !event.text.starts_with("info");
   return event.what != "/api/status" || event.kind == Kind::Fault || event.actor == Actor::Team;

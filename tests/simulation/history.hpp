@@ -41,6 +41,8 @@ enum class Kind : std::uint8_t {
   Told,      // to systemd: "READY", "STATUS", "STOPPING", "WATCHDOG"
   ClockSet,  // the box's clock is another from now on, so many seconds ahead of the world's (as a stamp)
   Shows,     // the panel: its lights are lit as `who` says, "1000" for health alone
+  Given,     // a connection is given so many bytes a second (as a serial); its line has as many as the stamp
+             // says, 0: more than Adit may use
   Said       // a line of the log
 };
 

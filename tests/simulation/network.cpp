@@ -13,6 +13,8 @@ namespace {
 
 /// Bytes of a segment on Ethernet: a thin line delivers one after the other, and each is acknowledged.
 constexpr std::size_t kSegment = 1448;
+/// For so long Linux holds back the acknowledgement of a segment that no other follows (RFC 1122 4.2.3.2).
+constexpr std::chrono::milliseconds kLateAck{40};
 
 }  // namespace
 
@@ -23,7 +25,8 @@ Link::Link(World& world, std::uint64_t number, uplink::Endpoint endpoint, Random
       endpoint_(std::move(endpoint)),
       random_(random),
       typical_(random_.chance(0.8) ? random_.between(0.0001, 0.002) : random_.between(0.002, 0.15)),
-      window_(static_cast<std::size_t>(random_.chance(0.7) ? 65536 : random_.between(1000, 8000))) {}
+      window_(static_cast<std::size_t>(random_.chance(0.7) ? 65536 : random_.between(1000, 8000))),
+      acknowledges_late_(world.random("acknowledgements " + std::to_string(number)).chance(0.5)) {}
 
 loop::Duration Link::latency() {
   return seconds(typical_ * random_.between(0.8, 1.5));
@@ -70,13 +73,25 @@ std::size_t Link::write(std::string_view bytes) {
     if (world_.network().stalls().is_on()) held_until_ = last_there_;
     world_.at(last_there_, [self = shared_from_this(), piece = std::string(bytes.substr(taken - left, size)),
                             left_at = world_.now()] {
-      if (self->lost_) return;
-      self->unacknowledged_ -= piece.size();
+      if (self->lost_ || self->deaf_) return;
+      self->acknowledge(piece.size(), left_at);
       if (self->peer_) self->peer_->came(piece, left_at);
     });
     left -= size;
   }
   return taken;
+}
+
+/// The round trip is smoothed as Linux does (RFC 6298 2.3).
+void Link::acknowledge(std::size_t bytes, loop::Instant left_at) {
+  unacknowledged_ -= bytes;
+  delivered_ += bytes;
+  const bool is_late = acknowledges_late_ && unacknowledged_ == 0;
+  const loop::Duration took =
+      world_.now() - left_at + seconds(typical_) + (is_late ? kLateAck : loop::Duration{});
+  if (delivered_ == bytes) round_trip_ = least_round_trip_ = took;
+  round_trip_ += (took - round_trip_) / 8;
+  least_round_trip_ = std::min(least_round_trip_, took);
 }
 
 std::uint32_t Link::ready() const {

@@ -56,6 +56,9 @@ class Link : public std::enable_shared_from_this<Link> {
   int error = 0;  // of connecting
   bool resets_on_close = false;
   std::size_t unacknowledged() const { return unacknowledged_; }
+  std::uint64_t delivered() const { return delivered_; }  // bytes that the other end has acknowledged
+  loop::Duration round_trip() const { return round_trip_; }
+  loop::Duration least_round_trip() const { return least_round_trip_; }
   loop::Instant last_left() const { return last_left_; }  // when write() took bytes last
   std::uint32_t ready() const;
   void close();
@@ -68,6 +71,9 @@ class Link : public std::enable_shared_from_this<Link> {
   void send(std::string bytes, loop::Duration delay = {});
   enum class How : std::uint8_t { End, Reset };
   void end(How how, loop::Duration delay = {});
+  /// From now on nothing that Adit sends comes, or is acknowledged.
+  void go_deaf() { deaf_ = true; }
+  bool is_deaf() const { return deaf_; }
   /// When what was sent last leaves.
   loop::Instant answers_until() const { return answers_until_; }
   std::uint64_t number() const { return number_; }
@@ -78,6 +84,7 @@ class Link : public std::enable_shared_from_this<Link> {
   loop::Duration latency();
   loop::Instant arrival();
   loop::Instant arrival_of(std::size_t bytes);
+  void acknowledge(std::size_t bytes, loop::Instant left_at);
 
   World& world_;
   const std::uint64_t number_;
@@ -87,7 +94,10 @@ class Link : public std::enable_shared_from_this<Link> {
   bool is_thin_ = false;  // a map is on its way, and maps take long here
   std::size_t window_;
   std::size_t unacknowledged_ = 0;
-  bool closed_ = false, lost_ = false;
+  const bool acknowledges_late_;  // the last bytes
+  std::uint64_t delivered_ = 0;
+  loop::Duration round_trip_{}, least_round_trip_{};
+  bool closed_ = false, lost_ = false, deaf_ = false;
   loop::Instant last_there_{}, last_here_{}, last_left_{}, held_until_{}, answers_until_{};
   std::unique_ptr<Peer> peer_;
 };

@@ -20,7 +20,8 @@ constexpr int kOften = 3;
 /// Events that change nothing that the page shows.
 bool is_silent(const Event& event) {
   return event.kind == Kind::Told || event.kind == Kind::Shows || event.kind == Kind::Opens ||
-         event.kind == Kind::Closes || event.what == kView || event.what == kMetrics;
+         event.kind == Kind::Closes || event.kind == Kind::Given || event.what == kView ||
+         event.what == kMetrics;
 }
 
 bool anything_waits(const nlohmann::json& view) {

@@ -55,7 +55,7 @@ std::expected<std::size_t, int> read(int fd, std::span<char> bytes) {
   if (!link->inbox.empty()) {
     const std::size_t size = std::min(bytes.size(), link->inbox.size());
     std::memcpy(bytes.data(), link->inbox.data(), size);
-    link->view.came(std::string_view(link->inbox).substr(0, size));
+    if (!link->is_deaf()) link->view.came(std::string_view(link->inbox).substr(0, size));
     link->inbox.erase(0, size);
     return size;
   }
@@ -72,8 +72,16 @@ int connect_error(int fd) {
   return link->error;
 }
 
-/// Lines have no pace here, and nothing of what they are given is unsent.
-void set_pace(int, std::uint64_t) {}
+/// Is noted, and does nothing: a line delivers as it likes.
+void set_pace(int fd, std::uint64_t bytes_per_second) {
+  if (link_of(fd) == nullptr) return;
+  World& world = World::current();
+  world.note({.kind = simulation::Kind::Given,
+              .what = simulation::kConnection,
+              .who = "",
+              .serial = static_cast<std::int64_t>(bytes_per_second),
+              .stamp = world.network().map_rate()});
+}
 
 /// The exchange itself looks at what is not acknowledged, and gives up as soon.
 void give_up_after(int, std::chrono::milliseconds) {}
@@ -90,7 +98,12 @@ bool is_quiet(int fd) {
 Transmission transmission(int fd) {
   const Link* const link = link_of(fd);
   if (link == nullptr) return {};
-  return {.since_last_byte = World::current().now() - link->last_left(), .sent_twice = 0};
+  return {.since_last_byte = World::current().now() - link->last_left(),
+          .sent_twice = 0,
+          .delivered = link->delivered(),
+          .in_flight = link->unacknowledged(),
+          .round_trip = link->round_trip(),
+          .least_round_trip = link->least_round_trip()};
 }
 
 std::size_t unacknowledged_bytes(int fd) {

@@ -35,6 +35,7 @@ void starts(const Evidence& evidence, Broken& broken);
 void once(const Evidence& evidence, Broken& broken);
 void not_lost(const Evidence& evidence, Broken& broken);
 void paced(const Evidence& evidence, Broken& broken);
+void reports_go_first(const Evidence& evidence, Broken& broken);
 void learned(const Evidence& evidence, Broken& broken);
 void stamps(const Evidence& evidence, Broken& broken);
 void kept(const Evidence& evidence, Broken& broken);

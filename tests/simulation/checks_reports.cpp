@@ -24,11 +24,17 @@ std::map<std::int64_t, double> first_records(const Evidence& evidence) {
   return records;
 }
 
-/// What somebody else recorded while this one was in doubt looks the same; nobody could tell.
+/// One more report was granted, which makes up for one that was recorded.
+bool is_grant(const Event& event) {
+  return event.kind == Kind::NewRun && event.what == kSameMap;
+}
+
+/// What somebody else recorded while this one was in doubt looks the same, and a report that was granted as
+/// if it were not recorded; nobody could tell.
 bool is_blurred(const Evidence& evidence, const dispatch::Report& report) {
   const Window window = window_of(evidence, report.sent - kLongestDoubt, report.changed);
   return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    return event.kind == Kind::Another && window.has(World::kEpoch + event.at);
+    return (event.kind == Kind::Another || is_grant(event)) && window.has(World::kEpoch + event.at);
   });
 }
 
@@ -45,12 +51,15 @@ std::int64_t serial_of(const dispatch::Report& report) {
 void once(const Evidence& evidence, Broken& broken) {
   std::set<std::pair<std::int64_t, std::string>> records;
   Meant meant;
+  double granted = -kLongestDoubt;
   for (const Event& event : evidence.events) {
     meant.add(event);
+    if (is_grant(event)) granted = event.at;
     if (!is_report(event, Kind::Taken)) continue;
     const bool costs = !event.who.ends_with(kInAStop);
     const bool again = !records.insert({event.serial, event.who}).second;
-    if (costs && again && !meant.is_sent_across(event.serial)) {
+    const bool could_tell = event.at - granted > kLongestDoubt;
+    if (costs && again && could_tell && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));
     }

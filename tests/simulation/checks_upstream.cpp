@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "icd/sentence.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/counting.hpp"
+#include "simulation/courses.hpp"
+#include "simulation/messages.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -21,6 +24,9 @@ constexpr double kFloorAhead = 30, kFloorHolds = 35;
 constexpr double kMakesWay = 1;       // seconds until the next gateway has begun
 constexpr double kTriedAgain = 9;     // seconds
 constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
+constexpr double kVouches = 13;       // seconds that a status does for the run: 15, and some to send a report
+constexpr double kSoon = 1;           // seconds: what it waited for was the status
+constexpr double kGivesWay = 1;       // seconds, of which Adit takes 0.2
 /// Bytes a second: less than maps get of the smallest budget that an operator sets.
 constexpr std::int64_t kLeastGiven = 1'500'000;
 
@@ -65,6 +71,63 @@ void paced(const Evidence& evidence, Broken& broken) {
                                      event.at));
     }
     asked.erase(event.what);
+  }
+}
+
+/// A report that is posted while only a status is under way is not kept waiting by it. That is seen if
+/// nothing else can keep it waiting: each one before was answered 2xx, the last left long enough ago,
+/// a status vouches for the run, the process does not stand still, and the report goes as soon as the status
+/// is over.
+void reports_go_first(const Evidence& evidence, Broken& broken) {
+  struct Status {
+    std::uint64_t connection = 0;
+    std::map<std::int64_t, double> waits;  // reports that were posted since it left, and when
+  };
+  std::optional<Status> status;
+  std::map<std::int64_t, double> waited;         // for how long, until a status was over
+  double over = 0;                               // when that was
+  std::map<std::uint64_t, std::int64_t> posted;  // by the client's request
+  std::set<std::int64_t> known;                  // reports that were posted
+  double left = 0;                               // when the last one did
+  double heard = -kVouches;                      // when a status was
+  bool is_clear = true;                          // each was answered
+  for (const Event& event : evidence.events) {
+    if (event.kind == Kind::Begins || event.kind == Kind::Slow || event.what == kCourse) {
+      status.reset();
+      waited.clear();
+      heard = -kVouches;
+    }
+    if (event.kind == Kind::Replied && event.what == kStatus && !event.says.empty()) heard = event.at;
+    if (event.actor == Actor::Team && event.what == kReports) {
+      if (event.kind == Kind::Invoke) posted[event.request] = event.serial;
+      const auto serial = posted.find(event.request);
+      if (serial == posted.end()) continue;
+      if (event.kind == Kind::Answered || event.kind == Kind::Gone) {
+        if (status) status->waits.erase(serial->second);
+        if (event.status / 100 != 2) is_clear = false;
+      }
+      if (event.kind != Kind::Whole || !known.insert(serial->second).second) continue;
+      const bool may_go = is_clear && event.at - left > kSpacing && event.at - heard < kVouches;
+      if (status && may_go) status->waits.emplace(serial->second, event.at);
+      is_clear = false;
+    }
+    if (event.what == kReports && event.kind == Kind::Leaves) left = event.at;
+    const auto its = waited.find(event.serial);
+    if (event.what == kReports && event.kind == Kind::Left && its != waited.end()) {
+      if (its->second > kGivesWay && event.at - over < kSoon)
+        broken.push_back(icd::sentence("Paced: report ", event.serial, " waited ", its->second,
+                                       " s for a status, until ", over));
+      waited.clear();
+    }
+    if (event.what == kReports && event.kind == Kind::Replied) is_clear = event.status / 100 == 2;
+    if (event.what == kStatus && event.kind == Kind::Leaves)
+      status = {.connection = event.request, .waits = {}};
+    const bool is_over = event.kind == Kind::Replied || event.kind == Kind::Closes;
+    if (!is_over || !status || status->connection != event.request) continue;
+    over = event.at;
+    waited.clear();
+    for (const auto& [serial, at] : status->waits) waited.emplace(serial, event.at - at);
+    status.reset();
   }
 }
 

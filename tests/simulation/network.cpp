@@ -160,7 +160,10 @@ Link* Network::find(int fd) {
 void Network::close(int fd) {
   const auto found = links_.find(fd);
   if (found == links_.end()) return;
-  world_.note({.kind = Kind::Closes, .what = kConnection, .who = ""});
+  world_.note({.kind = Kind::Closes,
+               .what = kConnection,
+               .who = "",
+               .request = static_cast<std::uint64_t>(fd - kFirst)});
   found->second->close();
   links_.erase(found);
 }

@@ -1,6 +1,7 @@
 // Refused, Clean and StatusTrue: of what the ICD says that either side may see.
 #include <cmath>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "icd/sentence.hpp"
@@ -66,11 +67,14 @@ void clean(const Evidence& evidence, Broken& broken) {
 void status_true(const Evidence& evidence, Broken& broken) {
   std::vector<Known> known;                         // of this life
   std::map<std::uint64_t, std::size_t> known_then;  // when a client asked
+  std::optional<std::uint64_t> sends;               // the connection on which a report is under way
   double asked = 0, slow = 0, last_report = -1e9;
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::Begins) known.clear(), known_then.clear();
-    const bool is_under_way = event.kind == Kind::Leaves || event.kind == Kind::Replied;
-    if (event.what == kReports && is_under_way) last_report = event.at;
+    if (event.kind == Kind::Begins) known.clear(), known_then.clear(), sends.reset();
+    if (event.kind == Kind::Leaves && event.what == kReports) sends = event.request;
+    const bool is_over = event.kind == Kind::Replied || event.kind == Kind::Closes;
+    if (sends) last_report = event.at;
+    if (is_over && sends == event.request) sends.reset();
     if (event.kind == Kind::Slow) slow += event.stamp;
     if (event.what != kStatus) continue;
     if (event.kind == Kind::Leaves) asked = event.at;

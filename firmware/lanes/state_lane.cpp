@@ -42,7 +42,6 @@ void StateLane::forget_what_was_taken() {
 }
 
 void StateLane::begin_run() {
-  forget_what_was_taken();
   for (auto& [name, held] : robots_) held.is_of_run = false;
 }
 
@@ -87,7 +86,7 @@ std::optional<WaitingState> StateLane::take(Instant now) {
     include(taken, *apart);
   } else {
     for (auto& robot : robots_) {
-      if (together(robot)) include(taken, robot);
+      if (together(robot) && robot.second.goes()) include(taken, robot);
     }
   }
   for (auto& [name, held] : robots_) held.trial.steps_behind = false;
@@ -117,7 +116,6 @@ void StateLane::passed(const WaitingState& state) {
     if (held == robots_.end()) continue;
     held->second.apart = held->second.is_under_way = false;
     held->second.trial = {};
-    if (!held->second.is_news && !held->second.is_of_run) robots_.erase(held);
   }
 }
 

@@ -46,7 +46,7 @@ class StateLane {
   std::optional<WaitingState> take(Instant now = Instant::max());
   /// The next Command Post knows no robot, and is told only of those that have news. Nothing is under way.
   void forget_what_was_taken();
-  /// The same for another run, in which poses that wait go once: they were posted before it.
+  /// Another run is on: poses that wait go once, those that were taken do not. They were posted before it.
   void begin_run();
   /// What was news and could not be sent is news again; newer poses that came meanwhile stay.
   void put_back(const WaitingState& state);
@@ -73,6 +73,7 @@ class StateLane {
  private:
   struct Held {
     bool waits() const { return is_news || is_under_way; }
+    bool goes() const { return is_news || is_of_run; }
 
     PostedPose posted;
     bool is_news = true;

@@ -13,6 +13,7 @@ namespace adit::lanes {
 namespace {
 
 using testing::ElementsAre;
+using testing::IsEmpty;
 using testing::Optional;
 using testing::SizeIs;
 
@@ -104,6 +105,7 @@ TEST(StateLane, RepeatsNoPoseInARunThatItWasNotPostedIn) {
   lane.passed(*first);
   post(lane, state(13, {pose("R4", 4)}), at(4));
   EXPECT_THAT(lane.take()->update.poses, ElementsAre(pose("R3", 3), pose("R4", 4)));
+  EXPECT_THAT(lane.news_in(state(9, {pose("R1", 9)})), IsEmpty()) << "it came late";
 }
 
 TEST(StateLane, RepeatsAPoseOfTheRunBeforeOnlyUntilItIsTaken) {

@@ -9,7 +9,9 @@
 #include "icd/sentence.hpp"
 #include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/scoreboard.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -23,15 +25,29 @@ struct Change {
   double began, ended, stamp;
   bool accepted;
   std::int64_t serial;  // 0: it took the value away
+  Says sender = {};
 
-  /// Whether `other` came after it for sure: by one clock's stamps, or else by when they were posted.
-  bool is_before(const Change& other) const {
-    const bool one_clock = std::abs((stamp - began) - (other.stamp - other.began)) < kOneClock;
-    if (stamp != 0 && other.stamp != 0 && one_clock) return stamp < other.stamp;
-    return ended < other.began;
+  bool is_of_one_clock(const Change& other) const {
+    return stamp != 0 && other.stamp != 0 && sender == other.sender &&
+           std::abs((stamp - began) - (other.stamp - other.began)) < kOneClock;
   }
 };
 using Changes = std::vector<Change>;
+
+/// Whether `other` came after `change` for sure: by their stamps, if they are of one clock, unless that of
+/// another may have come in between and replaced the first, or the gateway may have forgotten it then; else
+/// by when they were posted.
+bool is_before(const Change& change, const Change& other, const Changes& all,
+               const std::vector<double>& forgets) {
+  const bool by_stamps = change.stamp < other.stamp, by_arrival = change.ended < other.began;
+  if (!change.is_of_one_clock(other) || by_stamps == by_arrival) return by_arrival;
+  const double from = std::min(change.began, other.began), to = std::max(change.ended, other.ended);
+  const bool is_apart = std::ranges::any_of(forgets, [&](double at) { return at > from && at < to; }) ||
+                        std::ranges::any_of(all, [&](const Change& third) {
+                          return !third.is_of_one_clock(change) && third.ended > from && third.began < to;
+                        });
+  return is_apart ? by_arrival : by_stamps;
+}
 
 /// Whether `late`, which was posted after `early`, may have been overtaken by it as far as its stamp tells:
 /// the first late one of a clock that was set back may (`lanes/step_back.hpp`).
@@ -44,14 +60,16 @@ bool seems_overtaken(const Change& late, const Change& early, const Changes& all
   });
 }
 
-/// The values that may stand in the end: of each change that none that was accepted came after.
-std::set<std::int64_t> last_of(const Changes& changes) {
+/// The values that may stand in the end: of each change that none that was accepted came after. `forgets`:
+/// when the gateway may have forgotten what it holds.
+std::set<std::int64_t> last_of(const Changes& changes, const std::vector<double>& forgets = {}) {
   std::set<std::int64_t> last;
   bool any = false;
   for (const Change& change : changes) {
     bool over = false;
     for (const Change& other : changes)
-      over = over || (other.accepted && change.is_before(other) && !seems_overtaken(other, change, changes));
+      over = over || (other.accepted && is_before(change, other, changes, forgets) &&
+                      !seems_overtaken(other, change, changes));
     if (!over) last.insert(change.serial);
     any = any || change.accepted;
   }
@@ -97,21 +115,65 @@ std::map<Key, std::int64_t> says_of(const Asked& asked, const std::set<Key>& key
   return says;
 }
 
+/// Statuses of another run after which the gateway knows of it.
+constexpr int kKnown = 2;
+
+/// Once the gateway knows of another run, no pose goes that was taken and was posted before that run.
+void judge_runs(const Evidence& evidence, const std::vector<Asked>& states, Broken& broken) {
+  std::map<std::int64_t, double> posted;  // the latest that each may have been
+  for (const Asked& asked : states) {
+    for (const Item& item : asked.items) posted[item.serial] = asked.ended;
+  }
+  double began = 0;
+  int heard = kKnown;
+  std::set<std::uint64_t> asks;  // for a status of this run
+  std::map<std::uint64_t, std::set<std::int64_t>> under_way;
+  std::set<std::int64_t> taken;  // in this life: the next one may not know
+  for (const Event& event : evidence.events) {
+    if (event.what == kCourse) return;
+    if (event.kind == Kind::Begins) taken.clear();
+    if (event.kind == Kind::NewRun && event.what != kSameMap) {
+      began = event.at;
+      heard = 0;
+      asks.clear();
+    }
+    if (event.kind == Kind::Leaves && event.what == kStatus) asks.insert(event.request);
+    if (event.kind == Kind::Leaves && event.what == kState) under_way[event.request].clear();
+    const bool is_good = event.kind == Kind::Replied && event.status == 200 && event.who.empty();
+    if (is_good && event.what == kStatus && !event.says.empty() && asks.erase(event.request) > 0) ++heard;
+    if (event.what != kState) continue;
+    if (is_good) taken.merge(under_way[event.request]);
+    if (event.kind != Kind::Left) continue;
+    under_way[event.request].insert(event.serial);
+    if (heard >= kKnown && posted[event.serial] < began && taken.contains(event.serial))
+      broken.push_back(icd::sentence("PoseArrived: ", event.who, " was said to be where ", event.serial,
+                                     " said, at ", event.at, ", in a run that began at ", began,
+                                     ", after it was posted"));
+  }
+}
+
 }  // namespace
 
 void pose_arrived(const Evidence& evidence, Broken& broken) {
   std::map<std::string, Changes> changes;
-  for (const Asked& asked : asked_in(evidence.events, kState)) {
+  const std::vector<Asked> states = asked_in(evidence.events, kState);
+  judge_runs(evidence, states, broken);
+  for (const Asked& asked : states) {
     if (!asked.may_count()) continue;
     for (const Item& item : asked.items)
-      changes[item.who].push_back({asked.began, asked.ended, item.stamp, asked.accepted(), item.serial});
+      changes[item.who].push_back(
+          {asked.began, asked.ended, item.stamp, asked.accepted(), item.serial, item.says});
   }
   std::map<std::string, std::int64_t> taken;
+  // Of poses that were taken, another life and another course know nothing.
+  std::vector<double> forgets;
   for (const Event& event : evidence.events) {
+    const bool begins = event.kind == Kind::Begins || event.kind == Kind::Serves || event.what == kCourse;
+    if (begins) forgets.push_back(event.at);
     if (event.kind == Kind::Taken && event.what == kState) taken[event.who] = event.serial;
   }
   for (const auto& [who, of_it] : changes) {
-    const auto last = last_of(of_it);
+    const auto last = last_of(of_it, forgets);
     if (last.contains(taken[who])) continue;
     broken.push_back(icd::sentence("PoseArrived: ", who, " is at rest where ", taken[who],
                                    " said, and not where ", list_of(last), " did"));

@@ -82,6 +82,27 @@ class Difference {
   Broken& broken_;
 };
 
+/// A robot is as old as the last pose that itself posted, whatever else went since.
+void judge_ages(const Evidence& evidence, const PageAccount& account, const Reading& reading,
+                Broken& broken) {
+  const auto judge = [&](const Json& row, const std::string& robot) {
+    const auto [least, most] = account.age(stream_of(kState, robot), moment_of(reading));
+    const double age = row.at("age").is_null() ? HUGE_VAL : row.at("age").get<double>();
+    if (age >= least - kAgeRounding && age <= most + kAgeRounding) return;
+    broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls ", robot, " ", age,
+                                   " s old, and it is ", least, " to ", most, " s"));
+  };
+  const auto is_set = [](const Event& event) {
+    return event.kind == Kind::ClockSet || event.kind == Kind::PowerCut;
+  };
+  const auto heard = evidence.events.begin() + static_cast<std::ptrdiff_t>(reading.heard);
+  if (std::any_of(evidence.events.begin(), heard, is_set)) return;
+  for (const Json& row : reading.view.at("activities")) {
+    if (row.at("kind") == "state") judge(row, row.at("robot"));
+  }
+  for (const Json& row : reading.view.at("robots")) judge(row, row.at("name"));
+}
+
 /// The last status of that Command Post that was heard before a moment and after another.
 const Event* last_status(const std::vector<Event>& events, std::size_t from, std::size_t to, int place) {
   while (to-- > from) {
@@ -238,6 +259,7 @@ void honest(const Evidence& evidence, Broken& broken) {
     before = &reading;
     if (begun > reading.asked || is_switching(evidence, reading)) continue;
     judge_run(evidence, begun, reading, broken);
+    judge_ages(evidence, account, reading, broken);
     judge_reports(evidence, reading, broken);
     judge_last_answers(evidence, begun, reading, broken);
     judge_metrics(evidence, reading, broken);

@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "icd/sentence.hpp"
+#include "simulation/asked.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/counting.hpp"
 #include "simulation/courses.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/station.hpp"
 #include "simulation/world.hpp"
 
 namespace adit::simulation {
@@ -17,7 +19,8 @@ namespace {
 
 constexpr double kSpacing = 1;      // seconds between two requests of a URI: the settings' default
 constexpr double kRounding = 1e-6;  // of the history's times
-constexpr double kAhead = 5;        // seconds that a stamp may be after the clock for stamps
+constexpr double kStampRounding = 1e-3;
+constexpr double kAhead = 5;  // seconds that a stamp may be after the clock for stamps
 /// Seconds: a start of the machine begins where no stamp has been, so much ahead at the most; what was
 /// written of that holds so long.
 constexpr double kFloorAhead = 30, kFloorHolds = 35;
@@ -29,6 +32,32 @@ constexpr double kSoon = 1;           // seconds: what it waited for was the sta
 constexpr double kGivesWay = 1;       // seconds, of which Adit takes 0.2
 /// Bytes a second: less than maps get of the smallest budget that an operator sets.
 constexpr std::int64_t kLeastGiven = 1'500'000;
+
+/// Of the station's clock, which runs as the world's does: the first message of a robot counts as posted when
+/// it came, and each later one as much later as its stamp is.
+class Spacing {
+ public:
+  explicit Spacing(const std::vector<Event>& events) {
+    std::map<std::string, std::pair<double, double>> first;  // by when it had come, and how late it was
+    for (const Asked& asked : asked_in(events, kState)) {
+      for (const Item& item : asked.items) {
+        if (item.stamp == 0 || item.says != Says{Station::kNumber}) continue;
+        auto& [come, late] = first.try_emplace(item.who, 1e9, 1e9).first->second;
+        if (asked.began < come) late = std::min(late, World::kEpoch + asked.began - item.stamp);
+        if (asked.accepted()) come = std::min(come, asked.ended);
+        least_[item.serial] = item.stamp + late;
+      }
+    }
+  }
+  /// The least that its stamp may be upstream.
+  double least(const Event& pose) const {
+    const auto found = least_.find(pose.serial);
+    return found == least_.end() ? 0 : found->second;
+  }
+
+ private:
+  std::map<std::int64_t, double> least_;
+};
 
 }  // namespace
 
@@ -163,6 +192,8 @@ void learned(const Evidence& evidence, Broken& broken) {
 
 void stamps(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> last;
+  const Spacing spacing(evidence.events);
+  bool is_spaced = true;  // no clock of a robot was forgotten
   DiskFaultsSeen disk;
   double ahead = kAhead, forgotten_until = 0;
   double clock = 0;      // by which the box's is ahead of the world's
@@ -171,6 +202,7 @@ void stamps(const Evidence& evidence, Broken& broken) {
     if (event.kind == Kind::ClockSet) clock = event.stamp;
     by_clock = by_clock || event.kind == Kind::PowerCut || disk.forgets_at(event);
     if (event.kind == Kind::Begins && by_clock) ahead = std::max(ahead, kAhead + clock);
+    is_spaced = is_spaced && event.kind != Kind::PowerCut && !disk.forgets_at(event);
     if (disk.forgets_at(event)) {
       ahead += kFloorAhead;
       forgotten_until = event.at + kMakesWay;
@@ -189,6 +221,11 @@ void stamps(const Evidence& evidence, Broken& broken) {
                                      " s at ", event.at));
     }
     before = std::max(before, event.stamp);
+    const double least = event.what == kState ? spacing.least(event) : 0;
+    if (is_spaced && event.stamp < least - kStampRounding) {
+      broken.push_back(icd::sentence("Stamps: of ", event.who, " ", event.serial, " is ", least - event.stamp,
+                                     " s nearer to those before than it was stamped, at ", event.at));
+    }
     if (event.stamp > World::kEpoch + event.at + ahead + kRounding) {
       broken.push_back(icd::sentence("Stamps: of ", event.what, " is ",
                                      event.stamp - World::kEpoch - event.at, " s ahead at ", event.at));

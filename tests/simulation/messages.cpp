@@ -104,6 +104,19 @@ std::vector<Item> items_of(const HttpMessage& request) {
   return path == kMap ? map_items(message) : items;
 }
 
+std::vector<Event> events_of(const Posting& posting) {
+  std::vector<Event> events;
+  events.reserve(posting.items.size());
+  for (const Item& item : posting.items) {
+    events.push_back({.what = posting.path,
+                      .who = item.who,
+                      .serial = item.serial,
+                      .stamp = item.stamp,
+                      .says = item.says});
+  }
+  return events;
+}
+
 Says status_in(const std::string& body) {
   const Json status = Json::parse(body, nullptr, false);
   const auto is_number = [&](const char* name) {

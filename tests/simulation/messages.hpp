@@ -18,8 +18,9 @@ struct Item {
   std::string who;  // a map's or a pose's name, a marker's ns, "" of a report
   std::int64_t serial = 0;
   double stamp = 0;  // 0: none
-  Says says =
-      {};  // of a grid its Extent, and upstream its cells, of a cloud its points, of a marker action and id
+  /// Of a grid its Extent, and upstream its cells, of a cloud its points, of a marker action and id, of a
+  /// pose the number of the client that posts it.
+  Says says = {};
 };
 
 /// Where a grid lies.
@@ -63,6 +64,8 @@ struct Style {
   bool news_first = false;  // of clouds that have the points of those before them
 };
 
+/// What a client says of each thing in it.
+std::vector<Event> events_of(const Posting& posting);
 /// The whole request, in the bytes of that style. Reports are JSON.
 std::string request_of(const Posting& posting, const Style& style);
 

@@ -17,7 +17,7 @@ Stream stream_of(const std::string& path, const std::string& who) {
   return {path, path == kMarkers ? "" : who};
 }
 
-PageAccount::PageAccount(const std::vector<Event>& events) {
+PageAccount::PageAccount(const std::vector<Event>& events) : events_(events) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     // A gateway that begins listens.
@@ -121,6 +121,23 @@ Range PageAccount::forwarded(const Stream& stream, Moment from, Moment to) const
   };
   const Range sure = places(forwarded_);
   return {sure.least, sure.most + places(may_be_forwarded_).most};
+}
+
+PageAccount::Age PageAccount::age(const Stream& stream, Moment at) const {
+  const auto last = [&](const std::map<Stream, Places>& all, std::size_t before) {
+    const auto found = all.find(stream);
+    if (found == all.end()) return kNever;
+    const auto after = std::ranges::lower_bound(found->second, before);
+    return after == found->second.begin() ? kNever : *std::prev(after);
+  };
+  Age age{.least = std::numeric_limits<double>::infinity()};
+  for (const auto* const all : {&forwarded_, &may_be_forwarded_}) {
+    const std::size_t any = last(*all, at.heard);
+    if (any != kNever) age.least = std::min(age.least, std::max(0.0, events_[at.asked].at - events_[any].at));
+  }
+  const std::size_t sure = last(forwarded_, at.asked);
+  if (sure != kNever && sure >= begun(at)) age.most = events_[at.heard - 1].at - events_[sure].at;
+  return age;
 }
 
 Range PageAccount::throttled(const std::string& endpoint, Moment from, Moment to) const {

@@ -39,6 +39,11 @@ class PageAccount {
   };
   Range accepted(const Stream& stream, Moment from, Moment to) const;
   Range forwarded(const Stream& stream, Moment from, Moment to) const;
+  /// Seconds since the last one was forwarded, at least and at most.
+  struct Age {
+    double least = 0, most = std::numeric_limits<double>::infinity();
+  };
+  Age age(const Stream& stream, Moment at) const;
   /// Answers of that kind of an endpoint, "scoring" or "mapping".
   Range throttled(const std::string& endpoint, Moment from, Moment to) const;
   Range foreign(const std::string& endpoint, Moment from, Moment to) const;
@@ -60,6 +65,7 @@ class PageAccount {
   void read_upstream(std::size_t place, const Event& event);
   void was_taken(std::size_t place, const Stream& stream, std::int64_t pose);
 
+  const std::vector<Event>& events_;
   std::map<Stream, std::vector<Posted>> posted_;
   std::map<std::uint64_t, std::vector<std::pair<Stream, std::size_t>>> open_;  // requests: where in posted_
   std::deque<std::pair<double, std::uint64_t>> gone_;                          // when, and which request

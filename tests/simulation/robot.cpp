@@ -32,6 +32,7 @@ int between(Random& random, int low, int high) {
 
 Robot::Robot(World& world, int number)
     : world_(world),
+      number_(number),
       random_(world.random("robot " + std::to_string(number))),
       name_(std::string("R").append(std::to_string(number))),
       client_(world, address(number), manners(random_), world.random("client " + name_)),
@@ -54,17 +55,8 @@ void Robot::post_until(double end) {
 
 void Robot::post() {
   if (world_.time() > end_) return;
-  Posting posting = next();
-  std::vector<Event> about;
-  about.reserve(posting.items.size());
-  for (const Item& item : posting.items) {
-    about.push_back({.what = posting.path,
-                     .who = item.who,
-                     .serial = item.serial,
-                     .stamp = item.stamp,
-                     .says = item.says});
-  }
-  client_.ask_several(request_of(posting, style_), std::move(about), [this](int) {
+  const Posting posting = next();
+  client_.ask_several(request_of(posting, style_), events_of(posting), [this](int) {
     const double pause = row_ > 0 ? 0.01 : every_ * random_.between(0.2, 1.8);
     world_.after(seconds(pause), [this] { post(); });
   });
@@ -78,7 +70,7 @@ Posting Robot::next() {
   }
   if (writings_ > 0 && random_.chance(0.5)) return markers();
   const double kind = random_.unit();
-  if (kind < 0.35) return {kState, {item(name_)}};
+  if (kind < 0.35) return {kState, {item(name_, {number_})}};
   row_of_grids_ = rolls_ && kind < 0.55;
   if (row_of_grids_) row_ = 1 + random_.below(5);
   if (kind < 0.55) return {kMap, {grid()}};

@@ -34,6 +34,7 @@ class Robot {
   Posting next();
 
   World& world_;
+  const int number_;
   Random random_;
   const std::string name_;
   Client client_;

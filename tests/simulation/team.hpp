@@ -10,6 +10,7 @@
 #include "simulation/others.hpp"
 #include "simulation/random.hpp"
 #include "simulation/robot.hpp"
+#include "simulation/station.hpp"
 #include "simulation/strangers.hpp"
 
 namespace adit::simulation {
@@ -44,6 +45,7 @@ class Team {
 
  private:
   std::vector<std::unique_ptr<Robot>> robots_;
+  std::unique_ptr<Station> station_;  // null: there is none
   std::vector<std::unique_ptr<Reporter>> reporters_;
   std::vector<std::unique_ptr<Blunderer>> blunderers_;
   std::vector<std::unique_ptr<Watcher>> watchers_;

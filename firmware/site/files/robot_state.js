@@ -26,10 +26,11 @@ function details(row) {
   return row.bytes_sent ? bytes(row.bytes_sent) : "";
 }
 
-/** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `lost`: the box does not answer, so nothing is known. */
-export function stateOf(row, lost) {
+/** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `since`: seconds since the box said so;
+ *  `lost`: it does not answer, so nothing is known. */
+export function stateOf(row, since, lost) {
   const known = lost ? { level: "quiet", word: "unknown" } : arrival(row);
-  return { kind: kindOf(row), ...known, age: row.age, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
+  return { kind: kindOf(row), ...known, age: row.age === null ? null : row.age + since, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
 }
 
 /** A robot's map at the Command Post: as old as the older of its kinds; one that it stopped to send does not count beside another. null: none arrived. */
@@ -40,18 +41,18 @@ function oldest(kinds) {
   return live.length ? Math.max(...ages) : Math.min(...ages);
 }
 
-function robotState(name, rows, lost) {
-  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, lost));
+function robotState(name, rows, since, lost) {
+  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, since, lost));
   const worst = WORST.map((level) => kinds.find((kind) => kind.level === level)).find(Boolean);
   const isSilent = !lost && rows.some((row) => row.arrival === "silent");
   return { name, level: worst.level, word: worst.word, isSilent, age: oldest(kinds), hasMap: kinds.some(({ kind }) => kind !== "pose"), kinds };
 }
 
 /** {robots: each with {name, level, word, isSilent, age, hasMap, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
-export function robotsOf(activities, lost) {
+export function robotsOf(activities, since, lost) {
   const rows = activities.filter(({ kind }) => KINDS.includes(kind));
   const byName = Map.groupBy(rows.filter(({ robot }) => robot), robotOf);
-  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, lost) }));
-  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, lost) });
-  return { robots: [...byName].map(([name, its]) => robotState(name, its, lost)), shared };
+  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, since, lost) }));
+  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, since, lost) });
+  return { robots: [...byName].map(([name, its]) => robotState(name, its, since, lost)), shared };
 }

@@ -48,7 +48,7 @@ function unheard({ alarms, robots }, known) {
 export function showRobots(view, now, lost) {
   const { activities } = view;
   const isAway = troubleOf(view, "mapping")?.level === "bad";
-  const state = robotsOf(activities, lost);
+  const state = robotsOf(activities, now - view.now, lost);
   if (!lost) state.robots.push(...unheard(view, state.robots));
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);

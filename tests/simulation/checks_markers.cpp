@@ -115,17 +115,15 @@ std::map<Key, std::int64_t> says_of(const Asked& asked, const std::set<Key>& key
   return says;
 }
 
-/// Statuses of another run after which the gateway knows of it.
-constexpr int kKnown = 2;
-
-/// Once the gateway knows of another run, no pose goes that was taken and was posted before that run.
+/// Once the gateway has heard a status of another run, no pose goes that was taken and was posted before that
+/// run.
 void judge_runs(const Evidence& evidence, const std::vector<Asked>& states, Broken& broken) {
   std::map<std::int64_t, double> posted;  // the latest that each may have been
   for (const Asked& asked : states) {
     for (const Item& item : asked.items) posted[item.serial] = asked.ended;
   }
   double began = 0;
-  int heard = kKnown;
+  bool is_heard = false;
   std::set<std::uint64_t> asks;  // for a status of this run
   std::map<std::uint64_t, std::set<std::int64_t>> under_way;
   std::set<std::int64_t> taken;  // in this life: the next one may not know
@@ -134,18 +132,19 @@ void judge_runs(const Evidence& evidence, const std::vector<Asked>& states, Brok
     if (event.kind == Kind::Begins) taken.clear();
     if (event.kind == Kind::NewRun && event.what != kSameMap) {
       began = event.at;
-      heard = 0;
+      is_heard = false;
       asks.clear();
     }
     if (event.kind == Kind::Leaves && event.what == kStatus) asks.insert(event.request);
     if (event.kind == Kind::Leaves && event.what == kState) under_way[event.request].clear();
     const bool is_good = event.kind == Kind::Replied && event.status == 200 && event.who.empty();
-    if (is_good && event.what == kStatus && !event.says.empty() && asks.erase(event.request) > 0) ++heard;
+    if (is_good && event.what == kStatus && !event.says.empty() && asks.erase(event.request) > 0)
+      is_heard = true;
     if (event.what != kState) continue;
     if (is_good) taken.merge(under_way[event.request]);
     if (event.kind != Kind::Left) continue;
     under_way[event.request].insert(event.serial);
-    if (heard >= kKnown && posted[event.serial] < began && taken.contains(event.serial))
+    if (is_heard && posted[event.serial] < began && taken.contains(event.serial))
       broken.push_back(icd::sentence("PoseArrived: ", event.who, " was said to be where ", event.serial,
                                      " said, at ", event.at, ", in a run that began at ", began,
                                      ", after it was posted"));

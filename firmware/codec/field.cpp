@@ -1,5 +1,6 @@
 #include "codec/field.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "codec/list.hpp"
@@ -40,7 +41,6 @@ std::string got(const Value& value) {
 
 std::string limits(double least, double most) {
   if (std::isinf(least)) return "a finite number";
-  if (std::isinf(most)) return icd::sentence("a finite number of at least ", least);
   return icd::sentence("a number from ", least, " to ", most);
 }
 
@@ -145,16 +145,16 @@ bool Field::truth() const {
   return false;
 }
 
-double Field::seconds() const {
-  if (value_ && number_of(*value_)) return number(0);
+double Field::seconds(double most) const {
+  if (value_ && number_of(*value_)) return number(0, most);
   if (!is<Value::Object>()) {
     refuse_kind("a number or {secs, nsecs}");
     return 0;
   }
   constexpr std::uint32_t kLastNanosecond = 999'999'999;
-  const auto secs = member("secs").whole<std::uint32_t>();
+  const auto secs = member("secs").whole<std::uint32_t>(0, static_cast<std::uint32_t>(most));
   const auto nsecs = member("nsecs").whole<std::uint32_t>(0, kLastNanosecond);
-  return secs + nsecs / 1e9;
+  return std::min(secs + nsecs / 1e9, most);
 }
 
 void Field::refuse_kind(std::string_view expected) const {

@@ -88,8 +88,9 @@ class Field {
   bool is_empty_text() const { return characters() == std::string_view(); }
   /// A bool; 0 and 1 are tolerated.
   bool truth() const;
-  /// Seconds, not negative: a number, or {secs, nsecs} as ROS has them.
-  double seconds() const;
+  /// Seconds from 0 to `most`, the last double before a whole number of them: a number, or {secs, nsecs} as
+  /// ROS has them.
+  double seconds(double most) const;
 
   /// 422 about this field.
   template <class... Parts>

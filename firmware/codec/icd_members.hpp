@@ -83,7 +83,7 @@ inline constexpr auto members_of<icd::Marker> = std::tuple(  // 6.6
     named("pose", &icd::Marker::pose).needed(Need::ToAdd),
     named("scale", &icd::Marker::scale).needed(Need::ToAdd),
     named("color", &icd::Marker::color).needed(Need::ToAdd),
-    named("lifetime", &icd::Marker::lifetime).time().needed(Need::MayLack),
+    named("lifetime", &icd::Marker::lifetime).time_to(icd::kLongestLifetime).needed(Need::MayLack),
     named("text", &icd::Marker::text).needed(Need::MayLack),
     // What ROS's Marker has and the ICD does not list. How many colors there are is the sender's business:
     // whoever draws the marker ignores those that fit no points.

@@ -63,7 +63,7 @@ struct NamedMember {
   constexpr NamedMember to(Bound bound, std::string_view of = "") const {
     return with(&NamedMember::most, bound).with(&NamedMember::unit, of);
   }
-  constexpr NamedMember time() const { return with(&NamedMember::is_time, true); }
+  constexpr NamedMember time_to(Bound longest) const { return to(longest).with(&NamedMember::is_time, true); }
 
   void read(const Field& parent, Struct& into, const icd::Rules& rules) const {
     const Field field = parent.member(name);
@@ -96,7 +96,7 @@ struct NamedMember {
     if constexpr (std::same_as<Value, bool>) {
       value = field.truth();
     } else if constexpr (std::floating_point<Value>) {
-      value = is_time ? field.seconds() : field.number(least, most);
+      value = is_time ? field.seconds(most) : field.number(least, most);
     } else if constexpr (std::is_enum_v<Value>) {
       value = static_cast<Value>(field.whole<Bound>(least, most));
     } else if constexpr (std::integral<Value>) {

@@ -5,7 +5,8 @@ icd::Header read_header(const Field& message, const icd::Rules& rules) {
   icd::Header read;
   const Field header = message.member("header");
   if (header.is_absent()) return read;
-  if (const Field stamp = header.member("stamp"); !stamp.is_absent()) read.stamp = stamp.seconds();
+  if (const Field stamp = header.member("stamp"); !stamp.is_absent())
+    read.stamp = stamp.seconds(icd::kLatestStamp);
   if (const Field frame_id = header.member("frame_id"); !frame_id.is_absent()) {
     const std::string_view text = frame_id.text();
     if (text != icd::kFrame && !text.empty())

@@ -21,7 +21,7 @@ inline constexpr std::uint8_t kUnknownCell = 255;
 /// +Y.
 struct OccupancyGrid {
   Header header;
-  double resolution = 0;     // metres a cell; finite, above 0
+  double resolution = 0;     // metres a cell; as a float32 finite and above 0
   std::uint32_t width = 0;   // cells towards +X; at least 1
   std::uint32_t height = 0;  // cells towards +Y; at least 1
   Pose origin;               // of the lower left corner, in "darpa"

@@ -33,6 +33,8 @@ inline constexpr auto kLastMarkerType = static_cast<std::int32_t>(MarkerType::Tr
 inline constexpr std::size_t kMostMarkers = 100'000;  // in one update
 inline constexpr std::size_t kMostMarkerPoints = 100'000;
 inline constexpr std::size_t kLongestMeshResource = 4096;  // bytes
+inline constexpr double kLongestLifetime =
+    0x1.fffffffffffffp30;  // ROS's duration has its seconds in an int32
 
 /// Each component from 0 to 1.
 struct Color {
@@ -51,7 +53,7 @@ struct Marker {
   Pose pose;
   Point scale;  // metres
   Color color;
-  double lifetime = 0;  // seconds, not negative; 0: for ever
+  double lifetime = 0;  // seconds, from 0 to kLongestLifetime; 0: for ever
   std::string text;
   bool frame_locked = false;       // drawn again in its frame as that moves
   std::vector<Point> points = {};  // metres from `pose`; at most kMostMarkerPoints

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
+#include <limits>
 #include <string>
 
 #include "icd/require.hpp"
@@ -65,8 +65,10 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
 }  // namespace
 
 Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
-  if (!std::isfinite(grid.resolution) || grid.resolution <= 0) {
-    return unprocessable("msg.info.resolution: expected a number above 0, got ", grid.resolution);
+  using Float = std::numeric_limits<float>;                   // as ROS has it
+  constexpr double kBecomesZero = Float::denorm_min() / 2.0;  // as what is halfway goes to the even one
+  if (!(grid.resolution > kBecomesZero && grid.resolution <= Float::max())) {  // NaN is neither
+    return unprocessable("msg.info.resolution: expected a finite float32 above 0, got ", grid.resolution);
   }
   if (auto checked = check_side("msg.info.width", grid.width); !checked) return checked;
   if (auto checked = check_side("msg.info.height", grid.height); !checked) return checked;

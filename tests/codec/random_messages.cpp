@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -37,9 +38,14 @@ icd::Pose any_pose(Random& random) {
           .orientation = {any_number(random), any_number(random), any_number(random), 0.5}};
 }
 
+/// Often the last one.
+double any_time(Random& random, double last) {
+  return std::min(std::abs(any_number(random)), last);
+}
+
 icd::Header any_header(Random& random) {
   if (below(random, 3) == 0) return {};
-  return {.stamp = std::abs(any_number(random))};
+  return {.stamp = any_time(random, icd::kLatestStamp)};
 }
 
 icd::RobotName any_name(Random& random) {
@@ -149,7 +155,7 @@ icd::MarkersUpdate random_markers(Random& random) {
                               .pose = any_pose(random),
                               .scale = any_point(random),
                               .color = any_color(random),
-                              .lifetime = std::abs(any_number(random)),
+                              .lifetime = any_time(random, icd::kLongestLifetime),
                               .text = any_text(random)});
     if (below(random, 2) == 0) add_geometry(update.markers.back(), random);
   }

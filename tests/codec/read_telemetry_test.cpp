@@ -1,6 +1,8 @@
 // A row for each rule of the ICD about POST /state/update and POST /markers/update, as JSON and as CBOR.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "codec/icd_row.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
@@ -49,9 +51,9 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
       {"6.1", [](json& m) { m["header"]["frame_id"] = "odom"; },
        "header.frame_id: expected \"darpa\", got \"odom\" (the setting rules.rewrite_frame_id takes any)"},
       {"6.2", [](json& m) { m["header"]["stamp"] = -1; },
-       "header.stamp: expected a finite number of at least 0, got -1"},
+       "header.stamp: expected a number from 0 to 4294967295.9999995, got -1"},
       {"6.2", [](json& m) { m["header"]["stamp"] = kNan; },
-       "header.stamp: expected a finite number of at least 0, got nan"},
+       "header.stamp: expected a number from 0 to 4294967295.9999995, got nan"},
       {"6.5", [](json& m) { m.erase("poses"); }, "poses: missing"},
       {"6.5", [](json& m) { m["poses"] = nullptr; }, "poses: expected an array, got null"},
       {"6.5", [](json& m) { m["poses"] = json::object(); }, "poses: expected an array, got an object"},
@@ -112,6 +114,17 @@ TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS has its stamps
   EXPECT_EQ(state->header.stamp, 1617235200.25);
 }
 
+/// The double that is nearest to ROS's last one is a second that ROS does not have.
+TEST(ReadMarkersUpdate, GivesNoSecondBeyondThoseOfRosForItsLastTimes) {
+  json message = test::good_markers();
+  message["markers"][0]["header"]["stamp"] = {{"secs", 4294967295}, {"nsecs", 999'999'999}};
+  message["markers"][0]["lifetime"] = {{"secs", 2147483647}, {"nsecs", 999'999'999}};
+  const auto update = read(read_markers_update, Format::Cbor, test::as_cbor(message));
+  ASSERT_TRUE(update.has_value());
+  EXPECT_EQ(std::trunc(update->markers[0].header.stamp.value()), 4294967295);
+  EXPECT_EQ(std::trunc(update->markers[0].lifetime), 2147483647);
+}
+
 TEST(ReadStateUpdate, RefusesAMemberGivenTwiceInAnyObjectThatItReads) {
   const std::string position = R"({"x":1,"y":2,"z":3})";
   const std::string orientation = R"({"x":0,"y":0,"z":0,"w":1})";
@@ -139,7 +152,7 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
        "markers[0].header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id "
        "takes any)"},
       {"6.2", [](json& m) { m["markers"][0]["header"]["stamp"] = -2; },
-       "markers[0].header.stamp: expected a finite number of at least 0, got -2"},
+       "markers[0].header.stamp: expected a number from 0 to 4294967295.9999995, got -2"},
       {"6.6", [](json& m) { m["markers"][0].erase("ns"); }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["ns"] = nullptr; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["ns"] = 5; },
@@ -184,7 +197,16 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = nullptr; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", 0}}; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = -1; },
-       "markers[0].lifetime: expected a finite number of at least 0, got -1"},
+       "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got -1"},
+      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 2147483647.5; }, "taken"},
+      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 1e-300; }, "taken"},
+      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 3e9; },
+       "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got 3e+09"},
+      {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 1e300; },
+       "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got 1e+300"},
+      {"6.6 and ROS's duration",
+       [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 3'000'000'000}, {"nsecs", 0}}; },
+       "markers[0].lifetime.secs: expected a whole number from 0 to 2147483647, got 3000000000"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", -1}}; },
        "markers[0].lifetime.nsecs: expected a whole number from 0 to 999999999, got -1"},
       {"6.6", [](json& m) { m["markers"][0].erase("text"); }, "taken"},

@@ -47,14 +47,17 @@ struct GridRow {
 TEST(GridRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
   const GridRow rows[] = {
       {"6.3.1", [](auto&) {}, "taken"},
-      {"6.3.1", [](auto& g) { g.resolution = 1e-300; }, "taken"},
-      {"6.3.1", [](auto& g) { g.resolution = 0; }, "msg.info.resolution: expected a number above 0, got 0"},
+      {"6.3.1", [](auto& g) { g.resolution = 8e-46; }, "taken"},  // becomes the least float32
+      {"6.3.1", [](auto& g) { g.resolution = 7e-46; },
+       "msg.info.resolution: expected a finite float32 above 0, got 7e-46"},
+      {"6.3.1", [](auto& g) { g.resolution = 0; },
+       "msg.info.resolution: expected a finite float32 above 0, got 0"},
       {"6.3.1", [](auto& g) { g.resolution = -0.1; },
-       "msg.info.resolution: expected a number above 0, got -0.1"},
+       "msg.info.resolution: expected a finite float32 above 0, got -0.1"},
       {"6.3.1", [](auto& g) { g.resolution = kNan; },
-       "msg.info.resolution: expected a number above 0, got nan"},
+       "msg.info.resolution: expected a finite float32 above 0, got nan"},
       {"6.3.1", [](auto& g) { g.resolution = kInfinity; },
-       "msg.info.resolution: expected a number above 0, got inf"},
+       "msg.info.resolution: expected a finite float32 above 0, got inf"},
       {"6.3.1", [](auto& g) { g.width = 0; },
        "msg.info.width: expected a whole number from 1 to 2147483647, got 0"},
       {"6.3.1", [](auto& g) { g.width = 0x80000000; },

@@ -53,6 +53,8 @@ const std::vector<Spoilt>& all_spoilt() {
       {"a cell of 101", "grid", [](Json& m) { m["msg"]["data"].get_binary()[7] = 101; }, true},
       {"cells of no size", "grid", [](Json& m) { m["msg"]["info"]["resolution"] = 0.0; }},
       {"cells of infinite size", "grid", [](Json& m) { m["msg"]["info"]["resolution"] = kInfinity; }, true},
+      {"cells larger than a float32", "grid", [](Json& m) { m["msg"]["info"]["resolution"] = 1e39; }},
+      {"cells smaller than a float32", "grid", [](Json& m) { m["msg"]["info"]["resolution"] = 1e-50; }},
       {"an unknown compression", "grid", [](Json& m) { m["msg"]["compression"] = "zip"; }},
       {"gzip that is none", "grid", [](Json& m) { m["msg"]["compression"] = "gzip"; }},
       {"a grid without info", "grid", [](Json& m) { m["msg"].erase("info"); }},
@@ -67,6 +69,8 @@ const std::vector<Spoilt>& all_spoilt() {
       {"a marker without pose", "marker", [](Json& m) { m["markers"][0].erase("pose"); }},
       {"a marker redder than red", "marker", [](Json& m) { m["markers"][0]["color"]["r"] = 1.5; }},
       {"a scale that is no number", "marker", [](Json& m) { m["markers"][0]["scale"]["y"] = kNaN; }, true},
+      {"a lifetime longer than ROS has", "marker", [](Json& m) { m["markers"][0]["lifetime"] = 3e9; }},
+      {"a stamp later than ROS has", "pose", [](Json& m) { m["header"]["stamp"] = 1e10; }},
       {"a marker's other frame", "marker", [](Json& m) { m["markers"][0]["header"]["frame_id"] = "odom"; }},
   };
   return all;

@@ -23,6 +23,19 @@ std::function<bool()> Archive::enough() const {
   return [ending = ending_] { return ending->load(); };
 }
 
+namespace {
+
+/// What cannot be read of a run is passed over, as what is damaged is.
+void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
+              const std::function<bool()>& enough) {
+  const auto all_read = read_run(runs.folder_of(key), told, enough);
+  if (!all_read)
+    host::log(host::Level::Warning, "a part of a run that is kept cannot be read",
+              {{"why", all_read.error()}});
+}
+
+}  // namespace
+
 /// What the disk gives of a run.
 struct Archive::Opening {
   Head head;
@@ -57,7 +70,7 @@ void Archive::begin(const Head& head, GoOn go_on) {
         runs.tidy(most, *opening->key);
         opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
         opening->told.emplace(picture::Mosaic::kBudget);
-        read_run(runs.folder_of(*opening->key), *opening->told, enough);
+        tell_all(runs, *opening->key, *opening->told, enough);
       },
       done, done);
 }
@@ -196,16 +209,18 @@ namespace {
 std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
                                              const api::RunRow& present,
                                              const std::function<bool()>& enough) {
-  const auto facts = runs.facts_of(key);
-  if (!facts) return nullptr;
+  const auto known = runs.facts_of(key);
+  if (!known) host::log(host::Level::Warning, "a run that is kept cannot be read", {{"why", known.error()}});
+  if (!known || !*known) return nullptr;
+  const api::RunRow& facts = **known;
   Told told(Archive::kLookedAt);
-  read_run(runs.folder_of(key), told, enough);
+  tell_all(runs, key, told, enough);
   std::vector<std::pair<api::Time, double>> coverage;
   for (const auto& [at, pixels] : told.known())
     coverage.emplace_back(at, static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
-  return std::make_shared<const api::KeptRun>(api::KeptRun{as_told(*facts, present),
-                                                           std::move(told.picture()), told.tracks(),
-                                                           told.samples().since(0), std::move(coverage)});
+  return std::make_shared<const api::KeptRun>(api::KeptRun{as_told(facts, present), std::move(told.picture()),
+                                                           told.tracks(), told.samples().since(0),
+                                                           std::move(coverage)});
 }
 
 }  // namespace

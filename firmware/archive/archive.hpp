@@ -64,10 +64,10 @@ class Archive final : public api::KeptRuns {
 
   /// Once a second; writes what is due.
   void tick(const Seen& seen);
-  /// Writes what is due and may be written, without delay: the process may end.
+  /// Writes what may be written of all that is not on the disk, without delay: the process may end.
   void write_now(const Seen& seen);
-  /// The same, with the facts of the last tick: what is heard now may be of the run that is about to be the
-  /// present one.
+  /// Writes all of it, for nothing more is written of this run. The facts are those of the last tick: what is
+  /// heard now may be of the run that is about to be the present one.
   void end_run(const Seen& seen);
   void needs_attention(const std::vector<std::string>& sentences, api::Time now);
   /// The time of day was set ahead by so many seconds: all that is kept of this run was as long ago as it
@@ -97,11 +97,11 @@ class Archive final : public api::KeptRuns {
   void keep_lines_below(std::size_t most);
   void sample(const Seen& seen);
   void note(const Seen& seen);
-  void write(const Seen& seen);
+  bool write(const Seen& seen, std::size_t most, api::Time tiles_of);
   void put_lines(const Seen& seen, Batch& batch);
   void put_facts(Batch& batch);
   void put_layers(const Seen& seen, Batch& batch);
-  void put_tiles(const Seen& seen, Batch& batch, std::size_t left);
+  void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);
   void written(const Writing& writing);
   void look_at_disk();
   /// The present run's as it is now, which the disk has as of up to kFactsEvery ago; bytes as in `row`.

@@ -1,5 +1,6 @@
 // What of the present run is written, and when.
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "archive/archive.hpp"
@@ -7,6 +8,12 @@
 #include "host/log.hpp"
 
 namespace adit::archive {
+namespace {
+
+/// When every tile that changed is due.
+constexpr api::Time kNoneRests = std::numeric_limits<api::Time>::infinity();
+
+}  // namespace
 
 /// One write: the thread reads `batch`, and says what became of it.
 struct Archive::Writing {
@@ -25,7 +32,7 @@ void Archive::tick(const Seen& seen) {
   note(seen);
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (folder_) {
-    write(seen);
+    write(seen, allowance_.at(loop_.now()), seen.now);
   } else if (!trouble_.empty()) {
     make_folder();
   }
@@ -34,13 +41,17 @@ void Archive::tick(const Seen& seen) {
 void Archive::write_now(const Seen& seen) {
   if (opening_ || !folder_) return;
   note(seen);
-  end_run(seen);
+  next_facts_ = loop_.now();
+  write(seen, allowance_.at(loop_.now()), kNoneRests);
 }
 
 void Archive::end_run(const Seen& seen) {
   if (opening_ || !folder_) return;
   next_facts_ = loop_.now();
-  write(seen);
+  const Allowance of_the_next = allowance_;
+  while (write(seen, static_cast<std::size_t>(Allowance::kMost), kNoneRests)) {
+  }
+  allowance_ = of_the_next;
 }
 
 void Archive::note(const Seen& seen) {
@@ -59,10 +70,10 @@ void Archive::sample(const Seen& seen) {
   samples_.add(std::move(now));
 }
 
-/// Lines first: they are small, and there is no newer state of them that could be written instead.
-void Archive::write(const Seen& seen) {
+/// Lines first: they are small, and there is no newer state of them that could be written instead. Tiles:
+/// those that are due at `tiles_of`. False: there was nothing.
+bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
   next_write_ = loop_.now() + kWriteEvery;
-  const std::size_t may = allowance_.at(loop_.now());
   const auto writing = std::make_shared<Writing>();
   Batch& batch = writing->batch;
   writing->number = ++writes_;
@@ -73,10 +84,10 @@ void Archive::write(const Seen& seen) {
   batch.beside = writing->steps;
   put_layers(seen, batch);
   const std::size_t taken = batch.facts.size() + batch.lines.size() + batch.beside.size();
-  put_tiles(seen, batch, may - std::min(may, taken));
+  put_tiles(seen, batch, most - std::min(most, taken), tiles_of);
   if (is_left_) writing->goes = std::exchange(leaves_, std::nullopt);
   is_left_ = false;
-  if (batch.is_empty() && !writing->goes) return;
+  if (batch.is_empty() && !writing->goes) return false;
   writing->folder = folder_;
   writing->most = limits_.run;
   ++writing_;
@@ -87,6 +98,7 @@ void Archive::write(const Seen& seen) {
         writing->outcome = writing->folder->write(writing->batch, writing->most);
       },
       done, done);
+  return true;
 }
 
 void Archive::put_facts(Batch& batch) {
@@ -125,10 +137,10 @@ void Archive::put_layers(const Seen& seen, Batch& batch) {
   allowance_.spend(batch.beside.size());
 }
 
-void Archive::put_tiles(const Seen& seen, Batch& batch, std::size_t left) {
+void Archive::put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of) {
   constexpr std::size_t kFraming = 200;  // what a record has beside the tile, at most, with a robot's name
   due_.look(seen.picture);
-  for (const TileKey& key : due_.at(seen.now)) {
+  for (const TileKey& key : due_.at(tiles_of)) {
     TileState state{.layer = key.first, .at = key.second, .stamp = 0, .tile = {}};
     const auto shown = seen.picture.tile(state.layer, state.at, std::nullopt);
     state.tile = shown.tile;
@@ -144,15 +156,21 @@ void Archive::put_tiles(const Seen& seen, Batch& batch, std::size_t left) {
 
 void Archive::written(const Writing& writing) {
   --writing_;
-  if (writing.begun != begun_) return;  // of a run before
   const auto& outcome = writing.outcome;
-  due_.done(writing.number, outcome ? std::optional(outcome->file) : std::nullopt);
   const std::string why = outcome ? "" : outcome.error();
+  if (writing.begun != begun_) {
+    if (!why.empty())
+      host::log(host::Level::Warning, "the end of the run before is not kept", {{"why", why}});
+    return;
+  }
+  due_.done(writing.number, outcome ? std::optional(outcome->file) : std::nullopt);
   if (std::exchange(trouble_, why) != why && !why.empty())
     host::log(host::Level::Warning, "the run's map and tracks are not kept", {{"why", why}});
   if (!outcome) {
     next_facts_ = loop_.now();
     steps_.insert(0, writing.steps);
+    layers_seen_ = 0;  // all of them are said again
+    wiped_.reset();
     if (!writing.batch.lines.empty()) lines_bytes_ += lines_.emplace_front(writing.batch.lines).size();
     return;
   }

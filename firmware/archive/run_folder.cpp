@@ -45,12 +45,21 @@ std::optional<Disk> disk_of(const std::string& folder) {
 
 GrowingFile::GrowingFile(std::string folder, std::string prefix, std::string head)
     : folder_(std::move(folder)), prefix_(std::move(prefix)), head_(std::move(head)) {
-  numbers_ = host::numbers_in(folder_, prefix_);
+  look();
+}
+
+std::expected<void, std::string> GrowingFile::look() {
+  if (has_looked_) return {};
+  auto numbers = host::numbers_in(folder_, prefix_);
+  if (!numbers) return std::unexpected(std::move(numbers.error()));
+  has_looked_ = true;
+  numbers_ = std::move(*numbers);
   for (const std::uint64_t number : numbers_) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path(number), error);
     sizes_.push_back(error ? 0 : size);
   }
+  return {};
 }
 
 std::string GrowingFile::path(std::uint64_t number) const {
@@ -71,7 +80,7 @@ std::expected<void, std::string> GrowingFile::open_next() {
   sizes_.push_back(0);
   const loop::FileDescriptor folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (!folder || ::fsync(folder.get()) != 0) return std::unexpected(host::trouble(folder_, errno));
-  return write(head_);
+  return {};
 }
 
 std::expected<void, std::string> GrowingFile::write(std::string_view bytes) {
@@ -84,11 +93,17 @@ std::expected<void, std::string> GrowingFile::write(std::string_view bytes) {
     return {};
   }
   const int error = count < 0 ? errno : ENOSPC;
-  if (count > 0 && ::ftruncate(file_.get(), static_cast<off_t>(sizes_.back())) != 0) file_ = {};
+  if (count > 0) cut_back(sizes_.back());
   return std::unexpected(host::trouble(path(numbers_.back()), error));
 }
 
+void GrowingFile::cut_back(std::uint64_t size) {
+  sizes_.back() = size;
+  if (::ftruncate(file_.get(), static_cast<off_t>(size)) != 0) file_ = {};
+}
+
 std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view bytes, std::size_t largest) {
+  if (auto looked = look(); !looked) return std::unexpected(std::move(looked.error()));
   const bool fits = !numbers_.empty() && sizes_.back() + bytes.size() <= largest;
   if (fits && !file_) {
     file_ = loop::FileDescriptor(::open(path(numbers_.back()).c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
@@ -96,9 +111,14 @@ std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view b
   if (!fits || !file_) {
     if (const auto opened = open_next(); !opened) return std::unexpected(opened.error());
   }
+  if (sizes_.back() == 0) {  // new, or a death left it so
+    if (const auto begun = write(head_); !begun) return std::unexpected(begun.error());
+  }
   if (const auto written = write(bytes); !written) return std::unexpected(written.error());
-  if (::fdatasync(file_.get()) != 0) return std::unexpected(host::trouble(path(numbers_.back()), errno));
-  return numbers_.back();
+  if (::fdatasync(file_.get()) == 0) return numbers_.back();
+  const int error = errno;
+  cut_back(sizes_.back() - bytes.size());
+  return std::unexpected(host::trouble(path(numbers_.back()), error));
 }
 
 void GrowingFile::remove_first() {
@@ -121,9 +141,6 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
   while (lines_.bytes() > most / 8 && lines_.numbers().size() > 1) lines_.remove_first();
   const std::size_t largest = largest_file(most);
   Written written;
-  if (!batch.lines.empty()) {
-    if (const auto done = lines_.append(batch.lines, largest); !done) return std::unexpected(done.error());
-  }
   if (!batch.tiles.empty() || !batch.beside.empty()) {
     std::string records = batch.beside;
     for (const TileState& state : batch.tiles) records += framed(Kind::Tile, said(state));
@@ -135,6 +152,9 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
     const auto done = host::write_file(path_ + '/' + kFacts, batch.facts, host::kOursAlone);
     if (!done) return std::unexpected(done.error());
   }
+  if (!batch.lines.empty()) {
+    if (const auto done = lines_.append(batch.lines, largest); !done) return std::unexpected(done.error());
+  }
   written.first_file = tiles_.numbers().size() > 1 ? tiles_.numbers().front() : 0;
   written.bytes = bytes();
   return written;
@@ -144,14 +164,32 @@ void RunFolder::remove_first(std::uint64_t file) {
   if (!tiles_.numbers().empty() && tiles_.numbers().front() == file) tiles_.remove_first();
 }
 
-void read_run(const std::string& folder, Told& told, const std::function<bool()>& enough) {
+std::expected<void, std::string> read_run(const std::string& folder, Told& told,
+                                          const std::function<bool()>& enough) {
+  std::expected<void, std::string> all_read;
   for (const char* prefix : {kLines, kTiles}) {
-    for (const std::uint64_t number : host::numbers_in(folder, prefix)) {
-      if (enough()) return;
-      if (const auto bytes = host::read_file(folder + '/' + host::numbered_name(prefix, number)))
+    const auto numbers = host::numbers_in(folder, prefix);
+    if (!numbers) return std::unexpected(numbers.error());
+    for (const std::uint64_t number : *numbers) {
+      if (enough()) return all_read;
+      if (const auto bytes = host::read_file(folder + '/' + host::numbered_name(prefix, number))) {
         told.tell(*bytes, prefix == kTiles ? number : 0);
+      } else if (all_read) {
+        all_read = std::unexpected(bytes.error());
+      }
     }
   }
+  return all_read;
+}
+
+std::expected<bool, std::string> is_blank(const std::string& folder) {
+  bool is_blank = !host::may_exist(folder + '/' + RunFolder::kFacts);
+  for (const char* prefix : {kLines, kTiles}) {
+    const auto numbers = host::numbers_in(folder, prefix);
+    if (!numbers) return std::unexpected(numbers.error());
+    is_blank = is_blank && numbers->empty();
+  }
+  return is_blank;
 }
 
 }  // namespace adit::archive

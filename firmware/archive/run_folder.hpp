@@ -41,10 +41,14 @@ class GrowingFile {
   void remove_first();
 
  private:
+  /// At what there is, until it could be read: a number that was given is not given again.
+  std::expected<void, std::string> look();
   std::expected<void, std::string> open_next();
   std::expected<void, std::string> write(std::string_view bytes);
+  void cut_back(std::uint64_t size);
 
   std::string folder_, prefix_, head_;
+  bool has_looked_ = false;
   std::vector<std::uint64_t> numbers_;
   std::vector<std::uint64_t> sizes_;
   loop::FileDescriptor file_;
@@ -66,6 +70,7 @@ class RunFolder {
     std::uint64_t bytes = 0;       // of the run
   };
   /// `most`: bytes that the run may take, and half of what the disk has for it. Beyond it the first files go.
+  /// Where it fails, no lines were written. The rest may have been, and may be written again.
   std::expected<Written, std::string> write(const Batch& batch, std::uint64_t most);
   /// The first of several files with tiles goes.
   void remove_first(std::uint64_t file);
@@ -76,7 +81,10 @@ class RunFolder {
   GrowingFile tiles_, lines_;
 };
 
-/// Tells all that a folder has, until `enough`.
-void read_run(const std::string& folder, Told& told, const std::function<bool()>& enough);
+/// Tells all that a folder has, until `enough`. An error names what cannot be read; all else is told.
+std::expected<void, std::string> read_run(const std::string& folder, Told& told,
+                                          const std::function<bool()>& enough);
+/// Whether nothing was ever written into it. An error: it cannot be read.
+std::expected<bool, std::string> is_blank(const std::string& folder);
 
 }  // namespace adit::archive

@@ -53,16 +53,24 @@ bool RunsFolder::has(const std::string& key) const {
   return is_key(key) && fs::is_directory(folder_of(key), unknown);
 }
 
-std::optional<api::RunRow> RunsFolder::facts_of(const std::string& key) const {
+std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(const std::string& key) const {
   if (!has(key)) return std::nullopt;
-  const std::string folder = folder_of(key);
+  const std::string folder = folder_of(key), file = folder + '/' + RunFolder::kFacts;
   std::optional<api::RunRow> row;
-  if (const auto text = host::read_file(folder + '/' + RunFolder::kFacts)) {
-    if (auto read = codec::read_file<api::RunRow>(*text, kFactsFormat)) row = std::move(*read);
+  std::expected<void, std::string> all_read;
+  if (host::may_exist(file)) {
+    const auto text = host::read_file(file);
+    if (!text) {
+      all_read = std::unexpected(text.error());
+    } else if (auto read = codec::read_file<api::RunRow>(*text, kFactsFormat)) {
+      row = std::move(*read);
+    }
   }
   if (!row) {
     Told told(0);
-    read_run(folder, told, [&told] { return told.head().has_value(); });
+    const auto rest_read = read_run(folder, told, [&told] { return told.head().has_value(); });
+    if (all_read) all_read = rest_read;
+    if (!told.head() && !all_read) return std::unexpected(all_read.error());
     if (!told.head()) return std::nullopt;
     row = api::RunRow{
         .run = told.head()->run, .post = told.head()->post, .began = told.head()->began, .last = told.last()};
@@ -76,9 +84,17 @@ std::optional<api::RunRow> RunsFolder::facts_of(const std::string& key) const {
 std::vector<api::RunRow> RunsFolder::list() const {
   std::vector<api::RunRow> rows;
   const auto names = host::names_in(path_, kMostRuns);
+  if (!names)
+    host::log(host::Level::Warning, "runs that are kept cannot be listed",
+              {{"why", path_ + ": " + names.error()}});
   for (const std::string& name : names.value_or(std::vector<std::string>())) {
     if (!has(name)) continue;
-    if (auto row = facts_of(name)) rows.push_back(std::move(*row));
+    auto row = facts_of(name);
+    if (!row) {
+      host::log(host::Level::Warning, "a run that is kept cannot be read", {{"why", row.error()}});
+    } else if (*row) {
+      rows.push_back(**std::move(row));
+    }
   }
   std::ranges::sort(rows, std::ranges::greater(),
                     [](const api::RunRow& row) { return std::pair(row.stamp.value_or(row.last), row.run); });
@@ -97,8 +113,15 @@ std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
       return key;
     }
     const auto facts = facts_of(key);
-    const bool is_new = !facts;  // made, and nothing was written into it
-    if (is_new || is_same(head, {.run = facts->run, .began = facts->began, .post = facts->post})) return key;
+    if (!facts) return std::unexpected(facts.error());
+    if (*facts) {
+      const api::RunRow& row = **facts;
+      if (is_same(head, {.run = row.run, .began = row.began, .post = row.post})) return key;
+      continue;
+    }
+    const auto is_new = is_blank(folder_of(key));
+    if (!is_new) return std::unexpected(is_new.error());
+    if (*is_new) return key;
   }
   return std::unexpected(path_ + ": " + (error ? error.message() : "no folder can be made in it"));
 }

@@ -59,11 +59,11 @@ bool has_number(const Field& field) {
 
 icd::RunStatus status_of(const Field& body) {
   icd::RunStatus status;
-  status.score = body.member("score").whole<std::int64_t>();
+  status.score = body.member("score").whole<std::int32_t>();
   const Field run_clock = body.member("run_clock");
   const Field clock = body.member("clock");
   status.run_clock = run_clock.is_absent() && !clock.is_absent() ? clock.number() : run_clock.number();
-  status.remaining_reports = body.member("remaining_reports").whole<std::int64_t>();
+  status.remaining_reports = body.member("remaining_reports").whole<std::int32_t>();
   status.current_team = read_name(body.member("current_team"));
   return status;
 }
@@ -75,7 +75,7 @@ icd::ReportReply reply_of(const Field& body) {
   reply.team = read_name(body.member("team"));
   if (const Field clock = body.member("run_clock"); has_number(clock)) reply.run_clock = clock.number();
   reply.report_status = body.member("report_status").text();
-  reply.score_change = body.member("score_change").whole<std::int64_t>();
+  reply.score_change = body.member("score_change").whole<std::int32_t>();
   return reply;
 }
 

@@ -123,7 +123,10 @@ std::string Aside::path(std::uint64_t number, const char* ending) const {
 
 void Aside::restore() {
   spool::remove_parts(folder_);
-  for (const std::uint64_t number : host::numbers_in(folder_, "", kReason)) {
+  const auto numbers = host::numbers_in(folder_, "", kReason);
+  unread_ = numbers ? "" : numbers.error();
+  if (!numbers) host::log(host::Level::Error, "what was set aside cannot be read", {{"why", unread_}});
+  for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     if (restore_one(number)) continue;
     host::log(host::Level::Warning, "what was set aside could not be read and is gone",
               {{"file", path(number, kMessage)}});
@@ -170,10 +173,13 @@ void Aside::add(lanes::Message message, int status, const std::string& why, std:
 void Aside::keep(const lanes::AsideItem& item, Origin origin) {
   const auto well = std::make_shared<bool>(false);
   writer_.submit(
-      [well, message = item.message, reason = reason_of(item, item.overtaken),
+      [well, message = item.message, reason = reason_of(item, item.overtaken), unread = unread_,
        message_file = path(item.number, kMessage), reason_file = path(item.number, kReason)] {
-        auto written = spool::write_whole(
-            message_file, std::visit([](const auto& each) { return bytes_of(each); }, message));
+        std::expected<void, std::string> written;
+        if (!unread.empty()) written = std::unexpected(unread);
+        if (written)
+          written = spool::write_whole(message_file,
+                                       std::visit([](const auto& each) { return bytes_of(each); }, message));
         if (written) written = spool::write_whole(reason_file, text_bytes(reason));
         *well = written.has_value();
         if (*well) return;
@@ -193,8 +199,10 @@ void Aside::kept(std::uint64_t number, bool well, const Origin& origin) {
 
 /// Of memory it has gone.
 void Aside::forget(std::uint64_t number) {
-  writer_.submit(
-      [reason = path(number, kReason), message = path(number, kMessage)] { remove(reason, message); }, [] {});
+  if (unread_.empty())
+    writer_.submit(
+        [reason = path(number, kReason), message = path(number, kMessage)] { remove(reason, message); },
+        [] {});
   leaving_.erase(number);
   let_origin_go(number);
 }

@@ -68,6 +68,7 @@ class Aside {
   const loop::Loop& loop_;
   loop::Writer& writer_;
   const std::string folder_;
+  std::string unread_;  // why restore() could not read it: its files' numbers may be given again
   lanes::SetAside items_;
   int being_written_ = 0;
   std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()

@@ -6,6 +6,7 @@
 #include <cinttypes>
 #include <cstdio>
 #include <filesystem>
+#include <system_error>
 
 namespace adit::host {
 
@@ -27,14 +28,18 @@ std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_v
   return number;
 }
 
-std::vector<std::uint64_t> numbers_in(const std::string& folder, std::string_view prefix,
-                                      std::string_view ending) {
+std::expected<std::vector<std::uint64_t>, std::string> numbers_in(const std::string& folder,
+                                                                  std::string_view prefix,
+                                                                  std::string_view ending) {
   std::vector<std::uint64_t> numbers;
   std::error_code error;
-  for (const auto& file : std::filesystem::directory_iterator(folder, error)) {
-    const auto number = number_in_name(file.path().filename().string(), prefix, ending);
+  for (std::filesystem::directory_iterator file(folder, error), end; !error && file != end;
+       file.increment(error)) {
+    const auto number = number_in_name(file->path().filename().string(), prefix, ending);
     if (number) numbers.push_back(*number);
   }
+  if (error && error != std::errc::no_such_file_or_directory)
+    return std::unexpected(folder + ": " + error.message());
   std::ranges::sort(numbers);
   return numbers;
 }

@@ -6,7 +6,7 @@
 namespace adit::icd {
 
 /// What GET /api/status answers (ICD 5.1). The run clock comes as `run_clock`, or as `clock` in the ICD's
-/// example.
+/// example. What is counted comes within int32, here and in a reply: sums and differences stay in range.
 struct RunStatus {
   std::int64_t score = 0;
   double run_clock = 0;  // seconds since the start of the run

@@ -1,5 +1,3 @@
-#include "spool/spool.hpp"
-
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -12,8 +10,10 @@
 
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
+#include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "spool/kept_message.hpp"
+#include "spool/spool.hpp"
 
 namespace adit::spool {
 namespace {
@@ -42,12 +42,12 @@ std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64
 template <class Message>
 std::optional<Message> message_in(const std::string& path,
                                   icd::Checked<Message> (*read)(const std::string&)) {
-  std::error_code error;
-  if (!fs::exists(path, error)) return std::nullopt;
+  if (!host::may_exist(path)) return std::nullopt;
   icd::Checked<Message> message = read(path);
   if (message) return std::move(*message);
   host::log(host::Level::Error, "a kept message could not be read and is set aside",
             {{"file", path}, {"why", message.error().sentence}});
+  std::error_code error;
   fs::rename(path, path + ".damaged", error);
   return std::nullopt;
 }
@@ -79,6 +79,7 @@ std::shared_ptr<MapFile> Spool::begin() {
 
 icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
                                          std::shared_ptr<MapFile> begun) {
+  if (!unread_.empty()) return not_kept(unread_);
   if (::access(folder_.c_str(), F_OK) != 0) make_folder_of_ours(folder_);
   const std::string path = file_of(number);
   if (!begun || !begun->begins(map.data.bytes)) begun = std::make_shared<MapFile>(path);
@@ -110,7 +111,10 @@ void Spool::forget_markers() {
 Spool::Kept Spool::read() {
   remove_parts(folder_);
   Kept kept;
-  for (const std::uint64_t number : host::numbers_in(folder_, kMap, kEnding)) {
+  const auto numbers = host::numbers_in(folder_, kMap, kEnding);
+  unread_ = numbers ? "" : numbers.error();
+  if (!numbers) host::log(host::Level::Error, "kept maps cannot be read", {{"why", unread_}});
+  for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     auto map = message_in(file_of(number), read_map);
     if (!map) continue;
     MapFile::show(*map, file_of(number));

@@ -39,7 +39,8 @@ class Spool {
   bool has_room(std::uint64_t bytes) const;
   /// Keeps a map until forget(), and gives it back with its data in the file, each chunk freed as it is
   /// written; in `begun`, where its data begins with what was stored there. Refused with 503, and no file
-  /// left, where there is no room for it and `spare` bytes more, or the folder cannot be written. Once it
+  /// left, where there is no room for it and `spare` bytes more, or the folder cannot be written, or read()
+  /// could not read it: the number may be that of a map which a life before kept. Once it
   /// returns, the map outlives any death of the process. For the writer.
   icd::Checked<icd::MapUpdate> keep(std::uint64_t number, icd::MapUpdate map, std::uint64_t spare,
                                     std::shared_ptr<MapFile> begun = nullptr);
@@ -58,7 +59,7 @@ class Spool {
  private:
   std::string file_of(std::uint64_t number) const;
 
-  std::string folder_;
+  std::string folder_, unread_;                // why read() could not
   std::atomic<std::uint64_t> left_to_others_;  // the writer asks, too
 };
 

@@ -83,6 +83,39 @@ TEST_F(ArchiveTest, GivesTheNextLifeEarlierTimes) {
   EXPECT_NE(shown(picture), before);
 }
 
+TEST_F(ArchiveTest, KeepsThePictureOfAnEndedRunAsItWasShown) {
+  live(run.head);
+  run.draw(100);  // more than is written at once
+  write();
+  run.easel.now += 1;  // soon after some tiles were written
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {100}));
+  run.easel.draw(picture::grid_at(0, 0, 1, 0.25, {0}));
+  archive->tick(run.seen());
+  archive->end_run(run.seen());
+  live({.run = 4, .began = 2000, .post = run.head.post});
+  std::string kept;
+  archive->read("3", [&](auto its) { kept = shown(its->picture); });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return !kept.empty(); }));
+  EXPECT_EQ(kept, shown(run.easel.mosaic));
+}
+
+TEST_F(ArchiveTest, WritesALineOnceWhereTheTilesAfterItCannotBeWritten) {
+  live(run.head);
+  fs::create_directory(folder / "runs/3/map-00000001");  // in the place of the tiles' file
+  run.draw(1);
+  archive->needs_attention({"no token"}, run.now());
+  archive->tick(run.seen());
+  ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  EXPECT_NE(archive->trouble(), "");
+  fs::remove(folder / "runs/3/map-00000001");
+  write();
+  EXPECT_EQ(archive->trouble(), "");
+  live(run.head);
+  EXPECT_EQ(archive->history(0).attention.size(), 1U);
+  EXPECT_EQ(archive->history(0).at.size(), 1U);
+  EXPECT_EQ(shown(picture), shown(run.easel.mosaic));
+}
+
 TEST_F(ArchiveTest, GivesTheNextLifeAllThatItHasByTheTimeOfDayAsItWasSet) {
   run.easel.now = 1e9;
   run.tracks[0].poses[0].at = 1e9;

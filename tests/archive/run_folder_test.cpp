@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 
 #include "archive/a_run.hpp"
 #include "host/folder.hpp"
@@ -38,7 +39,7 @@ TEST_F(RunFolderTest, NeverTakesMuchMoreThanItMayAndKeepsWhatIsNewest) {
   }
   EXPECT_LT(most, kMost + kMost / 4);
   Told told(picture::Mosaic::kBudget);
-  read_run(folder.path(), told, [] { return false; });
+  EXPECT_TRUE(read_run(folder.path(), told, [] { return false; }));
   for (int i = 0; i < 100; ++i) {
     const picture::TileAt at{0, i, 0};
     EXPECT_EQ(told.picture().tile(run.easel.layer, at, {}).tile->crc,
@@ -54,6 +55,28 @@ TEST_F(RunFolderTest, GoesOnInTheFileOfTheLifeBefore) {
   for (const auto& entry : std::filesystem::directory_iterator(folder.path()))
     files += entry.is_regular_file();
   EXPECT_LT(files, 5U);
+}
+
+TEST_F(RunFolderTest, SaysWhoseRunItIsInAFileThatADeathLeftEmpty) {
+  std::ofstream(folder / "map-00000001");
+  ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(0), kMost));
+  Told told(picture::Mosaic::kBudget);
+  ASSERT_TRUE(read_run(folder.path(), told, [] { return false; }));
+  ASSERT_TRUE(told.head());
+  EXPECT_EQ(told.files().begin()->second, 1U);
+}
+
+TEST_F(RunFolderTest, GoesOnBehindTheFilesThatItCouldNotSeeAtFirst) {
+  const std::string path = folder / "5";
+  std::ofstream(path) << "no folder";
+  RunFolder files(path, run.head);
+  EXPECT_FALSE(files.write(tiles(0), kMost));
+  std::filesystem::remove(path);
+  std::filesystem::create_directory(path);
+  std::ofstream(path + "/map-00000003") << "x";
+  const auto written = files.write(tiles(0), kMost);
+  ASSERT_TRUE(written) << written.error();
+  EXPECT_EQ(written->file, 3U);
 }
 
 TEST_F(RunFolderTest, RemovesItsFirstFileButNeverTheLastOne) {

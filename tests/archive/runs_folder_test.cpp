@@ -67,7 +67,7 @@ TEST_F(RunsFolderTest, ARunOfAReleaseThatWroteNoStampIsOrderedByTheTimeOfDay) {
   text.erase(text.find("\"stamp\""), text.find("\"score\"") - text.find("\"stamp\""));
   std::ofstream(facts) << text;
   EXPECT_THAT(keys(), ElementsAre("2", "1"));
-  EXPECT_EQ(runs.facts_of("2")->last, 2010);
+  EXPECT_EQ(runs.facts_of("2").value()->last, 2010);
 }
 
 TEST_F(RunsFolderTest, ARunWhoseFactsAreDamagedIsKnownByItsFiles) {
@@ -78,6 +78,24 @@ TEST_F(RunsFolderTest, ARunWhoseFactsAreDamagedIsKnownByItsFiles) {
   EXPECT_EQ(rows[0].run, 5);
   EXPECT_EQ(rows[0].began, 1000);
   EXPECT_EQ(*runs.begin({.run = 5, .began = 1000, .post = "here:1"}), key);
+}
+
+/// Where there is a folder in its place, a file cannot be read.
+TEST_F(RunsFolderTest, ARunThatCannotBeReadIsNotTakenForANewOne) {
+  const std::string path = runs.folder_of(run(5, 1000, 10));
+  for (const char* name : {"/facts.json", "/lines-00000001"}) {
+    fs::remove(path + name);
+    fs::create_directory(path + name);
+  }
+  const auto begun = runs.begin({.run = 5, .began = 1000, .post = "here:1"});
+  ASSERT_FALSE(begun) << *begun;
+  EXPECT_THAT(begun.error(), testing::HasSubstr(path));
+}
+
+TEST_F(RunsFolderTest, AFolderWhoseRunNobodyKnowsIsNotGoneOnWith) {
+  const std::string path = runs.folder_of(run(5, 1000, 10));
+  for (const char* name : {"/facts.json", "/lines-00000001"}) std::ofstream(path + name) << "damaged";
+  EXPECT_EQ(*runs.begin({.run = 5, .began = 1000, .post = "here:1"}), "5-2");
 }
 
 TEST_F(RunsFolderTest, WhatADeathLeftOfARemovalGoes) {

@@ -181,6 +181,11 @@ TEST(ReadRunStatus, SaysWhyItCouldNotBeUnderstood) {
   EXPECT_EQ(why(R"({"score": 6, "remaining_reports": 14})"), "run_clock: missing");
   EXPECT_EQ(why(R"({"score": "6", "run_clock": 0, "remaining_reports": 14})"),
             "score: expected a whole number, got a string");
+  EXPECT_EQ(why(R"({"score": 9e18, "run_clock": 0, "remaining_reports": 14})"),
+            "score: expected a whole number from -2147483648 to 2147483647, got 9e+18");
+  EXPECT_EQ(why(R"({"score": 6, "run_clock": 0, "remaining_reports": -9223372036854775808})"),
+            "remaining_reports: expected a whole number from -2147483648 to 2147483647, got "
+            "-9223372036854775808");
   EXPECT_EQ(why("\"no\""), "the body: expected an object, got a string");
   EXPECT_NE(why("<html>"), "understood");
   EXPECT_NE(why(""), "understood");
@@ -226,6 +231,8 @@ TEST(ReadReportReply, SaysWhyItCouldNotBeUnderstood) {
   EXPECT_EQ(why(R"({"report_status": 1, "score_change": 0})"),
             "report_status: expected a string, got a whole number");
   EXPECT_EQ(why(R"({"report_status": "scored", "score_change": 0.5})").substr(0, 13), "score_change:");
+  EXPECT_EQ(why(R"({"report_status": "scored", "score_change": 9e18})"),
+            "score_change: expected a whole number from -2147483648 to 2147483647, got 9e+18");
   EXPECT_EQ(why("[]"), "the body: expected an object, got an array");
   EXPECT_NE(why("502 Bad Gateway"), "understood");
 }

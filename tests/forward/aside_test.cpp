@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "host/folder.hpp"
+#include "host/service.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/messages.hpp"
 
@@ -252,6 +253,21 @@ TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
   EXPECT_EQ(told_.let_go, 1);
   aside_->sent_again(2, true);
   EXPECT_EQ(told_.let_go, 2);
+}
+
+TEST_F(AsideTest, WritesOverNothingThatItCouldNotRead) {
+  folder_.put("aside", "no folder");
+  aside_ = std::make_unique<Aside>(loop_, *writer_, folder_ / "aside");
+  aside_->restore();
+  fs::remove(folder_ / "aside");
+  fs::create_directory(folder_ / "aside");
+  folder_.put("aside/1.cbor", "of a life before");
+  add(grid());
+  settle();
+  EXPECT_EQ(told_.not_kept, 1);
+  ASSERT_TRUE(aside_->discard(1));
+  settle();
+  EXPECT_EQ(host::read_file(folder_ / "aside/1.cbor"), "of a life before");
 }
 
 /// Else a life to come would send it of itself, behind the newer one.

@@ -62,6 +62,8 @@ TEST(NumberedName, IsFoundInAFolderInTheOrderOfNumbers) {
   }
   EXPECT_EQ(numbers_in(folder.path(), "map-", ".cbor"), (std::vector<std::uint64_t>{9, 10, 100'000'000}));
   EXPECT_EQ(numbers_in(folder / "none", "map-", ".cbor"), std::vector<std::uint64_t>());
+  const std::string file = folder / "map-00000009.cbor";
+  EXPECT_EQ(numbers_in(file, "map-").error(), file + ": Not a directory");
 }
 
 }  // namespace

@@ -76,6 +76,20 @@ TEST_F(SpoolTest, ReadsTheMapsOfAReleaseThatWroteTheirDataLast) {
   EXPECT_EQ(kept.maps[0].second, cloud(1000));
 }
 
+TEST_F(SpoolTest, KeepsNothingWhereItCouldNotTellWhatALifeBeforeKept) {
+  const fs::path folder = folder_ / "waiting";
+  std::ofstream(folder) << "no folder";
+  Spool spool(folder);
+  EXPECT_TRUE(spool.read().maps.empty());
+  fs::remove(folder);
+  const auto kept = spool.keep(1, grid("r1", 1), 0);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().sentence,
+            "this map cannot be kept: " + folder.string() + ": Not a directory; send it again later");
+  EXPECT_TRUE(spool.read().maps.empty());
+  EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "it could be read";
+}
+
 TEST_F(SpoolTest, IsReadableByNobodyElse) {
   Spool spool(folder_ / "waiting");
   struct stat status{};

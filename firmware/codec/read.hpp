@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <expected>
 #include <string>
 #include <string_view>
@@ -26,6 +27,15 @@ namespace adit::codec {
 /// cells as one gzip member and a cloud's points raw and little-endian. CPU-bound in the size of the map:
 /// meant for a worker.
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules);
+/// The map in a message of write_data_first(), whose data is in `data` and is not read: whatever is there is
+/// taken for cells or points of the right form until check_data() says otherwise.
+icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::ChunkedBytes data,
+                                             std::string_view after, const icd::Rules& rules);
+/// How many bytes of data follow `before`, which is DataFirst::kBefore bytes.
+std::uint64_t data_after(std::string_view before);
+/// Whether the data is what its map says. CPU-bound in the size of a grid: meant for a worker.
+icd::Checked<void> check_data(const icd::MapUpdate& map);
+
 /// What of a message was not taken, part by part.
 struct RefusedParts {
   static constexpr std::size_t kMostToldOf = 10;

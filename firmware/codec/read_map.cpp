@@ -4,6 +4,7 @@
 #include "codec/parts.hpp"
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
+#include "codec/write.hpp"
 #include "icd/require.hpp"
 
 namespace adit::codec {
@@ -86,7 +87,40 @@ icd::Checked<icd::MapData> read_data(const icd::MapUpdate& update, Document docu
                           : read_cells(grid, std::move(document.data), compression, rules);
 }
 
+/// What Adit keeps (read.hpp: grids gzipped, clouds raw), as far as it shows without a look at the data.
+icd::Checked<void> check_form(const icd::MapUpdate& map) {
+  const auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
+  const auto expected = cloud == nullptr ? icd::Compression::Gzip : icd::Compression::None;
+  if (map.data.compression != expected)
+    return icd::unprocessable("msg.compression: expected that of maps that are kept");
+  return cloud == nullptr ? icd::Checked<void>() : icd::check_size(*cloud, map.data.bytes.size());
+}
+
 }  // namespace
+
+std::uint64_t data_after(std::string_view before) {
+  icd::require(before.size() == DataFirst::kBefore);
+  std::uint64_t size = 0;
+  for (const char byte : before.substr(before.size() - sizeof size))
+    size = size << 8 | static_cast<std::uint8_t>(byte);
+  return size;
+}
+
+icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::ChunkedBytes data,
+                                             std::string_view after, const icd::Rules& rules) {
+  std::string without_data(before.substr(0, before.size() - sizeof(std::uint64_t)));
+  without_data.append(sizeof(std::uint64_t), '\0').append(after);
+  const auto document = decode({Format::Cbor}, Split::MapData, without_data);
+  if (!document) return std::unexpected(document.error());
+  auto compression = icd::Compression::None;
+  auto map = read_structure(*document, rules, compression);
+  if (!map) return map;
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->msg);
+  const std::size_t raw_size = grid == nullptr ? data.size() : icd::cells_of(*grid);
+  map->data = {.bytes = std::move(data), .compression = compression, .raw_size = raw_size};
+  if (auto checked = check_form(*map); !checked) return std::unexpected(std::move(checked.error()));
+  return map;
+}
 
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules) {
   auto compression = icd::Compression::None;

@@ -1,6 +1,8 @@
 #include "codec/read_map_data.hpp"
 
 #include "codec/gzip.hpp"
+#include "codec/map_pieces.hpp"
+#include "codec/read.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
@@ -80,6 +82,15 @@ icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, i
 }
 
 }  // namespace
+
+icd::Checked<void> check_data(const icd::MapUpdate& map) {
+  const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg);
+  if (grid == nullptr) return icd::check_size(std::get<icd::PointCloud2>(map.msg), map.data.bytes.size());
+  CellCheck check(*grid);
+  auto read =
+      for_each_piece(map.data, [&](std::span<const std::uint8_t> piece) { return check.take(piece); });
+  return read ? check.finish() : read;
+}
 
 icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                       icd::Compression compression, const icd::Rules& rules) {

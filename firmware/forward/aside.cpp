@@ -9,11 +9,13 @@
 #include "codec/json.hpp"
 #include "codec/write.hpp"
 #include "forward/record.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "spool/kept_message.hpp"
+#include "spool/map_file.hpp"
 
 namespace adit::forward {
 namespace {
@@ -23,14 +25,16 @@ using codec::Value;
 
 constexpr const char *kMessage = ".cbor", *kReason = ".json";
 
-icd::ChunkedBytes bytes_of(const icd::MapUpdate& map) {
-  return codec::write_map_update(map);
+std::expected<void, std::string> write_message(const std::string& path, icd::MapUpdate map) {
+  const int error = spool::MapFile(path).finish(map, path);
+  if (error == 0) return {};
+  return std::unexpected(host::trouble(path, error));
 }
-icd::ChunkedBytes bytes_of(const icd::StateUpdate& state) {
-  return codec::write_state_update(state);
+std::expected<void, std::string> write_message(const std::string& path, const icd::StateUpdate& state) {
+  return spool::write_whole(path, codec::write_state_update(state));
 }
-icd::ChunkedBytes bytes_of(const icd::MarkersUpdate& markers) {
-  return codec::write_markers_update(markers);
+std::expected<void, std::string> write_message(const std::string& path, const icd::MarkersUpdate& markers) {
+  return spool::write_whole(path, codec::write_markers_update(markers));
 }
 
 constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // as the alternatives of lanes::Message
@@ -178,8 +182,7 @@ void Aside::keep(const lanes::AsideItem& item, Origin origin) {
         std::expected<void, std::string> written;
         if (!unread.empty()) written = std::unexpected(unread);
         if (written)
-          written = spool::write_whole(message_file,
-                                       std::visit([](const auto& each) { return bytes_of(each); }, message));
+          written = std::visit([&](const auto& each) { return write_message(message_file, each); }, message);
         if (written) written = spool::write_whole(reason_file, text_bytes(reason));
         *well = written.has_value();
         if (*well) return;

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <random>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -66,7 +67,7 @@ class Maps {
   void heard();
   /// Another run is on: what the Command Post took of the one before it may have no more.
   void change_run(dispatch::NextMap next);
-  /// A map that the spool kept under this number.
+  /// A map that the spool kept under this number. Its data is looked at when it is packed.
   void restore(std::uint64_t number, icd::MapUpdate update);
 
   /// For a map that begins to arrive. What is stored of it goes to the writer until this ends.
@@ -102,10 +103,16 @@ class Maps {
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
+  /// A map of a life before this one whose data is not what it should be.
+  struct Damaged {
+    std::uint64_t number = 0;
+    std::string why;
+  };
   /// A map out of the lane, in the form that goes upstream.
   struct Prepared {
     lanes::WaitingMap waiting;
     Packed packed;                   // without a body: not packed, or nothing is left to be sent
+    std::vector<Damaged> damaged;    // of it, which cannot be sent
     loop::Duration packing_took{0};  // the worker
     bool is_under_way = false, went_ahead = false;
     loop::Instant last_byte_not_before{};
@@ -154,6 +161,10 @@ class Maps {
   Place* place_of(const Place& prepared);
   void learn_from(const Prepared& cloud);
   void is_packed(const Place& prepared);
+  std::vector<std::uint64_t> unread_in(const lanes::WaitingMap& waiting) const;
+  static std::vector<Damaged> damaged_in(const lanes::WaitingMap& waiting,
+                                         const std::vector<std::uint64_t>& unread);
+  void is_damaged(Place& place);
   void is_there(Place& place);
   void goes_whole(const Place& sent, int status);
   void points_taken(Prepared& sent);
@@ -197,6 +208,7 @@ class Maps {
   Place following_;         // the next one, while that is under way; may be so itself, too
   lanes::Ahead ahead_;
   std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of; has room for all
+  std::set<std::uint64_t> unread_;        // may be of a life before: nobody has looked at their data yet
   std::size_t remembered_ = 0;            // numbers that were given, and are still to be forgotten
   lanes::Blame blame_;
   bool stopping_ = false;

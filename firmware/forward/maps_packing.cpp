@@ -1,4 +1,8 @@
 // How the next map is packed on a worker, and with what effort.
+#include <algorithm>
+#include <utility>
+
+#include "codec/read.hpp"
 #include "forward/maps.hpp"
 #include "host/log.hpp"
 #include "loop/guard.hpp"
@@ -44,16 +48,22 @@ void Maps::pack(const Place& prepared) {
   const loop::Instant began = loop_.now();
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
   const Packing packing = packing_for(prepared->waiting);
+  const auto unread = unread_in(prepared->waiting);
   workers_.submit(
       loop::Urgency::OnTheWay,
-      [prepared, leaving_out, packing, &loop = loop_] {
+      [prepared, leaving_out, packing, unread, &loop = loop_] {
         const loop::Instant begins = loop.now();
+        prepared->damaged = damaged_in(prepared->waiting, unread);
+        if (!prepared->damaged.empty()) return;
         prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
         prepared->packing_took = loop.now() - begins;
       },
-      [this, began, prepared] {
+      [this, began, prepared, unread] {
         preparing_ = false;
-        if (prepared->packed.effort == pack::Effort::Full) slot_.packing_took(loop_.now() - began);
+        if (prepared->damaged.empty()) {
+          for (const std::uint64_t number : unread) unread_.erase(number);
+          if (prepared->packed.effort == pack::Effort::Full) slot_.packing_took(loop_.now() - began);
+        }
         loop::guarded("a map that was packed", [&] { is_packed(prepared); });
         pump();
       },
@@ -75,13 +85,59 @@ void Maps::learn_from(const Prepared& cloud) {
     slot_.packed(packed.points_size, packed.body.size(), packed.precision);
 }
 
+/// The numbers of what it was made of, and of which nobody has looked at the data.
+std::vector<std::uint64_t> Maps::unread_in(const lanes::WaitingMap& waiting) const {
+  std::vector<std::uint64_t> numbers;
+  if (!unread_.empty()) lanes::add_own_numbers(numbers, waiting);
+  std::erase_if(numbers, [this](std::uint64_t number) { return !unread_.contains(number); });
+  return numbers;
+}
+
+std::vector<Maps::Damaged> Maps::damaged_in(const lanes::WaitingMap& waiting,
+                                            const std::vector<std::uint64_t>& unread) {
+  std::vector<Damaged> damaged;
+  const auto look_at = [&](const lanes::WaitingMap& one) {
+    if (std::ranges::find(unread, one.updates.back()) == unread.end()) return;
+    if (auto checked = codec::check_data(one.map); !checked)
+      damaged.push_back({one.updates.back(), std::move(checked.error().sentence)});
+  };
+  if (waiting.parts.empty()) look_at(waiting);
+  for (const lanes::WaitingMap& part : waiting.parts) look_at(part);
+  return damaged;
+}
+
+/// What of it is damaged is told and set aside; the rest waits again, each part by itself.
+void Maps::is_damaged(Place& place) {
+  const auto it = place;
+  lanes::WaitingMap rest = it->waiting;
+  std::vector<std::uint64_t> gone;
+  for (const Damaged& each : it->damaged) gone.push_back(each.number);
+  const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
+  std::erase_if(rest.parts, [&](const lanes::WaitingMap& part) { return is_gone(part.updates.back()); });
+  std::erase_if(rest.updates, is_gone);
+  writer_.submit(
+      [&spool = spool_, it] {
+        for (const Damaged& each : it->damaged) spool.set_aside(each.number, each.why);
+      },
+      [] {});
+  if (!rest.parts.empty()) lane_.put_back_apart(std::move(rest));
+  place.reset();  // nothing of what is damaged is tried again
+  for (const Damaged& each : it->damaged) {
+    unread_.erase(each.number);
+    record_.not_taken(traffic_of(it->waiting.map), NotTaken::Failed, 0,
+                      "what was kept of it is damaged: " + each.why);
+  }
+  forget(gone);
+}
+
 /// What cannot be stitched goes as it came, each part by itself.
 void Maps::is_packed(const Place& prepared) {
   const icd::MapUpdate& map = prepared->waiting.map;
   const LeftOut& left_out = prepared->packed.left_out;
-  if (!map.is_grid()) learn_from(*prepared);
+  if (!map.is_grid() && prepared->damaged.empty()) learn_from(*prepared);
   Place* const place = place_of(prepared);
   if (place == nullptr) return;
+  if (!prepared->damaged.empty()) return is_damaged(*place);
   if (left_out.is_all) return is_there(*place);
   if (prepared->packed.drawn) lane_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
   prepared->packed.drawn.reset();

@@ -7,6 +7,7 @@
 
 #include "codec/body_decoder.hpp"
 #include "codec/read.hpp"
+#include "spool/map_file.hpp"
 #include "spool/part_file.hpp"
 
 namespace adit::spool {
@@ -58,6 +59,7 @@ void remove_parts(const std::string& folder) {
 }
 
 icd::Checked<icd::MapUpdate> read_map(const std::string& path) {
+  if (auto map = MapFile::read(path, as_kept())) return map;
   auto document = decode(path, codec::Split::MapData);
   if (!document) return std::unexpected(std::move(document.error()));
   return codec::read_map_update(std::move(*document), as_kept());

@@ -4,7 +4,9 @@
 #include <cerrno>
 #include <string_view>
 
+#include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::spool {
 namespace {
@@ -15,10 +17,6 @@ icd::ChunkedBytes data_in(const MappedFile& file, std::size_t size) {
   icd::ChunkedBytes data;
   if (file.owner) data.append(file.owner, file.bytes.subspan(kBefore, size));
   return data;
-}
-
-bool same(std::span<const std::uint8_t> bytes, std::string_view text) {
-  return std::ranges::equal(bytes, text, {}, {}, [](char c) { return static_cast<std::uint8_t>(c); });
 }
 
 }  // namespace
@@ -61,15 +59,15 @@ int MapFile::finish(icd::MapUpdate& map, const std::string& path) {
   return error;
 }
 
-void MapFile::show(icd::MapUpdate& map, const std::string& path) {
-  const codec::DataFirst message = codec::write_data_first(map);
+icd::Checked<icd::MapUpdate> MapFile::read(const std::string& path, const icd::Rules& rules) {
   const MappedFile file = map_file(path);
-  const std::size_t size = map.data.bytes.size();
-  if (!file.owner || file.bytes.size() != kBefore + size + message.after.size()) return;
-  if (!same(file.bytes.first(kBefore), message.before)) return;
-  if (icd::ChunkedBytes data = data_in(file, size); data == map.data.bytes) {
-    map.data.bytes = std::move(data);
-  }
+  if (!file.owner) return icd::unprocessable("the file cannot be read, or is empty");
+  if (file.bytes.size() < kBefore) return icd::unprocessable("the file is cut short");
+  const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
+  const std::string_view before = text.substr(0, kBefore);
+  const std::uint64_t size = codec::data_after(before);
+  if (size > text.size() - kBefore) return icd::unprocessable("the file is cut short");
+  return codec::read_data_first(before, data_in(file, size), text.substr(kBefore + size), rules);
 }
 
 }  // namespace adit::spool

@@ -5,6 +5,7 @@
 
 #include "icd/chunked_bytes.hpp"
 #include "icd/map_update.hpp"
+#include "icd/rules.hpp"
 #include "icd/status.hpp"
 #include "spool/part_file.hpp"
 
@@ -29,8 +30,9 @@ class MapFile {
   /// Writes what is missing of `map`, whose data begins so, gives it its name, and shows its data in it.
   int finish(icd::MapUpdate& map, const std::string& path);
 
-  /// `map`, which was read from that file, is shown with its data in it, if the file is as finish() makes it.
-  static void show(icd::MapUpdate& map, const std::string& path);
+  /// The map in a file that is as finish() makes it, with its data in the file, which is not read: what it is
+  /// worth is to be found out by codec::check_data().
+  static icd::Checked<icd::MapUpdate> read(const std::string& path, const icd::Rules& rules);
 
  private:
   PartFile file_;

@@ -1,3 +1,5 @@
+#include "spool/spool.hpp"
+
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -13,7 +15,6 @@
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "spool/kept_message.hpp"
-#include "spool/spool.hpp"
 
 namespace adit::spool {
 namespace {
@@ -38,6 +39,13 @@ std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64
   return left - std::min({left, left_to_others, std::uint64_t{room.f_blocks} * room.f_frsize / 4});
 }
 
+void set_aside(const std::string& path, const std::string& why) {
+  host::log(host::Level::Error, "a kept message could not be read and is set aside",
+            {{"file", path}, {"why", why}});
+  std::error_code error;
+  fs::rename(path, path + ".damaged", error);
+}
+
 /// The message in one file, which is set aside where it cannot be understood.
 template <class Message>
 std::optional<Message> message_in(const std::string& path,
@@ -45,10 +53,7 @@ std::optional<Message> message_in(const std::string& path,
   if (!host::may_exist(path)) return std::nullopt;
   icd::Checked<Message> message = read(path);
   if (message) return std::move(*message);
-  host::log(host::Level::Error, "a kept message could not be read and is set aside",
-            {{"file", path}, {"why", message.error().sentence}});
-  std::error_code error;
-  fs::rename(path, path + ".damaged", error);
+  set_aside(path, message.error().sentence);
   return std::nullopt;
 }
 
@@ -98,6 +103,10 @@ void Spool::forget(std::uint64_t number) {
   fs::remove(file_of(number), error);
 }
 
+void Spool::set_aside(std::uint64_t number, const std::string& why) {
+  spool::set_aside(file_of(number), why);
+}
+
 void Spool::forget_state() {
   std::error_code error;
   fs::remove(folder_ + std::string(kState), error);
@@ -115,10 +124,7 @@ Spool::Kept Spool::read() {
   unread_ = numbers ? "" : numbers.error();
   if (!numbers) host::log(host::Level::Error, "kept maps cannot be read", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
-    auto map = message_in(file_of(number), read_map);
-    if (!map) continue;
-    MapFile::show(*map, file_of(number));
-    kept.maps.emplace_back(number, std::move(*map));
+    if (auto map = message_in(file_of(number), read_map)) kept.maps.emplace_back(number, std::move(*map));
   }
   kept.state = message_in(folder_ + std::string(kState), read_state).value_or(icd::StateUpdate{});
   kept.markers = message_in(folder_ + std::string(kMarkers), read_markers).value_or(icd::MarkersUpdate{});

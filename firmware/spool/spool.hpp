@@ -53,8 +53,11 @@ class Spool {
   void forget_state();
   void forget_markers();
 
-  /// All that is kept. What cannot be understood is logged and set aside.
+  /// All that is kept. What cannot be understood is logged and set aside; of maps by whoever takes them up,
+  /// too (read_map()).
   Kept read();
+  /// It is damaged: it is forgotten, and its file is there for whoever looks for it. For the writer.
+  void set_aside(std::uint64_t number, const std::string& why);
 
  private:
   std::string file_of(std::uint64_t number) const;

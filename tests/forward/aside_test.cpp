@@ -11,6 +11,7 @@
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "loop/turn_until.hpp"
+#include "spool/bytes_read.hpp"
 #include "spool/messages.hpp"
 
 namespace adit::forward {
@@ -253,6 +254,18 @@ TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
   EXPECT_EQ(told_.let_go, 1);
   aside_->sent_again(2, true);
   EXPECT_EQ(told_.let_go, 2);
+}
+
+TEST_F(AsideTest, ReadsNoDataOfMapsAsItRestoresThem) {
+  add(spool::cloud(1'000'000));  // 12 MB
+  const auto before = spool::BytesRead::of(folder_.path());
+  restart();
+  const auto after = spool::BytesRead::of(folder_.path());
+  EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
+  EXPECT_LT(after.in_mappings, 1'000'000U);
+  const auto map = aside_->to_be_sent(1);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(std::get<icd::MapUpdate>(*map), spool::cloud(1'000'000));
 }
 
 TEST_F(AsideTest, WritesOverNothingThatItCouldNotRead) {

@@ -10,6 +10,7 @@
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "loop/turn_until.hpp"
+#include "spool/bytes_read.hpp"
 #include "spool/messages.hpp"
 
 namespace adit::forward {
@@ -35,9 +36,9 @@ class FlowTest : public testing::Test {
                              .posted = [this](const std::string& name) { posted_.push_back(name); }});
     ASSERT_TRUE(flow_->start());
   }
-  icd::Checked<void> take_map() {
+  icd::Checked<void> take_map(icd::MapUpdate map = spool::cloud(3)) {
     std::optional<icd::Checked<void>> said;
-    flow_->map_arrives()->take(spool::cloud(3), sender_,
+    flow_->map_arrives()->take(std::move(map), sender_,
                                [&](icd::Checked<void> taken) { said = std::move(taken); });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return said.has_value(); }));
     return said.value_or(std::unexpected(icd::Refusal{icd::Status::Ok, "nothing was said"}));
@@ -78,6 +79,18 @@ TEST_F(FlowTest, WhatItTookWaitsInTheNextLife) {
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
   live();
   EXPECT_THAT(waiting(), ElementsAre(1, 1, 1));
+}
+
+/// A start goes before the listeners: whoever posts meanwhile is not answered.
+TEST_F(FlowTest, ReadsNoDataOfWhatWaitsAsItStarts) {
+  ASSERT_TRUE(take_map(spool::cloud(1'000'000)));  // 12 MB
+  const auto before = spool::BytesRead::of(folder_.path());
+  live();
+  EXPECT_THAT(waiting(), ElementsAre(1));
+  const auto after = spool::BytesRead::of(folder_.path());
+  EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
+  EXPECT_GT(after.in_mappings, 0U) << "both ends of its file";
+  EXPECT_LT(after.in_mappings, 1'000'000U);
 }
 
 TEST_F(FlowTest, TellsSinceWhenTheCommandPostIsBehind) {

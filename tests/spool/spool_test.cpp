@@ -10,6 +10,7 @@
 #include "codec/body_decoder.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "spool/bytes_read.hpp"
 #include "spool/messages.hpp"
 
 namespace adit::spool {
@@ -88,6 +89,35 @@ TEST_F(SpoolTest, KeepsNothingWhereItCouldNotTellWhatALifeBeforeKept) {
             "this map cannot be kept: " + folder.string() + ": Not a directory; send it again later");
   EXPECT_TRUE(spool.read().maps.empty());
   EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "it could be read";
+}
+
+TEST_F(SpoolTest, ReadsOfTheMapsThatItKeptNoData) {
+  Spool spool(folder_);
+  for (std::uint64_t number = 1; number <= 3; ++number)
+    ASSERT_TRUE(spool.keep(number, cloud(1'000'000), 0));  // of 12 MB
+  ASSERT_TRUE(spool.keep(4, grid("r1", 1), 0));
+  std::fstream(folder_ / "map-00000004.cbor", std::ios::in | std::ios::out | std::ios::binary).seekp(40)
+      << "?";
+  const auto before = BytesRead::of(folder_);
+  const auto kept = spool.read();
+  const auto after = BytesRead::of(folder_);
+  EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
+  EXPECT_GT(after.in_mappings, before.in_mappings) << "its two ends";
+  EXPECT_LT(after.in_mappings - before.in_mappings, 1'000'000U);
+  ASSERT_EQ(kept.maps.size(), 4U);
+  EXPECT_EQ(kept.maps[0].second, cloud(1'000'000));
+  EXPECT_TRUE(codec::check_data(kept.maps[0].second));
+  EXPECT_FALSE(codec::check_data(kept.maps[3].second)) << "it is damaged, and is to be read for that";
+}
+
+TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
+  Spool spool(folder_);
+  for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep(number, cloud(10), 0));
+  fs::resize_file(folder_ / "map-00000001.cbor", 100);
+  fs::resize_file(folder_ / "map-00000002.cbor", fs::file_size(folder_ / "map-00000002.cbor") + 1);
+  EXPECT_EQ(spool.read().maps.size(), 1U);
+  EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
+  EXPECT_TRUE(fs::exists(folder_ / "map-00000002.cbor.damaged"));
 }
 
 TEST_F(SpoolTest, IsReadableByNobodyElse) {

@@ -1,0 +1,84 @@
+// Maps of a life before this one whose data is damaged: that is found out when their turn comes.
+#include <filesystem>
+#include <fstream>
+
+#include "codec/gzip.hpp"
+#include "forward/letting_post.hpp"
+#include "host/numbered_name.hpp"
+
+namespace adit::forward {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DamagedMap : public WithLettingPost {
+ protected:
+  /// A square whose lower left corner is so many of them towards +X, as a life before kept it.
+  void keep(std::uint64_t number, const char* robot, int column) {
+    icd::MapUpdate map = grid_of(robot, 64);
+    auto& grid = std::get<icd::OccupancyGrid>(map.msg);
+    grid.origin.position.x = column * grid.width * grid.resolution;
+    map.data.bytes = codec::gzip(map.data.bytes, codec::GzipStrategy::Runs);
+    map.data.compression = icd::Compression::Gzip;
+    ASSERT_TRUE(spool_.keep(number, std::move(map), 0));
+  }
+  std::string file(std::uint64_t number) const {
+    return folder_ / host::numbered_name("map-", number, ".cbor");
+  }
+  void damage(std::uint64_t number) {
+    std::fstream bytes(file(number), std::ios::in | std::ios::out | std::ios::binary);
+    bytes.seekp(40);  // among the cells
+    bytes << "damaged";
+  }
+  void restore() {
+    for (auto& [number, map] : spool_.read().maps) maps_->restore(number, std::move(map));
+  }
+  api::ActivityRow row() const {
+    const auto found = record_.rows().find({Kind::Grid, "first"});
+    return found == record_.rows().end() ? api::ActivityRow{} : found->second;
+  }
+  static constexpr std::uint64_t kOne = Maps::kFirstNumber + 1, kOther = Maps::kFirstNumber + 2;
+};
+
+TEST_F(DamagedMap, IsToldAndSetAsideAndTheNextOneGoes) {
+  keep(kOne, "first", 0);
+  keep(kOther, "second", 0);
+  damage(kOne);
+  restore();
+  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1U) << "nobody has looked at it";
+  post_.answer("200 OK");
+  EXPECT_TRUE(come({"second"}));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return !fs::exists(file(kOne)); }));
+  EXPECT_TRUE(fs::exists(file(kOne) + ".damaged"));
+  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+  EXPECT_EQ(row().failed, 1U);
+  EXPECT_TRUE(row().last_sentence.starts_with("what was kept of it is damaged: ")) << row().last_sentence;
+}
+
+TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndSetAsideToo) {
+  keep(kOne, "first", 0);
+  damage(kOne);
+  auto kept = spool_.read();
+  maps_->send_again(std::move(kept.maps[0].second), [](bool) { return true; });
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
+  EXPECT_TRUE(row().last_sentence.starts_with("what was kept of it is damaged: ")) << row().last_sentence;
+  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+}
+
+TEST_F(DamagedMap, OfTwoThatWouldBeStitchedLeavesTheOtherOne) {
+  keep(kOne, "first", 0);
+  keep(kOther, "first", 1);
+  damage(kOne);
+  maps_->endpoint_changed(std::nullopt);  // without a token nothing leaves
+  restore();
+  maps_->endpoint_changed(icd::BearerToken::parse("a-token"));
+  post_.answer("200 OK");
+  EXPECT_TRUE(come({"first"}));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().forwarded == 1; }));
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return fs::exists(file(kOne) + ".damaged"); }));
+  EXPECT_EQ(row().failed, 1U);
+  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+}
+
+}  // namespace
+}  // namespace adit::forward

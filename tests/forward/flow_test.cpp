@@ -84,10 +84,10 @@ TEST_F(FlowTest, WhatItTookWaitsInTheNextLife) {
 /// A start goes before the listeners: whoever posts meanwhile is not answered.
 TEST_F(FlowTest, ReadsNoDataOfWhatWaitsAsItStarts) {
   ASSERT_TRUE(take_map(spool::cloud(1'000'000)));  // 12 MB
-  const auto before = spool::BytesRead::of(folder_.path());
+  const auto before = spool::BytesRead::of(folder_ / "waiting");
   live();
   EXPECT_THAT(waiting(), ElementsAre(1));
-  const auto after = spool::BytesRead::of(folder_.path());
+  const auto after = spool::BytesRead::of(folder_ / "waiting");
   EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
   EXPECT_GT(after.in_mappings, 0U) << "both ends of its file";
   EXPECT_LT(after.in_mappings, 1'000'000U);

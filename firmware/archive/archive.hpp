@@ -97,8 +97,9 @@ class Archive final : public api::KeptRuns {
   void keep_lines_below(std::size_t most);
   void sample(const Seen& seen);
   void note(const Seen& seen);
+  void note_poses(const Seen& seen);
   bool write(const Seen& seen, std::size_t most, api::Time tiles_of);
-  void put_lines(const Seen& seen, Batch& batch);
+  void put_lines(Batch& batch);
   void put_facts(Batch& batch);
   void put_layers(const Seen& seen, Batch& batch);
   void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);

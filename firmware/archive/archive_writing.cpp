@@ -32,6 +32,7 @@ void Archive::tick(const Seen& seen) {
   note(seen);
   if (writing_ > 0 || loop_.now() < next_write_) return;
   if (folder_) {
+    note_poses(seen);
     write(seen, allowance_.at(loop_.now()), seen.now);
   } else if (!trouble_.empty()) {
     make_folder();
@@ -41,12 +42,14 @@ void Archive::tick(const Seen& seen) {
 void Archive::write_now(const Seen& seen) {
   if (opening_ || !folder_) return;
   note(seen);
+  note_poses(seen);
   next_facts_ = loop_.now();
   write(seen, allowance_.at(loop_.now()), kNoneRests);
 }
 
 void Archive::end_run(const Seen& seen) {
   if (opening_ || !folder_) return;
+  note_poses(seen);
   next_facts_ = loop_.now();
   const Allowance of_the_next = allowance_;
   while (write(seen, static_cast<std::size_t>(Allowance::kMost), kNoneRests)) {
@@ -79,7 +82,7 @@ bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
   writing->number = ++writes_;
   writing->begun = begun_;
   put_facts(batch);
-  put_lines(seen, batch);
+  put_lines(batch);
   writing->steps = std::exchange(steps_, "");
   batch.beside = writing->steps;
   put_layers(seen, batch);
@@ -108,13 +111,17 @@ void Archive::put_facts(Batch& batch) {
   allowance_.spend(batch.facts.size());
 }
 
-void Archive::put_lines(const Seen& seen, Batch& batch) {
+/// Once for each `seen`: if the time of day was set back, the same poses are told again.
+void Archive::note_poses(const Seen& seen) {
   for (const api::Track& track : seen.tracks(last_pose_)) {
     std::span<const api::TrackPose> poses = track.poses;
     for (; !poses.empty(); poses = poses.subspan(std::min(poses.size(), kLargestPoses)))
       line(Kind::Poses, said(track.robot, poses.first(std::min(poses.size(), kLargestPoses))));
   }
   last_pose_ = seen.now;
+}
+
+void Archive::put_lines(Batch& batch) {
   while (!lines_.empty() && batch.lines.size() + lines_.front().size() <= kLargestRecord) {
     batch.lines += lines_.front();
     lines_bytes_ -= lines_.front().size();

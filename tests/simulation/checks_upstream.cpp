@@ -29,23 +29,27 @@ constexpr double kTriedAgain = 9;     // seconds
 constexpr double kLongestPause = 30;  // that a Retry-After is heeded for
 constexpr double kVouches = 13;       // seconds that a status does for the run: 15, and some to send a report
 constexpr double kSoon = 1;           // seconds: what it waited for was the status
+constexpr double kMostHeld = 4;       // seconds
 constexpr double kGivesWay = 1;       // seconds, of which Adit takes 0.2
 /// Bytes a second: less than maps get of the smallest budget that an operator sets.
 constexpr std::int64_t kLeastGiven = 1'500'000;
 
 /// Of the station's clock, which runs as the world's does: the first message of a robot counts as posted when
-/// it came, and each later one as much later as its stamp is.
+/// it came, and each later one as much later as its stamp is. Of a robot of which one was held for so long
+/// that the next one is far ahead of it, nothing is known: its clock is taken again (lanes/stamps.hpp).
 class Spacing {
  public:
   explicit Spacing(const std::vector<Event>& events) {
     std::map<std::string, std::pair<double, double>> first;  // by when it had come, and how late it was
+    std::set<std::string> is_held;
     for (const Asked& asked : asked_in(events, kState)) {
       for (const Item& item : asked.items) {
         if (item.stamp == 0 || item.says != Says{Station::kNumber}) continue;
         auto& [come, late] = first.try_emplace(item.who, 1e9, 1e9).first->second;
         if (asked.began < come) late = std::min(late, World::kEpoch + asked.began - item.stamp);
         if (asked.accepted()) come = std::min(come, asked.ended);
-        least_[item.serial] = item.stamp + late;
+        if (asked.ended - asked.began > kMostHeld) is_held.insert(item.who);
+        if (!is_held.contains(item.who)) least_[item.serial] = item.stamp + late;
       }
     }
   }

@@ -12,7 +12,6 @@ namespace {
 constexpr std::int64_t kFirstSerial = 24'000;
 constexpr int kPlanner = 91;            // of its address, if it is not the station's
 constexpr int kFew = 100, kMany = 300;  // namespaces
-constexpr int kVeryMany = 1100;
 constexpr Manners kManners{.keeps_alive = true, .patience = 30};
 
 }  // namespace
@@ -28,7 +27,7 @@ Station::Station(World& world, double end)
                Client(world, address(kNumber), kManners, world.random("second client of the station"))},
       planner_(world, address(random_.chance(0.5) ? kNumber : kPlanner), kManners,
                world.random("client of the planner")),
-      namespaces_(random_.chance(0.1) ? kVeryMany : kFew + static_cast<int>(random_.below(kMany))),
+      namespaces_(kFew + static_cast<int>(random_.below(kMany))),
       serial_(kFirstSerial) {
   robots_.push_back({"S1", end});
   robots_.push_back({"S2", random_.between(0, end)});

@@ -63,7 +63,8 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["robots"][0], (json{{"name", "ANYmal1"},
                                        {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
                                        {"heading", 0.5},
-                                       {"at", 1000.0}, {"age", 0.5}}));
+                                       {"at", 1000.0},
+                                       {"age", 0.5}}));
   EXPECT_EQ(parsed["identify_until"], nullptr);
   EXPECT_EQ(parsed["setup_open_until"], nullptr);
   EXPECT_EQ(parsed["run_number"], 1);

@@ -142,8 +142,8 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
     }
   }
 
-  /// With an empty map, there; here it is noticed by the next status that is asked for. What waits is posted in
-  /// it: its cells are the newest there are.
+  /// With an empty map, there; here it is noticed by the next status that is asked for. What waits is posted
+  /// in it: its cells are the newest there are.
   void begin_run() {
     ++run_;
     std::fill(is_of_earlier_run_.begin(), is_of_earlier_run_.end(), false);

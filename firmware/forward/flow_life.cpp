@@ -127,6 +127,7 @@ void Flow::restore(bool is_first) {
     maps_.restore(number, std::move(map));
   }
   std::vector<lanes::PostedPose> poses;
+  poses.reserve(kept.state.poses.size());
   for (const icd::NamedPose& named : kept.state.poses)
     poses.push_back({.name = named.name, .pose = named.pose, .stamp = now});
   for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;

@@ -1,4 +1,5 @@
 // A message's file in the spool.
+#include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "folder.hpp"
 #include "spool/kept_message.hpp"
@@ -29,10 +30,9 @@ void try_spool(Input text) {
   kept_as_read(file, spool::read_markers, [](const icd::MarkersUpdate& markers, const std::string& again) {
     require(spool::write_whole(again, codec::write_markers_update(markers)).has_value());
   });
-  kept_as_read(file, spool::read_map, [&file](icd::MapUpdate map, const std::string& again) {
+  kept_as_read(file, spool::read_map, [](icd::MapUpdate map, const std::string& again) {
     const icd::ChunkedBytes data = map.data.bytes;
-    spool::MapFile::show(map, file);
-    require(map.data.bytes == data);
+    if (const auto checked = codec::check_data(map); !checked) require(!checked.error().sentence.empty());
     spool::MapFile kept(again);
     require(kept.finish(map, again) == 0 && map.data.bytes == data);
   });

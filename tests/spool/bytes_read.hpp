@@ -20,8 +20,8 @@ struct BytesRead {
     bool is_there = false;
     std::ifstream mappings("/proc/self/smaps");
     for (std::string line; std::getline(mappings, line);) {
-      if (const auto path = line.find(" /"); path != std::string::npos) {
-        is_there = line.compare(path + 1, folder.size() + 1, folder + '/') == 0;
+      if (line.find('-') < line.find(' ')) {  // "7f..-7f.. r--s ..", of a file or not
+        is_there = line.contains(' ' + folder + '/');
       } else if (is_there && line.starts_with("Rss:")) {
         read.in_mappings += 1024 * std::stoull(line.substr(4));
       }

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "codec/json.hpp"
+#include "icd/success.hpp"
 
 namespace adit::dispatch {
 namespace {
@@ -10,10 +11,6 @@ namespace {
 /// What a Command Post answers whose handler fails at a message; other 5xx come from something in between,
 /// and pass.
 constexpr int kHandlerFailed = 500;
-
-bool is_success(int status) {
-  return status >= 200 && status < 300;
-}
 
 }  // namespace
 
@@ -29,11 +26,11 @@ bool may_be_the_command_post(int status, Body body) {
 }
 
 bool is_the_command_post(int status, Body body) {
-  return is_success(status) && body == Body::Json;
+  return icd::is_success(status) && body == Body::Json;
 }
 
 MappingVerdict mapping_verdict(int status, Body body) {
-  if (is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
+  if (icd::is_success(status)) return body == Body::Other ? MappingVerdict::Failing : MappingVerdict::Taken;
   if (status == 429) return MappingVerdict::Throttled;
   if (status == kHandlerFailed) return MappingVerdict::Suspect;
   if (status == 400 || status == 413 || status == 422) {

@@ -1,11 +1,12 @@
 #include "dispatch/report_verdict.hpp"
 
 #include "codec/read.hpp"
+#include "icd/success.hpp"
 
 namespace adit::dispatch {
 
 ReportEvent event_of(int status, bool tells_of_a_report, Body body) {
-  if (status >= 200 && status < 300) {
+  if (icd::is_success(status)) {
     return tells_of_a_report ? ReportEvent::Recorded : ReportEvent::Lost;
   }
   switch (status) {

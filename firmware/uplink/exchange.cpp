@@ -6,6 +6,8 @@
 #include <cstring>
 #include <utility>
 
+#include "icd/success.hpp"
+
 namespace adit::uplink {
 namespace {
 
@@ -29,10 +31,6 @@ std::string head_of(const std::string& authority, const icd::BearerToken& token,
 
 iovec piece(const void* data, std::size_t size) {
   return {const_cast<void*>(data), size};
-}
-
-bool is_good(int status) {
-  return status >= 200 && status < 300;
 }
 
 /// The first `bytes` of the pieces, or all.
@@ -127,7 +125,7 @@ Exchange::Answer Exchange::read(int fd) {
     const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});
     if (state == AnswerParser::State::Malformed) return lost(parser_.fault());
     if (state == AnswerParser::State::Incomplete) continue;
-    is_early_ = is_good(status()) && !has_arrived(fd);
+    is_early_ = icd::is_success(status()) && !has_arrived(fd);
     if (!is_early_) return Answer::Whole;
   }
 }

@@ -25,7 +25,7 @@ std::function<bool()> Archive::enough() const {
 
 namespace {
 
-/// What cannot be read of a run is passed over, as what is damaged is.
+/// Logs and skips the files of a run that cannot be read. Damaged records are skipped, too.
 void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
               const std::function<bool()>& enough) {
   const auto all_read = read_run(runs.folder_of(key), told, enough);

@@ -64,10 +64,10 @@ class Archive final : public api::KeptRuns {
 
   /// Once a second; writes what is due.
   void tick(const Seen& seen);
-  /// Writes what may be written of all that is not on the disk, without delay: the process may end.
+  /// Writes pending data at once, as far as the allowance permits. The process may end after it.
   void write_now(const Seen& seen);
-  /// Writes all of it, for nothing more is written of this run. The facts are those of the last tick: what is
-  /// heard now may be of the run that is about to be the present one.
+  /// Writes all pending data of this run, beyond the allowance: it is the last chance. The facts are those of
+  /// the last tick, because a newer status may be of the next run.
   void end_run(const Seen& seen);
   void needs_attention(const std::vector<std::string>& sentences, api::Time now);
   /// The time of day was set ahead by so many seconds: all that is kept of this run was as long ago as it

@@ -111,7 +111,7 @@ void Archive::put_facts(Batch& batch) {
   allowance_.spend(batch.facts.size());
 }
 
-/// Once for each `seen`: if the time of day was set back, the same poses are told again.
+/// Call once for each `seen`: if the time of day was set back, a second call would note the same poses again.
 void Archive::note_poses(const Seen& seen) {
   for (const api::Track& track : seen.tracks(last_pose_)) {
     std::span<const api::TrackPose> poses = track.poses;
@@ -176,7 +176,7 @@ void Archive::written(const Writing& writing) {
   if (!outcome) {
     next_facts_ = loop_.now();
     steps_.insert(0, writing.steps);
-    layers_seen_ = 0;  // all of them are said again
+    layers_seen_ = 0;  // the next write has all layers
     wiped_.reset();
     if (!writing.batch.lines.empty()) lines_bytes_ += lines_.emplace_front(writing.batch.lines).size();
     return;

@@ -45,7 +45,7 @@ std::optional<Disk> disk_of(const std::string& folder) {
 
 GrowingFile::GrowingFile(std::string folder, std::string prefix, std::string head)
     : folder_(std::move(folder)), prefix_(std::move(prefix)), head_(std::move(head)) {
-  static_cast<void>(look());  // whoever writes looks again, and says what is wrong
+  static_cast<void>(look());  // append() looks again, and returns the error
 }
 
 std::expected<void, std::string> GrowingFile::look() {

@@ -81,7 +81,8 @@ class RunFolder {
   GrowingFile tiles_, lines_;
 };
 
-/// Tells all that a folder has, until `enough`. An error names what cannot be read; all else is told.
+/// Reads a run's files into `told`, until `enough`. An error names the first file that cannot be read; all
+/// other files are read.
 std::expected<void, std::string> read_run(const std::string& folder, Told& told,
                                           const std::function<bool()>& enough);
 /// Whether nothing was ever written into it. An error: it cannot be read.

@@ -26,13 +26,13 @@ class RunsFolder {
   /// All that there is, the latest first. A run whose facts are damaged is known by its files. One that
   /// cannot be read is logged.
   std::vector<api::RunRow> list() const;
-  /// The key of that run's folder, which is made where there is none. An error: it cannot be made, or one
-  /// cannot be read that may be of that run.
+  /// Makes the run's folder if it does not exist, and returns its key. An error: the folder cannot be made,
+  /// or a folder that may be the run's cannot be read.
   std::expected<std::string, std::string> begin(const Head& head);
   std::string folder_of(const std::string& key) const { return path_ + '/' + key; }
   bool has(const std::string& key) const;
-  /// Nothing where there is no such run, or nothing that is written there says which run it is. An error
-  /// names what cannot be read.
+  /// Empty if the run does not exist, or if its files do not say which run it is. An error names the file
+  /// that cannot be read.
   std::expected<std::optional<api::RunRow>, std::string> facts_of(const std::string& key) const;
   std::expected<void, std::string> remove(const std::string& key);
   /// Removes the oldest until all take at most `most` bytes, and at most half of what the disk has for them;

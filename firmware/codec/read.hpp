@@ -27,8 +27,8 @@ namespace adit::codec {
 /// cells as one gzip member and a cloud's points raw and little-endian. CPU-bound in the size of the map:
 /// meant for a worker.
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules);
-/// The map in a message of write_data_first(), whose data is in `data` and is not read: whatever is there is
-/// taken for cells or points of the right form until check_data() says otherwise.
+/// The map in a message of write_data_first(), whose data is in `data` and is not read: call check_data()
+/// before the cells or points are used.
 icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::ChunkedBytes data,
                                              std::string_view after, const icd::Rules& rules);
 /// How many bytes of data follow `before`, which is DataFirst::kBefore bytes.

@@ -27,7 +27,7 @@ bool has_started(const Run& run) {
   return run.last->run_clock > 0 || (run.answer_clock && run.answer_clock->shows > 0);
 }
 
-/// Of two that were taken for different ones. Where no status was heard, the operator says so.
+/// Adit has taken the two for different runs. If a run has no status, the operator said so.
 bool are_certainly_different(const Run& before, const Run& now) {
   const bool are_heard = before.last && now.last;
   if (are_heard && are_other_teams(before.last->current_team, now.last->current_team)) return true;

@@ -32,18 +32,18 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::RunStatus& stat
 /// answers.
 std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& reply, double silence);
 
-/// A status of another run would show it: the clock of this one's was seen to run.
+/// The run's clock was seen to run, so that a status of another run would show by its clock.
 bool tells_of_another(const Run& run);
 
-/// The map that a Command Post has.
+/// The map that a Command Post has after a change of the run.
 enum class NextMap {
-  MayBeTheSame,  // as before, or an empty one
-  Empty,         // but for what was sent since the last status of the run before
-  Earlier,       // that of a run from before
+  MayBeTheSame,  // the old map, or an empty one
+  Empty,         // except for maps that arrived after the last status of the old run
+  Earlier,       // the map of an earlier run
 };
 
-/// Once `now` is the present run in place of `before`. More reports left are no sign by themselves: one more
-/// may have been granted.
+/// `now` has become the present run in place of `before`. More reports left are not enough for another map,
+/// because somebody may have granted one.
 NextMap next_map(const Run& before, const Run& now);
 
 /// Both are teams, and different ones.

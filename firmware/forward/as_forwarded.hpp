@@ -18,7 +18,7 @@ class AsForwarded {
  public:
   static constexpr std::size_t kMostRobots = 100;  // those heard of last
 
-  /// News of robots: what only goes along with it tells nothing of where they are now.
+  /// Poses that robots posted. Do not pass poses that a state only repeats: a robot may have moved since.
   void forwarded(std::span<const icd::NamedPose> poses, api::Time now);
   void forwarded(std::span<const icd::Marker> markers, api::Time now) { markers_.forwarded(markers, now); }
   /// A new run begins without tracks and markers; where each robot is, it still is.

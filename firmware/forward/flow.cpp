@@ -93,8 +93,8 @@ void Flow::changed() {
   told_.changed();
 }
 
-/// Once another run is the present one. The first one that is known in a life may have begun before it, and
-/// so may one at another Command Post.
+/// `run` is the present run now, in place of `before`. The first run of this process may have begun before
+/// the process did, and so may a run at another Command Post.
 dispatch::NextMap Flow::next_map(std::int64_t before, const dispatch::Run& run) const {
   const dispatch::Run* const known = reports().runs().find(before);
   const bool is_here = known != nullptr && reports().runs().is_here(before) && is_by_settings(run);

@@ -208,7 +208,7 @@ class Maps {
   Place following_;         // the next one, while that is under way; may be so itself, too
   lanes::Ahead ahead_;
   std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of; has room for all
-  std::set<std::uint64_t> unread_;        // may be of a life before: nobody has looked at their data yet
+  std::set<std::uint64_t> unread_;        // numbers of maps whose data is still to be checked
   std::size_t remembered_ = 0;            // numbers that were given, and are still to be forgotten
   lanes::Blame blame_;
   bool stopping_ = false;

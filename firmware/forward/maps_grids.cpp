@@ -30,7 +30,7 @@ bool Maps::is_told(const icd::MapUpdate& update) {
   return true;
 }
 
-/// While maps still go to another Command Post than the settings name, what is heard is not that one's.
+/// False while maps still go to another Command Post than the settings name: its statuses are not read.
 bool Maps::is_heard_from() const {
   return channel_.address() == address_text(settings_.command_post.mapping);
 }

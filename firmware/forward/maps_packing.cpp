@@ -85,7 +85,7 @@ void Maps::learn_from(const Prepared& cloud) {
     slot_.packed(packed.points_size, packed.body.size(), packed.precision);
 }
 
-/// The numbers of what it was made of, and of which nobody has looked at the data.
+/// The numbers of those maps in `waiting` whose data is still to be checked.
 std::vector<std::uint64_t> Maps::unread_in(const lanes::WaitingMap& waiting) const {
   std::vector<std::uint64_t> numbers;
   if (!unread_.empty()) lanes::add_own_numbers(numbers, waiting);
@@ -106,7 +106,7 @@ std::vector<Maps::Damaged> Maps::damaged_in(const lanes::WaitingMap& waiting,
   return damaged;
 }
 
-/// What of it is damaged is told and set aside; the rest waits again, each part by itself.
+/// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
 void Maps::is_damaged(Place& place) {
   const auto it = place;
   lanes::WaitingMap rest = it->waiting;

@@ -176,6 +176,16 @@ class MapsOverRuns : public testing::Test {
     EXPECT_TRUE(all_arrive());
     return post_.maps() - before;
   }
+  /// The run goes on, and the Command Post has the area.
+  void begin_with_the_area() {
+    hear({.clock = 600});
+    hear({.clock = 601});
+    map_the_area();
+  }
+  void map_both_ends_over(std::uint8_t between) {
+    map_both_ends();
+    EXPECT_THAT(post_.area(), ElementsAreArray(with_both_ends(between)));
+  }
   static Area with_both_ends(std::uint8_t between) {
     Area area(kWidth, between);
     std::fill_n(area.begin(), 4, 60);
@@ -193,13 +203,10 @@ class MapsOverRuns : public testing::Test {
 };
 
 TEST_F(MapsOverRuns, KeepAnAreaWhereTheClockStepsBack) {
-  hear({.clock = 600});
-  hear({.clock = 601});
-  map_the_area();
+  begin_with_the_area();
   hear({.clock = 541});
   ASSERT_EQ(run().number, 2);
-  map_both_ends();
-  EXPECT_THAT(post_.area(), ElementsAreArray(with_both_ends(50)));
+  map_both_ends_over(50);
 }
 
 TEST_F(MapsOverRuns, KeepAnAreaWhereTheRunIsTheOldOneAfterAll) {
@@ -212,24 +219,18 @@ TEST_F(MapsOverRuns, KeepAnAreaWhereTheRunIsTheOldOneAfterAll) {
   ASSERT_EQ(run().number, 2);
   ASSERT_TRUE(flow_->report({.type = "Rope", .position = {40, 50, 60}}, false));
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return run().number == 1; }));
-  map_both_ends();
-  EXPECT_THAT(post_.area(), ElementsAreArray(with_both_ends(50)));
+  map_both_ends_over(50);
 }
 
 TEST_F(MapsOverRuns, KeepAnAreaWhereOneMoreReportIsLeft) {
-  hear({.clock = 600});
-  hear({.clock = 601});
-  map_the_area();
+  begin_with_the_area();
   hear({.clock = 602, .left = 15});
   ASSERT_EQ(run().number, 2);
-  map_both_ends();
-  EXPECT_THAT(post_.area(), ElementsAreArray(with_both_ends(50)));
+  map_both_ends_over(50);
 }
 
 TEST_F(MapsOverRuns, KeepAnAreaAfterAStopWithoutAWord) {
-  hear({.clock = 600});
-  hear({.clock = 601});
-  map_the_area();
+  begin_with_the_area();
   flow_.reset();
   auto known = ledger_.runs();
   ASSERT_TRUE(known);
@@ -239,8 +240,7 @@ TEST_F(MapsOverRuns, KeepAnAreaAfterAStopWithoutAWord) {
   live();
   hear({.clock = 602});
   ASSERT_EQ(run().number, 2);
-  map_both_ends();
-  EXPECT_THAT(post_.area(), ElementsAreArray(with_both_ends(50)));
+  map_both_ends_over(50);
 }
 
 TEST_F(MapsOverRuns, KeepAnAreaThatANewRunHasBeforeItIsNoticed) {
@@ -251,14 +251,11 @@ TEST_F(MapsOverRuns, KeepAnAreaThatANewRunHasBeforeItIsNoticed) {
   map_the_area();
   next_status();
   ASSERT_EQ(run().number, 2);
-  map_both_ends();
-  EXPECT_THAT(post_.area(), ElementsAreArray(with_both_ends(50)));
+  map_both_ends_over(50);
 }
 
 TEST_F(MapsOverRuns, GoTogetherInANewRunWhereOnlyTheOldOneHadAnything) {
-  hear({.clock = 600});
-  hear({.clock = 601});
-  map_the_area();
+  begin_with_the_area();
   hear({.clock = 602});
   hear({.clock = 603});
   post_.begins_run({.clock = 2, .left = 25, .run = "2"});

@@ -33,6 +33,7 @@ void StateLane::add(std::span<const PostedPose> news, Instant now) {
     Held& held = robots_.try_emplace(newer.name, Held{newer}).first->second;
     held.posted = newer;
     held.is_news = held.is_of_run = true;
+    held.is_given_up = false;
   }
   oldest_ = std::min(oldest_.value_or(now), now);
 }
@@ -47,11 +48,13 @@ void StateLane::begin_run() {
 
 void StateLane::add_unless_known(const icd::StateUpdate& update, Instant now) {
   for (const icd::NamedPose& named : update.poses) {
-    Held& held = robots_.try_emplace(named.name, Held{{named.name, named.pose}}).first->second;
+    const auto [robot, is_new] = robots_.try_emplace(named.name, Held{{named.name, named.pose}});
+    Held& held = robot->second;
+    if (!is_new && !std::exchange(held.is_given_up, false)) continue;
     held.is_news = true;
     held.trial = {};
+    oldest_ = std::min(oldest_.value_or(now), now);
   }
-  oldest_ = std::min(oldest_.value_or(now), now);
 }
 
 /// Of those that go apart and have news, the one that failed longest ago; first those that do not rest.
@@ -114,14 +117,14 @@ void StateLane::passed(const WaitingState& state) {
   for (const icd::NamedPose& pose : state.update.poses) {
     const auto held = robots_.find(pose.name);
     if (held == robots_.end()) continue;
-    held->second.apart = held->second.is_under_way = false;
+    held->second.apart = held->second.is_given_up = held->second.is_under_way = false;
     held->second.trial = {};
   }
 }
 
 void StateLane::give_up(const icd::RobotName& name, Instant now) {
   Held& held = robots_.at(name);
-  held.apart = true;
+  held.apart = held.is_given_up = true;
   held.is_under_way = false;
   held.trial = {};
   held.trial.rests_until = now + kRest;

@@ -38,7 +38,8 @@ class StateLane {
   /// They replace the poses held.
   void add(std::span<const PostedPose> news, Instant now);
 
-  /// Makes these robots news again, with their newer poses where they are known.
+  /// Sends poses again that were given up. A robot that is known sends its newest pose, and none if that pose
+  /// waits, is under way or was taken.
   void add_unless_known(const icd::StateUpdate& update, Instant now);
 
   /// The newest poses of all robots that go together, or of one that goes apart; nothing if no news came
@@ -80,6 +81,7 @@ class StateLane {
     bool is_of_run = true;
     bool is_under_way = false;  // what was news when it was taken
     bool apart = false;
+    bool is_given_up = false;
     Trial trial{};
   };
   using Robots = std::map<icd::RobotName, Held>;

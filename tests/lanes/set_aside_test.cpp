@@ -195,6 +195,31 @@ TEST(StateLaneApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
   EXPECT_EQ(lane.take(at(22))->update.poses.size(), 3);
 }
 
+TEST(StateLaneApart, SendsAgainOnlyWhatWasGivenUpAndIsTheNewest) {
+  const icd::StateUpdate set_aside = state_of({"ugv1"});
+  StateLane lane;
+  lane.add_unless_known(set_aside, at(0));
+  const auto given_up = lane.take();
+  ASSERT_TRUE(given_up) << "nothing newer is known";
+  lane.add_unless_known(set_aside, at(1));
+  EXPECT_TRUE(lane.empty()) << "it is under way";
+  lane.give_up(set_aside.poses.front().name, at(1));
+  lane.add_unless_known(set_aside, at(2));
+  const auto again = lane.take();
+  ASSERT_TRUE(again);
+  lane.passed(*again);
+  lane.add_unless_known(set_aside, at(3));
+  EXPECT_TRUE(lane.empty()) << "it was taken";
+
+  lane.add(posted(set_aside), at(4));
+  lane.take();
+  lane.add(posted(set_aside), at(5));  // a newer one
+  lane.give_up(set_aside.poses.front().name, at(6));
+  lane.passed(*lane.take());
+  lane.add_unless_known(set_aside, at(7));
+  EXPECT_TRUE(lane.empty()) << "a newer one was taken";
+}
+
 TEST(StateLaneApart, LetsARobotOnTrialRestWhileOthersHaveNews) {
   StateLane lane;
   lane.add(posted(state_of({"ugv1", "ugv2"})), at(0));

@@ -1,6 +1,7 @@
 #include "ledger/files.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -11,13 +12,12 @@
 #include <filesystem>
 #include <vector>
 
-#include "loop/file_descriptor.hpp"
-
 namespace adit::ledger {
 namespace {
 
 constexpr std::array kBeside = {"-wal", "-shm", "-journal"};
 constexpr const char* kTrial = "ledger.try-";
+constexpr int kMostAside = 10'000;
 
 Result<void> set_mode(const std::string& path) {
   if (::chmod(path.c_str(), 0600) == 0) return {};
@@ -50,7 +50,15 @@ Error system_error(const std::string& doing) {
 
 bool exists(const std::string& path) {
   struct stat found{};
-  return ::lstat(path.c_str(), &found) == 0;
+  return ::lstat(path.c_str(), &found) == 0 || (errno != ENOENT && errno != ENOTDIR);
+}
+
+Result<loop::FileDescriptor> lock_folder(const std::string& folder) {
+  loop::FileDescriptor opened(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened && ::flock(opened.get(), LOCK_EX | LOCK_NB) == 0) return opened;
+  if (opened && errno == EWOULDBLOCK)
+    return std::unexpected(Error{.what = "opening " + folder + ": another process has the ledger open"});
+  return std::unexpected(system_error("locking " + folder));
 }
 
 Result<std::string> read_file(const std::string& path) {
@@ -155,7 +163,7 @@ void remove_database(const std::string& path) {
 }
 
 Result<std::string> set_aside(const std::string& folder, const std::string& path) {
-  for (int n = 1;; ++n) {
+  for (int n = 1; n <= kMostAside; ++n) {
     std::string aside = path + ".damaged-" + std::to_string(n);
     bool is_free = !exists(aside);
     for (const char* suffix : kBeside) is_free = is_free && !exists(aside + suffix);
@@ -171,6 +179,7 @@ Result<std::string> set_aside(const std::string& folder, const std::string& path
     if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
     return aside;
   }
+  return std::unexpected(Error{.what = "setting " + path + " aside: no name is free"});
 }
 
 }  // namespace adit::ledger

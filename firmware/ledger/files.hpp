@@ -5,13 +5,18 @@
 #include <string_view>
 
 #include "ledger/database.hpp"
+#include "loop/file_descriptor.hpp"
 
 namespace adit::ledger {
 
 /// By errno.
 Error system_error(const std::string& doing);
 
+/// A name that cannot be looked at is taken: nothing may be put in its place.
 bool exists(const std::string& path);
+/// Keeps other processes out of a folder until the descriptor is closed (flock(2)). A failure if one is in
+/// it.
+Result<loop::FileDescriptor> lock_folder(const std::string& folder);
 /// All of a file; one that is not there is empty.
 Result<std::string> read_file(const std::string& path);
 /// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode.

@@ -58,7 +58,10 @@ class Ledger::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  explicit Impl(Opened opened) : database_(std::move(opened.database)), damage_(std::move(opened.damage)) {}
+  explicit Impl(Opened opened)
+      : lock_(std::move(opened.lock)),
+        database_(std::move(opened.database)),
+        damage_(std::move(opened.damage)) {}
 
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
@@ -194,7 +197,8 @@ class Ledger::Impl {
     return {};
   }
 
-  Scratch scratch_;    // before the database, which is in it
+  Scratch scratch_;  // before the database, which is in it
+  loop::FileDescriptor lock_;
   Database database_;  // before the statements, which it outlives
   std::string damage_, refusal_;
   std::string unread_;        // why what this stands in for cannot be read

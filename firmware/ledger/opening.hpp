@@ -3,10 +3,12 @@
 #include <string>
 
 #include "ledger/database.hpp"
+#include "loop/file_descriptor.hpp"
 
 namespace adit::ledger {
 
 struct Opened {
+  loop::FileDescriptor lock;  // of the folder, for as long as the database is open
   Database database;
   std::string damage;  // a sentence about what was found damaged, or ""
 };

@@ -111,5 +111,21 @@ TEST(LedgerSurvives, ASecondProcessThatWantsItToo) {
   EXPECT_EQ(open_or_fail(folder).damage(), "");
 }
 
+TEST(LedgerSurvives, ASecondOpeningWhileItsLogIsHalfWritten) {
+  const Folder folder;
+  {
+    auto open = open_or_fail(folder);
+    ASSERT_TRUE(write(open, backpack(1)));
+    const std::string log = folder.file() + "-wal", written = bytes_of(log);
+    save(log, "half" + written.substr(4));
+    const auto second = Ledger::open(folder.text());
+    ASSERT_FALSE(second);
+    EXPECT_THAT(second.error().what, HasSubstr("another process"));
+    save(log, written);
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder.file() + ".damaged-1"));
+  EXPECT_EQ(find_or_fail(open_or_fail(folder), 1), backpack(1));
+}
+
 }  // namespace
 }  // namespace adit::ledger

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +27,19 @@ struct Asked {
 
   bool accepted() const { return status == 200; }
   bool may_count() const { return accepted() || (status == 0 && whole); }
+};
+
+/// Reports that were posted, by a client or on the page, until the Command Post has answered them with 2xx
+/// or the operator has called them done or withdrawn.
+class OpenReports {
+ public:
+  void add(const Event& event);
+  bool any() const { return !open_.empty(); }
+
+ private:
+  std::map<std::uint64_t, std::int64_t> posted_,
+      sent_;                             // serials, by the client's request and the connection
+  std::set<std::int64_t> known_, open_;  // serials
 };
 
 /// Those of that path, but for bad messages, in the order in which they began.

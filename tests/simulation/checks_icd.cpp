@@ -1,10 +1,9 @@
 // Refused, Clean and StatusTrue: of what the ICD says that either side may see.
 #include <cmath>
 #include <map>
-#include <optional>
-#include <set>
 
 #include "icd/sentence.hpp"
+#include "simulation/asked.hpp"
 #include "simulation/bad_messages.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/messages.hpp"
@@ -13,8 +12,8 @@ namespace adit::simulation {
 namespace {
 
 constexpr double kOldest = 15;               // seconds since a status was asked for that is still told
-constexpr double kOldestBehindReports = 60;  // after a report was under way
-constexpr double kGoFirst = 15;              // seconds: so long after it others may still go first
+constexpr double kOldestBehindReports = 60;  // while a report waits, and after it
+constexpr double kGoFirst = 15;              // seconds: so long after it reports may still go first
 constexpr double kOnItsWay = 1;              // second, in which an answer reaches its client
 constexpr double kConnecting = 3;            // seconds that a question may wait before its first byte leaves
 constexpr int kTimeout = 408, kTooMany = 429, kStops = 503;
@@ -67,14 +66,12 @@ void clean(const Evidence& evidence, Broken& broken) {
 void status_true(const Evidence& evidence, Broken& broken) {
   std::vector<Known> known;                         // of this life
   std::map<std::uint64_t, std::size_t> known_then;  // when a client asked
-  std::optional<std::uint64_t> sends;               // the connection on which a report is under way
+  OpenReports reports;
   double asked = 0, slow = 0, last_report = -1e9;
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::Begins) known.clear(), known_then.clear(), sends.reset();
-    if (event.kind == Kind::Leaves && event.what == kReports) sends = event.request;
-    const bool is_over = event.kind == Kind::Replied || event.kind == Kind::Closes;
-    if (sends) last_report = event.at;
-    if (is_over && sends == event.request) sends.reset();
+    if (event.kind == Kind::Begins) known.clear(), known_then.clear();
+    reports.add(event);
+    if (reports.any()) last_report = event.at;
     if (event.kind == Kind::Slow) slow += event.stamp;
     if (event.what != kStatus) continue;
     if (event.kind == Kind::Leaves) asked = event.at;

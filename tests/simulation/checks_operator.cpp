@@ -18,7 +18,7 @@ namespace {
 constexpr double kApplied = 5;
 
 bool is_word(const Event& event, const char* what) {
-  return event.what == what && event.who == "operator";
+  return event.what == what && event.who == kOperator;
 }
 
 /// What he held or withdrew stays with the box until he sends it, or another run is on.

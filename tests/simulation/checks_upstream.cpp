@@ -10,6 +10,7 @@
 #include "simulation/checks.hpp"
 #include "simulation/counting.hpp"
 #include "simulation/courses.hpp"
+#include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/station.hpp"
 #include "simulation/world.hpp"
@@ -109,8 +110,8 @@ void paced(const Evidence& evidence, Broken& broken) {
 
 /// A report that is posted while only a status is under way is not kept waiting by it. That is seen if
 /// nothing else can keep it waiting: each one before was answered 2xx, the last left long enough ago,
-/// a status vouches for the run, the process does not stand still, and the report goes as soon as the status
-/// is over.
+/// a status vouches for the run, no operator says a word, the process does not stand still, and the report
+/// goes as soon as the status is over.
 void reports_go_first(const Evidence& evidence, Broken& broken) {
   struct Status {
     std::uint64_t connection = 0;
@@ -123,8 +124,11 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
   std::set<std::int64_t> known;                  // reports that were posted
   double left = 0;                               // when the last one did
   double heard = -kVouches;                      // when a status was
-  bool is_clear = true;                          // each was answered
+  OpenReports open;
   for (const Event& event : evidence.events) {
+    const bool others_are_open = open.any();
+    open.add(event);
+    if (event.who == kOperator && status) status->waits.clear();
     if (event.kind == Kind::Begins || event.kind == Kind::Slow || event.what == kCourse) {
       status.reset();
       waited.clear();
@@ -137,12 +141,10 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
       if (serial == posted.end()) continue;
       if (event.kind == Kind::Answered || event.kind == Kind::Gone) {
         if (status) status->waits.erase(serial->second);
-        if (event.status / 100 != 2) is_clear = false;
       }
       if (event.kind != Kind::Whole || !known.insert(serial->second).second) continue;
-      const bool may_go = is_clear && event.at - left > kSpacing && event.at - heard < kVouches;
+      const bool may_go = !others_are_open && event.at - left > kSpacing && event.at - heard < kVouches;
       if (status && may_go) status->waits.emplace(serial->second, event.at);
-      is_clear = false;
     }
     if (event.what == kReports && event.kind == Kind::Leaves) left = event.at;
     const auto its = waited.find(event.serial);
@@ -152,7 +154,6 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
                                        " s for a status, until ", over));
       waited.clear();
     }
-    if (event.what == kReports && event.kind == Kind::Replied) is_clear = event.status / 100 == 2;
     if (event.what == kStatus && event.kind == Kind::Leaves)
       status = {.connection = event.request, .waits = {}};
     const bool is_over = event.kind == Kind::Replied || event.kind == Kind::Closes;

@@ -114,7 +114,7 @@ void Judge::say_next() {
   const Word word = std::move(words_.front());
   words_.pop_front();
   client_.ask(http_request("POST", word.path, kHeaders, word.body),
-              {.what = word.what, .who = "operator", .serial = word.serial}, [this](int) { say_next(); });
+              {.what = word.what, .who = kOperator, .serial = word.serial}, [this](int) { say_next(); });
 }
 
 bool Judge::is_recorded(std::int64_t serial) const {

@@ -15,6 +15,8 @@ class World;
 /// The operator's words, as the history calls them by Event::what.
 inline constexpr const char *kSend = "send", *kHold = "hold", *kWithdraw = "withdraw", *kDone = "done",
                             *kCompose = "compose", *kSendAside = "send aside";
+/// As Event::who.
+inline constexpr const char* kOperator = "operator";
 
 /// An operator who looks at the page every few seconds and says what is to become of reports and of what is
 /// set aside. He is truthful: before he judges a report in doubt he looks at the Command Post's own record.

@@ -72,7 +72,7 @@ void Operator::save() {
   const std::string headers =
       "Host: 10.0.0.1\r\nContent-Type: application/json\r\nCookie: " + std::string(access::kCookie) + "=" +
       id_ + "\r\n" + std::string(access::kCsrfHeader) + ": " + csrf_ + "\r\n";
-  client_.ask(http_request("POST", kSettings, headers, body), {.what = kSettings, .who = "operator"},
+  client_.ask(http_request("POST", kSettings, headers, body), {.what = kSettings, .who = kOperator},
               [this, name](int status) {
                 if (status == 200) world_.note({.kind = Kind::Saved, .what = name, .who = ""});
               });

@@ -58,7 +58,7 @@ Result<loop::FileDescriptor> lock_folder(const std::string& folder) {
   if (opened && ::flock(opened.get(), LOCK_EX | LOCK_NB) == 0) return opened;
   if (opened && errno == EWOULDBLOCK)
     return std::unexpected(Error{.what = "opening " + folder + ": another process has the ledger open"});
-  return std::unexpected(system_error("locking " + folder));
+  return std::unexpected(system_error("opening " + folder));
 }
 
 Result<std::string> read_file(const std::string& path) {

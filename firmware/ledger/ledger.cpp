@@ -58,10 +58,7 @@ class Ledger::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  explicit Impl(Opened opened)
-      : lock_(std::move(opened.lock)),
-        database_(std::move(opened.database)),
-        damage_(std::move(opened.damage)) {}
+  explicit Impl(Opened opened) : database_(std::move(opened.database)), damage_(std::move(opened.damage)) {}
 
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
@@ -197,9 +194,9 @@ class Ledger::Impl {
     return {};
   }
 
-  Scratch scratch_;  // before the database, which is in it
-  loop::FileDescriptor lock_;
-  Database database_;  // before the statements, which it outlives
+  Scratch scratch_;            // before the database, which is in it
+  loop::FileDescriptor lock_;  // of the folder, for as long as the database is open
+  Database database_;          // before the statements, which it outlives
   std::string damage_, refusal_;
   std::string unread_;        // why what this stands in for cannot be read
   bool flushes_each_ = true;  // as it was opened
@@ -214,12 +211,20 @@ Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 Ledger::~Ledger() = default;
 
-Result<Ledger> Ledger::open(const std::string& folder) {
+Result<Ledger> Ledger::open_unlocked(const std::string& folder) {
   auto opened = open_database(folder);
   if (!opened) return std::unexpected(std::move(opened.error()));
   auto impl = Impl::make(std::move(*opened));
   if (!impl) return std::unexpected(std::move(impl.error()));
   return Ledger(std::move(*impl));
+}
+
+Result<Ledger> Ledger::open(const std::string& folder) {
+  auto lock = lock_folder(folder);
+  if (!lock) return std::unexpected(std::move(lock.error()));
+  auto ledger = open_unlocked(folder);
+  if (ledger) ledger->impl_->lock_ = std::move(*lock);
+  return ledger;
 }
 
 Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& scratch,
@@ -231,7 +236,7 @@ Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& sc
     unread = "what is in it cannot be read: " + copied.error().what;
     remove_database(made.path() + kFile);
   }
-  auto opened = open(made.path());
+  auto opened = open_unlocked(made.path());  // `made` has the lock
   if (!opened) return opened;
   opened->impl_->refusal_ = unread.empty() ? why : why + "; " + unread;
   opened->impl_->unread_ = unread;

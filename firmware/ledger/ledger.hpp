@@ -103,6 +103,7 @@ class Ledger {
  private:
   class Impl;
   explicit Ledger(std::unique_ptr<Impl> impl);
+  static Result<Ledger> open_unlocked(const std::string& folder);
   std::unique_ptr<Impl> impl_;
 };
 

@@ -123,9 +123,6 @@ class Opening {
 
   Result<Opened> open() {
     if (auto writable = try_writing(folder_); !writable) return std::unexpected(writable.error());
-    // SQLite's own lock comes after the look at the log, and a log that another process writes looks damaged.
-    auto lock = lock_folder(folder_);
-    if (!lock) return std::unexpected(std::move(lock.error()));
     if (auto there = have_file(); !there) return std::unexpected(there.error());
     auto database = open_file();
     if (!database && database.error().kind == Error::Kind::Damaged) {
@@ -137,7 +134,7 @@ class Opening {
     }
     if (!database) return std::unexpected(std::move(database.error()));
     if (auto synced = sync_folder(folder_); !synced) return std::unexpected(synced.error());
-    return Opened{std::move(*lock), std::move(*database), std::move(damage_)};
+    return Opened{std::move(*database), std::move(damage_)};
   }
 
  private:

@@ -3,17 +3,16 @@
 #include <string>
 
 #include "ledger/database.hpp"
-#include "loop/file_descriptor.hpp"
 
 namespace adit::ledger {
 
 struct Opened {
-  loop::FileDescriptor lock;  // of the folder, for as long as the database is open
   Database database;
   std::string damage;  // a sentence about what was found damaged, or ""
 };
 
 /// Opens `folder`/ledger.sqlite, made, put right and salvaged as Ledger::open() says, with its tables there.
+/// Requires that no other process does so: a log that one writes looks damaged to another.
 Result<Opened> open_database(const std::string& folder);
 
 /// At this many pages the log is taken over into the file.

@@ -12,7 +12,7 @@ struct Opened {
 };
 
 /// Opens `folder`/ledger.sqlite, made, put right and salvaged as Ledger::open() says, with its tables there.
-/// Requires that no other process does so: a log that one writes looks damaged to another.
+/// Called with the folder locked: a log that another process writes looks damaged.
 Result<Opened> open_database(const std::string& folder);
 
 /// At this many pages the log is taken over into the file.

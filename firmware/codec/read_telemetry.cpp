@@ -14,6 +14,7 @@ namespace {
 icd::Marker read_marker(const Field& field, const icd::Rules& rules) {
   icd::Marker marker;
   read_members(field, marker, rules);
+  if (marker.ns.empty() && marker.action != icd::MarkerAction::DeleteAll) marker.ns = icd::kUnnamedMarkers;
   return marker;
 }
 

@@ -42,6 +42,10 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 
+/// The namespace of a marker whose sender names none: the organiser's display deletes markers with an empty
+/// one when a message has fewer markers than the one before, and Adit puts several messages in one.
+inline constexpr const char* kUnnamedMarkers = "unnamed";
+
 /// One of POST /markers/update (ICD 6.6): a whole visualization_msgs/Marker of ROS 1, which the ICD encodes
 /// (2.2) and lists in part. For Delete and DeleteAll only ns and id mean anything.
 struct Marker {

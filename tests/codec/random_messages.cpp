@@ -148,7 +148,7 @@ icd::MarkersUpdate random_markers(Random& random) {
   icd::MarkersUpdate update;
   for (std::size_t i = 0, size = below(random, 12); i < size; ++i) {
     update.markers.push_back({.header = any_header(random),
-                              .ns = any_text(random),
+                              .ns = "n" + any_text(random),
                               .id = static_cast<std::int32_t>(random()),
                               .type = static_cast<std::int32_t>(below(random, 12)),
                               .action = kActions[below(random, 3)],

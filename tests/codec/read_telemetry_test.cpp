@@ -125,6 +125,23 @@ TEST(ReadMarkersUpdate, GivesNoSecondBeyondThoseOfRosForItsLastTimes) {
   EXPECT_EQ(std::trunc(update->markers[0].lifetime), 2147483647);
 }
 
+TEST(ReadMarkersUpdate, GivesAMarkerThatHasNoNamespaceOne) {
+  json message = test::good_markers();
+  const json marker = message["markers"][0];
+  for (int i = 1; i < 4; ++i) message["markers"].push_back(marker);
+  message["markers"][0]["ns"] = "";
+  message["markers"][1].erase("ns");
+  message["markers"][1]["action"] = 2;
+  message["markers"][2]["ns"] = "";
+  message["markers"][2]["action"] = 3;
+  const auto update = read(read_markers_update, Format::Json, test::as_json(message));
+  ASSERT_TRUE(update.has_value());
+  EXPECT_EQ(update->markers[0].ns, icd::kUnnamedMarkers);
+  EXPECT_EQ(update->markers[1].ns, icd::kUnnamedMarkers) << "its delete has to find it";
+  EXPECT_EQ(update->markers[2].ns, "") << "what deletes all names none";
+  EXPECT_EQ(update->markers[3].ns, marker["ns"].get<std::string>());
+}
+
 TEST(ReadStateUpdate, RefusesAMemberGivenTwiceInAnyObjectThatItReads) {
   const std::string position = R"({"x":1,"y":2,"z":3})";
   const std::string orientation = R"({"x":0,"y":0,"z":0,"w":1})";

@@ -18,6 +18,7 @@ using testing::ElementsAre;
 icd::Marker change(std::int32_t id, std::string text, icd::MarkerAction action = icd::MarkerAction::Add) {
   icd::Marker marker;
   marker.header.stamp = 5;
+  marker.ns = "ns";
   marker.id = id;
   marker.text = std::move(text);
   marker.action = action;

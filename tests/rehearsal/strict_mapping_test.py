@@ -233,6 +233,19 @@ class Refused(unittest.TestCase):
                              "what was refused does not count")
             self.assertEqual(post.record()["violation_count"], 2)
 
+    def test_the_display_deletes_markers_with_an_empty_ns(self):
+        with CommandPost() as post:
+            def take(*markers):
+                message = {"markers": [each for one in markers for each in one["markers"]]}
+                self.assertEqual(post.mapping_request("POST", "/markers/update", message).status_code, 200)
+                return post.record()["violation_count"]
+            unnamed = marker(ns="", id=1)
+            self.assertEqual(take(unnamed, marker(), marker()), 0)
+            self.assertEqual(take(marker(), marker(), marker()), 0, "as many as before")
+            self.assertEqual(take(marker()), 1, "two fewer: ids 1 and 2 are deleted")
+            self.assertEqual(take(unnamed, marker()), 1)
+            self.assertEqual(take(marker(ns="", id=1, action=2)), 1, "its sender has deleted it")
+
     def test_more_than_one_a_second_for_a_uri_is_429(self):
         with CommandPost(rate=None) as post:
             bodies = {"/map/update": grid(), "/state/update": state("X1"), "/markers/update": marker()}

@@ -49,6 +49,7 @@ void StrictMapping::judge_body(const Request& request, Judgement& judgement) {
     judgement.outcome = refused(*finding);
   } else if (message) {
     judgement.outcome = answered(200, Json(nullptr));
+    display_.show(message->markers, findings);
     judgement.accepted = std::move(message->parts);
     judgement.map = std::move(message->map);
   } else {

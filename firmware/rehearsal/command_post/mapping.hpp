@@ -5,6 +5,7 @@
 #include <string>
 
 #include "rehearsal/command_post/judgement.hpp"
+#include "rehearsal/command_post/marker_display.hpp"
 #include "rehearsal/command_post/rate_limit.hpp"
 #include "rehearsal/command_post/stamp_order.hpp"
 
@@ -26,6 +27,7 @@ class StrictMapping : public Endpoint {
   const double hz_;
   const Counted counted_;
   StampOrder stamps_;
+  MarkerDisplay display_;
   std::mutex mutex_;
   std::map<std::string, RateLimit> limits_;
 };
@@ -44,6 +46,7 @@ class MeasuredMapping : public Endpoint {
 
   const std::string token_;
   StampOrder stamps_;
+  MarkerDisplay display_;
   std::mutex mutex_;
   RateLimit cloud_limit_;
 };
@@ -56,6 +59,7 @@ struct MappingMessage {
   std::vector<Stamp> stamps;
   std::vector<Accepted> parts;
   std::optional<MapMessage> map;
+  std::vector<MarkerChange> markers;
 };
 
 /// Reads the body of `judgement.uri` and writes down what is found. Leaves the document in judgement.message,

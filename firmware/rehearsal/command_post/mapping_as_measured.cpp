@@ -86,6 +86,7 @@ void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
   }
   stamps_.check(judgement.uri, message->stamps, true, findings);
   judgement.outcome = answered(200, Json(nullptr));
+  display_.show(message->markers, findings);
   // Too many clouds are told off and taken all the same.
   if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request)) {
     judgement.outcome = closing(refused(429, kTooManyClouds));

@@ -34,7 +34,7 @@ std::optional<MappingMessage> message_of(MapMessage&& map) {
 
 MappingMessage message_of(const std::vector<Stamp>& stamps, const char* kind,
                           const std::vector<std::string>& names) {
-  MappingMessage message{stamps, {}, std::nullopt};
+  MappingMessage message{.stamps = stamps, .parts = {}, .map = std::nullopt, .markers = {}};
   for (const std::string& name : names) message.parts.push_back({kind, name});
   return message;
 }
@@ -63,9 +63,13 @@ std::optional<MappingMessage> read_mapping(const std::string& body, Format forma
     if (!state) return std::nullopt;
     return message_of(state->stamps, "pose", state->names);
   }
-  const auto markers = read_markers(document, findings);
+  auto markers = read_markers(document, findings);
   if (!markers) return std::nullopt;
-  return message_of(markers->stamps, "marker", markers->namespaces);
+  std::vector<std::string> names;
+  for (const MarkerChange& change : markers->changes) names.push_back(change.ns);
+  MappingMessage message = message_of(markers->stamps, "marker", names);
+  message.markers = std::move(markers->changes);
+  return message;
 }
 
 }  // namespace adit::rehearsal

@@ -35,13 +35,15 @@ void check_lifetime(const Field& lifetime) {
 }
 
 /// ns and id, optional by the ICD; the measured server wants both.
-std::optional<std::string> read_identity(const Field& marker) {
+std::optional<MarkerChange> read_identity(const Field& marker) {
   const auto ns = marker.optional_member("ns");
   const auto id = marker.optional_member("id");
   if (!ns) marker.findings().displeases("Missing field '" + marker.path() + ".ns'");
   if (!id) marker.findings().displeases("Missing field '" + marker.path() + ".id'");
-  if (id && !id->integer(INT32_MIN, INT32_MAX)) return std::nullopt;
-  return ns ? ns->text() : std::string();
+  const auto number = id ? id->integer(INT32_MIN, INT32_MAX) : 0;
+  const auto text = ns ? ns->text() : std::string();
+  if (!number || !text) return std::nullopt;
+  return MarkerChange{.ns = *text, .id = *number};
 }
 
 /// ROS's Marker has none, or one for each point, where its type is made of points and so has a use for them;
@@ -89,11 +91,11 @@ void check_looks(const Field& marker) {
 bool read_marker(const Field& marker, MarkersMessage& message) {
   if (!marker.is_object()) return false;
   read_header(marker, message.stamps);
-  const auto ns = read_identity(marker);
+  auto change = read_identity(marker);
   const auto type = marker.member("type");
   const auto action = marker.member("action");
   const auto pose = marker.member("pose");
-  if (!ns || !type || !action || !pose) return false;
+  if (!change || !type || !action || !pose) return false;
   const auto shape = type->integer(0, kLastType);
   if (!shape) return false;
   const auto kind = action->integer(0, 3);
@@ -101,7 +103,8 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   if (*kind == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
   check_geometry(marker, *shape);
-  message.namespaces.push_back(*ns);
+  change->action = *kind;
+  message.changes.push_back(*std::move(change));
   return true;
 }
 

@@ -53,9 +53,14 @@ struct StateMessage {
   std::vector<Stamp> stamps;
 };
 
-/// POST /markers/update (ICD 6.6): each marker's ns.
+/// POST /markers/update (ICD 6.6): what each marker says of which one.
+struct MarkerChange {
+  std::string ns;
+  std::int64_t id = 0;
+  std::int64_t action = 0;
+};
 struct MarkersMessage {
-  std::vector<std::string> namespaces;
+  std::vector<MarkerChange> changes;
   std::vector<Stamp> stamps;
 };
 

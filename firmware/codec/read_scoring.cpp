@@ -68,6 +68,13 @@ icd::RunStatus status_of(const Field& body) {
   return status;
 }
 
+/// The report that a reply tells of, if it says all of it.
+std::optional<icd::ArtifactReport> report_in(const Field& body) {
+  const Field type = body.member("type"), x = body.member("x"), y = body.member("y"), z = body.member("z");
+  if (!type.is<std::string>() || !has_number(x) || !has_number(y) || !has_number(z)) return std::nullopt;
+  return icd::ArtifactReport{std::string(type.text()), {x.number(), y.number(), z.number()}};
+}
+
 icd::ReportReply reply_of(const Field& body) {
   icd::ReportReply reply;
   if (const Field id = body.member("id"); id.is<std::int64_t>()) reply.id = id.whole<std::int64_t>();
@@ -76,6 +83,7 @@ icd::ReportReply reply_of(const Field& body) {
   if (const Field clock = body.member("run_clock"); has_number(clock)) reply.run_clock = clock.number();
   reply.report_status = body.member("report_status").text();
   reply.score_change = body.member("score_change").whole<std::int32_t>();
+  reply.report = report_in(body);
   return reply;
 }
 

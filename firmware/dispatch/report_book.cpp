@@ -1,8 +1,9 @@
 #include "dispatch/report_book.hpp"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
+
+#include "dispatch/same_report.hpp"
 
 namespace adit::dispatch {
 namespace {
@@ -114,14 +115,16 @@ bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush
   return true;
 }
 
-bool ReportBook::ByPlace::operator()(const icd::Point& one, const icd::Point& other) const {
-  return std::tie(one.x, one.y, one.z) < std::tie(other.x, other.y, other.z);
-}
-
-std::span<const std::int64_t> ReportBook::at_position(const icd::Point& position) const {
-  const auto found = by_position_.find(position);
-  if (found == by_position_.end()) return {};
-  return found->second;
+std::vector<const Report*> ReportBook::same_as(const icd::ArtifactReport& report) const {
+  std::vector<const Report*> same;
+  const double x = report.position.x;
+  const auto end = by_x_.upper_bound(x + 2 * kSamePlace);
+  for (auto each = by_x_.lower_bound(x - 2 * kSamePlace); each != end; ++each) {
+    if (const Report& other = reports_.at(each->second); is_same(other.report, report))
+      same.push_back(&other);
+  }
+  std::ranges::sort(same, {}, &Report::number);
+  return same;
 }
 
 void ReportBook::put(Report report) {
@@ -130,7 +133,7 @@ void ReportBook::put(Report report) {
   if (const Report* const before = find(number); before != nullptr) {
     --counts_.at(static_cast<std::size_t>(before->state));
   } else {
-    by_position_[report.report.position].push_back(number);
+    by_x_.emplace(report.report.position.x, number);
   }
   ++counts_.at(static_cast<std::size_t>(state));
   const auto keep = [number](std::set<std::int64_t>& numbers, bool is_in) {

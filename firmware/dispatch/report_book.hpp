@@ -57,8 +57,8 @@ class ReportBook {
   const Report& at(std::int64_t number) const { return reports_.at(number); }
   const Report* find(std::int64_t number) const;
   const std::map<std::int64_t, Report>& all() const { return reports_; }
-  /// Those at exactly this position, oldest first.
-  std::span<const std::int64_t> at_position(const icd::Point& position) const;
+  /// The same report (same_report.hpp), in any run, oldest first.
+  std::vector<const Report*> same_as(const icd::ArtifactReport& report) const;
   /// Those in state Waiting, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
   /// Those with which something is still to happen, oldest first: few of many.
@@ -74,12 +74,8 @@ class ReportBook {
   void put(Report report);
 
   Output& output_;
-  struct ByPlace {
-    bool operator()(const icd::Point& one, const icd::Point& other) const;
-  };
-
   std::map<std::int64_t, Report> reports_;
-  std::map<icd::Point, std::vector<std::int64_t>, ByPlace> by_position_;
+  std::multimap<double, std::int64_t> by_x_;  // numbers
   std::array<std::size_t, std::size(kStateWords)> counts_{};
   std::set<std::int64_t> waiting_;
   std::set<std::int64_t> open_;

@@ -7,6 +7,7 @@
 #include "codec/read.hpp"
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/said.hpp"
+#include "dispatch/same_report.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 
@@ -132,6 +133,7 @@ Wish Reports::wish(Time time) const {
   if (sending_) return {};
   Wish wish;
   if (inquiry_) wish.status = inquiry_->next_ask(time.now);
+  wish.in_doubt = wish.status.has_value();
   if (waiting_here().empty()) return wish;
   wish.report = next(time.now).has_value();
   if (barred_ || !account_.is_fresh(time.now)) wish.status = time.now;
@@ -181,7 +183,9 @@ void Reports::enter_run(Report& report) const {
 
 ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
-  const ReportEvent event = event_of(answer.status, reply.has_value(), body_of(answer.body));
+  const Report* const another = reply ? told_of_another(*reply) : nullptr;
+  const ReportEvent event =
+      event_of(answer.status, reply.has_value() && another == nullptr, body_of(answer.body));
   const auto keep = [&](Report& report) {
     report.status = answer.status;
     report.content_type = answer.content_type;
@@ -191,16 +195,36 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   if (event == ReportEvent::Recorded) {
     recorded(keep, *reply, time);
   } else {
-    ended(event, said(answer.status, answer.body), time, keep);
+    const std::string note =
+        another != nullptr && event == ReportEvent::Lost
+            ? icd::sentence("the answer tells of report ", another->number, ", not of this one")
+            : said(answer.status, answer.body);
+    ended(event, note, time, keep);
   }
   return event;
+}
+
+/// An answer may be that of a report before, said again by a server or by something in between: then nothing
+/// is known of the report that was sent.
+const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
+  if (!reply.report || is_same(*reply.report, sending()->report)) return nullptr;
+  for (const Report* const other : book_.same_as(*reply.report)) {
+    if (other->number != *sending_ && other->sending != 0) return other;
+  }
+  return nullptr;
 }
 
 void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
   meet(reply, time);  // it was recorded in the run that is on by now, whichever it was meant for
   const Effect effect = effect_of(reply);
-  const std::string note =
-      effect.again ? "not scored (" + reply.report_status + "): post it again once the run goes on" : "";
+  std::string note;
+  if (effect.again) {
+    note = "not scored (" + reply.report_status + "): post it again once the run goes on";
+  } else if (reply.report && !is_same(*reply.report, sending()->report)) {
+    const icd::Point& at = reply.report->position;
+    note = icd::sentence("the answer tells of ", icd::in_quotes(reply.report->type), " at ", at.x, ", ", at.y,
+                         ", ", at.z);
+  }
   ended(ReportEvent::Recorded, note, time, [&](Report& report) {
     keep(report);
     report.run = run().number;

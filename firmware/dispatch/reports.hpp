@@ -49,6 +49,7 @@ struct Wish {
   bool report = false;  // the first of those that wait may be sent
   /// From when on the run's status is needed; nothing: it is not needed.
   std::optional<std::chrono::steady_clock::time_point> status;
+  bool in_doubt = false;  // it decides what became of a report
 };
 
 /// The life of all reports, with all its rules (promise 1): no I/O and no clock. Output puts each step on
@@ -159,6 +160,7 @@ class Reports {
   bool may_go(const Report& report, Instant now) const;
   std::optional<std::int64_t> next(Instant now) const;
   void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
+  const Report* told_of_another(const icd::ReportReply& reply) const;
   bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   void prepare(Report& report, Time time);
   void enter_run(Report& report) const;

@@ -90,10 +90,8 @@ bool Reports::is_of_run(const Report& report) const {
 /// Those of the run that is meant that are the same, oldest first.
 std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& report) const {
   std::vector<const Report*> same;
-  for (const std::int64_t number : book_.at_position(report.position)) {
-    const Report& other = book_.at(number);
-    const bool is_its = is_of_run(other) && !is_unclaimed(other);
-    if (is_its && is_same(other.report, report)) same.push_back(&other);
+  for (const Report* const other : book_.same_as(report)) {
+    if (is_of_run(*other) && !is_unclaimed(*other)) same.push_back(other);
   }
   return same;
 }

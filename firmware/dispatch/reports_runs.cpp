@@ -5,7 +5,6 @@
 #include "codec/read.hpp"
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/reports.hpp"
-#include "dispatch/same_report.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
@@ -269,21 +268,18 @@ void Reports::clear_held(Time time) {
 /// none.
 const Report* Reports::sent_elsewhere(const Report& report,
                                       const std::function<bool(const Run&)>& counts) const {
-  for (const std::int64_t number : book_.at_position(report.report.position)) {
-    const Report& other = book_.at(number);
-    const Run* const its = account_.runs().find(other.run);
-    if (its == nullptr || its->number == run().number || other.number == report.number) continue;
-    const bool stands = was_sent(other) && !effect_of(other).again;
-    if (stands && is_same(other.report, report.report) && counts(*its)) return &other;
+  for (const Report* const other : book_.same_as(report.report)) {
+    const Run* const its = account_.runs().find(other->run);
+    if (its == nullptr || its->number == run().number || other->number == report.number) continue;
+    if (was_sent(*other) && !effect_of(*other).again && counts(*its)) return other;
   }
   return nullptr;
 }
 
 /// The same report that was answered when the present run may have begun already.
 const Report* Reports::unclaimed_same(const Report& report) const {
-  for (const std::int64_t number : book_.at_position(report.report.position)) {
-    const Report& other = book_.at(number);
-    if (is_unclaimed(other) && is_same(other.report, report.report) && !effect_of(other).again) return &other;
+  for (const Report* const other : book_.same_as(report.report)) {
+    if (is_unclaimed(*other) && !effect_of(*other).again) return other;
   }
   return nullptr;
 }

@@ -24,6 +24,11 @@ Clock seen_again(const std::optional<Clock>& seen, double shows);
 /// is, the team, and the name that its answers give the run; where those are the same, its status does
 /// (run_watch.hpp).
 struct Run {
+  /// Of `unreliable`: its counts were the same after Adit's reports as before the first of them. That says
+  /// nothing of another sender.
+  static constexpr const char* kCountsStand =
+      "the Command Post's counts have not moved since the first report: they prove nothing";
+
   std::int64_t number = 1;                            // Adit's own, from 1
   std::string id = "";                                // the Command Post's (ICD 5.2 `run`); "": not heard yet
   double began = 0;                                   // when it was noticed; seconds since 1970

@@ -132,7 +132,7 @@ void RunAccount::has_begun(double stamp) {
 
 void RunAccount::forget_counts() {
   known_.reset();
-  odd_ = unscored_ = false;
+  odd_ = unscored_ = has_moved_ = false;
 }
 
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
@@ -189,7 +189,12 @@ void RunAccount::settle(const icd::RunStatus& status, Time time) {
       odd_ = true;
       return;
     }
-    if (!fits) {
+    const bool moves =
+        status.remaining_reports != known_->status.remaining_reports || status.score != known_->status.score;
+    has_moved_ = has_moved_ || moves;
+    if (!fits && !has_moved_) {
+      distrust(Run::kCountsStand, time.stamp);
+    } else if (!fits) {
       distrust(icd::sentence("the Command Post counts ", status.remaining_reports, " reports left and score ",
                              status.score, ", Adit's own reports make it ", remaining, " and ", score,
                              ": somebody else reports with this token"),

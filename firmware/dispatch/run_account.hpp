@@ -105,8 +105,9 @@ class RunAccount {
   std::optional<Instant> clock_at_;  // when one of the run's clocks was heard, if in this program's life
   std::optional<Known> known_;
   std::optional<Instant> uncertain_until_;
-  bool odd_ = false;       // the last status was not as expected
-  bool unscored_ = false;  // the last answer says that reports are not being scored
+  bool odd_ = false;        // the last status was not as expected
+  bool has_moved_ = false;  // a count changed from one status to the next
+  bool unscored_ = false;   // the last answer says that reports are not being scored
 };
 
 }  // namespace adit::dispatch

@@ -17,7 +17,9 @@ bool is_one_type(const std::string& one, const std::string& other) {
 }  // namespace
 
 bool is_same(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {
-  return one.position == other.position && is_one_type(one.type, other.type);
+  const auto is_near = [](double a, double b) { return std::abs(a - b) <= kSamePlace; };
+  return is_near(one.position.x, other.position.x) && is_near(one.position.y, other.position.y) &&
+         is_near(one.position.z, other.position.z) && is_one_type(one.type, other.type);
 }
 
 double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other) {

@@ -4,7 +4,10 @@
 
 namespace adit::dispatch {
 
-/// The same report again: the same type, whatever its letter case (ICD 5.2), at the same coordinates.
+/// Metres, on each axis: less than any robot knows, and more than a float32 rounds off.
+inline constexpr double kSamePlace = 1e-3;
+
+/// The same report again: the same type, whatever its letter case (ICD 5.2), at the same place.
 bool is_same(const icd::ArtifactReport& one, const icd::ArtifactReport& other);
 
 /// Both of one type and at most `metres` apart.

@@ -65,7 +65,8 @@ void Gateway::add_reports(alarms::Facts& facts) const {
   }
   facts.reports_elsewhere = reports.waiting_elsewhere();
   if (flow_.scoring().run()) facts.reports_left = flow_.scoring().run()->remaining_reports;
-  facts.run_unreliable = reports.run().unreliable;
+  const std::string& unreliable = reports.run().unreliable;
+  if (unreliable != dispatch::Run::kCountsStand) facts.run_unreliable = unreliable;
   facts.set_aside =
       static_cast<std::size_t>(std::ranges::count(flow_.aside().rows(), false, &api::AsideRow::overtaken));
 }

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+
+#include "icd/artifact_report.hpp"
 
 namespace adit::icd {
 
@@ -24,6 +27,7 @@ struct ReportReply {
   double run_clock = 0;
   std::string report_status;  // "scored", "admin stop", "run not started", ...
   std::int64_t score_change = 0;
+  std::optional<ArtifactReport> report = {};  // which it tells of, if it has type, x, y and z
   friend bool operator==(const ReportReply&, const ReportReply&) = default;
 };
 

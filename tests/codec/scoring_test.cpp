@@ -201,8 +201,13 @@ TEST(WriteRunStatus, IsReadBackAsItWas) {
 }
 
 TEST(ReadReportReply, TakesTheIcdsExampleAndWhatServersSend) {
-  const icd::ReportReply expected{
-      .id = 1, .run = "1", .team = "subt", .run_clock = 721.4, .report_status = "scored", .score_change = 1};
+  const icd::ReportReply expected{.id = 1,
+                                  .run = "1",
+                                  .team = "subt",
+                                  .run_clock = 721.4,
+                                  .report_status = "scored",
+                                  .score_change = 1,
+                                  .report = icd::ArtifactReport{"backpack", {1011.242, -244.433, -10.011}}};
   const std::string start =
       R"({"url": "http://<ipaddress>:<port>/api/artifact_reports/1", "id": 1, "x": 1011.242, "y": -244.433, )"
       R"("z": -10.011, "type": "backpack", "submitted_datetime": "2019-01-01T00:00:00.000000-07:00", )"

@@ -39,6 +39,57 @@ TEST(A2xx, WithoutAReportInItsBodyIsADoubt) {
   EXPECT_EQ(scene.told(client).status, 201);
 }
 
+/// An answer that tells of a report.
+HttpAnswer tells_of(double x, const std::string& type = "Drill") {
+  HttpAnswer answer = recorded();
+  answer.body.pop_back();
+  answer.body += icd::sentence(R"(, "type": ")", type, R"(", "x": )", x, R"(, "y": 0, "z": 0})");
+  return answer;
+}
+
+/// A server, or a proxy, that says its last answer again, and records nothing.
+TEST(A2xx, ThatTellsOfAnotherReportIsADoubt) {
+  Scene scene;
+  scene.post(10);
+  scene.answer(tells_of(10));
+  scene.hear(19, 0);
+  scene.wait(1);
+  const ClientId client = scene.post(11);
+  scene.answer(tells_of(10));
+  EXPECT_EQ(scene.state(2), InDoubt);
+  EXPECT_THAT(scene.report(2).note, HasSubstr("the answer tells of report 1, not of this one"));
+  EXPECT_FALSE(scene.is_told(client));
+  scene.keep_hearing(14, 19, 0);
+  EXPECT_EQ(scene.state(2), Waiting) << "it was not recorded";
+  EXPECT_EQ(scene.send_next(), 2);
+  scene.answer(tells_of(11));
+  EXPECT_EQ(scene.told(client).body, tells_of(11).body);
+}
+
+TEST(A2xx, ThatTellsOfAReportOfTheRunBeforeIsADoubt) {
+  Scene scene;
+  scene.post(10);
+  scene.answer(tells_of(10));
+  scene.reports().declare_new_run(scene.time());
+  scene.post(11);
+  scene.answer(tells_of(10));
+  EXPECT_EQ(scene.state(2), InDoubt);
+}
+
+TEST(A2xx, ThatTellsOfItInOtherWordsCountsAndIsNoted) {
+  Scene scene;
+  scene.post(10.4);
+  scene.answer(tells_of(10));  // it rounds
+  EXPECT_EQ(scene.state(1), Answered);
+  EXPECT_EQ(scene.report(1).note, R"(the answer tells of "Drill" at 10, 0, 0)");
+  scene.post(20);
+  scene.answer(tells_of(20.0000001, "drill"));
+  EXPECT_EQ(scene.report(2).note, "");
+  scene.post(10.2);
+  scene.answer(recorded());  // it tells neither type nor place
+  EXPECT_EQ(scene.state(3), Answered);
+}
+
 TEST(A429, LeavesTheReportWaitingAndItsClientUntold) {
   Scene scene;
   const ClientId client = scene.post();

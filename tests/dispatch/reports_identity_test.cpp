@@ -41,6 +41,14 @@ TEST_F(StandingClocks, TheSameReportAgainGetsTheRecordedAnswer) {
   EXPECT_EQ(scene_.told(again).body, recorded(0, "scored", "1", 3.14).body);
 }
 
+TEST_F(StandingClocks, WhatWasRoundedToAFloat32IsTheSameReport) {
+  record(12.3);
+  scene_.post(12.3F);
+  EXPECT_EQ(scene_.count(), 2u);
+  scene_.post(12.302);
+  EXPECT_EQ(scene_.count(), 3u);
+}
+
 TEST_F(StandingClocks, AreOneRunOverARestart) {
   scene_.restart();
   scene_.wait(3600);

@@ -92,6 +92,25 @@ TEST_F(RunAccountTest, DistrustsACountThatIsWrongTwiceInARow) {
   EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "and has that on disk";
 }
 
+TEST_F(RunAccountTest, AccusesNobodyWhereTheCountsNeverMove) {
+  hear(20, 3);
+  answer("scored", 1);
+  hear(20, 3);
+  hear(20, 3);
+  EXPECT_EQ(account_.run().unreliable, Run::kCountsStand);
+  EXPECT_EQ(account_.expected(time().now), std::nullopt);
+}
+
+TEST_F(RunAccountTest, DistrustsCountsThatMoveNoMore) {
+  hear(20, 3);
+  answer("scored", 0);
+  hear(19, 3);
+  answer("scored", 0);
+  hear(19, 3);
+  hear(19, 3);
+  EXPECT_THAT(account_.run().unreliable, HasSubstr("somebody else reports with this token"));
+}
+
 TEST_F(RunAccountTest, ForgivesACountThatLaggedBehind) {
   hear(20, 3);
   answer("scored", 0);

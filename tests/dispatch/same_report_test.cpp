@@ -15,9 +15,12 @@ TEST(SameReport, IsOfTheSameTypeInAnyLetterCase) {
   EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Vent", {1, 2, 3}}));
 }
 
-TEST(SameReport, IsAtTheSameCoordinatesToTheLastDigit) {
-  EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1, 2, 3.0000001}}));
-  EXPECT_TRUE(is_same({"Gas", {0.0, 2, 3}}, {"Gas", {-0.0, 2, 3}}));
+TEST(SameReport, IsWithinAMillimetreOnEachAxis) {
+  EXPECT_TRUE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1.0009, 1.9991, 3.0009}}));
+  EXPECT_TRUE(is_same({"Gas", {12.3, 45.6, -7.8}}, {"Gas", {12.3F, 45.6F, -7.8F}})) << "rounded to float32";
+  EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1.0011, 2, 3}}));
+  EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1, 2.0011, 3}}));
+  EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1, 2, 2.9989}}));
 }
 
 TEST(NearReport, IsOfTheSameTypeWithinTheDistanceOnAllThreeAxes) {
@@ -29,13 +32,13 @@ TEST(NearReport, IsOfTheSameTypeWithinTheDistanceOnAllThreeAxes) {
 }
 
 TEST(NearReport, IsNearBothWaysAndTheSameIsAlwaysNear) {
-  const std::array all = {ArtifactReport{"Gas", {1, 2, 3}}, ArtifactReport{"GAS", {1, 2, 3}},
+  const std::array all = {ArtifactReport{"Gas", {1, 2, 3}}, ArtifactReport{"GAS", {1.001, 2, 3}},
                           ArtifactReport{"Gas", {-4, 2, 9}}, ArtifactReport{"Vent", {1, 2, 3}}};
   for (const auto& one : all) {
     for (const auto& other : all) {
       EXPECT_EQ(is_near(one, other, 7), is_near(other, one, 7));
       EXPECT_EQ(is_same(one, other), is_same(other, one));
-      EXPECT_TRUE(!is_same(one, other) || is_near(one, other, 0));
+      EXPECT_TRUE(!is_same(one, other) || is_near(one, other, 2 * kSamePlace));
     }
   }
 }

@@ -92,6 +92,7 @@ void Scoring::endpoint_turned() {
   run_.reset();
   run_heard_.reset();
   known_status_ = {};
+  has_one_limit_ = false;
   poll_due_ = true;
   const auto opened = whole(restart_, [this] { return open_reports(); });
   if (!opened) {
@@ -114,7 +115,7 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 }
 
 void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
-  const bool may_send = !channel_.busy() && channel_.connected() && report_pace_.ready() <= loop_.now();
+  const bool may_send = !channel_.busy() && channel_.connected() && report_ready() <= loop_.now();
   whole(restart_, [&] {
     if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   });
@@ -133,10 +134,8 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
     return;
   }
   const loop::Instant now = loop_.now();
-  if (known_status_.is_fresh(now)) {
-    responder->answer(*known_status_.answer(now));
-    return;
-  }
+  const auto known = known_status_.is_fresh(now) || has_one_limit_ ? known_status_.answer(now) : std::nullopt;
+  if (known) return responder->answer(*known);
   askers_.push_back({std::move(responder), now + kAskerWaits});
   pump();
   if (!askers_.empty() && !asked_status_ && !may_ask_soon(now)) tell_askers(now + kAskerWaits);
@@ -145,7 +144,18 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 
 /// Neither does a report go first, nor is the pace in the way for longer than an asker waits.
 bool Scoring::may_ask_soon(loop::Instant now) const {
-  return !channel_.busy() && !reports_->wish(time()).report && status_pace_.ready() <= now + kAskerWaits;
+  const dispatch::Wish wish = reports_->wish(time());
+  return !channel_.busy() && !wish.report && status_ready(wish) <= now + kAskerWaits;
+}
+
+loop::Instant Scoring::report_ready() const {
+  const loop::Instant ready = report_pace_.ready();
+  return has_one_limit_ ? std::max(ready, status_left_ + report_pace_.spacing()) : ready;
+}
+
+loop::Instant Scoring::status_ready(const dispatch::Wish& wish) const {
+  const loop::Instant ready = status_pace_.ready();
+  return wish.in_doubt ? ready : std::max(ready, report_left_ + report_pace_.spacing());
 }
 
 /// What can be told until the Command Post is asked again. It may be older if only reports are in the way of
@@ -182,11 +192,11 @@ void Scoring::pump() {
   const dispatch::Wish wish = reports_->wish(at);
   if (!is_free(wish, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
-  if (wish.report) candidates[0] = {now, report_pace_.ready()};
+  if (wish.report) candidates[0] = {now, report_ready()};
   if (!askers_.empty() || poll_due_) {
-    candidates[1] = {now, status_pace_.ready()};
+    candidates[1] = {now, status_ready(wish)};
   } else if (wish.status) {
-    candidates[1] = {now, std::max(status_pace_.ready(), *wish.status)};
+    candidates[1] = {now, std::max(status_ready(wish), *wish.status)};
   }
   const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
@@ -199,7 +209,7 @@ void Scoring::pump() {
 bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
   if (!channel_.busy()) return true;
   if (!asked_status_ || asked_status_->decides || !wish.report) return false;
-  const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, report_pace_.ready());
+  const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, report_ready());
   if (gives_way > now) {
     wake_.call_at(gives_way);
     return false;
@@ -224,7 +234,8 @@ void Scoring::send_next() {
 }
 
 void Scoring::send(const dispatch::Report& report) {
-  report_pace_.sent(loop_.now());
+  report_left_ = loop_.now();
+  report_pace_.sent(report_left_);
   const std::string body = codec::write_artifact_report(report.report);
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
@@ -244,7 +255,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
       loop::guarded("the answer to a report", [&] { whole(restart_, [&] { judge_report(outcome); }); });
   if (!judged) return;
   known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
-  poll_.call_at(loop_.now() + kAskAfterReport);
+  poll_due_ = true;
   watch_deadlines();
   record_.changed();
   pump();
@@ -254,9 +265,11 @@ void Scoring::judge_report(const uplink::Outcome& outcome) {
   hear_time();
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    report_left_ = answered->sent.first;
     const dispatch::ReportEvent event = reports_->answered(
         {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
     if (event == dispatch::ReportEvent::Throttled) {
+      has_one_limit_ = has_one_limit_ || report_left_ < status_left_ + report_pace_.spacing();
       report_pace_.throttled(now, answered->retry_after);
     } else if (event == dispatch::ReportEvent::Barred) {
       report_pace_.lost(now);
@@ -267,6 +280,7 @@ void Scoring::judge_report(const uplink::Outcome& outcome) {
     reports_->never_left(never->why, time());
     report_pace_.failed(now);
   } else {
+    report_left_ = now;
     reports_->lost(sentence_of(outcome), time());
     report_pace_.taken({.first = now, .last = now}, now);
   }
@@ -312,7 +326,8 @@ void Scoring::tick() {
 void Scoring::ask_status(bool decides) {
   poll_due_ = false;
   asked_status_ = {.at = loop_.now(), .decides = decides};
-  status_pace_.sent(loop_.now());
+  status_left_ = loop_.now();
+  status_pace_.sent(status_left_);
   channel_.send(icd::Uri::Status, "", {},
                 [this](const uplink::Outcome& outcome) { status_answered(outcome); });
 }
@@ -332,11 +347,13 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
+  if (answered != nullptr) status_left_ = answered->sent.first;
   if (run) known_status_.heard(answered->body, asked);  // and so told with its age
   if (answered == nullptr) {
     status_pace_.failed(outcome, now);
     answer_askers(known_or(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome))));
   } else if (answered->status == 429) {
+    has_one_limit_ = has_one_limit_ || status_left_ < report_left_ + report_pace_.spacing();
     status_pace_.throttled(now, answered->retry_after);
     answer_askers(known_or(client_answer(*answered)));
   } else {

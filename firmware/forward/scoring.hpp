@@ -27,6 +27,10 @@ namespace adit::forward {
 /// The scoring endpoint: sends reports, one at a time, by the rules of dispatch::Reports (promise 1), and
 /// asks for the run's status, but never ahead of a report that may go. A status that no report needs gives
 /// way to a report if it is not answered in time.
+///
+/// The ICD's rate (5) is of API requests, and a report's answer tells what a status would: the status follows
+/// a report no sooner than another report would, unless it decides what became of one. A report follows a
+/// status at once, until a 429 shows that the Command Post has one limit over both.
 class Scoring {
  public:
   /// So long a client that asks for the status waits for the Command Post; then it gets the last known one.
@@ -34,8 +38,6 @@ class Scoring {
   /// If none is known, it waits for the answer under way, until so long after that was asked for.
   static constexpr std::chrono::seconds kSlow{2};
   static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
-  /// After a report the status is asked for once its client has been answered.
-  static constexpr std::chrono::milliseconds kAskAfterReport{50};
   /// So long a report waits for the answer to a status that no report needs; then that is given up.
   static constexpr std::chrono::milliseconds kGivesWayAfter{200};
 
@@ -132,6 +134,8 @@ class Scoring {
   void answer_askers(const intake::Answer& answer);
   void watch_deadlines();
   void tell_askers(loop::Instant now);
+  loop::Instant report_ready() const;
+  loop::Instant status_ready(const dispatch::Wish& wish) const;
   std::optional<loop::Instant> first_asker() const;
   bool may_ask_soon(loop::Instant now) const;
   std::optional<intake::Answer> known_status() const;
@@ -149,6 +153,8 @@ class Scoring {
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   UriPace report_pace_, status_pace_;
+  loop::Instant report_left_ = loop::Instant::min(), status_left_ = loop::Instant::min();  // the last one
+  bool has_one_limit_ = false;  // the Command Post, over reports and statuses
   loop::Source wake_, poll_, deadline_;
 
   std::deque<Asker> askers_;

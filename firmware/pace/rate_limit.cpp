@@ -17,6 +17,8 @@ constexpr int kUneven = 50;
 /// Part of the spacing that is left besides before and after what goes by another connection: it has to be
 /// made first, and the two do not keep in step.
 constexpr int kBeside = 4;
+/// So many such 429s are no chance.
+constexpr int kOfAKind = 2;
 
 /// Between two requests at `hertz`; a rate too low to matter in any run does not overflow.
 Duration spacing_at(double hertz) {
@@ -90,6 +92,7 @@ void RateLimit::taken(const Span& sent, Instant now) {
   }
   if (storm_) {
     last_was_short_ = now - storm_->began <= kShort;
+    if (storm_->counts_anew && storm_->is_one) ++single_;
     if (calm_since_) on_average_ = (now - *calm_since_) / (taken_since_ + 1);
     calm_since_ = now;
     taken_since_ = 0;
@@ -112,6 +115,7 @@ void RateLimit::throttled(Instant now, std::optional<std::chrono::seconds> retry
   if (!storm_) {
     begin_storm(now);
   } else if (!sent_before) {
+    storm_->is_one = false;
     storm_->pause = std::max(allowed_, std::min<Duration>(storm_->pause * 2, kStormPause));
   }
   const auto asked = std::clamp(retry_after.value_or(std::chrono::seconds{0}), {}, kLongestPause);
@@ -132,6 +136,7 @@ void RateLimit::claimed(Instant now) {
 }
 
 void RateLimit::begin_storm(Instant now) {
+  const bool counted_from_answers = rule_.from_answers;
   soon_again_ = calm_since_ && now - *calm_since_ <= kSoonAgain ? soon_again_ + 1 : 0;
   const auto tried_from = std::exchange(tried_from_, std::nullopt);
   if (tried_from && now - learned_at_ <= kSoonAgain) {  // the step up was one too many
@@ -144,7 +149,10 @@ void RateLimit::begin_storm(Instant now) {
   } else if (is_a_limit()) {
     slow_down(now);
   }
-  storm_ = Storm{.began = now, .pause = allowed_, .sent_before = under_way_};
+  storm_ = Storm{.began = now,
+                 .pause = allowed_,
+                 .sent_before = under_way_,
+                 .counts_anew = rule_.from_answers && !counted_from_answers};
 }
 
 bool RateLimit::is_a_limit() const {
@@ -164,6 +172,7 @@ void RateLimit::slow_down(Instant now) {
 void RateLimit::speed_up(Instant now) {
   if (rule_.spacing == allowed_ && !rule_.from_answers) return;
   if (now < learned_at_ + hold_ || taken_since_ < 2) return;
+  if (rule_.spacing == allowed_ && single_ >= kOfAKind) return;
   tried_from_ = rule_;
   if (rule_.spacing == allowed_) {
     rule_.from_answers = false;

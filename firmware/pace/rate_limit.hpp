@@ -34,7 +34,8 @@ struct Learned {
 /// storm says nothing about the rate, however long it lasts. What lasts is a limit, and is learned: the rate
 /// goes down where a 429 comes again at once, or within kSoonAgain of a short storm or of the second in a
 /// row; and up again by steps, of which each that fails doubles the time until the next (kFirstHold to
-/// kLongestHold). The last step is to count from the answer no more.
+/// kLongestHold). The last step is to count from the answer no more, until a single 429 has followed that: a
+/// server that takes its time stamp after decoding does so for good.
 class RateLimit {
  public:
   static constexpr double kSlowest = 1.0 / 30;              // hertz
@@ -96,7 +97,9 @@ class RateLimit {
   struct Storm {
     Instant began;
     Duration pause;
-    int sent_before = 0;  // requests that were under way: how they end says nothing of the storm
+    int sent_before = 0;       // requests that were under way: how they end says nothing of the storm
+    bool counts_anew = false;  // from the answers, since it began
+    bool is_one = true;        // 429
   };
 
   /// Which requests are far enough apart.
@@ -128,6 +131,7 @@ class RateLimit {
   Instant learned_at_{};    // when rule_ changed last
   std::optional<Rule> tried_from_;  // the rule before the step up that is on trial
   Duration hold_ = kFirstHold;      // until the next step up
+  int single_ = 0;                  // 429s that went away when it was counted from the answers
 };
 
 }  // namespace adit::pace

@@ -3,9 +3,19 @@
 #include <map>
 
 #include "simulation/bad_messages.hpp"
+#include "simulation/faults.hpp"
 #include "simulation/judge.hpp"
 
 namespace adit::simulation {
+namespace {
+
+constexpr int kRequestTimeout = 408;
+/// Faults in which the Command Post's answer is right.
+const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
+                                             name_of(Fault::ClosesAfter)};
+
+}  // namespace
+
 std::vector<Asked> asked_in(const std::vector<Event>& events, const std::string& path) {
   std::vector<Asked> all;
   std::map<std::uint64_t, std::size_t> by_request;
@@ -33,11 +43,23 @@ void OpenReports::add(const Event& event) {
   }
   const bool is_over = event.what == kDone || event.what == kWithdraw;
   if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
-  if (event.actor != Actor::Adit || event.what != kReports) return;
+  if (event.kind == Kind::Begins && any())
+    doubts_.insert(0);  // a step before its first byte was written down
+  if (event.what != kReports) return;
+  if (event.kind == Kind::Taken) taken_.insert(event.serial);
+  if (event.kind == Kind::Fault) is_odd_ = is_odd_ || !kRightAnswers.contains(event.who);
+  if (event.actor != Actor::Adit) return;
+  if (event.kind == Kind::Leaves) {
+    doubts_.insert(event.request);
+    is_odd_ = false;
+  }
   if (event.kind == Kind::Left) sent_[event.request] = event.serial;
   const auto sent = sent_.find(event.request);
   if (event.kind != Kind::Replied || sent == sent_.end()) return;
-  if (event.status / 100 == 2 && event.who.empty()) open_.erase(sent->second);
+  const bool is_told = event.status / 100 == 2 && !is_odd_ && taken_.contains(sent->second);
+  if (is_told) open_.erase(sent->second);
+  if (is_told || (event.status / 100 == 4 && event.status != kRequestTimeout)) doubts_.erase(event.request);
+  if (open_.empty()) doubts_.clear();
 }
 
 }  // namespace adit::simulation

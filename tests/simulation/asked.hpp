@@ -35,11 +35,15 @@ class OpenReports {
  public:
   void add(const Event& event);
   bool any() const { return !open_.empty(); }
+  /// One has left, or some of it, and no answer told what became of it.
+  bool in_doubt() const { return !doubts_.empty(); }
 
  private:
   std::map<std::uint64_t, std::int64_t> posted_,
-      sent_;                             // serials, by the client's request and the connection
-  std::set<std::int64_t> known_, open_;  // serials
+      sent_;                                     // serials, by the client's request and the connection
+  std::set<std::int64_t> known_, open_, taken_;  // serials
+  std::set<std::uint64_t> doubts_;               // connections
+  bool is_odd_ = false;                          // the answer under way is none to the report
 };
 
 /// Those of that path, but for bad messages, in the order in which they began.

@@ -36,6 +36,7 @@ void once(const Evidence& evidence, Broken& broken);
 void not_lost(const Evidence& evidence, Broken& broken);
 void paced(const Evidence& evidence, Broken& broken);
 void reports_go_first(const Evidence& evidence, Broken& broken);
+void status_keeps_away(const Evidence& evidence, Broken& broken);
 void learned(const Evidence& evidence, Broken& broken);
 void stamps(const Evidence& evidence, Broken& broken);
 void kept(const Evidence& evidence, Broken& broken);

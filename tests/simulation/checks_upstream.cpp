@@ -165,18 +165,45 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
   }
 }
 
+/// A status follows a report as another report would, unless it decides what became of one. A Command Post
+/// with one limit over both says so once in a life.
+void status_keeps_away(const Evidence& evidence, Broken& broken) {
+  std::optional<double> left;              // the last report, in this life
+  bool is_said = false, is_shown = false;  // that it has one limit, and so that Adit has heard it
+  OpenReports open;
+  for (const Event& event : evidence.events) {
+    open.add(event);
+    if (event.kind == Kind::Begins) left.reset();
+    if (event.kind == Kind::Begins || event.what == kCourse) is_said = is_shown = false;
+    if (event.kind == Kind::Replied && event.status == 429 && is_said) is_shown = true;
+    if (event.kind == Kind::Fault && event.who == kBeyondOneLimit && !is_shown) is_said = true;
+    if (event.what == kReports && event.kind == Kind::Leaves) left = event.at;
+    if (open.in_doubt()) continue;
+    if (event.what == kStatus && event.kind == Kind::Leaves && left &&
+        event.at - *left < kSpacing - kRounding)
+      broken.push_back(icd::sentence("Paced: the status was asked for ", event.at - *left,
+                                     " s after a report, at ", event.at));
+    if (event.kind == Kind::Fault && event.who == kBeyondOneLimit && is_shown)
+      broken.push_back(
+          icd::sentence("Learned: ", event.what, " came too soon for one limit over all, at ", event.at));
+  }
+}
+
 /// Whoever counts from its answers is found out by his first 429 that is heard, and tried again after 10 s at
-/// the soonest (pace/rate_limit.hpp).
+/// the soonest, and once in a life (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
+  std::map<std::string, int> times;          // that it was heard, each a while after the one before
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
     if (event.kind == Kind::Dies) last.clear();  // the answer may have been read and not yet understood
+    if (event.kind == Kind::Begins) times.clear();
     disk.add(event);
     const auto unheard = said.find(event.what);
     if (event.kind == Kind::Replied && event.status == 429 && unheard != said.end()) {
+      if (!last.contains(event.what) || unheard->second - last[event.what] > kTriedAgain) ++times[event.what];
       last[event.what] = unheard->second;
       said.erase(unheard);
     }
@@ -190,6 +217,11 @@ void learned(const Evidence& evidence, Broken& broken) {
       broken.push_back(icd::sentence("Learned: ", event.what,
                                      " came too soon for a Command Post that counts ", "from its answers, ",
                                      event.at - before->second, " s after the last time, at ", event.at));
+    } else if (times[event.what] > 1) {
+      broken.push_back(icd::sentence("Learned: ", event.what,
+                                     " came too soon for the third time for a Command Post that counts from "
+                                     "its answers, at ",
+                                     event.at));
     }
     said[event.what] = event.at;
   }

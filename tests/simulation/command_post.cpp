@@ -1,6 +1,7 @@
 #include "simulation/command_post.hpp"
 
 #include <cerrno>
+#include <chrono>
 #include <utility>
 
 #include "simulation/messages.hpp"
@@ -12,7 +13,8 @@ namespace {
 
 constexpr double kLatest = 8;  // seconds after which nothing is recorded any more
 constexpr double kLongest = 8, kLongestOutage = 25;
-constexpr const char* kEarly = "Early";
+constexpr std::chrono::milliseconds kOneLimit{950};  // "approximately" one request a second
+constexpr const char *kEarly = "Early", *kRepeats = "Repeats";
 constexpr const char* kPage = "Content-Type: text/html\r\n";
 constexpr const char* kHtml = "<html><body>Please log in</body></html>";
 constexpr Fault kPeriods[] = {Fault::Storm,       Fault::PoliteStorm, Fault::Refused, Fault::Deaf,
@@ -53,7 +55,10 @@ CommandPost::CommandPost(World& world, const Faults& faults, double trouble_for,
       faults_(faults),
       random_(world.random(numbered("command post", place))),
       early_(world.random(numbered("early answers", place))),
+      repeating_(world.random(numbered("repeated answers", place))),
       answers_early_(early_.chance(0.125) ? early_.between(0.05, 0.3) : 0),
+      repeats_(repeating_.chance(0.125) ? repeating_.between(0.1, 0.4) : 0),
+      has_one_limit_(world.random(numbered("one limit", place)).chance(0.125)),
       scoreboard_(world, faults_, random_, place),
       counting_(world.random("counting")) {
   for (const Fault fault : kPeriods) {
@@ -163,6 +168,11 @@ bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link
     link.send(http_answer("429 Too Many Requests", kJson + after, "\"too many requests\""));
     return true;
   }
+  if (is_beyond_one_limit(request, left)) {
+    world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = request.path(), .who = kBeyondOneLimit});
+    link.send(http_answer("429 Too Many Requests", kJson, "\"too many requests\""));
+    return true;
+  }
   if (!is_mapping(request) || link.is_closed() || !counting_.is_too_soon(request.path(), left)) return false;
   world_.note({.actor = Actor::Post,
                .kind = Kind::Fault,
@@ -171,6 +181,13 @@ bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link
                .serial = static_cast<std::int64_t>(counting_.what())});
   link.send(http_answer("429 Too Many Requests", kJson, "\"too soon\""));
   return true;
+}
+
+bool CommandPost::is_beyond_one_limit(const HttpMessage& request, const WhenLeft& left) {
+  if (!has_one_limit_ || is_mapping(request)) return false;
+  if (asked_ && left.first - *asked_ < kOneLimit) return true;
+  asked_ = left.first;
+  return false;
 }
 
 void CommandPost::answer(const HttpMessage& request, Link& link) {
@@ -191,6 +208,14 @@ void CommandPost::may_answer_early(const HttpMessage& head, Link& link) {
   link.go_deaf();
   link.send(http_answer("200 OK", kJson, "null"));
   link.end(Link::How::Reset, resets);
+}
+
+std::optional<std::string> CommandPost::repeat_last_answer(const Item& item) {
+  const bool does = repeating_.chance(repeats_);
+  const auto last = scoreboard_.last_answer(item);
+  if (!does || calm_ || !last || world_.omits(kRepeats)) return std::nullopt;
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kReports, .who = kRepeats});
+  return last;
 }
 
 void CommandPost::take_later(const HttpMessage& request, double within) {
@@ -281,7 +306,10 @@ std::string CommandPost::take(const HttpMessage& request) {
   if (path == kStatus) return scoreboard_.status();
   const auto items = items_of(request);
   if (items.empty()) return http_answer("422 Unprocessable Entity", kJson, "\"what is this?\"");
-  if (path == kReports) return scoreboard_.record(items.front());
+  if (path == kReports) {
+    const auto repeated = repeat_last_answer(items.front());
+    return repeated ? *repeated : scoreboard_.record(items.front(), request);
+  }
   for (const Item& item : items) {
     world_.note({.actor = Actor::Post,
                  .kind = Kind::Taken,

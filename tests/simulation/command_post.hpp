@@ -35,12 +35,15 @@ class CommandPost final : public Host {
   class Conversation;
   void asked(const HttpMessage& request, const WhenLeft& left, Link& link);
   bool refuses(const HttpMessage& request, const WhenLeft& left, Link& link);
+  bool is_beyond_one_limit(const HttpMessage& request, const WhenLeft& left);
   void answer(const HttpMessage& request, Link& link);
   void may_answer_early(const HttpMessage& head, Link& link);
   void misbehave(Fault fault, const HttpMessage& request, Link& link);
   std::string bad_answer(Fault fault, const HttpMessage& request);
   /// Records what the request says: its answer.
   std::string take(const HttpMessage& request);
+  /// Says what it said to the report before, and records nothing.
+  std::optional<std::string> repeat_last_answer(const Item& item);
   void take_later(const HttpMessage& request, double within);
   void plan_periods(Fault fault, double trouble_for);
   void begin(Fault period, double takes);
@@ -53,8 +56,11 @@ class CommandPost final : public Host {
 
   World& world_;
   Faults faults_;
-  Random random_, early_;
-  double answers_early_;  // how often, of the pieces in which requests come
+  Random random_, early_, repeating_;
+  double answers_early_;                // how often, of the pieces in which requests come
+  double repeats_;                      // how often, of reports
+  const bool has_one_limit_;            // over reports and statuses
+  std::optional<loop::Instant> asked_;  // when the last of these left that it took
   Scoreboard scoreboard_;
   std::uint64_t connection_ = 0;  // on which it was asked last
   Counting counting_;

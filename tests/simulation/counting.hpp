@@ -9,6 +9,9 @@
 
 namespace adit::simulation {
 
+/// Of a fault: a report or a status that came too soon after the other.
+inline constexpr const char* kBeyondOneLimit = "beyond one limit";
+
 /// When a request left Adit: as if all bytes were as long on their way, for what the line adds is not Adit's.
 struct WhenLeft {
   loop::Instant first, last;

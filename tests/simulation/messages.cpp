@@ -9,6 +9,7 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::size_t kLetters = 60'000;
+constexpr double kAcross = 2.3;        // metres: no float32
 constexpr double kReportsApart = 100;  // metres, so that none is near another
 
 std::int64_t whole(double number) {
@@ -66,7 +67,7 @@ Json message_of(const Posting& posting, const Style& style) {
   const auto serial = static_cast<double>(item.serial);
   if (posting.path == kReports) {
     return {{"x", serial * kReportsApart},
-            {"y", 2.5},
+            {"y", style.rounds ? static_cast<double>(static_cast<float>(kAcross)) : kAcross},
             {"z", -1.0},
             {"type", item.serial % 2 == 0 ? "Drill" : "Rope"}};
   }

@@ -62,6 +62,7 @@ struct Style {
   bool big_endian = false;  // clouds
   int point_step = 16;      // of clouds, in bytes
   bool news_first = false;  // of clouds that have the points of those before them
+  bool rounds = false;      // a report's coordinates to float32
 };
 
 /// What a client says of each thing in it.

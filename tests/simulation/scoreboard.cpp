@@ -99,7 +99,7 @@ const char* Scoreboard::score(int points) {
   return kScored;
 }
 
-std::string Scoreboard::record(const Item& item) {
+std::string Scoreboard::record(const Item& item, const HttpMessage& request) {
   const bool counts = remaining_ > 0 && !stopped_;
   const int points = counts && item.serial % 3 == 1 ? 1 : 0;
   const char* const state = score(points);
@@ -109,7 +109,13 @@ std::string Scoreboard::record(const Item& item) {
                .who = name() + (stopped_ ? kInAStop : ""),
                .serial = item.serial,
                .stamp = static_cast<double>(points)});
-  return reply(static_cast<double>(item.serial) * 100, state, points);
+  last_ = item.serial;
+  return last_answer_ = reply(request.body, state, points);
+}
+
+std::optional<std::string> Scoreboard::last_answer(const Item& item) const {
+  if (last_ == 0 || last_ == item.serial) return std::nullopt;
+  return last_answer_;
 }
 
 void Scoreboard::record_another() {
@@ -117,18 +123,19 @@ void Scoreboard::record_another() {
   world_.note({.actor = Actor::Post, .kind = Kind::Another, .what = kReports, .who = name()});
 }
 
-std::string Scoreboard::reply(double x, const char* state, int points) {
+std::string Scoreboard::reply(const std::string& report, const char* state, int points) {
   const bool stands = faults_.has(Fault::ConstantClocks);
   const double clock = stands ? 3.14 : world_.time() - run_began_;
   const std::string name = std::to_string(stands ? 1 : run_);
   std::string run = faults_.has(Fault::NamelessRuns) ? ""
                     : numbers_runs_                  ? "\"run\": " + name + ", "
                                                      : "\"run\": \"" + name + "\", ";
-  return http_answer("201 Created", kJson,
-                     "{\"url\": \"\", \"id\": " + std::to_string(++id_) + ", \"x\": " + json_number(x) +
-                         ", " + run + "\"team\": \"adit\", \"run_clock\": " + json_number(clock) +
-                         ", \"report_status\": \"" + state +
-                         "\", \"score_change\": " + std::to_string(points) + "}");
+  // The report as it was sent, without its last brace.
+  return http_answer(
+      "201 Created", kJson,
+      report.substr(0, report.rfind('}')) + ", \"url\": \"\", \"id\": " + std::to_string(++id_) + ", " + run +
+          "\"team\": \"adit\", \"run_clock\": " + json_number(clock) + ", \"report_status\": \"" + state +
+          "\", \"score_change\": " + std::to_string(points) + "}");
 }
 
 std::string run_name(int place, std::int64_t run) {

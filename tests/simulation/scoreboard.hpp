@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "simulation/faults.hpp"
+#include "simulation/http.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/random.hpp"
 
@@ -29,8 +31,10 @@ class Scoreboard {
   int place() const { return place_; }
   /// The answer to a status.
   std::string status();
-  /// Records a report: the answer to it.
-  std::string record(const Item& item);
+  /// Records a report, of that request: the answer to it.
+  std::string record(const Item& item, const HttpMessage& request);
+  /// The answer to the report that was recorded last, if that is another one than `item`.
+  std::optional<std::string> last_answer(const Item& item) const;
   /// Somebody else's.
   void record_another();
   /// Not before Adit saw its clock run, with the ledger at hand, and be further on than the new run's when
@@ -46,7 +50,7 @@ class Scoreboard {
 
  private:
   std::string name() const;
-  std::string reply(double x, const char* state, int points);
+  std::string reply(const std::string& report, const char* state, int points);
   const char* score(int points);
 
   World& world_;
@@ -57,6 +61,8 @@ class Scoreboard {
   double run_began_;
   std::size_t run_begins_ = 0;  // in the history
   bool stopped_ = false;
+  std::int64_t last_ = 0;  // the serial of the report that was recorded last
+  std::string last_answer_;
 };
 
 }  // namespace adit::simulation

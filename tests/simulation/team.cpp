@@ -33,14 +33,14 @@ void Reporter::report_until(double end) {
 
 void Reporter::report() {
   if (world_.time() > end_) return;
-  client_.ask(request_of({kReports, {{.who = "", .serial = serial_}}}, {}),
+  client_.ask(request_of({kReports, {{.who = "", .serial = serial_}}}, {.rounds = tries_ % 2 == 1}),
               {.what = kReports, .who = "", .serial = serial_}, [this](int status) { answered(status); });
   if (random_.chance(twins_)) world_.after(seconds(random_.between(0, 0.5)), [this] { report_too(); });
 }
 
 void Reporter::report_too() {
   if (!client_.busy() || twin_.busy()) return;
-  twin_.ask(request_of({kReports, {{.who = "", .serial = serial_}}}, {}),
+  twin_.ask(request_of({kReports, {{.who = "", .serial = serial_}}}, {.rounds = true}),
             {.what = kReports, .who = "", .serial = serial_}, [](int) {});
 }
 

@@ -12,14 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kDamaged = ".damaged";
-
 /// So that the box still serves a page on which it can be set right.
 void set_aside(const std::string& path, const std::string& why) {
-  std::error_code error;
-  fs::remove_all(path + kDamaged, error);
-  fs::rename(path, path + kDamaged, error);
-  host::log(host::Level::Error, "what was saved is set aside", {{"why", why}});
+  host::set_damaged_aside(path, "what was saved", why);
 }
 
 std::expected<settings::Settings, std::string> read_settings(const std::string& file) {
@@ -139,11 +134,11 @@ bool Store::take_back() {
 
 std::expected<void, std::string> Store::forget() {
   std::error_code error;
-  for (const std::string& folder : {secrets_folder(), secrets_folder() + kDamaged}) {
+  for (const std::string& folder : {secrets_folder(), secrets_folder() + host::kDamaged}) {
     fs::remove_all(folder, error);
     if (error) return std::unexpected(folder + ": " + error.message());
   }
-  for (const std::string& each : {file_before(), file(), file() + kDamaged}) {
+  for (const std::string& each : {file_before(), file(), file() + host::kDamaged}) {
     if (auto removed = host::remove_file(each); !removed) return removed;
   }
   return {};

@@ -132,9 +132,8 @@ void Aside::restore() {
   if (!numbers) host::log(host::Level::Error, "what was set aside cannot be read", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     if (restore_one(number)) continue;
-    host::log(host::Level::Warning, "what was set aside could not be read and is gone",
-              {{"file", path(number, kMessage)}});
-    forget(number);
+    for (const char* const ending : {kMessage, kReason})
+      host::set_damaged_aside(path(number, ending), "a rejected message", "it could not be read");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "loop/file_descriptor.hpp"
@@ -81,6 +82,16 @@ std::expected<File, int> slurp(const std::string& path) {
 bool may_exist(const std::string& path) {
   std::error_code unknown;
   return std::filesystem::exists(path, unknown) || unknown;
+}
+
+void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why) {
+  log(Level::Error, std::string(what) + " is set aside", {{"file", path}, {"why", why}});
+  namespace fs = std::filesystem;
+  std::error_code error;
+  fs::remove_all(path + kDamaged, error);
+  if (!error) fs::rename(path, path + kDamaged, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    log(Level::Error, "it cannot be set aside", {{"file", path}, {"why", error.message()}});
 }
 
 std::expected<std::string, std::string> read_file(const std::string& path) {

@@ -30,6 +30,12 @@ std::optional<std::chrono::microseconds> watchdog_within();
 /// absent.
 bool may_exist(const std::string& path);
 
+inline constexpr const char* kDamaged = ".damaged";
+/// Renames what cannot be read, a file or a folder, to PATH + kDamaged, in the place of an earlier one, and
+/// logs `what` of it. So a life to come finds it no more, and a human can look at it. A failure is logged
+/// too.
+void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why);
+
 /// A small text file, at most 1 MiB.
 std::expected<std::string, std::string> read_file(const std::string& path);
 

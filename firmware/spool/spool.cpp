@@ -40,10 +40,7 @@ std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64
 }
 
 void set_aside(const std::string& path, const std::string& why) {
-  host::log(host::Level::Error, "a kept message could not be read and is set aside",
-            {{"file", path}, {"why", why}});
-  std::error_code error;
-  fs::rename(path, path + ".damaged", error);
+  host::set_damaged_aside(path, "a kept message that could not be read", why);
 }
 
 /// The message in one file, which is set aside where it cannot be understood.

@@ -183,6 +183,8 @@ TEST_F(AsideTest, PassesOverWhatCannotBeRead) {
   restart();
   ASSERT_EQ(aside_->rows().size(), 1);
   EXPECT_EQ(aside_->rows().front().number, 2);
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "1.json.damaged"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "1.cbor.damaged")) << "the message is not gone";
 }
 
 TEST_F(AsideTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {

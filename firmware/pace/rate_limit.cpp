@@ -191,6 +191,7 @@ Learned RateLimit::learned() const {
 
 void RateLimit::carry_on(const Learned& learned, Instant now) {
   rule_.from_answers = learned.from_answers;
+  single_ = learned.from_answers ? 1 : 0;
   if (learned.spacing > allowed_) rule_.spacing = learned.spacing;
   if (learned.from_answers || learned.spacing > allowed_) learned_at_ = now;
   const Instant latest =

@@ -3,6 +3,7 @@
 #include <map>
 
 #include "simulation/bad_messages.hpp"
+#include "simulation/courses.hpp"
 #include "simulation/faults.hpp"
 #include "simulation/judge.hpp"
 
@@ -10,6 +11,7 @@ namespace adit::simulation {
 namespace {
 
 constexpr int kRequestTimeout = 408;
+constexpr std::int64_t kUnknown = 0, kElsewhere = -1;  // serials
 /// Faults in which the Command Post's answer is right.
 const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
                                              name_of(Fault::ClosesAfter)};
@@ -43,23 +45,27 @@ void OpenReports::add(const Event& event) {
   }
   const bool is_over = event.what == kDone || event.what == kWithdraw;
   if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
-  if (event.kind == Kind::Begins && any())
-    doubts_.insert(0);  // a step before its first byte was written down
+  if (event.kind == Kind::Begins && any()) doubts_.insert(kUnknown);  // written down before its first byte
+  if (event.what == kCourse && !doubts_.empty()) doubts_.insert(kElsewhere);
   if (event.what != kReports) return;
   if (event.kind == Kind::Taken) taken_.insert(event.serial);
   if (event.kind == Kind::Fault) is_odd_ = is_odd_ || !kRightAnswers.contains(event.who);
   if (event.actor != Actor::Adit) return;
   if (event.kind == Kind::Leaves) {
-    doubts_.insert(event.request);
+    doubts_.insert(kUnknown);
     is_odd_ = false;
   }
-  if (event.kind == Kind::Left) sent_[event.request] = event.serial;
+  if (event.kind == Kind::Left) {
+    sent_[event.request] = event.serial;
+    doubts_.insert(event.serial);
+    doubts_.erase(kUnknown);
+  }
   const auto sent = sent_.find(event.request);
   if (event.kind != Kind::Replied || sent == sent_.end()) return;
   const bool is_told = event.status / 100 == 2 && !is_odd_ && taken_.contains(sent->second);
   if (is_told) open_.erase(sent->second);
-  if (is_told || (event.status / 100 == 4 && event.status != kRequestTimeout)) doubts_.erase(event.request);
-  if (open_.empty()) doubts_.clear();
+  if (is_told || (event.status / 100 == 4 && event.status != kRequestTimeout)) doubts_.erase(sent->second);
+  if (open_.empty() && !doubts_.contains(kElsewhere)) doubts_.clear();
 }
 
 }  // namespace adit::simulation

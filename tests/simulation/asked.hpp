@@ -40,10 +40,9 @@ class OpenReports {
 
  private:
   std::map<std::uint64_t, std::int64_t> posted_,
-      sent_;                                     // serials, by the client's request and the connection
-  std::set<std::int64_t> known_, open_, taken_;  // serials
-  std::set<std::uint64_t> doubts_;               // connections
-  bool is_odd_ = false;                          // the answer under way is none to the report
+      sent_;  // serials, by the client's request and the connection
+  std::set<std::int64_t> known_, open_, taken_, doubts_;  // serials
+  bool is_odd_ = false;                                   // the answer under way is none to the report
 };
 
 /// Those of that path, but for bad messages, in the order in which they began.

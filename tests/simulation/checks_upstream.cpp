@@ -193,17 +193,23 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
 /// the soonest, and once in a life (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
-  std::map<std::string, int> times;          // that it was heard, each a while after the one before
+  std::set<std::string> single;              // it was heard, and no other 429 since
+  std::map<std::string, int> times;          // that the next answer was a good one
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
     if (event.kind == Kind::Dies) last.clear();  // the answer may have been read and not yet understood
-    if (event.kind == Kind::Begins) times.clear();
+    if (event.kind == Kind::Begins) times.clear(), single.clear();
+    if (event.kind == Kind::Saved)  // the flow may be another, which knows of one
+      for (auto& [uri, count] : times) count = std::min(count, 1);
+    if (event.kind == Kind::Replied && event.status == 200 && single.erase(event.what) > 0)
+      ++times[event.what];
+    if (event.kind == Kind::Replied && event.status == 429) single.erase(event.what);
     disk.add(event);
     const auto unheard = said.find(event.what);
     if (event.kind == Kind::Replied && event.status == 429 && unheard != said.end()) {
-      if (!last.contains(event.what) || unheard->second - last[event.what] > kTriedAgain) ++times[event.what];
+      single.insert(event.what);
       last[event.what] = unheard->second;
       said.erase(unheard);
     }

@@ -11,7 +11,7 @@ namespace adit::simulation {
 namespace {
 
 constexpr int kRequestTimeout = 408;
-constexpr std::int64_t kUnknown = 0, kElsewhere = -1;  // serials
+constexpr std::int64_t kUnknown = 0, kElsewhere = -1, kBefore = -2;  // serials
 /// Faults in which the Command Post's answer is right.
 const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
                                              name_of(Fault::ClosesAfter)};
@@ -45,7 +45,8 @@ void OpenReports::add(const Event& event) {
   }
   const bool is_over = event.what == kDone || event.what == kWithdraw;
   if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
-  if (event.kind == Kind::Begins && any()) doubts_.insert(kUnknown);  // written down before its first byte
+  // In the life before one may have been written down before its first byte left.
+  if (event.kind == Kind::Begins && any()) doubts_.insert(kBefore);
   if (event.what == kCourse && !doubts_.empty()) doubts_.insert(kElsewhere);
   if (event.what != kReports) return;
   if (event.kind == Kind::Taken) taken_.insert(event.serial);

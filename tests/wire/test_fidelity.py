@@ -184,7 +184,8 @@ class Fidelity(Delivered):
         arrived += self.deliver("/markers/update", {"markers": markers[2:]}, JSON)["markers"]
         for marker, sent in zip(arrived, markers, strict=True):
             marker["header"] = self.without_stamp(marker["header"])
-            self.same(marker, {"header": {"frame_id": "darpa"}, "ns": sent.get("ns") or ("" if sent["action"] == 3 else "unnamed"), "id": sent.get("id", 0),
+            namespace = sent.get("ns") or ("" if sent["action"] == 3 else "unnamed")
+            self.same(marker, {"header": {"frame_id": "darpa"}, "ns": namespace, "id": sent.get("id", 0),
                                "type": 0, "action": sent["action"], "pose": NOWHERE,
                                "scale": dict.fromkeys("xyz", 0.0), "color": dict.fromkeys("rgba", 0.0),
                                "lifetime": 0.0, "text": ""})

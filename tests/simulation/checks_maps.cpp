@@ -10,6 +10,7 @@
 #include "simulation/courses.hpp"
 #include "simulation/judge.hpp"
 #include "simulation/messages.hpp"
+#include "simulation/scoreboard.hpp"
 #include "simulation/upstream_view.hpp"
 
 namespace adit::simulation {
@@ -76,13 +77,20 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   return status != 200;
 }
 
-/// Between the two a run, a setting or a course began, of which what was left out of the first must go.
+/// Between the two a run, a setting or a course began, of which what was left out of the first must go. A
+/// clock that was set back looks like another run, until the answer to a report names the one that is on
+/// still.
 bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
-  const auto at = [&](std::size_t place) { return events.begin() + static_cast<std::ptrdiff_t>(place); };
-  return std::any_of(at(0), at(second), [&](const Event& event) {
+  bool is_set_back = false;
+  for (std::size_t i = 0; i < second; ++i) {
+    const Event& event = events[i];
+    const bool sets_back = event.kind == Kind::Fault && event.who == kSetBack;
+    is_set_back = is_set_back || sets_back;
+    const bool names = is_set_back && event.kind == Kind::Replied && event.what == kReports;
     const bool begins = event.kind == Kind::NewRun || event.kind == Kind::Saved || event.what == kCourse;
-    return begins && event.at > events[first].at - kLongestSending;
-  });
+    if ((begins || sets_back || names) && event.at > events[first].at - kLongestSending) return true;
+  }
+  return false;
 }
 
 void check_clouds(const Evidence& evidence, const Name& name, const std::vector<Posted>& all,

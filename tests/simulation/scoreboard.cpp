@@ -66,7 +66,7 @@ void Scoreboard::set_clock_back() {
   constexpr double kBy = 60;  // seconds
   if (world_.time() - run_began_ < kBy + kSeenToBeOn) return;
   run_began_ += kBy;
-  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kStatus, .who = "clock set back"});
+  world_.note({.actor = Actor::Post, .kind = Kind::Fault, .what = kStatus, .who = kSetBack});
   run_begins_ = world_.history().events().size();
 }
 

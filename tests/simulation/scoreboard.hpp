@@ -18,6 +18,8 @@ inline constexpr const char *kScored = "scored", *kInAStop = " in a stop",
                             *kNameless = ", which nothing names";
 /// Of NewRun: one more report was granted, which Adit holds for another run; its map is the same.
 inline constexpr const char* kSameMap = "the map stays";
+/// Of Fault: the run is the same.
+inline constexpr const char* kSetBack = "clock set back";
 /// "run 3", as the history calls it.
 std::string run_name(int place, std::int64_t run);
 

@@ -52,14 +52,18 @@ class CommandPost:
                 self.answer(200, {"score": 0, "remaining_reports": 25, "current_team": "adit", "run_clock": 12.5})
 
             def do_POST(self):
-                report = self.path == "/api/artifact_reports"
-                self.answer(201 if report else 200,
-                            {"url": "http://127.0.0.1/1", "id": 1, "x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill",
-                             "submitted_datetime": "2026-01-01T00:00:00Z", "run_clock": 12.5, "team": "adit", "run": "1",
-                             "report_status": "scored", "score_change": 1} if report else None)
+                body = self.body()
+                if self.path != "/api/artifact_reports":
+                    return self.answer(200, None, body)
+                return self.answer(201, {**json.loads(body), "url": "http://127.0.0.1/1", "id": 1,
+                                         "submitted_datetime": "2026-01-01T00:00:00Z", "run_clock": 12.5, "team": "adit", "run": "1",
+                                         "report_status": "scored", "score_change": 1}, body)
 
-            def answer(self, status, document):
-                body = self.rfile.read(int(self.headers.get("Content-Length", 0)))
+            def body(self):
+                return self.rfile.read(int(self.headers.get("Content-Length", 0)))
+
+            def answer(self, status, document, body=None):
+                body = self.body() if body is None else body
                 token = self.headers.get("Authorization", "").removeprefix("Bearer ")
                 with post.lock:
                     post.requests.append((self.path, token, body, time.monotonic()))

@@ -31,9 +31,8 @@ std::optional<std::chrono::microseconds> watchdog_within();
 bool may_exist(const std::string& path);
 
 inline constexpr const char* kDamaged = ".damaged";
-/// Renames what cannot be read, a file or a folder, to PATH + kDamaged, in the place of an earlier one, and
-/// logs `what` of it. So a life to come finds it no more, and a human can look at it. A failure is logged
-/// too.
+/// Renames a file or folder that cannot be read to PATH + kDamaged, over an earlier one, for a human to look
+/// at. Logs `what`, `why` and the path, and a failure to rename.
 void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why);
 
 /// A small text file, at most 1 MiB.

@@ -38,8 +38,8 @@ class StateLane {
   /// They replace the poses held.
   void add(std::span<const PostedPose> news, Instant now);
 
-  /// Sends poses again that were given up. A robot that is known sends its newest pose, and none if that pose
-  /// waits, is under way or was taken.
+  /// Makes poses that were given up news again. For a known robot that is its newest pose, if it was given
+  /// up; a pose that waits, is under way or was taken stays as it is.
   void add_unless_known(const icd::StateUpdate& update, Instant now);
 
   /// The newest poses of all robots that go together, or of one that goes apart; nothing if no news came

@@ -97,9 +97,9 @@ class RateLimit {
   struct Storm {
     Instant began;
     Duration pause;
-    int sent_before = 0;       // requests that were under way: how they end says nothing of the storm
-    bool counts_anew = false;  // from the answers, since it began
-    bool is_one = true;        // 429
+    int sent_before = 0;       // requests under way when it began: their answers do not end it
+    bool counts_anew = false;  // the rule became from_answers when it began
+    bool is_one = true;        // it is a single 429
   };
 
   /// Which requests are far enough apart.
@@ -131,7 +131,7 @@ class RateLimit {
   Instant learned_at_{};    // when rule_ changed last
   std::optional<Rule> tried_from_;  // the rule before the step up that is on trial
   Duration hold_ = kFirstHold;      // until the next step up
-  int single_ = 0;                  // 429s that went away when it was counted from the answers
+  int single_ = 0;                  // storms of one 429 that ended with counting from the answers
 };
 
 }  // namespace adit::pace

@@ -77,9 +77,8 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   return status != 200;
 }
 
-/// Between the two a run, a setting or a course began, of which what was left out of the first must go. A
-/// clock that was set back looks like another run, until the answer to a report names the one that is on
-/// still.
+/// Between the two a run, a setting or a course began, so points that were left out of the first must go now.
+/// A clock that was set back looks like another run, until the answer to a report names the present one.
 bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   bool is_set_back = false;
   for (std::size_t i = 0; i < second; ++i) {

@@ -193,8 +193,8 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
 /// the soonest, and once in a life (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
-  std::set<std::string> single;              // it was heard, and no other 429 since
-  std::map<std::string, int> times;          // that the next answer was a good one
+  std::set<std::string> single;              // URIs whose last answer was such a 429
+  std::map<std::string, int> times;          // by URI: such 429s that a 200 followed
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {

@@ -15,7 +15,7 @@
 namespace adit::simulation {
 namespace {
 
-/// Nobody of the team is at theirs: among so many of one address a head that is not whole yet gives way, too.
+/// Addresses that no client of the team has: a client there would lose connections to the strangers' share.
 constexpr int kFirst = 120, kAddresses = 4, kMost = 80;
 constexpr std::string_view kBegun =
     "POST /adit/login HTTP/1.1\r\nHost: 10.0.0.1\r\nContent-Type: application/json\r\nContent-Length: "

@@ -49,7 +49,7 @@ struct NamedMember {
   Bound least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();  // of a number
   Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();  // of a number; how many; how long
   std::string_view unit = "";  // of `most` in a sentence: " bytes"
-  bool is_time = false;        // seconds, or {secs, nsecs}
+  bool is_time = false;        // Field::seconds()
 
   /// The same but for one of these.
   template <class Value>

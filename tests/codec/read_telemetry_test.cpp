@@ -106,12 +106,15 @@ TEST(ReadStateUpdate, MakesAnAllZeroQuaternionTheIdentity) {
   EXPECT_EQ(state->poses[0].pose.orientation, icd::Quaternion{});
 }
 
-TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS has its stamps
-  json message = test::good_state();
-  message["header"]["stamp"] = {{"secs", 1617235200}, {"nsecs", 250'000'000.0}};
-  const auto state = read(read_state_update, Format::Json, test::as_json(message));
-  ASSERT_TRUE(state.has_value());
-  EXPECT_EQ(state->header.stamp, 1617235200.25);
+TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS 1, ROS 2 and their C++ have stamps
+  for (const auto& [seconds, nanoseconds] :
+       {std::pair("secs", "nsecs"), std::pair("sec", "nanosec"), std::pair("sec", "nsec")}) {
+    json message = test::good_state();
+    message["header"]["stamp"] = {{seconds, 1617235200}, {nanoseconds, 250'000'000.0}};
+    const auto state = read(read_state_update, Format::Json, test::as_json(message));
+    ASSERT_TRUE(state.has_value()) << nanoseconds;
+    EXPECT_EQ(state->header.stamp, 1617235200.25) << nanoseconds;
+  }
 }
 
 /// The double that is nearest to ROS's last one is a second that ROS does not have.
@@ -196,6 +199,8 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0].erase("lifetime"); }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = nullptr; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", 0}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nanosec", 0}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nsec", 0}}; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = -1; },
        "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got -1"},
       {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 2147483647.5; }, "taken"},

@@ -189,15 +189,19 @@ class Fidelity(Delivered):
                                "scale": dict.fromkeys("xyz", 0.0), "color": dict.fromkeys("rgba", 0.0),
                                "lifetime": 0.0, "text": ""})
 
-    def test_durations_and_stamps_in_both_forms(self):
+    def test_durations_and_stamps_in_each_form(self):
         marker = said(whole_marker(1)) | {"ns": "spacing"}
+        forms = [(1000.25, 2.5)]
+        for seconds, nanoseconds in (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec")):
+            forms.append(({seconds: 1000 + len(forms), nanoseconds: 0}, {seconds: 2, nanoseconds: 500000000}))
         arrived = []
-        for stamp, lifetime in ((1000.25, 2.5), ({"secs": 1001, "nsecs": 0}, {"secs": 2, "nsecs": 500000000})):
+        for (stamp, lifetime), style in zip(forms, (JSON, CBOR, JSON, CBOR), strict=True):
             marker |= {"header": {"stamp": stamp}, "lifetime": lifetime}
-            arrived += self.deliver("/markers/update", {"markers": [marker]}, JSON)["markers"]
-        self.same([one["lifetime"] for one in arrived], [2.5, 2.5])
+            arrived += self.deliver("/markers/update", {"markers": [marker]}, style)["markers"]
+        self.same([one["lifetime"] for one in arrived], [2.5] * 4)
         stamps = [one["header"]["stamp"] for one in arrived]
-        self.assertAlmostEqual(stamps[1] - stamps[0], 0.75, places=5)
+        for stamp, after in zip(stamps, (0, 0.75, 1.75, 2.75), strict=True):
+            self.assertAlmostEqual(stamp - stamps[0], after, places=5)
 
     def test_an_empty_frame_is_none(self):
         for header in ({"frame_id": ""}, {"frame_id": None}, {}, None):

@@ -106,6 +106,29 @@ TEST(ReadStateUpdate, MakesAnAllZeroQuaternionTheIdentity) {
   EXPECT_EQ(state->poses[0].pose.orientation, icd::Quaternion{});
 }
 
+TEST(ReadStateUpdate, NamesAMemberUnderACborTagThatChangesItsMeaning) {
+  constexpr std::uint64_t kRational = 30;
+  const json tagged = json::binary({1, 2}, kRational);  // which nlohmann writes under that tag
+  const IcdRow rows[] = {
+      {"6.5", [&](json& m) { m["poses"][0]["covariance"] = {tagged, {{"x", tagged}}}; }, "taken"},
+      {"6.5", [&](json& m) { m["poses"][0]["position"]["x"] = tagged; },
+       "poses[0].position.x: expected a number, got CBOR tag 30, which changes the meaning of what it stands "
+       "before"},
+      {"6.5", [&](json& m) { m["poses"][0]["name"] = tagged; },
+       "poses[0].name: expected a string, got CBOR tag 30, which changes the meaning of what it stands "
+       "before"},
+      {"6.5", [&](json& m) { m["header"] = tagged; },
+       "header: expected an object, got CBOR tag 30, which changes the meaning of what it stands before"},
+      {"6.5", [&](json& m) { m = tagged; },
+       "the body: expected an object, got CBOR tag 30, which changes the meaning of what it stands before"},
+  };
+  for (const IcdRow& row : rows) {
+    json message = test::good_state();
+    row.change(message);
+    EXPECT_EQ(test::sentence_of(read(read_state_update, Format::Cbor, test::as_cbor(message))), row.sentence);
+  }
+}
+
 TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS 1, ROS 2 and their C++ have stamps
   for (const auto& [seconds, nanoseconds] :
        {std::pair("secs", "nsecs"), std::pair("sec", "nanosec"), std::pair("sec", "nsec")}) {

@@ -43,8 +43,8 @@ def as_whole_numbers(value):
     return int(value) if whole else value
 
 
-REMARKS = (0, 1, 21, 22, 23, 32, 33, 34, 35, 36, 55799)
-OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 31, 37, 63, 64, 258, 55798, 55800, 2**40)
+REMARKS = (0, 1, 21, 22, 23, 28, 32, 33, 34, 35, 36, 39, 41, 64, 68, 72, 256, 258, 259, 275, 55799)
+OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 29, 31, 37, 63, 65, 85, 55798, 55800, 2**40)
 
 
 def tagged(value, tags):
@@ -224,7 +224,7 @@ class Fidelity(Delivered):
                 answer = messages.post(self.session, self.stage.box.url, "/state/update", update, CBOR)
                 with self.subTest(tag=tag, at=at):
                     self.assertEqual(answer.status_code, 422)
-                    self.assertIn(f"CBOR tag {tag} ", answer.json())
+                    self.assertIn(f"position.{at}: expected a number, got CBOR tag {tag}, which", answer.json())
 
     def test_the_good_parts_of_a_state(self):
         bad = {"name": "r9", "position": {**POSITION, "y": "far"}, "orientation": TURNED}

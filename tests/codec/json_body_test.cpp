@@ -13,6 +13,8 @@ const std::vector<std::string> kGoodJson = {
     // Documents of every kind
     "{}", "[]", "null", "true", "false", "0", "\"\"", " \t\r\n[ ] \n", "[null,true,false]",
     "{\"a\":1,\"b\":[2,{\"c\":{}}]}", "{\"\":0}", "{\"a\":{\"a\":{\"a\":[[[]]]}}}",
+    // Behind a byte order mark (RFC 8259 8.1)
+    "\xef\xbb\xbf{}", "\xef\xbb\xbf [1]", "\xef\xbb\xbf\"a\"",
     // Numbers
     "-0", "-1", "10", "0.5", "-0.25", "1e2", "1E2", "1e+2", "1e-2", "0e1", "0E-0", "1.5e10", "123.456e-7",
     "9007199254740992", "-9007199254740993", "12345678901234567890", "1e308", "-1.7976931348623157e308",
@@ -59,10 +61,14 @@ const std::vector<std::pair<std::string, std::string>> kBadJson = {
     {"{}}", "2: expected nothing after the document, got '}'"},
     {"[],", "2: expected nothing after the document, got ','"},
     {"{}\0"s, "2: expected nothing after the document, got byte 0x00"},
-    {"\0"s, "0: expected a value, got byte 0x00"},
-    {"\xef\xbb\xbf{}", "0: expected a value, got byte 0xef"},
+    {"\xef\xbb\xbf", "3: the document is cut short"},
+    {"\xef\xbb", "2: the document is cut short"},
+    {"\xef\xbb{}", "2: expected a byte order mark, got '{'"},
+    {"\xef{}", "1: expected a byte order mark, got '{'"},
+    {"\xef\xbb\xbf\xef\xbb\xbf{}", "3: expected a value, got byte 0xef"},
+    {" \xef\xbb\xbf{}", "1: expected a value, got byte 0xef"},
+    {"{}\xef\xbb\xbf", "2: expected nothing after the document, got byte 0xef"},
     {"{}\x0c", "2: expected nothing after the document, got byte 0x0c"},
-    {"\xa0[]", "0: expected a value, got byte 0xa0"},
     // Structure
     {"[1}", "2: expected ',' or ']', got '}'"},
     {"{\"a\":1]", "6: expected ',' or '}', got ']'"},

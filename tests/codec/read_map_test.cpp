@@ -85,8 +85,13 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
        "msg.compression: expected \"none\" or \"gzip\", got \"\""},
       {"6.3", [](json& m) { m["msg"]["compression"] = true; },
        "msg.compression: expected a string, got true or false"},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "NONE"; }, "taken"},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "gzi"; },
+       "msg.compression: expected \"none\" or \"gzip\", got \"gzi\""},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "GZip"; },
+       "msg.data: expected a gzip member, got incorrect header check"},
       {"6.3", [](json& m) { m["msg"]["compression"] = "gzip"; },
-       "msg.data: expected one gzip member, got incorrect header check"},
+       "msg.data: expected a gzip member, got incorrect header check"},
   };
   expect_map_answers(rows, test::good_grid());
   expect_map_answers(rows, test::good_cloud());

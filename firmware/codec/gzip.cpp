@@ -51,8 +51,7 @@ icd::Refusal damaged(std::string_view path, const char* why, std::size_t after) 
 }
 
 icd::Refusal too_large(std::string_view path, std::size_t most) {
-  return {icd::Status::UnprocessableEntity,
-          icd::sentence(path, ": expected at most ", most, " bytes, got more")};
+  return {icd::Status::ContentTooLarge, icd::sentence(path, ": expected at most ", most, " bytes, got more")};
 }
 
 }  // namespace

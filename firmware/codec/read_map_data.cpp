@@ -133,8 +133,10 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::Chunk
     points = *std::move(inflated);
   }
   if (points.size() > rules.map_bytes) {
-    return icd::unprocessable(kPath, ": expected at most ", rules.map_bytes,
-                              " bytes (the setting rules.map_bytes), got ", points.size());
+    return std::unexpected(
+        icd::Refusal{icd::Status::ContentTooLarge,
+                     icd::sentence(kPath, ": expected at most ", rules.map_bytes,
+                                   " bytes (the setting rules.map_bytes), got ", points.size())});
   }
   if (auto checked = icd::check_size(cloud, points.size()); !checked) return std::unexpected(checked.error());
   const std::size_t size = points.size();

@@ -115,7 +115,7 @@ TEST(Gunzip, StopsABombOfMembersSoonAfterItsLimit) {
   Bytes bomb;
   for (int i = 0; i < 10'000; ++i) bomb.insert(bomb.end(), member.begin(), member.end());
   const auto inflated = inflate_all(icd::ChunkedBytes(bomb), 1000);
-  EXPECT_EQ(inflated.sentence, "msg.data: expected at most 1000 bytes, got more");
+  EXPECT_EQ(inflated.sentence, "413: msg.data: expected at most 1000 bytes, got more");
   EXPECT_EQ(inflated.bytes.size(), 900u);
 }
 
@@ -159,7 +159,7 @@ TEST(Gunzip, StopsAGzipBombSoonAfterItsLimit) {
   const Bytes bomb = test::compressed(Bytes(10'000'000, 0));
   ASSERT_LT(bomb.size(), 20'000U);
   const auto inflated = inflate_all(icd::ChunkedBytes(bomb), 1000);
-  EXPECT_EQ(inflated.sentence, "msg.data: expected at most 1000 bytes, got more");
+  EXPECT_EQ(inflated.sentence, "413: msg.data: expected at most 1000 bytes, got more");
   EXPECT_TRUE(inflated.bytes.empty());
 }
 
@@ -176,7 +176,7 @@ TEST(Gunzip, TakesWhatIsExactlyAtItsLimit) {
   const Bytes bytes = runs(100'000);
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size()).sentence, "taken");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size() - 1).sentence,
-            "msg.data: expected at most 99999 bytes, got more");
+            "413: msg.data: expected at most 99999 bytes, got more");
 }
 
 TEST(Gunzip, StopsWhereTheSinkRefuses) {

@@ -90,13 +90,13 @@ TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
   const IcdRow rows[] = {
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "taken"},
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1616, 0)); },
-       "msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
+       "413: msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
       {"setting and a gzip bomb",
        [](json& m) {
          m["msg"]["data"] = json::binary(test::compressed(Bytes(16'000'000, 0)));
          m["msg"]["compression"] = "gzip";
        },
-       "msg.data: expected at most 1600 bytes, got more"},
+       "413: msg.data: expected at most 1600 bytes, got more"},
   };
   expect_map_answers(rows, test::good_cloud(), rules);
 }

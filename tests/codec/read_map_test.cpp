@@ -97,6 +97,34 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
   expect_map_answers(rows, test::good_cloud());
 }
 
+TEST(ReadMapUpdate, RefusesDataOverTheLargestMapWith413InEachForm) {
+  icd::Rules rules;
+  rules.map_bytes = 1600;
+  const Bytes data(rules.map_bytes + 16, 0);
+  Bytes members = test::compressed(Bytes(rules.map_bytes, 0));
+  const Bytes last = test::compressed(Bytes(16, 0));
+  members.insert(members.end(), last.begin(), last.end());
+  json grid = test::good_grid();
+  grid["msg"]["info"]["width"] = data.size();
+  grid["msg"]["info"]["height"] = 1;
+  for (json map : {grid, test::good_cloud()}) {
+    for (const json& form :
+         {json::binary(data), json(data), json::binary(test::compressed(data)), json::binary(members)}) {
+      map["msg"]["data"] = form;
+      map["msg"]["compression"] =
+          form.is_binary() && form.get_binary().size() < data.size() ? "gzip" : "none";
+      for (const auto format : {Format::Json, Format::Cbor}) {
+        auto document = decode({.format = format}, Split::MapData,
+                               format == Format::Json ? test::as_json(map) : test::as_cbor(map),
+                               {.data_bytes = rules.map_bytes});
+        const auto refused =
+            document ? read_map_update(*std::move(document), rules).error() : document.error();
+        EXPECT_EQ(refused.status, icd::Status::ContentTooLarge) << refused.sentence;
+      }
+    }
+  }
+}
+
 /// Data that says at its end that it is of a wrong size.
 TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
   constexpr std::size_t kLarge = 4'000'000, kEnoughForTheRest = 300;  // bytes; allocations
@@ -121,7 +149,8 @@ TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
     ScarceMemory scarce(kEnoughForTheRest, ScarceMemory::kAll);
     const auto read = read_map_update(*std::move(document), rules);
     EXPECT_EQ(scarce.end(), 0u);
-    EXPECT_TRUE(test::sentence_of(read).starts_with("msg.")) << test::sentence_of(read);
+    ASSERT_FALSE(read);
+    EXPECT_TRUE(read.error().sentence.starts_with("msg.")) << read.error().sentence;
   }
 }
 

@@ -108,6 +108,13 @@ double Field::number(double least, double most) const {
   return 0;
 }
 
+double Field::float32(double least, double most) const {
+  const auto given = value_ ? number_of(*value_) : std::nullopt;
+  const double noise = std::numeric_limits<float>::epsilon() * std::max(std::abs(least), std::abs(most));
+  const bool is_noise = given && std::isfinite(noise) && *given >= least - noise && *given <= most + noise;
+  return is_noise ? std::clamp(*given, least, most) : number(least, most);
+}
+
 std::int64_t Field::whole_number(std::int64_t least, std::int64_t most) const {
   if (!value_ || !number_of(*value_)) {
     refuse_kind("a whole number");

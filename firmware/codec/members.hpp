@@ -96,7 +96,7 @@ struct NamedMember {
     if constexpr (std::same_as<Value, bool>) {
       value = field.truth();
     } else if constexpr (std::floating_point<Value>) {
-      value = is_time ? field.seconds(most) : field.number(least, most);
+      value = is_time ? field.seconds(most) : field.float32(least, most);
     } else if constexpr (std::is_enum_v<Value>) {
       value = static_cast<Value>(field.whole<Bound>(least, most));
     } else if constexpr (std::integral<Value>) {

@@ -314,6 +314,14 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"61c3", "0: a text that ends within a character"},
     {"7f61c361bcff", "1: a text that ends within a character"},
     {"a161ff00", "2: a text that is not UTF-8"},
+    // JSON: {}, {"x": 1}, an object over lines, one behind a byte order mark
+    {"7b7d", "2: the document is cut short (this looks like JSON; Content-Type says CBOR)"},
+    {"7b2278223a20317d", "8: the document is cut short (this looks like JSON; Content-Type says CBOR)"},
+    {"7b2278223a20312c202279223a317d",
+     "15: the document is cut short (this looks like JSON; Content-Type says CBOR)"},
+    {"7b0a20202278223a20312e350a7d",
+     "14: the document is cut short (this looks like JSON; Content-Type says CBOR)"},
+    {"efbbbf7b7d", "1: bytes after the document (this looks like JSON; Content-Type says CBOR)"},
 };
 
 TEST(CborBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {

@@ -213,6 +213,12 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0]["color"].erase("a"); }, "markers[0].color.a: missing"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["a"] = 2; },
        "markers[0].color.a: expected a number from 0 to 1, got 2"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000001192; }, "taken"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -1.1e-7; }, "taken"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000003; },
+       "markers[0].color.a: expected a number from 0 to 1, got 1.0000003"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -2e-7; },
+       "markers[0].color.a: expected a number from 0 to 1, got -2e-07"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["r"] = -0.5; },
        "markers[0].color.r: expected a number from 0 to 1, got -0.5"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["g"] = kNan; },
@@ -267,6 +273,14 @@ TEST(ReadMarkersUpdate, KeepsWhatItSays) {
   deleted.id = 8;
   deleted.action = icd::MarkerAction::Delete;
   EXPECT_EQ(update->markers[1], deleted);
+}
+
+TEST(ReadMarkersUpdate, GivesTheLimitForWhatAFloat32IsPastItByRounding) {
+  json message = test::good_markers();
+  message["markers"][0]["color"] = {{"r", 1.0000001192}, {"g", -1e-9}, {"b", 0.99999994}, {"a", 1.00000001}};
+  const auto update = read(read_markers_update, Format::Json, test::as_json(message));
+  ASSERT_TRUE(update.has_value());
+  EXPECT_EQ(update->markers[0].color, (icd::Color{1, 0, 0.99999994, 1}));
 }
 
 TEST(ReadMarkersUpdate, RewritesTheFrameOfEachMarkerWhereTheSettingsSaySo) {

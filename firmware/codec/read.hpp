@@ -68,8 +68,11 @@ icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& doc
 icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const icd::Rules& rules);
 /// ICD 6.6. For actions 2 and 3, type, pose, scale and color may be absent.
 icd::Checked<icd::MarkersUpdate> read_markers_update(const Document& document, const icd::Rules& rules);
+/// What a sentence says of a type that resembles one of the ten ("; did you mean Rope?"); "" of another.
+using TypeHint = std::string (*)(std::string_view type);
 /// ICD 5.2.
-icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules);
+icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules,
+                                                       TypeHint hint);
 
 /// What the Command Post answered, or why it could not be understood.
 std::expected<icd::RunStatus, std::string> read_run_status(std::string_view json);

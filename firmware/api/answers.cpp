@@ -47,8 +47,8 @@ intake::Answer refusal(icd::Status status, std::string_view sentence) {
   return guarded(intake::error_answer(status, sentence));
 }
 
-intake::Answer nothing_here() {
-  return refusal(icd::Status::NotFound, "there is nothing at this path");
+intake::Answer nothing_at(std::string_view path) {
+  return refusal(icd::Status::NotFound, icd::sentence("there is nothing at ", icd::in_quotes(path)));
 }
 
 intake::Answer wrong_method(std::string_view allowed) {

@@ -22,7 +22,7 @@ intake::Answer refused(const icd::Refusal& why);
 /// The refusal of a change of the set-up. 409 means that another is being applied (api::Setup), which takes a
 /// second: Retry-After says so.
 intake::Answer refused_change(const icd::Refusal& why);
-intake::Answer nothing_here();
+intake::Answer nothing_at(std::string_view path);
 /// 405; `allowed` as in RFC 9110 10.2.1: "GET, HEAD".
 intake::Answer wrong_method(std::string_view allowed);
 

@@ -80,7 +80,8 @@ class Api::Impl {
     }
     const auto asker = entrance_.admit(head, found.who);
     if (!asker) return refuse(turned_away(asker.error()));
-    if (!found.route) return refuse(found.allowed.empty() ? nothing_here() : wrong_method(found.allowed));
+    if (!found.route)
+      return refuse(found.allowed.empty() ? nothing_at(head.path()) : wrong_method(found.allowed));
     const Route& route = *found.route;
     if (auto why = unfit(route.body, head)) return refuse(std::move(*why));
     Call call{.head = head,

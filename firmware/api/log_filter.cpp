@@ -5,16 +5,13 @@
 #include <utility>
 
 #include "api/number_in.hpp"
+#include "icd/letter_case.hpp"
 
 namespace adit::api {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, int>, 5> kPriorities = {
     {{"error", 3}, {"warning", 4}, {"notice", 5}, {"info", 6}, {"debug", 7}}};
-
-char lower(char c) {
-  return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
 
 std::unexpected<icd::Refusal> bad_request(std::string sentence) {
   return std::unexpected(icd::Refusal{icd::Status::BadRequest, std::move(sentence)});
@@ -24,7 +21,7 @@ std::unexpected<icd::Refusal> bad_request(std::string sentence) {
 
 bool LogFilter::lets(const LogRecord& record) const {
   if (record.severity > severity || record.seq <= after) return false;
-  const auto same = [](char a, char b) { return lower(a) == lower(b); };
+  const auto same = [](char a, char b) { return icd::lower(a) == icd::lower(b); };
   return text.empty() || !std::ranges::search(record.line, text, same).empty();
 }
 

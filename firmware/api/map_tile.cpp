@@ -79,9 +79,9 @@ std::expected<std::uint64_t, intake::Answer> version_asked(const intake::Request
 
 std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& head,
                                                     std::span<const std::string> parts) {
-  if (parts[0] != "grid" && parts[0] != "cloud") return std::unexpected(nothing_here());
+  if (parts[0] != "grid" && parts[0] != "cloud") return std::unexpected(nothing_at(head.path()));
   const auto level = number_in<int>(parts[2]), x = number_in<int>(parts[3]), y = number_in<int>(parts[4]);
-  if (!level || !x || !y) return std::unexpected(nothing_here());
+  if (!level || !x || !y) return std::unexpected(nothing_at(head.path()));
   const AskedNumber at = asked_number(head, "at"), low = asked_number(head, "low"),
                     high = asked_number(head, "high");
   if (at.wrong) return std::unexpected(bad_tile("at: expected seconds since 1970"));

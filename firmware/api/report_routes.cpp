@@ -12,6 +12,7 @@
 #include "codec/read.hpp"
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
+#include "intake/type_hint.hpp"
 
 namespace adit::api {
 using codec::json;
@@ -83,7 +84,7 @@ intake::Answer ReportRoutes::compose(const std::string& body) {
 intake::Answer ReportRoutes::composed(const std::string& body) {
   const auto document = codec::decode({}, codec::Split::Nothing, body);
   if (!document) return refused(document.error());
-  const auto report = codec::read_artifact_report(*document, {});
+  const auto report = codec::read_artifact_report(*document, {}, intake::type_hint);
   if (!report) return refused(report.error());
   codec::Reading reading;
   const codec::Field root(document->root, reading);

@@ -212,7 +212,7 @@ void SessionRoutes::reset(const Call& call) {
   const Poster poster = poster_of(call);
   const auto password = read_password(call.body);
   if (!password) return poster.responder->answer(refused(password.error()));
-  if (setup_ == nullptr) return poster.responder->answer(nothing_here());
+  if (setup_ == nullptr) return poster.responder->answer(nothing_at(call.head.path()));
   if (keys_.first_start()) {
     return poster.responder->answer(
         refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));

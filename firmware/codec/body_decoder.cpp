@@ -28,15 +28,35 @@ std::size_t most_inflated(Split split, const Limits& limits) {
   return limits.text_bytes + 4 * limits.data_bytes;
 }
 
+constexpr std::size_t kTelling = 2;  // bytes
+
+/// For a refusal: what a document that begins so looks like, if that is not what its headers say. Each verdict
+/// needs no more bytes than a splitter has taken when it refuses the document.
+std::string_view other_format(Format said, std::string_view begin) {
+  if (begin.empty()) return "";
+  const auto first = static_cast<std::uint8_t>(begin.front()), second = static_cast<std::uint8_t>(begin.back());
+  if (said == Format::Cbor) {
+    const bool is_object = first == '{' && std::string_view("\"} \t\r\n").contains(static_cast<char>(second));
+    return is_object || begin == "\xEF\xBB" ? " (this looks like JSON; Content-Type says CBOR)" : "";
+  }
+  const bool is_utf_16 = first == 0 || first >= 0xFE || (first == '{' && second == 0);
+  if (is_utf_16) return " (this looks like UTF-16; expected UTF-8)";
+  const bool is_cbor = first >= 0x80 && first < 0xE0;  // RFC 8949 3.1: an array, a map, a tag
+  return is_cbor ? " (this looks like CBOR; Content-Type says JSON)" : "";
+}
+
 }  // namespace
 
 class BodyDecoder::Impl {
  public:
   Impl(BodyKind kind, Split split, const Limits& limits)
-      : data_(limits.data_bytes),
+      : format_(kind.format),
+        data_(limits.data_bytes),
         splitter_(splitter_for(kind.format, split, limits, data_)),
-        content_(kind.coding, most_inflated(split, limits),
-                 [this](std::string_view bytes) { return splitter_->feed(bytes); }) {}
+        content_(kind.coding, most_inflated(split, limits), [this](std::string_view bytes) {
+          begin_ += bytes.substr(0, kTelling - begin_.size());
+          return named(splitter_->feed(bytes));
+        }) {}
 
   icd::Checked<void> feed(std::string_view chunk) {
     if (!spent_) return spent_;
@@ -50,7 +70,7 @@ class BodyDecoder::Impl {
   icd::Checked<Document> finish() {
     if (!spent_) return std::unexpected(spent_.error());
     if (auto whole = content_.finish(); !whole) return std::unexpected(whole.error());
-    auto root = splitter_->finish();
+    auto root = named(splitter_->finish());
     if (!root) return std::unexpected(root.error());
     auto data = data_.take();
     if (!data) return std::unexpected(data.error());
@@ -58,6 +78,14 @@ class BodyDecoder::Impl {
   }
 
  private:
+  template <class T>
+  icd::Checked<T> named(icd::Checked<T> checked) const {
+    if (!checked) checked.error().sentence += other_format(format_, begin_);
+    return checked;
+  }
+
+  Format format_;
+  std::string begin_;  // of the document
   BulkData data_;
   std::unique_ptr<Splitter> splitter_;
   ContentDecoder content_;

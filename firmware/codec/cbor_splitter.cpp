@@ -2,19 +2,11 @@
 
 #include <algorithm>
 
+#include "codec/cbor_tag.hpp"
 #include "codec/cbor_value.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
-namespace {
-
-/// A tag that says what a value is for and leaves it what it is: date and time as text or number, how it is
-/// to be written in other formats, kinds of text, and that this is CBOR (RFC 8949 3.4).
-bool is_remark(std::uint64_t tag) {
-  return tag <= 1 || (tag >= 21 && tag <= 23) || (tag >= 32 && tag <= 36) || tag == 55799;
-}
-
-}  // namespace
 
 CborSplitter::CborSplitter(Split split, Most most, BulkData& data)
     : split_(split), most_(most), data_(data), path_(split) {
@@ -62,31 +54,20 @@ icd::Checked<void> CborSplitter::check_head() const {
   if (head_.indefinite() && (major == Major::Unsigned || major == Major::Negative || major == Major::Tag)) {
     return std::unexpected(fault("an indefinite length where there is none"));
   }
-  if (major == Major::Tag) {
-    if (auto known = check_tag(); !known) return known;
-  }
   if (major == Major::Simple && head_.info() == 24 && head_.argument() < 32) {
     return std::unexpected(fault("a simple value below 32 in two bytes"));
   }
   return {};
 }
 
-icd::Checked<void> CborSplitter::check_tag() const {
-  const std::uint64_t tag = head_.argument();
-  if (is_remark(tag)) return {};
-  return icd::unprocessable(
-      "byte ", head_at_, ": CBOR tag ", tag,
-      " changes the meaning of what it stands before; expected none, or one of 0, 1, 21 to "
-      "23, 32 to 36 and 55799, which do not");
-}
-
 icd::Checked<void> CborSplitter::item() {
   if (head_.is_break()) return end_of_nest();
-  if (at_key()) path_.key({});  // until it turns out to be a string
-  Into into = at_key() ? Into::Key : Into::Rest;
+  const bool is_key = at_key() && !leaves_out();
+  if (is_key) path_.key({});  // until it turns out to be a string
+  Into into = is_key ? Into::Key : Into::Rest;
   if (elements()) {
     if (auto taken = element(); !taken) return taken;
-  } else if (path_.at_data() && head_.major() != Major::Tag) {
+  } else if (path_.at_data() && head_.major() != Major::Tag && !leaves_out()) {
     if (auto diverted = divert(); !diverted) return diverted;
     into = Into::Data;
   }
@@ -97,9 +78,10 @@ icd::Checked<void> CborSplitter::item() {
     case Major::Bytes:
     case Major::Text:
       return begin_string(into);
+    case Major::Tag:
+      return tag();
     case Major::Array:
     case Major::Map:
-    case Major::Tag:
       return nest(head_.major());
     case Major::Simple:
       return simple();
@@ -113,7 +95,7 @@ icd::Checked<void> CborSplitter::item() {
 }
 
 icd::Checked<void> CborSplitter::count() {
-  if (++values_ > most_.values) return std::unexpected(too_many_values(most_.values));
+  if (!leaves_out() && ++values_ > most_.values) return std::unexpected(too_many_values(most_.values));
   return {};
 }
 
@@ -123,6 +105,20 @@ icd::Checked<void> CborSplitter::simple() {
   keep(assigned ? head_.raw() : "\xF7");
   item_ended();
   return {};
+}
+
+icd::Checked<void> CborSplitter::tag() {
+  constexpr std::string_view kInItsPlace = "\xF6";
+  const bool changes = !is_remark(head_.argument()) && !leaves_out();
+  if (changes && path_.at_data())
+    return std::unexpected(bad_data("expected a byte string, got " + tag_that_changes(head_.argument())));
+  if (changes) {
+    keep(head_.raw());
+    keep(kInItsPlace);
+  }
+  auto nested = nest(Major::Tag);
+  if (nested && changes) left_out_of_ = nests_.size();
+  return nested;
 }
 
 icd::Checked<void> CborSplitter::nest(Major kind) {
@@ -161,6 +157,7 @@ icd::Checked<void> CborSplitter::end_of_nest() {
 void CborSplitter::item_ended() {
   while (!nests_.empty()) {
     if (nests_.size() < elements_of_) elements_of_ = 0;
+    if (nests_.size() < left_out_of_) left_out_of_ = 0;
     Nest& inner = nests_.back();
     if (inner.kind == Major::Map && inner.key_next) {
       inner.key_next = false;

@@ -17,7 +17,7 @@ namespace adit::codec {
 
 /// CBOR (RFC 8949): checks that it is well-formed (section 5.3.1), that texts are UTF-8, and that nesting,
 /// tags included, is not too deep. No length is believed before its bytes are there. Tags that only remark on
-/// their value are left out; others are refused with 422.
+/// their value are left out; what stands under others is, and UnderTag in its place.
 class CborSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
@@ -43,12 +43,12 @@ class CborSplitter final : public Splitter {
   icd::Checked<void> item();
   icd::Checked<void> count();
   icd::Checked<void> check_head() const;
-  icd::Checked<void> check_tag() const;
   icd::Checked<void> begin_string(Into into);
   icd::Checked<void> chunk_of_string();
   icd::Checked<void> begin_piece();
   icd::Checked<void> end_of_piece();
   void string_ended();
+  icd::Checked<void> tag();
   icd::Checked<void> nest(Major kind);
   icd::Checked<void> simple();
   icd::Checked<void> end_of_nest();
@@ -58,8 +58,9 @@ class CborSplitter final : public Splitter {
   icd::Checked<void> element();
   icd::Checked<std::size_t> plain_elements(std::string_view in);
   bool elements() const { return elements_of_ > 0; }
+  bool leaves_out() const { return left_out_of_ > 0; }
   void keep(std::string_view raw) {
-    if (!elements()) rest_ += raw;
+    if (!elements() && !leaves_out()) rest_ += raw;
   }
   /// The array or map that the next item is in; nullptr at the top.
   const Nest* container() const;
@@ -89,8 +90,10 @@ class CborSplitter final : public Splitter {
 
   std::size_t elements_of_ = 0;  // how many nests there are in the map's data, when it is an array
 
-  /// The document without tags, with null for the map's data, and undefined for the simple values that
-  /// RFC 8949 3.3 gives no meaning.
+  std::size_t left_out_of_ = 0;  // how many nests there are with the tag whose value is left out
+
+  /// The document without tags but those, with null for the map's data, and undefined for the simple values
+  /// that RFC 8949 3.3 gives no meaning.
   std::string rest_;
 };
 

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "codec/cbor_splitter.hpp"
+#include "codec/cbor_tag.hpp"
 #include "codec/plain_elements.hpp"
 #include "icd/sentence.hpp"
 
@@ -19,6 +20,8 @@ std::string_view element_kind(const CborHead& head) {
       return "an array";
     case Major::Map:
       return "an object";
+    case Major::Tag:
+      return "a value under a CBOR tag";
     default:
       break;
   }
@@ -67,7 +70,7 @@ icd::Checked<void> CborSplitter::element() {
   if (major == Major::Simple && head_.info() >= 25 && head_.info() <= 27) {
     return data_.append_element(head_.number(), icd::number_text(head_.number()));
   }
-  if (major == Major::Tag) return {};
+  if (major == Major::Tag && is_remark(head_.argument())) return {};
   return std::unexpected(data_.bad_element(element_kind(head_)));
 }
 
@@ -93,7 +96,7 @@ icd::Checked<void> CborSplitter::begin_string(Into into) {
   chunked_ = head_.indefinite();
   into_ = into;
   key_.clear();
-  if (into_ != Into::Data) rest_ += head_.raw();
+  if (into_ != Into::Data) keep(head_.raw());
   return chunked_ ? icd::Checked<void>{} : begin_piece();
 }
 
@@ -103,7 +106,7 @@ icd::Checked<void> CborSplitter::chunk_of_string() {
   }
   if (into_ != Into::Data) {
     if (auto counted = count(); !counted) return counted;
-    rest_ += head_.raw();
+    keep(head_.raw());
   }
   if (!head_.is_break()) return begin_piece();
   string_ended();
@@ -128,7 +131,7 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
   if (into_ == Into::Data) {
     if (auto taken = data_.append(bytes_of(run)); !taken) return std::unexpected(taken.error());
   } else {
-    rest_ += run;
+    keep(run);
   }
   if (into_ == Into::Rest) path_.text(run);
   if (into_ == Into::Key && key_.size() < DataPath::kLongestKey) {

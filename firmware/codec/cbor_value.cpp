@@ -54,7 +54,9 @@ class CborReader {
         return lists_ != nullptr ? lists_->next() : array(head);  // of a Cut, it is empty
       case Major::Map:
         return object(head);
-      case Major::Tag:  // a CborSplitter leaves none
+      case Major::Tag:
+        value();  // null, which a CborSplitter puts there
+        return {Value::UnderTag{head.argument()}};
       case Major::Simple:
         break;
     }

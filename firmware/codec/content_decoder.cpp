@@ -64,9 +64,13 @@ icd::Checked<void> ContentDecoder::begin(int window_bits) {
 }
 
 icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
-  if (ended_) return std::unexpected(bad("bytes after its end"));
   std::array<char, kInflatedPiece> piece;  // not cleared: this is the hot path
   while (true) {
+    if (std::exchange(ended_, false)) {
+      if (coding_ != ContentCoding::Gzip) return std::unexpected(bad("bytes after its end"));
+      inflateReset(stream_.get());
+      is_later_ = true;
+    }
     const std::size_t some = std::min<std::size_t>(bytes.size(), std::numeric_limits<uInt>::max());
     stream_->next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));  // zlib only reads it
     stream_->avail_in = static_cast<uInt>(some);
@@ -76,10 +80,9 @@ icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
     bytes.remove_prefix(some - stream_->avail_in);
     const std::size_t size = kInflatedPiece - stream_->avail_out;
     if (auto given = give({piece.data(), size}); !given) return given;
-    if (result == Z_STREAM_END) {
-      ended_ = true;
-      return bytes.empty() ? icd::Checked<void>{} : std::unexpected(bad("bytes after its end"));
-    }
+    ended_ = result == Z_STREAM_END;
+    if (ended_ && bytes.empty()) return {};
+    if (ended_) continue;
     if (result == Z_NEED_DICT) return std::unexpected(bad("it needs a dictionary"));
     if (result == Z_MEM_ERROR) {
       return std::unexpected(icd::Refusal{icd::Status::InternalServerError, "no memory to inflate the body"});
@@ -104,7 +107,8 @@ icd::Checked<void> ContentDecoder::give(std::string_view bytes) {
 
 icd::Refusal ContentDecoder::bad(std::string_view why) const {
   const std::string_view name = coding_ == ContentCoding::Gzip ? "gzip" : "deflate";
-  return {icd::Status::BadRequest, icd::sentence("Content-Encoding ", name, ": ", why)};
+  return {icd::Status::BadRequest,
+          icd::sentence("Content-Encoding ", name, is_later_ ? ", after a whole member: " : ": ", why)};
 }
 
 }  // namespace adit::codec

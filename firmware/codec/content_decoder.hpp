@@ -13,8 +13,9 @@ struct z_stream_s;
 
 namespace adit::codec {
 
-/// Undoes a Content-Encoding (RFC 9110 8.4.1) as the bytes arrive: one gzip member, or one deflate stream
-/// with or without zlib's wrapping, and nothing after it. Refusals are 400, or 413 over the limit.
+/// Undoes a Content-Encoding (RFC 9110 8.4.1) as the bytes arrive: gzip, of one member or several (RFC
+/// 1952 2.2), or one deflate stream with or without zlib's wrapping, and nothing after it. Refusals are 400,
+/// or 413 over the limit, which is one for all members.
 class ContentDecoder {
  public:
   using Sink = std::function<icd::Checked<void>(std::string_view)>;
@@ -41,7 +42,8 @@ class ContentDecoder {
   Sink sink_;
   std::string head_;  // of a deflate body, until it tells which kind it is
   std::unique_ptr<z_stream_s, End> stream_;
-  bool ended_ = false;
+  bool ended_ = false;     // with a whole member or stream
+  bool is_later_ = false;  // not the first member
 };
 
 }  // namespace adit::codec

@@ -75,9 +75,10 @@ class CborCutter {
         return each(head, [this] { skip(); });
       case Major::Map:
         return each(head, [this] { skip(), skip(); });
+      case Major::Tag:
+        return skip();
       case Major::Unsigned:
       case Major::Negative:
-      case Major::Tag:  // a CborSplitter leaves none
       case Major::Simple:
         return;
     }

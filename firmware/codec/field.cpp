@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "codec/list.hpp"
 #include "codec/utf8.hpp"
@@ -38,6 +39,13 @@ std::string got(const Value& value) {
   if (const auto* given = std::get_if<double>(&value.is)) return icd::number_text(*given);
   return value.kind();
 }
+
+/// How ROS writes a time: ROS 1, ROS 2, and some C++ code of both. The nanoseconds tell them apart.
+struct TimeNames {
+  std::string_view seconds, nanoseconds;
+};
+constexpr TimeNames kTimeNames[] = {{"secs", "nsecs"}, {"sec", "nanosec"}, {"sec", "nsec"}};
+constexpr std::string_view kTimes = "{secs, nsecs}, {sec, nanosec} or {sec, nsec}";
 
 std::string limits(double least, double most) {
   if (std::isinf(least)) return "a finite number";
@@ -100,6 +108,13 @@ double Field::number(double least, double most) const {
   return 0;
 }
 
+double Field::float32(double least, double most) const {
+  const auto given = value_ ? number_of(*value_) : std::nullopt;
+  const double noise = std::numeric_limits<float>::epsilon() * std::max(std::abs(least), std::abs(most));
+  const bool is_noise = given && std::isfinite(noise) && *given >= least - noise && *given <= most + noise;
+  return is_noise ? std::clamp(*given, least, most) : number(least, most);
+}
+
 std::int64_t Field::whole_number(std::int64_t least, std::int64_t most) const {
   if (!value_ || !number_of(*value_)) {
     refuse_kind("a whole number");
@@ -148,12 +163,23 @@ bool Field::truth() const {
 double Field::seconds(double most) const {
   if (value_ && number_of(*value_)) return number(0, most);
   if (!is<Value::Object>()) {
-    refuse_kind("a number or {secs, nsecs}");
+    refuse_kind(icd::sentence("a number, ", kTimes));
     return 0;
   }
+  const auto has = [this](std::string_view name) {
+    return std::ranges::count(std::get<Value::Object>(value_->is), name, &Value::Member::first) > 0;
+  };
+  const auto is_spelt = [&](const TimeNames& names) { return has(names.nanoseconds); };
+  const auto count = std::ranges::count_if(kTimeNames, is_spelt);
+  if (count > 1 || (has("secs") && has("sec"))) {
+    refuse("expected one of ", kTimes, ", got members of two");
+    return 0;
+  }
+  const auto& names =
+      count == 1 ? *std::ranges::find_if(kTimeNames, is_spelt) : kTimeNames[has("sec") ? 1 : 0];
   constexpr std::uint32_t kLastNanosecond = 999'999'999;
-  const auto secs = member("secs").whole<std::uint32_t>(0, static_cast<std::uint32_t>(most));
-  const auto nsecs = member("nsecs").whole<std::uint32_t>(0, kLastNanosecond);
+  const auto secs = member(names.seconds).whole<std::uint32_t>(0, static_cast<std::uint32_t>(most));
+  const auto nsecs = member(names.nanoseconds).whole<std::uint32_t>(0, kLastNanosecond);
   return std::min(secs + nsecs / 1e9, most);
 }
 

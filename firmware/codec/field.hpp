@@ -74,6 +74,8 @@ class Field {
 
   /// A finite number from `least` to `most`; whole numbers are numbers too.
   double number(double least = -kNoLimit, double most = kNoLimit) const;
+  /// The same of what is a float32 in ROS: what its rounding has put past a limit becomes that limit.
+  double float32(double least, double most) const;
 
   /// A whole number from `least` to `most`; 80.0 is one too.
   template <class Integer>
@@ -88,8 +90,8 @@ class Field {
   bool is_empty_text() const { return characters() == std::string_view(); }
   /// A bool; 0 and 1 are tolerated.
   bool truth() const;
-  /// Seconds from 0 to `most`, the last double before a whole number of them: a number, or {secs, nsecs} as
-  /// ROS has them.
+  /// Seconds from 0 to `most`, the last double before a whole number of them: a number, or an object as
+  /// ROS 1 and ROS 2 have them: {secs, nsecs}, {sec, nanosec} or {sec, nsec}.
   double seconds(double most) const;
 
   /// 422 about this field.

@@ -42,8 +42,16 @@ class Inflater {
   z_stream stream_{};
 };
 
-icd::Refusal damaged(std::string_view path, const char* why) {
-  return icd::unprocessable(path, ": expected one gzip member, got ", why ? why : "damaged data").error();
+icd::Refusal damaged(std::string_view path, const char* why, std::size_t after) {
+  if (after > 0)
+    return icd::unprocessable(path, ": expected nothing after a gzip member but others, got ", after,
+                              " bytes more")
+        .error();
+  return icd::unprocessable(path, ": expected a gzip member, got ", why ? why : "damaged data").error();
+}
+
+icd::Refusal too_large(std::string_view path, std::size_t most) {
+  return {icd::Status::ContentTooLarge, icd::sentence(path, ": expected at most ", most, " bytes, got more")};
 }
 
 }  // namespace
@@ -135,35 +143,39 @@ std::size_t claimed_size(const icd::ChunkedBytes& bytes) {
   return claimed;
 }
 
-icd::Checked<std::size_t> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
-                                 const Sink& sink) {
+icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
+                               const Sink& sink) {
   Inflater inflater;
   z_stream& zlib = inflater.stream();
   std::vector<std::uint8_t> piece(kPiece);
-  std::size_t size = 0;
+  Gunzipped all;
   bool ended = false;
-  while (!bytes.empty() && !ended) {
+  std::size_t after = 0;  // bytes behind the last whole member
+  while (!bytes.empty()) {
     const auto chunk = bytes.pop_front();
     zlib.next_in = in_zlibs_hands(*chunk);
     zlib.avail_in = static_cast<uInt>(chunk->size());
-    do {
+    while (zlib.avail_in > 0 || (zlib.avail_out == 0 && !ended)) {
+      if (ended) {
+        after = zlib.avail_in + bytes.size();
+        inflateReset(&zlib);
+      }
       zlib.next_out = piece.data();
       zlib.avail_out = static_cast<uInt>(piece.size());
       const int code = inflate(&zlib, Z_NO_FLUSH);
       ended = code == Z_STREAM_END;
-      if (code != Z_OK && code != Z_BUF_ERROR && !ended) return std::unexpected(damaged(path, zlib.msg));
+      if (code != Z_OK && code != Z_BUF_ERROR && !ended)
+        return std::unexpected(damaged(path, zlib.msg, after));
+      if (ended) ++all.members;
       const std::size_t made = piece.size() - zlib.avail_out;
-      size += made;
-      if (size > most) return icd::unprocessable(path, ": expected at most ", most, " bytes, got more");
+      all.size += made;
+      if (all.size > most) return std::unexpected(too_large(path, most));
       if (made == 0) continue;
       if (auto taken = sink({piece.data(), made}); !taken) return std::unexpected(taken.error());
-    } while (zlib.avail_out == 0 && !ended);
+    }
   }
-  if (!ended) return std::unexpected(damaged(path, "one that is cut short"));
-  const std::size_t after = zlib.avail_in + bytes.size();
-  if (after == 0) return size;
-  return icd::unprocessable(path, ": expected one gzip member and nothing after it, got ", after,
-                            " bytes more");
+  if (!ended) return std::unexpected(damaged(path, "one that is cut short", after));
+  return all;
 }
 
 }  // namespace adit::codec

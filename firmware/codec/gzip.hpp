@@ -50,17 +50,22 @@ class Gzipper {
 /// One gzip member with nothing after it. `bytes` is consumed chunk by chunk.
 icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy);
 
-/// How much a gzip member says that it holds (ISIZE, RFC 1952 2.3.1, modulo 2^32): what gunzip() has passed
-/// holds that. 0 for what is too short to say it.
+/// How much the last gzip member says that it holds (ISIZE, RFC 1952 2.3.1, modulo 2^32): one that gunzip()
+/// has passed holds that. 0 for what is too short to say it.
 std::size_t claimed_size(const icd::ChunkedBytes& bytes);
 
 /// Takes what was inflated, piece by piece, and may refuse it.
 using Sink = std::function<icd::Checked<void>(std::span<const std::uint8_t>)>;
 
-/// Inflates exactly one gzip member into `sink` and returns the size of what came out, consuming `bytes`.
-/// Refuses, with 422 about the field at `path`: what is no gzip, is cut short, has a bad checksum, has
-/// anything after its end (which hangs a Command Post), or grows over `most` bytes.
-icd::Checked<std::size_t> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
-                                 const Sink& sink);
+/// What came out, in bytes, and of how many members.
+struct Gunzipped {
+  std::size_t size = 0, members = 0;
+};
+
+/// Inflates gzip, one member or several (RFC 1952 2.2), into `sink`, consuming `bytes`. Refuses, with 422
+/// about the field at `path`: what is no gzip, is cut short, has a bad checksum, or has anything else after
+/// its last member; with 413 what grows over `most` bytes in all.
+icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
+                               const Sink& sink);
 
 }  // namespace adit::codec

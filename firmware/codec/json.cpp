@@ -22,6 +22,7 @@ struct Writer {
   void operator()(double value) const { text += std::isfinite(value) ? icd::real_text(value) : "null"; }
   void operator()(const std::string& value) const { text += json_string(value); }
   void operator()(const Value::Bytes&) const { text += "null"; }
+  void operator()(Value::UnderTag) const { text += "null"; }
   void operator()(Value::SplitOut) const { text += "null"; }
 
   void operator()(const Value::Array& array) const {

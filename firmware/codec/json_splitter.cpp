@@ -54,6 +54,13 @@ icd::Checked<Value> JsonSplitter::finish() {
 }
 
 icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  const bool may_be_mark = mark_ == at_ && mark_ < kByteOrderMark.size();
+  if (may_be_mark && in[0] == kByteOrderMark[mark_]) {
+    ++mark_;
+    return 1;
+  }
+  if (may_be_mark && mark_ > 0) return std::unexpected(expected("a byte order mark", in[0]));
   switch (token_) {
     case Token::None:
       return structure(in);

@@ -16,7 +16,7 @@
 
 namespace adit::codec {
 
-/// JSON (RFC 8259) as a pushdown automaton.
+/// JSON (RFC 8259) as a pushdown automaton. A byte order mark before it is ignored (8.1).
 class JsonSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
@@ -74,6 +74,7 @@ class JsonSplitter final : public Splitter {
   std::size_t depth_ = 0;
   std::bitset<BodyDecoder::kDeepest> objects_;  // of the open brackets, which are braces
   std::size_t at_ = 0;                          // bytes taken so far
+  std::size_t mark_ = 0;                        // of the byte order mark
 
   JsonString string_;
   std::string key_;  // its first characters

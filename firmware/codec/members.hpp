@@ -49,7 +49,7 @@ struct NamedMember {
   Bound least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();  // of a number
   Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();  // of a number; how many; how long
   std::string_view unit = "";  // of `most` in a sentence: " bytes"
-  bool is_time = false;        // seconds, or {secs, nsecs}
+  bool is_time = false;        // Field::seconds()
 
   /// The same but for one of these.
   template <class Value>
@@ -96,7 +96,7 @@ struct NamedMember {
     if constexpr (std::same_as<Value, bool>) {
       value = field.truth();
     } else if constexpr (std::floating_point<Value>) {
-      value = is_time ? field.seconds(most) : field.number(least, most);
+      value = is_time ? field.seconds(most) : field.float32(least, most);
     } else if constexpr (std::is_enum_v<Value>) {
       value = static_cast<Value>(field.whole<Bound>(least, most));
     } else if constexpr (std::integral<Value>) {

@@ -19,9 +19,9 @@
 namespace adit::codec {
 
 /// Documents to messages that have passed every rule of the ICD. Each refusal is 422 and names the field.
-/// Tolerated: stamps and lifetimes as {secs, nsecs}, integers for floats and whole floats for integers,
-/// members that the ICD does not have, all-zero quaternions, absent or empty map names and frames, CBOR byte
-/// strings of UTF-8 for text.
+/// Tolerated: stamps and lifetimes as ROS has them (Field::seconds()), integers for floats and whole floats
+/// for integers, members that the ICD does not have, all-zero quaternions, absent or empty map names and
+/// frames, CBOR byte strings of UTF-8 for text.
 
 /// ICD 6.3, 6.4. Inflates `data` where the message says it is compressed, checks it, and leaves a grid's
 /// cells as one gzip member and a cloud's points raw and little-endian. CPU-bound in the size of the map:
@@ -68,8 +68,11 @@ icd::Checked<InParts<icd::MarkersUpdate>> read_markers_parts(const Document& doc
 icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const icd::Rules& rules);
 /// ICD 6.6. For actions 2 and 3, type, pose, scale and color may be absent.
 icd::Checked<icd::MarkersUpdate> read_markers_update(const Document& document, const icd::Rules& rules);
+/// What a sentence says of a type that resembles one of the ten ("; did you mean Rope?"); "" of another.
+using TypeHint = std::string (*)(std::string_view type);
 /// ICD 5.2.
-icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules);
+icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules,
+                                                       TypeHint hint);
 
 /// What the Command Post answered, or why it could not be understood.
 std::expected<icd::RunStatus, std::string> read_run_status(std::string_view json);

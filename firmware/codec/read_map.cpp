@@ -5,6 +5,7 @@
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
 #include "codec/write.hpp"
+#include "icd/letter_case.hpp"
 #include "icd/require.hpp"
 
 namespace adit::codec {
@@ -18,8 +19,9 @@ std::optional<icd::RobotName> read_map_name(const Field& name, const icd::Rules&
 icd::Compression read_compression(const Field& field, DataForm form) {
   if (field.is_absent()) return icd::Compression::None;
   const std::string_view scheme = field.text();
-  if (scheme == "none") return icd::Compression::None;
-  if (scheme != "gzip") field.refuse("expected \"none\" or \"gzip\", got ", icd::in_quotes(scheme));
+  if (icd::same_but_for_case(scheme, "none")) return icd::Compression::None;
+  if (!icd::same_but_for_case(scheme, "gzip"))
+    field.refuse("expected \"none\" or \"gzip\", got ", icd::in_quotes(scheme));
   if (form == DataForm::Integers) field.refuse("expected \"none\" with data as an array, got \"gzip\"");
   return icd::Compression::Gzip;
 }

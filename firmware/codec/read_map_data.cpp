@@ -46,39 +46,45 @@ bool has_plain_head(const icd::ChunkedBytes& member) {
 }
 
 /// What it holds is proven by then. Its sender's member stays if it is smaller: many are made with more care.
-/// Where the data does not claim to have the right size it is refused in the end, and nothing of it is kept.
+/// If the data does not claim to have the right size, it is several members or refused in the end: nothing of
+/// it is kept before that is known.
 icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               const icd::Rules& rules) {
-  const bool is_kept = claimed_size(data) == icd::cells_of(grid);
-  const icd::ChunkedBytes as_sent = data;  // the same chunks
-  CellCheck check(grid);
-  Gzipper gzipper(GzipStrategy::Runs);
-  const auto sink = [&](std::span<const std::uint8_t> cells) {
-    auto checked = check.take(cells);
-    if (checked && is_kept) gzipper.feed(cells);
-    return checked;
-  };
-  const auto inflated = gunzip(std::move(data), rules.map_bytes, kPath, sink);
-  if (!inflated) return std::unexpected(inflated.error());
-  if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
-  icd::MapData ours = pressed(gzipper, grid);
-  if (as_sent.size() < ours.bytes.size() && has_plain_head(as_sent)) ours.bytes = as_sent;
-  return ours;
+  for (bool is_kept = claimed_size(data) == icd::cells_of(grid);; is_kept = true) {
+    CellCheck check(grid);
+    Gzipper gzipper(GzipStrategy::Runs);
+    const auto sink = [&](std::span<const std::uint8_t> cells) {
+      auto checked = check.take(cells);
+      if (checked && is_kept) gzipper.feed(cells);
+      return checked;
+    };
+    const auto inflated = gunzip(data, rules.map_bytes, kPath, sink);
+    if (!inflated) return std::unexpected(inflated.error());
+    if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
+    if (!is_kept) continue;
+    icd::MapData ours = pressed(gzipper, grid);
+    const bool is_one = inflated->members == 1;  // what follows a member hangs a Command Post
+    if (is_one && data.size() < ours.bytes.size() && has_plain_head(data)) ours.bytes = std::move(data);
+    return ours;
+  }
 }
 
-icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,
+icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, const icd::ChunkedBytes& data,
                                                 const icd::Rules& rules) {
-  const std::size_t claimed = claimed_size(data);
-  const bool is_kept = claimed <= rules.map_bytes && icd::check_size(cloud, claimed);  // as of a grid
-  icd::ChunkedBytes points;
-  const auto sink = [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-    if (is_kept && piece.size() <= claimed - points.size()) points.append(piece);
-    return {};
-  };
-  const auto size = gunzip(std::move(data), rules.map_bytes, kPath, sink);
-  if (!size) return std::unexpected(size.error());
-  if (auto checked = icd::check_size(cloud, *size); !checked) return std::unexpected(checked.error());
-  return points;
+  for (std::size_t size = claimed_size(data);;) {  // or, of several members, what they turn out to hold
+    const bool is_kept = size <= rules.map_bytes && icd::check_size(cloud, size);  // as of a grid
+    icd::ChunkedBytes points;
+    const auto sink = [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+      if (is_kept && piece.size() <= size - points.size()) points.append(piece);
+      return {};
+    };
+    const auto inflated = gunzip(data, rules.map_bytes, kPath, sink);
+    if (!inflated) return std::unexpected(inflated.error());
+    if (auto checked = icd::check_size(cloud, inflated->size); !checked)
+      return std::unexpected(checked.error());
+    if (points.size() == inflated->size) return points;
+    size = inflated->size;
+  }
 }
 
 }  // namespace
@@ -109,7 +115,7 @@ icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::Chunk
 icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               icd::Compression compression, const PressedCells& pressed) {
   if (compression == icd::Compression::Gzip) {  // as gunzip() would say it: these do not begin as gzip does
-    return icd::unprocessable(kPath, ": expected one gzip member, got ",
+    return icd::unprocessable(kPath, ": expected a gzip member, got ",
                               pressed.count < 2 ? "one that is cut short" : "incorrect header check");
   }
   if (auto checked = icd::check_size(grid, pressed.count); !checked) return std::unexpected(checked.error());
@@ -122,13 +128,15 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::Chunk
                                        icd::Compression compression, const icd::Rules& rules) {
   icd::ChunkedBytes points = std::move(data);
   if (compression == icd::Compression::Gzip) {
-    auto inflated = inflated_points(cloud, std::move(points), rules);
+    auto inflated = inflated_points(cloud, points, rules);
     if (!inflated) return std::unexpected(inflated.error());
     points = *std::move(inflated);
   }
   if (points.size() > rules.map_bytes) {
-    return icd::unprocessable(kPath, ": expected at most ", rules.map_bytes,
-                              " bytes (the setting rules.map_bytes), got ", points.size());
+    return std::unexpected(
+        icd::Refusal{icd::Status::ContentTooLarge,
+                     icd::sentence(kPath, ": expected at most ", rules.map_bytes,
+                                   " bytes (the setting rules.map_bytes), got ", points.size())});
   }
   if (auto checked = icd::check_size(cloud, points.size()); !checked) return std::unexpected(checked.error());
   const std::size_t size = points.size();

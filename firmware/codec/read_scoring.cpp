@@ -17,14 +17,15 @@ bool is_forwardable(std::string_view type) {
   return !type.empty() && type.size() <= kLongestUnknownType && std::ranges::all_of(type, printable);
 }
 
-std::string_view read_type(const Field& field, const icd::Rules& rules) {
+std::string_view read_type(const Field& field, const icd::Rules& rules, TypeHint hint) {
   const std::string_view type = field.text();
   if (!icd::artifact_type(type).empty()) return type;
   if (!rules.forward_unknown_types) {
     std::string ten;
     for (const auto known : icd::kArtifactTypes) ten += icd::sentence(known, ", ");
-    const char* const cure =
-        is_forwardable(type) ? " (the setting rules.forward_unknown_types takes others)" : "";
+    std::string cure = hint(type);  // or the setting, which would waste a report on one that is misspelt
+    if (cure.empty() && is_forwardable(type))
+      cure = " (the setting rules.forward_unknown_types takes others)";
     field.refuse("expected one of ", ten, "got ", icd::in_quotes(type), cure);
   } else if (!is_forwardable(type)) {
     field.refuse("expected 1 to ", kLongestUnknownType, " printable ASCII characters, got ",
@@ -89,12 +90,13 @@ icd::ReportReply reply_of(const Field& body) {
 
 }  // namespace
 
-icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules) {
+icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules,
+                                                       TypeHint hint) {
   Reading reading;
   icd::ArtifactReport report;
   const Field body(document.root, reading);
   read_members(body, report.position, rules);
-  report.type = read_type(body.member("type"), rules);
+  report.type = read_type(body.member("type"), rules, hint);
   return reading.outcome(std::move(report));
 }
 

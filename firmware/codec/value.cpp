@@ -2,14 +2,17 @@
 
 #include <array>
 
+#include "codec/cbor_tag.hpp"
+
 namespace adit::codec {
 
-const char* Value::kind() const {
-  constexpr std::array<const char*, 11> kKinds = {
-      "null",          "true or false",   "a whole number", "a whole number", "a number", "a string",
-      "a byte string", "split-out bytes", "an array",       "an object",      "an array"};
+std::string Value::kind() const {
+  constexpr std::array<const char*, 12> kKinds = {
+      "null", "true or false",   "a whole number", "a whole number", "a number", "a string", "a byte string",
+      "",     "split-out bytes", "an array",       "an object",      "an array"};
   static_assert(kKinds.size() == std::variant_size_v<decltype(is)>);
-  return kKinds[is.index()];
+  const auto* const under = std::get_if<UnderTag>(&is);
+  return under == nullptr ? kKinds[is.index()] : tag_that_changes(under->tag);
 }
 
 bool operator==(const Value& one, const Value& other) {

@@ -18,6 +18,12 @@ struct Value {
     std::vector<std::uint8_t> bytes;
     friend bool operator==(const Bytes&, const Bytes&) = default;
   };
+  /// Stands where there is a value under a tag of CBOR that changes its meaning. For a member that nobody
+  /// asks for.
+  struct UnderTag {
+    std::uint64_t tag = 0;
+    friend bool operator==(UnderTag, UnderTag) = default;
+  };
   /// Stands where the map's `data` was split out (Document::data holds it).
   struct SplitOut {
     friend bool operator==(SplitOut, SplitOut) = default;
@@ -26,12 +32,13 @@ struct Value {
   using Member = std::pair<std::string, Value>;  // CBOR keys that are no text are left out
   using Object = std::vector<Member>;
 
-  std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, SplitOut, Array,
-               Object, std::shared_ptr<const List>>  // an array, where it is left as text (Split::Lists)
+  std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, UnderTag,
+               SplitOut, Array, Object,
+               std::shared_ptr<const List>>  // an array, where it is left as text (Split::Lists)
       is = nullptr;
 
   /// "a string", "a whole number", "null", ...: for sentences.
-  const char* kind() const;
+  std::string kind() const;
 
   /// The same kind, and the same value; lists that are left as text only where they are one.
   friend bool operator==(const Value& one, const Value& other);

@@ -75,8 +75,9 @@ Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
   const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
   if (cells <= rules.map_bytes) return {};
   const char* const cure = cells <= kMostMapBytes ? " (the setting rules.map_bytes)" : "";
-  return unprocessable("msg.info.width: expected at most ", rules.map_bytes, " cells", cure, ", got ",
-                       grid.width, " x ", grid.height, " = ", cells);
+  return std::unexpected(Refusal{
+      Status::ContentTooLarge, sentence("msg.info.width: expected at most ", rules.map_bytes, " cells", cure,
+                                        ", got ", grid.width, " x ", grid.height, " = ", cells)});
 }
 
 Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes) {

@@ -19,6 +19,7 @@ enum class Status : std::uint16_t {
   MethodNotAllowed = 405,
   RequestTimeout = 408,
   Conflict = 409,
+  LengthRequired = 411,
   ContentTooLarge = 413,
   UnprocessableEntity = 422,
   TooManyRequests = 429,

@@ -34,6 +34,11 @@ std::size_t count_of(std::string_view text, char letter) {
 
 }  // namespace
 
+HeadChecker::Place HeadChecker::place_of(std::string_view so_far, std::string_view part) {
+  return {.at = part.empty() ? 0 : static_cast<std::size_t>(part.data() - so_far.data()),
+          .size = part.size()};
+}
+
 HeadChecker::Verdict HeadChecker::look(std::string_view so_far) {
   while (verdict_ == Verdict::More) {
     const auto end = std::min(so_far.find('\n', looked_at_), so_far.size());
@@ -96,7 +101,7 @@ void HeadChecker::target(std::string_view so_far, std::string_view method, std::
   } else if (same_word(target.substr(0, kScheme.size()), kScheme)) {
     const std::string_view after = target.substr(kScheme.size());
     const std::string_view authority = after.substr(0, after.find_first_of("/?#"));
-    authority_ = {.at = static_cast<std::size_t>(authority.data() - so_far.data()), .size = authority.size()};
+    authority_ = place_of(so_far, authority);
   } else if (!target.starts_with('/') && (target != "*" || method != "OPTIONS")) {
     refuse("request target: expected a path, percent-encoded");
   }
@@ -117,6 +122,24 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
     transfer_encoding(field->value);
   } else if (same_word(field->name, "Cookie")) {
     cookie(field->value);
+  } else {
+    single(so_far, *field);
+  }
+}
+
+/// RFC 9110 5.3: a field that is no list stands once. The same again is read in one way by everybody, but of
+/// Content-Encoding (8.4), a list: there it would be another coding over the first.
+void HeadChecker::single(std::string_view so_far, const FieldLine& field) {
+  static constexpr std::array<std::string_view, 4> kNames = {"Content-Type", "Authorization", "Origin",
+                                                             "Content-Encoding"};
+  const auto* const name =
+      std::ranges::find_if(kNames, [&](std::string_view each) { return same_word(each, field.name); });
+  if (name == kNames.end()) return;
+  auto& before = single_[static_cast<std::size_t>(name - kNames.begin())];
+  if (!before) {
+    before = place_of(so_far, field.value);
+  } else if (*name == kNames.back() || so_far.substr(before->at, before->size) != field.value) {
+    refuse(icd::sentence(*name, ": given twice"));
   }
 }
 
@@ -127,8 +150,7 @@ void HeadChecker::host(std::string_view so_far, std::string_view value) {
   } else if (!is_authority(value)) {
     refuse("Host: expected an address or a name, and a port or none");
   } else {
-    host_ = {.at = value.empty() ? 0 : static_cast<std::size_t>(value.data() - so_far.data()),
-             .size = value.size()};
+    host_ = place_of(so_far, value);
   }
 }
 

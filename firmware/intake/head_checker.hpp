@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include "icd/status.hpp"
+#include "intake/field_text.hpp"
 
 namespace adit::intake {
 
@@ -42,11 +44,13 @@ class HeadChecker {
   struct Place {
     std::size_t at = 0, size = 0;
   };
+  static Place place_of(std::string_view so_far, std::string_view part);
 
   void line(std::string_view so_far, std::string_view line);
   void request_line(std::string_view so_far, std::string_view line);
   void target(std::string_view so_far, std::string_view method, std::string_view target);
   void field(std::string_view so_far, std::string_view line);
+  void single(std::string_view so_far, const FieldLine& field);
   void host(std::string_view so_far, std::string_view value);
   void content_length(std::string_view value);
   void transfer_encoding(std::string_view value);
@@ -64,6 +68,7 @@ class HeadChecker {
   bool is_head_method_ = false;
   std::optional<Place> authority_;  // of a target in absolute form
   std::optional<Place> host_;
+  std::array<std::optional<Place>, 4> single_;  // the values of those that may stand once
   bool has_length_ = false, has_coding_ = false;
   std::size_t parts_ = 0, cookie_bytes_ = 0;
   Framing framing_;

@@ -1,10 +1,10 @@
 #include "intake/icd_routes.hpp"
 
-#include <algorithm>
 #include <string>
 #include <utility>
 
 #include "codec/body_decoder.hpp"
+#include "icd/letter_case.hpp"
 #include "icd/sentence.hpp"
 #include "intake/map_upload.hpp"
 #include "intake/markers_upload.hpp"
@@ -53,8 +53,7 @@ icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
 icd::Checked<bool> resubmits_of(const RequestHead& head) {
   const std::string_view word = head.header("Adit-Resubmit");
   if (word.empty()) return false;
-  const auto is = [](char one, char other) { return (one | 0x20) == other; };
-  if (std::ranges::equal(word, std::string_view("yes"), is)) return true;
+  if (icd::same_but_for_case(word, "yes")) return true;
   return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::in_quotes(word));
 }
 
@@ -109,7 +108,7 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
                                                  : "Authorization: expected Bearer and the team's token"});
     return nullptr;
   }
-  if (head.method() != icd::method_of(*uri)) {
+  if (!is_allowed(*uri, head.method())) {
     visit.refuse({icd::Status::MethodNotAllowed, icd::sentence("method: expected ", icd::method_of(*uri))},
                  {{"Allow", allowed_methods(*uri)}});
     return nullptr;
@@ -124,6 +123,10 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
                                              std::shared_ptr<Flow> flow) {
   if (stopping_ && visit.uri != icd::Uri::ArtifactReports) {
     visit.refuse(stops());
+    return nullptr;
+  }
+  if (head.content_length() == 0 && head.header("Content-Length").empty()) {  // RFC 9110 15.5.12
+    visit.refuse({icd::Status::LengthRequired, "Content-Length: missing, and no body came in chunks"});
     return nullptr;
   }
   const auto kind = kind_of(visit.uri, head);

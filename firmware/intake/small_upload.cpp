@@ -5,6 +5,7 @@
 #include "codec/read.hpp"
 #include "intake/memory_given_back.hpp"
 #include "intake/take_parts.hpp"
+#include "intake/type_hint.hpp"
 
 namespace adit::intake {
 
@@ -35,7 +36,7 @@ void SmallUpload::on_end() {
 void SmallUpload::give_to_desk(const codec::Document& document) {
   if (visit_.uri == icd::Uri::StateUpdate) {
     take_parts(visit_, codec::read_state_parts(document, rules_));
-  } else if (const auto report = codec::read_artifact_report(document, rules_); report) {
+  } else if (const auto report = codec::read_artifact_report(document, rules_, type_hint); report) {
     visit_.desk.take(*report, visit_.sender, visit_.responder);
   } else {
     visit_.refuse(report.error());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "icd/sentence.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::intake {
@@ -56,8 +57,12 @@ std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder) {
   return std::make_shared<CorsResponder>(std::move(responder));
 }
 
+bool is_allowed(icd::Uri uri, std::string_view method) {
+  return method == icd::method_of(uri) || (method == "HEAD" && icd::method_of(uri) == "GET");
+}
+
 std::string allowed_methods(icd::Uri uri) {
-  return std::string(icd::method_of(uri)) + ", OPTIONS";
+  return icd::sentence(icd::method_of(uri), is_allowed(uri, "HEAD") ? ", HEAD" : "", ", OPTIONS");
 }
 
 Answer preflight_answer(icd::Uri uri, std::string_view asked_headers) {

@@ -26,7 +26,9 @@ std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder);
 /// What a CORS preflight is answered (Fetch, CORS protocol): the methods of `uri`, and the headers asked for.
 Answer preflight_answer(icd::Uri uri, std::string_view asked_headers);
 
-/// "GET, OPTIONS"
+/// Whether `uri` is asked by that method: HEAD goes with GET (RFC 9110 9.3.2).
+bool is_allowed(icd::Uri uri, std::string_view method);
+/// "GET, HEAD, OPTIONS"
 std::string allowed_methods(icd::Uri uri);
 
 }  // namespace adit::intake

@@ -31,11 +31,12 @@ bool one_begins_the_other(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> known) {
+std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> known,
+                                        std::size_t few) {
   static constexpr std::size_t kLongest = 64;  // no word is that long, and a hostile one costs nothing
   if (word.size() > kLongest) return std::nullopt;
   std::optional<std::string_view> best;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t least = std::max(few, word.size() / 3) + 1;
   for (const std::string_view candidate : known) {
     const std::size_t apart = one_begins_the_other(word, candidate) ? 1 : distance(word, candidate);
     if (apart < least && apart < candidate.size()) {

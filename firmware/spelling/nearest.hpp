@@ -7,8 +7,10 @@
 
 namespace adit::spelling {
 
-/// The one of `known` that `word` was likely meant to be: a few letters differ, or one begins with the other.
-std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> known);
+/// The one of `known` that `word` was likely meant to be: a third of its letters differ at most, or `few`, or
+/// one begins with the other.
+std::optional<std::string_view> nearest(std::string_view word, std::span<const std::string_view> known,
+                                        std::size_t few = 2);
 
 /// "; did you mean status?", or "" where none of `known` is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);

@@ -27,6 +27,9 @@ const std::vector<CborCase> kGoodCborData = {
     {map_with("5fff"), ""},
     {map_with("5f40404161ff"), "a"},
     {map_with("c1d9d9f743616263"), "abc"},
+    {map_with("d84043616263"), "abc"},  // RFC 8746: uint8, clamped uint8 and sint8
+    {map_with("d84443616263"), "abc"},
+    {map_with("d8485f43616263ff"), "abc"},
     {from_hex("a1 436d7367 a1 446461746141 61"), "a"},  // "msg" and "data" as byte strings
     {map_with("80"), "", DataForm::Integers},
     {map_with("9fff"), "", DataForm::Integers},
@@ -46,6 +49,8 @@ const std::vector<CborCase> kGoodCborData = {
     {from_hex("d9d9f7 a1 c0 636d7367 c1 a1 d7 6464617461 d823 4161"), "a"},
     {from_hex("bf 6161 5f4100ff 636d7367 bf 6162 9f01ff 6464617461 4161 6163 a0 ff 6164 f6 ff"), "a"},
     {from_hex("a2 a1 6464617461 00 00 636d7367 a2 81 6464617461 00 6464617461 4161"), "a"},
+    {from_hex("d90103 a1 636d7367 d90113 a1 6464617461 d840 4161"), "a"},  // maps of JavaScript and of C++
+    {from_hex("a2 6178 c4 a1 636d7367 a1 6464617461 4162 636d7367 a1 6464617461 4161"), "a"},
 };
 
 TEST(CborData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
@@ -102,7 +107,12 @@ TEST(CborData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
       {"814100", "[0]: expected an integer from -1 to 255, got a byte string"},
       {"816100", "[0]: expected an integer from -1 to 255, got a string"},
       {"8180", "[0]: expected an integer from -1 to 255, got an array"},
-      {"81c0a0", "[0]: expected an integer from -1 to 255, got an object"}};
+      {"81c0a0", "[0]: expected an integer from -1 to 255, got an object"},
+      {"82 00 c24100", "[1]: expected an integer from -1 to 255, got a value under a CBOR tag"},
+      {"d84542 6162",
+       ": expected a byte string, got CBOR tag 69, which changes the meaning of what it stands before"},
+      {"c0d85544 00000000",
+       ": expected a byte string, got CBOR tag 85, which changes the meaning of what it stands before"}};
   for (const auto& [hex, why] : cases) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document = decode_in_chunks(kCborBody, Split::MapData, map_with(hex), size);

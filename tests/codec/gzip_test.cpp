@@ -26,6 +26,7 @@ Bytes runs(std::size_t size) {
 /// What gunzip gives, or its refusal's sentence as bytes.
 struct Inflated {
   Bytes bytes;
+  std::size_t members = 0;
   std::string sentence;
 };
 
@@ -36,7 +37,8 @@ Inflated inflate_all(const icd::ChunkedBytes& bytes, std::size_t most = 1U << 24
     return icd::Checked<void>();
   });
   inflated.sentence = test::sentence_of(size);
-  EXPECT_EQ(size.value_or(inflated.bytes.size()), inflated.bytes.size());
+  if (size) EXPECT_EQ(size->size, inflated.bytes.size());
+  if (size) inflated.members = size->members;
   return inflated;
 }
 
@@ -85,28 +87,57 @@ TEST(Gunzip, RefusesWhatIsCutShortAnywhere) {
   const Bytes member = test::compressed(runs(1000));
   for (std::size_t size = 0; size < member.size(); ++size) {
     EXPECT_EQ(inflate_all(icd::ChunkedBytes(std::span(member).first(size))).sentence,
-              "msg.data: expected one gzip member, got one that is cut short")
+              "msg.data: expected a gzip member, got one that is cut short")
         << size;
   }
 }
 
-TEST(Gunzip, RefusesAnythingAfterTheMember) {
+Bytes joined(std::initializer_list<Bytes> parts) {
+  Bytes all;
+  for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+TEST(Gunzip, GivesWhatSeveralMembersHoldTogetherHoweverTheyAreCut) {  // RFC 1952 2.2
+  const Bytes one = runs(100'000), other = noise(70'000, 1), nothing = test::compressed({});
+  const Bytes members =
+      joined({nothing, test::compressed(one), nothing, nothing, test::compressed(other), nothing});
+  for (const std::size_t piece : {1, 7, 1000, 65536}) {
+    const auto inflated = inflate_all(in_pieces(members, piece));
+    EXPECT_EQ(inflated.sentence, "taken") << piece;
+    EXPECT_EQ(inflated.bytes, joined({one, other})) << piece;
+    EXPECT_EQ(inflated.members, 6u) << piece;
+  }
+}
+
+TEST(Gunzip, StopsABombOfMembersSoonAfterItsLimit) {
+  const Bytes member = test::compressed(Bytes(900, 0));
+  Bytes bomb;
+  for (int i = 0; i < 10'000; ++i) bomb.insert(bomb.end(), member.begin(), member.end());
+  const auto inflated = inflate_all(icd::ChunkedBytes(bomb), 1000);
+  EXPECT_EQ(inflated.sentence, "413: msg.data: expected at most 1000 bytes, got more");
+  EXPECT_EQ(inflated.bytes.size(), 900u);
+}
+
+TEST(Gunzip, RefusesAnythingElseAfterAMember) {
   const Bytes member = test::compressed(runs(1000));
-  for (const Bytes& more : {Bytes{0}, Bytes{1, 2, 3}, member, Bytes(100'000, 0)}) {
-    Bytes both = member;
-    both.insert(both.end(), more.begin(), more.end());
-    const std::string sentence = "msg.data: expected one gzip member and nothing after it, got " +
+  const Bytes cut(member.begin(), member.end() - 1);
+  Bytes damaged = member;
+  damaged[damaged.size() - 5] ^= 1;
+  for (const Bytes& more : {Bytes{0}, Bytes{1, 2, 3}, cut, damaged, Bytes(100'000, 0)}) {
+    const Bytes both = joined({member, member, more});
+    const std::string sentence = "msg.data: expected nothing after a gzip member but others, got " +
                                  std::to_string(more.size()) + " bytes more";
     EXPECT_EQ(inflate_all(icd::ChunkedBytes(both)).sentence, sentence);
     EXPECT_EQ(inflate_all(in_pieces(both, 5)).sentence, sentence);
-    icd::ChunkedBytes apart{member};
+    icd::ChunkedBytes apart{joined({member, member})};
     apart.append(Bytes(more));
     EXPECT_EQ(inflate_all(apart).sentence, sentence);
   }
 }
 
 TEST(Gunzip, RefusesWhatIsNoGzip) {
-  const std::string start = "msg.data: expected one gzip member, got ";
+  const std::string start = "msg.data: expected a gzip member, got ";
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(Bytes(100, 'a'))).sentence, start + "incorrect header check");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(runs(100), 15))).sentence,
             start + "incorrect header check");
@@ -117,18 +148,18 @@ TEST(Gunzip, RefusesABadChecksumAndABadLength) {
   Bytes bad_sum = test::compressed(runs(1000));
   bad_sum[bad_sum.size() - 8] ^= 1;
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(bad_sum)).sentence,
-            "msg.data: expected one gzip member, got incorrect data check");
+            "msg.data: expected a gzip member, got incorrect data check");
   Bytes bad_length = test::compressed(runs(1000));
   bad_length[bad_length.size() - 4] ^= 1;
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(bad_length)).sentence,
-            "msg.data: expected one gzip member, got incorrect length check");
+            "msg.data: expected a gzip member, got incorrect length check");
 }
 
 TEST(Gunzip, StopsAGzipBombSoonAfterItsLimit) {
   const Bytes bomb = test::compressed(Bytes(10'000'000, 0));
   ASSERT_LT(bomb.size(), 20'000U);
   const auto inflated = inflate_all(icd::ChunkedBytes(bomb), 1000);
-  EXPECT_EQ(inflated.sentence, "msg.data: expected at most 1000 bytes, got more");
+  EXPECT_EQ(inflated.sentence, "413: msg.data: expected at most 1000 bytes, got more");
   EXPECT_TRUE(inflated.bytes.empty());
 }
 
@@ -145,7 +176,7 @@ TEST(Gunzip, TakesWhatIsExactlyAtItsLimit) {
   const Bytes bytes = runs(100'000);
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size()).sentence, "taken");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size() - 1).sentence,
-            "msg.data: expected at most 99999 bytes, got more");
+            "413: msg.data: expected at most 99999 bytes, got more");
 }
 
 TEST(Gunzip, StopsWhereTheSinkRefuses) {

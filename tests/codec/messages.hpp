@@ -47,12 +47,12 @@ Bytes compressed(const Bytes& bytes, int window = 31);
 /// The one gzip member that `bytes` is; fails the test where it is none, or where anything follows it.
 Bytes only_member(const Bytes& bytes);
 
-/// The sentence of a refusal, which must be 422; "taken" for none.
+/// The sentence of a refusal, behind its status if that is not 422; "taken" for none.
 template <class T>
 std::string sentence_of(const icd::Checked<T>& checked) {
   if (checked) return "taken";
   if (checked.error().status != icd::Status::UnprocessableEntity)
-    return "not 422: " + checked.error().sentence;
+    return std::to_string(static_cast<int>(checked.error().status)) + ": " + checked.error().sentence;
   return checked.error().sentence;
 }
 

@@ -79,7 +79,7 @@ TEST(StateParts, AreRefusedAsAWholeWhereNoneIsGoodOrWhatIsAroundThemIsNot) {
   json bad_header = state_of(2);
   bad_header["header"]["stamp"] = "now";
   EXPECT_EQ(test::sentence_of(read(read_state_parts, bad_header)),
-            "header.stamp: expected a number or {secs, nsecs}, got a string");
+            "header.stamp: expected a number, {secs, nsecs}, {sec, nanosec} or {sec, nsec}, got a string");
   EXPECT_EQ(test::sentence_of(read(read_state_parts, {{"poses", 1}})),
             "poses: expected an array, got a whole number");
   EXPECT_EQ(test::sentence_of(read(read_state_parts, json::object())), "poses: missing");

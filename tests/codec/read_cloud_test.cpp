@@ -1,6 +1,8 @@
 // A row for each rule of the ICD about a PointCloud2 in POST /map/update, sent as JSON and as CBOR.
 #include <gtest/gtest.h>
 
+#include <numeric>
+
 #include "codec/read_map.hpp"
 
 namespace adit::codec {
@@ -88,15 +90,34 @@ TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
   const IcdRow rows[] = {
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1600, 0)); }, "taken"},
       {"setting", [](json& m) { m["msg"]["data"] = json::binary(Bytes(1616, 0)); },
-       "msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
+       "413: msg.data: expected at most 1600 bytes (the setting rules.map_bytes), got 1616"},
       {"setting and a gzip bomb",
        [](json& m) {
          m["msg"]["data"] = json::binary(test::compressed(Bytes(16'000'000, 0)));
          m["msg"]["compression"] = "gzip";
        },
-       "msg.data: expected at most 1600 bytes, got more"},
+       "413: msg.data: expected at most 1600 bytes, got more"},
   };
   expect_map_answers(rows, test::good_cloud(), rules);
+}
+
+TEST(ReadMapUpdate, KeepsThePointsOfAllGzipMembers) {  // RFC 1952 2.2
+  Bytes points(48);
+  std::iota(points.begin(), points.end(), std::uint8_t{0});
+  for (const std::size_t first :
+       {0, 1, 15, 16, 32, 47, 48}) {  // bytes; the last member alone may hold points
+    const auto middle = points.begin() + static_cast<std::ptrdiff_t>(first);
+    Bytes members = test::compressed(Bytes(points.begin(), middle));
+    const Bytes last = test::compressed(Bytes(middle, points.end()));
+    members.insert(members.end(), last.begin(), last.end());
+    json message = test::good_cloud();
+    message["msg"]["compression"] = "gzip";
+    message["msg"]["data"] = json::binary(members);
+    const auto map = read_map(Format::Cbor, test::as_cbor(message));
+    ASSERT_TRUE(map) << first << map.error().sentence;
+    EXPECT_EQ(map->data.bytes.to_vector(), points) << first;
+    EXPECT_EQ(map->data.raw_size, points.size());
+  }
 }
 
 TEST(ReadMapUpdate, KeepsWhatACloudSaysAndItsPointsAsTheyAre) {

@@ -16,6 +16,15 @@ using test::kInfinity;
 using test::kNan;
 using test::read_map;
 
+Bytes members_of(std::initializer_list<Bytes> parts) {
+  Bytes all;
+  for (const Bytes& part : parts) {
+    const Bytes member = test::compressed(part);
+    all.insert(all.end(), member.begin(), member.end());
+  }
+  return all;
+}
+
 TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
   const IcdRow rows[] = {
       {"6.3.1", [](json& m) { m["msg"].erase("info"); }, "msg.info: missing"},
@@ -59,7 +68,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
          m["msg"]["info"]["width"] = 2147483647;
          m["msg"]["info"]["height"] = 2147483647;
        },
-       "msg.info.width: expected at most 268435456 cells, got 2147483647 x 2147483647 = 4611686014132420609"},
+       "413: msg.info.width: expected at most 268435456 cells, got 2147483647 x 2147483647 = 4611686014132420609"},
       {"6.3.1", [](json& m) { m["msg"]["info"].erase("origin"); }, "msg.info.origin: missing"},
       {"6.3.1", [](json& m) { m["msg"]["info"]["origin"].erase("position"); },
        "msg.info.origin.position: missing"},
@@ -103,12 +112,16 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
        "msg.info.width: expected 4 x 3 = 12 bytes of data, got more"},
       {"6.3",
        [](json& m) {
-         Bytes twice = test::compressed(Bytes(12, 0));
-         twice.insert(twice.end(), twice.begin(), twice.end());
-         m["msg"]["data"] = json::binary(twice);
+         m["msg"]["data"] = json::binary(members_of({Bytes(5, 0), Bytes(6, 0)}));
          m["msg"]["compression"] = "gzip";
        },
-       "msg.data: expected one gzip member and nothing after it, got 23 bytes more"},
+       "msg.info.width: expected 4 x 3 = 12 bytes of data, got 11"},
+      {"6.3 and its last member alone as large as it should be",
+       [](json& m) {
+         m["msg"]["data"] = json::binary(members_of({Bytes(1, 0), Bytes(12, 0)}));
+         m["msg"]["compression"] = "gzip";
+       },
+       "msg.info.width: expected 4 x 3 = 12 bytes of data, got more"},
   };
   expect_map_answers(rows, test::good_grid());
 }
@@ -159,6 +172,16 @@ icd::ChunkedBytes kept_of(const Bytes& member, const Bytes& cells) {
 TEST(ReadMapUpdate, KeepsTheMemberOfAGridsSenderWhereItIsSmallerThanItsOwn) {
   const Bytes cells = patterned(50'000), member = test::compressed(cells);
   EXPECT_EQ(kept_of(member, cells), icd::ChunkedBytes(member));
+}
+
+/// What follows a member hangs a Command Post.
+TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItsSenderHasSeveral) {
+  const Bytes cells = patterned(50'000), half(cells.begin(), cells.begin() + 25'000),
+              rest(cells.begin() + 25'000, cells.end());
+  for (const Bytes& members : {members_of({half, rest}), members_of({{}, cells}), members_of({cells, {}}),
+                               members_of({{}, half, {}, rest})}) {
+    EXPECT_EQ(kept_of(members, cells), gzip(icd::ChunkedBytes(cells), GzipStrategy::Runs));
+  }
 }
 
 TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItIsSmaller) {

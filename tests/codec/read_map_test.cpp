@@ -46,9 +46,10 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = 1; },
        "msg.header.frame_id: expected a string, got a whole number"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = "now"; },
-       "msg.header.stamp: expected a number or {secs, nsecs}, got a string"},
+       "msg.header.stamp: expected a number, {secs, nsecs}, {sec, nanosec} or {sec, nsec}, got a string"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = true; },
-       "msg.header.stamp: expected a number or {secs, nsecs}, got true or false"},
+       "msg.header.stamp: expected a number, {secs, nsecs}, {sec, nanosec} or {sec, nsec}, got true or "
+       "false"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = -0.5; },
        "msg.header.stamp: expected a number from 0 to 4294967295.9999995, got -0.5"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = kInfinity; },
@@ -62,6 +63,21 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
        "msg.header.stamp.secs: expected a whole number from 0 to 4294967295, got -1"},
       {"6.2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", 5}, {"nsecs", 1'000'000'000}}; },
        "msg.header.stamp.nsecs: expected a whole number from 0 to 999999999, got 1000000000"},
+      {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"nanosec", 7}}; }, "taken"},
+      {"6.2 and ROS's C++", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"nsec", 7}}; },
+       "taken"},
+      {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}}; },
+       "msg.header.stamp.nanosec: missing"},
+      {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"secs", 5}, {"nanosec", 7}}; },
+       "msg.header.stamp.sec: missing"},
+      {"6.2 and ROS 2", [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", -1}, {"nanosec", 0}}; },
+       "msg.header.stamp.sec: expected a whole number from 0 to 4294967295, got -1"},
+      {"6.2 and ROS 2",
+       [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"nanosec", 1}, {"nsec", 2}}; },
+       "msg.header.stamp: expected one of {secs, nsecs}, {sec, nanosec} or {sec, nsec}, got members of two"},
+      {"6.2 and ROS 2",
+       [](json& m) { m["msg"]["header"]["stamp"] = {{"sec", 5}, {"secs", 6}, {"nsecs", 2}}; },
+       "msg.header.stamp: expected one of {secs, nsecs}, {sec, nanosec} or {sec, nsec}, got members of two"},
       {"6.3", [](json& m) { m["msg"].erase("data"); }, "msg.data: missing"},
       {"6.3", [](json& m) { m["msg"]["compression"] = "bzip2"; },
        "msg.compression: expected \"none\" or \"gzip\", got \"bzip2\""},
@@ -69,11 +85,44 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
        "msg.compression: expected \"none\" or \"gzip\", got \"\""},
       {"6.3", [](json& m) { m["msg"]["compression"] = true; },
        "msg.compression: expected a string, got true or false"},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "NONE"; }, "taken"},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "gzi"; },
+       "msg.compression: expected \"none\" or \"gzip\", got \"gzi\""},
+      {"6.3", [](json& m) { m["msg"]["compression"] = "GZip"; },
+       "msg.data: expected a gzip member, got incorrect header check"},
       {"6.3", [](json& m) { m["msg"]["compression"] = "gzip"; },
-       "msg.data: expected one gzip member, got incorrect header check"},
+       "msg.data: expected a gzip member, got incorrect header check"},
   };
   expect_map_answers(rows, test::good_grid());
   expect_map_answers(rows, test::good_cloud());
+}
+
+TEST(ReadMapUpdate, RefusesDataOverTheLargestMapWith413InEachForm) {
+  icd::Rules rules;
+  rules.map_bytes = 1600;
+  const Bytes data(rules.map_bytes + 16, 0);
+  Bytes members = test::compressed(Bytes(rules.map_bytes, 0));
+  const Bytes last = test::compressed(Bytes(16, 0));
+  members.insert(members.end(), last.begin(), last.end());
+  json grid = test::good_grid();
+  grid["msg"]["info"]["width"] = data.size();
+  grid["msg"]["info"]["height"] = 1;
+  for (json map : {grid, test::good_cloud()}) {
+    for (const json& form :
+         {json::binary(data), json(data), json::binary(test::compressed(data)), json::binary(members)}) {
+      map["msg"]["data"] = form;
+      map["msg"]["compression"] =
+          form.is_binary() && form.get_binary().size() < data.size() ? "gzip" : "none";
+      for (const auto format : {Format::Json, Format::Cbor}) {
+        auto document = decode({.format = format}, Split::MapData,
+                               format == Format::Json ? test::as_json(map) : test::as_cbor(map),
+                               {.data_bytes = rules.map_bytes});
+        const auto refused =
+            document ? read_map_update(*std::move(document), rules).error() : document.error();
+        EXPECT_EQ(refused.status, icd::Status::ContentTooLarge) << refused.sentence;
+      }
+    }
+  }
 }
 
 /// Data that says at its end that it is of a wrong size.
@@ -100,7 +149,8 @@ TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
     ScarceMemory scarce(kEnoughForTheRest, ScarceMemory::kAll);
     const auto read = read_map_update(*std::move(document), rules);
     EXPECT_EQ(scarce.end(), 0u);
-    EXPECT_TRUE(test::sentence_of(read).starts_with("msg.")) << test::sentence_of(read);
+    ASSERT_FALSE(read);
+    EXPECT_TRUE(read.error().sentence.starts_with("msg.")) << read.error().sentence;
   }
 }
 

@@ -106,12 +106,38 @@ TEST(ReadStateUpdate, MakesAnAllZeroQuaternionTheIdentity) {
   EXPECT_EQ(state->poses[0].pose.orientation, icd::Quaternion{});
 }
 
-TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS has its stamps
-  json message = test::good_state();
-  message["header"]["stamp"] = {{"secs", 1617235200}, {"nsecs", 250'000'000.0}};
-  const auto state = read(read_state_update, Format::Json, test::as_json(message));
-  ASSERT_TRUE(state.has_value());
-  EXPECT_EQ(state->header.stamp, 1617235200.25);
+TEST(ReadStateUpdate, NamesAMemberUnderACborTagThatChangesItsMeaning) {
+  constexpr std::uint64_t kRational = 30;
+  const json tagged = json::binary({1, 2}, kRational);  // which nlohmann writes under that tag
+  const IcdRow rows[] = {
+      {"6.5", [&](json& m) { m["poses"][0]["covariance"] = {tagged, {{"x", tagged}}}; }, "taken"},
+      {"6.5", [&](json& m) { m["poses"][0]["position"]["x"] = tagged; },
+       "poses[0].position.x: expected a number, got CBOR tag 30, which changes the meaning of what it stands "
+       "before"},
+      {"6.5", [&](json& m) { m["poses"][0]["name"] = tagged; },
+       "poses[0].name: expected a string, got CBOR tag 30, which changes the meaning of what it stands "
+       "before"},
+      {"6.5", [&](json& m) { m["header"] = tagged; },
+       "header: expected an object, got CBOR tag 30, which changes the meaning of what it stands before"},
+      {"6.5", [&](json& m) { m = tagged; },
+       "the body: expected an object, got CBOR tag 30, which changes the meaning of what it stands before"},
+  };
+  for (const IcdRow& row : rows) {
+    json message = test::good_state();
+    row.change(message);
+    EXPECT_EQ(test::sentence_of(read(read_state_update, Format::Cbor, test::as_cbor(message))), row.sentence);
+  }
+}
+
+TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS 1, ROS 2 and their C++ have stamps
+  for (const auto& [seconds, nanoseconds] :
+       {std::pair("secs", "nsecs"), std::pair("sec", "nanosec"), std::pair("sec", "nsec")}) {
+    json message = test::good_state();
+    message["header"]["stamp"] = {{seconds, 1617235200}, {nanoseconds, 250'000'000.0}};
+    const auto state = read(read_state_update, Format::Json, test::as_json(message));
+    ASSERT_TRUE(state.has_value()) << nanoseconds;
+    EXPECT_EQ(state->header.stamp, 1617235200.25) << nanoseconds;
+  }
 }
 
 /// The double that is nearest to ROS's last one is a second that ROS does not have.
@@ -204,6 +230,12 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0]["color"].erase("a"); }, "markers[0].color.a: missing"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["a"] = 2; },
        "markers[0].color.a: expected a number from 0 to 1, got 2"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000001192; }, "taken"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -1.1e-7; }, "taken"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = 1.0000003; },
+       "markers[0].color.a: expected a number from 0 to 1, got 1.0000003"},
+      {"6.6 and ROS's float32", [](json& m) { m["markers"][0]["color"]["a"] = -2e-7; },
+       "markers[0].color.a: expected a number from 0 to 1, got -2e-07"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["r"] = -0.5; },
        "markers[0].color.r: expected a number from 0 to 1, got -0.5"},
       {"6.6", [](json& m) { m["markers"][0]["color"]["g"] = kNan; },
@@ -213,6 +245,8 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0].erase("lifetime"); }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = nullptr; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"secs", 5}, {"nsecs", 0}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nanosec", 0}}; }, "taken"},
+      {"6.6", [](json& m) { m["markers"][0]["lifetime"] = {{"sec", 5}, {"nsec", 0}}; }, "taken"},
       {"6.6", [](json& m) { m["markers"][0]["lifetime"] = -1; },
        "markers[0].lifetime: expected a number from 0 to 2147483647.9999998, got -1"},
       {"6.6 and ROS's duration", [](json& m) { m["markers"][0]["lifetime"] = 2147483647.5; }, "taken"},
@@ -256,6 +290,14 @@ TEST(ReadMarkersUpdate, KeepsWhatItSays) {
   deleted.id = 8;
   deleted.action = icd::MarkerAction::Delete;
   EXPECT_EQ(update->markers[1], deleted);
+}
+
+TEST(ReadMarkersUpdate, GivesTheLimitForWhatAFloat32IsPastItByRounding) {
+  json message = test::good_markers();
+  message["markers"][0]["color"] = {{"r", 1.0000001192}, {"g", -1e-9}, {"b", 0.99999994}, {"a", 1.00000001}};
+  const auto update = read(read_markers_update, Format::Json, test::as_json(message));
+  ASSERT_TRUE(update.has_value());
+  EXPECT_EQ(update->markers[0].color, (icd::Color{1, 0, 0.99999994, 1}));
 }
 
 TEST(ReadMarkersUpdate, RewritesTheFrameOfEachMarkerWhereTheSettingsSaySo) {

@@ -19,7 +19,10 @@ using test::json;
 icd::Checked<icd::ArtifactReport> read_report(const std::string& body, const icd::Rules& rules = {}) {
   const auto document = decode({}, Split::Nothing, body);
   if (!document) return std::unexpected(document.error());
-  return read_artifact_report(*document, rules);
+  const auto hint = [](std::string_view type) -> std::string {
+    return type.starts_with("Cell") ? "; did you mean Cell Phone?" : "";
+  };
+  return read_artifact_report(*document, rules, hint);
 }
 
 template <class Reply>
@@ -50,7 +53,10 @@ TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
       {"5.2", [](json& m) { m["type"] = "test"; },
        kTheTen + "\"test\" (the setting rules.forward_unknown_types takes others)"},
       {"5.2", [](json& m) { m["type"] = ""; }, kTheTen + "\"\""},
-      {"5.2", [](json& m) { m["type"] = "Cell\nPhone"; }, kTheTen + "\"Cell?Phone\""},
+      {"5.2", [](json& m) { m["type"] = "Rope\n"; }, kTheTen + "\"Rope?\""},
+      {"5.2", [](json& m) { m["type"] = "Cellphone"; }, kTheTen + "\"Cellphone\"; did you mean Cell Phone?"},
+      {"5.2", [](json& m) { m["type"] = "Cell\nPhone"; },
+       kTheTen + "\"Cell?Phone\"; did you mean Cell Phone?"},
   };
   for (const IcdRow& row : rows) {
     json message = test::good_report();

@@ -6,6 +6,7 @@
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "icd/rules.hpp"
+#include "intake/type_hint.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {
@@ -120,6 +121,10 @@ std::string written_markers(const icd::MarkersUpdate& markers) {
   return codec::write_markers_update(markers).to_string();
 }
 
+icd::Checked<icd::ArtifactReport> read_report(const codec::Document& document, const icd::Rules& rules) {
+  return codec::read_artifact_report(document, rules, intake::type_hint);
+}
+
 void read_message(int message, const codec::Document& document) {
   using enum codec::Format;
   using enum codec::Split;
@@ -142,8 +147,7 @@ void read_message(int message, const codec::Document& document) {
                       codec::read_markers_update);
       break;
     default:
-      require_written(codec::read_artifact_report(document, rules), Json, Nothing,
-                      codec::write_artifact_report, codec::read_artifact_report);
+      require_written(read_report(document, rules), Json, Nothing, codec::write_artifact_report, read_report);
   }
 }
 

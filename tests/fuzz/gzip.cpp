@@ -21,7 +21,7 @@ icd::Checked<std::string> inflated(icd::ChunkedBytes bytes) {
     return icd::Checked<void>{};
   });
   if (!size) return std::unexpected(size.error());
-  require(*size == all.size() && all.size() <= kMostInflated);
+  require(size->size == all.size() && size->members > 0 && all.size() <= kMostInflated);
   return all;
 }
 
@@ -42,8 +42,10 @@ void try_gzip(Input text) {
   const auto at_once =
       codec::gunzip_whole(cut, said ? said->size() : std::min(codec::claimed_size(cut), kMostInflated));
   if (said && at_once) require(std::ranges::equal(*at_once, bytes_of(*said)));
-  // Nothing may follow a member: that hangs a Command Post.
+  // Nothing may follow a member but others.
   if (said) require(!inflated(icd::ChunkedBytes(bytes_of(std::string(text) + "x"))));
+  if (said && said->size() <= kMostInflated / 2)
+    require(inflated(icd::ChunkedBytes(bytes_of(std::string(text) + std::string(text)))) == *said + *said);
 
   for (const auto strategy : {codec::GzipStrategy::Default, codec::GzipStrategy::Runs}) {
     const auto member = codec::gzip(icd::ChunkedBytes(bytes_of(text)), strategy);

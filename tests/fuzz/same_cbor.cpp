@@ -7,8 +7,8 @@
 namespace adit::fuzz {
 namespace {
 
-/// RFC 8949 appendix C's well_formed(), and what Adit asks besides: text that is UTF-8, little nesting, and
-/// no tag that changes a meaning.
+/// RFC 8949 appendix C's well_formed(), and what Adit asks besides: text that is UTF-8, and little
+/// nesting.
 class WellFormed {
  public:
   explicit WellFormed(Input text) : left_(text) {}
@@ -51,7 +51,6 @@ class WellFormed {
     if (major == kSimple) return info != 24 || value >= 32;
     if (major == kBytes || major == kText) return string(major, value);
     if (major < kBytes) return true;
-    if (major == kTag) known(value);
     nest(depth + 1);
     const std::uint64_t items = major == kTag ? 1 : value;
     for (std::uint64_t i = 0; i < items; ++i) {
@@ -92,11 +91,6 @@ class WellFormed {
 
   void nest(int depth) {
     if (depth > codec::BodyDecoder::kDeepest) taken_besides = false;
-  }
-
-  void known(std::uint64_t tag) {
-    constexpr std::uint64_t kKnown[] = {0, 1, 21, 22, 23, 32, 33, 34, 35, 36, 55799};
-    if (std::ranges::find(kKnown, tag) == std::end(kKnown)) taken_besides = false;
   }
 
   Input left_;

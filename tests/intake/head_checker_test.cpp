@@ -55,7 +55,10 @@ TEST(Heads, ThatAreAsTheyShouldBeAreTaken) {
       {"GET / HTTP/1.1\r\nHost: [fe80::1]:8000\r\n\r\n"},
       {"GET / HTTP/1.1\r\nHost: 10.0.0.1:\r\n\r\n"},
       {"GET" + to + "X:\r\nY:z\r\nZ: \t a\tb \xff \t\r\n\r\n"},
-      {"PUT" + to + "Content-Length: 0\r\n\r\n"},
+      {"GET" + to +
+       "Origin:  null\r\nAuthorization: Bearer a\r\norigin: null \r\nAUTHORIZATION: Bearer a\r\n\r\n"},
+      {"PUT" + to +
+       "Content-Type: a/b\r\nContent-Type: a/b\r\nContent-Type: a/b\r\nContent-Length: 0\r\n\r\n"},
       {"POST" + to + "Content-Length:  0042\t\r\n\r\n", true, 42},
       {"POST" + to + "Content-Length: 9223372036854775807\r\n\r\n", true, INT64_MAX},
       {"POST" + to + "transfer-encoding: Chunked\r\n\r\n", true, std::nullopt},

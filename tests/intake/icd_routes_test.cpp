@@ -91,10 +91,40 @@ TEST(IcdRoutes, RefuseOtherMethodsAndSayWhichAreAllowed) {
       const auto reply = team.ask(authorized(method, icd::path_of(uri)));
       ASSERT_TRUE(reply);
       EXPECT_EQ(reply->status, 405) << method << icd::path_of(uri);
-      EXPECT_EQ(reply->header("allow"), std::string(icd::method_of(uri)) + ", OPTIONS");
+      EXPECT_EQ(reply->header("allow"), uri == icd::Uri::Status ? "GET, HEAD, OPTIONS" : "POST, OPTIONS");
       EXPECT_TRUE(is_json_string(reply->body)) << reply->body;
       EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
     }
+  }
+}
+
+TEST(IcdRoutes, RefuseAHeadWhereNothingIsToGetToo) {
+  Team team;
+  for (const Post& post : kPosts) {
+    RawClient client(team.served.port());
+    client.send(authorized("HEAD", post.path));
+    const auto reply = client.reply(std::chrono::seconds(10), true);
+    ASSERT_TRUE(reply) << post.path;
+    EXPECT_EQ(reply->status, 405) << post.path;
+    EXPECT_EQ(reply->header("allow"), "POST, OPTIONS");
+  }
+}
+
+TEST(IcdRoutes, RefuseAPostThatDoesNotSayHowLongItIs) {  // RFC 9110 15.5.12
+  Team team;
+  for (const Post& post : kPosts) {
+    for (const std::string_view version :
+         {"HTTP/1.1", "HTTP/1.0"}) {  // and ends the body with the connection
+      std::string text = authorized("POST", post.path, kJsonType) + std::string(post.body);
+      text.replace(text.find("HTTP/1.1"), version.size(), version);
+      const auto reply = team.ask(text);
+      ASSERT_TRUE(reply) << post.path;
+      EXPECT_EQ(reply->status, 411) << post.path << version;
+      EXPECT_EQ(reply->body, "\"Content-Length: missing, and no body came in chunks\"");
+    }
+    EXPECT_EQ(
+        team.ask(authorized("POST", post.path, std::string(kJsonType) + "Content-Length: 0\r\n"))->status,
+        400);
   }
 }
 
@@ -108,7 +138,8 @@ TEST(IcdRoutes, AnswerPreflightsWithoutAToken) {
     EXPECT_EQ(reply->status, 204);
     EXPECT_EQ(reply->body, "");
     EXPECT_EQ(reply->header("access-control-allow-origin"), "*");
-    EXPECT_EQ(reply->header("access-control-allow-methods"), std::string(icd::method_of(uri)) + ", OPTIONS");
+    EXPECT_EQ(reply->header("access-control-allow-methods"),
+              uri == icd::Uri::Status ? "GET, HEAD, OPTIONS" : "POST, OPTIONS");
     EXPECT_EQ(reply->header("access-control-allow-headers"), "authorization, x-team");
     EXPECT_FALSE(reply->header("access-control-max-age").empty());
     EXPECT_TRUE(team.served.on_loop([&] { return team.desk.refusals.empty(); }));

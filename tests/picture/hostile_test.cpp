@@ -105,7 +105,7 @@ TEST(HostileData, ThatIsNoGzipIsAnErrorAndNoDrawing) {
     map.data.bytes = icd::ChunkedBytes{bytes};
     const auto drawing = draw(map, {});
     ASSERT_FALSE(drawing) << cut;
-    EXPECT_THAT(drawing.error().sentence, testing::StartsWith("msg.data: expected one gzip member"));
+    EXPECT_THAT(drawing.error().sentence, testing::StartsWith("msg.data: expected a gzip member"));
   }
 }
 

@@ -133,7 +133,7 @@ class Mapping(unittest.TestCase):
     def test_expect_is_never_answered(self):
         body = cbor2.dumps(grid(cbor=True))
         with CommandPost("--as-measured") as post, connect(post.mapping) as stream:
-            stream.sendall((f"POST /map/update HTTP/1.1\r\nAuthorization: Bearer {MAPPING_TOKEN}\r\n"
+            stream.sendall((f"POST /map/update HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer {MAPPING_TOKEN}\r\n"
                             f"Content-Type: application/cbor\r\nContent-Length: {len(body)}\r\n"
                             "Expect: 100-continue\r\n\r\n").encode())
             self.assertEqual(select.select([stream], [], [], 0.3)[0], [])

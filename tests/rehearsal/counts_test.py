@@ -9,7 +9,7 @@ from command_post import MAPPING_TOKEN, CommandPost, connect, read_answer, state
 
 INTERVAL = 1.0  # seconds: --rate 1
 BODY = json.dumps(state("A")).encode()
-HEAD = (f"POST /state/update HTTP/1.1\r\nAuthorization: Bearer {MAPPING_TOKEN}\r\nContent-Type: application/json\r\n"
+HEAD = (f"POST /state/update HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer {MAPPING_TOKEN}\r\nContent-Type: application/json\r\n"
         f"Content-Length: {len(BODY)}\r\n\r\n").encode()
 
 

@@ -20,7 +20,7 @@ STATUS = f"GET /api/status HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer {SCOR
 
 
 def map_header(length, *headers):
-    return "\r\n".join([f"POST /map/update HTTP/1.1\r\nAuthorization: Bearer {MAPPING_TOKEN}",
+    return "\r\n".join([f"POST /map/update HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer {MAPPING_TOKEN}",
                         "Content-Type: application/cbor", length, *headers]).encode() + b"\r\n\r\n"
 
 
@@ -102,6 +102,22 @@ class Http(unittest.TestCase):
                     self.assertEqual((answer[0], answer[1]["connection"]), (status, "close"))
                     self.assertIsInstance(json.loads(answer[2]), str)
                     self.assertEqual(stream.recv(1), b"")
+
+    def test_a_field_that_is_missing_or_given_twice_is_a_violation(self):
+        host, token = b"Host: here\r\n", b"Authorization: Bearer " + SCORING_TOKEN.encode() + b"\r\n"
+        table = [("Host: missing (RFC 9112 3.2)", STATUS.replace(host, b"")),
+                 ("Host: given twice (RFC 9110 5.3)", STATUS.replace(host, host * 2)),
+                 ("Authorization: given twice (RFC 9110 5.3)", STATUS.replace(token, token * 2)),
+                 ("Origin: given twice (RFC 9110 5.3)", STATUS.replace(host, host + b"Origin: null\r\nOrigin: http://here\r\n"))]
+        for sentence, sent in table:
+            with self.subTest(sentence), CommandPost() as post, connect(post.scoring) as stream:
+                stream.sendall(sent)
+                status, _, body = read_answer(stream)
+                self.assertEqual((status, json.loads(body)), (400, sentence))
+                self.assertEqual([each["sentence"] for each in post.record()["violations"]], [sentence])
+        with CommandPost() as post, connect(post.scoring) as stream:
+            stream.sendall(STATUS.replace(host, b"").replace(b"HTTP/1.1", b"HTTP/1.0"))
+            self.assertEqual(read_answer(stream)[0], 200)
 
     def test_a_request_that_breaks_off_is_noted_and_not_answered(self):
         with CommandPost() as post:

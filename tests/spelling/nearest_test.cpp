@@ -23,6 +23,13 @@ TEST(AMisspeltWord, IsLeftAloneWhereNothingIsNear) {
   EXPECT_EQ(nearest("status", {}), std::nullopt);
 }
 
+TEST(AMisspeltWord, IsNearerWhereFewLettersMayDiffer) {
+  constexpr std::string_view kShort[] = {"vent"};
+  EXPECT_EQ(nearest("test", kShort), "vent");
+  EXPECT_EQ(nearest("test", kShort, 0), std::nullopt);
+  EXPECT_EQ(nearest("vant", kShort, 0), "vent");
+}
+
 TEST(AMisspeltWord, IsAskedFor) {
   EXPECT_EQ(did_you_mean("stat", kKnown), "; did you mean status?");
   EXPECT_EQ(did_you_mean("xyzzy", kKnown), "");

@@ -88,12 +88,14 @@ FIELDS = [
     ("/api/artifact_reports", REPORT, "y", MISSING),
     ("/api/artifact_reports", REPORT, "x", "1"),
     ("/api/artifact_reports", REPORT, "type", "test"),
+    ("/api/artifact_reports", REPORT, "type", "Cellphone"),
     ("/api/artifact_reports", REPORT, "type", 5),
 ]
 
 SHORT = {**QUICK, "reports__answer_within_ms": 300}
 STATE_BODY = json.dumps(STATE)
-TAGGED = cbor2.dumps(cbor2.CBORTag(2, STATE))
+TAGGED = cbor2.dumps({**STATE, "poses": [{**STATE["poses"][0], "position": {"x": cbor2.CBORTag(4, [-1, 15]), "y": 2, "z": 3}}]})
+UTF_16 = STATE_BODY.encode("utf-16")
 POSE = STATE["poses"][0]
 TWO_BAD = json.dumps({"poses": [{**POSE, "name": 1}, POSE, {**POSE, "position": {}}]})
 
@@ -109,6 +111,9 @@ REQUESTS = [
     ("half a JSON document", "POST", "/state/update", '{"poses": [', {}),
     ("half a CBOR document", "POST", "/state/update", b"\xa1", {"Content-Type": "application/cbor"}),
     ("`NaN`, which JSON does not have", "POST", "/api/artifact_reports", '{"x": NaN}', {}),
+    ("UTF-16", "POST", "/state/update", UTF_16, {}),
+    ("CBOR as JSON", "POST", "/state/update", cbor2.dumps(STATE), {}),
+    ("JSON as CBOR", "POST", "/state/update", STATE_BODY, {"Content-Type": "application/cbor"}),
     ("a list around the message", "POST", "/state/update", "[]", {}),
     ("a state of 2 MB", "POST", "/state/update", b" " * 2_000_000, {}),
     ("a CBOR tag that changes a meaning", "POST", "/state/update", TAGGED, {"Content-Type": "application/cbor"}),

@@ -43,8 +43,8 @@ def as_whole_numbers(value):
     return int(value) if whole else value
 
 
-REMARKS = (0, 1, 21, 22, 23, 32, 33, 34, 35, 36, 55799)
-OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 31, 37, 63, 64, 258, 55798, 55800, 2**40)
+REMARKS = (0, 1, 21, 22, 23, 28, 32, 33, 34, 35, 36, 39, 41, 64, 68, 72, 256, 258, 259, 275, 55799)
+OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 29, 31, 37, 63, 65, 85, 55798, 55800, 2**40)
 
 
 def tagged(value, tags):
@@ -190,15 +190,19 @@ class Fidelity(Delivered):
                                "scale": dict.fromkeys("xyz", 0.0), "color": dict.fromkeys("rgba", 0.0),
                                "lifetime": 0.0, "text": ""})
 
-    def test_durations_and_stamps_in_both_forms(self):
+    def test_durations_and_stamps_in_each_form(self):
         marker = said(whole_marker(1)) | {"ns": "spacing"}
+        forms = [(1000.25, 2.5)]
+        for seconds, nanoseconds in (("secs", "nsecs"), ("sec", "nanosec"), ("sec", "nsec")):
+            forms.append(({seconds: 1000 + len(forms), nanoseconds: 0}, {seconds: 2, nanoseconds: 500000000}))
         arrived = []
-        for stamp, lifetime in ((1000.25, 2.5), ({"secs": 1001, "nsecs": 0}, {"secs": 2, "nsecs": 500000000})):
+        for (stamp, lifetime), style in zip(forms, (JSON, CBOR, JSON, CBOR), strict=True):
             marker |= {"header": {"stamp": stamp}, "lifetime": lifetime}
-            arrived += self.deliver("/markers/update", {"markers": [marker]}, JSON)["markers"]
-        self.same([one["lifetime"] for one in arrived], [2.5, 2.5])
+            arrived += self.deliver("/markers/update", {"markers": [marker]}, style)["markers"]
+        self.same([one["lifetime"] for one in arrived], [2.5] * 4)
         stamps = [one["header"]["stamp"] for one in arrived]
-        self.assertAlmostEqual(stamps[1] - stamps[0], 0.75, places=5)
+        for stamp, after in zip(stamps, (0, 0.75, 1.75, 2.75), strict=True):
+            self.assertAlmostEqual(stamp - stamps[0], after, places=5)
 
     def test_an_empty_frame_is_none(self):
         for header in ({"frame_id": ""}, {"frame_id": None}, {}, None):
@@ -221,7 +225,7 @@ class Fidelity(Delivered):
                 answer = messages.post(self.session, self.stage.box.url, "/state/update", update, CBOR)
                 with self.subTest(tag=tag, at=at):
                     self.assertEqual(answer.status_code, 422)
-                    self.assertIn(f"CBOR tag {tag} ", answer.json())
+                    self.assertIn(f"position.{at}: expected a number, got CBOR tag {tag}, which", answer.json())
 
     def test_the_good_parts_of_a_state(self):
         bad = {"name": "r9", "position": {**POSITION, "y": "far"}, "orientation": TURNED}

@@ -32,6 +32,17 @@ HttpFault fault_of(const boost::system::error_code& error) {
   return {400, "Not an HTTP/1.1 request: " + error.message()};
 }
 
+/// RFC 9112 3.2; RFC 9110 5.3: a field that is no list stands once.
+std::string head_fault_of(const http::request_header<>& head) {
+  using enum http::field;
+  constexpr unsigned kFirstWithHost = 11;  // HTTP/1.1
+  if (head.version() >= kFirstWithHost && head.count(host) == 0) return "Host: missing (RFC 9112 3.2)";
+  for (const auto name : {host, authorization, content_type, content_encoding, origin}) {
+    if (head.count(name) > 1) return std::string(http::to_string(name)) + ": given twice (RFC 9110 5.3)";
+  }
+  return "";
+}
+
 void take_header(const Parser& parser, Request& request) {
   const auto& message = parser.get();
   request.method = std::string(message.method_string());
@@ -40,6 +51,7 @@ void take_header(const Parser& parser, Request& request) {
   request.content_type = field(message, http::field::content_type);
   request.content_encoding = field(message, http::field::content_encoding);
   request.origin = field(message, http::field::origin);
+  request.head_fault = head_fault_of(message);
   request.expects_continue = field(message, http::field::expect).has_value();
   request.keep_alive = message.keep_alive();
 }

@@ -19,6 +19,8 @@ void check_entry(const Request& request, std::span<const Function> functions, co
     findings.breaks("No authentication token was provided", Measured::Refuses, 401);
   } else if (*request.authorization != "Bearer " + token) {
     findings.breaks(std::string(kWrongToken), Measured::Refuses, 401);
+  } else if (!request.head_fault.empty()) {
+    findings.breaks(request.head_fault, Measured::Takes, 400);
   }
 }
 

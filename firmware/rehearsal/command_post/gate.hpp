@@ -27,7 +27,7 @@ inline constexpr Function kMappingFunctions[] = {
     {"POST", kMapUri}, {"POST", kStateUri}, {"POST", kMarkersUri}};
 
 /// What a strict Command Post checks before it reads a body: that the URI is known (404), that the token is
-/// right (401). The findings hold at most one, which decides.
+/// right (401), that no field is missing or given twice (400). The findings hold at most one, which decides.
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
                  Findings& findings);
 

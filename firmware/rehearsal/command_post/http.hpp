@@ -26,6 +26,7 @@ struct Request {
   std::optional<std::string> content_type;
   std::optional<std::string> content_encoding;
   std::optional<std::string> origin;
+  std::string head_fault;  // what RFC 9110 or 9112 forbids of its fields; "": nothing
   bool expects_continue = false;
   bool keep_alive = true;
   std::string body;

@@ -1,6 +1,7 @@
 #include "rehearsal/robots/encode.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -106,15 +107,18 @@ class Body {
         {"orientation", {{"x", number(q.x)}, {"y", number(q.y)}, {"z", number(q.z)}, {"w", number(q.w)}}}};
   }
 
-  static Json secs_and_nsecs(double seconds) {
+  /// Message by message as ROS 1, ROS 2 and some C++ code write it.
+  Json ros_time(double seconds) const {
+    constexpr const char* kNames[][2] = {{"secs", "nsecs"}, {"sec", "nanosec"}, {"sec", "nsec"}};
+    const auto& [secs, nsecs] = kNames[seq_ % std::size(kNames)];
     const double whole = std::floor(seconds);
-    return {{"secs", static_cast<std::int64_t>(whole)},
-            {"nsecs", static_cast<std::int64_t>((seconds - whole) * 1e9)}};
+    return {{secs, static_cast<std::int64_t>(whole)},
+            {nsecs, static_cast<std::int64_t>((seconds - whole) * 1e9)}};
   }
 
   Json header(double stamp) const {
     if (!style_.ros) return {{"stamp", stamp}, {"frame_id", "darpa"}};
-    return {{"seq", seq_}, {"stamp", secs_and_nsecs(stamp)}, {"frame_id", "darpa"}};
+    return {{"seq", seq_}, {"stamp", ros_time(stamp)}, {"frame_id", "darpa"}};
   }
 
   void put_data(Json& msg, const std::vector<std::uint8_t>& bytes) const {
@@ -154,7 +158,7 @@ class Body {
       json["mesh_use_embedded_materials"] = true;
     }
     if (style_.ros) {
-      json["lifetime"] = secs_and_nsecs(marker.lifetime);
+      json["lifetime"] = ros_time(marker.lifetime);
       json["frame_locked"] = false;
       json["points"] = vectors(marker.points);
       json["colors"] = Json::array();

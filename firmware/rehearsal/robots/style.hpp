@@ -21,7 +21,7 @@ struct Style {
   DataForm data = DataForm::Base64;
   bool gzip_data = false;  // "compression": "gzip"
   bool gzip_body = false;  // Content-Encoding: gzip
-  bool ros = false;        // whole ROS dictionaries: seq, {secs, nsecs}, integers where floats are asked for,
+  bool ros = false;        // whole ROS dictionaries: seq, ROS's times, integers where floats are asked for,
                            // quaternions of all zeros, maps without a name
   bool browser = false;    // a CORS preflight first, a charset, a trailing slash, `bearer`
 };

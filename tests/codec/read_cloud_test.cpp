@@ -10,6 +10,7 @@ using test::Bytes;
 using test::expect_map_answers;
 using test::IcdRow;
 using test::json;
+using test::kInfinity;
 using test::read_map;
 
 TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
@@ -18,6 +19,10 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
        "msg.origin: expected an object, got a whole number"},
       {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"]["w"] = nullptr; },
        "msg.origin.orientation.w: expected a number, got null"},
+      {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"] = test::quaternion(0, 0, 0, 1e-9); },
+       "msg.origin.orientation: expected a quaternion of length 1, got one too short to have a direction"},
+      {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"] = test::quaternion(kInfinity, 0, 0, 1); },
+       "msg.origin.orientation.x: expected a finite number, got inf"},
       {"6.3.2", [](json& m) { m["msg"].erase("fields"); }, "msg.fields: missing"},
       {"6.3.2", [](json& m) { m["msg"]["fields"] = json::object(); },
        "msg.fields: expected an array, got an object"},

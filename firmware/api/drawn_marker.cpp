@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "icd/placement.hpp"
+
 namespace adit::api {
 namespace {
 
@@ -91,22 +93,10 @@ float as_float(double value) {
   return std::isnan(value) ? 0 : static_cast<float>(std::clamp(value, -kMost, kMost));
 }
 
-/// The same turn, in numbers whose squares are numbers, too.
-icd::Quaternion tamed(const icd::Quaternion& q) {
-  const double most = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z), std::abs(q.w)});
-  if (most == 0) return {};
-  return {q.x / most, q.y / most, q.z / most, q.w / most};
-}
-
 /// The pose's turn and shift, as far as they are seen from above.
 class Placing {
  public:
-  explicit Placing(const Marker& marker) : at_(marker.pose.position) {
-    const icd::Quaternion q = tamed(marker.pose.orientation);
-    const double norm = q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, two = 2 / norm;
-    right_ = {1 - two * (q.y * q.y + q.z * q.z), two * (q.x * q.y - q.w * q.z),
-              two * (q.x * q.z + q.w * q.y)};
-    up_ = {two * (q.x * q.y + q.w * q.z), 1 - two * (q.x * q.x + q.z * q.z), two * (q.y * q.z - q.w * q.x)};
+  explicit Placing(const Marker& marker) : placement_(marker.pose) {
     // Of a TriangleList the corners are scaled, of all others the symbols at the points.
     const auto scale = [&](double along) {
       return marker.is(MarkerType::TriangleList) && along != 0 ? along : 1;
@@ -115,14 +105,13 @@ class Placing {
   }
 
   FlatPoint operator()(const Point& point) const {
-    const Point scaled = {point.x * scale_.x, point.y * scale_.y, point.z * scale_.z};
-    return {as_float(at_.x + dot(right_, scaled)), as_float(at_.y + dot(up_, scaled))};
+    const Point placed = placement_({point.x * scale_.x, point.y * scale_.y, point.z * scale_.z});
+    return {as_float(placed.x), as_float(placed.y)};
   }
 
  private:
-  static double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-
-  Point at_, right_, up_, scale_;
+  icd::Placement placement_;
+  Point scale_;
 };
 
 /// The colour of a part: of its first point, or of a triangle as such. None where the colours fit neither.
@@ -149,8 +138,7 @@ void draw_points(const Marker& marker, DrawnMarker& shown) {
 
 }  // namespace
 
-double heading_of(const icd::Quaternion& orientation) {
-  const icd::Quaternion q = tamed(orientation);
+double heading_of(const icd::Quaternion& q) {
   return std::atan2(2 * (q.w * q.z + q.x * q.y), q.w * q.w + q.x * q.x - q.y * q.y - q.z * q.z);
 }
 

@@ -42,8 +42,7 @@ struct DrawnMarker {
 /// Too long a strip loses points evenly along its way; too long a list loses parts evenly.
 DrawnMarker drawn(const icd::Marker& marker);
 
-/// Where the robot's own x axis points, seen from above: radians about z. The quaternion need not be of
-/// length one.
+/// Where the robot's own x axis points, seen from above: radians about z.
 double heading_of(const icd::Quaternion& orientation);
 
 }  // namespace adit::api

@@ -185,6 +185,11 @@ void write_updates(Exposition& out, const RunView& view) {
   for (const ActivityRow& row : view.activities) {
     if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.points_left_out));
   }
+  out.counter("adit_clouds_no_valid_point_total",
+              "Clouds taken from the team that did not go, for each of their points is NaN or infinite.");
+  for (const ActivityRow& row : view.activities) {
+    if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.no_valid_point));
+  }
   out.gauge("adit_updates_waiting", "Updates that wait.");
   sample_each(out, view, &ActivityRow::waiting);
   out.gauge("adit_updates_accepted_age_seconds", "How long ago the last one was accepted.");

@@ -88,6 +88,9 @@ constexpr Member kActivity[] = {
         "points_left_out",
         "of its clouds, because another of their voxel went, or was taken by the Command Post "
         "(robots[].voxel_metres)"),
+    member<&ActivityRow::no_valid_point>(
+        "no_valid_point",
+        "of its clouds, accepted and not sent, for each of their points is NaN or infinite"),
     member<&ActivityRow::arrival>("arrival", "whether it reaches the Command Post")
         .one_of(alarms::kArrivalWords),
     member<&ActivityRow::level>("level", "how well that is").one_of(alarms::kLevelWords),

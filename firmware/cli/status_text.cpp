@@ -146,6 +146,7 @@ std::string kind_of(const api::ActivityRow& row) {
   if (!row.clouds.empty()) kind += ", " + row.clouds;
   if (!row.precision.empty() && row.precision != "exact") kind += ", to " + row.precision;
   if (row.points_left_out > 0) kind += ", " + std::to_string(row.points_left_out) + " points left out";
+  if (row.no_valid_point > 0) kind += ", " + std::to_string(row.no_valid_point) + " without a valid point";
   return kind;
 }
 

@@ -179,8 +179,10 @@ template <class Struct>
 void read_members(const Field& object, Struct& into, const icd::Rules& rules) {
   std::apply([&](const auto&... each) { (each.read(object, into, rules), ...); }, members_of<Struct>);
   if constexpr (std::same_as<Struct, icd::Quaternion>) {
-    if (into == icd::Quaternion{.x = 0, .y = 0, .z = 0, .w = 0})
-      into = {};  // as ROS leaves one that nobody set
+    if (const auto rotation = icd::rotation_of(into))
+      into = *rotation;
+    else
+      object.refuse("expected a quaternion of length 1, got one too short to have a direction");
   }
 }
 

@@ -20,8 +20,8 @@ namespace adit::codec {
 
 /// Documents to messages that have passed every rule of the ICD. Each refusal is 422 and names the field.
 /// Tolerated: stamps and lifetimes as ROS has them (Field::seconds()), integers for floats and whole floats
-/// for integers, members that the ICD does not have, all-zero quaternions, absent or empty map names and
-/// frames, CBOR byte strings of UTF-8 for text.
+/// for integers, members that the ICD does not have, quaternions of any length, padding between the rows of a
+/// cloud, absent or empty map names and frames, CBOR byte strings of UTF-8 for text.
 
 /// ICD 6.3, 6.4. Inflates `data` where the message says it is compressed, checks it, and leaves a grid's
 /// cells as one gzip member and a cloud's points raw and little-endian. CPU-bound in the size of the map:

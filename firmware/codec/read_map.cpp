@@ -62,6 +62,16 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   return reading.outcome(std::move(update));
 }
 
+/// Nothing in them is ever refused.
+CloudRows read_rows(const Value& root) {
+  Reading reading;
+  const Field body(root, reading);
+  const Field msg = body.member("msg");
+  const auto number = [&](std::string_view name) { return msg.member(name).whole<std::uint32_t>(); };
+  const CloudRows rows{.width = number("width"), .height = number("height"), .row_step = number("row_step")};
+  return reading.refused() ? CloudRows{} : rows;
+}
+
 /// ICD 6.3.2 and what a server makes of it: points go up little-endian, for there is one that turns the
 /// points of a big-endian cloud with an origin wrongly. Where their values cannot be turned they go up as
 /// they came.
@@ -82,7 +92,8 @@ icd::Checked<icd::MapData> read_data(const icd::MapUpdate& update, Document docu
                                      icd::Compression compression, const icd::Rules& rules) {
   if (!update.is_grid()) {
     icd::require(!document.pressed);  // its type was read before, and may be given once
-    return read_points(std::get<icd::PointCloud2>(update.msg), std::move(document.data), compression, rules);
+    return read_points(std::get<icd::PointCloud2>(update.msg), read_rows(document.root),
+                       std::move(document.data), compression, rules);
   }
   const auto& grid = std::get<icd::OccupancyGrid>(update.msg);
   return document.pressed ? read_pressed_cells(grid, std::move(document.data), compression, *document.pressed)

@@ -1,5 +1,7 @@
 #include "codec/read_map_data.hpp"
 
+#include <algorithm>
+
 #include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
 #include "codec/read.hpp"
@@ -69,10 +71,35 @@ icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, ic
   }
 }
 
-icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, const icd::ChunkedBytes& data,
-                                                const icd::Rules& rules) {
+bool are_padded(const CloudRows& rows, const icd::PointCloud2& cloud, std::size_t bytes) {
+  return rows.height > 1 && rows.row_step > rows.width * cloud.point_step &&
+         rows.row_step * rows.height == bytes;
+}
+
+icd::Checked<void> check_points(const icd::PointCloud2& cloud, const CloudRows& rows, std::size_t bytes) {
+  return are_padded(rows, cloud, bytes) ? icd::Checked<void>() : icd::check_size(cloud, bytes);
+}
+
+/// The first `row_size` of each `row_step` bytes.
+icd::ChunkedBytes without_row_padding(icd::ChunkedBytes data, std::size_t row_size, std::size_t row_step) {
+  icd::ChunkedBytes points;
+  std::size_t at = 0;  // of the row
+  while (!data.empty()) {
+    const auto chunk = data.pop_front();
+    for (auto rest = *chunk; !rest.empty();) {
+      const auto piece = rest.first(std::min(rest.size(), row_step - at));
+      points.append(piece.first(std::min(piece.size(), row_size - std::min(row_size, at))));
+      rest = rest.subspan(piece.size());
+      at = (at + piece.size()) % row_step;
+    }
+  }
+  return points;
+}
+
+icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, const CloudRows& rows,
+                                                const icd::ChunkedBytes& data, const icd::Rules& rules) {
   for (std::size_t size = claimed_size(data);;) {  // or, of several members, what they turn out to hold
-    const bool is_kept = size <= rules.map_bytes && icd::check_size(cloud, size);  // as of a grid
+    const bool is_kept = size <= rules.map_bytes && check_points(cloud, rows, size);  // as of a grid
     icd::ChunkedBytes points;
     const auto sink = [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
       if (is_kept && piece.size() <= size - points.size()) points.append(piece);
@@ -80,7 +107,7 @@ icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, c
     };
     const auto inflated = gunzip(data, rules.map_bytes, kPath, sink);
     if (!inflated) return std::unexpected(inflated.error());
-    if (auto checked = icd::check_size(cloud, inflated->size); !checked)
+    if (auto checked = check_points(cloud, rows, inflated->size); !checked)
       return std::unexpected(checked.error());
     if (points.size() == inflated->size) return points;
     size = inflated->size;
@@ -124,11 +151,12 @@ icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, ic
       .bytes = std::move(data), .compression = icd::Compression::Gzip, .raw_size = pressed.count};
 }
 
-icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::ChunkedBytes data,
-                                       icd::Compression compression, const icd::Rules& rules) {
+icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const CloudRows& rows,
+                                       icd::ChunkedBytes data, icd::Compression compression,
+                                       const icd::Rules& rules) {
   icd::ChunkedBytes points = std::move(data);
   if (compression == icd::Compression::Gzip) {
-    auto inflated = inflated_points(cloud, points, rules);
+    auto inflated = inflated_points(cloud, rows, points, rules);
     if (!inflated) return std::unexpected(inflated.error());
     points = *std::move(inflated);
   }
@@ -138,7 +166,10 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, icd::Chunk
                      icd::sentence(kPath, ": expected at most ", rules.map_bytes,
                                    " bytes (the setting rules.map_bytes), got ", points.size())});
   }
-  if (auto checked = icd::check_size(cloud, points.size()); !checked) return std::unexpected(checked.error());
+  if (auto checked = check_points(cloud, rows, points.size()); !checked)
+    return std::unexpected(checked.error());
+  if (are_padded(rows, cloud, points.size()))
+    points = without_row_padding(std::move(points), rows.width * cloud.point_step, rows.row_step);
   const std::size_t size = points.size();
   return icd::MapData{.bytes = std::move(points), .compression = icd::Compression::None, .raw_size = size};
 }

@@ -135,6 +135,7 @@ class Maps {
     std::size_t bytes_received = 0, size = 0;
     std::uint64_t spare = 0;          // that is to be left
     std::optional<icd::Stamp> again;  // lanes::WaitingMap's
+    bool says_nothing = false;        // it has no valid point, and is not kept
     icd::MapUpdate update;
     std::shared_ptr<spool::MapFile> file;  // where its data was stored as it came
     icd::Checked<icd::MapUpdate> kept;

@@ -6,6 +6,7 @@
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "loop/guard.hpp"
+#include "pack/pack.hpp"
 
 namespace adit::forward {
 namespace {
@@ -13,6 +14,13 @@ namespace {
 /// For a writer that threw.
 icd::Refusal not_kept() {
   return {icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"};
+}
+
+/// Frees it on this thread, with the file that `data` may be in.
+icd::Checked<icd::MapUpdate> without_data(icd::MapUpdate map, std::shared_ptr<spool::MapFile> file) {
+  map.data = {};
+  file.reset();
+  return map;
 }
 
 icd::Stamp stamp_of(const icd::MapUpdate& map) {
@@ -82,8 +90,11 @@ void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<voi
   };
   writer_.submit(
       [&spool = spool_, keeping] {
-        keeping->kept =
-            spool.keep(keeping->number, std::move(keeping->update), keeping->spare, std::move(keeping->file));
+        keeping->says_nothing = !keeping->again && pack::has_only_invalid_points(keeping->update);
+        keeping->kept = keeping->says_nothing
+                            ? without_data(std::move(keeping->update), std::move(keeping->file))
+                            : spool.keep(keeping->number, std::move(keeping->update), keeping->spare,
+                                         std::move(keeping->file));
       },
       over,
       [keeping, over] {
@@ -96,6 +107,11 @@ void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<voi
 
 /// It waits from now on, and its sender may know.
 void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done) {
+  if (keeping.says_nothing) {
+    record_.no_valid_point(traffic_of(*keeping.kept), keeping.bytes_received, loop_.wall_now());
+    forget({&keeping.number, 1});
+    return done({});
+  }
   const std::string before = std::exchange(trouble_, keeping.kept ? "" : keeping.kept.error().sentence);
   if (!keeping.kept) {
     if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});

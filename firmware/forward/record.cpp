@@ -60,6 +60,11 @@ void Record::left_out(const Traffic& traffic, std::size_t points) {
   changed_();
 }
 
+void Record::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now) {
+  ++row(traffic).no_valid_point;
+  accepted(traffic, bytes, now);
+}
+
 void Record::rounded_to(const Traffic& traffic, lanes::Precision precision) {
   row(traffic).precision = lanes::kPrecisionWords[static_cast<std::size_t>(precision)];
 }

@@ -50,6 +50,8 @@ class Record {
   void replaced(const Traffic& traffic, std::size_t updates);
   /// So many points of its clouds were not sent, for others of their voxels had been taken.
   void left_out(const Traffic& traffic, std::size_t points);
+  /// A cloud was accepted that has no valid point, so that nothing of it is sent.
+  void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
   /// What its clouds were taken for.
   void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
   /// How far the cloud was rounded that the Command Post took last.

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -11,9 +10,7 @@ namespace adit::icd {
 /// From a map's own frame to "darpa": a rotation by a matrix, then a shift.
 struct Placement {
   explicit Placement(const Pose& pose) : shift{pose.position} {
-    const Quaternion& q = pose.orientation;
-    const double largest = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z), std::abs(q.w)});
-    double x = q.x / largest, y = q.y / largest, z = q.z / largest, w = q.w / largest;
+    auto [x, y, z, w] = pose.orientation;
     const double norm = std::sqrt(x * x + y * y + z * z + w * w);
     x /= norm, y /= norm, z /= norm, w /= norm;
     turn = {{{1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)},

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 
+#include "icd/placement.hpp"
 #include "lanes/lattice.hpp"
 #include "lanes/waiting_map.hpp"
 
@@ -21,24 +21,17 @@ struct Corner {
   std::int64_t x = 0, y = 0, z = 0;
 };
 
-icd::Quaternion normalized(icd::Quaternion q) {
-  const double largest = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z), std::abs(q.w)});
-  q = {q.x / largest, q.y / largest, q.z / largest, q.w / largest};  // so that squares stay in range
-  const double norm = std::sqrt(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w);
-  return {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
-}
-
-/// `p` in the frame that `orientation` turns to: the product of the transposed rotation matrix and `p`.
-icd::Point turned_back(const icd::Quaternion& orientation, const icd::Point& p) {
-  const auto [x, y, z, w] = normalized(orientation);
-  return {(1 - 2 * (y * y + z * z)) * p.x + 2 * (x * y + w * z) * p.y + 2 * (x * z - w * y) * p.z,
-          2 * (x * y - w * z) * p.x + (1 - 2 * (x * x + z * z)) * p.y + 2 * (y * z + w * x) * p.z,
-          2 * (x * z + w * y) * p.x + 2 * (y * z - w * x) * p.y + (1 - 2 * (x * x + y * y)) * p.z};
+/// An origin's position along its own axes: the product of the transposed rotation matrix and the position.
+icd::Point turned_back(const icd::Pose& origin) {
+  const auto& [turn, p] = icd::Placement{origin};
+  return {turn[0][0] * p.x + turn[1][0] * p.y + turn[2][0] * p.z,
+          turn[0][1] * p.x + turn[1][1] * p.y + turn[2][1] * p.z,
+          turn[0][2] * p.x + turn[1][2] * p.y + turn[2][2] * p.z};
 }
 
 /// Nothing where the grid lies so far out that its cells cannot be told apart.
 std::optional<Corner> corner_of(const icd::OccupancyGrid& grid) {
-  const icd::Point p = turned_back(grid.origin.orientation, grid.origin.position);
+  const icd::Point p = turned_back(grid.origin);
   const double scale = static_cast<double>(kStepsPerCell) / grid.resolution;
   const double x = p.x * scale, y = p.y * scale, z = p.z * scale;
   const auto tellable = [](double steps) {
@@ -81,11 +74,10 @@ std::optional<icd::Pose> corner_at(const icd::OccupancyGrid& of, std::int64_t x,
   const auto from = corner_of(of);
   if (!from) return {};
   const double step = of.resolution / static_cast<double>(kStepsPerCell);
-  const auto& [qx, qy, qz, qw] = of.origin.orientation;
   const icd::Point there{static_cast<double>(from->x + x * kStepsPerCell) * step,
-                         static_cast<double>(from->y + y * kStepsPerCell) * step,
-                         turned_back(of.origin.orientation, of.origin.position).z};
-  return icd::Pose{turned_back({-qx, -qy, -qz, qw}, there), of.origin.orientation};
+                         static_cast<double>(from->y + y * kStepsPerCell) * step, turned_back(of.origin).z};
+  const icd::Placement turned{{.position = {}, .orientation = of.origin.orientation}};
+  return icd::Pose{turned(there), of.origin.orientation};
 }
 
 }  // namespace adit::lanes

@@ -57,6 +57,16 @@ icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData 
   return those_that_stay(data, cloud.point_step, is_finite);
 }
 
+bool has_only_invalid_points(const icd::MapUpdate& map) {
+  const auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
+  if (cloud == nullptr || map.data.compression != icd::Compression::None || map.data.bytes.empty())
+    return false;
+  const FiniteCheck is_finite{*cloud};
+  bool none_is = true;
+  for_each_point(map.data.bytes, cloud->point_step, [&](auto point) { return none_is = !is_finite(point); });
+  return none_is;
+}
+
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form) {
   if (const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg)) {
     map.data = pack_cells(*grid, std::move(map.data));

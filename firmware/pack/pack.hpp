@@ -27,4 +27,8 @@ icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});
 /// `data` without the points whose x, y or z is not finite. `data` must be uncompressed.
 icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data);
 
+/// Whether `map` is a cloud of which nothing would be left then, though it has points. CPU-bound in the size
+/// of such a cloud; of any other its first points tell.
+bool has_only_invalid_points(const icd::MapUpdate& map);
+
 }  // namespace adit::pack

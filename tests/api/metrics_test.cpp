@@ -52,6 +52,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
   clouds.clouds = "whole";
   clouds.precision = "8mm";
   clouds.points_left_out = 7000;
+  clouds.no_valid_point = 3;
   all.view.activities = {clouds};
   all.view.sent_mbit = 8;
   all.view.budget_mbit = 20;
@@ -80,6 +81,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
                              R"(adit_clouds_whole{robot="ugv1"} 1)",
                              R"(adit_clouds_rounded_metres{robot="ugv1"} 0.008)",
                              R"(adit_points_left_out_total{robot="ugv1"} 7000)",
+                             R"(adit_clouds_no_valid_point_total{robot="ugv1"} 3)",
                              "adit_link_rate_bytes_per_second 1e+06",
                              "adit_link_budget_bytes_per_second 2500000",
                              R"(adit_alarm{id="robot_silent:ugv1",severity="bad",side="robot"} 1)",

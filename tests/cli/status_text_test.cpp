@@ -110,6 +110,8 @@ TEST(StatusText, SaysWhatBecomesOfARobotsClouds) {
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts  "));
   row.precision = "8mm", row.points_left_out = 16;
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts, to 8mm, 16 points left out  "));
+  row.no_valid_point = 2;
+  EXPECT_THAT(status_text(view, false), HasSubstr("16 points left out, 2 without a valid point  "));
 }
 
 }  // namespace

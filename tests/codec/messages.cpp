@@ -28,6 +28,10 @@ json with_base64(json value) {
 
 }  // namespace
 
+json quaternion(double x, double y, double z, double w) {
+  return {{"x", x}, {"y", y}, {"z", z}, {"w", w}};
+}
+
 json good_grid() {
   return {{"type", "OccupancyGrid"},
           {"name", "husky_01"},

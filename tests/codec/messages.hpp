@@ -36,6 +36,7 @@ json good_cloud();  // 2 points of x, y, z, rgba
 json good_state();
 json good_markers();
 json good_report();
+json quaternion(double x, double y, double z, double w);
 
 std::string base64(const Bytes& bytes);
 /// With every binary as a base64 string.

@@ -35,7 +35,8 @@ icd::Point any_point(Random& random) {
 
 icd::Pose any_pose(Random& random) {
   return {.position = any_point(random),
-          .orientation = {any_number(random), any_number(random), any_number(random), 0.5}};
+          .orientation =
+              icd::rotation_of({any_number(random), any_number(random), any_number(random), 0.5}).value()};
 }
 
 /// Often the last one.

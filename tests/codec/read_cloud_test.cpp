@@ -1,6 +1,7 @@
 // A row for each rule of the ICD about a PointCloud2 in POST /map/update, sent as JSON and as CBOR.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 
 #include "codec/read_map.hpp"
@@ -12,6 +13,7 @@ using test::Bytes;
 using test::expect_map_answers;
 using test::IcdRow;
 using test::json;
+using test::kInfinity;
 using test::read_map;
 
 TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
@@ -20,6 +22,10 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
        "msg.origin: expected an object, got a whole number"},
       {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"]["w"] = nullptr; },
        "msg.origin.orientation.w: expected a number, got null"},
+      {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"] = test::quaternion(0, 0, 0, 1e-9); },
+       "msg.origin.orientation: expected a quaternion of length 1, got one too short to have a direction"},
+      {"6.3.2", [](json& m) { m["msg"]["origin"]["orientation"] = test::quaternion(kInfinity, 0, 0, 1); },
+       "msg.origin.orientation.x: expected a finite number, got inf"},
       {"6.3.2", [](json& m) { m["msg"].erase("fields"); }, "msg.fields: missing"},
       {"6.3.2", [](json& m) { m["msg"]["fields"] = json::object(); },
        "msg.fields: expected an array, got an object"},
@@ -135,6 +141,73 @@ TEST(ReadMapUpdate, KeepsWhatACloudSaysAndItsPointsAsTheyAre) {
   EXPECT_EQ(map->data.compression, icd::Compression::None);
   EXPECT_EQ(map->data.raw_size, 32U);
   EXPECT_EQ(map->data.bytes, icd::ChunkedBytes(Bytes(32, 0x41)));
+}
+
+struct Rows {
+  std::size_t width, height, row_step;
+};
+
+/// A cloud of that many rows, of points of 16 bytes, and its data without and with padding.
+json organised_cloud(const Rows& rows, Bytes& points, Bytes& padded) {
+  for (std::size_t row = 0; row < rows.height; ++row) {
+    for (std::size_t i = 0; i < rows.row_step; ++i) {
+      const auto byte = static_cast<std::uint8_t>(row * 131 + i * 7 + i / 251);
+      padded.push_back(byte);
+      if (i < rows.width * 16) points.push_back(byte);
+    }
+  }
+  json message = test::good_cloud();
+  message["msg"]["width"] = rows.width;
+  message["msg"]["height"] = rows.height;
+  message["msg"]["row_step"] = rows.row_step;
+  message["msg"]["data"] = json::binary(padded);
+  return message;
+}
+
+TEST(ReadMapUpdate, TakesThePointsOfAnOrganisedCloudAndNotThePaddingOfItsRows) {
+  // 85: no whole number of points in the data. The larger ones begin and end rows anywhere in a chunk.
+  for (const Rows& rows : {Rows{5, 4, 88}, {5, 4, 85}, {1, 2, 17}, {640, 480, 10'241}, {3, 2, 200'000}}) {
+    Bytes points, padded;
+    json message = organised_cloud(rows, points, padded);
+    const auto expect_points = [&](Format format) {
+      const auto map =
+          read_map(format, format == Format::Json ? test::as_json(message) : test::as_cbor(message));
+      ASSERT_EQ(test::sentence_of(map), "taken") << rows.row_step;
+      EXPECT_EQ(map->data.raw_size, points.size()) << rows.row_step;
+      EXPECT_TRUE(map->data.bytes == icd::ChunkedBytes(points)) << rows.row_step;
+    };
+    expect_points(Format::Json);
+    expect_points(Format::Cbor);
+    message["msg"]["data"] = json::binary(test::compressed(padded));
+    message["msg"]["compression"] = "gzip";
+    expect_points(Format::Json);
+    expect_points(Format::Cbor);
+    message["msg"]["is_bigendian"] = true;
+    for (std::size_t i = 0; i < points.size(); i += 4) std::reverse(&points[i], &points[i] + 4);
+    expect_points(Format::Cbor);
+  }
+}
+
+/// As real drivers fill them in.
+TEST(ReadMapUpdate, DoesNotLookAtTheRowsOfACloudThatDoNotAddUpToPaddedOnes) {
+  Bytes points, padded;
+  const json message = organised_cloud({5, 4, 96}, points, padded);  // each row, with its padding, 6 points
+  const std::pair<const char*, json> changes[] = {
+      {"row_step", 0},   {"row_step", 384},       {"row_step", 24},    {"row_step", 80},
+      {"row_step", 112}, {"row_step", "96"},      {"row_step", -96},   {"row_step", nullptr},
+      {"height", 1},     {"height", 3},           {"height", nullptr}, {"width", 6},
+      {"width", 24},     {"width", json::array()}};
+  for (const auto& [name, value] : changes) {
+    json changed = message;
+    changed["msg"][name] = value;
+    const auto map = read_map(Format::Cbor, test::as_cbor(changed));
+    ASSERT_EQ(test::sentence_of(map), "taken") << name << value;
+    EXPECT_TRUE(map->data.bytes == icd::ChunkedBytes(padded)) << name << value;
+  }
+  json flat = message;
+  flat["msg"]["height"] = 1;
+  flat["msg"]["row_step"] = 384;
+  EXPECT_EQ(read_map(Format::Cbor, test::as_cbor(flat))->data.raw_size, 384U);
 }
 
 TEST(ReadMapUpdate, TakesACloudWithoutOriginByteOrderOrPoints) {

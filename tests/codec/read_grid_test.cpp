@@ -80,6 +80,10 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
        "msg.info.origin.orientation: expected an object, got an array"},
       {"6.3.1", [](json& m) { m["msg"]["info"]["origin"]["orientation"].erase("w"); },
        "msg.info.origin.orientation.w: missing"},
+      {"6.3.1",
+       [](json& m) { m["msg"]["info"]["origin"]["orientation"] = test::quaternion(5e-324, 0, 0, 0); },
+       "msg.info.origin.orientation: expected a quaternion of length 1, got one too short to have a "
+       "direction"},
       {"6.3.1", [](json& m) { m["msg"]["data"] = json::binary(Bytes(11, 0)); },
        "msg.info.width: expected 4 x 3 = 12 bytes of data, got 11"},
       {"6.3.1", [](json& m) { m["msg"]["data"] = json::binary(Bytes(13, 0)); },

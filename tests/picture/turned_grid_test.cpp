@@ -27,15 +27,6 @@ TEST(TurnedGrid, AHalfTurnPutsItBelowAndLeftOfItsOrigin) {
   EXPECT_EQ(easel.seen(-0.375, -0.375), 41);
 }
 
-TEST(TurnedGrid, AQuaternionNeedNotHaveLengthOne) {
-  Easel easel, unit;
-  const Cells cells{100, 0, 20, 40};
-  easel.draw(grid_of(2, 0.25, {{3, 3, 0}, {0, 0, 3e200, 3e200}}, cells));
-  unit.draw(grid_of(2, 0.25, {{3, 3, 0}, turned_by(kPi / 2)}, cells));
-  easel.layer = unit.layer;
-  EXPECT_EQ(easel.pixels({0, 0, 0}), unit.pixels({0, 0, 0}));
-}
-
 /// Where a cell's place (its lower left corner is 0, 0) lies in the world.
 icd::Point place(const icd::OccupancyGrid& grid, double yaw, double column, double row) {
   const double x = column * grid.resolution, y = row * grid.resolution;

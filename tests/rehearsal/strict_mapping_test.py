@@ -2,6 +2,7 @@
 
 import base64
 import gzip
+import math
 import struct
 import time
 import unittest
@@ -42,8 +43,13 @@ class Taken(unittest.TestCase):
             self.expect_taken("/markers/update", marker(**{name: DROP}))
 
     def test_members_that_the_icd_does_not_have_are_let_be(self):
-        body = changed(cloud(), msg__height=1, msg__is_dense=True, msg__header__seq=4)
-        self.assertEqual(self.post.map(body).status_code, 200)
+        for rows in ({"msg__height": 1}, {"msg__height": 2, "msg__width": 1, "msg__row_step": 12}):
+            body = changed(cloud(), msg__is_dense=True, msg__header__seq=4, **rows)
+            self.assertEqual(self.post.map(body).status_code, 200)
+
+    def test_a_quaternion_is_of_length_1_but_for_noise(self):
+        for length in (0.999999, 1, 1.000001):
+            self.assertEqual(self.post.map(changed(grid(), msg__info__origin__orientation__w=length)).status_code, 200)
 
     def test_state_and_markers_of_all_kinds(self):
         self.expect_taken("/state/update", state("X1", "X2", "A_long_one"))
@@ -85,7 +91,8 @@ def grid_refusals():
                     {"name": None}, {"msg__info__width": 4}, {"msg__info__width": 3.0}, {"msg__info__width": -3},
                     {"msg__info__width": 2**32}, {"msg__info__width": 0}, {"msg__info__height": "2"},
                     {"msg__info__resolution": 0}, {"msg__info__resolution": "0.2"},
-                    {"msg__info__origin__orientation__w": 0}, {"msg__info__origin__position__z": DROP},
+                    {"msg__info__origin__orientation__w": 0}, {"msg__info__origin__orientation__w": 1.00001},
+                    {"msg__info__origin__orientation__z": 1}, {"msg__info__origin__position__z": DROP},
                     {"msg__header__frame_id": "map"}, {"msg__header__frame_id": 1}, {"msg__header": 3},
                     {"msg__header__stamp": -1}, {"msg__header__stamp": {"secs": 1, "nsecs": 2}},
                     {"msg__compression": "bz2"}, {"msg__compression": True}, {"msg__compression": "gzip"},
@@ -110,8 +117,15 @@ def cloud_refusals():
                     {"msg__fields__0__datatype": 0}, {"msg__fields__0__datatype": 9},
                     {"msg__fields__0__datatype": 6}, {"msg__fields__0__name": "y"},
                     {"msg__fields__0__name": "intensity"}, {"msg__fields": []}, {"msg__fields": {}},
-                    {"msg__is_bigendian": 1}, {"msg__origin": None}, {"msg__origin__orientation": DROP}):
+                    {"msg__is_bigendian": 1}, {"msg__origin": None}, {"msg__origin__orientation": DROP},
+                    {"msg__origin__orientation__w": 0.99}, {"msg__width": 2, "msg__row_step": 36},
+                    {"msg__width": 1, "msg__height": 2, "msg__row_step": 0}):
         yield changed(cloud(), **changes)
+    for value in (math.nan, math.inf, -math.inf):
+        yield cloud(data=POINTS + struct.pack("<3f", 1, 2, value))
+        yield changed(cloud(data=struct.pack(">3f", value, 1, 2)), msg__is_bigendian=True)
+        yield cloud(schema=fields(8, 8), point_step=24, data=struct.pack("<3d", 1, value, 2))
+    yield cloud(data=POINTS + b"PADDINGOFROW")
     yield cloud(data=POINTS[:-1])
     mixed = fields()[:2] + [{"name": "z", "offset": 8, "datatype": 8, "count": 1}]
     yield cloud(schema=mixed, point_step=16, data=bytes(32))
@@ -130,7 +144,7 @@ def marker_refusals():
                     {"id": 2**31}, {"id": "7"}, {"ns": 3}, {"color__a": 1.5}, {"color__r": -0.1},
                     {"color__g": DROP}, {"scale__x": None}, {"pose__position__x": "1"}, {"lifetime": -1},
                     {"lifetime": "1"}, {"lifetime": {"secs": 1}}, {"text": 4}, {"header__frame_id": "odom"},
-                    {"pose__orientation__w": 0}):
+                    {"pose__orientation__w": 0}, {"pose__orientation__w": -2}):
         yield marker(**changes)
     yield from ({}, {"markers": {}}, {"markers": [3]}, [])
 
@@ -139,6 +153,7 @@ def state_refusals():
     yield from ({}, [], {"poses": {}}, {"poses": [1]}, state(""), state("elevenchars"), state("a-b"), state(7))
     for path in ("name", "position", "orientation", "position__x", "orientation__w"):
         yield changed(state("X1"), **{"poses__0__" + path: DROP})
+    yield changed(state("X1"), poses__0__orientation__x=0.5)
     yield changed(state("X1"), header__frame_id="world")
     yield changed(state("X1"), header__stamp="1")
 
@@ -171,6 +186,11 @@ class Refused(unittest.TestCase):
                      msg__data=base64.b64encode(gzip.compress(bytes(6)) * 2).decode())),
             ("msg.point_step: expected at least 1, got 0", cloud(point_step=0)),
             ("msg.fields[2]: ends at byte 13 of a point of 12", changed(cloud(), msg__fields__2__offset=9)),
+            ("msg.row_step: expected width * point_step = 24, got 36", changed(cloud(), msg__width=2, msg__row_step=36)),
+            ("msg.data: point 1 has no finite y (ICD 6.3.2)", cloud(data=struct.pack("<6f", 1, 2, 3, 4, math.nan, 6))),
+            ("msg.data: the padding between a robot's rows came as points", cloud(data=POINTS + b"PADDINGOFROW")),
+            ("msg.origin.orientation: expected a quaternion of length 1, got one of length 2.000000",
+             changed(cloud(), msg__origin__orientation__w=2)),
         ]
         with CommandPost() as post:
             for sentence, body in table:

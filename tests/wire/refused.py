@@ -73,6 +73,7 @@ FIELDS = [
     ("/state/update", STATE, "poses.0.name", MISSING),
     ("/state/update", STATE, "poses.0.name", "bad-name"),
     ("/state/update", STATE, "poses.0.position.x", "1"),
+    ("/state/update", STATE, "poses.0.orientation.w", 1e-9),
     ("/state/update", STATE, "header.stamp", "now"),
     ("/state/update", STATE, "header.frame_id", "map"),
     ("/markers/update", MARKERS, "markers", MISSING),

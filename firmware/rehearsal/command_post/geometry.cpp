@@ -1,5 +1,8 @@
 #include "rehearsal/command_post/geometry.hpp"
 
+#include <cmath>
+#include <string>
+
 namespace adit::rehearsal {
 namespace {
 
@@ -14,8 +17,11 @@ std::optional<Quaternion> read_quaternion(const Field& quaternion) {
   const auto z = number_in(quaternion, "z");
   const auto w = number_in(quaternion, "w");
   if (!x || !y || !z || !w) return std::nullopt;
-  if (*x == 0 && *y == 0 && *z == 0 && *w == 0) {
-    quaternion.breaks("expected a rotation, got a quaternion of all zeros", Measured::Takes);
+  constexpr double kNoise = 2e-6;  // of float32, and of printed digits
+  const double length = std::hypot(std::hypot(*x, *y, *z), *w);
+  if (!(std::abs(length - 1) <= kNoise)) {
+    quaternion.breaks("expected a quaternion of length 1, got one of length " + std::to_string(length),
+                      Measured::Takes);
   }
   return Quaternion{*x, *y, *z, *w};
 }

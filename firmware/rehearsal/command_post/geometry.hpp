@@ -28,8 +28,8 @@ struct Stamp {
 
 std::optional<Point> read_point(const Field& point);
 
-/// `pose` holds "position" and "orientation". A rotation of all zeros is none, though the measured server
-/// takes it.
+/// `pose` holds "position" and "orientation". A quaternion that is not of length 1 is no rotation, though the
+/// measured server takes it.
 std::optional<Pose> read_pose(const Field& pose);
 
 /// The optional "header" of `message` (ICD 6.1, 6.2): frame_id must be "darpa"; a stamp is added to `stamps`.

@@ -1,11 +1,16 @@
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <string_view>
 #include <utility>
 
 #include "rehearsal/command_post/base64.hpp"
 #include "rehearsal/command_post/inflate.hpp"
 #include "rehearsal/command_post/messages.hpp"
+#include "rehearsal/row_padding.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -114,6 +119,44 @@ std::optional<Cloud> read_cloud(const Field& msg) {
   cloud.point_step = static_cast<std::uint32_t>(*bytes);
   if (!check_ends(cloud, *fields) || !check_axes(cloud, *fields)) return std::nullopt;
   return cloud;
+}
+
+/// The ICD has no rows (6.3.2): a Command Post reads what stands between them as points.
+void check_rows(const Field& msg, const Cloud& cloud) {
+  const auto width = msg.optional_member("width"), row_step = msg.optional_member("row_step");
+  if (!width || !row_step || !width->value().is_number_integer()) return;
+  const auto expected = width->value().get<std::uint64_t>() * cloud.point_step;
+  if (row_step->value() == Json(expected)) return;
+  row_step->breaks(
+      "expected width * point_step = " + std::to_string(expected) + ", got " + line_of(row_step->value()),
+      Measured::Takes);
+}
+
+double coordinate(const char* bytes, std::size_t size, bool bigendian) {
+  std::array<char, sizeof(double)> value{};
+  std::copy_n(bytes, size, value.begin());
+  if (bigendian) std::reverse(value.begin(), value.begin() + static_cast<std::ptrdiff_t>(size));
+  if (size == sizeof(double)) return std::bit_cast<double>(value);
+  float single = 0;
+  std::memcpy(&single, value.data(), sizeof single);
+  return single;
+}
+
+/// ICD 6.3.2: clouds are dense.
+void check_points(const Cloud& cloud, const std::string& data, const Field& msg) {
+  if (data.contains(kRowPadding)) {
+    msg.findings().breaks("msg.data: the padding between a robot's rows came as points", Measured::Takes);
+  }
+  for (std::size_t at = 0; at + cloud.point_step <= data.size(); at += cloud.point_step) {
+    for (const CloudField& field : cloud.fields) {
+      if (field.name != "x" && field.name != "y" && field.name != "z") continue;
+      const std::size_t size = size_of_datatype(field.datatype);
+      if (std::isfinite(coordinate(data.data() + at + field.offset, size, cloud.is_bigendian))) continue;
+      return msg.findings().breaks("msg.data: point " + std::to_string(at / cloud.point_step) +
+                                       " has no finite " + field.name + " (ICD 6.3.2)",
+                                   Measured::Takes);
+    }
+  }
 }
 
 /// ICD 6.3 (a) and (b): base64 in JSON, a byte string in CBOR.
@@ -230,6 +273,8 @@ std::optional<MapMessage> read_cloud_message(const Field& msg, Format format, Ma
                               " bytes are no multiple of point_step " + std::to_string(cloud->point_step),
                           Measured::Takes);
   }
+  check_rows(msg, *cloud);
+  check_points(*cloud, *data, msg);
   message.msg = std::move(*cloud);
   message.data = std::move(*data);
   return message;

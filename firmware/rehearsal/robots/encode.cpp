@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "rehearsal/robots/packing.hpp"
+#include "rehearsal/row_padding.hpp"
 
 namespace adit::robots {
 namespace {
@@ -54,12 +55,10 @@ class Body {
                 {"is_bigendian", false}};
     if (cloud.origin) msg["origin"] = placement(*cloud.origin);
     if (style_.ros) {
-      msg["height"] = 1;
-      msg["width"] = cloud.data.size() / cloud.point_step;
-      msg["row_step"] = cloud.data.size();
-      msg["is_dense"] = true;
+      put_rows(msg, cloud);
+    } else {
+      put_data(msg, cloud.data);
     }
-    put_data(msg, cloud.data);
     return map("PointCloud2", std::move(msg));
   }
 
@@ -101,7 +100,8 @@ class Body {
   }
 
   Json placement(const Placement& placement) const {
-    const Rotation& q = placement.orientation;
+    Rotation q = placement.orientation;
+    if (style_.ros) q = {2 * q.x, 2 * q.y, 2 * q.z, 2 * q.w};  // as of a client that does not normalise
     return {
         {"position", vector(placement.position)},
         {"orientation", {{"x", number(q.x)}, {"y", number(q.y)}, {"z", number(q.z)}, {"w", number(q.w)}}}};
@@ -129,6 +129,24 @@ class Body {
       msg["data"] = base64(packed);
     }
     if (style_.gzip_data) msg["compression"] = "gzip";
+  }
+
+  /// Two, each with the padding of one point, if they are of one length; else one, as of a cloud that is not
+  /// organised.
+  void put_rows(Json& msg, const Cloud& cloud) const {
+    const std::size_t points = cloud.data.size() / cloud.point_step;
+    const std::size_t rows = points > 0 && points % 2 == 0 ? 2 : 1, row = cloud.data.size() / rows;
+    std::vector<std::uint8_t> data;
+    for (std::size_t at = 0; at < cloud.data.size(); at += row) {
+      data.insert(data.end(), &cloud.data[at], &cloud.data[at] + row);
+      for (std::size_t i = 0; rows > 1 && i < cloud.point_step; ++i)
+        data.push_back(static_cast<std::uint8_t>(kRowPadding[i % kRowPadding.size()]));
+    }
+    msg["height"] = rows;
+    msg["width"] = points / rows;
+    msg["row_step"] = data.size() / rows;
+    msg["is_dense"] = true;
+    put_data(msg, data);
   }
 
   Json map(const char* type, Json msg) const {

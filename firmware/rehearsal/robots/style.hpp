@@ -22,7 +22,7 @@ struct Style {
   bool gzip_data = false;  // "compression": "gzip"
   bool gzip_body = false;  // Content-Encoding: gzip
   bool ros = false;        // whole ROS dictionaries: seq, ROS's times, integers where floats are asked for,
-                           // quaternions of all zeros, maps without a name
+                           // quaternions of all zeros and of length 2, rows with padding, maps without a name
   bool browser = false;    // a CORS preflight first, a charset, a trailing slash, `bearer`
 };
 

@@ -16,6 +16,7 @@ function counts(row) {
   if (row.clouds) parts.push(`taken as ${row.clouds}`);
   if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
   if (row.points_left_out) parts.push(`${row.points_left_out} points left out`);
+  if (row.no_valid_point) parts.push(`${row.no_valid_point} without a valid point`);
   if (row.no_room) parts.push(`${row.no_room} refused: too much waits`);
   if (row.refused_upstream) parts.push(`${row.refused_upstream} refused by the Command Post`);
   return parts.join(", ");

@@ -90,6 +90,16 @@ Placement placement_of(const Json& json) {
   return {vector_of(json["position"]), {q["x"], q["y"], q["z"], q["w"]}};
 }
 
+/// As it is, but for ROS's, which is twice as long.
+Rotation posted(const Rotation& q, const Style& style) {
+  const double length = style.ros ? 2 : 1;
+  return {length * q.x, length * q.y, length * q.z, length * q.w};
+}
+
+Placement posted(const Placement& placement, const Style& style) {
+  return {placement.position, posted(placement.orientation, style)};
+}
+
 class EveryStyle : public testing::TestWithParam<Style> {
  protected:
   Encoder encoder{"r1", GetParam(), "flux230{showroom"};
@@ -118,7 +128,7 @@ TEST_P(EveryStyle, GridsDecodeToTheSameValues) {
   EXPECT_EQ(msg["info"]["resolution"], grid.resolution);
   EXPECT_EQ(msg["info"]["width"], grid.width);
   EXPECT_EQ(msg["info"]["height"], grid.height);
-  EXPECT_EQ(placement_of(msg["info"]["origin"]), grid.origin);
+  EXPECT_EQ(placement_of(msg["info"]["origin"]), posted(grid.origin, GetParam()));
   EXPECT_EQ(data_of(msg), grid.cells);
 }
 
@@ -129,12 +139,12 @@ TEST_P(EveryStyle, CloudsDecodeToTheSameBytes) {
       .fields = {{"x", 0, kFloat32, 1}, {"y", 4, kFloat32, 1}, {"z", 8, kFloat32, 1}, {"ring", 12, 4, 2}},
       .point_step = 16,
       .data = {}};
-  for (int i = 0; i < 16 * 1000; ++i) cloud.data.push_back(static_cast<std::uint8_t>(i * i >> 3));
+  for (int i = 0; i < 16 * 1001; ++i) cloud.data.push_back(static_cast<std::uint8_t>(i * i >> 3));
   const Json body = body_of(encoder.encode(cloud));
   EXPECT_EQ(body["type"], "PointCloud2");
   const Json& msg = body["msg"];
   EXPECT_DOUBLE_EQ(stamp_of(msg["header"]), cloud.stamp);
-  EXPECT_EQ(placement_of(msg["origin"]), *cloud.origin);
+  EXPECT_EQ(placement_of(msg["origin"]), posted(*cloud.origin, GetParam()));
   EXPECT_EQ(msg["point_step"], 16);
   EXPECT_EQ(msg["is_bigendian"], false);
   std::vector<CloudField> fields;
@@ -210,10 +220,12 @@ TEST(Encoder, WritesRosDictionariesWhole) {
   const Json msg = body_of(encoder.encode(cloud))["msg"];
   EXPECT_EQ(msg["header"]["seq"], 1);
   EXPECT_EQ(msg["header"]["stamp"], Json({{"sec", 1}, {"nanosec", 0}}));
-  EXPECT_EQ(msg["height"], 1);
-  EXPECT_EQ(msg["width"], 2);
+  EXPECT_EQ(msg["height"], 2);
+  EXPECT_EQ(msg["width"], 1);
   EXPECT_EQ(msg["row_step"], 8);
   EXPECT_EQ(msg["is_dense"], true);
+  const Bytes data = data_of(msg);
+  EXPECT_EQ(std::string(data.begin(), data.end()), "\1\2\3\4PADD\5\6\7\10PADD");
   const Json report = Json::parse(encoder.encode(Report{"Gas", {2, 0, -1}}).body);
   EXPECT_TRUE(report["x"].is_number_integer()) << "ROS clients send 2, not 2.0";
 }

@@ -62,6 +62,8 @@ struct Style {
   bool big_endian = false;  // clouds
   int point_step = 16;      // of clouds, in bytes
   bool news_first = false;  // of clouds that have the points of those before them
+  bool in_rows = false;     // clouds are organised, and their rows padded
+  double quaternion = 1;    // how long each is
 };
 
 /// What a client says of each thing in it.

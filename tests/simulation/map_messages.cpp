@@ -20,7 +20,8 @@ namespace {
 constexpr std::size_t kSerialCells = 4;     // of a bad grid, each a digit of base 100
 constexpr std::int64_t kPointsApart = 512;  // a point's intensity: so many times the serial, and its index
 constexpr std::int64_t kInvalidEvery = 17;
-constexpr double kPacking = 0.0013;  // metres by which packing may move a point
+constexpr std::size_t kRowWidth = 4;  // less than any cloud has points
+constexpr double kPacking = 0.0013;   // metres by which packing may move a point
 
 /// Where a point lies.
 std::array<float, 3> place_of(std::int64_t serial, std::int64_t index) {
@@ -94,13 +95,33 @@ Json grid(const Item& item, const Style& style) {
                {{"resolution", cell},
                 {"width", extent.width},
                 {"height", extent.height},
-                {"origin", pose_at(extent.x * cell / 2, extent.y * cell / 2)}}}};
+                {"origin", pose_at(extent.x * cell / 2, extent.y * cell / 2, style)}}}};
   put_data(msg, std::move(cells), style);
   return msg;
 }
 
 Json field(const char* name, std::size_t offset) {
   return {{"name", name}, {"offset", offset}, {"datatype", 7}, {"count", 1}};
+}
+
+/// Rows of kRowWidth points, of which the last ones may be invalid, and padding that reads as one more.
+void organise(Json& msg, std::string& points, const Style& style) {
+  const auto step = static_cast<std::size_t>(style.point_step), row = kRowWidth * step;
+  const auto add = [&](std::string& bytes, float x) {
+    const std::size_t at = bytes.size();
+    bytes.resize(at + step);
+    put(bytes, at, x, style.big_endian);
+  };
+  while (points.size() % row != 0) add(points, std::numeric_limits<float>::quiet_NaN());
+  std::string padded;
+  for (std::size_t at = 0; at < points.size(); at += row) {
+    padded += points.substr(at, row);
+    add(padded, 1);
+  }
+  msg["width"] = kRowWidth;
+  msg["height"] = points.size() / row;
+  msg["row_step"] = row + step;
+  points = std::move(padded);
 }
 
 /// In a third of them an invalid point comes before each kInvalidEvery valid ones.
@@ -130,6 +151,7 @@ Json cloud(const std::vector<Item>& items, const Style& style) {
               {"fields", {field("x", 0), field("y", 4), field("z", 8), field("intensity", 12)}},
               {"point_step", step}};
   if (style.big_endian) msg["is_bigendian"] = true;
+  if (style.in_rows) organise(msg, points, style);
   put_data(msg, std::move(points), style);
   return msg;
 }
@@ -221,9 +243,9 @@ double stamp_of(const Json& message) {
   return message.contains("header") ? message["header"].value("stamp", 0.0) : 0.0;
 }
 
-Json pose_at(double x, double y) {
+Json pose_at(double x, double y, const Style& style) {
   return {{"position", {{"x", x}, {"y", y}, {"z", 0.0}}},
-          {"orientation", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"w", 1.0}}}};
+          {"orientation", {{"x", 0.0}, {"y", 0.0}, {"z", 0.0}, {"w", style.quaternion}}}};
 }
 
 Json map_of(const std::vector<Item>& items, const Style& style) {

@@ -11,7 +11,7 @@ using Json = nlohmann::json;
 
 Json header_of(double stamp);  // 0: without one
 double stamp_of(const Json& message);
-Json pose_at(double x, double y);
+Json pose_at(double x, double y, const Style& style);
 
 /// The body of any message.
 Json message_of(const Posting& posting, const Style& style);

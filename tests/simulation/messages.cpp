@@ -32,7 +32,7 @@ int type_of(const Item& item) {
   return points_of(item) > 0 ? kLine : letters_of(item) > 0 ? kText : kCube;
 }
 
-Json marker_of(const Item& item) {
+Json marker_of(const Item& item, const Style& style) {
   Json points = Json::array();
   for (std::size_t i = 0; i < points_of(item); ++i)
     points.push_back({{"x", 0.1 * static_cast<double>(i)}, {"y", 1.0}, {"z", 0.0}});
@@ -43,7 +43,7 @@ Json marker_of(const Item& item) {
           {"points", std::move(points)},
           {"text", std::string(letters_of(item), 'x')},
           {"action", item.says[0]},
-          {"pose", pose_at(0, 1)},
+          {"pose", pose_at(0, 1, style)},
           {"scale", {{"x", static_cast<double>(item.serial)}, {"y", 1.0}, {"z", 1.0}}},
           {"color", {{"r", 1.0}, {"g", 0.0}, {"b", 0.0}, {"a", 1.0}}}};
 }
@@ -75,13 +75,13 @@ Json message_of(const Posting& posting, const Style& style) {
   if (posting.path == kState) {
     Json poses = Json::array();
     for (const Item& each : posting.items) {
-      poses.push_back(pose_at(static_cast<double>(each.serial), 1));
+      poses.push_back(pose_at(static_cast<double>(each.serial), 1, style));
       poses.back()["name"] = each.who;
     }
     return {{"header", header_of(item.stamp)}, {"poses", std::move(poses)}};
   }
   Json markers = Json::array();
-  for (const Item& each : posting.items) markers.push_back(marker_of(each));
+  for (const Item& each : posting.items) markers.push_back(marker_of(each, style));
   return {{"markers", std::move(markers)}};
 }
 

@@ -63,6 +63,8 @@ struct Style {
   int point_step = 16;      // of clouds, in bytes
   bool news_first = false;  // of clouds that have the points of those before them
   bool rounds = false;      // a report's coordinates to float32
+  bool in_rows = false;     // clouds are organised, and their rows padded
+  double quaternion = 1;    // how long each is
 };
 
 /// What a client says of each thing in it.

@@ -15,13 +15,17 @@ constexpr int kLargest = 64;            // cells of a side
 constexpr std::size_t kLongestMap = 8;  // clouds until it begins again
 constexpr double kJump = 6;             // seconds: less may be messages that overtook each other
 
-Style style(Random random) {
+Style style(const World& world, const std::string& name) {
+  Random random = world.random("style " + name), ros = world.random("ros style of " + name);
+  const bool has_ros = world.random("whole ros messages").chance(0.2);
   return {.cbor = random.chance(0.5),
           .gzip = random.chance(0.3),
           .gzip_data = random.chance(0.3),
           .big_endian = random.chance(0.2),
           .point_step = random.chance(0.7) ? 16 : 24,
-          .news_first = random.chance(0.5)};
+          .news_first = random.chance(0.5),
+          .in_rows = has_ros && ros.chance(0.5),
+          .quaternion = has_ros && ros.chance(0.5) ? 2.0 : 1.0};
 }
 
 int between(Random& random, int low, int high) {
@@ -36,7 +40,7 @@ Robot::Robot(World& world, int number)
       random_(world.random("robot " + std::to_string(number))),
       name_(std::string("R").append(std::to_string(number))),
       client_(world, address(number), manners(random_), world.random("client " + name_)),
-      style_(style(world.random("style " + name_))),
+      style_(style(world, name_)),
       clock_(random_.between(-1000, 1000)),
       jump_(random_.chance(0.3) ? (random_.chance(0.5) ? 1 : -1) * random_.between(kJump, 2000) : 0),
       jumps_at_(random_.between(1, 60)),

@@ -104,11 +104,8 @@ void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time
     if (!differs) return take_up_run(*known, another.why, time);
     return begin_run(another.why, differs->certain ? 0 : known->number, status, time);
   }
-  // More reports left than in the run that this one may be: it is another, and is the one that begins.
-  if (run().may_be != 0 && another.certain && !other_team && !anything_was_sent_here()) {
-    account_.has_begun(time.stamp);
-    return clear_held(time);
-  }
+  // More reports left than in the run that this one may be: what is held is a repeat of none of its reports.
+  if (run().may_be != 0 && another.certain && !other_team && !anything_was_sent_here()) clear_held(time);
   begin_run(another.why, another.certain ? 0 : run().number, status, time);
 }
 

@@ -125,11 +125,6 @@ void RunAccount::is_another(double stamp) {
   write_down(stamp);
 }
 
-void RunAccount::has_begun(double stamp) {
-  forget_counts();
-  is_another(stamp);
-}
-
 void RunAccount::forget_counts() {
   known_.reset();
   odd_ = unscored_ = has_moved_ = false;

@@ -66,8 +66,6 @@ class RunAccount {
   void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present one is another than the one before, for certain.
   void is_another(double stamp);
-  /// So is it, and it begins only now: what was counted before was the other one's.
-  void has_begun(double stamp);
 
   /// A status of this run.
   void heard(const icd::RunStatus& status, Time time);

@@ -173,11 +173,13 @@ void Scoring::poll() {
   pump();
 }
 
-/// Why nothing is known that is young enough.
-intake::Answer Scoring::no_status() const {
-  const std::string why = !channel_.trouble().empty() ? channel_.trouble()
-                          : asked_status_             ? "it has not answered yet"
-                                                      : "reports go first";
+std::string Scoring::why_no_status() const {
+  if (!channel_.trouble().empty()) return channel_.trouble();
+  return asked_status_ ? "it has not answered yet" : "reports go first";
+}
+
+/// Nothing is known that is young enough.
+intake::Answer Scoring::no_status(const std::string& why) {
   intake::Answer answer = intake::error_answer(icd::Status::ServiceUnavailable,
                                                "the status of the run is not known just now: " + why);
   answer.headers.push_back({"Retry-After", "1"});
@@ -307,7 +309,7 @@ void Scoring::tell_askers(loop::Instant now) {
       asker.until = longest;
       return false;
     }
-    asker.responder->answer(known ? *known : no_status());
+    asker.responder->answer(known ? *known : no_status(why_no_status()));
     return true;
   });
 }
@@ -351,7 +353,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   if (run) known_status_.heard(answered->body, asked);  // and so told with its age
   if (answered == nullptr) {
     status_pace_.failed(outcome, now);
-    answer_askers(known_or(intake::error_answer(icd::Status::BadGateway, sentence_of(outcome))));
+    answer_askers(known_or(no_status(sentence_of(outcome))));
   } else if (answered->status == 429) {
     has_one_limit_ = has_one_limit_ || status_left_ < report_left_ + report_pace_.spacing();
     status_pace_.throttled(now, answered->retry_after);

@@ -140,7 +140,8 @@ class Scoring {
   bool may_ask_soon(loop::Instant now) const;
   std::optional<intake::Answer> known_status() const;
   void deadline_came();
-  intake::Answer no_status() const;
+  std::string why_no_status() const;
+  static intake::Answer no_status(const std::string& why);
   intake::Answer known_or(intake::Answer failure) const;
 
   loop::Loop& loop_;

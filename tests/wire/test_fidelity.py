@@ -43,7 +43,8 @@ def as_whole_numbers(value):
     return int(value) if whole else value
 
 
-REMARKS = (0, 1, 21, 22, 23, 28, 32, 33, 34, 35, 36, 39, 41, 64, 68, 72, 256, 258, 259, 275, 55799)
+# Not 256: cbor2 would write references to texts under it.
+REMARKS = (0, 1, 21, 22, 23, 28, 32, 33, 34, 35, 36, 39, 41, 64, 68, 72, 258, 259, 275, 55799)
 OTHER_TAGS = (2, 3, 4, 5, 6, 16, 19, 20, 24, 25, 29, 31, 37, 63, 65, 85, 55798, 55800, 2**40)
 
 

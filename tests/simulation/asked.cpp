@@ -11,6 +11,7 @@ namespace adit::simulation {
 namespace {
 
 constexpr int kRequestTimeout = 408;
+constexpr double kWritesDown = 0.05;  // how soon after an answer it is in the ledger
 constexpr std::int64_t kUnknown = 0, kElsewhere = -1, kBefore = -2;  // serials
 /// Faults in which the Command Post's answer is right.
 const std::set<std::string> kRightAnswers = {name_of(Fault::Delay), name_of(Fault::OddAnswer),
@@ -45,6 +46,13 @@ void OpenReports::add(const Event& event) {
   }
   const bool is_over = event.what == kDone || event.what == kWithdraw;
   if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
+  if (event.kind == Kind::Dies) {
+    for (const auto& [serial, at] : told_) {
+      if (event.at - at > kWritesDown) continue;
+      open_.insert(serial);
+      doubts_.insert(serial);
+    }
+  }
   // In the life before one may have been written down before its first byte left.
   if (event.kind == Kind::Begins && any()) doubts_.insert(kBefore);
   if (event.what == kCourse && !doubts_.empty()) doubts_.insert(kElsewhere);
@@ -64,7 +72,10 @@ void OpenReports::add(const Event& event) {
   const auto sent = sent_.find(event.request);
   if (event.kind != Kind::Replied || sent == sent_.end()) return;
   const bool is_told = event.status / 100 == 2 && !is_odd_ && taken_.contains(sent->second);
-  if (is_told) open_.erase(sent->second);
+  if (is_told) {
+    open_.erase(sent->second);
+    told_[sent->second] = event.at;
+  }
   if (is_told || (event.status / 100 == 4 && event.status != kRequestTimeout)) doubts_.erase(sent->second);
   if (open_.empty() && !doubts_.contains(kElsewhere)) doubts_.clear();
 }

@@ -42,6 +42,7 @@ class OpenReports {
   std::map<std::uint64_t, std::int64_t> posted_,
       sent_;  // serials, by the client's request and the connection
   std::set<std::int64_t> known_, open_, taken_, doubts_;  // serials
+  std::map<std::int64_t, double> told_;                   // serials that were answered, and when
   bool is_odd_ = false;                                   // the answer under way is not the report's own
 };
 

@@ -110,8 +110,8 @@ void paced(const Evidence& evidence, Broken& broken) {
 
 /// A report that is posted while only a status is under way is not kept waiting by it. That is seen if
 /// nothing else can keep it waiting: each one before was answered 2xx, the last left long enough ago,
-/// a status vouches for the run, no operator says a word, the process does not stand still, and the report
-/// goes as soon as the status is over.
+/// a status vouches for the run, no operator says a word, the process does not stand still, no 429 in
+/// this life has lowered the rate of reports, and the report goes as soon as the status is over.
 void reports_go_first(const Evidence& evidence, Broken& broken) {
   struct Status {
     std::uint64_t connection = 0;
@@ -124,6 +124,7 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
   std::set<std::int64_t> known;                  // reports that were posted
   double left = 0;                               // when the last one did
   double heard = -kVouches;                      // when a status was
+  bool is_slowed = false;                        // by a 429 to a report, or for one limit over both
   OpenReports open;
   for (const Event& event : evidence.events) {
     const bool others_are_open = open.any();
@@ -133,7 +134,10 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
       status.reset();
       waited.clear();
       heard = -kVouches;
+      if (event.kind != Kind::Slow) is_slowed = false;
     }
+    const bool is_refused = event.kind == Kind::Replied && event.what == kReports && event.status == 429;
+    is_slowed = is_slowed || is_refused || (event.kind == Kind::Fault && event.who == kBeyondOneLimit);
     if (event.kind == Kind::Replied && event.what == kStatus && !event.says.empty()) heard = event.at;
     if (event.actor == Actor::Team && event.what == kReports) {
       if (event.kind == Kind::Invoke) posted[event.request] = event.serial;
@@ -143,7 +147,8 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
         if (status) status->waits.erase(serial->second);
       }
       if (event.kind != Kind::Whole || !known.insert(serial->second).second) continue;
-      const bool may_go = !others_are_open && event.at - left > kSpacing && event.at - heard < kVouches;
+      const bool may_go =
+          !others_are_open && event.at - left > kSpacing && event.at - heard < kVouches && !is_slowed;
       if (status && may_go) status->waits.emplace(serial->second, event.at);
     }
     if (event.what == kReports && event.kind == Kind::Leaves) left = event.at;

@@ -58,6 +58,8 @@ class Client:
                                       allow_redirects=False)
             body = answer.json() if answer.ok else answer.text  # a redirection, and a 2xx without JSON, is another machine's
             return answer.status_code, body, answer.headers.get("Retry-After", "1")
+        except requests.exceptions.InvalidJSONError as why:  # NaN, say
+            raise Refused(str(why)) from why
         except requests.ConnectTimeout:
             return NEVER_LEFT, "", "1"
         except (requests.RequestException, ValueError) as why:  # the latter from requests before 2.27, of JSON

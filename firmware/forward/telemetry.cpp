@@ -64,6 +64,7 @@ void Telemetry::carry_on(const journal::Carried& carried) {
     state_.add({&robot.posted, 1}, loop_.now());
     record_.accepted({Kind::State, name.text()}, 0, loop_.wall_now());
   }
+  state_.begin_run();  // they may have been posted before this run: each goes once
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
     record_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
     markers_.add(std::move(markers), loop_.now());

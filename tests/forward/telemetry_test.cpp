@@ -130,6 +130,24 @@ TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
   EXPECT_EQ(left().robots().begin()->first.text(), "r2");
 }
 
+/// It may have been posted in the run before.
+TEST_F(NewsTest, SendsAPoseOfTheLifeBeforeOnce) {
+  std::atomic<int> of_r1 = 0, of_r2 = 0;
+  const uplink::ListeningPeer peer([&](uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      if (request.find("r1") != std::string::npos) ++of_r1;
+      if (!wire.write(uplink::answer("200 OK", "null"))) return;
+      if (request.find("r2") != std::string::npos) ++of_r2;
+    }
+  });
+  ASSERT_TRUE(life_without_a_token()->news.take(pose("r1", 1), 10));
+  const auto life = life_before(peer);
+  ASSERT_TRUE(comes(*life, [&] { return life->as_forwarded.robots().size() == 1; }));
+  ASSERT_TRUE(life->news.take(pose("r2", 2), 10));
+  ASSERT_TRUE(comes(*life, [&] { return of_r2 == 1; }));
+  EXPECT_EQ(of_r1, 1);
+}
+
 /// Killed in between, a life to come would know of neither, and an operator could send the older one.
 TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
   TelemetryPost post(true);

@@ -133,13 +133,14 @@ int run(const Options& options) {
   return code;
 }
 
-/// The script that is installed beside this program, in its place: arguments[0] is "demo".
+/// The script that is installed beside this program, in its place, with the programs in this one's folder:
+/// arguments[0] is "demo".
 int demo(char** arguments) {
   std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  const std::string script = program.parent_path().parent_path() / "lib/adit-rehearsal/demo";
-  ::execv(script.c_str(), arguments);
-  return complain(script + ": " + std::strerror(errno) + "; in a checkout, toolchain/run does the same");
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe", error).parent_path();
+  const std::string script = folder.parent_path() / "lib/adit-rehearsal/demo";
+  if (::setenv("ADIT_BIN", folder.c_str(), 1) == 0) ::execv(script.c_str(), arguments);
+  return complain(script + ": " + std::strerror(errno));
 }
 
 }  // namespace

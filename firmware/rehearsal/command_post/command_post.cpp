@@ -38,6 +38,13 @@ Judgement judge_fault(const HttpFault& fault) {
   return judgement;
 }
 
+Judgement sent_on(const Request& request, std::optional<Aim> aim) {
+  Judgement judgement = aim ? unjudged({}, *aim, request, Manner::Strict) : Judgement{};
+  judgement.uri = request.path;
+  judgement.outcome = redirected(request);
+  return judgement;
+}
+
 /// A judge never falls, whatever it reads: memory that runs out is answered, too.
 Judgement judge_safely(Endpoint& endpoint, const Request& request) {
   try {
@@ -76,6 +83,7 @@ CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::ve
                          std::unique_ptr<Transcript> transcript)
     : manner_(options.manner),
       verbose_(options.verbose),
+      slash_(options.slash),
       run_(options.run, std::move(artifacts)),
       record_(options.manner),
       faults_(options.seed),
@@ -94,7 +102,13 @@ Outcome CommandPost::mapping(const Request& request) {
   return receive(mapping_, mapping_aim(request), request);
 }
 
+/// Before anything of it is judged, as a framework does; no fault is spent on it.
+bool CommandPost::redirects(const Request& request) const {
+  return slash_ && !request.fault && lacks_slash(request);
+}
+
 Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& request) {
+  if (redirects(request)) return decide(side, aim, {}, request);
   const Fault fault = aim ? faults_.next(*aim, request.body, Clock::now()) : Fault{};
   if (!fault.record_after) return decide(side, aim, fault, request);
   return later(*fault.record_after, [this, &side, aim, fault, &request] {
@@ -106,6 +120,7 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
+  if (redirects(request)) return sent_on(request, aim);
   Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, manner_)
                                                 : judge_safely(*side.endpoint, request);
   spoil(fault, request, judgement);

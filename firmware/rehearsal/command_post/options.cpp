@@ -71,6 +71,8 @@ command_line::Program command_line_of(Options& options) {
             take<take_megabytes>(options.transcript_bytes)},
            {"--as-measured", "", "behave as the public test servers do, not as the ICD says",
             take<take_as_measured>(options)},
+           {"--slash", "", "redirect each path without a slash at its end to the one with it",
+            &options.slash},
            {"--team", "NAME", "the team's name", &options.run.team},
            {"--run", "ID", "the run's name", &options.run.id},
            {"--duration", "SECONDS", "length of the run (3600)", number<0.0, kMost>(options.run.length)},

@@ -23,6 +23,7 @@ struct Options {
   std::string transcript;  // "": none
   std::uint64_t transcript_bytes = std::uint64_t{2048} << 20;
   Manner manner = Manner::Strict;
+  bool slash = false;  // each path has to end with one
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: as the manner has it
   Counted counted = Counted::Starts;     // of what is mapping's, for the rate

@@ -13,7 +13,8 @@ namespace {
 
 std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secrets, Run& run) {
   if (options.manner == Manner::Strict) {
-    return std::make_unique<StrictScoring>(secrets.scoring, options.rate.value_or(1), run);
+    return std::make_unique<StrictScoring>(secrets.scoring, options.rate.value_or(1), options.one_api_limit,
+                                           run);
   }
   return std::make_unique<MeasuredScoring>(secrets.scoring, options.rate.value_or(0), run);
 }

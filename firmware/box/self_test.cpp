@@ -216,7 +216,7 @@ void SelfTest::send(std::function<void(uplink::Outcome)> done) {
   const bool scoring = kind() == steps::Asked::Scoring;
   connection_ = std::make_unique<uplink::Connection>(loop_, there(), *token());
   connection_->send({.method = std::string(icd::method_of(uri())),
-                     .target = std::string(icd::path_of(uri())),
+                     .target = std::string(icd::path_of(uri())) + (wants_slash_ ? "/" : ""),
                      .content_type = scoring ? "" : std::string(codec::kJson),
                      .body = scoring ? icd::ChunkedBytes() : empty_object(),
                      .answer_within = kAnswerWithin},
@@ -226,12 +226,13 @@ void SelfTest::send(std::function<void(uplink::Outcome)> done) {
 void SelfTest::ask_token() {
   date_.reset();
   run_clock_.reset();
-  asked_again_ = false;
+  asked_again_ = wants_slash_ = false;
   if (!token()) return finish(steps::no_token(kind()));
   ask([this](const uplink::Outcome& outcome) { token_answered(outcome); });
 }
 
-/// Adit itself asks for the run's status, too: asked too often in all, it is asked once more.
+/// Adit itself asks for the run's status, too: asked too often in all, it is asked once more. A redirect to
+/// the path with a slash is followed.
 void SelfTest::token_answered(const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   answered_at_ = loop_.wall_now();
@@ -239,11 +240,15 @@ void SelfTest::token_answered(const uplink::Outcome& outcome) {
     date_ = answer->date;
     run_clock_ = run_clock_in(*answer);
   }
-  if (answer != nullptr && answer->status == kTooMany && !std::exchange(asked_again_, true)) {
+  const bool is_redirected = answer != nullptr && answer->wants_slash;
+  if (is_redirected) wants_slash_ = true;
+  const bool is_throttled =
+      answer != nullptr && answer->status == kTooMany && !std::exchange(asked_again_, true);
+  if (is_redirected || is_throttled) {
     when_due_ = [this] { ask([this](const uplink::Outcome& again) { token_answered(again); }); };
     return timer_.call_at(loop_.now() + kAskAgain);
   }
-  finish(steps::token(kind(), outcome));
+  finish(steps::token(kind(), outcome, wants_slash_));
 }
 
 void SelfTest::ask_clock() {

@@ -106,6 +106,7 @@ class SelfTest final : public api::SelfTest {
   double answered_at_ = 0;
   std::optional<double> run_clock_;
   bool asked_again_ = false;
+  bool wants_slash_ = false;  // the endpoint, at the end of each path
 };
 
 }  // namespace adit::box

@@ -135,7 +135,7 @@ TestStep no_turn(const std::string& name) {
   return skipped(name, "not asked: the run itself asks as often as the endpoint allows; try again later");
 }
 
-TestStep token(Asked asked, const uplink::Outcome& outcome) {
+TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   if (answer == nullptr) {
     const auto* never = std::get_if<uplink::NeverSent>(&outcome);
@@ -146,7 +146,8 @@ TestStep token(Asked asked, const uplink::Outcome& outcome) {
   const int status = answer->status;
   const dispatch::Body body = dispatch::body_of(answer->body);
   if (took_the_token(asked, status, body))
-    return good("token", icd::sentence("the ", name_of(asked), " token is taken"));
+    return good("token", icd::sentence("the ", name_of(asked), " token is taken",
+                                       slash ? "; paths end with a slash there" : ""));
   if ((status == 401 || status == 403) && body != dispatch::Body::Other) {
     return bad("token",
                icd::sentence("the ", name_of(asked), " token is refused; ", answered(status, answer->body)),

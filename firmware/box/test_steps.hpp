@@ -36,8 +36,9 @@ TestStep cables(const std::string& interface, const std::string& team, const std
 /// How connecting ended: 0 or an errno, and why in words.
 TestStep reach(const std::string& at, int error, const std::string& why);
 
-/// Of the answer to a question that changes nothing.
-TestStep token(Asked asked, const uplink::Outcome& outcome);
+/// Of the answer to a question that changes nothing; `slash`: it was asked with a slash at the end of its
+/// path, because the endpoint redirects there.
+TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash = false);
 TestStep no_token(Asked asked);
 /// It was not asked: the run asks as often as the endpoint lets itself be asked.
 TestStep no_turn(const std::string& name);

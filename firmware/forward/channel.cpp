@@ -5,6 +5,7 @@
 
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/said.hpp"
+#include "host/log.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "loop/guard.hpp"
@@ -27,7 +28,7 @@ dispatch::Body body_of(const uplink::Outcome& outcome) {
 
 bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
-    return !dispatch::may_be_the_command_post(answered->status, body);
+    return !answered->wants_slash && !dispatch::may_be_the_command_post(answered->status, body);
   const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
   return doubt != nullptr && doubt->too_long_status != 0 &&
          !dispatch::may_be_the_command_post(doubt->too_long_status, body);
@@ -72,7 +73,7 @@ bool Channel::turns() {
   take(*std::exchange(next_, std::nullopt));
   if (!is_elsewhere) return false;
   last_status_ = 0;
-  foreign_now_ = false;
+  foreign_now_ = wants_slash_ = false;
   answer_ms_.reset();
   trouble_.clear();
   return true;
@@ -92,9 +93,9 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                    std::function<void(uplink::Outcome)> done, loop::Instant last_byte_not_before) {
   icd::require(has_token() && (!busy() || can_go_ahead()));
   finished_bytes_ += connection_->sent_bytes();
-  const auto under_way = std::make_shared<UnderWay>(loop_.now(), std::move(done));
+  const auto under_way = std::make_shared<UnderWay>(loop_.now(), uri, wants_slash_, std::move(done));
   connection_->send({.method = std::string(icd::method_of(uri)),
-                     .target = std::string(icd::path_of(uri)),
+                     .target = std::string(icd::path_of(uri)) + (wants_slash_ ? "/" : ""),
                      .content_type = std::string(content_type),
                      .body = std::move(body),
                      .answer_within = answer_within_,
@@ -129,6 +130,7 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr) {
     last_status_ = answered->status;
+    learn_path(request, *answered);
     if (last_status_ == 429) ++throttled_;
     // Nobody else's clock is to be taken for the Command Post's.
     if (answered->date && dispatch::is_the_command_post(answered->status, body)) {
@@ -138,8 +140,21 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
     }
     answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - request.sent_at).count();
   }
-  const bool is_well = answered != nullptr && !foreign_now_ && last_status_ < 400;
+  const bool is_well = answered != nullptr && !answered->wants_slash && !foreign_now_ && last_status_ < 400;
   trouble_ = is_well ? "" : forward::sentence_of(outcome);
+}
+
+void Channel::learn_path(const UnderWay& request, const uplink::Answered& answered) {
+  // The measured mapping server answers 501 to a path that it does not know.
+  const bool is_unknown = answered.status == 404 || answered.status == 501;
+  bool wants_slash = wants_slash_ && !(request.has_slash && is_unknown);
+  if (answered.wants_slash && request.uri != icd::Uri::ArtifactReports) wants_slash = true;
+  if (std::exchange(wants_slash_, wants_slash) == wants_slash) return;
+  host::log(host::Level::Notice,
+            wants_slash
+                ? "the Command Post redirects: from now on each path ends with a slash"
+                : "the Command Post does not know a path with a slash at its end: from now on without",
+            {{"endpoint", name_}, {"address", address_}, {"status", std::to_string(answered.status)}});
 }
 
 std::optional<double> Channel::time_there() const {
@@ -170,6 +185,8 @@ std::string sentence_of(const uplink::Outcome& outcome) {
   if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) return never->why;
   if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
   const auto& answered = std::get<uplink::Answered>(outcome);
+  if (answered.wants_slash)
+    return icd::sentence("the Command Post answered ", answered.status, ": the path is to end with a slash");
   if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
     return dispatch::said(answered.status, answered.body);
   return icd::sentence("what answered ", answered.status,

@@ -15,6 +15,9 @@ namespace adit::forward {
 
 /// The way to an endpoint of the Command Post, and its state: one request at a time, or a second one that
 /// goes ahead (uplink::Connections). Without a token it is not opened.
+///
+/// If an answer redirects to the same path with a slash at its end, each later path has one, until such a
+/// path is unknown there. It sends nothing again itself, and it does not learn from a report.
 class Channel {
  public:
   /// `name`: of the endpoint, "scoring" or "mapping".
@@ -88,12 +91,15 @@ class Channel {
   };
   struct UnderWay {
     loop::Instant sent_at;
+    icd::Uri uri;
+    bool has_slash;
     std::function<void(uplink::Outcome)> done;
   };
   void take(Way way);
   bool leads_elsewhere(const Way& way) const;
   void ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome);
   void note(const UnderWay& request, const uplink::Outcome& outcome);
+  void learn_path(const UnderWay& request, const uplink::Answered& answered);
 
   loop::Loop& loop_;
   const char* name_;
@@ -102,6 +108,7 @@ class Channel {
   std::optional<uplink::Connections> connection_;
   std::chrono::milliseconds answer_within_{};
   bool keeps_warm_ = false;
+  bool wants_slash_ = false;  // the place that it leads to, at the end of each path
   std::optional<Way> next_;
   std::vector<std::shared_ptr<UnderWay>> under_way_;  // at most two; the first was sent first
   loop::Instant heard_{};

@@ -350,6 +350,11 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
   if (answered != nullptr) status_left_ = answered->sent.first;
+  if (answered != nullptr && answered->wants_slash) {
+    status_pace_.taken(answered->sent, now);
+    poll_due_ = true;  // those who ask wait on
+    return;
+  }
   if (run) known_status_.heard(answered->body, asked);  // and so told with its age
   if (answered == nullptr) {
     status_pace_.failed(outcome, now);

@@ -189,6 +189,10 @@ std::string AnswerParser::take_part() {
   return std::exchange(impl_->parser->get().body().text, {});
 }
 
+std::string AnswerParser::location() const {
+  return to_string(impl_->parser->get()[http::field::location]);
+}
+
 Answered AnswerParser::take() {
   auto message = impl_->parser->release();
   Answered answered;

@@ -33,6 +33,8 @@ class AnswerParser {
   /// limits are of what comes from now on.
   std::string take_part();
 
+  /// For Whole, before take(): the field Location, or "".
+  std::string location() const;
   /// For Whole.
   Answered take();
   /// For Whole: both sides may go on using the connection, and nothing came after the answer.

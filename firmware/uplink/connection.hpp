@@ -57,6 +57,7 @@ struct Answered {
   std::string body;
   std::optional<std::chrono::seconds> retry_after;
   std::optional<std::chrono::sys_seconds> date = {};  // by the peer's clock
+  bool wants_slash = false;                           // redirects_to_slash()
   Sent sent = {};
 };
 /// No byte of the request was given to the kernel: it is safe to send it again.

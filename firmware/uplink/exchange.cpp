@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "icd/success.hpp"
+#include "uplink/slash.hpp"
 
 namespace adit::uplink {
 namespace {
@@ -128,6 +129,13 @@ Exchange::Answer Exchange::read(int fd) {
     is_early_ = icd::is_success(status()) && !has_arrived(fd);
     if (!is_early_) return Answer::Whole;
   }
+}
+
+Answered Exchange::take_answer() {
+  const std::string location = parser_.location();
+  Answered answered = parser_.take();
+  answered.wants_slash = redirects_to_slash(answered.status, location, authority_, request_.target);
+  return answered;
 }
 
 Sent Exchange::left(const Transmission& seen, loop::Instant now) const {

@@ -36,7 +36,7 @@ class Exchange {
   /// The peer's TCP has acknowledged the whole request.
   bool has_arrived(int fd) const;
   /// For Whole.
-  Answered take_answer() { return parser_.take(); }
+  Answered take_answer();
   /// Of an answer that goes on, as AnswerParser has it.
   int status() const { return parser_.status(); }
   std::string take_part() { return parser_.take_part(); }

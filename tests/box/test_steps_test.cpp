@@ -101,6 +101,12 @@ TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
   expect(with_status(Asked::Mapping, 429), "skipped", "too often");
 }
 
+TEST(TheTokenStep, TellsOfTheSlashThatTheEndpointWants) {
+  const uplink::Answered taken{.status = 200, .content_type = "", .body = "{}", .retry_after = std::nullopt};
+  EXPECT_THAT(token(Asked::Scoring, taken, true).said, HasSubstr("slash"));
+  EXPECT_THAT(token(Asked::Scoring, taken).said, testing::Not(HasSubstr("slash")));
+}
+
 TEST(TheTokenStep, TellsWhyNoAnswerCame) {
   expect(token(Asked::Scoring, uplink::NeverSent{"connecting: Connection refused"}), "bad",
          "Connection refused");

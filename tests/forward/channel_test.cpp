@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <atomic>
 #include <chrono>
 #include <memory>
 #include <optional>
@@ -149,6 +150,80 @@ TEST_F(ChannelTest, TakesAnotherWayToTheSamePlaceAndKnowsWhatItKnew) {
   channel->lead_to(slower, icd::BearerToken::parse("another-token"), std::chrono::seconds{20});
   EXPECT_TRUE(channel->turns());
   EXPECT_EQ(channel->last_status(), 0);
+}
+
+/// A channel to a Command Post that insists on a slash at the end of each path, or knows no such path.
+class SlashTest : public ChannelTest {
+ protected:
+  int status_of(icd::Uri uri) {
+    int status = -1;
+    channel_.send(uri, "", {}, [&](const uplink::Outcome& outcome) {
+      const auto* answered = std::get_if<uplink::Answered>(&outcome);
+      status = answered != nullptr ? answered->status : 0;
+    });
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return status >= 0; }));
+    return status;
+  }
+  void lead_to(const uplink::Endpoint& endpoint, const char* token) {
+    channel_.lead_to(endpoint, icd::BearerToken::parse(token), std::chrono::seconds{20});
+    channel_.turns();
+  }
+
+  static constexpr icd::Uri kFirst = icd::Uri::MapUpdate;
+  std::atomic<bool> insists_ = true;
+  std::string unknown_ = uplink::answer("404 Not Found", "\"no such URI\"");
+  uplink::Peer::Script script_ = [this](uplink::Wire& wire) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      const std::string redirect = uplink::without_slash(request);
+      const bool is_good = redirect.empty() == insists_;
+      wire.write(is_good ? uplink::answer("200 OK", "null") : insists_ ? redirect : unknown_);
+    }
+  };
+  uplink::ListeningPeer here_{script_}, there_{script_};
+  Channel channel_{loop_, "mapping", here_.endpoint(), icd::BearerToken::parse("a-token"),
+                   std::chrono::seconds{20}};
+};
+
+TEST_F(SlashTest, IsLearntFromEachRequestButAReport) {
+  for (const icd::Uri uri : icd::kUris) {
+    SCOPED_TRACE(icd::path_of(uri));
+    lead_to(there_.endpoint(), "a-token");
+    lead_to(here_.endpoint(), "a-token");
+    EXPECT_EQ(status_of(uri), 301);
+    EXPECT_EQ(status_of(uri), uri == icd::Uri::ArtifactReports ? 301 : 200);
+  }
+}
+
+TEST_F(SlashTest, IsNoSignOfAnotherThanTheCommandPost) {
+  EXPECT_EQ(status_of(kFirst), 301);
+  EXPECT_FALSE(channel_.is_foreign());
+  EXPECT_EQ(channel_.foreign(), 0u);
+  EXPECT_THAT(channel_.trouble(), testing::HasSubstr("slash"));
+  EXPECT_EQ(status_of(kFirst), 200);
+  EXPECT_EQ(channel_.trouble(), "");
+}
+
+TEST_F(SlashTest, IsForgottenOnceAPathWithItIsUnknown) {
+  for (const char* unknown : {"404 Not Found", "501 Not Implemented"}) {
+    SCOPED_TRACE(unknown);
+    unknown_ = uplink::answer(unknown, "");
+    insists_ = true;
+    EXPECT_EQ(status_of(kFirst), 301);
+    EXPECT_EQ(status_of(kFirst), 200);
+    insists_ = false;
+    EXPECT_EQ(std::to_string(status_of(kFirst)), std::string(unknown).substr(0, 3));
+    EXPECT_EQ(status_of(kFirst), 200);
+  }
+}
+
+TEST_F(SlashTest, IsForgottenAtAnotherPlaceButNotOnAnotherWayToTheSame) {
+  EXPECT_EQ(status_of(kFirst), 301);
+  uplink::Endpoint slower = here_.endpoint();
+  slower.connect_within = std::chrono::seconds{7};
+  lead_to(slower, "a-token");
+  EXPECT_EQ(status_of(kFirst), 200);
+  lead_to(there_.endpoint(), "a-token");
+  EXPECT_EQ(status_of(kFirst), 301);
 }
 
 }  // namespace

@@ -18,19 +18,26 @@ namespace {
 /// A mapping endpoint that answers, or does not.
 class MappingPost {
  public:
-  explicit MappingPost(bool answers) : answers_(answers) {}
+  explicit MappingPost(bool answers, bool wants_slash = false)
+      : answers_(answers), wants_slash_(wants_slash) {}
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
 
-  std::atomic<int> came = 0;
+  std::atomic<int> came = 0, redirected = 0;
 
  private:
   void serve(uplink::Wire& wire) {
-    while (!wire.read_request().empty()) {
+    for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
+      const std::string redirect = wants_slash_ ? uplink::without_slash(request) : "";
+      if (!redirect.empty()) {
+        ++redirected;
+        if (!wire.write(redirect)) return;
+        continue;
+      }
       ++came;
       if (answers_ && !wire.write(uplink::answer("200 OK", "null"))) return;
     }
   }
-  const bool answers_;
+  const bool answers_, wants_slash_;
   uplink::ListeningPeer peer_{[this](uplink::Wire& wire) { serve(wire); }};
 };
 
@@ -49,7 +56,7 @@ class MappingEndpoint : public testing::Test, protected AroundMaps {
   }
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
-  MappingPost silent_{false}, there_{true};
+  MappingPost silent_{false}, there_{true}, with_slash_{true, true};
 };
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
@@ -64,6 +71,30 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
   Telemetry news(loop_, workers_, settings_, token_, record_, aside_, random_, journal_, as_forwarded, [] {});
   ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
+}
+
+TEST_F(MappingEndpoint, ThatWantsASlashGetsEachMapOnceTheFirstWasRedirected) {
+  settings_.command_post.mapping = with_slash_.address();
+  settings_.command_post.rates.map_hz = 1000;
+  Maps maps(loop_, workers_, writer_, spool_, settings_, token_, record_, aside_, random_, journal_,
+            [](const icd::MapUpdate&) {});
+  for (const int arrived : {1, 2}) {
+    maps.take(spool::cloud(3), 10, nullptr, [](const icd::Checked<void>&) {});
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return with_slash_.came == arrived; }));
+  }
+  EXPECT_EQ(with_slash_.redirected, 1);
+}
+
+TEST_F(MappingEndpoint, ThatWantsASlashGetsEachStateOnceTheFirstWasRedirected) {
+  settings_.command_post.mapping = with_slash_.address();
+  settings_.command_post.rates.state_hz = 1000;
+  AsForwarded as_forwarded;
+  Telemetry news(loop_, workers_, settings_, token_, record_, aside_, random_, journal_, as_forwarded, [] {});
+  for (const int arrived : {1, 2}) {
+    ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0 * arrived}}, 10));
+    EXPECT_TRUE(loop::turn_until(loop_, [&] { return with_slash_.came == arrived; }));
+  }
+  EXPECT_EQ(with_slash_.redirected, 1);
 }
 
 }  // namespace

@@ -34,13 +34,21 @@ class ScoringPost {
   ~ScoringPost() { let.release(1000); }
   settings::Address address() const { return {peer_.endpoint().address, peer_.endpoint().port}; }
 
-  std::atomic<int> recorded = 0;
+  std::atomic<int> recorded = 0, reports = 0, reports_with_slash = 0;
+  std::atomic<bool> wants_slash = false, reports_want_slash = false;
   std::counting_semaphore<> let{0};
 
  private:
   void serve(uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
       const bool is_report = request.starts_with("POST");
+      const std::string redirect = uplink::without_slash(request);
+      if (is_report) ++reports;
+      if (is_report && redirect.empty()) ++reports_with_slash;
+      if (!redirect.empty() && (is_report ? reports_want_slash : wants_slash)) {
+        if (!wire.write(redirect)) return;
+        continue;
+      }
       const int all = is_report ? ++recorded : recorded.load();
       if (is_report) let.acquire();
       const std::string run = R"(,"run_clock":10.0,"remaining_reports":)" + std::to_string(100 - all);
@@ -159,6 +167,31 @@ TEST_F(ScoringEndpoint, IsTheSameWithAnotherToken) {
   ASSERT_TRUE(comes([this] { return !first_.empty(); }));
   EXPECT_THAT(first_, ElementsAre(201));
   EXPECT_EQ(report(1).run, run);
+}
+
+TEST_F(ScoringEndpoint, ThatWantsASlashGetsAReportOnceWithIt) {
+  there_.wants_slash = there_.reports_want_slash = true;
+  move();
+  ASSERT_TRUE(comes([&] {
+    return scoring_->channel().address() == address_text(there_.address()) && scoring_->run().has_value();
+  }));
+  post(1, first_);
+  there_.let.release();
+  ASSERT_TRUE(comes([this] { return !first_.empty(); }));
+  EXPECT_THAT(first_, ElementsAre(201));
+  EXPECT_EQ(there_.reports, 1);
+}
+
+TEST_F(ScoringEndpoint, SendsNoReportByARedirect) {
+  settings_.reports.doubt_for = std::chrono::milliseconds{100};
+  settings_.reports.doubt_asks = 1;
+  scoring_->settings_changed();
+  here_.reports_want_slash = true;
+  post(1, first_);
+  ASSERT_TRUE(comes([this] { return here_.reports == 1; }));
+  ASSERT_TRUE(comes([this] { return here_.reports > 1; })) << "a status said that it was not recorded";
+  EXPECT_EQ(here_.reports_with_slash, 0);
+  EXPECT_EQ(here_.recorded, 0);
 }
 
 }  // namespace

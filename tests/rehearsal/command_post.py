@@ -77,30 +77,30 @@ class CommandPost:
     def report(self, body, **headers):
         return self.scoring_request("POST", "/api/artifact_reports", body, headers)
 
-    def scoring_request(self, method, path, body=None, headers=None):
+    def scoring_request(self, method, path, body=None, headers=None, **how):
         all_headers = {"Authorization": f"Bearer {SCORING_TOKEN}"}
         if body is not None:
             all_headers["Content-Type"] = "application/json"
-        return self.request(self.scoring, method, path, body, {**all_headers, **(headers or {})})
+        return self.request(self.scoring, method, path, body, {**all_headers, **(headers or {})}, **how)
 
     # The mapping endpoint
     def map(self, body, **headers):
         return self.mapping_request("POST", "/map/update", body, headers)
 
-    def mapping_request(self, method, path, body=None, headers=None):
+    def mapping_request(self, method, path, body=None, headers=None, **how):
         """A body that is bytes goes as it is, any other as JSON."""
         all_headers = {"Authorization": f"Bearer {MAPPING_TOKEN}", "Content-Type": "application/json"}
-        return self.request(self.mapping, method, path, body, {**all_headers, **(headers or {})})
+        return self.request(self.mapping, method, path, body, {**all_headers, **(headers or {})}, **how)
 
     def map_cbor(self, body):
         return self.map(cbor2.dumps(body), **{"Content-Type": "application/cbor"})
 
-    def request(self, where, method, path, body, headers):
+    def request(self, where, method, path, body, headers, **how):
         data = body if body is None or isinstance(body, bytes) else json.dumps(body).encode()
         headers = {name.replace("_", "-"): value for name, value in headers.items()}
         with requests.Session() as session:  # a connection of its own
             session.trust_env = False
-            return session.request(method, f"http://{where}{path}", data=data, headers=headers, timeout=patient(60))
+            return session.request(method, f"http://{where}{path}", data=data, headers=headers, timeout=patient(60), **how)
 
     # The control port
     def tell(self, action, body=None):

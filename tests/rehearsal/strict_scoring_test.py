@@ -133,3 +133,22 @@ class Refusals(unittest.TestCase):
             time.sleep(1)
             self.assertEqual(report().status_code, 201, "one that was refused does not count")
             self.assertEqual(post.record()["report_count"], sum(answer.status_code == 201 for answer in answers))
+
+    def test_more_than_one_a_second_over_statuses_and_reports_is_429_if_there_is_one_limit(self):
+        def report():
+            return post.report(REPORT)
+
+        for manner in ((), ("--as-measured",)):
+            with self.subTest(manner), CommandPost(*manner, rate="api") as post:
+                self.assertEqual(two_at_once(post.status, report), [200, 429])
+                time.sleep(1)
+                self.assertEqual(two_at_once(report, post.status), [201, 429])
+                time.sleep(1)
+                self.assertEqual(two_at_once(post.status), [200, 429])
+                time.sleep(1)
+                self.assertEqual(two_at_once(report), [201, 429])
+
+    def test_a_rate_is_a_number_or_api(self):
+        for rate in ("apis", "-1", ""):
+            with self.subTest(rate), self.assertRaisesRegex(RuntimeError, "--rate"), CommandPost(rate=rate):
+                pass

@@ -136,6 +136,17 @@ std::string answer(std::string_view status, std::string_view body, std::string_v
          std::string(fields) + "\r\n" + std::string(body);
 }
 
+std::string without_slash(std::string_view request) {
+  const auto between = [&](std::string_view begin, std::string_view end) {
+    const auto from = request.find(begin) + begin.size();
+    return std::string(request.substr(from, request.find(end, from) - from));
+  };
+  const std::string target = between(" ", " ");
+  if (target.ends_with('/')) return "";
+  const std::string there = "http://" + between("Host: ", "\r\n") + target + "/";
+  return answer("301 Moved Permanently", "<html>moved</html>", "Location: " + there + "\r\n");
+}
+
 Peer::Script always(std::string bytes) {
   return [bytes = std::move(bytes)](Wire& wire) {
     while (!wire.read_request().empty())

@@ -88,6 +88,10 @@ class ListeningPeer : public Peer {
 /// A whole answer with a length.
 std::string answer(std::string_view status, std::string_view body, std::string_view fields = "");
 
+/// How a Command Post that insists on a slash at the end of each path answers a request without one; "" if it
+/// has one.
+std::string without_slash(std::string_view request);
+
 /// Answers each request on the connection with the same bytes until the other side closes.
 Peer::Script always(std::string bytes);
 

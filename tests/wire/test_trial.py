@@ -20,19 +20,22 @@ OTHER_PORT = 9000
 TYPED = {"scoring": "typed-scoring-1", "mapping": "typed-mapping-1"}  # tokens that the box was never given
 
 
-class Trial(unittest.TestCase):
+class Tried(unittest.TestCase):
+    POST = ()
+
     def setUp(self):
         rates = {f"{kind}_hz": 1 for kind in ("reports", "status", "map", "state", "markers")}
         # Half as often again as Adit asks: what went without a turn of its own would still come too soon after what was before it
         # or too soon before what comes next, whenever it went; and a busy machine has a third of a second.
-        self.stage = self.enterContext(Stage(post_options=("--rate", "1.5"), command_post__rates=rates))
+        self.stage = self.enterContext(Stage(post_options=("--rate", "1.5", *self.POST), command_post__rates=rates))
         self.box, self.post = self.stage.box, self.stage.post
         wait_until(self.box.knows_the_run, "the run to be known")
         self.addCleanup(lambda: self.assertEqual(self.violations(), []))
 
     def violations(self):
         """But for the test's own question, which is an empty one."""
-        return [each for each in self.post.violations() if each != ("/state/update", ["Missing field 'poses'"])]
+        return [(uri, sentences) for uri, sentences in self.post.violations()
+                if (uri.rstrip("/"), sentences) != ("/state/update", ["Missing field 'poses'"])]
 
     def begin(self, body):
         status, said = self.box.ask("POST /adit/test", body=body)
@@ -51,6 +54,11 @@ class Trial(unittest.TestCase):
         return view, {f"{endpoint['name']} {step['name']}": step
                       for endpoint in view["endpoints"] for step in endpoint["steps"]}
 
+    def taken(self, uri):
+        return [request for request in self.post.requests(uri) if request["status"] == 200]
+
+
+class Trial(Tried):
     @contextlib.contextmanager
     def a_run(self):
         """Robots that post more often than the Command Post takes."""
@@ -79,9 +87,6 @@ class Trial(unittest.TestCase):
             ended.set()
             thread.join()
         self.assertEqual(errors, [])
-
-    def taken(self, uri):
-        return [request for request in self.post.requests(uri) if request["status"] == 200]
 
     def flows_on(self):
         """After this call, too, states, maps and reports arrive at the Command Post of the run."""
@@ -159,3 +164,28 @@ class Trial(unittest.TestCase):
                 told += file.read_bytes().decode(errors="replace")
         for token in TYPED.values():
             self.assertNotIn(token, told)
+
+
+class ThatWantsASlash(Tried):
+    POST = ("--slash",)
+
+    def test_gets_all_of_it_and_each_report_once(self):
+        _, steps = self.tried()
+        for name in ("scoring token", "mapping token"):
+            self.assertEqual(steps[name]["state"], "good", steps)
+            self.assertIn("paths end with a slash there", steps[name]["said"])
+        session = requests.Session()
+        state = {"poses": [{"name": "r1", "position": {"x": 1.0, "y": 0.0, "z": 0.0}, "orientation": TURNED}]}
+        for uri, message in (("/state/update", state),
+                             ("/map/update", messages.map_update(maps.made_grid(40, 40, seed=1), "r1", time.time(), CBOR))):
+            self.assertEqual(messages.post(session, self.box.url, uri, message, CBOR).status_code, 200)
+            wait_until(lambda uri=uri: self.taken(uri + "/"), f"{uri} to arrive")
+        report = {"x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill"}
+        answer = requests.post(self.box.url + "/api/artifact_reports", json=report, timeout=programs.patient(30),
+                               headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"})
+        self.assertEqual(answer.status_code, 201, answer.text)
+        self.assertEqual(len(self.post.recorded()), 1)
+        redirected = [request["uri"] for request in self.post.requests() if request["status"] in (301, 308)]
+        self.assertEqual(sorted(redirected), ["/api/status", "/api/status", "/map/update", "/state/update", "/state/update"],
+                         "once by the run and once by the test, and no report")
+        self.assertIn("each path ends with a slash", self.box.said())

@@ -13,7 +13,8 @@ namespace {
 
 std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secrets, Run& run) {
   if (options.manner == Manner::Strict) {
-    return std::make_unique<StrictScoring>(secrets.scoring, options.rate.value_or(1), run);
+    return std::make_unique<StrictScoring>(secrets.scoring, options.rate.value_or(1), options.one_api_limit,
+                                           run);
   }
   return std::make_unique<MeasuredScoring>(secrets.scoring, options.rate.value_or(0), run);
 }
@@ -35,6 +36,13 @@ Judgement judge_fault(const HttpFault& fault) {
   }
   judgement.outcome = refused(fault.status, fault.sentence);
   judgement.outcome.after = After::Close;
+  return judgement;
+}
+
+Judgement sent_on(const Request& request, std::optional<Aim> aim) {
+  Judgement judgement = aim ? unjudged({}, *aim, request, Manner::Strict) : Judgement{};
+  judgement.uri = request.path;
+  judgement.outcome = redirected(request);
   return judgement;
 }
 
@@ -76,6 +84,7 @@ CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::ve
                          std::unique_ptr<Transcript> transcript)
     : manner_(options.manner),
       verbose_(options.verbose),
+      slash_(options.slash),
       run_(options.run, std::move(artifacts)),
       record_(options.manner),
       faults_(options.seed),
@@ -94,7 +103,13 @@ Outcome CommandPost::mapping(const Request& request) {
   return receive(mapping_, mapping_aim(request), request);
 }
 
+/// Before anything of it is judged, as a framework does; no fault is spent on it.
+bool CommandPost::redirects(const Request& request) const {
+  return slash_ && !request.fault && lacks_slash(request);
+}
+
 Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& request) {
+  if (redirects(request)) return decide(side, aim, {}, request);
   const Fault fault = aim ? faults_.next(*aim, request.body, Clock::now()) : Fault{};
   if (!fault.record_after) return decide(side, aim, fault, request);
   return later(*fault.record_after, [this, &side, aim, fault, &request] {
@@ -106,6 +121,7 @@ Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& 
 
 Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request) {
   if (request.fault) return judge_fault(*request.fault);
+  if (redirects(request)) return sent_on(request, aim);
   Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, manner_)
                                                 : judge_safely(*side.endpoint, request);
   spoil(fault, request, judgement);

@@ -48,6 +48,7 @@ class CommandPost {
     const char* name;
   };
 
+  bool redirects(const Request& request) const;
   Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
   Judgement judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
   Outcome decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
@@ -58,6 +59,7 @@ class CommandPost {
   const Clock::time_point launched_ = Clock::now();
   const Manner manner_;
   const bool verbose_;
+  const bool slash_;
   Run run_;
   Record record_;
   Faults faults_;

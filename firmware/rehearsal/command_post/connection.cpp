@@ -43,10 +43,12 @@ std::string head_fault_of(const http::request_header<>& head) {
   return "";
 }
 
-void take_header(const Parser& parser, Request& request) {
+void take_header(const Parser& parser, const WireManner& manner, Request& request) {
   const auto& message = parser.get();
   request.method = std::string(message.method_string());
   request.target = std::string(message.target());
+  request.path = path_of(request.target);
+  if (manner.slash && request.path.ends_with('/')) request.path.pop_back();
   request.authorization = field(message, http::field::authorization);
   request.content_type = field(message, http::field::content_type);
   request.content_encoding = field(message, http::field::content_encoding);
@@ -101,7 +103,7 @@ std::optional<Request> Connection::read_request() {
     if (parser.is_header_done() && !header_taken && !error) {
       header_taken = true;
       request.at = Clock::now();
-      take_header(parser, request);
+      take_header(parser, manner_, request);
       parser.eager(true);
       if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
         request.fault = HttpFault{0, "The connection was closed before its body was asked for"};
@@ -121,7 +123,7 @@ std::optional<Request> Connection::read_request() {
   }
   if (!header_taken) {
     request.at = Clock::now();
-    if (!error) take_header(parser, request);
+    if (!error) take_header(parser, manner_, request);
   }
   if (error) request.fault = fault_of(error);
   request.whole = Clock::now();

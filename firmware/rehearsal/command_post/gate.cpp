@@ -8,7 +8,7 @@ namespace adit::rehearsal {
 
 void check_entry(const Request& request, std::span<const Function> functions, const std::string& token,
                  Findings& findings) {
-  const std::string_view path = path_of(request.target);
+  const std::string_view path = request.path;
   const bool known = std::ranges::any_of(functions, [&](const Function& function) {
     return function.method == request.method && function.uri == path;
   });
@@ -51,6 +51,23 @@ Outcome page(int status, std::string_view title) {
   outcome.answer.content_type = "text/html";
   outcome.answer.body = "<!doctype html>\n<html lang=\"en\"><head><title>" + std::string(title) +
                         "</title></head><body><h1>" + std::string(title) + "</h1></body></html>\n";
+  return outcome;
+}
+
+bool lacks_slash(const Request& request) {
+  constexpr auto is = [](const Request& asked, std::span<const Function> functions) {
+    return std::ranges::find(functions, asked.path, &Function::uri) != functions.end();
+  };
+  return path_of(request.target) == request.path &&
+         (is(request, kScoringFunctions) || is(request, kMappingFunctions));
+}
+
+Outcome redirected(const Request& request) {
+  constexpr int kMovedPermanently = 301, kPermanentRedirect = 308;
+  const bool is_scoring = request.path.starts_with("/api/");
+  Outcome outcome = page(is_scoring ? kMovedPermanently : kPermanentRedirect, "Redirecting");
+  const std::string there = is_scoring ? "http://" + request.local_address : "";
+  outcome.answer.headers.emplace_back("Location", there + request.path + "/");
   return outcome;
 }
 

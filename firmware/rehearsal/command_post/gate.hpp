@@ -52,6 +52,11 @@ Outcome detailed(int status, std::string_view detail);
 /// HTML, as it has it for 404 and 500.
 Outcome page(int status, std::string_view title);
 
+/// Whether a request names a function of the ICD by a path without a slash at its end.
+bool lacks_slash(const Request& request);
+/// To the path with a slash: by 301 and a whole URL for scoring, by 308 and a path for mapping.
+Outcome redirected(const Request& request);
+
 /// A refusal as a JSON string (ICD 4.1).
 Outcome refused(int status, std::string_view sentence);
 inline Outcome refused(const Finding& finding) {

@@ -12,6 +12,10 @@ std::string_view reason_of(int status) {
       return "OK";
     case 201:
       return "Created";
+    case 301:
+      return "Moved Permanently";
+    case 308:
+      return "Permanent Redirect";
     case 400:
       return "Bad Request";
     case 401:

@@ -22,6 +22,7 @@ struct HttpFault {
 struct Request {
   std::string method;
   std::string target;
+  std::string path;  // of the target, without the slash that this Command Post insists on
   std::optional<std::string> authorization;  // never written anywhere
   std::optional<std::string> content_type;
   std::optional<std::string> content_encoding;

@@ -80,11 +80,11 @@ struct Servers {
 std::expected<Servers, std::string> listen(const Options& options, CommandPost& post) {
   const bool strict = options.manner == Manner::Strict;
   Servers servers;
-  auto scoring = Server::listen(options.scoring, {.most_body = std::size_t{1} << 20},
+  auto scoring = Server::listen(options.scoring, {.most_body = std::size_t{1} << 20, .slash = options.slash},
                                 [&post](const Request& request) { return post.scoring(request); });
   if (!scoring) return std::unexpected("scoring: " + scoring.error());
   servers.scoring = std::move(*scoring);
-  auto mapping = Server::listen(options.mapping, {.answers_expect = strict},
+  auto mapping = Server::listen(options.mapping, {.answers_expect = strict, .slash = options.slash},
                                 [&post](const Request& request) { return post.mapping(request); });
   if (!mapping) return std::unexpected("mapping: " + mapping.error());
   servers.mapping = std::move(*mapping);

@@ -22,7 +22,7 @@ Judgement StrictMapping::judge(const Request& request) {
   Judgement judgement;
   check_entry(request, kMappingFunctions, token_, judgement.findings);
   const Finding* const finding = judgement.findings.decisive(Manner::Strict);
-  if (finding == nullptr || finding->status != 404) judgement.uri = path_of(request.target);
+  if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
   if (finding != nullptr) {
     judgement.outcome = refused(*finding);
   } else if (too_many(judgement.uri, request)) {

@@ -51,7 +51,7 @@ Judgement MeasuredMapping::judge(const Request& request) {
   check_entry(request, kMappingFunctions, token_, judgement.findings);
   const auto& found = judgement.findings.all();
   const bool known = found.empty() || found.front().status != 404;
-  if (known) judgement.uri = path_of(request.target);
+  if (known) judgement.uri = request.path;
   if (!known) {
     judgement.outcome = not_implemented();
   } else if (!found.empty()) {  // its match of the whole Authorization header is exact, as ours is

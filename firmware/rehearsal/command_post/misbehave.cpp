@@ -135,7 +135,7 @@ void stop_clock(double clock, Answer& answer) {
 }  // namespace
 
 std::optional<Aim> scoring_aim(const Request& request, Manner manner) {
-  std::string_view path = path_of(request.target);
+  std::string_view path = request.path;
   if (manner == Manner::AsMeasured) path = without_slash(path);
   if (request.fault) return std::nullopt;
   if (request.method == "POST" && path == kReportsUri) return Aim::Reports;
@@ -144,7 +144,7 @@ std::optional<Aim> scoring_aim(const Request& request, Manner manner) {
 }
 
 std::optional<Aim> mapping_aim(const Request& request) {
-  const std::string_view path = path_of(request.target);
+  const std::string_view path = request.path;
   const bool known = std::ranges::any_of(kMappingFunctions, [&](const Function& function) {
     return function.method == request.method && function.uri == path;
   });
@@ -154,7 +154,7 @@ std::optional<Aim> mapping_aim(const Request& request) {
 
 Judgement unjudged(const Fault& fault, Aim aim, const Request& request, Manner manner) {
   Judgement judgement;
-  judgement.uri = aim == Aim::Mapping ? path_of(request.target) : without_slash(path_of(request.target));
+  judgement.uri = aim == Aim::Mapping ? request.path : without_slash(request.path);
   if (aim == Aim::Reports) {  // so that the transcript shows which report came to nothing
     if (auto document = read_document(request.body, Format::JsonText)) judgement.message = document->value;
   }

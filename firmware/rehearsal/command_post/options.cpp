@@ -46,6 +46,19 @@ Wrong take_counted(Counted& counted, const std::string& text) {
   return std::nullopt;
 }
 
+/// The ICD's section 5 can be read so that its rate is of all API requests together.
+Wrong take_rate(Options& options, const std::string& text) {
+  options.one_api_limit = text == "api";
+  if (options.one_api_limit) {
+    options.rate = 1;
+    return std::nullopt;
+  }
+  double rate = 0;
+  auto wrong = command_line::read_number(text, 0.0, kMost, rate);
+  if (!wrong) options.rate = rate;
+  return wrong;
+}
+
 Wrong take_as_measured(Options& options, const std::string&) {
   options.manner = Manner::AsMeasured;
   options.run.renames = false;
@@ -71,12 +84,17 @@ command_line::Program command_line_of(Options& options) {
             take<take_megabytes>(options.transcript_bytes)},
            {"--as-measured", "", "behave as the public test servers do, not as the ICD says",
             take<take_as_measured>(options)},
+           {"--slash", "", "redirect each path without a slash at its end to the one with it",
+            &options.slash},
            {"--team", "NAME", "the team's name", &options.run.team},
            {"--run", "ID", "the run's name", &options.run.id},
            {"--duration", "SECONDS", "length of the run (3600)", number<0.0, kMost>(options.run.length)},
            {"--reports", "N", "allotment of artifact reports (45)",
             number<0L, INT64_MAX>(options.run.reports)},
-           {"--rate", "HZ", "429 above it, for each URI (1; 0: no limit)", number<0.0, kMost>(options.rate)},
+           {"--rate", "HZ|api",
+            "429 above it, for each URI (1; 0: no limit); api: 1 for each, and one for statuses and reports "
+            "together",
+            take<take_rate>(options)},
            {"--counts", "WHAT",
             "starts, last-bytes or answers (to the next start): what is counted for that rate, of maps, "
             "states and markers",

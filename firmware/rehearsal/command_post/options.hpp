@@ -23,8 +23,10 @@ struct Options {
   std::string transcript;  // "": none
   std::uint64_t transcript_bytes = std::uint64_t{2048} << 20;
   Manner manner = Manner::Strict;
+  bool slash = false;  // each path has to end with one
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: as the manner has it
+  bool one_api_limit = false;            // over statuses and reports together
   Counted counted = Counted::Starts;     // of what is mapping's, for the rate
   std::vector<std::string> faults;       // "reports:record-then-drop", not yet understood
   std::vector<std::string> fault_rates;  // "reports:record-then-drop=0.1", not yet understood

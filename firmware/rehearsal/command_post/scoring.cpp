@@ -73,12 +73,12 @@ OrderedJson report_body(const Run::Ruling& ruling, const Json& sent, const std::
           {"score_change", ruling.score_change}};
 }
 
-StrictScoring::StrictScoring(std::string token, double hz, Run& run)
-    : token_(std::move(token)), run_(run), status_limit_(hz), report_limit_(hz) {}
+StrictScoring::StrictScoring(std::string token, double hz, bool one_limit, Run& run)
+    : token_(std::move(token)), run_(run), one_limit_(one_limit), status_limit_(hz), report_limit_(hz) {}
 
 bool StrictScoring::too_many(const Request& request) {
   const std::lock_guard lock(mutex_);
-  RateLimit& limit = path_of(request.target) == kStatusUri ? status_limit_ : report_limit_;
+  RateLimit& limit = request.path == kStatusUri && !one_limit_ ? status_limit_ : report_limit_;
   if (limit.too_soon(request)) return true;
   limit.count(request, request.at);
   return false;
@@ -88,7 +88,7 @@ Judgement StrictScoring::judge(const Request& request) {
   Judgement judgement;
   check_entry(request, kScoringFunctions, token_, judgement.findings);
   const Finding* const finding = judgement.findings.decisive(Manner::Strict);
-  if (finding == nullptr || finding->status != 404) judgement.uri = path_of(request.target);
+  if (finding == nullptr || finding->status != 404) judgement.uri = request.path;
   if (finding != nullptr) {
     judgement.outcome = refused(*finding);
   } else if (too_many(request)) {

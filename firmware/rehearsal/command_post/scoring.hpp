@@ -11,10 +11,11 @@
 
 namespace adit::rehearsal {
 
-/// The scoring endpoint of the ICD's section 5, to the letter. At most `hz` requests a second for each URI.
+/// The scoring endpoint of the ICD's section 5, to the letter. At most `hz` requests a second for each URI,
+/// or for both together.
 class StrictScoring : public Endpoint {
  public:
-  StrictScoring(std::string token, double hz, Run& run);
+  StrictScoring(std::string token, double hz, bool one_limit, Run& run);
   Judgement judge(const Request& request) override;
 
  private:
@@ -24,8 +25,9 @@ class StrictScoring : public Endpoint {
   const std::string token_;
   Run& run_;
   std::mutex mutex_;
+  const bool one_limit_;
   RateLimit status_limit_;
-  RateLimit report_limit_;
+  RateLimit report_limit_;  // of statuses too, if there is one limit
 };
 
 /// The public test server for scoring, as measured: see each rule in its source.

@@ -49,7 +49,7 @@ Judgement MeasuredScoring::judge(const Request& request) {
     judgement.outcome = preflight();
   } else {
     check_entry(request, kScoringFunctions, token_, judgement.findings);
-    const std::string_view path = without_slash(path_of(request.target));
+    const std::string_view path = without_slash(request.path);
     if (path == kStatusUri || path == kReportsUri) {
       judgement.uri = path;
       judge_known(request, judgement);

@@ -20,6 +20,7 @@ struct WireManner {
   bool answers_expect = true;         // sends 100 Continue where it is asked to
   std::chrono::seconds patience{60};  // with a connection that sends nothing
   std::size_t most_body = std::size_t{256} << 20;
+  bool slash = false;  // at the end of each path
 };
 
 /// Decides what is done about a request; called by several threads at once. See bytes_of() for how it is

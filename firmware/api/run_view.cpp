@@ -22,6 +22,7 @@ constexpr Member kReport[] = {
     member<&ReportRow::type>("type", "of the artifact, or what the client sent").csv(3),
     member<&ReportRow::position>("position", "null: damage took from the ledger what it said").exact().csv(4),
     member<&ReportRow::sender>("sender").csv(5),
+    member<&ReportRow::robot>("robot", "that its sender named; empty: none").csv(16),
     member<&ReportRow::received>("received", kWhen).csv(6, Cell::Time),
     member<&ReportRow::changed>("changed", kWhen).csv(7, Cell::Time),
     member<&ReportRow::state>("state").one_of(dispatch::kStateWords).csv(8),

@@ -28,7 +28,7 @@ struct ReportRow {
   std::int64_t number = 0;
   std::string type;
   std::optional<icd::Point> position = icd::Point{};
-  std::string sender;
+  std::string sender, robot;
   Time received = 0, changed = 0;
   std::string state;
   int status = 0;

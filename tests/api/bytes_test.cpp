@@ -18,6 +18,7 @@ ReportRow report() {
   row.type = "Rope";
   row.position = icd::Point{.x = 1, .y = -2.5, .z = 0};
   row.sender = "10.0.0.7";
+  row.robot = "spot1";
   row.received = 940;
   row.changed = 941.25;
   row.state = "in doubt";
@@ -95,7 +96,7 @@ RunView view() {
 
 constexpr const char* kReport =
     R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-    R"("received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+    R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
     R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
     R"("reconciled":true,"same_as":3})";
 
@@ -109,10 +110,10 @@ TEST(Bytes, OfARun) {
       R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
       R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
       R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
-      R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","received":940.0,"changed":941.25,)"
+      R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","robot":"spot1","received":940.0,"changed":941.25,)"
       R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
       R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
-      R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","received":0.0,"changed":0.0,)"
+      R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","robot":"","received":0.0,"changed":0.0,)"
       R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
       R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
@@ -139,7 +140,7 @@ TEST(Bytes, OfReports) {
   EXPECT_EQ(codec::to_json(ReportDetail{
                 .row = report(), .history = {{.at = 1, .state = "waiting", .note = "n"}}, .answer = "{}"}),
             R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-            R"("received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+            R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
             R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
             R"("reconciled":true,"same_as":3,"history":[{"at":1.0,"state":"waiting","note":"n"}],)"
             R"("answer":"{}"})");

@@ -81,6 +81,11 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   if (!next.team.require_token && settings_.team.require_token) {
     sentences.emplace_back("whoever is on the team's network may post reports, without a token");
   }
+  const bool opens_to_pages = !next.team.require_token && !next.team.origins.empty();
+  if (opens_to_pages && (settings_.team.require_token || next.team.origins != settings_.team.origins)) {
+    sentences.push_back(
+        icd::sentence("pages of ", next.team.origins, " may post reports without a token, in any browser"));
+  }
   return sentences;
 }
 

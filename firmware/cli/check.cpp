@@ -18,6 +18,12 @@ std::string by(const std::string& interface) {
   return interface.empty() ? "by any interface" : "by " + interface + " alone";
 }
 
+std::string asked_of(const settings::Team& team) {
+  if (team.require_token) return "";
+  return ", no token asked for" +
+         (team.origins.empty() ? "" : ", not of pages of " + team.origins + " either");
+}
+
 std::string lines_of(const settings::Panel& panel) {
   std::string lines;
   for (const std::string& line :
@@ -34,9 +40,8 @@ std::string summary(const std::string& file, const Settings& settings, bool colo
   table.add({{"scoring", Tone::Strong}, {written(post.scoring)}, {by(post.interface)}});
   table.add({{"mapping", Tone::Strong}, {written(post.mapping)}, {by(post.interface)}});
   for (const settings::Address& listen : settings.team.listen) {
-    table.add({{"team", Tone::Strong},
-               {written(listen)},
-               {by(settings.team.interface) + (settings.team.require_token ? "" : ", no token asked for")}});
+    table.add(
+        {{"team", Tone::Strong}, {written(listen)}, {by(settings.team.interface) + asked_of(settings.team)}});
   }
   table.add({{"link", Tone::Strong}, {decimal(post.budget_mbit, 3) + " Mbit/s"}, {}});
   const settings::Panel& panel = settings.panel;

@@ -252,7 +252,8 @@ TEST(Bytes, OfTheSettings) {
                                      .tokens = {{"team", true}, {"scoring", false}},
                                      .keys = {whole, choice}}),
             R"({"settings":{"version":1},"tag":"t","saved":true,"applying":false,"trouble":"",)"
-            R"("tokens":{"team":true,"scoring":false},"keys":[{"path":"p","meaning":"m","kind":"whole",)"
+            R"("tokens":{"team":true,"scoring":false},"odd_tokens":[],)"
+            R"("keys":[{"path":"p","meaning":"m","kind":"whole",)"
             R"("required":true,"default":null,"range":"1 to 2","least":1,"most":2},{"path":"q",)"
             R"("meaning":"n","kind":"choice","required":false,"default":"a","range":"a or b",)"
             R"("words":["a","b"]}]})");

@@ -92,6 +92,8 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::no_valid_point>(
         "no_valid_point",
         "of its clouds, accepted and not sent, for each of their points is NaN or infinite"),
+    member<&ActivityRow::invisible>(
+        "invisible", "of its markers, forwarded although nobody sees them: the alpha of their color is 0"),
     member<&ActivityRow::arrival>("arrival", "whether it reaches the Command Post")
         .one_of(alarms::kArrivalWords),
     member<&ActivityRow::level>("level", "how well that is").one_of(alarms::kLevelWords),

@@ -62,6 +62,7 @@ RunView view() {
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
   activity.precision = "1mm", activity.points_left_out = 16, activity.no_valid_point = 20;
+  activity.invisible = 21;
   activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
   view.activities = {activity};
   view.refusals = {{.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2}};
@@ -120,6 +121,7 @@ TEST(Bytes, OfARun) {
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"waiting":8,)"
       R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
+      R"("invisible":21,)"
       R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"

@@ -49,15 +49,21 @@ void Setup::runs_with(const Store::Loaded& loaded, std::string trouble) {
   saved_ = loaded.saved;
   trouble_ = std::move(trouble);
   tokens_set_.clear();
-  for (const auto& [name, token] : loaded.secrets.tokens) tokens_set_.push_back(name);
+  const auto odd = loaded.secrets.odd_tokens();
+  for (const auto& [name, token] : loaded.secrets.tokens) {
+    const auto found = odd.find(name);
+    std::string& warning = tokens_set_[name] = found == odd.end() ? "" : found->second;
+    if (!warning.empty()) host::log(host::Level::Warning, warning);
+  }
   applying_ = false;
 }
 
 std::vector<api::TokenRow> Setup::tokens() const {
   std::vector<api::TokenRow> rows;
   for (std::string& name : token_names(settings_)) {
-    const bool set = std::ranges::find(tokens_set_, name) != tokens_set_.end();
-    rows.push_back({std::move(name), set});
+    const auto found = tokens_set_.find(name);
+    const bool set = found != tokens_set_.end();
+    rows.push_back({std::move(name), set, set ? found->second : ""});
   }
   return rows;
 }
@@ -80,6 +86,11 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   }
   if (!next.team.require_token && settings_.team.require_token) {
     sentences.emplace_back("whoever is on the team's network may post reports, without a token");
+  }
+  const bool opens_to_pages = !next.team.require_token && !next.team.origins.empty();
+  if (opens_to_pages && (settings_.team.require_token || next.team.origins != settings_.team.origins)) {
+    sentences.push_back(
+        icd::sentence("pages of ", next.team.origins, " may post reports without a token, in any browser"));
   }
   return sentences;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,7 +47,7 @@ class Setup final : public api::Setup {
   settings::Settings settings_;
   bool saved_ = false;
   std::string trouble_;
-  std::vector<std::string> tokens_set_;
+  std::map<std::string, std::string> tokens_set_;  // by name: what is odd about one, or ""
   Meaning for_reports_;
   std::function<void()> apply_, restart_;
   bool applying_ = false;

@@ -84,16 +84,18 @@ intake::Answer ReportRoutes::compose(const std::string& body) {
 intake::Answer ReportRoutes::composed(const std::string& body) {
   const auto document = codec::decode({}, codec::Split::Nothing, body);
   if (!document) return refused(document.error());
-  const auto report = codec::read_artifact_report(*document, {}, intake::type_hint);
-  if (!report) return refused(report.error());
+  const auto read = codec::read_artifact_report(*document, {}, intake::type_hint);
+  if (!read) return refused(read.error());
   codec::Reading reading;
   const codec::Field root(document->root, reading);
   const codec::Field resubmit = root.member("resubmit");
   const auto again = reading.outcome(!resubmit.is_absent() && resubmit.truth());
   if (!again) return refused(again.error());
-  const auto number = operator_.report(*report, *again);
+  const auto number = operator_.report(read->report, *again);
   if (!number) return refusal(icd::Status::Conflict, number.error());
-  auto answer = object({{"report", json(*number)}});
+  codec::Value::Object told{{"report", json(*number)}};
+  if (!read->left_out.empty()) told.emplace_back("left_out", json(read->left_out));
+  auto answer = object(std::move(told));
   answer.status = kAccepted;
   return answer;
 }

@@ -22,6 +22,7 @@ constexpr Member kReport[] = {
     member<&ReportRow::type>("type", "of the artifact, or what the client sent").csv(3),
     member<&ReportRow::position>("position", "null: damage took from the ledger what it said").exact().csv(4),
     member<&ReportRow::sender>("sender").csv(5),
+    member<&ReportRow::robot>("robot", "that its sender named; empty: none").csv(16),
     member<&ReportRow::received>("received", kWhen).csv(6, Cell::Time),
     member<&ReportRow::changed>("changed", kWhen).csv(7, Cell::Time),
     member<&ReportRow::state>("state").one_of(dispatch::kStateWords).csv(8),
@@ -91,6 +92,8 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::no_valid_point>(
         "no_valid_point",
         "of its clouds, accepted and not sent, for each of their points is NaN or infinite"),
+    member<&ActivityRow::invisible>(
+        "invisible", "of its markers, forwarded although nobody sees them: the alpha of their color is 0"),
     member<&ActivityRow::arrival>("arrival", "whether it reaches the Command Post")
         .one_of(alarms::kArrivalWords),
     member<&ActivityRow::level>("level", "how well that is").one_of(alarms::kLevelWords),

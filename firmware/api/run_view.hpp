@@ -28,7 +28,7 @@ struct ReportRow {
   std::int64_t number = 0;
   std::string type;
   std::optional<icd::Point> position = icd::Point{};
-  std::string sender;
+  std::string sender, robot;
   Time received = 0, changed = 0;
   std::string state;
   int status = 0;
@@ -76,7 +76,7 @@ struct ActivityRow {
   int last_status = 0;
   std::string last_sentence;
   std::string clouds, precision;
-  std::uint64_t points_left_out = 0, no_valid_point = 0;
+  std::uint64_t points_left_out = 0, no_valid_point = 0, invisible = 0;
   alarms::Arrival arrival = alarms::Arrival::NotYet;
   alarms::Level level = alarms::Level::Quiet;
 

@@ -85,6 +85,7 @@ constexpr Member kSetup[] = {
     member<&SetupView::applying>("applying", "a change was taken, and is in use within a second"),
     member<&SetupView::trouble>("trouble", "why the last change is not in use (it was taken back), or empty"),
     member<&SetupView::tokens>("tokens", "for each that there can be, whether there is one"),
+    member<&SetupView::odd_tokens>("odd_tokens", "of those that are set, by name: what may be wrong"),
     member<&SetupView::keys>("keys"),
 };
 
@@ -138,6 +139,9 @@ SetupView setup_view(const Setup& setup) {
                  .applying = setup.applying(),
                  .trouble = setup.trouble(),
                  .tokens = setup.tokens()};
+  for (const TokenRow& token : view.tokens) {
+    if (!token.warning.empty()) view.odd_tokens.push_back({token.name, token.warning});
+  }
   view.keys = key_rows();
   return view;
 }

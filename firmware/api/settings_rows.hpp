@@ -29,6 +29,7 @@ struct SetupView {
   bool saved = false, applying = false;
   std::string trouble;
   std::vector<TokenRow> tokens;
+  std::vector<settings::Error> odd_tokens = {};
   std::vector<KeyRow> keys = {};
 
   static const codec::Row kRow;

@@ -10,10 +10,12 @@
 
 namespace adit::api {
 
-/// A token by its name ("scoring", "course.A.mapping"), and whether there is one; never the token itself.
+/// A token by its name ("scoring", "course.A.mapping"), whether there is one, and what is odd about it; never
+/// the token itself.
 struct TokenRow {
   std::string name;
   bool set = false;
+  std::string warning = {};
 };
 
 /// The settings and tokens that the box runs with, and what changes them. A change that is answered is on the

@@ -1,12 +1,19 @@
 #include "cli/check.hpp"
 
+#include <algorithm>
+
 #include "cli/table.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
 #include "codec/json.hpp"
+#include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
+#include "network/check.hpp"
+#include "settings/saved.hpp"
 #include "settings/settings.hpp"
+#include "settings/subnet.hpp"
 
 namespace adit::cli {
 namespace {
@@ -18,6 +25,12 @@ std::string by(const std::string& interface) {
   return interface.empty() ? "by any interface" : "by " + interface + " alone";
 }
 
+std::string asked_of(const settings::Team& team) {
+  if (team.require_token) return "";
+  return ", no token asked for" +
+         (team.origins.empty() ? "" : ", not of pages of " + team.origins + " either");
+}
+
 std::string lines_of(const settings::Panel& panel) {
   std::string lines;
   for (const std::string& line :
@@ -27,22 +40,72 @@ std::string lines_of(const settings::Panel& panel) {
   return lines;
 }
 
+/// The team's own subnets, as far as settings and interfaces tell.
+std::vector<settings::Subnet> team_subnets(const settings::Team& team,
+                                           const std::vector<host::Interface>& interfaces) {
+  std::vector<settings::Subnet> subnets;
+  for (const host::Interface& each : interfaces) {
+    if (team.interface != each.name) continue;
+    for (const std::string& address : each.addresses) {
+      if (const auto subnet = settings::parse_subnet(address)) subnets.push_back(*subnet);
+    }
+  }
+  for (const settings::Address& listen : team.listen) {
+    const auto address = settings::ipv4_of(listen.address);
+    const bool is_known = std::ranges::any_of(
+        subnets, [&](const settings::Subnet& each) { return address && each.contains(*address); });
+    if (address && *address != 0 && !is_known) subnets.push_back({*address, 32});
+  }
+  return subnets;
+}
+
+/// What does not keep aditd from taking the settings.
+std::vector<std::string> warnings_of(const Options& options, const Settings& settings) {
+  std::vector<std::string> sentences;
+  const auto secrets =
+      host::read_secrets(options.secrets, options.saved_secrets, settings::token_names(settings));
+  if (!secrets) sentences.push_back("the tokens are not checked: " + secrets.error().sentence);
+  if (secrets) {
+    for (const auto& [name, sentence] : secrets->odd_tokens()) sentences.push_back(sentence);
+  }
+  const auto interfaces = host::interfaces();
+  if (!interfaces) sentences.push_back("the team's network is not checked: " + interfaces.error());
+  network::Circumstances around;
+  around.command_post = settings.command_post;
+  around.courses = settings.courses;
+  for (const settings::Subnet& team :
+       team_subnets(settings.team, interfaces.value_or(std::vector<host::Interface>()))) {
+    const std::string what = network::overlap_of({.team = team}, around);
+    if (what.empty()) continue;
+    sentences.push_back(icd::sentence("the team's network ", settings::written(team), " overlaps ", what,
+                                      " on the Command Post's side (ICD 3): ",
+                                      settings.network.allow_overlap
+                                          ? "allowed, but a robot cannot reach both"
+                                          : "choose another subnet for the team"));
+  }
+  return sentences;
+}
+
 /// What the settings come to: that the file is right does not yet say that it is the right file.
-std::string summary(const std::string& file, const Settings& settings, bool colour) {
+std::string summary(const std::string& file, const Settings& settings,
+                    const std::vector<std::string>& warnings, bool colour) {
   const settings::CommandPost& post = settings.command_post;
   Table table({{}, {}, {}});
   table.add({{"scoring", Tone::Strong}, {written(post.scoring)}, {by(post.interface)}});
   table.add({{"mapping", Tone::Strong}, {written(post.mapping)}, {by(post.interface)}});
   for (const settings::Address& listen : settings.team.listen) {
-    table.add({{"team", Tone::Strong},
-               {written(listen)},
-               {by(settings.team.interface) + (settings.team.require_token ? "" : ", no token asked for")}});
+    table.add(
+        {{"team", Tone::Strong}, {written(listen)}, {by(settings.team.interface) + asked_of(settings.team)}});
   }
   table.add({{"link", Tone::Strong}, {decimal(post.budget_mbit, 3) + " Mbit/s"}, {}});
   const settings::Panel& panel = settings.panel;
   const std::string chip = panel.chip.empty() ? "any chip" : panel.chip;
   table.add({{"panel", Tone::Strong}, {panel.is_simulated() ? "simulated" : chip}, {lines_of(panel)}});
-  return host::escaped(file) + ": " + painted("good", Tone::Good, colour) + '\n' + table.written(colour);
+  std::string text =
+      host::escaped(file) + ": " + painted("good", Tone::Good, colour) + '\n' + table.written(colour);
+  for (const std::string& warning : warnings)
+    text += "  " + painted("warning", Tone::Warning, colour) + ": " + host::escaped(warning) + '\n';
+  return text;
 }
 
 std::string sentences(const std::string& file, const std::vector<settings::Error>& errors, bool colour) {
@@ -56,12 +119,15 @@ std::string sentences(const std::string& file, const std::vector<settings::Error
   return text;
 }
 
-std::string as_json(const std::vector<settings::Error>& errors) {
-  Value::Array list;
+std::string as_json(const std::vector<settings::Error>& errors, const std::vector<std::string>& warnings) {
+  Value::Array list, told;
+  for (const std::string& warning : warnings) told.push_back({warning});
   for (const settings::Error& error : errors) {
     list.push_back({Value::Object{{"path", {error.path}}, {"what", {error.what}}}});
   }
-  return codec::write_json({Value::Object{{"good", {errors.empty()}}, {"errors", {list}}}}) + '\n';
+  return codec::write_json(
+             {Value::Object{{"good", {errors.empty()}}, {"errors", {list}}, {"warnings", {told}}}}) +
+         '\n';
 }
 
 }  // namespace
@@ -71,9 +137,10 @@ Outcome check(const Options& options, bool colour) {
   if (!text) return {Exit::Unable, "", "adit: " + text.error() + '\n'};
   const auto settings = settings::parse(*text);
   const auto errors = settings ? std::vector<settings::Error>() : settings.error();
+  const auto warnings = settings ? warnings_of(options, *settings) : std::vector<std::string>();
   const Exit exit = settings ? Exit::Fine : Exit::Attention;
-  if (options.json) return {exit, as_json(errors), ""};
-  if (settings) return {exit, summary(options.settings, *settings, colour), ""};
+  if (options.json) return {exit, as_json(errors, warnings), ""};
+  if (settings) return {exit, summary(options.settings, *settings, warnings, colour), ""};
   return {exit, sentences(options.settings, errors, colour), ""};
 }
 

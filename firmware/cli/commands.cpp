@@ -283,7 +283,9 @@ constexpr CommandRow kCommands[] = {
     {Command::Check, "check", "all that is wrong with a settings file, at once", kCheckForms,
      "Reads SETTINGS (/etc/adit/settings.json if not given) exactly as aditd would, and names each error by "
      "the path of its key, with what was expected and what was found. Of good settings it says what they "
-     "come to. It neither asks nor changes a running Adit.",
+     "come to, and warns of a token of the Command Post's that has not 16 characters, and of a team's "
+     "network "
+     "that overlaps the Command Post's. It neither asks nor changes a running Adit.",
      "aditd would take the file", "it would not",
      "  adit check\n"
      "  adit check new.json && sudo install -m 644 new.json /etc/adit/settings.json"},

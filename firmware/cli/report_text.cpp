@@ -33,6 +33,7 @@ std::string facts(const api::ReportDetail& detail, bool colour) {
   add("score", gained_by(report));
   add("run", std::to_string(report.run));
   add("sender", report.sender);
+  add("robot", report.robot);
   add("received", api::iso_time(report.received));
   add("answer", detail.answer);
   add("actions", actions_for(report));

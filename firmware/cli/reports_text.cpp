@@ -101,6 +101,7 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t
                {"score", Align::Right},
                {"the Command Post said, or why"},
                {"sender"},
+               {"robot"},
                {"received", Align::Right}});
   for (const api::ReportRow& report : reports) {
     table.add({{std::to_string(report.number)},
@@ -113,6 +114,7 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t
                {gained_by(report)},
                {joined({said_of(report), report.note})},
                {report.sender},
+               {report.robot},
                {duration(now - report.received) + " ago"}});
   }
   return table.written(colour) + elsewhere;

@@ -147,6 +147,7 @@ std::string kind_of(const api::ActivityRow& row) {
   if (!row.precision.empty() && row.precision != "exact") kind += ", to " + row.precision;
   if (row.points_left_out > 0) kind += ", " + std::to_string(row.points_left_out) + " points left out";
   if (row.no_valid_point > 0) kind += ", " + std::to_string(row.no_valid_point) + " without a valid point";
+  if (row.invisible > 0) kind += ", " + std::to_string(row.invisible) + " invisible";
   return kind;
 }
 

@@ -70,9 +70,13 @@ icd::Checked<icd::StateUpdate> read_state_update(const Document& document, const
 icd::Checked<icd::MarkersUpdate> read_markers_update(const Document& document, const icd::Rules& rules);
 /// What a sentence says of a type that resembles one of the ten ("; did you mean Rope?"); "" of another.
 using TypeHint = std::string (*)(std::string_view type);
-/// ICD 5.2.
-icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules,
-                                                       TypeHint hint);
+struct ReadReport {
+  icd::ArtifactReport report;
+  std::string left_out;  // why it goes without its `name`; "": it has one, or none was given
+};
+/// ICD 5.2. A `name` that is no robot's is left out: a report is never refused for it.
+icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules,
+                                              TypeHint hint);
 
 /// What the Command Post answered, or why it could not be understood.
 std::expected<icd::RunStatus, std::string> read_run_status(std::string_view json);

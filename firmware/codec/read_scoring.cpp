@@ -58,6 +58,14 @@ bool has_number(const Field& field) {
   return field.is<double>() || field.is<std::int64_t>() || field.is<std::uint64_t>();
 }
 
+/// In a reading of its own: what is wrong with it does not refuse the report.
+icd::Checked<std::optional<icd::RobotName>> read_robot(const Document& document, const icd::Rules& rules) {
+  Reading reading;
+  const Field body(document.root, reading);
+  const Field name = body.member("name");
+  return reading.outcome(name.is_absent() ? std::nullopt : read_robot_name(name, rules));
+}
+
 icd::RunStatus status_of(const Field& body) {
   icd::RunStatus status;
   status.score = body.member("score").whole<std::int32_t>();
@@ -73,7 +81,8 @@ icd::RunStatus status_of(const Field& body) {
 std::optional<icd::ArtifactReport> report_in(const Field& body) {
   const Field type = body.member("type"), x = body.member("x"), y = body.member("y"), z = body.member("z");
   if (!type.is<std::string>() || !has_number(x) || !has_number(y) || !has_number(z)) return std::nullopt;
-  return icd::ArtifactReport{std::string(type.text()), {x.number(), y.number(), z.number()}};
+  return icd::ArtifactReport{.type = std::string(type.text()),
+                             .position = {x.number(), y.number(), z.number()}};
 }
 
 icd::ReportReply reply_of(const Field& body) {
@@ -90,14 +99,20 @@ icd::ReportReply reply_of(const Field& body) {
 
 }  // namespace
 
-icd::Checked<icd::ArtifactReport> read_artifact_report(const Document& document, const icd::Rules& rules,
-                                                       TypeHint hint) {
+icd::Checked<ReadReport> read_artifact_report(const Document& document, const icd::Rules& rules,
+                                              TypeHint hint) {
   Reading reading;
-  icd::ArtifactReport report;
+  ReadReport read;
   const Field body(document.root, reading);
-  read_members(body, report.position, rules);
-  report.type = read_type(body.member("type"), rules, hint);
-  return reading.outcome(std::move(report));
+  read_members(body, read.report.position, rules);
+  read.report.type = read_type(body.member("type"), rules, hint);
+  auto robot = read_robot(document, rules);
+  if (robot) {
+    read.report.robot = *std::move(robot);
+  } else {
+    read.left_out = std::move(robot.error().sentence);
+  }
+  return reading.outcome(std::move(read));
 }
 
 std::expected<icd::RunStatus, std::string> read_run_status(std::string_view json) {

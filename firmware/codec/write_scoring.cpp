@@ -52,7 +52,8 @@ bool stands_for_itself(char letter) {
 std::string write_artifact_report(const icd::ArtifactReport& report) {
   return icd::sentence(
       "{\"x\": ", json_number(report.position.x), ", \"y\": ", json_number(report.position.y),
-      ", \"z\": ", json_number(report.position.z), ", \"type\": ", json_string(report.type), "}");
+      ", \"z\": ", json_number(report.position.z), ", \"type\": ", json_string(report.type),
+      report.robot ? icd::sentence(", \"name\": ", json_string(report.robot->text())) : "", "}");
 }
 
 std::string write_run_status(const icd::RunStatus& status) {

@@ -59,11 +59,21 @@ void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> resp
   scoring_.status(std::move(responder));
 }
 
-/// The sentence quotes what was sent, which may be a token that was put into a wrong field. Wrong tokens are
-/// logged together (gateway::Crowding).
+/// A sentence quotes what was sent, which may be a token that was put into a wrong field.
+std::string Flow::without_tokens(std::string sentence) const {
+  for (const icd::BearerToken& token : tokens_.all) token.strike_from(sentence);
+  return sentence;
+}
+
+void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) {
+  host::log(
+      host::Level::Info, "left out",
+      {{"uri", std::string(icd::path_of(uri))}, {"sender", sender.address}, {"why", without_tokens(why)}});
+}
+
+/// Wrong tokens are logged together (gateway::Crowding).
 void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
-  icd::Refusal refusal = told;
-  for (const icd::BearerToken& token : tokens_.all) token.strike_from(refusal.sentence);
+  const icd::Refusal refusal = {told.status, without_tokens(told.sentence)};
   if (refusal.status != icd::Status::Unauthorized) {
     host::log(host::Level::Info, "refused",
               {{"uri", std::string(icd::path_of(uri))},

@@ -98,6 +98,7 @@ class Flow final : public intake::Desk {
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder) override;
   void status(const intake::Sender& sender, std::shared_ptr<intake::Responder> responder) override;
+  void left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
 
   /// When the operator's test may ask an endpoint that the run uses for its status, or send it a state: a
@@ -163,6 +164,7 @@ class Flow final : public intake::Desk {
   archive::Sample sample() const;
   api::RunRow facts() const;
   void drain();
+  std::string without_tokens(std::string sentence) const;
 
   loop::Loop& loop_;
   const settings::Settings& settings_;

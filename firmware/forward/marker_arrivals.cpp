@@ -126,7 +126,11 @@ bool MarkerArrivals::keep(Arrival& arrival) {
 bool MarkerArrivals::add_part(Arrival& arrival) {
   const std::span<icd::Marker> markers = arrival.update->markers;
   const auto part = markers.subspan(arrival.added, std::min(kPart, markers.size() - arrival.added));
-  whole(restart_, [&] { arrival.last = lane_.add_part(part, arrival.last); });
+  const auto invisible = static_cast<std::size_t>(std::ranges::count_if(part, icd::is_invisible));
+  whole(restart_, [&] {
+    record_.invisible(invisible);
+    arrival.last = lane_.add_part(part, arrival.last);
+  });
   arrival.added += part.size();
   free_needless();
   if (arrival.added < markers.size()) {

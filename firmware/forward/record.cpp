@@ -65,6 +65,12 @@ void Record::no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time
   accepted(traffic, bytes, now);
 }
 
+void Record::invisible(std::size_t markers) {
+  if (markers == 0) return;
+  row({Kind::Markers, ""}).invisible += markers;
+  changed_();
+}
+
 void Record::rounded_to(const Traffic& traffic, lanes::Precision precision) {
   row(traffic).precision = lanes::kPrecisionWords[static_cast<std::size_t>(precision)];
 }

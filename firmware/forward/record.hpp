@@ -52,6 +52,8 @@ class Record {
   void left_out(const Traffic& traffic, std::size_t points);
   /// A cloud was accepted that has no valid point, so that nothing of it is sent.
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
+  /// So many markers were accepted that nobody will see.
+  void invisible(std::size_t markers);
   /// What its clouds were taken for.
   void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
   /// How far the cloud was rounded that the Command Post took last.

@@ -8,7 +8,9 @@
 namespace adit::forward {
 intake::Answer client_answer(const uplink::Answered& answered) {
   const auto status = static_cast<icd::Status>(answered.status);
-  if (codec::is_json(answered.body)) {
+  if (const auto json = codec::parse_json(answered.body)) {
+    const bool as_it_came = answered.status < 300 || std::holds_alternative<std::string>(json->is);
+    if (!as_it_came) return intake::error_answer(status, dispatch::said(answered.status, answered.body));
     return {
         .status = status, .content_type = std::string(codec::kJson), .body = answered.body, .headers = {}};
   }

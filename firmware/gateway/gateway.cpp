@@ -103,6 +103,8 @@ intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
   options.rules = settings_.rules;
   options.asks_token = settings_.team.require_token;
+  for (const std::string_view each : settings::words(settings_.team.origins))
+    options.origins.emplace_back(each);
   options.tokens = tokens().all;
   return options;
 }

@@ -5,6 +5,7 @@
 #include "access/password.hpp"
 #include "host/files.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::host {
 namespace {
@@ -54,6 +55,19 @@ icd::Redaction Secrets::redaction() const {
   for (const auto& [name, token] : tokens) all.push_back(token);
   if (label_code) all.push_back(*label_code);
   return icd::Redaction(std::move(all));
+}
+
+std::map<std::string, std::string> Secrets::odd_tokens() const {
+  constexpr std::size_t kLength = 16;
+  std::map<std::string, std::string> odd;
+  for (const auto& [name, token] : tokens) {
+    const std::size_t length = token.reveal().size();
+    if (name == "team" || length == kLength) continue;  // the team's own may have any length
+    odd.emplace(name,
+                icd::sentence("the token ", name, " has ", length, length == 1 ? " character" : " characters",
+                              ", the Command Post's have ", kLength, " (ICD 4): is all of it there?"));
+  }
+  return odd;
 }
 
 std::expected<Secrets, SecretsError> read_secrets(const std::string& given, const std::string& saved,

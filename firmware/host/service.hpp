@@ -65,6 +65,8 @@ struct Secrets {
   std::optional<icd::BearerToken> label_code;  // what sets the first password; absent: one is drawn
 
   icd::Redaction redaction() const;
+  /// Of the Command Post's tokens whose length is none that the ICD (4) gives them: a sentence by the name.
+  std::map<std::string, std::string> odd_tokens() const;
   std::optional<icd::BearerToken> token(std::string_view name) const {
     const auto found = tokens.find(name);
     return found == tokens.end() ? std::nullopt : std::optional(found->second);

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "icd/geometry.hpp"
+#include "icd/robot_name.hpp"
 
 namespace adit::icd {
 
@@ -20,6 +22,7 @@ std::string_view artifact_type(std::string_view text);
 struct ArtifactReport {
   std::string type;
   Point position;
+  std::optional<RobotName> robot = {};  // "name": in the ICD's example, not in its listing
   friend bool operator==(const ArtifactReport&, const ArtifactReport&) = default;
 };
 

@@ -2,6 +2,11 @@
 
 namespace adit::icd {
 
+bool is_invisible(const Marker& marker) {
+  const bool has_own_colors = !marker.colors.empty() || marker.mesh_use_embedded_materials;
+  return marker.action == MarkerAction::Add && marker.color.a == 0 && !has_own_colors;
+}
+
 std::size_t bytes_of(const Marker& marker) {
   constexpr std::size_t kFixed = 640;  // all that does not grow, with what maps and allocators add
   constexpr std::size_t kPoint = 34;   // three named 64-bit numbers of CBOR; in memory 24

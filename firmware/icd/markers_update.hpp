@@ -69,6 +69,10 @@ struct Marker {
   friend bool operator==(const Marker&, const Marker&) = default;
 };
 
+/// Whether nobody sees it: its color has alpha 0 (ROS's default, ICD 6.6), and neither its points nor its
+/// mesh bring colors of their own.
+bool is_invisible(const Marker& marker);
+
 /// What a marker takes in memory and in a message: no less than either, and little more than the larger.
 std::size_t bytes_of(const Marker& marker);
 

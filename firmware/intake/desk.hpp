@@ -60,6 +60,8 @@ class Desk {
                     std::shared_ptr<Responder> responder) = 0;
   virtual void status(const Sender& sender, std::shared_ptr<Responder> responder) = 0;
 
+  /// Something of a message that is about to be taken was left out, and why; the sender is not told.
+  virtual void left_out(icd::Uri uri, const Sender& sender, const std::string& why) = 0;
   /// A message was refused with this; the sender has been told.
   virtual void refused(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) = 0;
 };

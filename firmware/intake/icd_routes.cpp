@@ -1,8 +1,10 @@
 #include "intake/icd_routes.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
+#include "access/whence.hpp"
 #include "codec/body_decoder.hpp"
 #include "icd/letter_case.hpp"
 #include "icd/sentence.hpp"
@@ -57,6 +59,26 @@ icd::Checked<bool> resubmits_of(const RequestHead& head) {
   return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::in_quotes(word));
 }
 
+/// Whether a page of the box's own sent it, or one of `origins`. Without the look at the Host, a page whose
+/// name leads to the box (DNS rebinding) would be its own.
+icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::string>& origins) {
+  const std::string_view origin = head.header("Origin"), host = head.header("Host");
+  const auto needs_token = [](std::string why) {
+    return std::unexpected(icd::Refusal{icd::Status::Forbidden, std::move(why)});
+  };
+  if (!access::names_this_box(host)) {
+    return needs_token(
+        icd::sentence("Host: expected the box's address, localhost or its name in .local, or the "
+                      "team's token, as this has the Origin ",
+                      icd::in_quotes(origin), ", got ", icd::in_quotes(host)));
+  }
+  const bool is_listed = std::ranges::any_of(
+      origins, [origin](const std::string& each) { return icd::same_but_for_case(each, origin); });
+  if (is_listed || access::is_same_origin(origin, host)) return {};
+  return needs_token(icd::sentence("Origin: a page of ", icd::in_quotes(origin),
+                                   " needs the team's token, or to be in the setting team.origins"));
+}
+
 icd::Refusal stops() {
   return {icd::Status::ServiceUnavailable, "the gateway is stopping; this was not taken, send it again"};
 }
@@ -74,10 +96,29 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
 
 Shown IcdRoutes::shown(const RequestHead& head) {
   if (!icd::uri_of(head.path())) return other_.shown(head);
-  if (!options_.asks_token) return Shown::Enough;
-  if (head.method() == "OPTIONS") return Shown::Nothing;  // a preflight has no token
-  const std::string_view presented = icd::token_in(head.header("Authorization"));
-  return icd::is_one_of(options_.tokens, presented) ? Shown::Token : Shown::WrongToken;
+  // A preflight has no token.
+  if (head.method() == "OPTIONS") return options_.asks_token ? Shown::Nothing : Shown::Enough;
+  if (is_free(head)) return Shown::Enough;
+  return has_token(head) ? Shown::Token : Shown::WrongToken;
+}
+
+bool IcdRoutes::has_token(const RequestHead& head) const {
+  return icd::is_one_of(options_.tokens, icd::token_in(head.header("Authorization")));
+}
+
+/// Whether it needs no token.
+bool IcdRoutes::is_free(const RequestHead& head) const {
+  if (options_.asks_token) return false;
+  return head.header("Origin").empty() || check_origin(head, options_.origins);
+}
+
+icd::Checked<void> IcdRoutes::check_entry(const RequestHead& head) const {
+  if (is_free(head) || has_token(head)) return {};
+  if (!options_.asks_token) return check_origin(head, options_.origins);
+  return std::unexpected(
+      icd::Refusal{icd::Status::Unauthorized, options_.tokens.empty()
+                                                  ? "Authorization: no token is set up on this gateway yet"
+                                                  : "Authorization: expected Bearer and the team's token"});
 }
 
 std::size_t IcdRoutes::most_bytes(icd::Uri uri) const {
@@ -102,10 +143,8 @@ std::unique_ptr<BodySink> IcdRoutes::open(const RequestHead& head, std::shared_p
     visit.responder->answer(preflight_answer(*uri, head.header("Access-Control-Request-Headers")));
     return nullptr;
   }
-  if (shown(head) == Shown::WrongToken) {
-    visit.refuse({icd::Status::Unauthorized, options_.tokens.empty()
-                                                 ? "Authorization: no token is set up on this gateway yet"
-                                                 : "Authorization: expected Bearer and the team's token"});
+  if (const auto entry = check_entry(head); !entry) {
+    visit.refuse(entry.error());
     return nullptr;
   }
   if (!is_allowed(*uri, head.method())) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -24,6 +25,7 @@ struct Visit;
 struct IcdOptions {
   std::vector<icd::BearerToken> tokens;  // any of them is good
   bool asks_token = true;                // whether a client has to show one: without any, none is let in
+  std::vector<std::string> origins;      // whose pages need none where clients need none
   icd::Rules rules;
   std::size_t upload_bytes = 512u << 20;  // most that all maps and markers under way may take: UploadBudget
   std::size_t small_bytes = 32u << 20;    // and all states and reports
@@ -32,6 +34,9 @@ struct IcdOptions {
 /// The ICD's five URIs for the team: tokens, methods, content types, CORS, decoding (maps on a worker, chunk
 /// by chunk with back-pressure; large markers on one, too; the rest on the loop), and the answer. Any other
 /// path goes to `other`.
+///
+/// Where clients need no token, a web page (whose browser sends an Origin) still does, unless it is the box's
+/// own or of IcdOptions::origins: else any page that is open in a teammate's browser could spend reports.
 ///
 /// Every error is a JSON string. CORS preflights (OPTIONS) are answered 204 without a token; every answer of
 /// an ICD URI carries Access-Control-Allow-Origin.
@@ -53,6 +58,10 @@ class IcdRoutes final : public Handler {
   void stop();
 
  private:
+  /// 401 or 403 if the request has to have a token and has none that is good.
+  bool is_free(const RequestHead& head) const;
+  bool has_token(const RequestHead& head) const;
+  icd::Checked<void> check_entry(const RequestHead& head) const;
   std::unique_ptr<BodySink> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
   /// The most that a body sent to `uri` may have.
   std::size_t most_bytes(icd::Uri uri) const;

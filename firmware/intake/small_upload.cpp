@@ -36,10 +36,11 @@ void SmallUpload::on_end() {
 void SmallUpload::give_to_desk(const codec::Document& document) {
   if (visit_.uri == icd::Uri::StateUpdate) {
     take_parts(visit_, codec::read_state_parts(document, rules_));
-  } else if (const auto report = codec::read_artifact_report(document, rules_, type_hint); report) {
-    visit_.desk.take(*report, visit_.sender, visit_.responder);
+  } else if (const auto read = codec::read_artifact_report(document, rules_, type_hint); read) {
+    if (!read->left_out.empty()) visit_.desk.left_out(visit_.uri, visit_.sender, read->left_out);
+    visit_.desk.take(read->report, visit_.sender, visit_.responder);
   } else {
-    visit_.refuse(report.error());
+    visit_.refuse(read.error());
   }
 }
 

@@ -164,6 +164,8 @@ class Carver {
     carved_.reports = rows_of(std::move(reports_), carved_.unproven);
     carved_.runs = rows_of(std::move(runs_), carved_.unproven);
     carved_.sightings = rows_of(std::move(sightings_), carved_.unproven);
+    carved_.robots = rows_of(std::move(robots_), carved_.unproven);
+    std::erase_if(carved_.robots, [this](const auto& row) { return !carved_.reports.contains(row.first); });
     return std::move(carved_);
   }
 
@@ -188,7 +190,8 @@ class Carver {
     if (columns == kMarkKinds.size() && proven_) return look_for_mark(*head, text);
     for (const Table& table :
          {Table{kReportKinds, &reports_, kReportKinds.size() - 1}, Table{kRunKinds, &runs_, kRunHeard},
-          Table{kSightingKinds, &sightings_, kSightingKinds.size() - 1}}) {
+          Table{kSightingKinds, &sightings_, kSightingKinds.size() - 1},
+          Table{kRobotKinds, &robots_, kRobotKinds.size() - 1}}) {
       if (columns == table.kinds.size()) take(*head, text, table);
     }
   }
@@ -263,7 +266,7 @@ class Carver {
       if (proven || proof != kNoProof)
         return proven ? std::optional(Form{std::move(row), true}) : std::nullopt;
     }
-    if (kinds == kSightingKinds) return std::nullopt;  // version 3 writes none
+    if (kinds == kSightingKinds || kinds == kRobotKinds) return std::nullopt;  // version 3 writes none
     const auto* const history = std::get_if<std::string>(&row.back());
     if (kinds == kReportKinds && (history == nullptr || !steps_of(0, *history))) return std::nullopt;
     return Form{std::move(row), false};
@@ -273,7 +276,7 @@ class Carver {
 
   std::vector<std::string_view> pages_;
   std::map<std::uint64_t, std::vector<std::string_view>> by_number_;
-  Forms reports_, runs_, sightings_;
+  Forms reports_, runs_, sightings_, robots_;
   Carved carved_;
   bool proven_ = true;
 };

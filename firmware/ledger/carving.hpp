@@ -19,8 +19,8 @@ using Row = std::vector<Value>;
 
 /// What could be had of a ledger row by row, whatever became of its structure.
 struct Carved {
-  std::map<std::int64_t, Row> reports, runs, sightings;  // by number, each as it was last
-  std::optional<std::int64_t> highest;                   // number of a report, by the mark
+  std::map<std::int64_t, Row> reports, runs, sightings, robots;  // by number, each as it was last
+  std::optional<std::int64_t> highest;                           // number of a report, by the mark
   bool unproven = false;  // rows of version 3's Adit are among them, which writes neither proofs nor the mark
 };
 

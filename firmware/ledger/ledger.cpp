@@ -37,10 +37,13 @@ class Ledger::Impl {
  public:
   static Result<std::unique_ptr<Impl>> make(Opened opened) {
     auto impl = std::make_unique<Impl>(std::move(opened));
-    const std::pair<Statement*, const std::string&> statements[] = {
-        {&impl->write_report_, kWriteReport},     {&impl->write_run_, kWriteRun},
-        {&impl->write_sighting_, kWriteSighting}, {&impl->read_reports_, kReadReports},
-        {&impl->read_history_, kReadHistory},     {&impl->read_runs_, kReadRuns}};
+    const std::pair<Statement*, const std::string&> statements[] = {{&impl->write_report_, kWriteReport},
+                                                                    {&impl->write_run_, kWriteRun},
+                                                                    {&impl->write_sighting_, kWriteSighting},
+                                                                    {&impl->write_robot_, kWriteRobot},
+                                                                    {&impl->read_reports_, kReadReports},
+                                                                    {&impl->read_history_, kReadHistory},
+                                                                    {&impl->read_runs_, kReadRuns}};
     for (const auto& [statement, sql] : statements) {
       auto prepared = Statement::prepare(impl->database_, sql);
       if (!prepared) return std::unexpected(prepared.error());
@@ -116,7 +119,8 @@ class Ledger::Impl {
 
   /// A statement alone is a transaction of its own.
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
-    if (run == nullptr && of_the_first(steps) == steps.size()) return write_one(steps);
+    if (run == nullptr && of_the_first(steps) == steps.size() && !steps.back().report.robot)
+      return write_one(steps);
     Transaction transaction(database_);
     if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
     while (!steps.empty()) {
@@ -160,6 +164,10 @@ class Ledger::Impl {
     if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
     if (sqlite3_changes(database_.get()) != 1)
       return std::unexpected(Error{.what = doing() + ": this number is another report's"});
+    if (!report.report.robot) return {};
+    Query robot(write_robot_);
+    bind_robot(robot, report.number, *report.report.robot);
+    if (robot.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
     return {};
   }
 
@@ -203,7 +211,8 @@ class Ledger::Impl {
   int pages_ = 0;             // in the log
   bool unflushed_ = false;    // something was written whose flush was left for later
   bool has_hole_ = false;     // and that failed
-  Statement write_report_, write_run_, write_sighting_, read_reports_, read_history_, read_runs_;
+  Statement write_report_, write_run_, write_sighting_, write_robot_, read_reports_, read_history_,
+      read_runs_;
 };
 
 Ledger::Ledger(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}

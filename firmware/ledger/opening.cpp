@@ -64,7 +64,7 @@ Result<void> check_rows(Database& database) {
   if (!unproven) return std::unexpected(database.error("reading all rows"));
   if (!unproven->empty()) return std::unexpected(damaged(*unproven + " is not as it was written"));
   for (const std::string* sql :
-       {&kWriteReport, &kWriteRun, &kWriteSighting, &kReadReports, &kReadHistory, &kReadRuns}) {
+       {&kWriteReport, &kWriteRun, &kWriteSighting, &kWriteRobot, &kReadReports, &kReadHistory, &kReadRuns}) {
     if (const auto known = Statement::prepare(database, *sql); !known) return std::unexpected(known.error());
   }
   return database.execute(kProveRows.c_str());

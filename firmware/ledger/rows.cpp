@@ -214,7 +214,7 @@ std::string values(const Names& names) {
 }
 
 const Names kReportNames = names_of(kReport), kKept = with(kReportNames, "history"),
-            kRunNames = names_of(kRun), kSightingNames = names_of(kSighting);
+            kRunNames = names_of(kRun), kSightingNames = names_of(kSighting), kRobotNames{"number", "name"};
 
 std::string prove(std::string_view table, const Names& names) {
   return icd::sentence("UPDATE ", table, " SET proof = proof(", list(names), ") WHERE proof = 1;");
@@ -268,7 +268,12 @@ const std::string kWriteReport =
                   ", history = history || excluded.history, proof = proof(", places(kReportNames),
                   ", history || excluded.history) WHERE ", excluded(names_of(kReport, {On::Fixed}), " AND "));
 
-const std::string kReadReports = icd::sentence("SELECT ", list(kReportNames), " FROM report ORDER BY number");
+const std::string kWriteRobot =
+    icd::sentence("INSERT INTO robot(", values(kRobotNames), " ON CONFLICT(number) DO NOTHING");
+
+const std::string kReadReports =
+    icd::sentence("SELECT ", list_of("report", kReportNames),
+                  ", robot.name FROM report LEFT JOIN robot USING(number) ORDER BY report.number");
 
 const std::string kReadHistory = "SELECT history FROM report WHERE number = ?";
 
@@ -283,12 +288,13 @@ const std::string kReadRuns =
     icd::sentence("SELECT ", list_of("sighting", kSightingNames), ", ", list_of("run", kRunNames),
                   " FROM run LEFT JOIN sighting USING(number) ORDER BY run.number");
 
-const std::string kProveRows =
-    prove("report", kKept) + prove("run", kRunNames) + prove("sighting", kSightingNames);
+const std::string kProveRows = prove("report", kKept) + prove("run", kRunNames) +
+                               prove("sighting", kSightingNames) + prove("robot", kRobotNames);
 
 const std::string kUnprovenRow =
     icd::sentence(unproven("report ", "report", kKept), unproven("run ", "run", kRunNames),
-                  unproven("what was seen of run ", "sighting", kSightingNames), R"(
+                  unproven("what was seen of run ", "sighting", kSightingNames),
+                  unproven("the robot of report ", "robot", kRobotNames), R"(
   SELECT 'the mark' FROM mark WHERE proof != proof(number, log_needed, log_size, highest)
   UNION ALL SELECT 'report ' || highest FROM mark
     WHERE highest > (SELECT coalesce(max(number), 0) FROM report)
@@ -297,6 +303,10 @@ const std::string kUnprovenRow =
 void bind_report(Query& query, const Report& report, const std::string& history) {
   bind_row(query, kReport, report);
   query.bind(history);
+}
+
+void bind_robot(Query& query, std::int64_t number, const icd::RobotName& robot) {
+  query.bind(number).bind(robot.text());
 }
 
 std::string history_of(std::span<const dispatch::Report> steps) {
@@ -326,6 +336,9 @@ Report report_of(const Query& row) {
   Columns from(row);
   Report report;
   read_row(from, kReport, report);
+  std::string robot;  // NULL reads as ""
+  from.take(robot);
+  report.report.robot = icd::RobotName::parse(robot);
   if (!from.unknown_state().empty()) {  // only the operator can judge it: without `before` nobody else does
     report.note = "its state '" + from.unknown_state() + "' is none that this version knows; " + report.note;
     report.before.reset();

@@ -20,12 +20,17 @@ namespace adit::ledger {
 inline constexpr std::string_view kReportKinds = "itrrrtrrttiiiiirIRITitbit";
 inline constexpr std::string_view kRunKinds = "itrtIRITrtt";
 inline constexpr std::string_view kSightingKinds = "iiiRiRir";
+inline constexpr std::string_view kRobotKinds = "it";
 inline constexpr std::string_view kMarkKinds = "iiii";
 
 /// Inserts a report, or updates the same one under its number and adds to its history; changes no row where
 /// the number is another's.
 extern const std::string kWriteReport;
 void bind_report(Query& query, const dispatch::Report& report, const std::string& history);
+
+/// Inserts the name of the robot that a report of that number was given, unless it is there.
+extern const std::string kWriteRobot;
+void bind_robot(Query& query, std::int64_t number, const icd::RobotName& robot);
 
 /// A history is a line for each step, "1763632493.25 7:sending 4:note": when, and each text after its length
 /// in bytes, whatever is in it.

@@ -76,6 +76,7 @@ class Salvage {
     if (auto copied = copy("report", carved_.reports); !copied) return std::unexpected(copied.error());
     if (auto copied = copy("run", carved_.runs); !copied) return std::unexpected(copied.error());
     if (auto copied = copy("sighting", carved_.sightings); !copied) return std::unexpected(copied.error());
+    if (auto copied = copy("robot", carved_.robots); !copied) return std::unexpected(copied.error());
     if (auto held = hold(); !held) return std::unexpected(held.error());
     std::string missing;
     for (const Gap& gap : gaps()) {

@@ -9,9 +9,9 @@ namespace adit::ledger {
 namespace {
 
 constexpr std::int64_t kApplicationId = 0x41444954;  // "ADIT", in SQLite's file header
-constexpr std::int64_t kVersion = 4;                 // of the tables below, in user_version
+constexpr std::int64_t kVersion = 5;                 // of the tables below, in user_version
 /// A version that only adds to an earlier one's tables writes that one's number << 16 | its own, so that the
-/// slot before an update can still work with its ledger. Version 4 only adds to version 3.
+/// slot before an update can still work with its ledger. Versions 4 and 5 only add to version 3.
 constexpr int kOldestAt = 16;
 constexpr std::int64_t kVersionBits = 0xffff;
 
@@ -63,14 +63,22 @@ constexpr const char* kAddProofs = R"(
       NEW.heard, NEW.post, NEW.unreliable) IS NOT (OLD.id, OLD.began, OLD.why, OLD.score, OLD.run_clock,
       OLD.remaining_reports, OLD.current_team, OLD.heard, OLD.post, OLD.unreliable)
     BEGIN UPDATE run SET proof = 1 WHERE number = NEW.number; END;
-  PRAGMA user_version = 196612; -- 3 << 16 | 4
+)";
+
+/// What version 5 adds: the robots that reports name. Not in `report`, of which version 4 proves each column
+/// that it knows and no other.
+constexpr const char* kAddRobots = R"(
+  CREATE TABLE robot(
+    number INTEGER PRIMARY KEY CHECK(number > 0),
+    name TEXT NOT NULL, proof INTEGER NOT NULL) STRICT;
+  PRAGMA user_version = 196613; -- 3 << 16 | 5
 )";
 
 /// Versions 1 and 2 had a table `step`, of report, at, state and note, in the order of its rows. Version 1
 /// numbered the reports itself, and knew less of them and nothing of runs.
 constexpr const char* kSetAside[] = {
     "", "ALTER TABLE report RENAME TO old_report",
-    "ALTER TABLE report RENAME TO old_report; ALTER TABLE run RENAME TO old_run", ""};
+    "ALTER TABLE report RENAME TO old_report; ALTER TABLE run RENAME TO old_run"};
 constexpr const char* kTakeOver[] = {"", R"(
   INSERT INTO report(number, type, x, y, z, sender, received, changed, state, note, status, content_type,
     answer, history)
@@ -94,8 +102,7 @@ constexpr const char* kTakeOver[] = {"", R"(
   DROP TABLE step;
   DROP TABLE old_report;
   DROP TABLE old_run;
-)",
-                                     ""};
+)"};
 
 /// What the file's header says it is; all are 0 in a new file.
 struct Kind {
@@ -149,8 +156,11 @@ Result<void> make_tables(Database& database) {
   Transaction transaction(database);
   if (auto begun = transaction.begin(); !begun) return begun;
   const auto old = static_cast<std::size_t>(kind->is_ledger() ? kind->version : 0);
-  const char* const tables = old == 3 ? "" : kTables;
-  for (const char* sql : {kSetAside[old], tables, kTakeOver[old], kAddProofs, kProveRows.c_str()}) {
+  const char* const set_aside = old < 3 ? kSetAside[old] : "";
+  const char* const tables = old < 3 ? kTables : "";
+  const char* const take_over = old < 3 ? kTakeOver[old] : "";
+  const char* const proofs = old < 4 ? kAddProofs : "";
+  for (const char* sql : {set_aside, tables, take_over, proofs, kAddRobots, kProveRows.c_str()}) {
     if (auto done = database.execute(sql); !done) return done;
   }
   return transaction.commit();

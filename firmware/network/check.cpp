@@ -43,22 +43,6 @@ std::vector<Endpoint> all_endpoints(const Circumstances& around) {
   return all;
 }
 
-/// What of the Command Post's side the team's subnet overlaps: the first that there is, for one is enough to
-/// choose another; "" where nothing does. What DHCP will give is not known.
-std::string overlap_of(const Numbers& wanted, const Circumstances& around) {
-  if (wanted.mode != Mode::Static) return "";
-  const auto is_in_the_way = [&wanted](const Subnet& each) { return settings::overlaps(wanted.team, each); };
-  const auto known = settings::command_post_subnets();  // ICD 3
-  if (const auto found = std::ranges::find_if(known, is_in_the_way); found != known.end())
-    return written(*found);
-  const auto own = std::ranges::find_if(wanted.command_post, is_in_the_way);
-  if (own != wanted.command_post.end()) return written(*own);
-  for (const auto& [name, address, number] : all_endpoints(around)) {
-    if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " ", address);
-  }
-  return "";
-}
-
 /// An endpoint that the box would find no way to.
 void warn_of_lost_endpoints(const Numbers& wanted, const Circumstances& around,
                             std::vector<std::string>& warnings) {
@@ -133,6 +117,20 @@ std::string page_at(const Numbers& numbers, const std::vector<Address>& listen, 
   const std::string host = icd::sentence(
       "http://", numbers.mode == Mode::Static ? settings::ipv4_text(numbers.team.address) : name);
   return port == kHttp ? host : icd::sentence(host, ":", port);
+}
+
+std::string overlap_of(const Numbers& wanted, const Circumstances& around) {
+  if (wanted.mode != Mode::Static) return "";
+  const auto is_in_the_way = [&wanted](const Subnet& each) { return settings::overlaps(wanted.team, each); };
+  const auto known = settings::command_post_subnets();  // ICD 3
+  if (const auto found = std::ranges::find_if(known, is_in_the_way); found != known.end())
+    return written(*found);
+  const auto own = std::ranges::find_if(wanted.command_post, is_in_the_way);
+  if (own != wanted.command_post.end()) return written(*own);
+  for (const auto& [name, address, number] : all_endpoints(around)) {
+    if (number && wanted.team.contains(*number)) return icd::sentence("the ", name, " ", address);
+  }
+  return "";
 }
 
 Findings check(const Numbers& wanted, const std::optional<Numbers>& present, const Circumstances& around) {

@@ -31,6 +31,10 @@ struct Findings {
   std::vector<std::string> warnings;  // what it would do that may not be meant
 };
 
+/// What of the Command Post's side the team's subnet overlaps: the first that there is, for one is enough to
+/// choose another; "" if nothing does. What DHCP will give is not known.
+std::string overlap_of(const Numbers& wanted, const Circumstances& circumstances);
+
 /// `present`: what the interfaces have now, as far as it is known.
 Findings check(const Numbers& wanted, const std::optional<Numbers>& present,
                const Circumstances& circumstances);

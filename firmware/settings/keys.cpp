@@ -77,8 +77,13 @@ const Key kKeys[] = {
      text<MEMBER(team.interface)>(Form::Interface)},
     {"team.require_token",
      "Whether a client must present the team's token or one of the Command Post's; if not, any client of the "
-     "team's network is served.",
+     "team's network is served, except a web page that is neither the box's own nor of team.origins.",
      flag<MEMBER(team.require_token)>()},
+    {"team.origins",
+     "Origins of web pages, with spaces between them, that may read the run's status and post without a "
+     "token, reports included, if team.require_token is off: in any browser of the team's network, whoever "
+     "wrote the page. With a token a page of any origin is served.",
+     text<MEMBER(team.origins)>(Form::Origins)},
     {"team.connections",
      "Connections of the team at once, at most; a quarter of them, at most 32, is for who has shown no "
      "token.",

@@ -61,6 +61,38 @@ bool is_name(const std::string& text, std::size_t most, std::string_view without
   return true;
 }
 
+bool are(std::string_view text, std::string_view others) {
+  return std::ranges::all_of(text, [others](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || others.contains(c);
+  });
+}
+
+bool is_port(std::string_view text) {
+  std::uint32_t port = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  return error == std::errc() && end == text.data() + text.size() && text.front() != '0' && port <= 65535;
+}
+
+/// "http://10.0.0.20:3000", as a browser writes it (RFC 6454 6.2): in lower case, without a default port. Not
+/// "null", which any page can have.
+bool is_origin(std::string_view text) {
+  const auto colon = text.find("://");
+  if (colon == 0 || colon == std::string_view::npos) return false;
+  const std::string_view scheme = text.substr(0, colon), rest = text.substr(colon + 3);
+  const auto end = rest.starts_with('[') ? rest.find(']') + 1 : std::min(rest.find(':'), rest.size());
+  const std::string_view host = rest.substr(0, end), port = rest.substr(end);
+  const bool is_name = !host.empty() && are(host, "-.");
+  const bool is_ipv6 = host.size() > 2 && is_address(std::string(host.substr(1, host.size() - 2)));
+  const bool is_default = (scheme == "http" && port == ":80") || (scheme == "https" && port == ":443");
+  return are(scheme, "+-.") && (host.starts_with('[') ? is_ipv6 : is_name) && !is_default &&
+         (port.empty() || (port.size() > 1 && port.starts_with(':') && is_port(port.substr(1))));
+}
+
+bool are_origins(std::string_view text) {
+  constexpr std::size_t kLongest = 1000;
+  return text.size() <= kLongest && std::ranges::all_of(words(text), is_origin);
+}
+
 bool fits(Form form, const std::string& text) {
   switch (form) {
     case Form::Address:
@@ -79,6 +111,8 @@ bool fits(Form form, const std::string& text) {
       return text.empty() || is_course(text);
     case Form::Ipv4OrNone:
       return text.empty() || ipv4_of(text).has_value();
+    case Form::Origins:
+      return are_origins(text);
     case Form::Line:
       return is_name(text, 31);  // GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL
   }
@@ -103,6 +137,8 @@ std::string range_of(Form form) {
       return "a course's name, or \"\"";
     case Form::Ipv4OrNone:
       return "an IPv4 address, or \"\"";
+    case Form::Origins:
+      return "origins as browsers write them (http://10.0.0.20:3000) with spaces between them, or \"\"";
     case Form::Line:
       return "a GPIO line's name of at most 31 characters, or \"\"";
   }

@@ -44,7 +44,8 @@ enum class Form : std::uint8_t {
   Alias,
   Course,
   CourseOrNone,
-  Ipv4OrNone
+  Ipv4OrNone,
+  Origins
 };
 struct Text {
   void (*put)(Settings&, std::string);

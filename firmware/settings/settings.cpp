@@ -60,6 +60,16 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json) {
   return Saved{std::move(*settings), std::move(reader.passed_over)};
 }
 
+std::vector<std::string_view> words(std::string_view text) {
+  std::vector<std::string_view> all;
+  while (!text.empty()) {
+    const std::string_view word = text.substr(0, text.find(' '));
+    if (!word.empty()) all.push_back(word);
+    text.remove_prefix(std::min(word.size() + 1, text.size()));
+  }
+  return all;
+}
+
 Settings in_use(Settings settings) {
   const auto course = std::ranges::find(settings.courses, settings.command_post.course, &Course::name);
   if (course != settings.courses.end()) {

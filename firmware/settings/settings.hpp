@@ -50,8 +50,12 @@ struct Team {
   std::vector<Address> listen;  // at least one
   std::string interface;
   bool require_token = true;
+  std::string origins;  // with spaces between them; whose pages need no token where it is not required
   std::uint32_t connections = 128, connections_per_address = 64;  // intake::Shares
 };
+
+/// Those in a text that has spaces between them.
+std::vector<std::string_view> words(std::string_view text);
 
 struct Reports {
   std::chrono::milliseconds answer_within{20000};  // a client that waits longer gets a truthful 503

@@ -57,6 +57,29 @@ TEST_F(SetupTest, TellsWhyTheLastChangeIsNotInUseUntilOneIs) {
   EXPECT_EQ(setup_.trouble(), "");
 }
 
+TEST_F(SetupTest, WarnsOfPagesThatMayPostWithoutAToken) {
+  settings::Settings next = setup_.settings();
+  next.team.origins = "http://10.0.0.20:3000";
+  EXPECT_THAT(setup_.warnings(next), testing::IsEmpty()) << "all need a token";
+  next.team.require_token = false;
+  EXPECT_THAT(setup_.warnings(next),
+              testing::ElementsAre(testing::HasSubstr("whoever is on the team's network"),
+                                   testing::HasSubstr("pages of http://10.0.0.20:3000 may post reports")));
+}
+
+TEST_F(SetupTest, TellsOfATokenThatHasNotTheLengthOfTheCommandPosts) {  // ICD 4
+  ASSERT_TRUE(store_.save_token("scoring", icd::BearerToken::parse("flux230{showroom")));
+  ASSERT_TRUE(store_.save_token("mapping", icd::BearerToken::parse("flux230{showroo")));
+  ASSERT_TRUE(store_.save_token("team", icd::BearerToken::parse("the-teams-own-token")));
+  setup_.runs_with(store_.load().value(), "");
+  for (const api::TokenRow& row : setup_.tokens()) {
+    EXPECT_TRUE(row.set) << row.name;
+    EXPECT_EQ(row.warning, row.name == "mapping" ? "the token mapping has 15 characters, the Command Post's "
+                                                   "have 16 (ICD 4): is all of it there?"
+                                                 : "");
+  }
+}
+
 // A save that fails halfway may leave its settings on the disk: whoever then asks for those that the box runs
 // with has them written, lest the next start has the others.
 TEST_F(SetupTest, WritesTheSettingsThatItRunsWithAfterASaveThatFailed) {

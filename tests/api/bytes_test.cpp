@@ -18,6 +18,7 @@ ReportRow report() {
   row.type = "Rope";
   row.position = icd::Point{.x = 1, .y = -2.5, .z = 0};
   row.sender = "10.0.0.7";
+  row.robot = "spot1";
   row.received = 940;
   row.changed = 941.25;
   row.state = "in doubt";
@@ -61,6 +62,7 @@ RunView view() {
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
   activity.last_status = 12, activity.last_sentence = "said", activity.clouds = "parts",
   activity.precision = "1mm", activity.points_left_out = 16, activity.no_valid_point = 20;
+  activity.invisible = 21;
   activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
   view.activities = {activity};
   view.refusals = {{.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2}};
@@ -95,7 +97,7 @@ RunView view() {
 
 constexpr const char* kReport =
     R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-    R"("received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+    R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
     R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
     R"("reconciled":true,"same_as":3})";
 
@@ -109,16 +111,17 @@ TEST(Bytes, OfARun) {
       R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
       R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
       R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
-      R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","received":940.0,"changed":941.25,)"
+      R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","robot":"spot1","received":940.0,"changed":941.25,)"
       R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
       R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
-      R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","received":0.0,"changed":0.0,)"
+      R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","robot":"","received":0.0,"changed":0.0,)"
       R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
       R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"waiting":8,)"
       R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
+      R"("invisible":21,)"
       R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"
@@ -139,7 +142,7 @@ TEST(Bytes, OfReports) {
   EXPECT_EQ(codec::to_json(ReportDetail{
                 .row = report(), .history = {{.at = 1, .state = "waiting", .note = "n"}}, .answer = "{}"}),
             R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-            R"("received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+            R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
             R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
             R"("reconciled":true,"same_as":3,"history":[{"at":1.0,"state":"waiting","note":"n"}],)"
             R"("answer":"{}"})");
@@ -251,7 +254,8 @@ TEST(Bytes, OfTheSettings) {
                                      .tokens = {{"team", true}, {"scoring", false}},
                                      .keys = {whole, choice}}),
             R"({"settings":{"version":1},"tag":"t","saved":true,"applying":false,"trouble":"",)"
-            R"("tokens":{"team":true,"scoring":false},"keys":[{"path":"p","meaning":"m","kind":"whole",)"
+            R"("tokens":{"team":true,"scoring":false},"odd_tokens":[],)"
+            R"("keys":[{"path":"p","meaning":"m","kind":"whole",)"
             R"("required":true,"default":null,"range":"1 to 2","least":1,"most":2},{"path":"q",)"
             R"("meaning":"n","kind":"choice","required":false,"default":"a","range":"a or b",)"
             R"("words":["a","b"]}]})");

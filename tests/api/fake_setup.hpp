@@ -21,7 +21,9 @@ struct FakeSetup final : Setup {
   bool saved() const override { return false; }
   bool applying() const override { return is_applying; }
   const std::string& trouble() const override { return why; }
-  std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"course.A.mapping", false}}; }
+  std::vector<TokenRow> tokens() const override {
+    return {{"scoring", true, "odd"}, {"course.A.mapping", false}};
+  }
   std::vector<std::string> warnings(const settings::Settings& next) const override {
     if (next.command_post.course != now.command_post.course) return {"reports go elsewhere"};
     if (next.team.require_token) return {};

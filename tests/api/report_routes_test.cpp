@@ -137,6 +137,15 @@ TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
   EXPECT_EQ(judge.reported[1], std::pair(icd::ArtifactReport{"rope", {0, 0, 0}}, true));
 }
 
+TEST_F(ReportRoutesTest, LeaveOutANameThatIsNoRobotsAndSayWhy) {
+  EXPECT_EQ(compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0,"name":"spot1"})").body, "{\"report\":41}");
+  EXPECT_EQ(compose(R"({"type":"Drill","x":9,"y":-2,"z":0,"name":7})").body,
+            R"({"report":41,"left_out":"name: expected a string, got a whole number"})");
+  ASSERT_EQ(judge.reported.size(), 2u);
+  EXPECT_EQ(judge.reported[0].first.robot, icd::RobotName::parse("spot1"));
+  EXPECT_EQ(judge.reported[1].first.robot, std::nullopt);
+}
+
 TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
   const std::pair<const char*, const char*> wrong[] = {
       {R"({"type":"Lamp","x":0,"y":0,"z":0})", "type: expected one of"},

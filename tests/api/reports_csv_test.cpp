@@ -17,13 +17,14 @@ using testing::HasSubstr;
 
 constexpr const char* kHeader =
     "number,run,type,x,y,z,sender,received,changed,state,asking,reconciled,same_as,status,report_status,"
-    "score_change,note\r\n";
+    "score_change,note,robot\r\n";
 
 ReportRow row() {
   return {.number = 7,
           .type = "Survivor",
           .position = icd::Point{85.75, -4.5, 0.25},
           .sender = "10.0.0.5",
+          .robot = "spot1",
           .received = 1566309785.125,
           .changed = 1566309786,
           .state = "answered",
@@ -42,15 +43,15 @@ std::string note_cell(std::string note) {
                              "0,1,,0,0,0,,1970-01-01T00:00:00.000Z,"
                              "1970-01-01T00:00:00.000Z,,no,no,,,,,";
   EXPECT_THAT(text, testing::StartsWith(before));
-  EXPECT_THAT(text, testing::EndsWith("\r\n"));
-  return text.substr(before.size(), text.size() - before.size() - 2);
+  EXPECT_THAT(text, testing::EndsWith(",\r\n"));
+  return text.substr(before.size(), text.size() - before.size() - 3);
 }
 
 TEST(ReportsCsv, HasALineOfNamesAndOneForEachReport) {
   EXPECT_EQ(csv({}), kHeader);
   EXPECT_EQ(csv({row()}), std::string(kHeader) +
                               "7,1,Survivor,85.75,-4.5,0.25,10.0.0.5,2019-08-20T14:03:05.125Z,"
-                              "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,\r\n");
+                              "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,,spot1\r\n");
 }
 
 TEST(ReportsCsv, GivesAReportThatIsLostNoPlace) {

@@ -47,6 +47,7 @@ ReportRow report(std::int64_t number, std::string type, Time received, std::stri
           .type = std::move(type),
           .position = icd::Point{12.25 * static_cast<double>(number), -4.5, 0.25},
           .sender = "10.0.0.5",
+          .robot = "",
           .received = received,
           .changed = received + 0.2,
           .state = std::move(state),

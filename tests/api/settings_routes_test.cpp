@@ -27,6 +27,7 @@ TEST_F(SettingsRoutesTest, ShowTheWholeSettingsWhatAFormNeedsAndNoToken) {
   EXPECT_EQ(said["tag"], settings::tag_of(setup.now));
   EXPECT_EQ(said["saved"], false);
   EXPECT_EQ(said["tokens"], (json{{"scoring", true}, {"course.A.mapping", false}}));
+  EXPECT_EQ(said["odd_tokens"], (json{{{"path", "scoring"}, {"what", "odd"}}}));
   const auto key = [&](const std::string& path) {
     for (const json& row : said["keys"]) {
       if (row["path"] == path) return row;

@@ -1,3 +1,5 @@
+#include "cli/check.hpp"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -69,11 +71,69 @@ TEST_F(Check, SaysTheSameToScripts) {
   const Outcome wrong = check(R"({"version": 2})", {"--json"});
   EXPECT_EQ(wrong.exit, Exit::Attention);
   EXPECT_EQ(wrong.out,
-            "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}]}\n");
+            "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}],"
+            "\"warnings\":[]}\n");
   const Outcome good = run(
       std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json", "--json"});
   EXPECT_EQ(good.exit, Exit::Fine);
-  EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[]}\n");
+  EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[],\"warnings\":[]}\n");
+}
+
+constexpr const char* kGood = R"({"version": 1,
+  "command_post": {"scoring": {"address": "10.100.1.200", "port": 8000},
+                   "mapping": {"address": "10.99.1.201", "port": 8000}},
+  "team": {"listen": [{"address": "TEAM", "port": 8000}]}})";
+
+TEST_F(Check, WarnsOfATeamsNetworkThatOverlapsTheCommandPosts) {  // ICD 3
+  const auto warnings = [this](const std::string& team, const std::string& more = "") {
+    std::string json = kGood;
+    json.replace(json.find("TEAM"), 4, team);
+    json.insert(json.rfind('}'), more);
+    const Outcome outcome = check(json);
+    EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.out;
+    const auto at = outcome.out.find("  warning: ");
+    return at == std::string::npos ? "" : outcome.out.substr(at);
+  };
+  EXPECT_EQ(warnings("10.0.0.1"), "");
+  EXPECT_EQ(warnings("0.0.0.0"), "");
+  EXPECT_EQ(warnings("10.100.7.1"),
+            "  warning: the team's network 10.100.7.1/32 overlaps 10.100.0.0/16 on the Command Post's side "
+            "(ICD 3): "
+            "choose another subnet for the team\n");
+  EXPECT_THAT(warnings("10.100.7.1", R"(, "network": {"allow_overlap": true})"),
+              HasSubstr("allowed, but a robot cannot reach both"));
+}
+
+TEST_F(Check, WarnsOfATokenOfTheCommandPostsThatHasNot16Characters) {  // ICD 4
+  std::string json = kGood;
+  json.replace(json.find("TEAM"), 4, "10.0.0.1");
+  const std::string secrets = folder_ / "secrets";
+  std::filesystem::create_directory(secrets);
+  std::filesystem::permissions(secrets, std::filesystem::perms::owner_all);
+  const auto keep = [&secrets](const std::string& name, const std::string& token) {
+    const std::filesystem::path file = secrets + "/" + name + ".token";
+    std::ofstream(file) << token << "\n";
+    std::filesystem::permissions(file,
+                                 std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  };
+  keep("scoring", "flux230{showroom");
+  keep("mapping", "flux230{showroo");
+  keep("team", "any-length-at-all");
+  Options options;
+  options.settings = folder_ / "settings.json";
+  std::ofstream(options.settings) << json;
+  options.secrets = secrets;
+  options.saved_secrets = folder_ / "none";
+  options.json = true;
+  const Outcome outcome = cli::check(options, false);
+  EXPECT_EQ(outcome.exit, Exit::Fine);
+  EXPECT_EQ(
+      outcome.out,
+      "{\"good\":true,\"errors\":[],\"warnings\":[\"the token mapping has 15 characters, the Command Post's "
+      "have 16 (ICD 4): is all of it there?\"]}\n");
+  std::filesystem::permissions(secrets + "/mapping.token", std::filesystem::perms::all);
+  EXPECT_THAT(cli::check(options, false).out,
+              HasSubstr("the tokens are not checked: " + secrets + "/mapping.token"));
 }
 
 TEST_F(Check, SaysThatItCannotReadTheFile) {

@@ -30,14 +30,17 @@ TEST(ReportsText, HasARowForEachReport) {
   doubtful.score_change = {};
   doubtful.note = "no answer within 10 s";
   doubtful.received = 990;
-  EXPECT_EQ(
-      reports_text({doubtful, in_state("answered")}, 0, 1000, false),
-      "  no.  run  type            x   y    z  state     score  the Command Post said, or why  sender    "
-      "received\n"
-      "   14    2  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s          10.0.0.7  "
-      "10 s ago\n"
-      "    3    1  Survivor    12.12  -3  0.5  answered     +1  201, scored                    10.0.0.7  "
-      "60 s ago\n");
+  doubtful.robot = "spot1";
+  EXPECT_EQ(reports_text({doubtful, in_state("answered")}, 0, 1000, false),
+            "  no.  run  type            x   y    z  state     score  the Command Post said, or why  sender  "
+            "  robot  "
+            "received\n"
+            "   14    2  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s          "
+            "10.0.0.7  spot1  "
+            "10 s ago\n"
+            "    3    1  Survivor    12.12  -3  0.5  answered     +1  201, scored                    "
+            "10.0.0.7         "
+            "60 s ago\n");
 }
 
 TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
@@ -103,6 +106,7 @@ TEST(ReportText, TellsAllOfOneReport) {
   report.reconciled = true;
   report.note = "recorded: the count of reports fell by one";
   report.run = 2;
+  report.robot = "spot1";
   const api::ReportDetail detail{report,
                                  {{1566309785.125, "waiting", ""}, {1566309786, "in doubt", "no answer"}},
                                  "{\"score_change\": 1}"};
@@ -116,6 +120,7 @@ TEST(ReportText, TellsAllOfOneReport) {
             "  score     +1\n"
             "  run       2\n"
             "  sender    10.0.0.7\n"
+            "  robot     spot1\n"
             "  received  2019-08-20T14:03:05.125Z\n"
             "  answer    {\"score_change\": 1}\n"
             "  actions   resubmit\n"

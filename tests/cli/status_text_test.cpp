@@ -112,6 +112,9 @@ TEST(StatusText, SaysWhatBecomesOfARobotsClouds) {
   EXPECT_THAT(status_text(view, false), HasSubstr("  r1     cloud, parts, to 8mm, 16 points left out  "));
   row.no_valid_point = 2;
   EXPECT_THAT(status_text(view, false), HasSubstr("16 points left out, 2 without a valid point  "));
+  row = {};
+  row.kind = "markers", row.invisible = 3;
+  EXPECT_THAT(status_text(view, false), HasSubstr("  (all)  markers, 3 invisible  "));
 }
 
 }  // namespace

@@ -16,13 +16,19 @@ namespace {
 using test::IcdRow;
 using test::json;
 
-icd::Checked<icd::ArtifactReport> read_report(const std::string& body, const icd::Rules& rules = {}) {
+icd::Checked<ReadReport> read_with_name(const std::string& body, const icd::Rules& rules = {}) {
   const auto document = decode({}, Split::Nothing, body);
   if (!document) return std::unexpected(document.error());
   const auto hint = [](std::string_view type) -> std::string {
     return type.starts_with("Cell") ? "; did you mean Cell Phone?" : "";
   };
   return read_artifact_report(*document, rules, hint);
+}
+
+icd::Checked<icd::ArtifactReport> read_report(const std::string& body, const icd::Rules& rules = {}) {
+  auto read = read_with_name(body, rules);
+  if (!read) return std::unexpected(std::move(read.error()));
+  return std::move(read->report);
 }
 
 template <class Reply>
@@ -92,9 +98,35 @@ TEST(ReadArtifactReport, KeepsTheTypeAsItsSenderWroteIt) {
   EXPECT_EQ(*report, (icd::ArtifactReport{.type = "backpack", .position = {1011.242, -244.433, -10.011}}));
 }
 
+TEST(ReadArtifactReport, HasTheRobotThatItNames) {
+  icd::Rules rules;
+  rules.aliases.emplace("the dog", *icd::RobotName::parse("spot1"));
+  const auto named = [&rules](const std::string& member) {
+    const auto read = read_with_name(R"({"x":1,"y":2,"z":3,"type":"Rope")" + member + "}", rules);
+    if (!read) return "refused: " + read.error().sentence;
+    return (read->report.robot ? read->report.robot->text() : "none") + "|" + read->left_out;
+  };
+  const std::string expected = "none|name: expected 1 to 10 letters, digits and underscores, got ";
+  const std::string cure = " (the setting robots[].alias gives a name to whoever calls itself so)";
+  EXPECT_EQ(named(R"(,"name":"robot_1")"), "robot_1|");
+  EXPECT_EQ(named(R"(,"name":"the dog")"), "spot1|");
+  EXPECT_EQ(named(""), "none|");
+  EXPECT_EQ(named(R"(,"name":null)"), "none|");
+  EXPECT_EQ(named(R"(,"name":"")"), expected + "\"\"");
+  EXPECT_EQ(named(R"(,"name":"no robot")"), expected + "\"no robot\"" + cure);
+  EXPECT_EQ(named(R"(,"name":"eleven_1234")"), expected + "\"eleven_1234\"" + cure);
+  EXPECT_EQ(named(R"(,"name":7)"), "none|name: expected a string, got a whole number");
+  EXPECT_EQ(named(R"(,"name":["r1"])"), "none|name: expected a string, got an array");
+  EXPECT_EQ(named(R"(,"name":"r1","name":"r2")"), "none|name: given twice");
+}
+
 TEST(WriteArtifactReport, WritesTheIcdsExample) {
-  EXPECT_EQ(write_artifact_report({.type = "backpack", .position = {1011.242, -244.433, -10.011}}),
+  icd::ArtifactReport report{.type = "backpack", .position = {1011.242, -244.433, -10.011}};
+  EXPECT_EQ(write_artifact_report(report),
             R"({"x": 1011.242, "y": -244.433, "z": -10.011, "type": "backpack"})");
+  report.robot = icd::RobotName::parse("robot1");
+  EXPECT_EQ(write_artifact_report(report),
+            R"({"x": 1011.242, "y": -244.433, "z": -10.011, "type": "backpack", "name": "robot1"})");
 }
 
 TEST(WriteArtifactReport, WritesFloatsAsWhatTheyAre) {  // ICD 5.2; a whole number is not one to every server
@@ -127,7 +159,8 @@ TEST(WriteArtifactReport, GivesTheSameDoublesBack) {
       }
       return made;
     };
-    const icd::ArtifactReport report{.type = "Rope", .position = {number(), number(), number()}};
+    const icd::ArtifactReport report{
+        .type = "Rope", .position = {number(), number(), number()}, .robot = icd::RobotName::parse("r1")};
     const std::string body = write_artifact_report(report);
     const auto again = read_report(body);
     ASSERT_TRUE(again.has_value()) << body;

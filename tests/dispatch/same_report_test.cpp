@@ -23,6 +23,12 @@ TEST(SameReport, IsWithinAMillimetreOnEachAxis) {
   EXPECT_FALSE(is_same({"Gas", {1, 2, 3}}, {"Gas", {1, 2, 2.9989}}));
 }
 
+TEST(SameReport, IsTheSameWhicheverRobotItNames) {
+  const ArtifactReport one{"Gas", {1, 2, 3}, icd::RobotName::parse("spot1")};
+  EXPECT_TRUE(is_same(one, {"Gas", {1, 2, 3}, icd::RobotName::parse("spot2")}));
+  EXPECT_TRUE(is_same(one, {"Gas", {1, 2, 3}}));
+}
+
 TEST(NearReport, IsOfTheSameTypeWithinTheDistanceOnAllThreeAxes) {
   const ArtifactReport one{"Gas", {1, 2, 3}};
   EXPECT_TRUE(is_near(one, {"gas", {4, 6, 3}}, 5));

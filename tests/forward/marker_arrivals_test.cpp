@@ -67,6 +67,19 @@ TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
   EXPECT_EQ(lane_.pending(), left());
 }
 
+TEST_F(MarkerArrivalsTest, AreCountedWhereNobodySeesThem) {  // ICD 6.6
+  icd::MarkersUpdate update = many("a");
+  for (icd::Marker& marker : update.markers) marker.color = {1, 0, 0, 1};
+  update.markers[0].color.a = update.markers[2400].color.a = 0;
+  update.markers[1].color.a = 0, update.markers[1].colors = {{1, 0, 0, 1}};
+  update.markers[2].color.a = 0, update.markers[2].mesh_use_embedded_materials = true;
+  update.markers[3].color.a = 0, update.markers[3].action = icd::MarkerAction::Delete;
+  take(std::move(update));
+  ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
+  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok)) << "they go on all the same";
+  EXPECT_EQ(record_.rows().at({Kind::Markers, ""}).invisible, 2u);
+}
+
 TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreKeptAndWait) {
   take(many("many"));
   EXPECT_THAT(said_, ElementsAre());

@@ -20,11 +20,17 @@ TEST(ClientAnswer, IsTheCommandPostsOwnBytesWhereTheseAreJson) {
   EXPECT_EQ(answer.content_type, "application/json");
 }
 
-TEST(ClientAnswer, KeepsAnObjectWithDetailAsItCame) {
-  const intake::Answer answer =
-      client_answer(answered(401, "application/json", R"({"detail": "Invalid token."})"));
-  EXPECT_EQ(answer.status, icd::Status::Unauthorized);
-  EXPECT_EQ(answer.body, R"({"detail": "Invalid token."})");
+TEST(ClientAnswer, IsAJsonStringOfARefusalWhateverJsonItsBodyWas) {  // ICD 4.1
+  const auto told = [](int status, const char* body) {
+    const intake::Answer answer = client_answer(answered(status, "application/json", body));
+    EXPECT_EQ(static_cast<int>(answer.status), status);
+    return answer.body;
+  };
+  EXPECT_EQ(told(401, R"({"detail": "Invalid token."})"), R"("Invalid token.")");
+  EXPECT_EQ(told(400, R"( "Missing  \u0022x\u0022" )"), R"( "Missing  \u0022x\u0022" )");
+  EXPECT_EQ(told(422, R"({"x": ["not a number"]})"), R"("the Command Post answered 422")");
+  EXPECT_EQ(told(400, "[1]"), R"("the Command Post answered 400")");
+  EXPECT_EQ(told(503, "null"), R"("the Command Post answered 503")");
 }
 
 struct NotJson {

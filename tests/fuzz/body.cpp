@@ -122,7 +122,9 @@ std::string written_markers(const icd::MarkersUpdate& markers) {
 }
 
 icd::Checked<icd::ArtifactReport> read_report(const codec::Document& document, const icd::Rules& rules) {
-  return codec::read_artifact_report(document, rules, intake::type_hint);
+  auto read = codec::read_artifact_report(document, rules, intake::type_hint);
+  if (!read) return std::unexpected(std::move(read.error()));
+  return std::move(read->report);
 }
 
 void read_message(int message, const codec::Document& document) {

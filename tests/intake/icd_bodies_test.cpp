@@ -82,6 +82,21 @@ TEST(IcdBodies, OfReportsAreAnsweredByTheDesk) {
   }
 }
 
+TEST(IcdBodies, OfReportsWithoutAGoodNameAreTakenAndTheDeskIsTold) {
+  Team team;
+  RawClient client(team.served.port());
+  client.send(authorized("POST", "/api/artifact_reports", kJsonType,
+                         R"({"x": 1.5, "y": -2, "z": 0, "type": "Backpack", "name": "no robot"})"));
+  ASSERT_TRUE(team.served.eventually([&] { return team.desk.responders.size() == 1; }));
+  team.served.on_loop([&] {
+    EXPECT_EQ(team.desk.reports.back(), (icd::ArtifactReport{"Backpack", {1.5, -2, 0}}));
+    ASSERT_EQ(team.desk.left_out_of_reports.size(), 1u);
+    EXPECT_TRUE(team.desk.left_out_of_reports[0].starts_with("name: expected 1 to 10 letters"));
+    team.desk.responders[0]->answer({.body = "null", .headers = {}});
+  });
+  EXPECT_EQ(client.reply()->status, 200);
+}
+
 TEST(IcdBodies, AreNotAskedForByStatus) {
   Team team;
   RawClient client(team.served.port());

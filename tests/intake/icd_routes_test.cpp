@@ -83,6 +83,47 @@ TEST(IcdRoutes, AskForNoTokenWhereNoneIsWanted) {
             200);
 }
 
+/// What a page may do where clients need no token.
+TEST(IcdRoutes, AskAPageFromElsewhereForATokenWhereNoneIsWanted) {
+  IcdOptions options = Team::with_tokens();
+  options.asks_token = false;
+  options.origins = {"http://10.0.0.20:3000", "app://station"};
+  Team team{options};
+  const auto status = [&team](std::string_view host, std::string_view headers) {
+    std::string text =
+        request("POST", "/state/update", std::string(headers) + std::string(kJsonType), kStateBody);
+    const auto at = text.find("Host: ") + 6;
+    text.replace(at, text.find('\r', at) - at, host);
+    const auto reply = team.ask(text);
+    return reply ? std::pair(reply->status, reply->body) : std::pair(0, std::string());
+  };
+  const std::pair<int, std::string> taken(200, "null");
+  const std::string token = "Authorization: Bearer " + std::string(kToken) + "\r\n";
+  EXPECT_EQ(status("evil.example", ""), taken) << "no page";
+  for (const std::string origin : {"http://10.0.0.20:3000", "HTTP://10.0.0.20:3000", "app://station",
+                                   "http://10.0.0.1:8000", "https://10.0.0.1:8000"}) {
+    EXPECT_EQ(status("10.0.0.1:8000", "Origin: " + origin + "\r\n"), taken) << origin;
+  }
+  for (const std::string origin :
+       {"http://evil.example", "null", "http://10.0.0.1", "http://10.0.0.1:8001", "http://10.0.0.2:8000",
+        "http://10.0.0.20", "http://10.0.0.20:30000", "https://10.0.0.20:3000", "app://station.evil"}) {
+    const auto [code, body] = status("10.0.0.1:8000", "Origin: " + origin + "\r\n");
+    EXPECT_EQ(code, 403) << origin;
+    EXPECT_EQ(body, R"("Origin: a page of \")" + origin +
+                        R"(\" needs the team's token, or to be in the setting team.origins")");
+    EXPECT_EQ(status("10.0.0.1:8000", "Origin: " + origin + "\r\nAuthorization: Bearer wrong\r\n").first,
+              403);
+    EXPECT_EQ(status("10.0.0.1:8000", "Origin: " + origin + "\r\n" + token), taken) << origin;
+  }
+  for (const std::string origin : {"http://evil.example:8000", "http://10.0.0.20:3000"}) {
+    const auto [code, body] = status("evil.example:8000", "Origin: " + origin + "\r\n");
+    EXPECT_EQ(code, 403) << "its name leads to the box";
+    EXPECT_TRUE(body.starts_with("\"Host: expected the box's address")) << body;
+    EXPECT_EQ(status("evil.example:8000", "Origin: " + origin + "\r\n" + token), taken);
+  }
+  EXPECT_EQ(status("adit.local:8000", "Origin: http://adit.local:8000\r\n"), taken);
+}
+
 TEST(IcdRoutes, RefuseOtherMethodsAndSayWhichAreAllowed) {
   Team team;
   for (const icd::Uri uri : icd::kUris) {

@@ -25,6 +25,7 @@ class FakeDesk final : public Desk {
   std::vector<icd::StateUpdate> states;
   std::vector<icd::MarkersUpdate> markers;
   std::vector<icd::ArtifactReport> reports;
+  std::vector<std::string> left_out_of_reports;
   std::vector<Sender> senders;
   std::vector<std::shared_ptr<Responder>> responders;  // of reports and status
   std::vector<std::pair<icd::Uri, icd::Refusal>> refusals;
@@ -56,6 +57,9 @@ class FakeDesk final : public Desk {
   void status(const Sender& sender, std::shared_ptr<Responder> responder) override {
     senders.push_back(sender);
     responders.push_back(std::move(responder));
+  }
+  void left_out(icd::Uri /*uri*/, const Sender& /*sender*/, const std::string& why) override {
+    left_out_of_reports.push_back(why);
   }
   void refused(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) override {
     senders.push_back(sender);

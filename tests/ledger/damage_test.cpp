@@ -61,7 +61,7 @@ TEST(DamagedLedger, IsSetAsideWhenItIsRandomBytes) {
 TEST(DamagedLedger, IsSetAsideWhenItIsTruncated) {
   const std::string healthy = healthy_bytes();
   for (const std::size_t size :
-       {std::size_t{50}, std::size_t{4096}, healthy.size() / 2, healthy.size() - 4096}) {
+       {std::size_t{50}, std::size_t{4096}, healthy.size() * 3 / 4, healthy.size() - 4096}) {
     const Folder folder;
     save(folder.file(), healthy.substr(0, size));
     SCOPED_TRACE(size);
@@ -179,6 +179,7 @@ TEST(SalvagedLedger, HoldsWhatMayHaveBeenSentSince) {
         report.run = 1;
         report.state = static_cast<dispatch::ReportState>(number - 1);
         report.before = icd::RunStatus{1, 2, 3, "adit"};
+        if (number == 3) report.report.robot = icd::RobotName::parse("spot1");
         ASSERT_TRUE(write(ledger, report));
       }
     }
@@ -191,6 +192,7 @@ TEST(SalvagedLedger, HoldsWhatMayHaveBeenSentSince) {
     const auto ledger = open_or_fail(folder);
     const auto reports = *ledger.reports();
     for (const dispatch::Report& report : reports) {
+      EXPECT_EQ(report.report.robot ? report.report.robot->text() : "", report.number == 3 ? "spot1" : "");
       using enum dispatch::ReportState;
       const auto was = static_cast<dispatch::ReportState>(report.number - 1);
       const bool is_settled = was == Answered || was == Settled || was == Withdrawn;
@@ -235,6 +237,26 @@ TEST(SalvagedLedger, KeepsAllRunsWithWhatTellsThemApartAndTrustsNoneOfTheirCount
   EXPECT_EQ(runs[1], second);
   EXPECT_TRUE(find_or_fail(ledger, 2).is_lost());
   EXPECT_EQ(find_or_fail(ledger, 2).run, 1) << "which was the present one last";
+}
+
+TEST(ADamagedNameOfARobot, ShowsByItsProofAndIsLeftOut) {
+  std::string bytes;
+  {
+    const Folder folder;
+    {
+      auto ledger = open_or_fail(folder);
+      ASSERT_TRUE(write(ledger, named_backpack(1, "spot1")));
+    }
+    bytes = bytes_of(folder.file());
+  }
+  const std::size_t at = bytes.rfind("spot1");
+  ASSERT_NE(at, std::string::npos);
+  bytes[at + 4] = '2';
+  const Folder folder;
+  save(folder.file(), bytes);
+  const auto ledger = open_or_fail(folder);
+  EXPECT_THAT(ledger.damage(), testing::HasSubstr("the robot of report 1 is not as it was written"));
+  EXPECT_EQ(find_or_fail(ledger, 1).report, backpack(1).report);
 }
 
 TEST(ADamagedSighting, ShowsByItsProof) {

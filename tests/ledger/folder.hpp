@@ -10,6 +10,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "ledger/ledger.hpp"
@@ -61,6 +62,13 @@ inline dispatch::Report backpack(std::int64_t number, double x = 1.5) {
   report.report = {"Backpack", {x, -2.25, 0.125}};
   report.sender = "10.0.0.7";
   report.received = report.changed = 10;
+  return report;
+}
+
+/// One that names the robot that found it.
+inline dispatch::Report named_backpack(std::int64_t number, std::string_view robot) {
+  dispatch::Report report = backpack(number);
+  report.report.robot = icd::RobotName::parse(robot);
   return report;
 }
 

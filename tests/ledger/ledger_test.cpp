@@ -50,6 +50,23 @@ TEST(Ledger, GivesBackAReportAsItWasGiven) {
   EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1), answered(2)));
 }
 
+TEST(Ledger, KeepsTheRobotThatAReportNamesThroughAllItsSteps) {
+  const Folder folder;
+  dispatch::Report sent = named_backpack(1, "spot1");
+  {
+    auto ledger = open_or_fail(folder);
+    const std::vector steps{named_backpack(1, "spot1"), sent};
+    ASSERT_TRUE(ledger.write(steps));
+    sent.state = ReportState::Sending;
+    ASSERT_TRUE(write(ledger, sent));
+    EXPECT_THAT(*ledger.reports(), ElementsAre(sent));
+  }
+  const auto ledger = open_or_fail(folder);
+  EXPECT_EQ(ledger.damage(), "");
+  EXPECT_THAT(*ledger.reports(), ElementsAre(sent));
+  EXPECT_EQ(ledger.history(1)->size(), 3u);
+}
+
 TEST(Ledger, ReplacesAReportByItsLaterStep) {
   const Folder folder;
   auto ledger = open_or_fail(folder);

@@ -57,7 +57,9 @@ TEST(LedgerThatTakesOver, HasEachReportWithItsHistoryAlsoAfterAnEnd) {
   ASSERT_TRUE(there.write(run_at("10.100.1.200:8000")));
   ASSERT_TRUE(write(there, waiting(1, 1)));
   ASSERT_TRUE(write(there, answered(waiting(1, 1))));
-  ASSERT_TRUE(write(there, waiting(2, 2)));
+  dispatch::Report named = waiting(2, 2);
+  named.report.robot = icd::RobotName::parse("spot1");
+  ASSERT_TRUE(write(there, named));
   carry(there, copy);
   {
     auto here = open_or_fail(spare);
@@ -69,6 +71,7 @@ TEST(LedgerThatTakesOver, HasEachReportWithItsHistoryAlsoAfterAnEnd) {
   EXPECT_EQ(here.damage(), "");
   EXPECT_THAT(*here.reports(), SizeIs(3));
   EXPECT_EQ(find_or_fail(here, 2).answer, answered(waiting(1, 1)).answer);
+  EXPECT_EQ(find_or_fail(here, 3).report, named.report);
   EXPECT_THAT(*here.history(2),
               ElementsAre(Ledger::Step{2, 11, "waiting", ""}, Ledger::Step{2, 12, "answered", ""}));
   const auto steps = *here.history(3);

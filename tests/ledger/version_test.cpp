@@ -64,7 +64,7 @@ TEST(LedgerOfVersion1, IsBroughtUpToThisOneWithAllThatIsInIt) {
     EXPECT_EQ(ledger.damage(), "");
     expect_the_three_reports(ledger);
   }
-  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196612"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196613"));
   EXPECT_THAT(by_hand(folder, "SELECT name FROM sqlite_schema WHERE name LIKE 'old%'"), ElementsAre());
 }
 
@@ -89,7 +89,7 @@ void expect_the_tables_of_a_new_one(const char* sql) {
   open_or_fail(fresh);
   const char* tables = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite_%' ORDER BY name";
   EXPECT_EQ(by_hand(old, tables), by_hand(fresh, tables));
-  EXPECT_EQ(by_hand(fresh, tables).size(), 6u) << "four tables and two triggers";
+  EXPECT_EQ(by_hand(fresh, tables).size(), 7u) << "five tables and two triggers";
 }
 
 TEST(LedgerOfVersion1, HasTheSameTablesAfterwardsAsANewOne) {
@@ -189,6 +189,7 @@ constexpr const char* kBackToVersion3 = R"(
   DROP TRIGGER run_without_proof;
   DROP TABLE mark;
   DROP TABLE sighting;
+  DROP TABLE robot;
   ALTER TABLE report DROP COLUMN proof;
   ALTER TABLE run DROP COLUMN proof;
   PRAGMA user_version = 3;
@@ -228,6 +229,28 @@ TEST(LedgerOfVersion3, HasTheSameTablesAfterwardsAsANewOne) {
     auto ledger = open_or_fail(folder);
   }
   EXPECT_EQ(by_hand(folder, kSchema), tables);
+}
+
+/// This version's tables without what it added to version 4's.
+constexpr const char* kBackToVersion4 = "DROP TABLE robot; PRAGMA user_version = 196612;";  // 3 << 16 | 4
+
+TEST(LedgerOfVersion4, HasReportsThatNameNoRobotAndTheSameTablesAfterwardsAsANewOne) {
+  const Folder folder;
+  {
+    auto ledger = open_or_fail(folder);
+    ASSERT_TRUE(write(ledger, backpack(1)));
+  }
+  const char* const kSchema = "SELECT sql FROM sqlite_schema WHERE name NOT LIKE 'sqlite%' ORDER BY name";
+  const auto tables = by_hand(folder, kSchema);
+  by_hand(folder, kBackToVersion4);
+  {
+    auto ledger = open_or_fail(folder);
+    EXPECT_EQ(ledger.damage(), "");
+    EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1)));
+    ASSERT_TRUE(write(ledger, named_backpack(2, "spot1")));
+  }
+  EXPECT_EQ(by_hand(folder, kSchema), tables);
+  EXPECT_THAT(*open_or_fail(folder).reports(), ElementsAre(backpack(1), named_backpack(2, "spot1")));
 }
 
 /// What version 3 does to two reports and a run.
@@ -288,7 +311,7 @@ TEST(LedgerOfThisVersion, IsOpenedWhicheverBitOfItsVersionIsFlipped) {
       auto ledger = open_or_fail(folder);
       ASSERT_TRUE(write(ledger, backpack(1)));
     }
-    by_hand(folder, "PRAGMA user_version = " + std::to_string((3 << 16 | 4) ^ (1 << bit)));
+    by_hand(folder, "PRAGMA user_version = " + std::to_string((3 << 16 | 5) ^ (1 << bit)));
     const auto ledger = Ledger::open(folder.text());
     ASSERT_TRUE(ledger) << ledger.error().what;
     EXPECT_EQ(find_or_fail(*ledger, 1).report, backpack(1).report);
@@ -297,11 +320,11 @@ TEST(LedgerOfThisVersion, IsOpenedWhicheverBitOfItsVersionIsFlipped) {
 
 /// What a later version might add, and say that this one can live with.
 constexpr const char* kAdditions = R"(
-  ALTER TABLE report ADD COLUMN robot TEXT NOT NULL DEFAULT '';
+  ALTER TABLE report ADD COLUMN crew TEXT NOT NULL DEFAULT '';
   CREATE TABLE more(thing TEXT NOT NULL) STRICT;
   INSERT INTO more VALUES ('kept');
-  UPDATE report SET robot = 'ugv1';
-  PRAGMA user_version = 196613; -- 3 << 16 | 5
+  UPDATE report SET crew = 'ugv1';
+  PRAGMA user_version = 196614; -- 3 << 16 | 6
 )";
 
 TEST(LedgerOfALaterVersionThatOnlyAdds, IsWorkedWithAndKeepsItsAdditions) {
@@ -320,9 +343,9 @@ TEST(LedgerOfALaterVersionThatOnlyAdds, IsWorkedWithAndKeepsItsAdditions) {
     ASSERT_TRUE(write(ledger, first));
     ASSERT_TRUE(write(ledger, backpack(2)));
   }
-  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196613"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("196614"));
   EXPECT_THAT(by_hand(folder, "SELECT thing FROM more"), ElementsAre("kept"));
-  EXPECT_THAT(by_hand(folder, "SELECT number || state || robot FROM report ORDER BY number"),
+  EXPECT_THAT(by_hand(folder, "SELECT number || state || crew FROM report ORDER BY number"),
               ElementsAre("1sendingugv1", "2waiting"));
 }
 
@@ -331,11 +354,11 @@ TEST(LedgerOfALaterVersionThatOnlyAdds, IsRefusedWhereThatIsToAVersionLaterThanT
   {
     auto ledger = open_or_fail(folder);
   }
-  by_hand(folder, "PRAGMA user_version = 327686");  // 5 << 16 | 6
+  by_hand(folder, "PRAGMA user_version = 393223");  // 6 << 16 | 7
   const auto refused = Ledger::open(folder.text());
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().what, HasSubstr("version 6, and this one reads up to 4"));
-  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("327686"));
+  EXPECT_THAT(refused.error().what, HasSubstr("version 7, and this one reads up to 5"));
+  EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("393223"));
 }
 
 TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
@@ -345,7 +368,7 @@ TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
     ASSERT_TRUE(write(ledger, backpack(1)));
   }
   // A table that this version's SQLite, too, would understand, so that the number alone decides.
-  by_hand(folder, "CREATE TABLE crew(name TEXT) STRICT; DROP TABLE run; PRAGMA user_version = 5");
+  by_hand(folder, "CREATE TABLE crew(name TEXT) STRICT; DROP TABLE run; PRAGMA user_version = 6");
   const auto bytes = [&folder] {
     std::ifstream file(folder.file(), std::ios::binary);
     return std::string(std::istreambuf_iterator<char>(file), {});
@@ -353,7 +376,7 @@ TEST(LedgerOfALaterVersion, IsRefusedWithASentenceAndStaysAsItIs) {
   const std::string before = bytes();
   const auto ledger = Ledger::open(folder.text());
   ASSERT_FALSE(ledger);
-  EXPECT_THAT(ledger.error().what, HasSubstr("a later Adit wrote this ledger (version 5"));
+  EXPECT_THAT(ledger.error().what, HasSubstr("a later Adit wrote this ledger (version 6"));
   EXPECT_NE(ledger.error().kind, Error::Kind::Full);
   EXPECT_EQ(bytes(), before);
   EXPECT_FALSE(std::filesystem::exists(folder.file() + ".damaged-1"));

@@ -33,6 +33,16 @@ test("says that it is lost, and draws it nowhere", async (t) => {
   assert.deepEqual((await names(page)).filter((name) => name.startsWith("#8")), []);
 });
 
+test("names the robot that found it", async (t) => {
+  const prepare = (page) => retell(page, (robot) => (view) => {
+    for (const report of view.reports) if (report.number === 8) report.robot = robot;
+    return view;
+  }, "spot1");
+  const { page } = await watch(t, "trouble", { prepare });
+  await page.locator('#reports [data-key="8"]').waitFor();
+  assert.match(await text(page, '#reports [data-key="8"] .where'), /^#8 · .* m · spot1 · /);
+});
+
 test("draws one that is in truth at the origin", async (t) => {
   const page = await withReport(t, { x: 0, y: 0, z: 0 });
   await page.waitForFunction(() => [...globalThis.written].some((name) => name.startsWith("#8")));

@@ -104,6 +104,7 @@ class Refusals(unittest.TestCase):
             *((422, "POST", "/api/artifact_reports", body, {}) for body in (
                 [], "text", 7, changed(REPORT, x=DROP), changed(REPORT, type=DROP), changed(REPORT, y="3.0"),
                 changed(REPORT, z=None), changed(REPORT, type=5), changed(REPORT, type="Test"),
+                changed(REPORT, name=5), changed(REPORT, name="no robot"),
                 b'{"x": 1, "x": 2, "y": 0, "z": 0, "type": "Drill"}')),
         ]
         with CommandPost(artifacts=ARTIFACTS) as post:

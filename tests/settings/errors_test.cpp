@@ -69,6 +69,10 @@ const Case kValues[] = {
     {sample("", "", R"(, "reports": {"review": true})"),
      "reports.review: expected \"off\", \"duplicates\" or \"all\", got true"},
     {sample("", R"(, "require_token": "no")"), "team.require_token: expected true or false, got \"no\""},
+    {sample("", R"(, "origins": "null")"),
+     "team.origins: expected origins as browsers write them (http://10.0.0.20:3000) with spaces between "
+     "them, or "
+     "\"\", got \"null\""},
     {sample("", "", R"(, "panel": {"chip": "gpiochip0", "health": "a line"})"),
      "panel.health: expected a GPIO line's name of at most 31 characters, or \"\", got \"a line\""},
     {sample("", "", R"(, "panel": {"button": 3})"),

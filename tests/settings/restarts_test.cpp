@@ -52,6 +52,7 @@ const RestartsCase kRestartsCases[] = {
     {"team.listen[].port", [](Settings& s) { s.team.listen.front().port = 9; }, kListeners},
     {"team.interface", [](Settings& s) { s.team.interface = "team1"; }, kListeners},
     {"team.require_token", [](Settings& s) { s.team.require_token = !s.team.require_token; }, kNothing},
+    {"team.origins", [](Settings& s) { s.team.origins = "http://10.0.0.20:3000"; }, kNothing},
     {"team.connections", [](Settings& s) { s.team.connections = 9; }, kListeners},
     {"team.connections_per_address", [](Settings& s) { s.team.connections_per_address = 9; }, kListeners},
     {"robots[].name", [](Settings& s) { s.robots.front().name = "r9"; }, kNothing},

@@ -32,6 +32,37 @@ TEST(Settings, NeedOnlyTheAddresses) {
   EXPECT_TRUE(settings.panel.button_active_low);
 }
 
+TEST(Settings, TakeOriginsAsBrowsersWriteThem) {
+  for (const char* const good : {"", "http://a", "https://a:8443",
+                                 "http://station.local http://10.0.0.20:65535", "http://[fd00::1]:3000"}) {
+    EXPECT_TRUE(parse(sample("", R"(, "origins": ")" + std::string(good) + R"(")"))) << good;
+  }
+  for (const char* const bad : {"null",
+                                "*",
+                                "a",
+                                "http://",
+                                "://a",
+                                "http://a/",
+                                "http://A",
+                                "HTTP://a",
+                                "http://a:",
+                                "http://a:0",
+                                "http://a:080",
+                                "http://a:65536",
+                                "http://a:80",
+                                "https://a:443",
+                                "http://a:x",
+                                "http://*.a",
+                                "http://u@a",
+                                "http://[fd00::1",
+                                "http://[a]",
+                                "http://a,http://b",
+                                "http://a\tb",
+                                "http://a null"}) {
+    EXPECT_FALSE(parse(sample("", R"(, "origins": ")" + std::string(bad) + R"(")"))) << bad;
+  }
+}
+
 TEST(Settings, SetEveryMemberByItsKey) {
   const Settings settings = parsed(R"({
     "version": 1,
@@ -42,7 +73,8 @@ TEST(Settings, SetEveryMemberByItsKey) {
       "timeouts": {"connect_ms": 101, "scoring_answer_ms": 102, "mapping_answer_ms": 103}},
     "team": {
       "listen": [{"address": "10.0.0.1", "port": 80}, {"address": "fd00::2", "port": 0}],
-      "interface": "team0", "require_token": false, "connections": 40, "connections_per_address": 4},
+      "interface": "team0", "require_token": false,
+      "origins": " http://10.0.0.20:3000  app://station ", "connections": 40, "connections_per_address": 4},
     "reports": {"answer_within_ms": 5000, "doubt_for_ms": 100, "doubt_asks": 100, "review": "duplicates",
                 "near_metres": 0.5},
     "queues": {"map_bytes": 2000000, "merge_bytes": 0, "marker_bytes": 3000000,
@@ -70,6 +102,8 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.team.listen, (std::vector<Address>{{"10.0.0.1", 80}, {"fd00::2", 0}}));
   EXPECT_EQ(settings.team.interface, "team0");
   EXPECT_FALSE(settings.team.require_token);
+  EXPECT_EQ(words(settings.team.origins),
+            (std::vector<std::string_view>{"http://10.0.0.20:3000", "app://station"}));
   EXPECT_EQ(settings.team.connections, 40u);
   EXPECT_EQ(settings.team.connections_per_address, 4u);
   EXPECT_EQ(settings.reports.answer_within, milliseconds(5000));

@@ -40,6 +40,9 @@ void judge_report(const std::string& body, Findings& findings) {
   const auto type = report.member("type");
   const auto text = type ? type->text() : std::nullopt;
   if (text && !rehearsal::is_artifact_type(*text)) findings.breaks("type: none of the ten");
+  const auto name = report.optional_member("name");
+  const auto robot = name ? name->text() : std::nullopt;
+  if (robot && !rehearsal::is_robot_name(*robot)) findings.breaks("name: no robot's");
 }
 
 void judge_body(const rehearsal::Request& request, Findings& findings) {

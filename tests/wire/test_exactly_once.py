@@ -15,7 +15,10 @@ class ExactlyOnce(unittest.TestCase):
         this fault befalls it. The answer, which is the same for both, and the stage's record of it."""
         with Stage(**QUICK) as stage:
             began(stage)
-            self.assertEqual(submit(stage, another(9)).status_code, 201)  # and the run's name is known
+            named = {**another(9), "name": "spot1"}
+            self.assertEqual(submit(stage, named).status_code, 201)  # and the run's name is known
+            self.assertEqual(stage.post.requests("/api/artifact_reports")[0]["message"], named)
+            self.assertEqual(stage.box.reports()[0]["robot"], "spot1")
             stage.post.will(fault)
             waited, insisted = at_once(lambda: submit(stage), lambda: insist(stage))
             self.assertEqual(waited.status_code, 201, waited.text)

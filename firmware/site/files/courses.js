@@ -73,10 +73,12 @@ function create(name) {
 
 function update(node, name) {
   const set = draft.tokens[name], needed = ENDPOINTS.includes(name);
-  const level = set ? "good" : needed ? "bad" : "quiet";
+  const odd = draft.oddTokens.find(({ path }) => path === name)?.what ?? "";
+  const level = set ? (odd ? "wait" : "good") : needed ? "bad" : "quiet";
   node.state.dataset.level = level;
-  if (!node.state.firstChild) node.state.append(make("span.badge"));
+  if (!node.state.firstChild) node.state.append(make("span.badge"), make("span.odd"));
   badge(node.state.firstChild, level, set ? "is set" : needed ? "is missing" : "none");
+  say(node.state.lastChild, odd && ` ${odd}`);
   const [show, remove, setIt] = node.buttons;
   show.hidden = setIt.hidden = readOnly;
   remove.hidden = readOnly || !set;

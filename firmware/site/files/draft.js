@@ -7,7 +7,7 @@ const PAUSE = 300, RETRY = 2000; // ms without a key, ms until a silent box is a
 const hearers = [], judges = [];
 
 /** `base` and `tag`: what it began from; `newer`: what somebody else saved meanwhile; `keys`: by path. */
-export const draft = { settings: null, base: null, tag: "", newer: null, saved: false, tokens: {}, keys: new Map() };
+export const draft = { settings: null, base: null, tag: "", newer: null, saved: false, tokens: {}, oddTokens: [], keys: new Map() };
 
 export const ENDPOINTS = ["scoring", "mapping"];
 
@@ -48,7 +48,7 @@ export const drop = () => beginFrom({ settings: draft.base, tag: draft.tag });
 /** Asks the box again; what is typed stays, and `newer` is set where it began from other settings. */
 export async function refresh() {
   const said = await get("/adit/settings");
-  Object.assign(draft, { saved: said.saved, tokens: said.tokens, keys: new Map(said.keys.map((key) => [key.path, key])) });
+  Object.assign(draft, { saved: said.saved, tokens: said.tokens, oddTokens: said.odd_tokens, keys: new Map(said.keys.map((key) => [key.path, key])) });
   const fresh = !draft.tag;
   if (fresh) Object.assign(draft, JSON.parse(sessionStorage.getItem(STORED) ?? "{}"));
   if (!draft.tag || (said.tag !== draft.tag && !differs())) return beginFrom(said);

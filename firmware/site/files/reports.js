@@ -136,8 +136,9 @@ function update(node, report, view, now) {
   mark(node, "level", level);
   badge(badged, level, clip(word, 40));
   say(what, clip(report.type, 40));
+  const robot = report.robot ? ` · ${clip(report.robot, 40)}` : "";
   const earlier = report.run === view.run_number ? "" : ` · run ${report.run}`;
-  say(where.firstChild, `#${report.number} · ${placeOf(report)}${earlier}`);
+  say(where.firstChild, `#${report.number} · ${placeOf(report)}${robot}${earlier}`);
   say(where.lastChild, ` · ${ago(now - report.received)}`);
   const isTold = isMore || isOpen(report) || level === "bad" || level === "ask";
   const nearest = isTold ? nearestOf(report, view) : undefined;

@@ -17,6 +17,7 @@ function counts(row) {
   if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
   if (row.points_left_out) parts.push(`${row.points_left_out} points left out`);
   if (row.no_valid_point) parts.push(`${row.no_valid_point} without a valid point`);
+  if (row.invisible) parts.push(`${row.invisible} invisible (alpha 0)`);
   if (row.no_room) parts.push(`${row.no_room} refused: too much waits`);
   if (row.refused_upstream) parts.push(`${row.refused_upstream} refused by the Command Post`);
   return parts.join(", ");
@@ -24,6 +25,7 @@ function counts(row) {
 
 function details(row) {
   if (row.waiting && row.kind !== "state") return `${row.waiting} waiting`;
+  if (row.invisible) return `${row.invisible} invisible`;
   return row.bytes_sent ? bytes(row.bytes_sent) : "";
 }
 

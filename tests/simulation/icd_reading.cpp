@@ -23,7 +23,7 @@ rehearsal::Request read(const HttpMessage& request) {
   };
   rehearsal::Request read;
   read.method = request.first.substr(0, request.first.find(' '));
-  read.target = request.path();
+  read.target = read.path = request.path();
   read.authorization = header("authorization");
   read.content_type = header("content-type");
   read.content_encoding = header("content-encoding");

@@ -15,7 +15,7 @@ namespace {
 
 /// Seconds after the last fault: all that waits goes, and operators have had their say, at the soonest; a
 /// robot posts faster than its maps go, so that it may be at the latest.
-constexpr double kLeastRest = 120, kMostRest = 1800;
+constexpr double kLeastRest = 120, kMostRest = 1200;
 
 /// In three of four runs: up to four ends of the process, by SIGTERM, SIGKILL or a power cut.
 void plan_ends(World& world, Box& box, double trouble_for) {

@@ -76,10 +76,7 @@ void for_each_cell(const Extent& extent, Visit visit) {
 class GridsOfOneName {
  public:
   explicit GridsOfOneName(bool has_more_maps) : has_more_maps_(has_more_maps) {}
-  void begin_run(std::size_t place, double at) {
-    run_began_ = place;
-    run_began_at_ = at;
-  }
+  void begin_run(std::size_t place) { run_began_ = place; }
   void post(const Asked& asked, const Item& item) {
     posted_.push_back({&asked, item.serial, Extent::from(item.says)});
   }
@@ -109,7 +106,7 @@ class GridsOfOneName {
       const bool is_earlier = was_sent && had->second.place < run_began_;
       // A grid of an earlier run has a gap's value there by chance.
       const bool is_of_run = std::ranges::any_of(
-          owners, [&](const PostedGrid* owner) { return owner->asked->ended >= run_began_at_; });
+          owners, [&](const PostedGrid* owner) { return owner->taken == 0 || owner->taken >= run_began_; });
       const bool is_blank = value == kNoValue && is_earlier && !is_of_run;
       const std::size_t since = is_blank ? had->second.place : place;
       if (value == kNoValue && was_sent && (has_more_maps_ || is_earlier))
@@ -246,7 +243,6 @@ class GridsOfOneName {
 
   bool has_more_maps_;
   std::size_t run_began_ = 0;  // by which event
-  double run_began_at_ = 0;
   std::deque<PostedGrid> posted_;
   std::map<Key, Has> has_;
 };
@@ -292,7 +288,7 @@ void grid_arrived(const Evidence& evidence, Broken& broken) {
   for (std::size_t i = 0; i < evidence.events.size(); ++i) {
     const Event& event = evidence.events[i];
     if (event.kind == Kind::NewRun && event.what != kSameMap) {
-      for (auto& [name, grids] : names) grids.begin_run(i, event.at);
+      for (auto& [name, grids] : names) grids.begin_run(i);
     }
     if (event.what != kMap) continue;
     std::vector<PostedGrid*>& sent = last_sent[event.request];

@@ -93,6 +93,7 @@ class Clients(unittest.TestCase):
                     status, said = Run(self, stage, name, ["report", 1, 2, 3, "Dril"]).ended()
                     self.assertEqual(status, REFUSED)
                     self.assertIn("type: expected one of Survivor", said)
+                    self.assertEqual(Run(self, stage, name, ["report", "nan", 2, 3, "Drill"]).ended()[0], REFUSED)
             self.assertEqual(stage.post.recorded(), [])
 
     def test_what_the_operator_decides(self):

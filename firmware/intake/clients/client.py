@@ -1,4 +1,5 @@
 """A client that asks until it knows: right with Adit, and with a Command Post that no Adit stands before (`bare`)."""
+import json
 import time
 
 import requests
@@ -19,7 +20,7 @@ class Unknown(Exception):
 class Client:
     def __init__(self, url, token, bare=False):
         self.url, self.bare, self.turn = url, bare, 0.0
-        self.headers = {"Authorization": f"Bearer {token}"}
+        self.headers = {"Authorization": f"Bearer {token}", "Content-Type": "application/json"}
 
     def status(self):
         return self.until_answered("GET", "/api/status")
@@ -34,9 +35,13 @@ class Client:
 
     def until_answered(self, method, uri, message=None, patience=600):
         """What a 2xx says. Sends the same again for `patience` seconds, as long as that can do no harm."""
+        try:
+            content = None if message is None else json.dumps(message, allow_nan=False).encode()
+        except ValueError as why:
+            raise Refused(str(why)) from why
         end = time.monotonic() + patience
         while time.monotonic() < end:
-            status, body, again_after = self._ask(method, uri, message)
+            status, body, again_after = self._ask(method, uri, content)
             if 200 <= status < 300:
                 return body
             if status in (LOST, 408) or status >= 500:  # Adit knows a report that is posted again
@@ -49,17 +54,15 @@ class Client:
             time.sleep(int(again_after) if again_after.isdigit() else 1)
         raise Unknown(f"no answer for {patience} s")
 
-    def _ask(self, method, uri, message):
+    def _ask(self, method, uri, content):
         """Status, body and Retry-After of one request: 3 s to connect, 30 s for the answer, which Adit gives within 20."""
         if self.bare:  # which takes one request a second
             time.sleep(max(0.0, self.turn - time.monotonic()))
         try:  # each on a new connection: a bare Command Post closes old ones without a word
-            answer = requests.request(method, self.url + uri, json=message, headers=self.headers, timeout=(3, 30),
+            answer = requests.request(method, self.url + uri, data=content, headers=self.headers, timeout=(3, 30),
                                       allow_redirects=False)
             body = answer.json() if answer.ok else answer.text  # a redirection, and a 2xx without JSON, is another machine's
             return answer.status_code, body, answer.headers.get("Retry-After", "1")
-        except requests.exceptions.InvalidJSONError as why:  # NaN, say
-            raise Refused(str(why)) from why
         except requests.ConnectTimeout:
             return NEVER_LEFT, "", "1"
         except (requests.RequestException, ValueError) as why:  # the latter from requests before 2.27, of JSON

@@ -30,11 +30,12 @@ std::size_t most_inflated(Split split, const Limits& limits) {
 
 constexpr std::size_t kTelling = 2;  // bytes
 
-/// For a refusal: what a document that begins so looks like, if that is not what its headers say. Each verdict
-/// needs no more bytes than a splitter has taken when it refuses the document.
+/// For a refusal: what a document that begins so looks like, if that is not what its headers say. Each
+/// verdict needs no more bytes than a splitter has taken when it refuses the document.
 std::string_view other_format(Format said, std::string_view begin) {
   if (begin.empty()) return "";
-  const auto first = static_cast<std::uint8_t>(begin.front()), second = static_cast<std::uint8_t>(begin.back());
+  const auto first = static_cast<std::uint8_t>(begin.front()),
+             second = static_cast<std::uint8_t>(begin.back());
   if (said == Format::Cbor) {
     const bool is_object = first == '{' && std::string_view("\"} \t\r\n").contains(static_cast<char>(second));
     return is_object || begin == "\xEF\xBB" ? " (this looks like JSON; Content-Type says CBOR)" : "";

@@ -68,7 +68,8 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
          m["msg"]["info"]["width"] = 2147483647;
          m["msg"]["info"]["height"] = 2147483647;
        },
-       "413: msg.info.width: expected at most 268435456 cells, got 2147483647 x 2147483647 = 4611686014132420609"},
+       "413: msg.info.width: expected at most 268435456 cells, got 2147483647 x 2147483647 = "
+       "4611686014132420609"},
       {"6.3.1", [](json& m) { m["msg"]["info"].erase("origin"); }, "msg.info.origin: missing"},
       {"6.3.1", [](json& m) { m["msg"]["info"]["origin"].erase("position"); },
        "msg.info.origin.position: missing"},

@@ -76,7 +76,8 @@ TEST(GridRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
          g.width = 101;
          g.height = 100;
        },
-       "413: msg.info.width: expected at most 10000 cells (the setting rules.map_bytes), got 101 x 100 = 10100"},
+       "413: msg.info.width: expected at most 10000 cells (the setting rules.map_bytes), got 101 x 100 = "
+       "10100"},
       {"6.3.1 in 64 bits",
        [](auto& g) {
          g.width = 0x40000000;

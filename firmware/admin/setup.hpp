@@ -47,7 +47,7 @@ class Setup final : public api::Setup {
   settings::Settings settings_;
   bool saved_ = false;
   std::string trouble_;
-  std::map<std::string, std::string> tokens_set_;  // by name: what is odd about one, or ""
+  std::map<std::string, std::string> tokens_set_;  // by name: a warning about the token, or ""
   Meaning for_reports_;
   std::function<void()> apply_, restart_;
   bool applying_ = false;

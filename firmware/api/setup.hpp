@@ -10,8 +10,8 @@
 
 namespace adit::api {
 
-/// A token by its name ("scoring", "course.A.mapping"), whether there is one, and what is odd about it; never
-/// the token itself.
+/// A token's name ("scoring", "course.A.mapping"), its presence, and a warning about it; never the token
+/// itself.
 struct TokenRow {
   std::string name;
   bool set = false;

@@ -59,7 +59,7 @@ std::vector<settings::Subnet> team_subnets(const settings::Team& team,
   return subnets;
 }
 
-/// What does not keep aditd from taking the settings.
+/// Warnings. aditd takes the settings all the same.
 std::vector<std::string> warnings_of(const Options& options, const Settings& settings) {
   std::vector<std::string> sentences;
   const auto secrets =

@@ -16,7 +16,7 @@ bool is_remark(std::uint64_t tag) {
       39,                            // an identifier
       41,    258,                    // of an array: elements of one kind; a set
       64,    68,    72,              // RFC 8746: bytes that are an array of single bytes
-      201,   55799,                  // what is in it is CBOR
+      201,   55799,                  // the content is CBOR
       259,   275,                    // of a map: it is one; its keys are texts
       266,   267,   301, 1004,       // more kinds of text
       21065,

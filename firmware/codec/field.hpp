@@ -74,7 +74,8 @@ class Field {
 
   /// A finite number from `least` to `most`; whole numbers are numbers too.
   double number(double least = -kNoLimit, double most = kNoLimit) const;
-  /// The same of what is a float32 in ROS: what its rounding has put past a limit becomes that limit.
+  /// The same for a float32 of ROS. If float32's rounding moved the number past a limit, it becomes the
+  /// limit.
   double float32(double least, double most) const;
 
   /// A whole number from `least` to `most`; 80.0 is one too.

@@ -50,21 +50,21 @@ class Gzipper {
 /// One gzip member with nothing after it. `bytes` is consumed chunk by chunk.
 icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy);
 
-/// How much the last gzip member says that it holds (ISIZE, RFC 1952 2.3.1, modulo 2^32): one that gunzip()
-/// has passed holds that. 0 for what is too short to say it.
+/// The size that the last gzip member claims (ISIZE, RFC 1952 2.3.1, modulo 2^32). It is right if gunzip()
+/// has passed the member. 0 if `bytes` are too short for the claim.
 std::size_t claimed_size(const icd::ChunkedBytes& bytes);
 
 /// Takes what was inflated, piece by piece, and may refuse it.
 using Sink = std::function<icd::Checked<void>(std::span<const std::uint8_t>)>;
 
-/// What came out, in bytes, and of how many members.
+/// The number of bytes after inflating, and the number of members.
 struct Gunzipped {
   std::size_t size = 0, members = 0;
 };
 
 /// Inflates gzip, one member or several (RFC 1952 2.2), into `sink`, consuming `bytes`. Refuses, with 422
-/// about the field at `path`: what is no gzip, is cut short, has a bad checksum, or has anything else after
-/// its last member; with 413 what grows over `most` bytes in all.
+/// about the field at `path`, bytes that are not gzip, end early, have a bad checksum, or continue after the
+/// last member with anything else; with 413, more than `most` bytes after inflating.
 icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
                                const Sink& sink);
 

@@ -65,7 +65,7 @@ icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, ic
     if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
     if (!is_kept) continue;
     icd::MapData ours = pressed(gzipper, grid);
-    const bool is_one = inflated->members == 1;  // what follows a member hangs a Command Post
+    const bool is_one = inflated->members == 1;  // a Command Post hangs on a second one
     if (is_one && data.size() < ours.bytes.size() && has_plain_head(data)) ours.bytes = std::move(data);
     return ours;
   }

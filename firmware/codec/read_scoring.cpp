@@ -58,7 +58,7 @@ bool has_number(const Field& field) {
   return field.is<double>() || field.is<std::int64_t>() || field.is<std::uint64_t>();
 }
 
-/// In a reading of its own: what is wrong with it does not refuse the report.
+/// It has a reading of its own: an invalid name does not refuse the report.
 icd::Checked<std::optional<icd::RobotName>> read_robot(const Document& document, const icd::Rules& rules) {
   Reading reading;
   const Field body(document.root, reading);

@@ -18,8 +18,8 @@ struct Value {
     std::vector<std::uint8_t> bytes;
     friend bool operator==(const Bytes&, const Bytes&) = default;
   };
-  /// Stands where there is a value under a tag of CBOR that changes its meaning. For a member that nobody
-  /// asks for.
+  /// Replaces a value under a CBOR tag that changes the value's meaning. If a member is not read, its tag
+  /// refuses nothing.
   struct UnderTag {
     std::uint64_t tag = 0;
     friend bool operator==(UnderTag, UnderTag) = default;

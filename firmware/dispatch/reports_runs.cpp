@@ -104,7 +104,7 @@ void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time
     if (!differs) return take_up_run(*known, another.why, time);
     return begin_run(another.why, differs->certain ? 0 : known->number, status, time);
   }
-  // More reports left than in the run that this one may be: what is held is a repeat of none of its reports.
+  // The earlier run cannot be on, for more reports are left now. So the held reports repeat none of its own.
   if (run().may_be != 0 && another.certain && !other_team && !anything_was_sent_here()) clear_held(time);
   begin_run(another.why, another.certain ? 0 : run().number, status, time);
 }

@@ -59,7 +59,7 @@ void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> resp
   scoring_.status(std::move(responder));
 }
 
-/// A sentence quotes what was sent, which may be a token that was put into a wrong field.
+/// A sentence quotes the message, and a client may have put a token into a wrong field of it.
 std::string Flow::without_tokens(std::string sentence) const {
   for (const icd::BearerToken& token : tokens_.all) token.strike_from(sentence);
   return sentence;

@@ -178,7 +178,7 @@ std::string Scoring::why_no_status() const {
   return asked_status_ ? "it has not answered yet" : "reports go first";
 }
 
-/// Nothing is known that is young enough.
+/// For a client that asks while the last known status is too old. `why`: the reason.
 intake::Answer Scoring::no_status(const std::string& why) {
   intake::Answer answer = intake::error_answer(icd::Status::ServiceUnavailable,
                                                "the status of the run is not known just now: " + why);

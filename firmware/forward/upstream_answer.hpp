@@ -5,9 +5,9 @@
 
 namespace adit::forward {
 
-/// What a client is told of the Command Post's answer: its status, and its bytes if these are JSON of a 2xx
-/// answer or a JSON string; else a JSON string (ICD 4.1) with `detail` of an object, or that says what came
-/// instead (404 and 500 may be HTML, 501 is empty). An answer of 2xx that is no JSON becomes 502.
+/// The answer that a client gets for the Command Post's: the same status. The bytes stay the same if they are
+/// JSON of a 2xx answer or a JSON string. An object becomes a JSON string (ICD 4.1) of its `detail`; other
+/// bytes become a sentence (404 and 500 may be HTML, 501 is empty). A 2xx that is not JSON becomes 502.
 intake::Answer client_answer(const uplink::Answered& answered);
 
 }  // namespace adit::forward

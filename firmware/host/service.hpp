@@ -31,8 +31,8 @@ std::optional<std::chrono::microseconds> watchdog_within();
 bool may_exist(const std::string& path);
 
 inline constexpr const char* kDamaged = ".damaged";
-/// Renames a file or folder that cannot be read to PATH + kDamaged, over an earlier one, for a human to look
-/// at. Logs `what`, `why` and the path, and a failure to rename.
+/// Renames a file or folder that cannot be read to PATH + kDamaged, over an earlier one, so that a person can
+/// look at it. Logs `what`, `why` and the path, and a failure to rename.
 void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why);
 
 /// A small text file, at most 1 MiB.

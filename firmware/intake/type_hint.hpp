@@ -5,8 +5,8 @@
 
 namespace adit::intake {
 
-/// "; did you mean Cell Phone?" of a type that resembles one of the ICD's ten: but for letter case and
-/// whatever is no letter a part of it, or a few letters apart. "" of another.
+/// "; did you mean Cell Phone?" if the type resembles one of the ICD's ten: without letter case and
+/// characters other than letters, it is a part of that one or differs by a few letters. Otherwise "".
 std::string type_hint(std::string_view type);
 
 }  // namespace adit::intake

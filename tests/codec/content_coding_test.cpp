@@ -114,7 +114,7 @@ TEST(CompressedBody, OfABombIsRefusedWith413LongBeforeItsEnd) {
   const std::string blanks = deflated(std::string().append(10'000'000, ' '), kGzip);
   const std::string data = deflated(std::string(R"({"msg":{"data":")").append(10'000'000, 'A'), kGzip);
   const Limits limits{.text_bytes = 10'000, .data_bytes = 100'000};
-  std::string many;  // members, none of which is over a limit
+  std::string many;  // each member is within the limits
   for (int i = 0; i < 60; ++i) many += deflated(std::string(10'000, ' '), kGzip);
   for (const std::string& bomb : {blanks, data, many}) {
     ASSERT_LT(bomb.size(), 12'000U);

@@ -193,7 +193,9 @@ bool Carried::read_pace(std::string_view said) {
   learned.under_way = reader.number() != 0;
   const bool is_older = reader.at_end();  // of a version that counted from answers alone
   learned.earliest.last = is_older ? learned.earliest.first : pace::Instant(duration_in(reader));
-  learned.from_answers = !is_older && reader.number() != 0;
+  const std::uint64_t counting = is_older ? 0 : reader.number();
+  learned.from_answers = counting % 2 != 0;
+  learned.single = static_cast<int>(std::min<std::uint64_t>(counting / 2, INT32_MAX));
   if (uri && reader.ok()) paces_[*uri] = learned;
   return uri && reader.ok();
 }
@@ -302,7 +304,7 @@ std::string said(icd::Uri uri, const pace::Learned& learned) {
       .number(number_of(learned.spacing))
       .number(learned.under_way ? 1 : 0)
       .number(number_of(learned.earliest.last.time_since_epoch()))
-      .number(learned.from_answers ? 1 : 0)
+      .number(static_cast<std::uint64_t>(learned.single) * 2 + (learned.from_answers ? 1 : 0))
       .finish();
 }
 

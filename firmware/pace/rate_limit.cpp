@@ -186,12 +186,13 @@ Learned RateLimit::learned() const {
   return {.earliest = earliest(),
           .spacing = rule_.spacing > allowed_ ? rule_.spacing : Duration{0},
           .under_way = under_way_ > 0,
-          .from_answers = rule_.from_answers};
+          .from_answers = rule_.from_answers,
+          .single = single_ + (storm_ && storm_->counts_anew && storm_->is_one ? 1 : 0)};
 }
 
 void RateLimit::carry_on(const Learned& learned, Instant now) {
   rule_.from_answers = learned.from_answers;
-  single_ = learned.from_answers ? 1 : 0;
+  single_ = learned.single;
   if (learned.spacing > allowed_) rule_.spacing = learned.spacing;
   if (learned.from_answers || learned.spacing > allowed_) learned_at_ = now;
   const Instant latest =

@@ -20,6 +20,7 @@ struct Learned {
   Duration spacing{};         // learned; 0: as the settings allow
   bool under_way = false;     // a request was sent, and how it ended is not known here
   bool from_answers = false;  // learned: the server counts from its answer to the next request
+  int single = 0;             // how often a 429 and nothing else has taught that
   friend bool operator==(const Learned&, const Learned&) = default;
 };
 

@@ -146,7 +146,8 @@ TEST(Carried, HasClocksPacesAndStamps) {
       .earliest = {.first = pace::Instant(seconds(7)), .last = pace::Instant(seconds(8))},
       .spacing = seconds(3),
       .under_way = true,
-      .from_answers = true};
+      .from_answers = true,
+      .single = 2};
   const lanes::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"};
   Carried carried;
   EXPECT_FALSE(carried.clock());

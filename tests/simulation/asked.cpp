@@ -44,7 +44,8 @@ void OpenReports::add(const Event& event) {
     const bool is_whole = event.kind == Kind::Whole && posted != posted_.end();
     if (is_whole && known_.insert(posted->second).second) open_.insert(posted->second);
   }
-  const bool is_over = event.what == kDone || event.what == kWithdraw;
+  // If one report is in doubt and the same report waits, the one that waits is withdrawn.
+  const bool is_over = event.what == kDone || (event.what == kWithdraw && !in_doubt());
   if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
   if (event.kind == Kind::Dies) {
     for (const auto& [serial, at] : told_) {

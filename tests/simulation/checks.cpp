@@ -30,12 +30,14 @@ Window window_of(const Evidence& evidence, double first, double last) {
   constexpr double kForever = 1e12;
   /// Of each cut: the time that was kept last is that old where the disk was at fault, and then no power.
   constexpr double kBehind = 60;
+  double behind = 0;  // by which the box's clock is, after a start
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::PowerCut) last += kBehind;
     const bool by_a_start = event.stamp == -event.at;
     if (event.kind == Kind::ClockSet && !by_a_start) return {0, kForever};
+    if (event.kind == Kind::ClockSet) behind = std::max(behind, event.at);
   }
-  return {first, last};
+  return {first, last + behind};
 }
 
 Broken all_checks(const Evidence& evidence) {

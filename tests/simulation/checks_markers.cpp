@@ -89,6 +89,11 @@ Key key_of(const Item& item) {
   return {item.who, item.says[1]};
 }
 
+/// Where a marker stands that was posted with this item: all without a namespace have one.
+Key posted_key(const Item& item) {
+  return {item.who.empty() ? "unnamed" : item.who, item.says[1]};
+}
+
 using Scene = std::map<Key, std::int64_t>;
 void replay(Scene& scene, const Item& item) {
   switch (item.says[0]) {
@@ -109,7 +114,7 @@ std::map<Key, std::int64_t> says_of(const Asked& asked, const std::set<Key>& key
     if (item.says[0] == kDeleteAll) {
       for (const Key& key : keys) says[key] = 0;
     } else {
-      says[key_of(item)] = item.says[0] == kDelete ? 0 : item.serial;
+      says[posted_key(item)] = item.says[0] == kDelete ? 0 : item.serial;
     }
   }
   return says;
@@ -183,7 +188,7 @@ void markers_arrived(const Evidence& evidence, Broken& broken) {
   const auto all = asked_in(evidence.events, kMarkers);
   std::set<Key> keys;
   for (const Asked& asked : all) {
-    for (const Item& item : asked.items) keys.insert(key_of(item));
+    for (const Item& item : asked.items) keys.insert(posted_key(item));
   }
   std::map<Key, Changes> changes;
   for (const Asked& asked : all) {

@@ -195,7 +195,7 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
 }
 
 /// Whoever counts from its answers is found out by his first 429 that is heard, and tried again after 10 s at
-/// the soonest, and once in a life (pace/rate_limit.hpp).
+/// the soonest, and once until a kill or a power cut (pace/rate_limit.hpp).
 void learned(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
   std::set<std::string> single;              // URIs whose last answer was such a 429
@@ -205,9 +205,8 @@ void learned(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
     if (event.kind == Kind::Dies) last.clear();  // the answer may have been read and not yet understood
-    if (event.kind == Kind::Begins) times.clear(), single.clear();
-    if (event.kind == Kind::Saved)  // the flow may be another, which knows of one
-      for (auto& [uri, count] : times) count = std::min(count, 1);
+    const bool forgets = disk.forgets_at(event) || event.kind == Kind::Dies || event.kind == Kind::PowerCut;
+    if (forgets) times.clear(), single.clear();
     if (event.kind == Kind::Replied && event.status == 200 && single.erase(event.what) > 0)
       ++times[event.what];
     if (event.kind == Kind::Replied && event.status == 429) single.erase(event.what);
@@ -218,7 +217,8 @@ void learned(const Evidence& evidence, Broken& broken) {
       last[event.what] = unheard->second;
       said.erase(unheard);
     }
-    if (event.kind != Kind::Fault || event.who != kTooSoon || event.at < forgotten_until) continue;
+    // It may be long under way.
+    if (event.kind != Kind::Fault || event.who != kTooSoon || event.stamp < forgotten_until) continue;
     const auto before = last.find(event.what);
     if (event.serial != static_cast<std::int64_t>(Counting::What::Answers)) {
       broken.push_back(icd::sentence("Learned: ", event.what,

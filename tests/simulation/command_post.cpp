@@ -178,7 +178,8 @@ bool CommandPost::refuses(const HttpMessage& request, const WhenLeft& left, Link
                .kind = Kind::Fault,
                .what = request.path(),
                .who = kTooSoon,
-               .serial = static_cast<std::int64_t>(counting_.what())});
+               .serial = static_cast<std::int64_t>(counting_.what()),
+               .stamp = world_.time() - std::chrono::duration<double>(world_.now() - left.first).count()});
   link.send(http_answer("429 Too Many Requests", kJson, "\"too soon\""));
   return true;
 }

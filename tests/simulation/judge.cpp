@@ -16,7 +16,6 @@ namespace {
 
 constexpr double kSure = 20;         // seconds after which nothing is recorded any more that was lost
 constexpr double kAfter = 90;        // that he stays once the trouble is over
-constexpr std::int64_t kOwn = 9000;  // serials of his own reports
 constexpr const char* kHeaders =
     "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: application/json\r\n";
 
@@ -97,7 +96,7 @@ void Judge::judge_aside(const nlohmann::json& row) {
 
 /// A report of his own.
 void Judge::compose() {
-  const std::int64_t serial = kOwn + ++composed_;
+  const std::int64_t serial = kOwnReports + ++composed_;
   words_.push_back(
       {"/adit/reports", kCompose,
        nlohmann::json{{"type", "Drill"}, {"x", static_cast<double>(serial) * 100}, {"y", 2.5}, {"z", -1.0}}

@@ -32,20 +32,42 @@ int type_of(const Item& item) {
   return points_of(item) > 0 ? kLine : letters_of(item) > 0 ? kText : kCube;
 }
 
+/// Whose report it is: of some, nobody's is said. What the operator posts is nobody's.
+std::string reporter_of(std::int64_t serial) {
+  return serial < kOwnReports && serial % 3 == 0 ? "R1" : "";
+}
+
+Json report_of(std::int64_t serial, const Style& style) {
+  Json report = {{"x", static_cast<double>(serial) * kReportsApart},
+                 {"y", style.rounds ? static_cast<double>(static_cast<float>(kAcross)) : kAcross},
+                 {"z", -1.0},
+                 {"type", serial % 2 == 0 ? "Drill" : "Rope"}};
+  if (const std::string name = reporter_of(serial); !name.empty()) report["name"] = name;
+  return report;
+}
+
+/// One that has lost its robot, or has another, is none that anybody posted.
+Item report_item(const Json& report) {
+  const std::int64_t serial = whole(report.value("x", 0.0) / kReportsApart);
+  return {.who = "", .serial = report.value("name", "") == reporter_of(serial) ? serial : kStrange};
+}
+
 Json marker_of(const Item& item, const Style& style) {
   Json points = Json::array();
   for (std::size_t i = 0; i < points_of(item); ++i)
     points.push_back({{"x", 0.1 * static_cast<double>(i)}, {"y", 1.0}, {"z", 0.0}});
-  return {{"header", header_of(item.stamp)},
-          {"ns", item.who},
-          {"id", item.says[1]},
-          {"type", type_of(item)},
-          {"points", std::move(points)},
-          {"text", std::string(letters_of(item), 'x')},
-          {"action", item.says[0]},
-          {"pose", pose_at(0, 1, style)},
-          {"scale", {{"x", static_cast<double>(item.serial)}, {"y", 1.0}, {"z", 1.0}}},
-          {"color", {{"r", 1.0}, {"g", 0.0}, {"b", 0.0}, {"a", 1.0}}}};
+  Json marker = {{"header", header_of(item.stamp)},
+                 {"ns", item.who},
+                 {"id", item.says[1]},
+                 {"type", type_of(item)},
+                 {"points", std::move(points)},
+                 {"text", std::string(letters_of(item), 'x')},
+                 {"action", item.says[0]},
+                 {"pose", pose_at(0, 1, style)},
+                 {"scale", {{"x", static_cast<double>(item.serial)}, {"y", 1.0}, {"z", 1.0}}},
+                 {"color", {{"r", 1.0}, {"g", 0.0}, {"b", 0.0}, {"a", 1.0}}}};
+  if (item.who.empty() && item.serial % 2 == 0) marker.erase("ns");
+  return marker;
 }
 
 /// One that has lost points or letters is none that anybody posted.
@@ -64,13 +86,7 @@ Item marker_item(const Json& marker) {
 
 Json message_of(const Posting& posting, const Style& style) {
   const Item& item = posting.items.front();
-  const auto serial = static_cast<double>(item.serial);
-  if (posting.path == kReports) {
-    return {{"x", serial * kReportsApart},
-            {"y", style.rounds ? static_cast<double>(static_cast<float>(kAcross)) : kAcross},
-            {"z", -1.0},
-            {"type", item.serial % 2 == 0 ? "Drill" : "Rope"}};
-  }
+  if (posting.path == kReports) return report_of(item.serial, style);
   if (posting.path == kMap) return map_of(posting.items, style);
   if (posting.path == kState) {
     Json poses = Json::array();
@@ -93,8 +109,7 @@ std::vector<Item> items_of(const HttpMessage& request) {
   const Json message =
       cbor ? Json::from_cbor(request.body, true, false) : Json::parse(request.body, nullptr, false);
   if (!message.is_object()) return items;
-  if (path == kReports)
-    items.push_back({.who = "", .serial = whole(message.value("x", 0.0) / kReportsApart)});
+  if (path == kReports) items.push_back(report_item(message));
   if (path == kState) {
     for (const Json& named : message.at("poses"))
       items.push_back({named.at("name"), whole(named.at("position").at("x")), stamp_of(message)});

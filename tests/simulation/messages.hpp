@@ -39,7 +39,8 @@ inline bool is_grid(const Says& says) {
 inline bool is_cloud(const Says& says) {
   return says.size() == 1;
 }
-inline constexpr int kStrange = -1;  // points, or a marker: none that anybody posted
+inline constexpr int kStrange = -1;                // points, a marker or a report: none that anybody posted
+inline constexpr std::int64_t kOwnReports = 9000;  // serials from there on: of the operator's own
 
 /// How the namespaces of markers end: of lines, and of long texts.
 inline constexpr const char *kPath = " path", *kWriting = " writing";

@@ -39,6 +39,7 @@ Robot::Robot(World& world, int number)
       number_(number),
       random_(world.random("robot " + std::to_string(number))),
       name_(std::string("R").append(std::to_string(number))),
+      finds_ns_(world.random("finds of " + name_).chance(0.3) ? "" : name_ + " finds"),
       client_(world, address(number), manners(random_), world.random("client " + name_)),
       style_(style(world, name_)),
       clock_(random_.between(-1000, 1000)),
@@ -135,7 +136,7 @@ Posting Robot::markers() {
     const int action = random_.chance(wipes_) ? kDeleteAll : random_.chance(0.25) ? kDelete : kAdd;
     const bool is_line = random_.chance(0.5), is_text = is_line && writings_ > 0;
     if (is_text) --writings_;
-    const std::string ns = name_ + (is_text ? kWriting : is_line ? kPath : " finds");
+    const std::string ns = is_text ? name_ + kWriting : is_line ? name_ + kPath : finds_ns_;
     posting.items.push_back(item(ns, {action, between(random_, 0, 5)}));
   }
   return posting;

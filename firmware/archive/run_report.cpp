@@ -76,11 +76,12 @@ std::string reports_table(const std::vector<api::ReportDetail>& reports) {
   std::string rows;
   for (const api::ReportDetail& report : reports) {
     const api::ReportRow& row = report.row;
-    rows += "<tr>" + cell(std::to_string(row.number), true) + cell(row.type) + cell(place(row.position)) +
-            cell(row.asking ? row.state + ", being found out" : row.state) +
+    rows += "<tr>" + cell(std::to_string(row.number), true) + cell(row.type) + cell(row.robot) +
+            cell(place(row.position)) + cell(row.asking ? row.state + ", being found out" : row.state) +
             cell(signed_change(row.score_change), true) + life_of(report) + "</tr>\n";
   }
-  return "<table><thead><tr><th class=\"n\">No.</th><th>Type</th><th>Place (m)</th><th>State</th>"
+  return "<table><thead><tr><th class=\"n\">No.</th><th>Type</th><th>Robot</th><th>Place "
+         "(m)</th><th>State</th>"
          "<th class=\"n\">Score</th><th>Its life (UTC)</th></tr></thead><tbody>\n" +
          rows + "</tbody></table>\n";
 }

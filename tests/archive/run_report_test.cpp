@@ -28,6 +28,7 @@ std::vector<api::ReportDetail> hostile_reports() {
   api::ReportDetail report;
   report.row.number = 7;
   report.row.type = report.row.note = kHostile;
+  report.row.robot = "robot1";
   report.row.state = "answered";
   report.row.score_change = 1;
   report.history = {{1000, "answered", kHostile}};
@@ -36,9 +37,9 @@ std::vector<api::ReportDetail> hostile_reports() {
 
 TEST(RunReport, SaysScoreReportsMapCoverageRobotsAndWhatNeededTheOperator) {
   const std::string html = run_report(hostile_run(), hostile_reports());
-  for (const char* part :
-       {"<dt>Score</dt><dd>5</dd>", "Reports", "answered", "+1", "data:image/png;base64,iVBOR",
-        "Coverage over time", "64 m", "Robots", "What needed the operator", "1970-01-01 00:16:40"})
+  for (const char* part : {"<dt>Score</dt><dd>5</dd>", "Reports", "<td>robot1</td>", "answered", "+1",
+                           "data:image/png;base64,iVBOR", "Coverage over time", "64 m", "Robots",
+                           "What needed the operator", "1970-01-01 00:16:40"})
     EXPECT_THAT(html, HasSubstr(part));
 }
 

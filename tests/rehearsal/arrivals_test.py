@@ -4,7 +4,7 @@ import struct
 import time
 import unittest
 
-from command_post import CommandPost, changed, grid
+from command_post import CommandPost, changed, grid, marker
 
 BASE = 101
 
@@ -27,6 +27,31 @@ def cloud(*dates):
     fields.append({"name": "posted_ms", "offset": 12, "datatype": 6, "count": 1})
     return {"type": "PointCloud2", "name": "X1",
             "msg": {"fields": fields, "is_bigendian": False, "point_step": 16, "data": data}}
+
+
+class Markers(unittest.TestCase):
+    def test_the_scene_is_compared_with_what_the_robots_have(self):
+        with CommandPost() as post:
+            two = {"markers": [marker(ns=ns, id=1)["markers"][0] for ns in ("R1/path", "R2/path")]}
+            self.assertEqual(post.mapping_request("POST", "/markers/update", two).status_code, 200)
+            x = two["markers"][0]["pose"]["position"]["x"]
+
+            def differences(*standing):
+                told = [{"robot": "R1", "kind": "markers", "standing": [
+                    {"ns": ns, "id": number, "x": at} for ns, number, at in standing]}]
+                answer = post.tell("posted", told).json()
+                self.assertEqual((answer["markers"]["here"], answer["markers"]["posted"]), (2, len(standing)))
+                self.assertIn(f"; {answer['markers']['difference_count']} differ", answer["table"])
+                return answer["markers"]["differences"]
+
+            self.assertEqual(differences(("R1/path", 1, x)), [])
+            self.assertEqual(differences(("R1/path", 1, x), ("R1/path", 2, x)), ["marker 2 of R1/path is not here"])
+            self.assertEqual(differences(("R1/path", 1, x + 1)), [f"marker 1 of R1/path is at x {x:f}, not {x + 1:f}"])
+            self.assertEqual(differences(("R1/path", 1, x), ("R2/path", 2, x)),
+                             ["marker 2 of R2/path is not here", "marker 1 of R2/path was deleted"])
+            answer = post.tell("posted", [{"robot": "R1", "kind": "markers", "standing": [{"ns": "a", "id": "b", "x": 1}]}])
+            self.assertEqual(answer.status_code, 422)
+            self.assertIn("[0].standing[0].id: expected an integer", answer.json())
 
 
 class Arrivals(unittest.TestCase):

@@ -122,6 +122,20 @@ class Mapping(unittest.TestCase):
             tries = len(answers) // 2
             self.assertEqual(counts, {"A": tries + 1, "B": tries, "X1": 3})
 
+    def test_a_cloud_counts_from_when_it_was_decoded(self):
+        large = cloud(data=bytes(24) * 60_000)  # 15 Mbit: 0.3 s on the link
+        for counts, status in (((), 429), (("--counts", "starts"), 200)):
+            with self.subTest(counts), CommandPost("--as-measured", "--link", "50", *counts, rate=None) as post:
+                for _ in range(20):
+                    began = time.monotonic()
+                    post.map(large)
+                    time.sleep(max(0.0, began + 1.02 - time.monotonic()))
+                    answer = post.map(cloud())
+                    if time.monotonic() < began + 1.2:
+                        break
+                    time.sleep(2)
+                self.assertEqual(answer.status_code, status)
+
     def test_after_a_4xx_it_closes_though_it_promised_not_to(self):
         with CommandPost("--as-measured") as post:
             with raw_map(post, b"no CBOR") as stream:

@@ -147,6 +147,19 @@ class Aims(unittest.TestCase):
                     post.map(grid())
                 self.assertEqual(sum(part["count"] for part in post.record()["accepted"]), taken)
 
+    def test_an_answer_is_repeated_and_nothing_is_recorded(self):
+        with CommandPost("--fault", "reports:repeat-answer") as post:
+            with self.assertRaises(requests.ConnectionError):
+                post.report(REPORT)  # there is none before it
+            first = post.report(REPORT)
+            post.faults(reports=["repeat-answer", "ok"], mapping=["ok", "repeat-answer"])
+            again, other = [post.report({**REPORT, "type": "Backpack"}) for _ in range(2)]
+            self.assertEqual((again.status_code, again.json()), (201, first.json()))
+            self.assertEqual(other.json()["type"], "Backpack")
+            self.assertEqual([report["type"] for report in post.record()["reports"]], [REPORT["type"], "Backpack"])
+            self.assertEqual([post.map(grid()).status_code for _ in range(2)], [200, 200])
+            self.assertEqual([part["count"] for part in post.record()["accepted"] if part["kind"] == "grid"], [1])
+
     def test_as_measured_the_refusals_are_those_of_its_servers(self):
         with CommandPost("--as-measured") as post:
             post.faults(reports=["401", "429"], mapping=["401", "429"])

@@ -238,6 +238,40 @@ class Refused(unittest.TestCase):
                                      (status, "application/json"))
                     self.assertNotIn("WWW-Authenticate", answer.headers)
 
+    def test_what_breaks_the_icd_and_harms_nothing_is_taken_and_told(self):
+        unseen = {"r": 1, "g": 0.5, "b": 0, "a": 0}
+        red, point = {"r": 1, "g": 0, "b": 0, "a": 1}, {"x": 0, "y": 0, "z": 0}
+        table = [
+            ("markers/update", marker(color=unseen), "markers[0].color.a: nobody sees a marker with 0 (ICD 6.6)"),
+            ("markers/update", marker(color=unseen, type=8, points=[point], colors=[unseen]),
+             "markers[0].color.a: nobody sees a marker with 0 (ICD 6.6)"),
+            ("markers/update", marker(color=unseen, type=8, points=[point], colors=[red]), None),
+            ("markers/update", marker(color=unseen, type=10, mesh_use_embedded_materials=True), None),
+            ("markers/update", marker(color=unseen, action=2), None),
+            ("state/update", state("X1", "X2", "X1"), "poses: 'X1' is there twice"),
+            ("state/update", state("X1", "X3"), "name: 'X3' is not on the roster (ICD 2)"),
+            ("map/update", grid(name="X3"), "name: 'X3' is not on the roster (ICD 2)"),
+            ("map/update", grid(name="X1"), None),
+            ("map/update", changed(grid(), name=DROP), None),
+        ]
+        for manner in ((), ("--as-measured",)):
+            with CommandPost("--roster", "X1,X2", *manner) as post:
+                told = []
+                for path, body, sentence in table:
+                    with self.subTest(sentence, manner=manner, path=path):
+                        status = post.mapping_request("POST", "/" + path, body).status_code
+                        if body.get("name", "") or path != "map/update" or not manner:
+                            self.assertEqual(status, 200)
+                        told += [sentence] if sentence else []
+                        self.assertEqual([each["sentence"] for each in post.record()["violations"]], told)
+
+    def test_what_decides_is_not_lost_behind_what_does_not(self):
+        with CommandPost() as post:
+            unseen = marker(color={"r": 1, "g": 0, "b": 0, "a": 0})["markers"] * 30
+            bad = marker(color={"r": 2, "g": 0, "b": 0, "a": 1})["markers"]
+            answer = post.mapping_request("POST", "/markers/update", {"markers": [*unseen, *bad]})
+            self.assertEqual((answer.status_code, answer.json()), (422, "markers[30].color.r: expected 0 to 1 (ICD 6.6)"))
+
     def test_stamps_that_run_backward_are_refused_per_uri(self):
         with CommandPost() as post:
             def stamped(stamp):

@@ -92,6 +92,7 @@ std::expected<void, std::string> Arrivals::told(const Json& posted) {
   const auto all = Field(posted, "", findings).elements();
   const std::lock_guard lock(mutex_);
   for (const Field& one : all.value_or(std::vector<Field>{})) {
+    if (one.optional_member("standing")) continue;  // markers: of MarkerDisplay
     const auto robot = one.member("robot"), kind = one.member("kind");
     const auto amount = one.member("amount"), newest = one.member("newest");
     if (!robot || !kind || !amount || !newest) break;

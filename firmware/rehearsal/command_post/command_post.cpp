@@ -1,7 +1,9 @@
 #include "rehearsal/command_post/command_post.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <set>
 
 #include "rehearsal/command_post/gate.hpp"
 #include "rehearsal/command_post/mapping.hpp"
@@ -22,8 +24,8 @@ std::unique_ptr<Endpoint> scoring_of(const Options& options, const Secrets& secr
 std::unique_ptr<Endpoint> mapping_of(const Options& options, const Secrets& secrets) {
   const double hz = options.rate.value_or(1);
   if (options.manner == Manner::Strict)
-    return std::make_unique<StrictMapping>(secrets.mapping, hz, options.counted);
-  return std::make_unique<MeasuredMapping>(secrets.mapping, hz, options.counted);
+    return std::make_unique<StrictMapping>(secrets.mapping, hz, options.counted.value_or(Counted::Starts));
+  return std::make_unique<MeasuredMapping>(secrets.mapping, hz, options.counted.value_or(Counted::Decoded));
 }
 
 /// What is no HTTP request is refused alike by all. One that its sender broke off, or that came too slowly,
@@ -85,6 +87,7 @@ CommandPost::CommandPost(const Options& options, const Secrets& secrets, std::ve
     : manner_(options.manner),
       verbose_(options.verbose),
       slash_(options.slash),
+      roster_(options.roster),
       run_(options.run, std::move(artifacts)),
       record_(options.manner),
       faults_(options.seed),
@@ -108,6 +111,39 @@ bool CommandPost::redirects(const Request& request) const {
   return slash_ && !request.fault && lacks_slash(request);
 }
 
+/// ICD 6.4 and 6.5: a name is one of the robots' that are registered. A state says each of them once.
+void CommandPost::note_names(Judgement& judgement) const {
+  std::set<std::string> posed;
+  for (const Accepted& part : judgement.accepted) {
+    const bool is_robot = part.kind != "marker" && part.kind != "report" && !part.robot.empty();
+    if (is_robot && !roster_.empty() && std::ranges::find(roster_, part.robot) == roster_.end()) {
+      judgement.findings.tells("name: '" + part.robot + "' is not on the roster (ICD 2)");
+    }
+    if (part.kind == "pose" && !posed.insert(part.robot).second) {
+      judgement.findings.tells("poses: '" + part.robot + "' is there twice");
+    }
+  }
+}
+
+/// Before there was one: no answer.
+Outcome CommandPost::answer_again(Aim aim) {
+  const std::lock_guard lock(answers_mutex_);
+  const auto& before = answers_[static_cast<std::size_t>(aim)];
+  Outcome outcome;
+  outcome.after = After::Close;
+  outcome.kind = before ? Outcome::Kind::Answered : Outcome::Kind::Breaks;
+  if (before) outcome.answer = *before;
+  return outcome;
+}
+
+void CommandPost::note_answer(Aim aim, const Outcome& outcome) {
+  constexpr int ok = 200, after_ok = 300;
+  const int status = outcome.kind == Outcome::Kind::Answered ? outcome.answer.status : 0;
+  if (status < ok || status >= after_ok) return;
+  const std::lock_guard lock(answers_mutex_);
+  answers_[static_cast<std::size_t>(aim)] = outcome.answer;
+}
+
 Outcome CommandPost::receive(Side& side, std::optional<Aim> aim, const Request& request) {
   if (redirects(request)) return decide(side, aim, {}, request);
   const Fault fault = aim ? faults_.next(*aim, request.body, Clock::now()) : Fault{};
@@ -124,6 +160,13 @@ Judgement CommandPost::judge(Side& side, std::optional<Aim> aim, const Fault& fa
   if (redirects(request)) return sent_on(request, aim);
   Judgement judgement = aim && !fault.records() ? unjudged(fault, *aim, request, manner_)
                                                 : judge_safely(*side.endpoint, request);
+  note_names(judgement);
+  display_.show(judgement.markers, judgement.findings);
+  if (fault.action == Fault::Action::RepeatAnswer) {
+    judgement.outcome = answer_again(*aim);
+  } else if (aim && fault.records()) {
+    note_answer(*aim, judgement.outcome);
+  }
   spoil(fault, request, judgement);
   if (const std::string words = words_of(fault); words != words_of({})) judgement.fault = words;
   return judgement;
@@ -157,6 +200,7 @@ OrderedJson CommandPost::record() const {
   const std::lock_guard lock(scoring_mutex_);
   OrderedJson record = record_.json(run_.standing(Clock::now()));
   record["maps"] = arrivals_.json();
+  record["markers"] = display_.json();
   return record;
 }
 

@@ -1,14 +1,18 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "rehearsal/command_post/arrivals.hpp"
 #include "rehearsal/command_post/faults.hpp"
 #include "rehearsal/command_post/judgement.hpp"
+#include "rehearsal/command_post/marker_display.hpp"
 #include "rehearsal/command_post/options.hpp"
 #include "rehearsal/command_post/record.hpp"
 #include "rehearsal/command_post/run.hpp"
@@ -38,8 +42,12 @@ class CommandPost {
   Faults& faults() { return faults_; }
   Arrivals& arrivals() { return arrivals_; }
   const Arrivals& arrivals() const { return arrivals_; }
+  MarkerDisplay& display() { return display_; }
+  const MarkerDisplay& display() const { return display_; }
+  /// What came, beside what the robots posted; "" if nothing is known of that.
+  std::string compared() const { return arrivals_.table() + display_.text(); }
   OrderedJson record() const;
-  std::string summary() const { return record_.summary(run_.standing(Clock::now())) + arrivals_.table(); }
+  std::string summary() const { return record_.summary(run_.standing(Clock::now())) + compared(); }
   std::string killed_by() const { return record_.killed_by(); }
 
  private:
@@ -49,6 +57,9 @@ class CommandPost {
   };
 
   bool redirects(const Request& request) const;
+  void note_names(Judgement& judgement) const;
+  Outcome answer_again(Aim aim);
+  void note_answer(Aim aim, const Outcome& outcome);
   Outcome receive(Side& side, std::optional<Aim> aim, const Request& request);
   Judgement judge(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
   Outcome decide(Side& side, std::optional<Aim> aim, const Fault& fault, const Request& request);
@@ -60,16 +71,20 @@ class CommandPost {
   const Manner manner_;
   const bool verbose_;
   const bool slash_;
+  const std::vector<std::string> roster_;
   Run run_;
   Record record_;
   Faults faults_;
   Arrivals arrivals_;
+  MarkerDisplay display_;
   Side scoring_;
   Side mapping_;
   std::unique_ptr<Transcript> transcript_;
   /// Held from the moment at which the run counts a report until the record and the transcript have it, and
   /// while a status is answered. No status therefore counts a report that the record does not have.
   mutable std::mutex scoring_mutex_;
+  std::mutex answers_mutex_;
+  std::array<std::optional<Answer>, kAims.size()> answers_;  // the last good one of each aim
   std::mutex number_mutex_;
   std::uint64_t number_;
   std::atomic<int> by_others_ = 0;

@@ -86,6 +86,8 @@ Connection::Arrival Connection::receive() {
   const ssize_t got = ::recv(socket_.get(), piece.data(), piece.size(), 0);
   if (got <= 0) return Arrival::Closed;
   received_.append(piece.data(), static_cast<std::size_t>(got));
+  if (manner_.link && stopped_within(manner_.link->pass(static_cast<std::size_t>(got))))
+    return Arrival::Stopped;
   return Arrival::Bytes;
 }
 

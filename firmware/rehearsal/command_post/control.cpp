@@ -82,12 +82,15 @@ Outcome tell_faults(CommandPost& post, const std::optional<Json>& told) {
 }
 
 Outcome arrivals(const CommandPost& post) {
-  return answered(200, OrderedJson{{"maps", post.arrivals().json()}, {"table", post.arrivals().table()}});
+  return answered(200, OrderedJson{{"maps", post.arrivals().json()},
+                                   {"markers", post.display().json()},
+                                   {"table", post.compared()}});
 }
 
 Outcome tell_posted(CommandPost& post, const std::optional<Json>& posted) {
-  if (const auto told = post.arrivals().told(posted.value_or(Json())); !told)
-    return refused(422, told.error());
+  const Json all = posted.value_or(Json());
+  if (const auto told = post.arrivals().told(all); !told) return refused(422, told.error());
+  if (const auto told = post.display().told(all); !told) return refused(422, told.error());
   return arrivals(post);
 }
 

@@ -15,7 +15,7 @@ struct ActionWord {
   Action action;
 };
 
-constexpr std::array<ActionWord, 20> kActions = {{{"drop", Action::Drop},
+constexpr std::array<ActionWord, 21> kActions = {{{"drop", Action::Drop},
                                                   {"record-then-drop", Action::RecordThenDrop},
                                                   {"half-answer", Action::HalfAnswer},
                                                   {"reset", Action::Reset},
@@ -25,6 +25,7 @@ constexpr std::array<ActionWord, 20> kActions = {{{"drop", Action::Drop},
                                                   {"429", Action::TooMany},
                                                   {"500", Action::Fail},
                                                   {"500-recorded", Action::RecordThenFail},
+                                                  {"repeat-answer", Action::RepeatAnswer},
                                                   {"html-200", Action::PageOk},
                                                   {"html-302", Action::PageElsewhere},
                                                   {"html-400", Action::PageBad},
@@ -157,9 +158,16 @@ std::string text_of(double number) {
 }  // namespace
 
 bool Fault::records() const {
-  constexpr std::array unrecorded = {
-      Action::Drop,   Action::ResetUnrecorded, Action::Unauthorized, Action::TooMany,          Action::Fail,
-      Action::PageOk, Action::PageElsewhere,   Action::PageBad,      Action::PageUnprocessable};
+  constexpr std::array unrecorded = {Action::Drop,
+                                     Action::ResetUnrecorded,
+                                     Action::Unauthorized,
+                                     Action::TooMany,
+                                     Action::Fail,
+                                     Action::PageOk,
+                                     Action::PageElsewhere,
+                                     Action::PageBad,
+                                     Action::PageUnprocessable,
+                                     Action::RepeatAnswer};
   return std::ranges::find(unrecorded, action) == unrecorded.end();
 }
 

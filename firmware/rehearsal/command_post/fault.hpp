@@ -24,6 +24,7 @@ struct Fault {
     TooMany,
     Fail,
     RecordThenFail,
+    RepeatAnswer,  // the last good answer to a request of this aim; as a broken proxy has it
     // A page of HTML in place of an answer, as of a captive portal.
     PageOk,
     PageElsewhere,

@@ -18,7 +18,14 @@ struct Finding {
   int status = 422;        // of the refusal, in either manner
   bool breaks_icd = true;  // else only the measured server minds
   Measured measured = Measured::Refuses;
+  bool strict_refuses = true;  // if it breaks the ICD
 };
+
+/// Whether a Command Post of that manner refuses a message for it.
+inline bool decides(const Finding& finding, Manner manner) {
+  return manner == Manner::Strict ? finding.breaks_icd && finding.strict_refuses
+                                  : finding.measured != Measured::Takes;
+}
 
 /// What was found in one message, in the order of reading. Only the first kMost are kept.
 class Findings {
@@ -30,6 +37,8 @@ class Findings {
   void breaks(std::string sentence, Measured measured = Measured::Refuses, int status = 422) {
     add({std::move(sentence), status, true, measured});
   }
+  /// The ICD forbids it, and either manner takes the message all the same.
+  void tells(std::string sentence) { add({std::move(sentence), 422, true, Measured::Takes, false}); }
   /// The ICD allows it, the measured server does not.
   void displeases(std::string sentence) { add({std::move(sentence), 422, false, Measured::Refuses}); }
 
@@ -38,8 +47,7 @@ class Findings {
   /// The first that a Command Post of that manner does not take; null: it takes the message.
   const Finding* decisive(Manner manner) const {
     for (const Finding& finding : all_) {
-      if (manner == Manner::Strict ? finding.breaks_icd : finding.measured != Measured::Takes)
-        return &finding;
+      if (decides(finding, manner)) return &finding;
     }
     return nullptr;
   }
@@ -56,9 +64,11 @@ class Findings {
  private:
   void add(Finding finding) {
     if (finding.sentence.size() > kLongest) finding.sentence.resize(kLongest);  // it may quote the sender
+    const auto is_first = [&](Manner manner) {
+      return decides(finding, manner) && decisive(manner) == nullptr;
+    };
     // A finding that decides must not be lost behind many that do not.
-    if (all_.size() < kMost ||
-        (finding.measured != Measured::Takes && decisive(Manner::AsMeasured) == nullptr)) {
+    if (all_.size() < kMost || is_first(Manner::Strict) || is_first(Manner::AsMeasured)) {
       all_.push_back(std::move(finding));
     }
   }

@@ -26,6 +26,7 @@ struct Judgement {
   std::optional<MapMessage> map;      // where one was taken
   std::optional<OrderedJson> report;  // where one was recorded: what was answered
   std::vector<Accepted> accepted;
+  std::vector<MarkerChange> markers;  // that were taken
   std::string fault;  // what was done wrong on purpose; "": nothing
 };
 

@@ -7,8 +7,9 @@ namespace adit::rehearsal {
 bool StrictMapping::too_many(const std::string& uri, const Request& request) {
   const std::lock_guard lock(mutex_);
   RateLimit& limit = limits_.try_emplace(uri, hz_, counted_).first->second;
-  if (limit.too_soon(request)) return true;
-  limit.count(request, Clock::now());
+  const Clock::time_point now = Clock::now();
+  if (limit.too_soon(request, now)) return true;
+  limit.count(request, now);
   return false;
 }
 
@@ -49,8 +50,8 @@ void StrictMapping::judge_body(const Request& request, Judgement& judgement) {
     judgement.outcome = refused(*finding);
   } else if (message) {
     judgement.outcome = answered(200, Json(nullptr));
-    display_.show(message->markers, findings);
     judgement.accepted = std::move(message->parts);
+    judgement.markers = std::move(message->markers);
     judgement.map = std::move(message->map);
   } else {
     judgement.outcome = refused(422, kUnreadable);

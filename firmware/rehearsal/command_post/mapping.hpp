@@ -5,7 +5,6 @@
 #include <string>
 
 #include "rehearsal/command_post/judgement.hpp"
-#include "rehearsal/command_post/marker_display.hpp"
 #include "rehearsal/command_post/rate_limit.hpp"
 #include "rehearsal/command_post/stamp_order.hpp"
 
@@ -27,7 +26,6 @@ class StrictMapping : public Endpoint {
   const double hz_;
   const Counted counted_;
   StampOrder stamps_;
-  MarkerDisplay display_;
   std::mutex mutex_;
   std::map<std::string, RateLimit> limits_;
 };
@@ -46,7 +44,6 @@ class MeasuredMapping : public Endpoint {
 
   const std::string token_;
   StampOrder stamps_;
-  MarkerDisplay display_;
   std::mutex mutex_;
   RateLimit cloud_limit_;
 };

@@ -39,10 +39,12 @@ Outcome outcome_of(const Finding& finding) {
 
 }  // namespace
 
+/// Of a cloud that has been decoded.
 bool MeasuredMapping::cloud_too_soon(const Request& request) {
   const std::lock_guard lock(mutex_);
-  const bool soon = cloud_limit_.too_soon(request);
-  cloud_limit_.count(request, Clock::now());
+  const Clock::time_point now = Clock::now();
+  const bool soon = cloud_limit_.too_soon(request, now);
+  cloud_limit_.count(request, now);
   return soon;
 }
 
@@ -86,12 +88,12 @@ void MeasuredMapping::judge_body(const Request& request, Judgement& judgement) {
   }
   stamps_.check(judgement.uri, message->stamps, true, findings);
   judgement.outcome = answered(200, Json(nullptr));
-  display_.show(message->markers, findings);
   // Too many clouds are told off and taken all the same.
   if (message->map && std::holds_alternative<Cloud>(message->map->msg) && cloud_too_soon(request)) {
     judgement.outcome = closing(refused(429, kTooManyClouds));
   }
   judgement.accepted = std::move(message->parts);
+  judgement.markers = std::move(message->markers);
   judgement.map = std::move(message->map);
 }
 

@@ -1,27 +1,48 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <expected>
+#include <map>
 #include <mutex>
-#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "rehearsal/command_post/findings.hpp"
+#include "rehearsal/command_post/json.hpp"
 #include "rehearsal/command_post/messages.hpp"
 
 namespace adit::rehearsal {
 
 /// The organiser's display of markers, as measured: after a message with fewer markers than the one before,
-/// its server deletes the markers with an empty `ns` whose ids are the numbers that are missing. Safe for use
-/// by several threads.
+/// its server deletes the markers with an empty `ns` whose ids are the numbers that are missing. What stands
+/// is compared with what the robots posted. Bounded. Safe for use by several threads.
 class MarkerDisplay {
  public:
-  /// Writes down each marker that this deletes and that stands.
+  /// Of a message that was taken. Writes down each marker that the server deletes by itself and that stands.
   void show(const std::vector<MarkerChange>& changes, Findings& findings);
 
+  /// What adit-robots says that should stand, of each robot:
+  /// [{"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}]. Other kinds
+  /// are passed over. An error says what is wrong.
+  std::expected<void, std::string> told(const Json& posted);
+
+  /// How many stand, how many should, and sentences about the first that differ.
+  OrderedJson json() const;
+  /// The same as lines; "" if no robot told anything.
+  std::string text() const;
+
  private:
-  std::mutex mutex_;
-  std::set<std::int64_t> unnamed_;  // the ids that stand with an empty ns
-  std::size_t before_ = 0;          // markers of the message before
+  using Key = std::pair<std::string, std::int64_t>;  // ns, id
+  using Places = std::map<Key, double>;              // x of each, metres
+
+  std::vector<std::string> differences() const;
+
+  mutable std::mutex mutex_;  // guards all below
+  Places standing_;
+  std::size_t before_ = 0;                // markers of the message before
+  std::map<std::string, Places> posted_;  // by robot
 };
 
 }  // namespace adit::rehearsal

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdint>
 
 #include "rehearsal/command_post/messages.hpp"
@@ -88,6 +89,21 @@ void check_looks(const Field& marker) {
   if (const auto text = marker.optional_member("text")) text->text();
 }
 
+/// Alpha 0: "the object will appear invisible" (ICD 6.6), unless its points or its mesh have colors of their
+/// own.
+void check_alpha(const Field& marker) {
+  const Json& all = marker.value();
+  const auto shows = [](const Json& color) {
+    return color.is_object() && color.contains("a") && color["a"].is_number() && color["a"].get<double>() > 0;
+  };
+  const bool by_color = !all.contains("color") || shows(all["color"]);
+  const bool by_points = all.contains("colors") && std::ranges::any_of(all["colors"], shows);
+  const bool by_mesh =
+      all.contains("mesh_use_embedded_materials") && all["mesh_use_embedded_materials"] == true;
+  if (by_color || by_points || by_mesh) return;
+  marker.findings().tells(marker.path() + ".color.a: nobody sees a marker with 0 (ICD 6.6)");
+}
+
 bool read_marker(const Field& marker, MarkersMessage& message) {
   if (!marker.is_object()) return false;
   read_header(marker, message.stamps);
@@ -99,11 +115,14 @@ bool read_marker(const Field& marker, MarkersMessage& message) {
   const auto shape = type->integer(0, kLastType);
   if (!shape) return false;
   const auto kind = action->integer(0, 3);
-  if (!kind || !read_pose(*pose)) return false;
+  const auto place = read_pose(*pose);
+  if (!kind || !place) return false;
   if (*kind == 1) action->breaks("expected 0, 2 or 3 (ICD 6.6)", Measured::Takes);
   check_looks(marker);
   check_geometry(marker, *shape);
+  if (*kind == 0) check_alpha(marker);
   change->action = *kind;
+  change->x = place->position.x;
   message.changes.push_back(*std::move(change));
   return true;
 }

@@ -58,6 +58,7 @@ struct MarkerChange {
   std::string ns;
   std::int64_t id = 0;
   std::int64_t action = 0;
+  double x = 0;  // metres
 };
 struct MarkersMessage {
   std::vector<MarkerChange> changes;

@@ -111,6 +111,7 @@ Outcome spoiled(Action action, const Request& request, Outcome decided) {
     case Action::PageElsewhere:
     case Action::PageBad:
     case Action::PageUnprocessable:
+    case Action::RepeatAnswer:
       break;
   }
   return decided;

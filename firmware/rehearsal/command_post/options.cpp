@@ -1,6 +1,9 @@
 #include "rehearsal/command_post/options.hpp"
 
+#include <sstream>
+
 #include "command_line/number.hpp"
+#include "rehearsal/command_post/fields.hpp"
 
 namespace adit::rehearsal {
 namespace {
@@ -33,7 +36,7 @@ Wrong take_megabytes(std::uint64_t& bytes, const std::string& text) {
   return wrong;
 }
 
-Wrong take_counted(Counted& counted, const std::string& text) {
+Wrong take_counted(std::optional<Counted>& counted, const std::string& text) {
   if (text == "starts") {
     counted = Counted::Starts;
   } else if (text == "last-bytes") {
@@ -42,6 +45,16 @@ Wrong take_counted(Counted& counted, const std::string& text) {
     counted = Counted::Answers;
   } else {
     return "expected starts, last-bytes or answers, got '" + text + "'";
+  }
+  return std::nullopt;
+}
+
+Wrong take_roster(std::vector<std::string>& roster, const std::string& text) {
+  std::istringstream names(text);
+  for (std::string name; std::getline(names, name, ',');) {
+    if (!is_robot_name(name))
+      return "expected names of 1 to 10 letters, digits and underscores, got '" + name + "'";
+    roster.push_back(name);
   }
   return std::nullopt;
 }
@@ -99,6 +112,10 @@ command_line::Program command_line_of(Options& options) {
             "starts, last-bytes or answers (to the next start): what is counted for that rate, of maps, "
             "states and markers",
             take<take_counted>(options.counted)},
+           {"--link", "MBIT", "a second, that come in over both endpoints together (0: no limit)",
+            number<0.0, kMost>(options.link)},
+           {"--roster", "NAME,...", "of the robots that are registered; any other name is a violation",
+            take<take_roster>(options.roster)},
            {"--not-started", "", "the run waits for POST /start on the control port", &options.not_started},
            {"--fault", "AIM:FAULT", "what goes wrong with the next request of an aim; may be given often",
             &options.faults},
@@ -122,6 +139,7 @@ command_line::Program command_line_of(Options& options) {
           "  record-then-drop, reset, half-answer, garbage, 500-recorded\n"
           "                                                    recorded, and the answer is lost\n"
           "  record-after=SECONDS, answer-after=SECONDS        late\n"
+          "  repeat-answer                                     the answer before it again; not recorded\n"
           "  other-sender                                      another sender's report comes just before\n"
           "  remaining=+N, remaining=-N                        remaining_reports is wrong from then on\n"
           "  retry-after=SECONDS                               in a header",

@@ -27,7 +27,9 @@ struct Options {
   RunPlan run;
   std::optional<double> rate;            // Hz; absent: as the manner has it
   bool one_api_limit = false;            // over statuses and reports together
-  Counted counted = Counted::Starts;     // of what is mapping's, for the rate
+  std::optional<Counted> counted;        // of what is mapping's, for the rate; absent: as the manner has it
+  double link = 0;                       // Mbit/s over both endpoints; 0: no limit
+  std::vector<std::string> roster;       // the robots' names; empty: any
   std::vector<std::string> faults;       // "reports:record-then-drop", not yet understood
   std::vector<std::string> fault_rates;  // "reports:record-then-drop=0.1", not yet understood
   std::uint64_t seed = 1;                // of what happens at random

@@ -4,10 +4,12 @@
 
 namespace adit::rehearsal {
 
-bool RateLimit::too_soon(const Request& request) const {
-  constexpr double tolerance = 0.95;
+bool RateLimit::too_soon(const Request& request, Clock::time_point now) const {
+  const double tolerance = counted_ == Counted::Decoded ? 1 : 0.95;
   if (hz_ <= 0 || !last_) return false;
-  const Clock::time_point comes = counted_ == Counted::LastBytes ? request.whole : request.at;
+  const Clock::time_point comes = counted_ == Counted::LastBytes ? request.whole
+                                  : counted_ == Counted::Decoded ? now
+                                                                 : request.at;
   return comes - *last_ < std::chrono::duration<double>(tolerance / hz_);
 }
 

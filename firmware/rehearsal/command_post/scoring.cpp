@@ -82,7 +82,7 @@ StrictScoring::StrictScoring(std::string token, double hz, bool one_limit, Run& 
 bool StrictScoring::too_many(const Request& request) {
   const std::lock_guard lock(mutex_);
   RateLimit& limit = request.path == kStatusUri && !one_limit_ ? status_limit_ : report_limit_;
-  if (limit.too_soon(request)) return true;
+  if (limit.too_soon(request, Clock::now())) return true;
   limit.count(request, request.at);
   return false;
 }

@@ -38,7 +38,7 @@ MeasuredScoring::MeasuredScoring(std::string token, double hz, Run& run)
 
 bool MeasuredScoring::too_many(const Request& request) {
   const std::lock_guard lock(mutex_);
-  if (limit_.too_soon(request)) return true;
+  if (limit_.too_soon(request, Clock::now())) return true;
   limit_.count(request, request.at);
   return false;
 }

@@ -26,6 +26,10 @@ std::expected<std::unique_ptr<Server>, std::string> Server::listen(const Address
   auto listener = listening_socket(address);
   if (!listener) return std::unexpected(std::move(listener.error()));
   const auto bound = local_address_of(listener->get());
+  if (manner.link) {  // else a whole map waits here, and its sender takes it for sent
+    constexpr int most_waiting = 64 << 10;
+    ::setsockopt(listener->get(), SOL_SOCKET, SO_RCVBUF, &most_waiting, sizeof most_waiting);
+  }
   loop::FileDescriptor stop_event(::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK));
   if (!stop_event || !bound) return std::unexpected(address.text() + ": no more file descriptors");
   return std::unique_ptr<Server>(

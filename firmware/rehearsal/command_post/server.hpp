@@ -12,6 +12,7 @@
 #include "loop/file_descriptor.hpp"
 #include "rehearsal/command_post/address.hpp"
 #include "rehearsal/command_post/http.hpp"
+#include "rehearsal/command_post/link.hpp"
 
 namespace adit::rehearsal {
 
@@ -20,7 +21,8 @@ struct WireManner {
   bool answers_expect = true;         // sends 100 Continue where it is asked to
   std::chrono::seconds patience{60};  // with a connection that sends nothing
   std::size_t most_body = std::size_t{256} << 20;
-  bool slash = false;  // at the end of each path
+  bool slash = false;                    // at the end of each path
+  std::shared_ptr<Link> link = nullptr;  // what comes in shares it; null: as fast as it comes
 };
 
 /// Decides what is done about a request; called by several threads at once. See bytes_of() for how it is

@@ -129,6 +129,7 @@ void Explorer::work(double metres_per_second, const std::stop_token& finish) {
     if (markers.due(now)) {
       if (Markers changed{stamp(now), scene_.take_changes()}; !changed.markers.empty())
         client_.send(std::move(changed));
+      posted_.note(name_, scene_.standing());
     }
     pause_until(now + kTick, finish);
   }

@@ -9,6 +9,11 @@ void Posted::note(const std::string& robot, Kind kind, const Amount& amount) {
   amounts_[{robot, kind}] = amount;
 }
 
+void Posted::note(const std::string& robot, const std::vector<Marker>& standing) {
+  const std::scoped_lock lock(mutex_);
+  standing_[robot] = standing;
+}
+
 std::string Posted::json() const {
   const std::scoped_lock lock(mutex_);
   auto all = nlohmann::json::array();
@@ -18,6 +23,12 @@ std::string Posted::json() const {
                    {"amount", posted.amount},
                    {"places", posted.places},
                    {"newest", posted.newest.time_since_epoch().count()}});
+  }
+  for (const auto& [robot, markers] : standing_) {
+    auto standing = nlohmann::json::array();
+    for (const Marker& marker : markers)
+      standing.push_back({{"ns", marker.ns}, {"id", marker.id}, {"x", marker.position.x}});
+    all.push_back({{"robot", robot}, {"kind", "markers"}, {"standing", std::move(standing)}});
   }
   return all.dump();
 }

@@ -5,14 +5,16 @@
 #include <mutex>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "rehearsal/robots/dated.hpp"
 #include "rehearsal/robots/http.hpp"
+#include "rehearsal/robots/messages.hpp"
 
 namespace adit::robots {
 
-/// How much of its maps each robot posted, whatever was answered: what a rehearsal Command Post measures
-/// against. Any thread may write to it.
+/// How much of its maps and which markers each robot posted, whatever was answered: what a rehearsal Command
+/// Post measures against. Any thread may write to it.
 class Posted {
  public:
   struct Amount {
@@ -21,6 +23,8 @@ class Posted {
     Moment newest;             // the last map's date
   };
   void note(const std::string& robot, Kind kind, const Amount& amount);
+  /// The markers that are to stand, now that this was posted.
+  void note(const std::string& robot, const std::vector<Marker>& standing);
 
   /// As POST /posted on the control port takes it.
   std::string json() const;
@@ -28,6 +32,7 @@ class Posted {
  private:
   mutable std::mutex mutex_;  // guards all below
   std::map<std::pair<std::string, Kind>, Amount> amounts_;
+  std::map<std::string, std::vector<Marker>> standing_;  // by robot
 };
 
 /// Tells the rehearsal Command Post's control port what was posted. How old that was when it came and how

@@ -86,6 +86,12 @@ void MarkerScene::candidate(const std::string& type, const Vector3& position, do
           .text = type + "?"});
 }
 
+std::vector<Marker> MarkerScene::standing() const {
+  std::vector<Marker> all;
+  for (const auto& [key, marker] : standing_) all.push_back(marker);
+  return all;
+}
+
 std::vector<Marker> MarkerScene::take_changes() {
   if (++calls_ % 10 == 0) {
     for (const auto& [key, marker] : standing_) changes_.push_back(marker);

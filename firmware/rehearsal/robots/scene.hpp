@@ -22,6 +22,7 @@ class MarkerScene {
 
   /// What changed since the last call; now and then (every tenth call) all that stands.
   std::vector<Marker> take_changes();
+  std::vector<Marker> standing() const;
 
  private:
   void change(Marker marker);

@@ -161,7 +161,7 @@ struct FromAnswers {
 
 constexpr double kTransfer = 0.5, kMinutes = 10;
 
-/// Beside a gateway that begins anew as often, with what the one before has learned.
+/// Of a gateway that restarts every `lives` seconds, with what the one before has learned.
 Counts learns_of_answers(double lives) {
   FromAnswers server;
   RateLimit limit{1};

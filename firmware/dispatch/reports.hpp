@@ -82,6 +82,8 @@ class Reports {
   void will_move(const std::string& post, Time time);
   /// The rules from now on. A client that waits already keeps its deadline.
   void go_by(const ReportRules& rules) { rules_ = rules; }
+  /// From one request to the next, as the Command Post's limit has it.
+  void paced(Instant::duration spacing) { account_.paced(spacing); }
   /// What is read was written down before it, or after.
   void leapt(const Leap& leap) { account_.leapt(leap); }
 

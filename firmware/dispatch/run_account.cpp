@@ -13,6 +13,10 @@ constexpr double kAnswerWritten = 1;
 
 }  // namespace
 
+void RunAccount::paced(Instant::duration spacing) {
+  fresh_ = std::max<Instant::duration>(kFresh, spacing * 5 / 4 + std::chrono::seconds(1));
+}
+
 void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::string& post) {
   runs_.open(std::move(all), latest);
   written_ = run().heard;

@@ -19,7 +19,7 @@ namespace adit::dispatch {
 class RunAccount {
  public:
   using Instant = std::chrono::steady_clock::time_point;
-  static constexpr std::chrono::seconds kFresh{15};  // how long a status vouches for the run
+  static constexpr std::chrono::seconds kFresh{15};  // how long a status vouches for the run, at least
   static constexpr double kWriteEvery = 30;          // seconds between writes of the run clock alone
 
   /// `book` outlives this.
@@ -36,10 +36,12 @@ class RunAccount {
   /// since 1970; not later than it was, where that was before this program's life.
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
-  /// The run was heard of less than kFresh ago.
-  bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= kFresh; }
-  /// The Command Post was asked less than kFresh ago, and answered nothing that helps.
-  bool is_dumb(Instant now) const { return !is_fresh(now) && dumb_at_ && now - *dumb_at_ <= kFresh; }
+  /// Requests are so far apart: a status vouches for the run until the next one may go.
+  void paced(Instant::duration spacing);
+  /// A status still vouches for the run.
+  bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= fresh_; }
+  /// The Command Post was asked as short a time ago, and answered nothing that helps.
+  bool is_dumb(Instant now) const { return !is_fresh(now) && dumb_at_ && now - *dumb_at_ <= fresh_; }
   /// What /api/status would answer; nothing: it is not known for certain, or proves nothing.
   std::optional<icd::RunStatus> expected(Instant now) const;
 
@@ -98,6 +100,7 @@ class RunAccount {
   Leap leap_;
   double written_ = 0;  // Run::heard as it is on disk
   double status_at_ = 0;
+  Instant::duration fresh_ = kFresh;
   std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
   std::optional<Instant> dumb_at_;
   std::optional<Instant> clock_at_;  // when one of the run's clocks was heard, if in this program's life

@@ -45,8 +45,7 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
                std::move(token), settings.command_post.timeouts.scoring_answer),
-      report_pace_(icd::Uri::ArtifactReports, settings.command_post.rates.reports_hz, random, journal),
-      status_pace_(icd::Uri::Status, settings.command_post.rates.status_hz, random, journal),
+      pace_(settings.command_post.rates, random, journal),
       wake_(loop.timer([this] { pump(); })),
       poll_(loop.timer([this] { poll(); })),
       deadline_(loop.timer([this] { deadline_came(); })) {}
@@ -74,8 +73,7 @@ std::expected<void, std::string> Scoring::open_reports() {
 
 void Scoring::settings_changed() {
   reports_->go_by(rules_of(settings_.reports));
-  report_pace_.allow(settings_.command_post.rates.reports_hz, loop_.now());
-  status_pace_.allow(settings_.command_post.rates.status_hz, loop_.now());
+  pace_.allow(settings_.command_post.rates, loop_.now());
   pump();
 }
 
@@ -87,12 +85,10 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 }
 
 void Scoring::endpoint_turned() {
-  report_pace_.link_is_back();
-  status_pace_.link_is_back();
+  pace_.endpoint_turned();
   run_.reset();
   run_heard_.reset();
   known_status_ = {};
-  has_one_limit_ = false;
   poll_due_ = true;
   const auto opened = whole(restart_, [this] { return open_reports(); });
   if (!opened) {
@@ -115,7 +111,7 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
 }
 
 void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
-  const bool may_send = !channel_.busy() && channel_.connected() && report_ready() <= loop_.now();
+  const bool may_send = !channel_.busy() && channel_.connected() && pace_.report_ready() <= loop_.now();
   whole(restart_, [&] {
     if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   });
@@ -134,7 +130,8 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
     return;
   }
   const loop::Instant now = loop_.now();
-  const auto known = known_status_.is_fresh(now) || has_one_limit_ ? known_status_.answer(now) : std::nullopt;
+  const auto known =
+      known_status_.is_fresh(now) || pace_.has_one_limit() ? known_status_.answer(now) : std::nullopt;
   if (known) return responder->answer(*known);
   askers_.push_back({std::move(responder), now + kAskerWaits});
   pump();
@@ -145,17 +142,7 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
 /// Neither does a report go first, nor is the pace in the way for longer than an asker waits.
 bool Scoring::may_ask_soon(loop::Instant now) const {
   const dispatch::Wish wish = reports_->wish(time());
-  return !channel_.busy() && !wish.report && status_ready(wish) <= now + kAskerWaits;
-}
-
-loop::Instant Scoring::report_ready() const {
-  const loop::Instant ready = report_pace_.ready();
-  return has_one_limit_ ? std::max(ready, status_left_ + report_pace_.spacing()) : ready;
-}
-
-loop::Instant Scoring::status_ready(const dispatch::Wish& wish) const {
-  const loop::Instant ready = status_pace_.ready();
-  return wish.in_doubt ? ready : std::max(ready, report_left_ + report_pace_.spacing());
+  return !channel_.busy() && !wish.report && pace_.status_ready(wish.in_doubt) <= now + kAskerWaits;
 }
 
 /// What can be told until the Command Post is asked again. It may be older if only reports are in the way of
@@ -191,14 +178,15 @@ void Scoring::pump() {
   if (stopping_ || !channel_.has_token()) return;
   const dispatch::Time at = time();
   const loop::Instant now = at.now;
+  reports_->paced(pace_.spacing());
   const dispatch::Wish wish = reports_->wish(at);
   if (!is_free(wish, now)) return;
   std::array<dispatch::Candidate, 2> candidates;
-  if (wish.report) candidates[0] = {now, report_ready()};
+  if (wish.report) candidates[0] = {now, pace_.report_ready()};
   if (!askers_.empty() || poll_due_) {
-    candidates[1] = {now, status_ready(wish)};
+    candidates[1] = {now, pace_.status_ready(wish.in_doubt)};
   } else if (wish.status) {
-    candidates[1] = {now, std::max(status_ready(wish), *wish.status)};
+    candidates[1] = {now, std::max(pace_.status_ready(wish.in_doubt), *wish.status)};
   }
   const dispatch::Turn turn = dispatch::in_order(candidates, now);
   if (turn.wake) wake_.call_at(*turn.wake);
@@ -211,14 +199,14 @@ void Scoring::pump() {
 bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
   if (!channel_.busy()) return true;
   if (!asked_status_ || asked_status_->decides || !wish.report) return false;
-  const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, report_ready());
+  const loop::Instant gives_way = std::max(asked_status_->at + kGivesWayAfter, pace_.report_ready());
   if (gives_way > now) {
     wake_.call_at(gives_way);
     return false;
   }
   channel_.give_way();
   asked_status_.reset();
-  status_pace_.lost(now);
+  pace_.status_lost(now);
   poll_due_ = true;
   return true;
 }
@@ -231,13 +219,12 @@ void Scoring::send_next() {
   });
   if (is_sent) return;
   // The disk refused it (or it was the same as another one): it must not leave.
-  if (!trouble().empty()) report_pace_.failed(loop_.now());
-  wake_.call_at(std::max(report_pace_.ready(), loop_.now()));
+  if (!trouble().empty()) pace_.report_failed(loop_.now());
+  wake_.call_at(std::max(pace_.report_ready(), loop_.now()));
 }
 
 void Scoring::send(const dispatch::Report& report) {
-  report_left_ = loop_.now();
-  report_pace_.sent(report_left_);
+  pace_.report_sent(loop_.now());
   const std::string body = codec::write_artifact_report(report.report);
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
@@ -267,24 +254,21 @@ void Scoring::judge_report(const uplink::Outcome& outcome) {
   hear_time();
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
-    report_left_ = answered->sent.first;
     const dispatch::ReportEvent event = reports_->answered(
         {.status = answered->status, .content_type = answered->content_type, .body = answered->body}, time());
     if (event == dispatch::ReportEvent::Throttled) {
-      has_one_limit_ = has_one_limit_ || report_left_ < status_left_ + report_pace_.spacing();
-      report_pace_.throttled(now, answered->retry_after);
+      pace_.report_throttled(answered->sent, answered->retry_after, now);
     } else if (event == dispatch::ReportEvent::Barred) {
-      report_pace_.lost(now);
+      pace_.report_barred(answered->sent, now);
     } else {
-      report_pace_.taken(answered->sent, now);
+      pace_.report_taken(answered->sent, now);
     }
   } else if (const auto* never = std::get_if<uplink::NeverSent>(&outcome)) {
     reports_->never_left(never->why, time());
-    report_pace_.failed(now);
+    pace_.report_failed(now);
   } else {
-    report_left_ = now;
     reports_->lost(sentence_of(outcome), time());
-    report_pace_.taken({.first = now, .last = now}, now);
+    pace_.report_lost(now);
   }
 }
 
@@ -328,8 +312,7 @@ void Scoring::tick() {
 void Scoring::ask_status(bool decides) {
   poll_due_ = false;
   asked_status_ = {.at = loop_.now(), .decides = decides};
-  status_left_ = loop_.now();
-  status_pace_.sent(status_left_);
+  pace_.status_sent(asked_status_->at);
   channel_.send(icd::Uri::Status, "", {},
                 [this](const uplink::Outcome& outcome) { status_answered(outcome); });
 }
@@ -349,22 +332,20 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   const auto run = answered != nullptr && answered->status == 200 ? codec::read_run_status(answered->body)
                                                                   : std::unexpected<std::string>("");
-  if (answered != nullptr) status_left_ = answered->sent.first;
   if (answered != nullptr && answered->wants_slash) {
-    status_pace_.taken(answered->sent, now);
+    pace_.status_taken(answered->sent, now);
     poll_due_ = true;  // those who ask wait on
     return;
   }
   if (run) known_status_.heard(answered->body, asked);  // and so told with its age
   if (answered == nullptr) {
-    status_pace_.failed(outcome, now);
+    pace_.status_failed(outcome, now);
     answer_askers(known_or(no_status(sentence_of(outcome))));
   } else if (answered->status == 429) {
-    has_one_limit_ = has_one_limit_ || status_left_ < report_left_ + report_pace_.spacing();
-    status_pace_.throttled(now, answered->retry_after);
+    pace_.status_throttled(answered->sent, answered->retry_after, now);
     answer_askers(known_or(client_answer(*answered)));
   } else {
-    status_pace_.taken(answered->sent, now);
+    pace_.status_taken(answered->sent, now);
     const bool refused = answered->status >= 400 && answered->status < 500 && !channel_.is_foreign();
     answer_askers(refused ? client_answer(*answered) : known_or(no_status_in(*answered)));
   }
@@ -418,8 +399,7 @@ std::int64_t Scoring::begin_run() {
 }
 
 void Scoring::link_is_back() {
-  report_pace_.link_is_back();
-  status_pace_.link_is_back();
+  pace_.link_is_back();
   channel_.hurry();
   poll();  // what the Command Post says now is news
 }

@@ -14,7 +14,7 @@
 #include "forward/known_status.hpp"
 #include "forward/record.hpp"
 #include "forward/report_output.hpp"
-#include "forward/uri_pace.hpp"
+#include "forward/scoring_pace.hpp"
 #include "icd/artifact_report.hpp"
 #include "icd/run_status.hpp"
 #include "intake/desk.hpp"
@@ -46,17 +46,11 @@ class Scoring {
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
           journal::Journal& journal, std::function<void()> restart);
 
-  void carry_on(const journal::Carried& carried) {
-    report_pace_.carry_on(carried, loop_.now());
-    status_pace_.carry_on(carried, loop_.now());
-  }
+  void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
   /// As if something had just been sent: the flow before may have.
-  void hold_back() {
-    report_pace_.sent(loop_.now());
-    status_pace_.sent(loop_.now());
-  }
+  void hold_back() { pace_.hold_back(loop_.now()); }
   /// Of the run's status, which the operator's test asks for too.
-  UriPace& status_pace() { return status_pace_; }
+  UriPace& status_pace() { return pace_.of_status(); }
   /// The settings have changed.
   void settings_changed();
   /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
@@ -134,8 +128,6 @@ class Scoring {
   void answer_askers(const intake::Answer& answer);
   void watch_deadlines();
   void tell_askers(loop::Instant now);
-  loop::Instant report_ready() const;
-  loop::Instant status_ready(const dispatch::Wish& wish) const;
   std::optional<loop::Instant> first_asker() const;
   bool may_ask_soon(loop::Instant now) const;
   std::optional<intake::Answer> known_status() const;
@@ -153,9 +145,7 @@ class Scoring {
   Clocks* clocks_ = nullptr;                    // without them no clock has leapt
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
-  UriPace report_pace_, status_pace_;
-  loop::Instant report_left_ = loop::Instant::min(), status_left_ = loop::Instant::min();  // the last one
-  bool has_one_limit_ = false;  // the Command Post, over reports and statuses
+  ScoringPace pace_;
   loop::Source wake_, poll_, deadline_;
 
   std::deque<Asker> askers_;

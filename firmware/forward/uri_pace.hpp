@@ -74,6 +74,11 @@ class UriPace {
     rate_.throttled(now, retry_after);
     keep();
   }
+  /// The spacing to the next request begins now.
+  void count_from(pace::Instant now) {
+    rate_.lost(now);
+    keep();
+  }
   /// It failed, but may have been heard. Allocates no memory: what sent() wrote makes the next life wait as
   /// long.
   void lost(pace::Instant now) {

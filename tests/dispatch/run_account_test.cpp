@@ -44,6 +44,15 @@ TEST_F(RunAccountTest, ExpectsNothingBeforeTheFirstStatus) {
   EXPECT_FALSE(account_.is_fresh(time().now));
 }
 
+TEST_F(RunAccountTest, AStatusVouchesForTheRunUntilTheNextRequestMayGo) {
+  hear(20, 3);
+  EXPECT_TRUE(account_.is_fresh(at(now_ + 15).now));
+  EXPECT_FALSE(account_.is_fresh(at(now_ + 16).now));
+  account_.paced(std::chrono::seconds(20));
+  EXPECT_TRUE(account_.is_fresh(at(now_ + 22).now)) << "or a report would wait for statuses for ever";
+  EXPECT_FALSE(account_.is_fresh(at(now_ + 27).now));
+}
+
 TEST_F(RunAccountTest, ExpectsTheLastStatusLessWhatItsOwnReportsDid) {
   hear(20, 3);
   answer("scored", 1);

@@ -1,0 +1,80 @@
+#include "forward/scoring_pace.hpp"
+
+#include <gtest/gtest.h>
+
+#include "forward/around.hpp"
+
+namespace adit::forward {
+namespace {
+
+using namespace std::chrono_literals;
+
+class ScoringPaceTest : public testing::Test, protected Around {
+ protected:
+  static pace::Instant at(double seconds) {
+    return pace::Instant{} +
+           std::chrono::duration_cast<pace::Duration>(std::chrono::duration<double>(1000 + seconds));
+  }
+  static uplink::Sent left(double seconds) { return {.first = at(seconds), .last = at(seconds)}; }
+  void ask_status(double seconds) {
+    pace_.status_sent(at(seconds));
+    pace_.status_taken(left(seconds), at(seconds));
+  }
+  void refuse_report(double seconds, std::optional<std::chrono::seconds> retry_after = {}) {
+    pace_.report_sent(at(seconds));
+    pace_.report_throttled(left(seconds), retry_after, at(seconds));
+  }
+
+  void SetUp() override { journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()}); }
+
+  ScoringPace pace_{settings_.command_post.rates, random_, journal_};
+};
+
+TEST_F(ScoringPaceTest, AReportFollowsAStatusAtOnceAndAStatusKeepsAwayFromAReport) {
+  ask_status(0);
+  EXPECT_LE(pace_.report_ready(), at(0));
+  pace_.report_sent(at(0.5));
+  pace_.report_taken(left(0.5), at(0.6));
+  EXPECT_GE(pace_.status_ready(false), at(1.5));
+  EXPECT_LT(pace_.status_ready(true), at(1.1)) << "it decides what became of a report";
+}
+
+TEST_F(ScoringPaceTest, OneLimitOverBothIsFoundOutAndThenTheyShareAPace) {
+  ask_status(0);
+  refuse_report(0.1);
+  EXPECT_TRUE(pace_.has_one_limit());
+  EXPECT_GE(pace_.report_ready(), at(1.1));
+  EXPECT_LT(pace_.report_ready(), at(1.2));
+  ask_status(1.2);
+  EXPECT_GE(pace_.report_ready(), at(2.2));
+  EXPECT_GE(pace_.status_ready(true), at(2.2));
+  pace_.endpoint_turned();
+  EXPECT_FALSE(pace_.has_one_limit());
+  EXPECT_GE(pace_.status_ready(true), at(2.2)) << "a status was asked for not long ago";
+}
+
+TEST_F(ScoringPaceTest, TheFirst429OfOneLimitTeachesNoSlowerPace) {
+  const pace::Duration allowed = pace_.spacing();
+  for (const double begin : {0.0, 10.0, 20.0, 30.0, 40.0}) {
+    ask_status(begin);
+    refuse_report(begin + 0.1);
+    EXPECT_EQ(pace_.spacing(), allowed) << begin;
+    pace_.endpoint_turned();
+  }
+}
+
+TEST_F(ScoringPaceTest, TheFirst429OfOneLimitMayAskForAPause) {
+  ask_status(0);
+  refuse_report(0.1, 7s);
+  EXPECT_GE(pace_.report_ready(), at(7.1));
+}
+
+TEST_F(ScoringPaceTest, A429FarFromTheOtherKindIsAStormOfItsOwn) {
+  ask_status(0);
+  refuse_report(3);
+  EXPECT_FALSE(pace_.has_one_limit());
+  EXPECT_GE(pace_.report_ready(), at(4));
+}
+
+}  // namespace
+}  // namespace adit::forward

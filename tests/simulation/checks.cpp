@@ -31,8 +31,11 @@ Window window_of(const Evidence& evidence, double first, double last) {
   /// Of each cut: the time that was kept last is that old where the disk was at fault, and then no power.
   constexpr double kBehind = 60;
   double behind = 0;  // by which the box's clock is, after a start
+  DiskFaultsSeen disk;
   for (const Event& event : evidence.events) {
-    if (event.kind == Kind::PowerCut) last += kBehind;
+    // The next gateway's clock for stamps is ahead, and times of the one before seem as much older.
+    if (event.kind == Kind::PowerCut || disk.forgets_at(event)) last += kBehind;
+    disk.add(event);
     const bool by_a_start = event.stamp == -event.at;
     if (event.kind == Kind::ClockSet && !by_a_start) return {0, kForever};
     if (event.kind == Kind::ClockSet) behind = std::max(behind, event.at);

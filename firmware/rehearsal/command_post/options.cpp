@@ -90,7 +90,7 @@ command_line::Program command_line_of(Options& options) {
             take<take_address<Address>>(options.scoring), Wanted::Always},
            {"--mapping", "ADDR:PORT", "address of the mapping endpoint",
             take<take_address<Address>>(options.mapping), Wanted::Always},
-           {"--secrets", "DIR", "directory with scoring.token and mapping.token", &options.secrets,
+           {"--secrets", "DIR", "directory of the tokens: scoring.token and mapping.token", &options.secrets,
             Wanted::Always},
            {"--artifacts", "CSV", "true artifacts that reports are scored against: type,x,y,z",
             &options.artifacts},

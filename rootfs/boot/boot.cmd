@@ -1,9 +1,9 @@
-# U-Boot's part of two slots: counts down the tries of the slot that is next in BOOT_ORDER, and starts it. The counts lie in the
-# first sector of adit-env with a checksum, and a sector is written as a whole or not at all. RAUC sets them: 3 for a slot that it
-# has written, ten once it came up healthy. Counts are hexadecimal to RAUC: ten is a.
+# Starts the next slot of BOOT_ORDER that has tries left, and uses up one try. The counts are in the first sector of adit-env, with a
+# checksum. A sector is written completely or not at all. RAUC sets a count to 3 after it has written a slot, and to ten when the slot has
+# come up healthy. RAUC reads counts as hexadecimal: ten is a.
 #
-# Factory boot loaders of 2017 start it too (board/espressobin/README.md): it needs no setexpr, which they do not have, and names no
-# variables to env import, which they would take for no size.
+# This must also run in factory boot loaders of 2017 (board/espressobin/README.md): they have no setexpr, and their env import takes no
+# names of variables.
 setenv BOOT_ORDER "A B"
 setenv BOOT_A_LEFT a
 setenv BOOT_B_LEFT a
@@ -12,7 +12,7 @@ if ${devtype} read ${kernel_addr_r} ${adit_env} 1; then
   env import -c ${kernel_addr_r} 0x200 || echo "Adit: no boot environment yet"
 fi
 
-# A slot that holds nothing is passed over, and uses up no try.
+# An empty slot is skipped and uses up no try.
 setenv adit_slot
 for slot in ${BOOT_ORDER}; do
   if test -n "${adit_slot}"; then
@@ -34,7 +34,7 @@ for slot in ${BOOT_ORDER}; do
   fi
 done
 
-# One try less: the count before this one. One that is none of these was not set by RAUC, and counts as ten.
+# One try less. A count that is not in the list was not set by RAUC, and counts as ten.
 setenv adit_less 9
 setenv adit_below 0
 for count in 1 2 3 4 5 6 7 8 9 a; do
@@ -59,7 +59,7 @@ if test -z "${adit_slot}"; then
   reset
 fi
 
-# Whoever has the card may add words to the kernel's: see rootfs/README.md.
+# adit/boot.env on the card may add words to the kernel's command line: see rootfs/README.md.
 setenv adit_cmdline
 if load ${devtype} ${devnum}:2 ${kernel_addr_r} adit/boot.env; then
   env import -t ${kernel_addr_r} ${filesize}

@@ -65,7 +65,7 @@ class Packages(Story):
             self.box.shell(f"""printf 'team={pc.PORTS["team"]}\ncommand_post={pc.PORTS["command_post"]}\n' >/etc/adit/interfaces
                 mkdir -p /etc/network; printf 'auto lo {name}\niface {name} inet dhcp\n' >/etc/network/interfaces""")
             said = self.box.shell("/usr/lib/adit/interfaces check", good=name == "eth0")
-            self.assertEqual("team: /etc/network/interfaces sets up enp1s0, too: take it out there" in said, name != "eth0", said)
+            self.assertEqual("team: /etc/network/interfaces also configures enp1s0; remove it there" in said, name != "eth0", said)
         self.box.shell("rm -r /etc/network")
 
     def test_a_file_that_is_wrong_takes_no_port_and_opens_no_door(self):

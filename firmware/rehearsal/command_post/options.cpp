@@ -84,65 +84,75 @@ command_line::Program command_line_of(Options& options) {
   return {
       .name = "adit-rehearsal",
       .usage = "",
-      .about = "A Command Post to rehearse against.",
+      .about = "Simulated Command Post for rehearsals.",
       .rows =
-          {{"--scoring", "ADDR:PORT", "scoring endpoint (port 0: any)",
+          {{"--scoring", "ADDR:PORT", "address of the scoring endpoint (port 0: any free port)",
             take<take_address<Address>>(options.scoring), Wanted::Always},
-           {"--mapping", "ADDR:PORT", "mapping endpoint", take<take_address<Address>>(options.mapping),
+           {"--mapping", "ADDR:PORT", "address of the mapping endpoint",
+            take<take_address<Address>>(options.mapping), Wanted::Always},
+           {"--secrets", "DIR", "directory of the tokens: scoring.token and mapping.token", &options.secrets,
             Wanted::Always},
-           {"--secrets", "DIR", "scoring.token and mapping.token", &options.secrets, Wanted::Always},
-           {"--artifacts", "CSV", "true artifacts: type,x,y,z", &options.artifacts},
-           {"--transcript", "DIR", "write down all that comes in", &options.transcript},
-           {"--transcript-mb", "N", "then no more pictures of maps, only lines (2048)",
+           {"--artifacts", "CSV", "true artifacts that reports are scored against: type,x,y,z",
+            &options.artifacts},
+           {"--transcript", "DIR", "record every request in this directory", &options.transcript},
+           {"--transcript-mb", "N", "save no more map pictures when the transcript has N MiB (2048)",
             take<take_megabytes>(options.transcript_bytes)},
-           {"--as-measured", "", "behave as the public test servers do, not as the ICD says",
+           {"--as-measured", "", "behave like the public test servers instead of the ICD",
             take<take_as_measured>(options)},
-           {"--slash", "", "redirect each path without a slash at its end to the one with it",
-            &options.slash},
-           {"--team", "NAME", "the team's name", &options.run.team},
-           {"--run", "ID", "the run's name", &options.run.id},
+           {"--slash", "", "redirect a path without a trailing slash to the path with one", &options.slash},
+           {"--team", "NAME", "name of the team", &options.run.team},
+           {"--run", "ID", "name of the run", &options.run.id},
            {"--duration", "SECONDS", "length of the run (3600)", number<0.0, kMost>(options.run.length)},
-           {"--reports", "N", "allotment of artifact reports (45)",
+           {"--reports", "N", "number of artifact reports that the run allows (45)",
             number<0L, INT64_MAX>(options.run.reports)},
            {"--rate", "HZ|api",
-            "429 above it, for each URI (1; 0: no limit); api: 1 for each, and one for statuses and reports "
-            "together",
+            "answer 429 above this rate, for each URI (1; 0: no limit); api: 1 Hz, with one limit for "
+            "statuses and reports together",
             take<take_rate>(options)},
            {"--counts", "WHAT",
-            "starts, last-bytes or answers (to the next start): what is counted for that rate, of maps, "
-            "states and markers",
+            "starts, last-bytes or answers: where --rate measures the interval between two maps, states or "
+            "markers messages",
             take<take_counted>(options.counted)},
-           {"--link", "MBIT", "a second, that come in over both endpoints together (0: no limit)",
+           {"--link", "MBIT",
+            "limit the data received at both endpoints together to MBIT Mbit/s (0: no limit)",
             number<0.0, kMost>(options.link)},
-           {"--roster", "NAME,...", "of the robots that are registered; any other name is a violation",
+           {"--roster", "NAME,...", "names of the registered robots; any other name is a violation",
             take<take_roster>(options.roster)},
-           {"--not-started", "", "the run waits for POST /start on the control port", &options.not_started},
-           {"--fault", "AIM:FAULT", "what goes wrong with the next request of an aim; may be given often",
+           {"--not-started", "", "start the run only on POST /start at the control port",
+            &options.not_started},
+           {"--fault", "AIM:FAULT", "apply FAULT to the next request of AIM; may be given several times",
             &options.faults},
-           {"--fault-rate", "AIM:FAULT=RATE", "what goes wrong with that part of them (0 to 1), at random",
+           {"--fault-rate", "AIM:FAULT=RATE",
+            "apply FAULT at random to this share (0 to 1) of the requests of AIM; may be given several times",
             &options.fault_rates},
-           {"--seed", "N", "of that randomness (1)", number<0UL, UINT64_MAX>(options.seed)},
+           {"--seed", "N", "seed of the random faults (1)", number<0UL, UINT64_MAX>(options.seed)},
            {"--control", "ADDR:PORT",
-            "POST /start /stop /resume /end /new-run /other-sender /posted, GET /record /arrivals, GET, POST "
-            "and DELETE /faults",
+            "address of the control port: POST /start /stop /resume /end /new-run /other-sender /posted, GET "
+            "/record /arrivals, GET, POST and DELETE /faults",
             take<take_address<std::optional<Address>>>(options.control)},
-           {"--verbose", "", "a line for each request, also where stdout is no terminal", &options.verbose},
-           {"--version", "", "prints the version", &options.version},
-           {"--help", "", "prints this", &options.help}},
+           {"--verbose", "", "print a line for each request even if stdout is not a terminal",
+            &options.verbose},
+           {"--version", "", "print the version", &options.version},
+           {"--help", "", "print this help", &options.help}},
       .ending =
-          "adit-rehearsal demo, where it is installed, runs it with Adit and robots and says where the page "
-          "is; "
-          "adit-rehearsal demo --help says more.\n"
-          "AIM: reports, status, mapping; clock:constant and clock:running: of all answers from then on.\n"
-          "FAULT: ok, or words with a comma between them:\n"
+          "If installed, adit-rehearsal demo starts this program, Adit and robots and prints the address of "
+          "the page. See adit-rehearsal demo --help.\n"
+          "AIM: reports, status or mapping. clock:constant stops the run's clocks in all later answers; "
+          "clock:running starts them again.\n"
+          "FAULT: ok, or one or more of these, separated by commas:\n"
           "  drop, reset-unrecorded, 401, 429[=COUNT], 500     not recorded\n"
+          "  html-200, html-302, html-400, html-422            not recorded; a page of HTML\n"
+          "  repeat-answer                                     not recorded; the previous answer again\n"
           "  record-then-drop, reset, half-answer, garbage, 500-recorded\n"
-          "                                                    recorded, and the answer is lost\n"
-          "  record-after=SECONDS, answer-after=SECONDS        late\n"
-          "  repeat-answer                                     the answer before it again; not recorded\n"
-          "  other-sender                                      another sender's report comes just before\n"
-          "  remaining=+N, remaining=-N                        remaining_reports is wrong from then on\n"
-          "  retry-after=SECONDS                               in a header",
+          "                                                    recorded; the answer is lost\n"
+          "  length-huge, chunk-huge, header-flood, 1xx-flood, endless-body, json-deep\n"
+          "                                                    recorded; an answer too long or too deep\n"
+          "  record-after=SECONDS, answer-after=SECONDS        recorded or answered late\n"
+          "  other-sender                                      another sender's report is recorded first\n"
+          "  remaining=+N, remaining=-N                        remaining_reports is wrong by N from then on\n"
+          "  retry-after=SECONDS                               the answer has this header\n"
+          "  for=SECONDS                                       all requests of AIM for this long\n"
+          "  robot=NAME                                        only messages that contain this name",
   };
 }
 

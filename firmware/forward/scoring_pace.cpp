@@ -28,66 +28,70 @@ void ScoringPace::hold_back(pace::Instant now) {
   statuses_.sent(now);
 }
 
-void ScoringPace::endpoint_turned() {
+void ScoringPace::endpoint_turned(pace::Instant now) {
   link_is_back();
+  if (has_one_limit_) statuses_.go_on_as(reports_, now);
   has_one_limit_ = false;
 }
 
 pace::Instant ScoringPace::status_ready(bool decides) const {
   if (has_one_limit_) return reports_.ready();
   if (decides) return statuses_.ready();
-  return std::max(statuses_.ready(), report_left_ + reports_.spacing());
+  return std::max(statuses_.ready(), last_report_.left + reports_.spacing());
 }
 
 void ScoringPace::report_sent(pace::Instant now) {
-  report_left_ = now;
+  last_report_ = {.left = now};
   reports_.sent(now);
 }
 
 void ScoringPace::report_taken(const uplink::Sent& sent, pace::Instant now) {
-  report_left_ = sent.first;
+  last_report_ = {.left = sent.first};
   reports_.taken(sent, now);
 }
 
 void ScoringPace::report_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
                                    pace::Instant now) {
-  report_left_ = sent.first;
-  throttled(reports_, report_left_, status_left_, retry_after, now);
+  last_report_ = {.left = sent.first, .is_throttled = true};
+  throttled(reports_, sent.first, last_status_, retry_after, now);
 }
 
 void ScoringPace::report_barred(const uplink::Sent& sent, pace::Instant now) {
-  report_left_ = sent.first;
+  last_report_ = {.left = sent.first};
   reports_.lost(now);
 }
 
 void ScoringPace::report_lost(pace::Instant now) {
-  report_left_ = now;
+  last_report_ = {.left = now};
   reports_.taken({.first = now, .last = now}, now);
 }
 
 void ScoringPace::status_sent(pace::Instant now) {
-  status_left_ = now;
+  last_status_ = {.left = now};
   of_status().sent(now);
-  if (has_one_limit_) statuses_.count_from(now);  // for the next endpoint
 }
 
 void ScoringPace::status_taken(const uplink::Sent& sent, pace::Instant now) {
-  status_left_ = sent.first;
+  last_status_ = {.left = sent.first};
   of_status().taken(sent, now);
 }
 
 void ScoringPace::status_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
                                    pace::Instant now) {
-  status_left_ = sent.first;
-  throttled(of_status(), status_left_, report_left_, retry_after, now);
+  last_status_ = {.left = sent.first, .is_throttled = true};
+  throttled(of_status(), sent.first, last_report_, retry_after, now);
 }
 
-void ScoringPace::throttled(UriPace& its, pace::Instant left, pace::Instant other_left,
+void ScoringPace::throttled(UriPace& its, pace::Instant left, const Last& other,
                             std::optional<std::chrono::seconds> retry_after, pace::Instant now) {
-  const bool is_found_out = !has_one_limit_ && left < other_left + reports_.spacing();
+  const bool is_found_out = !has_one_limit_ && !other.is_throttled && left < other.left + reports_.spacing();
   has_one_limit_ = has_one_limit_ || is_found_out;
-  if (!is_found_out || retry_after) its.throttled(now, retry_after);
-  if (is_found_out) reports_.count_from(now);
+  if (!is_found_out || retry_after) {
+    its.throttled(now, retry_after);
+  } else {
+    its.count_from(now);
+  }
+  if (is_found_out) reports_.go_on_as(statuses_, now);
 }
 
 }  // namespace adit::forward

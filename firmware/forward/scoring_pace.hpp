@@ -24,7 +24,7 @@ class ScoringPace {
   /// As if a report and a status had just been sent.
   void hold_back(pace::Instant now);
   /// The next Command Post may have two limits.
-  void endpoint_turned();
+  void endpoint_turned(pace::Instant now);
 
   bool has_one_limit() const { return has_one_limit_; }
   /// The pace of statuses.
@@ -56,12 +56,19 @@ class ScoringPace {
   void status_lost(pace::Instant now) { of_status().lost(now); }
 
  private:
-  /// A 429 to a request that left at `left`. `other_left`: the last request of the other kind.
-  void throttled(UriPace& its, pace::Instant left, pace::Instant other_left,
+  /// The last request of one kind.
+  struct Last {
+    pace::Instant left = pace::Instant::min();
+    bool is_throttled = false;
+  };
+
+  /// A 429 to a request that left at `left`. `other`: of the other kind. If that was throttled, all may be,
+  /// and the 429 shows no limit over both.
+  void throttled(UriPace& its, pace::Instant left, const Last& other,
                  std::optional<std::chrono::seconds> retry_after, pace::Instant now);
 
   UriPace reports_, statuses_;
-  pace::Instant report_left_ = pace::Instant::min(), status_left_ = pace::Instant::min();  // the last one
+  Last last_report_, last_status_;
   bool has_one_limit_ = false;  // the Command Post, over reports and statuses
 };
 

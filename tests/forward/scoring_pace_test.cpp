@@ -48,7 +48,7 @@ TEST_F(ScoringPaceTest, OneLimitOverBothIsFoundOutAndThenTheyShareAPace) {
   ask_status(1.2);
   EXPECT_GE(pace_.report_ready(), at(2.2));
   EXPECT_GE(pace_.status_ready(true), at(2.2));
-  pace_.endpoint_turned();
+  pace_.endpoint_turned(at(1.5));
   EXPECT_FALSE(pace_.has_one_limit());
   EXPECT_GE(pace_.status_ready(true), at(2.2)) << "a status was asked for not long ago";
 }
@@ -59,7 +59,7 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitTeachesNoSlowerPace) {
     ask_status(begin);
     refuse_report(begin + 0.1);
     EXPECT_EQ(pace_.spacing(), allowed) << begin;
-    pace_.endpoint_turned();
+    pace_.endpoint_turned(at(begin + 1));
   }
 }
 
@@ -67,6 +67,25 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitMayAskForAPause) {
   ask_status(0);
   refuse_report(0.1, 7s);
   EXPECT_GE(pace_.report_ready(), at(7.1));
+}
+
+TEST_F(ScoringPaceTest, APauseThatOneKindWasAskedForHoldsForBothAndForTheNextEndpoint) {
+  pace_.report_sent(at(0));
+  pace_.report_taken(left(0), at(0.1));
+  pace_.status_sent(at(0.5));  // it decides what became of a report
+  pace_.status_throttled(left(0.5), 7s, at(0.6));
+  EXPECT_TRUE(pace_.has_one_limit());
+  EXPECT_GE(pace_.report_ready(), at(7.6));
+  pace_.endpoint_turned(at(1));
+  EXPECT_GE(pace_.report_ready(), at(7.6));
+  EXPECT_GE(pace_.status_ready(true), at(7.6));
+}
+
+TEST_F(ScoringPaceTest, AStormOfBothKindsIsNoLimitOverBoth) {
+  pace_.status_sent(at(0));
+  pace_.status_throttled(left(0), {}, at(0.1));
+  refuse_report(0.2);
+  EXPECT_FALSE(pace_.has_one_limit());
 }
 
 TEST_F(ScoringPaceTest, A429FarFromTheOtherKindIsAStormOfItsOwn) {

@@ -203,11 +203,24 @@ bool is_of_the_past(const Json& alarm) {
          std::ranges::any_of(kOfThePast, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 
-/// The last reading may be none of the rest, where a death that was due came as late as that.
+/// The last reading may be none of the rest, where a death that was due came as late as that, or where one
+/// map is longer under way than the rest lasts.
 bool is_at_rest(const Evidence& evidence, const Reading& reading) {
-  return std::ranges::any_of(evidence.events, [&](const Event& event) {
-    return event.kind == Kind::Calm && event.at + kRests < reading.at;
-  });
+  constexpr double kNoticed = 2;  // seconds after which an alarm has gone
+  bool is_under_way = false;
+  double answered = 0;
+  for (std::size_t i = 0; i < reading.heard; ++i) {
+    const Event& event = evidence.events[i];
+    if (event.what != kMap || event.actor != Actor::Adit) continue;
+    if (event.kind == Kind::Leaves) is_under_way = true;
+    if (event.kind != Kind::Replied) continue;
+    is_under_way = false;
+    answered = event.at;
+  }
+  return !is_under_way && answered + kNoticed < reading.at &&
+         std::ranges::any_of(evidence.events, [&](const Event& event) {
+           return event.kind == Kind::Calm && event.at + kRests < reading.at;
+         });
 }
 
 /// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.

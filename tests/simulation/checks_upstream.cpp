@@ -249,8 +249,9 @@ void stamps(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     if (event.kind == Kind::ClockSet) clock = event.stamp;
     by_clock = by_clock || event.kind == Kind::PowerCut || disk.forgets_at(event);
-    if (event.kind == Kind::Begins && by_clock) ahead = std::max(ahead, kAhead + clock);
-    is_spaced = is_spaced && event.kind != Kind::PowerCut && !disk.forgets_at(event);
+    const bool begins_by_clock = event.kind == Kind::Begins && by_clock && clock != 0;
+    if (begins_by_clock) ahead = std::max(ahead, kAhead + clock);
+    is_spaced = is_spaced && event.kind != Kind::PowerCut && !disk.forgets_at(event) && !begins_by_clock;
     if (disk.forgets_at(event)) {
       ahead += kFloorAhead;
       forgotten_until = event.at + kMakesWay;

@@ -85,7 +85,7 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 }
 
 void Scoring::endpoint_turned() {
-  pace_.endpoint_turned(loop_.now());
+  pace_.endpoint_turned();
   run_.reset();
   run_heard_.reset();
   known_status_ = {};

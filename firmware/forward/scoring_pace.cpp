@@ -28,14 +28,13 @@ void ScoringPace::hold_back(pace::Instant now) {
   statuses_.sent(now);
 }
 
-void ScoringPace::endpoint_turned(pace::Instant now) {
+void ScoringPace::endpoint_turned() {
   link_is_back();
-  if (has_one_limit_) statuses_.go_on_as(reports_, now);
   has_one_limit_ = false;
 }
 
 pace::Instant ScoringPace::status_ready(bool decides) const {
-  if (has_one_limit_) return reports_.ready();
+  if (has_one_limit_) return std::max(statuses_.ready(), reports_.ready());
   if (decides) return statuses_.ready();
   return std::max(statuses_.ready(), last_report_.left + reports_.spacing());
 }
@@ -68,18 +67,31 @@ void ScoringPace::report_lost(pace::Instant now) {
 
 void ScoringPace::status_sent(pace::Instant now) {
   last_status_ = {.left = now};
-  of_status().sent(now);
+  statuses_.sent(now);
+  if (has_one_limit_) reports_.sent(now);
 }
 
 void ScoringPace::status_taken(const uplink::Sent& sent, pace::Instant now) {
   last_status_ = {.left = sent.first};
-  of_status().taken(sent, now);
+  statuses_.taken(sent, now);
+  if (has_one_limit_) reports_.taken(sent, now);
 }
 
 void ScoringPace::status_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
                                    pace::Instant now) {
   last_status_ = {.left = sent.first, .is_throttled = true};
-  throttled(of_status(), sent.first, last_report_, retry_after, now);
+  if (has_one_limit_) reports_.throttled(now, retry_after);
+  throttled(statuses_, sent.first, last_report_, retry_after, now);
+}
+
+void ScoringPace::status_failed(const uplink::Outcome& outcome, pace::Instant now) {
+  statuses_.failed(outcome, now);
+  if (has_one_limit_) reports_.failed(outcome, now);
+}
+
+void ScoringPace::status_lost(pace::Instant now) {
+  statuses_.lost(now);
+  if (has_one_limit_) reports_.lost(now);
 }
 
 void ScoringPace::throttled(UriPace& its, pace::Instant left, const Last& other,

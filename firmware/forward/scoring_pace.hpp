@@ -24,11 +24,10 @@ class ScoringPace {
   /// As if a report and a status had just been sent.
   void hold_back(pace::Instant now);
   /// The next Command Post may have two limits.
-  void endpoint_turned(pace::Instant now);
+  void endpoint_turned();
 
   bool has_one_limit() const { return has_one_limit_; }
-  /// The pace of statuses.
-  UriPace& of_status() { return has_one_limit_ ? reports_ : statuses_; }
+  UriPace& of_status() { return statuses_; }
   /// Between two reports; of one limit, between two requests.
   pace::Duration spacing() const { return reports_.spacing(); }
   pace::Instant report_ready() const { return reports_.ready(); }
@@ -52,8 +51,8 @@ class ScoringPace {
   void status_taken(const uplink::Sent& sent, pace::Instant now);
   void status_throttled(const uplink::Sent& sent, std::optional<std::chrono::seconds> retry_after,
                         pace::Instant now);
-  void status_failed(const uplink::Outcome& outcome, pace::Instant now) { of_status().failed(outcome, now); }
-  void status_lost(pace::Instant now) { of_status().lost(now); }
+  void status_failed(const uplink::Outcome& outcome, pace::Instant now);
+  void status_lost(pace::Instant now);
 
  private:
   /// The last request of one kind.

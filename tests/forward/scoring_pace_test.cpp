@@ -48,7 +48,7 @@ TEST_F(ScoringPaceTest, OneLimitOverBothIsFoundOutAndThenTheyShareAPace) {
   ask_status(1.2);
   EXPECT_GE(pace_.report_ready(), at(2.2));
   EXPECT_GE(pace_.status_ready(true), at(2.2));
-  pace_.endpoint_turned(at(1.5));
+  pace_.endpoint_turned();
   EXPECT_FALSE(pace_.has_one_limit());
   EXPECT_GE(pace_.status_ready(true), at(2.2)) << "a status was asked for not long ago";
 }
@@ -59,7 +59,7 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitTeachesNoSlowerPace) {
     ask_status(begin);
     refuse_report(begin + 0.1);
     EXPECT_EQ(pace_.spacing(), allowed) << begin;
-    pace_.endpoint_turned(at(begin + 1));
+    pace_.endpoint_turned();
   }
 }
 
@@ -76,8 +76,8 @@ TEST_F(ScoringPaceTest, APauseThatOneKindWasAskedForHoldsForBothAndForTheNextEnd
   pace_.status_throttled(left(0.5), 7s, at(0.6));
   EXPECT_TRUE(pace_.has_one_limit());
   EXPECT_GE(pace_.report_ready(), at(7.6));
-  pace_.endpoint_turned(at(1));
-  EXPECT_GE(pace_.report_ready(), at(7.6));
+  EXPECT_GE(pace_.status_ready(true), at(7.6));
+  pace_.endpoint_turned();
   EXPECT_GE(pace_.status_ready(true), at(7.6));
 }
 

@@ -103,7 +103,7 @@ void ScoringPace::throttled(UriPace& its, pace::Instant left, const Last& other,
   } else {
     its.count_from(now);
   }
-  if (is_found_out) reports_.go_on_as(statuses_, now);
+  if (is_found_out) reports_.wait_for(statuses_);
 }
 
 }  // namespace adit::forward

@@ -43,12 +43,8 @@ class UriPace {
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
   }
 
-  /// With what `other` has learned, and no sooner than it.
-  void go_on_as(const UriPace& other, pace::Instant now) {
-    rate_.carry_on(other.rate_.learned(), now);
-    retry_at_ = std::max(retry_at_, other.retry_at_);
-    keep();
-  }
+  /// The next request goes no sooner than that of `other` may.
+  void wait_for(const UriPace& other) { retry_at_ = std::max(retry_at_, other.ready()); }
 
   /// The rate that is allowed from now on.
   void allow(double hertz, pace::Instant now) { rate_.allow(hertz, now); }

@@ -58,6 +58,8 @@ TEST_F(ScoringPaceTest, TheFirst429OfOneLimitTeachesNoSlowerPace) {
   for (const double begin : {0.0, 10.0, 20.0, 30.0, 40.0}) {
     ask_status(begin);
     refuse_report(begin + 0.1);
+    pace_.report_sent(at(begin + 1.2));
+    pace_.report_taken(left(begin + 1.2), at(begin + 1.2));
     EXPECT_EQ(pace_.spacing(), allowed) << begin;
     pace_.endpoint_turned();
   }

@@ -204,9 +204,9 @@ void learned(const Evidence& evidence, Broken& broken) {
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
     if (disk.forgets_at(event)) forgotten_until = event.at + kMakesWay + kSpacing;
-    if (event.kind == Kind::Dies) last.clear();  // the answer may have been read and not yet understood
     const bool forgets = disk.forgets_at(event) || event.kind == Kind::Dies || event.kind == Kind::PowerCut;
-    if (forgets) times.clear(), single.clear();
+    // At a death the answer may have been read and not yet understood.
+    if (forgets) times.clear(), single.clear(), last.clear();
     if (event.kind == Kind::Replied && event.status == 200 && single.erase(event.what) > 0)
       ++times[event.what];
     if (event.kind == Kind::Replied && event.status == 429) single.erase(event.what);

@@ -14,8 +14,8 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kSure = 20;         // seconds after which nothing is recorded any more that was lost
-constexpr double kAfter = 90;        // that he stays once the trouble is over
+constexpr double kSure = 20;   // seconds after which nothing is recorded any more that was lost
+constexpr double kAfter = 90;  // that he stays once the trouble is over
 constexpr const char* kHeaders =
     "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: application/json\r\n";
 

@@ -254,7 +254,7 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
     to(Kind::Grids, {});
     for (const auto& [key, extent] : *grids_) to(Kind::Grids, said(key, extent));
   }
-  const auto write_robots = [&](bool Robot::*these) {
+  const auto write_robots = [&](bool Robot::* these) {
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
       if (!(robot.*these)) continue;

@@ -218,9 +218,9 @@ bool is_at_rest(const Evidence& evidence, const Reading& reading) {
     answered = event.at;
   }
   return !is_under_way && answered + kNoticed < reading.at &&
-         std::ranges::any_of(evidence.events, [&](const Event& event) {
-           return event.kind == Kind::Calm && event.at + kRests < reading.at;
-         });
+         std::ranges::any_of(
+             evidence.events,
+             [&](const Event& event) { return event.kind == Kind::Calm && event.at + kRests < reading.at; });
 }
 
 /// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.

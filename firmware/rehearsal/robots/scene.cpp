@@ -88,6 +88,7 @@ void MarkerScene::candidate(const std::string& type, const Vector3& position, do
 
 std::vector<Marker> MarkerScene::standing() const {
   std::vector<Marker> all;
+  all.reserve(standing_.size());
   for (const auto& [key, marker] : standing_) all.push_back(marker);
   return all;
 }

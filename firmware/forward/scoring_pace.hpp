@@ -27,6 +27,7 @@ class ScoringPace {
   void endpoint_turned();
 
   bool has_one_limit() const { return has_one_limit_; }
+  /// For the operator's test, which asks for the status by itself.
   UriPace& of_status() { return statuses_; }
   /// Between two reports; of one limit, between two requests.
   pace::Duration spacing() const { return reports_.spacing(); }

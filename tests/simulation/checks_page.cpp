@@ -203,8 +203,8 @@ bool is_of_the_past(const Json& alarm) {
          std::ranges::any_of(kOfThePast, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 
-/// The last reading may be none of the rest, where a death that was due came as late as that, or where one
-/// map is longer under way than the rest lasts.
+/// The last reading is not at rest if a planned death came that late, or if one map takes longer to upload
+/// than the rest lasts.
 bool is_at_rest(const Evidence& evidence, const Reading& reading) {
   constexpr double kNoticed = 2;  // seconds after which an alarm has gone
   bool is_under_way = false;

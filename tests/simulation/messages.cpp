@@ -32,7 +32,7 @@ int type_of(const Item& item) {
   return points_of(item) > 0 ? kLine : letters_of(item) > 0 ? kText : kCube;
 }
 
-/// Whose report it is: of some, nobody's is said. What the operator posts is nobody's.
+/// The robot that a report names; "": the report has no name, as all of the operator's.
 std::string reporter_of(std::int64_t serial) {
   return serial < kOwnReports && serial % 3 == 0 ? "R1" : "";
 }
@@ -46,7 +46,7 @@ Json report_of(std::int64_t serial, const Style& style) {
   return report;
 }
 
-/// One that has lost its robot, or has another, is none that anybody posted.
+/// A report with a missing or another robot counts as one that the team did not post.
 Item report_item(const Json& report) {
   const std::int64_t serial = whole(report.value("x", 0.0) / kReportsApart);
   return {.who = "", .serial = report.value("name", "") == reporter_of(serial) ? serial : kStrange};

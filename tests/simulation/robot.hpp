@@ -37,7 +37,7 @@ class Robot {
   const int number_;
   Random random_;
   const std::string name_;
-  const std::string finds_ns_;  // "": none, as others of them may have none
+  const std::string finds_ns_;  // "": its markers have no namespace; several robots may share that
   Client client_;
   const Style style_;
   const double clock_;  // seconds by which its clock is off

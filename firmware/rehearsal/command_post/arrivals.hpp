@@ -24,7 +24,8 @@ class Arrivals {
 
   /// What adit-robots posted so far: [{"robot": "r1", "kind": "cloud", "amount": 1200, "places": 300,
   /// "newest": MS}], cells or points, places that have points (of grids none need be told), and the newest
-  /// date in milliseconds since 1970. Markers are passed over. An error says what is wrong.
+  /// date in milliseconds since 1970. Rows of markers are skipped. The error is a sentence that names the
+  /// field.
   std::expected<void, std::string> told(const Json& posted);
 
   /// An object for each robot and kind; ages in seconds. See README.md, 'How old'.

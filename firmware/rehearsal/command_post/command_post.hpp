@@ -44,7 +44,8 @@ class CommandPost {
   const Arrivals& arrivals() const { return arrivals_; }
   MarkerDisplay& display() { return display_; }
   const MarkerDisplay& display() const { return display_; }
-  /// What came, beside what the robots posted; "" if nothing is known of that.
+  /// Tables that compare the received maps and markers with the posted ones; "" if the robots told no
+  /// amounts.
   std::string compared() const { return arrivals_.table() + display_.text(); }
   OrderedJson record() const;
   std::string summary() const { return record_.summary(run_.standing(Clock::now())) + compared(); }

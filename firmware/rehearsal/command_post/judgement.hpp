@@ -27,7 +27,7 @@ struct Judgement {
   std::optional<OrderedJson> report;  // where one was recorded: what was answered
   std::vector<Accepted> accepted;
   std::vector<MarkerChange> markers;  // that were taken
-  std::string fault;                  // what was done wrong on purpose; "": nothing
+  std::string fault;                  // the rehearsed fault; "": none
 };
 
 /// One of the Command Post's two endpoints, of one manner. Safe for use by several threads.

@@ -9,13 +9,13 @@
 
 namespace adit::rehearsal {
 
-/// The link to the Command Post: what comes in over all connections comes one piece after the other, at so
-/// many megabits a second. Safe for use by several threads.
+/// The link to the Command Post. All connections share its rate in megabits a second: the pieces that they
+/// receive arrive one after the other. Safe for use by several threads.
 class Link {
  public:
   explicit Link(double megabits) : bits_per_second_(megabits * 1e6) {}
 
-  /// How long from now until `bytes` more have come in.
+  /// The time from now until `bytes` more have arrived.
   std::chrono::milliseconds pass(std::size_t bytes) {
     constexpr double bits_of_a_byte = 8;
     const std::lock_guard lock(mutex_);
@@ -28,7 +28,7 @@ class Link {
  private:
   std::mutex mutex_;
   const double bits_per_second_;
-  Clock::time_point free_;  // when what has been received has come in
+  Clock::time_point free_;  // when the last received piece has arrived
 };
 
 }  // namespace adit::rehearsal

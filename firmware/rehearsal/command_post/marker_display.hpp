@@ -24,8 +24,8 @@ class MarkerDisplay {
   void show(const std::vector<MarkerChange>& changes, Findings& findings);
 
   /// What adit-robots says that should stand, of each robot:
-  /// [{"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}]. Other kinds
-  /// are passed over. An error says what is wrong.
+  /// [{"robot": "r1", "kind": "markers", "standing": [{"ns": "r1/path", "id": 3, "x": METRES}]}]. Rows of
+  /// other kinds are skipped. The error is a sentence that names the field.
   std::expected<void, std::string> told(const Json& posted);
 
   /// How many stand, how many should, and sentences about the first that differ.

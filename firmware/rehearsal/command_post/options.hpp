@@ -25,9 +25,9 @@ struct Options {
   Manner manner = Manner::Strict;
   bool slash = false;  // each path has to end with one
   RunPlan run;
-  std::optional<double> rate;            // Hz; absent: as the manner has it
+  std::optional<double> rate;            // Hz; absent: by the manner
   bool one_api_limit = false;            // over statuses and reports together
-  std::optional<Counted> counted;        // of what is mapping's, for the rate; absent: as the manner has it
+  std::optional<Counted> counted;        // how the mapping rate is measured; absent: by the manner
   double link = 0;                       // Mbit/s over both endpoints; 0: no limit
   std::vector<std::string> roster;       // the robots' names; empty: any
   std::vector<std::string> faults;       // "reports:record-then-drop", not yet understood

@@ -22,7 +22,7 @@ struct WireManner {
   std::chrono::seconds patience{60};  // with a connection that sends nothing
   std::size_t most_body = std::size_t{256} << 20;
   bool slash = false;                    // at the end of each path
-  std::shared_ptr<Link> link = nullptr;  // what comes in shares it; null: as fast as it comes
+  std::shared_ptr<Link> link = nullptr;  // all connections share it; null: no limit
 };
 
 /// Decides what is done about a request; called by several threads at once. See bytes_of() for how it is

@@ -13,8 +13,8 @@
 
 namespace adit::robots {
 
-/// How much of its maps and which markers each robot posted, whatever was answered: what a rehearsal Command
-/// Post measures against. Any thread may write to it.
+/// The amount of map data and the markers that each robot posted, rejected posts included. A rehearsal
+/// Command Post compares them with its own. Any thread may write to it.
 class Posted {
  public:
   struct Amount {
@@ -23,7 +23,7 @@ class Posted {
     Moment newest;             // the last map's date
   };
   void note(const std::string& robot, Kind kind, const Amount& amount);
-  /// The markers that are to stand, now that this was posted.
+  /// The robot's markers after its last post.
   void note(const std::string& robot, const std::vector<Marker>& standing);
 
   /// As POST /posted on the control port takes it.

@@ -36,10 +36,10 @@ void find_cables(const Facts& facts, Found& found) {
   for (const Cable& cable : facts.cables) {
     if (cable.carrier.value_or(false)) continue;
     const std::string side = side_of(cable.is_team);
-    const std::string whose = cable.is_team ? "The team's" : "The Command Post's";
+    const std::string whose = cable.is_team ? "Team" : "Command Post";
     Condition condition{.id = "cable_out:" + side, .side = Side::Network, .subject = side};
     if (cable.carrier) {
-      condition.headline = {whose + " cable", "disconnected"};
+      condition.headline = {whose + " cable", "unplugged"};
       condition.why = cable.interface + " has no link";
     } else {
       condition.headline = {"Interface " + cable.interface, "missing"};
@@ -71,7 +71,7 @@ void find_addresses(const Facts& facts, Found& found) {
   if (network.no_address) {
     found.push_back({.id = "no_address",
                      .side = Side::Box,
-                     .headline = {"The box's upstream address", "missing"},
+                     .headline = {"The upstream address", "missing"},
                      .why = "set an address in the Command Post's subnet",
                      .action = kOpenNetwork});
   }
@@ -105,7 +105,7 @@ void find_disk_troubles(const Facts& facts, Found& found) {
   add(found, facts.disk.map, {.id = "map_not_kept", .headline = {"The last map", "not accepted"}});
   add(found, facts.disk.state,
       {.id = "state_not_kept",
-       .headline = {"States and markers", "not accepted", true},
+       .headline = {"States and markers", "rejected", true},
        .why = "the box cannot store them: "});
   add(found, facts.disk.run,
       {.id = "run_not_kept",
@@ -124,7 +124,7 @@ void find_change_trouble(const std::string& trouble, Found& found) {
   if (trouble.empty()) return;
   found.push_back({.id = "settings_not_changed",
                    .side = Side::Box,
-                   .headline = {"The last settings change", "not used"},
+                   .headline = {"The last change", "not used"},
                    .why = trouble,
                    .action = kOpenSetUp});
 }

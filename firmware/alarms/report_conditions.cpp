@@ -77,8 +77,8 @@ void find_elsewhere(const Facts& facts, Found& found) {
                      .severity = Severity::Ask,
                      .side = Side::Box,
                      .subject = post,
-                     .headline = {count == 1 ? "1 report" : sentence(count, " reports"),
-                                  "for another Command Post", count != 1},
+                     .headline = {count == 1 ? "1 report" : sentence(count, " reports"), "for another server",
+                                  count != 1},
                      .why = sentence("queued for ", post, ", which the settings do not name"),
                      .action = {"Open set-up", "/setup"},
                      .degree = count});

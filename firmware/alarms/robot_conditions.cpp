@@ -163,7 +163,7 @@ void find_crowds(const Facts& facts, Found& found) {
       found.push_back({.id = "unauthenticated",
                        .severity = Severity::Wait,
                        .side = Side::Robot,
-                       .headline = {"Too many connections", "unauthenticated", true},
+                       .headline = {"Too many clients", "anonymous", true},
                        .why = most});
     }
   }

@@ -85,7 +85,7 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.crowds = {{Crowd::Is::NoRoom, "10.0.0.9"}}; }},
     {"wrong_tokens", Ask, Side::Robot, "Wrong tokens are in use", "10.0.0.9",
      [](Facts& facts) { facts.crowds = {{Crowd::Is::WrongToken, "10.0.0.9"}}; }},
-    {"unauthenticated", Wait, Side::Robot, "Too many connections are unauthenticated", "10.0.0.9",
+    {"unauthenticated", Wait, Side::Robot, "Too many clients are anonymous", "10.0.0.9",
      [](Facts& facts) { facts.crowds = {{Crowd::Is::Strangers, "10.0.0.9"}}; }},
     {"report_held:7", Ask, Side::Box, "Report 7 is held", "it may be the same", report<ReportFact::Is::Held>},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
@@ -97,7 +97,7 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.reports_left = 1; }},
     {"reports_left", Bad, Side::CommandPost, "No reports are left", "",
      [](Facts& facts) { facts.reports_left = 0; }},
-    {"reports_elsewhere:10.9.9.9:1", Ask, Side::Box, "2 reports are for another Command Post", "10.9.9.9:1",
+    {"reports_elsewhere:10.9.9.9:1", Ask, Side::Box, "2 reports are for another server", "10.9.9.9:1",
      [](Facts& facts) { facts.reports_elsewhere["10.9.9.9:1"] = 2; }},
     {"run_unreliable", Ask, Side::CommandPost, "The count of reports is uncertain", "somebody else",
      [](Facts& facts) { facts.run_unreliable = "somebody else reports"; }},
@@ -111,7 +111,7 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.ledger_damage = "a page was put aside"; }},
     {"map_not_kept", Bad, Side::Box, "The last map is not accepted", "no space",
      [](Facts& facts) { facts.disk.map = "no space"; }},
-    {"state_not_kept", Bad, Side::Box, "States and markers are not accepted", "cannot store them: no space",
+    {"state_not_kept", Bad, Side::Box, "States and markers are rejected", "cannot store them: no space",
      [](Facts& facts) { facts.disk.state = "no space"; }},
     {"run_not_kept", Bad, Side::Box, "The run's map is not stored", "lose the map and the tracks: no space",
      [](Facts& facts) { facts.disk.run = "no space"; }},
@@ -121,8 +121,7 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.time_set = false; }},
     {"ntp", Wait, Side::Box, "NTP is not working", "10.0.0.5 does not answer",
      [](Facts& facts) { facts.ntp_trouble = "the NTP server 10.0.0.5 does not answer"; }},
-    {"settings_not_changed", Bad, Side::Box, "The last settings change is not used",
-     "taken back: binding: in use",
+    {"settings_not_changed", Bad, Side::Box, "The last change is not used", "taken back: binding: in use",
      [](Facts& facts) { facts.change_trouble = "the last change was taken back: binding: in use"; }},
     {"settings_not_used", Bad, Side::Box, "The saved settings are not used", "version",
      [](Facts& facts) { facts.settings_trouble = "version: expected 1"; }},
@@ -141,7 +140,7 @@ const ConditionCase kConditionCases[] = {
        facts.network.confirm_within = 87.5;
        facts.network.page = "http://1.2.3.4";
      }},
-    {"no_address", Bad, Side::Box, "The box's upstream address is missing", "set an address",
+    {"no_address", Bad, Side::Box, "The upstream address is missing", "set an address",
      [](Facts& facts) { facts.network.no_address = true; }},
     {"address_taken:team", Bad, Side::Network, "The box's address is in conflict",
      "aa:bb also uses 10.0.0.1 on team0; is a spare box plugged in?",
@@ -155,8 +154,8 @@ const ConditionCase kConditionCases[] = {
        facts.endpoints.clear();
        facts.network.exchanged = {"10.100.1.200", "team0", "darpa0"};
      }},
-    {"cable_out:command_post", Bad, Side::Network, "The Command Post's cable is disconnected",
-     "darpa0 has no link", [](Facts& facts) { facts.cables[1].carrier = false; }},
+    {"cable_out:command_post", Bad, Side::Network, "Command Post cable is unplugged", "darpa0 has no link",
+     [](Facts& facts) { facts.cables[1].carrier = false; }},
     {"cable_out:team", Bad, Side::Network, "Interface team0 is missing", "set-up names it",
      [](Facts& facts) { facts.cables[0].carrier = {}; }},
 };
@@ -186,6 +185,7 @@ TEST(Conditions, AreHeadlinesOfAtMostSevenWords) {
   for (const ConditionCase& each : kConditionCases) {
     const std::string what = each.what;
     EXPECT_LE(std::ranges::count(what, ' '), 6) << what;
+    EXPECT_LE(what.size(), 33u) << what << ": the strip of a small screen cuts a longer one";
     EXPECT_THAT(what, Not(HasSubstr("_"))) << "no field names";
   }
 }

@@ -61,7 +61,7 @@ test("keeps its place and height in every state", async (t) => {
 });
 
 test("cuts no headline, of however many words, on any screen", async (t) => {
-  const WORDS = ["The server is not a Command Post", "Too many connections are unauthenticated"];
+  const WORDS = ["The server is not a Command Post", "Too many clients are anonymous"];
   const prepare = (page) => retell(page, (words) => (view) => ({ ...view, alarms: view.alarms.slice(0, 2).map((alarm, i) => ({ ...alarm, what: words[i], acknowledged: false, action: { word: "Open set-up", link: "/setup" } })) }), WORDS);
   const { page } = await watch(t, "trouble", { prepare });
   await page.locator(".alarms .what", { hasText: WORDS[0] }).waitFor();

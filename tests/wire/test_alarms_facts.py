@@ -110,7 +110,7 @@ class Facts(WithAlarms):
         self.assertEqual(self.send_map(stage, "r1", 1, 100000).status_code, 503)
         self.sees(stage, "map_not_kept", "bad", "box", "The last map is not accepted", panel=False)
         robot = self.robot(stage, "r1")
-        self.sees(stage, "state_not_kept", "bad", "box", "States and markers are not accepted", "cannot store them", panel=False)
+        self.sees(stage, "state_not_kept", "bad", "box", "States and markers are rejected", "cannot store them", panel=False)
         robot.quiet()
         filler.make_room()
         self.robot(stage, "r1")

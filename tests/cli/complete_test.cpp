@@ -67,7 +67,7 @@ TEST_F(Completion, ListsWhatIsSetAsideAndCourses) {
 
 TEST(CompletionOfKeys, AsksNobody) {
   const Outcome lines = run(std::vector<std::string_view>{"complete", "keys"});
-  EXPECT_THAT(lines.out, HasSubstr("reports.review\tWhat is held until the operator lets it go\n"));
+  EXPECT_THAT(lines.out, HasSubstr("reports.review\tReports that are held until the operator sends them\n"));
   EXPECT_THAT(lines.out, HasSubstr("robots[].alias\t"));
   const Outcome json = run(std::vector<std::string_view>{"complete", "keys", "--json"});
   EXPECT_THAT(json.out, HasSubstr(R"("path":"reports.review")"));

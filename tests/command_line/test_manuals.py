@@ -60,8 +60,8 @@ class ManPages(unittest.TestCase):
         self.assertGreater(len(keys), 50)
         missing = [key["path"] for key in keys if f" {key['path']} {key['meaning']} It may be {key['range']}" not in text]
         self.assertEqual(missing, [])
-        self.assertIn('reports.review What is held until the operator lets it go: nothing, near duplicates (see '
-                      'reports.near_metres), or every report. It may be "off", "duplicates" or "all". If not given: "off".', text)
+        self.assertIn('reports.review Reports that are held until the operator sends them. off: none. duplicates: near duplicates (see '
+                      'reports.near_metres). all: every report. It may be "off", "duplicates" or "all". If not given: "off".', text)
 
     def test_groff_complains_of_nothing(self):
         for page in pages():

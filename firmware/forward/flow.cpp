@@ -85,7 +85,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
 }
 
 std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideAction action) {
-  if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
+  if (is_ending()) return std::unexpected("aditd is stopping and sends no more messages");
   if (!rests_.empty()) return std::unexpected(rests_);
   if (action == api::AsideAction::Discard) return aside_.discard(number);
   auto message = aside_.to_be_sent(number);

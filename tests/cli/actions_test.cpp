@@ -116,12 +116,12 @@ TEST_F(Actions, GoOnAfterOneThatCannotBe) {
        {"GET /adit/reports/9", report("received")},
        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
        {"POST /adit/reports/8/send",
-        Server::reply("409 Conflict", "\"report 8 is answered: to send it once more, resubmit it\"")},
+        Server::reply("409 Conflict", "\"report 8 is answered: to send it again, resubmit it\"")},
        {"POST /adit/reports/9/send", Server::ok("{\"report\":9}")}});
   const Outcome outcome = say(server, {"reports", "send", "7", "8", "9"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out, "report 7 is sent when its turn comes\nreport 9 is sent when its turn comes\n");
-  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it once more, resubmit it\n");
+  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it again, resubmit it\n");
 }
 
 /// A console at which somebody gives that answer; `asked` gets the question.

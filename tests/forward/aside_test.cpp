@@ -127,7 +127,7 @@ TEST_F(AsideTest, ForgetsWhatIsSentAgainOrDiscarded) {
   aside_->sent_again(1, true);
   EXPECT_FALSE(aside_->to_be_sent(1));
   EXPECT_TRUE(aside_->discard(2));
-  EXPECT_EQ(aside_->discard(2).error(), "nothing of number 2 is set aside");
+  EXPECT_EQ(aside_->discard(2).error(), "there is no rejected message 2");
   settle();
   EXPECT_TRUE(fs::is_empty(folder_.path()));
   restart();

@@ -46,12 +46,12 @@ void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received,
 void MarkerArrivals::go(Step step) {
   Arrival& first = arrivals_.front();
   bool over = false;
-  if (!loop::guarded("taking markers", [&] { over = (this->*step)(first); })) return give_up();
+  if (!loop::guarded("receiving markers", [&] { over = (this->*step)(first); })) return give_up();
   if (over) end();
 }
 
 void MarkerArrivals::give_up() {
-  loop::guarded("refusing markers", [this] { fail(arrivals_.front(), no_memory()); });
+  loop::guarded("rejecting markers", [this] { fail(arrivals_.front(), no_memory()); });
   end();
 }
 

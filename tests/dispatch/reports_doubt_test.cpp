@@ -211,7 +211,7 @@ TEST(ADoubt, WithoutACountFromBeforeIsLeftToTheOperator) {
   EXPECT_FALSE(scene.reports().is_asking(scene.report(2)));
   scene.keep_hearing(20, 20, 0);
   EXPECT_EQ(scene.state(2), InDoubt);
-  EXPECT_THAT(scene.report(2).note, HasSubstr("is not known for certain; the operator decides"));
+  EXPECT_THAT(scene.report(2).note, HasSubstr("are not certain; the operator decides"));
   EXPECT_EQ(scene.told(client).status, 504);
 }
 

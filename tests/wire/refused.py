@@ -135,16 +135,16 @@ ELSEWHERE = [
     ("a report, where 1,000 wait", 429, "N reports are queued already; this report was not accepted"),
     ("a report, where the disk is full", 503, "the report could not be stored and was not accepted; post it again"),
     ("a map, where there is no room to keep it", 503, "Adit cannot store this map; send it again later"),
-    ("too many requests at once", 503, "too many requests are under way at once, from this address or in all; try again"),
+    ("too many requests at once", 503, "too many requests at once, from this address or in total; try again"),
     ("too many bytes of states and reports at once", 503,
-     "too much is being sent at once, by this address or by all; send this again later"),
-    ("too many bytes of maps at once", 429, "too many maps are being sent at once; send this one again later"),
-    ("too many bytes of markers at once", 429, "too much is being sent at once; send these markers again later"),
-    ("whatever comes while Adit stops", 503, "aditd is stopping; this was not taken, send it again"),
+     "too many bytes at once, from this address or in total; send this message again later"),
+    ("too many bytes of maps at once", 429, "too many maps at once; send this map again later"),
+    ("too many bytes of markers at once", 429, "too many markers at once; send these markers again later"),
+    ("whatever comes while Adit stops", 503, "aditd is stopping; this message was not accepted, send it again"),
     ("a body that comes too slowly", 408, "the body of the request took too long"),
     ("one of many wrong tokens", 429,
-     "too many wrong tokens came from this address, and this one was not looked at: try again in a second"),
-    ("a fault of Adit's own", 500, "the gateway could not finish this request, which may have been taken: send it again"),
+     "too many wrong tokens from this address; this token was not checked; try again in a second"),
+    ("a fault of Adit's own", 500, "Adit could not finish this request and may have accepted it; send it again"),
 ]
 
 

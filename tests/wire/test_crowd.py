@@ -98,7 +98,7 @@ class Crowd(unittest.TestCase):
             told = more.makefile("rb").read().decode()
         self.assertRegex(told, r"^HTTP/1.1 503 ")
         self.assertIn("Retry-After: 1\r\n", told)
-        self.assertIn('"too many requests are under way', told)
+        self.assertIn('"too many requests at once', told)
         self.assertEqual(stage.box.ask("GET /api/status")[0], 200, "others are served")
         self.assertIn(f"requests are under way at once, most of {ADDRESSES[0]}", stage.box.attention())
         self.assertEqual(self.metric(stage, 'adit_connections_ended_total{why="no_room"}'), 1)

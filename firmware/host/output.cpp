@@ -81,7 +81,7 @@ std::string await_end(pid_t process) {
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
   return WIFEXITED(status) ? "exit status " + std::to_string(WEXITSTATUS(status))
-                           : "killed by signal " + std::to_string(WTERMSIG(status));
+                           : "ended by signal " + std::to_string(WTERMSIG(status));
 }
 
 /// One of the two ends that are read.

@@ -122,12 +122,12 @@ void write_link(Exposition& out, const Measured& measured) {
   out.sample(measured.view.budget_mbit * kBytesPerMbit);
   out.gauge("adit_queue_bytes", "Bytes of maps that wait.");
   out.sample(number(measured.view.queued_bytes));
-  out.gauge("adit_set_aside",
+  out.gauge("adit_rejected_messages",
             "Messages that the Command Post would not take and nothing newer has replaced.");
-  out.sample(
-      number(static_cast<std::size_t>(std::ranges::count(measured.view.aside, false, &AsideRow::overtaken))));
-  out.counter("adit_set_aside_dropped_total", "Messages set aside that made place for newer ones.");
-  out.sample(number(measured.usage.aside_dropped));
+  out.sample(number(
+      static_cast<std::size_t>(std::ranges::count(measured.view.rejected, false, &RejectedRow::replaced))));
+  out.counter("adit_rejected_messages_dropped_total", "Messages rejected that made place for newer ones.");
+  out.sample(number(measured.usage.rejected_dropped));
 }
 
 /// Of each robot and kind.
@@ -190,8 +190,8 @@ void write_updates(Exposition& out, const RunView& view) {
   for (const ActivityRow& row : view.activities) {
     if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.no_valid_point));
   }
-  out.gauge("adit_updates_waiting", "Updates that wait.");
-  sample_each(out, view, &ActivityRow::waiting);
+  out.gauge("adit_updates_queued", "Queued updates.");
+  sample_each(out, view, &ActivityRow::queued);
   out.gauge("adit_updates_accepted_age_seconds", "How long ago the last one was accepted.");
   for (const ActivityRow& row : view.activities) {
     if (!row.last_accepted) continue;

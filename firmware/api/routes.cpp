@@ -117,14 +117,15 @@ constexpr Route kRoutes[] = {
          by<&ReportRoutes::judge<Action::Resubmit>>(), "Nothing", "reports",
          "The same once more, as a new report: a finished one.", "It is done.", "ReportNumber", "404 409",
          "report"),
-    post("/adit/aside/{number}/send", Operator, kJson<1024>, by<&RunRoutes::aside<AsideAction::Send>>(),
-         "Nothing", "run",
+    post("/adit/rejected/{number}/send", Operator, kJson<1024>,
+         by<&RunRoutes::rejected<RejectedAction::Send>>(), "Nothing", "run",
          "Sends what the Command Post would not take once more. 409 where something newer that says all of "
          "it was sent since.",
-         "It is done.", "AsideNumber", "404 409", "aside"),
-    post("/adit/aside/{number}/discard", Operator, kJson<1024>, by<&RunRoutes::aside<AsideAction::Discard>>(),
-         "Nothing", "run", "Forgets what the Command Post would not take.", "It is done.", "AsideNumber",
-         "404 409", "aside"),
+         "It is done.", "RejectedNumber", "404 409", "rejected"),
+    post("/adit/rejected/{number}/discard", Operator, kJson<1024>,
+         by<&RunRoutes::rejected<RejectedAction::Discard>>(), "Nothing", "run",
+         "Forgets what the Command Post would not take.", "It is done.", "RejectedNumber", "404 409",
+         "rejected"),
     post("/adit/alarms/acknowledge", Operator, kJson<1024>, by<&RunRoutes::acknowledge>(), "AlarmId", "run",
          "An operator has seen an alarm: it is quiet until it gets worse or comes again. 409 where there is "
          "none "

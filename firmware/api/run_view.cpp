@@ -61,7 +61,7 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::failed>("failed"),
     member<&ActivityRow::refused_upstream>("refused_upstream"),
     member<&ActivityRow::no_room>("no_room", "refused to the robot, because too much waits"),
-    member<&ActivityRow::waiting>("waiting"),
+    member<&ActivityRow::queued>("queued"),
     member<&ActivityRow::behind_since>("behind_since",
                                        "when the oldest news that the Command Post lacks was accepted, in "
                                        "seconds since 1970; null: it lacks none"),
@@ -122,16 +122,16 @@ constexpr Member kEndpoint[] = {
     member<&EndpointRow::foreign>("foreign", "answers that no Command Post gives: pages of HTML, redirects"),
 };
 
-constexpr Member kAside[] = {
-    member<&AsideRow::number>("number").from(1),
-    member<&AsideRow::kind>("kind").one_of(kKinds),
-    member<&AsideRow::robot>("robot", "empty: of several, or of none"),
-    member<&AsideRow::at>("at", "when it was set aside"),
-    member<&AsideRow::status>("status", "the Command Post's"),
-    member<&AsideRow::why>("why"),
-    member<&AsideRow::bytes>("bytes"),
-    member<&AsideRow::overtaken>("overtaken",
-                                 "something newer that says all of it was sent since: it is not sent again"),
+constexpr Member kRejected[] = {
+    member<&RejectedRow::number>("number").from(1),
+    member<&RejectedRow::kind>("kind").one_of(kKinds),
+    member<&RejectedRow::robot>("robot", "empty: of several, or of none"),
+    member<&RejectedRow::at>("at", "when it was rejected"),
+    member<&RejectedRow::status>("status", "the Command Post's"),
+    member<&RejectedRow::why>("why"),
+    member<&RejectedRow::bytes>("bytes"),
+    member<&RejectedRow::replaced>(
+        "replaced", "something newer that says all of it was sent since: it is not sent again"),
 };
 
 constexpr Member kRobot[] = {
@@ -170,7 +170,7 @@ constexpr Member kView[] = {
                                   "of one type and this near, two reports may be of one artifact"),
     member<&RunView::activities>("activities"),
     member<&RunView::refusals>("refusals", "newest first, the last 50"),
-    member<&RunView::aside>("aside", "what the Command Post would not take, oldest first, at most 100"),
+    member<&RunView::rejected>("rejected", "what the Command Post would not take, oldest first, at most 100"),
     member<&RunView::lights>("lights"),
     member<&RunView::links>("links", "of the interfaces that the settings name"),
     member<&RunView::identify_until>("identify_until", "the lights flash so that the box can be found"),
@@ -200,7 +200,7 @@ constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of
                                           kByTraffic};
 constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender.", kByMoment};
 constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
-constexpr codec::Row AsideRow::kRow = {"Aside", kAside, "", kByNumber};
+constexpr codec::Row RejectedRow::kRow = {"Rejected", kRejected, "", kByNumber};
 constexpr codec::Row RobotRow::kRow = {"Robot", kRobot, "", kByName};
 constexpr codec::Row LightRow::kRow = {"Light", kLight, "", kByName};
 constexpr codec::Row LinkRow::kRow = {"Link", kLink, "", kBySide};

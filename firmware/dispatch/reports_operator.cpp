@@ -14,7 +14,8 @@ std::unexpected<std::string> no_such(std::int64_t number) {
 
 /// "report 7 is answered: ..."
 std::unexpected<std::string> cannot(const Report& report, const std::string& what) {
-  return std::unexpected(icd::sentence("report ", report.number, " is ", name_of(report.state), ": ", what));
+  return std::unexpected(
+      icd::sentence("report ", report.number, " is ", shown_name_of(report.state), ": ", what));
 }
 
 }  // namespace
@@ -29,7 +30,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
   const bool judged = report->state == ReportState::InDoubt;
   if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
     return cannot(*report,
-                  icd::sentence("report ", other->number, " is the same and is ", name_of(other->state),
+                  icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),
                                 " in this run; to send it again, resubmit that report"));
   }
   if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
@@ -48,9 +49,9 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::HeldBack) == nullptr) {
-    return cannot(*report, report->state == ReportState::Received ? "it is held already"
-                           : is_final(report->state)              ? "only a queued report can be held"
-                                                                  : "it may have been sent already");
+    return cannot(*report, report->state == ReportState::Held ? "it is held already"
+                           : is_final(report->state)          ? "only a queued report can be held"
+                                                              : "it may have been sent already");
   }
   if (!step(number, ReportEvent::HeldBack, "held: the operator held it", time)) {
     return std::unexpected(kDisk);
@@ -63,9 +64,8 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::Withdrawn) == nullptr) {
-    return cannot(*report, is_final(report->state)
-                               ? "it is finished and cannot be withdrawn"
-                               : "it may have been recorded; send it, or call it done");
+    return cannot(*report, is_final(report->state) ? "it is finished and cannot be withdrawn"
+                                                   : "it may have been recorded; send it, or call it done");
   }
   if (!step(number, ReportEvent::Withdrawn, "", time)) return std::unexpected(kDisk);
   unchecked_.erase(number);
@@ -78,8 +78,8 @@ Reports::Outcome Reports::call_done(std::int64_t number, Time time) {
   if (transition(report->state, ReportEvent::CalledDone) == nullptr) {
     return cannot(*report, "only a report in doubt can be called done");
   }
-  const bool done = blur_doubts(number, time) &&
-                    step(number, ReportEvent::CalledDone, "the operator called it done", time);
+  const bool done =
+      blur_doubts(number, time) && step(number, ReportEvent::CalledDone, "the operator called it done", time);
   if (!done) return std::unexpected(kDisk);
   ask_for_others(time);
   return number;

@@ -194,7 +194,7 @@ void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& do
   }
   lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
   if (!is_wanted || is_said_by_what_goes(back)) return forget({&keeping.number, 1});
-  unread_.insert(keeping.number);  // it may have been set aside in a life before
+  unread_.insert(keeping.number);  // it may have been rejected in a life before
   forget(lane_.put_back(std::move(back)));
   pump();
 }

@@ -46,7 +46,7 @@ class OperatorsWord : public testing::TestWithParam<Words> {
     const auto outcome = say(scene.reports(), scene.time());
     if (!outcome) {
       EXPECT_EQ(scene.report(1), before);
-      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(name_of(GetParam().state))));
+      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(shown_name_of(GetParam().state))));
     }
     return outcome.has_value();
   }

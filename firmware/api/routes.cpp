@@ -48,6 +48,8 @@ constexpr Route kRoutes[] = {
     get("/", Open, by<&PageRoutes::file>(), "page", "The page.", "The page.", "text/html; charset=utf-8"),
     get("/display", Open, by<&PageRoutes::file>(), "page", "The run for a wall: no controls.", "The page.",
         "text/html; charset=utf-8"),
+    get("/help", Open, by<&PageRoutes::file>(), "page", "What each alarm means, and what to do.", "The page.",
+        "text/html; charset=utf-8"),
     get("/runs", Open, by<&PageRoutes::file>(), "page", "The runs that are kept.", "The page.",
         "text/html; charset=utf-8"),
     get("/setup", Open, by<&PageRoutes::file>(), "page", "What is set up.", "The page.",

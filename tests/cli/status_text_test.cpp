@@ -86,7 +86,7 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
   view.activities[0].robot = "\x1b[2J";
   view.activities[0].last_sentence = "\x1b[2J\nRun   99:99";
   view.alarms = {{.what = "\x1b[2J", .why = "\x1b[2J"}};
-  view.verdict = {alarms::Level::Bad, "Nothing arrives", "\x1b[2J"};
+  view.verdict = {alarms::Level::Bad, "No map arrives", "\x1b[2J"};
   view.endpoints[0].trouble = "\x1b[2J";
   view.reports[0].state = "\x1b[2J";
   view.refusals = {{.at = 0, .uri = "\x1b[2J", .sender = "\x1b[2J", .status = 422, .sentence = "\x1b[2J"}};

@@ -42,7 +42,7 @@ std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rul
   if (!name) {
     field.refuse("expected 1 to ", icd::RobotName::kLongest, " letters, digits and underscores, got ",
                  icd::in_quotes(text),
-                 text.empty() ? "" : " (the setting robots[].alias gives a name to whoever calls itself so)");
+                 text.empty() ? "" : " (the setting robots[].alias can map this name to a valid one)");
   }
   return name;
 }

@@ -229,7 +229,7 @@ class TakingOver {
   bool move(Report& next, const Report& there) {
     if (there.state == ReportState::Sending) {
       ++next.tries;
-      return step(next, ReportState::InDoubt, "the first box stopped while it was being sent");
+      return step(next, ReportState::InDoubt, "the first box stopped while it was in flight");
     }
     if (there.state != ReportState::Queued) return false;
     if (const Report* const own = sent_here(next); own != nullptr) {
@@ -240,7 +240,7 @@ class TakingOver {
     next.before = there.run == there_runs_.present().number ? handover_.expected : std::nullopt;
     next.sending = ++next_sending_;
     next.sent = handover_.stamp;
-    return step(next, ReportState::InDoubt, "it waited at the first box, which may have sent it since");
+    return step(next, ReportState::InDoubt, "it was queued at the first box, which may have sent it since");
   }
 
   bool step(Report& report, ReportState state, const std::string& note) const {

@@ -19,7 +19,7 @@ std::size_t bytes_of_all(const icd::MarkersUpdate& update) {
 }
 
 icd::Refusal no_memory() {
-  return {icd::Status::ServiceUnavailable, "the gateway could not hold these markers; send them again later"};
+  return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
 }
 
 }  // namespace
@@ -46,12 +46,12 @@ void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received,
 void MarkerArrivals::go(Step step) {
   Arrival& first = arrivals_.front();
   bool over = false;
-  if (!loop::guarded("taking markers", [&] { over = (this->*step)(first); })) return give_up();
+  if (!loop::guarded("receiving markers", [&] { over = (this->*step)(first); })) return give_up();
   if (over) end();
 }
 
 void MarkerArrivals::give_up() {
-  loop::guarded("refusing markers", [this] { fail(arrivals_.front(), no_memory()); });
+  loop::guarded("rejecting markers", [this] { fail(arrivals_.front(), no_memory()); });
   end();
 }
 
@@ -72,7 +72,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
   if (!lane_.has_room_for(*arrival.update) && !takes_some(arrival)) {
     return fail(arrival,
                 {icd::Status::TooManyRequests,
-                 "not taken: more markers than can wait (queues.marker_bytes); send it again later"});
+                 "not accepted: the queue of markers is full (queues.marker_bytes); send it again later"});
   }
   if (bytes_of_all(*arrival.update) > kSmall) {
     make_record(arrival);
@@ -90,8 +90,8 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
   arrival.outcome = std::unexpected(
       icd::Refusal{icd::Status::TooManyRequests,
                    icd::sentence(taken, " of ", all,
-                                 " markers were taken, for others of theirs wait already; for new ones there "
-                                 "is no room (queues.marker_bytes); send them again later"),
+                                 " markers were accepted, because they replace queued markers; the queue has "
+                                 "no room for new markers (queues.marker_bytes); send them again later"),
                    all - taken});
   *arrival.update = std::move(known);
   return true;
@@ -111,7 +111,7 @@ void MarkerArrivals::make_record(const Arrival& arrival) {
 bool MarkerArrivals::keep(Arrival& arrival) {
   if (const auto kept = journal_.accepted_record(arrival.record); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
-                          "not taken: it cannot be kept: " + kept.error() + "; send it again later"});
+                          "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});
   }
   arrival.is_kept = true;
   arrival.record = {};

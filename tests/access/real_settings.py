@@ -207,7 +207,7 @@ class SetUp(unittest.TestCase):
             self.assertEqual(self.box.port, port, "where it was before")
             self.assertIn(f"the last change was taken back: binding to 127.0.0.1 port {other}", self.attention())
             self.assertIn("Address already in use", self.attention())
-            self.assertIn("the last change of the settings is taken back", self.box.said())
+            self.assertIn("the last change of the settings was taken back", self.box.said())
             self.assertEqual((self.box.state / "settings.json").read_text(), good)
         self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
         self.assertEqual((self.box.port, self.attention()), (other, ""))
@@ -291,7 +291,7 @@ class SetUp(unittest.TestCase):
         endpoints = self.box.ask("GET /adit/run", **self.me)[1]["endpoints"]
         self.assertEqual([row["trouble"] for row in endpoints], ["no scoring token is set", "no mapping token is set"])
         status, said, _ = self.box.ask("POST /state/update", state("ugv1"), **TEAM)
-        self.assertEqual((status, said), (401, "Authorization: no token is set up on this gateway yet"))
+        self.assertEqual((status, said), (401, "Authorization: no token is set on this box yet"))
         for name in ("scoring", "mapping", "team"):
             self.applied("POST /adit/tokens", {"name": name, "token": f"{name}-from-the-page"})
         self.assertNotIn("token is set", self.attention())

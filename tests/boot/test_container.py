@@ -104,7 +104,7 @@ class Everyday(Contained):
         """And all else flows."""
         refused = submit(self.stage, report)
         self.assertEqual(refused.status_code, 503, refused.text)
-        self.assertIn("could not be written down and was not taken", refused.json())
+        self.assertIn("could not be stored and was not accepted", refused.json())
         self.assertEqual(self.stage.post.recorded(report), [])
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"], "what can be read is shown")
         self.flows("/state/update", {"poses": [POSE]})

@@ -117,7 +117,7 @@ TEST_F(Actions, GoOnAfterOneThatCannotBe) {
        {"GET /adit/reports/9", report("held")},
        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
        {"POST /adit/reports/8/send",
-        Server::reply("409 Conflict", "\"report 8 is answered: to send it once more, resubmit it\"")},
+        Server::reply("409 Conflict", "\"report 8 is answered: to send it again, resubmit it\"")},
        {"POST /adit/reports/9/send", Server::ok("{\"report\":9}")}});
   const Outcome outcome = say(server, {"reports", "send", "7", "8", "9"});
   EXPECT_EQ(outcome.exit, Exit::Attention);

@@ -127,10 +127,9 @@ TEST_F(Check, WarnsOfATokenOfTheCommandPostsThatHasNot16Characters) {  // ICD 4
   options.json = true;
   const Outcome outcome = cli::check(options, false);
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_EQ(
-      outcome.out,
-      "{\"good\":true,\"errors\":[],\"warnings\":[\"the token mapping has 15 characters, the Command Post's "
-      "have 16 (ICD 4): is all of it there?\"]}\n");
+  EXPECT_EQ(outcome.out,
+            "{\"good\":true,\"errors\":[],\"warnings\":[\"the token mapping has 15 characters; the Command "
+            "Post's tokens have 16 (ICD 4); is it complete?\"]}\n");
   std::filesystem::permissions(secrets + "/mapping.token", std::filesystem::perms::all);
   EXPECT_THAT(cli::check(options, false).out,
               HasSubstr("cannot check the tokens: " + secrets + "/mapping.token"));

@@ -47,7 +47,7 @@ class ManPages(unittest.TestCase):
         self.assertEqual(missing, [], where)
 
     def test_sentences_are_those_of_the_help(self):
-        self.assertIn("--settings FILE the settings (JSON, version 1) unless others were saved; adit check FILE explains",
+        self.assertIn("--settings FILE read the settings (JSON, version 1) from FILE, unless the state directory holds saved ones; adit",
                       shown(self.page_of("aditd")))
         adit = shown(self.page_of("adit"))
         self.assertIn("--run N|all Without a subcommand: list the reports of this run; if not given, of the present run", adit)

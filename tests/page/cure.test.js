@@ -21,7 +21,7 @@ test("leads from a name that a robot may not have to the robots and their aliase
   const prepare = async (page) => {
     await withKeys(page);
     await retell(page, () => (view) => {
-      for (const row of view.refusals) row.sentence = 'poses[0].name: expected 1 to 10 letters, got "husky-1" (the setting robots[].alias gives a name to whoever calls itself so)';
+      for (const row of view.refusals) row.sentence = 'poses[0].name: expected 1 to 10 letters, got "husky-1" (the setting robots[].alias can map this name to a valid one)';
       return view;
     });
   };
@@ -53,6 +53,6 @@ test("offers a viewer nothing", async (t) => {
   const { page } = await watch(t, "trouble", { prepare });
   await said(page, "Only an operator can act");
   await openMore(page);
-  await said(page, "the setting rules.rewrite_frame_id takes any");
+  await said(page, "the setting rules.rewrite_frame_id accepts any frame");
   assert.equal(await cures(page).count(), 0);
 });

@@ -19,7 +19,7 @@ class Disk(unittest.TestCase):
             if answer.status_code != 201:
                 break
         self.assertEqual(answer.status_code, 503, answer.text)
-        self.assertIn("could not be written down and was not taken", answer.json())
+        self.assertIn("could not be stored and was not accepted", answer.json())
         self.assertNotIn("Adit-Report", answer.headers)
         self.assertEqual([made["x"] for made in stage.post.recorded()[1:]], [another(taken)["x"] for taken in range(1, number)])
         return number - 1

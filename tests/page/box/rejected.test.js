@@ -91,7 +91,7 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await until(async () => (await rejectedOf(made)).some(({ robot, replaced }) => robot === "robot_2" && replaced), "it to be replaced");
     const number = await numberOf(page, "robot_2");
     await press(button(page, "robot_2", "Send again"));
-    await page.locator("#rejected .said", { hasText: "something newer that says all of it was sent since" }).waitFor();
+    await page.locator("#rejected .said", { hasText: "a newer message that contains it was delivered since" }).waitFor();
     await focusIs(page, `#rejected li[data-key="${number}"] .send`);
     await page.evaluate(() => (globalThis.deaf = false));
     await row(page, "robot_2").getByText("Something newer that covers it was sent since.").waitFor();

@@ -42,9 +42,9 @@ test("does not hold what may have left", async (t) => {
   await made.becomes(number, "sending");
   const { status, said } = await made.ask(`/adit/reports/${number}/hold`, {});
   assert.equal(status, 409);
-  assert.equal(said, `report ${number} is sending: it may have left already, and nothing takes it back`);
+  assert.equal(said, `report ${number} is sending: it may have been sent already`);
   await made.becomes(number, "answered");
-  assert.equal((await made.ask(`/adit/reports/${number}/hold`, {})).said, `report ${number} is answered: there is nothing to hold`);
+  assert.equal((await made.ask(`/adit/reports/${number}/hold`, {})).said, `report ${number} is answered: only a queued report can be held`);
   assert.equal((await made.ask("/adit/reports/99/hold", {})).status, 404);
 });
 
@@ -76,7 +76,7 @@ test("tells the second of two operators why his send was not taken", async (t) =
   await action(first, "Send", number).click();
   await made.becomes(number, "answered");
   await action(second, "Send", number).click();
-  await says(second, number, `report ${number} is answered: to send it once more, resubmit it`);
+  await says(second, number, `report ${number} is answered: to send it again, resubmit it`);
   assert.equal(await row(second, number).locator(".outcome").getAttribute("data-bad"), "true");
   await second.evaluate(() => (globalThis.deaf = false));
   await second.waitForFunction((number) => document.querySelector(`#reports li[data-key="${number}"] .badge`).textContent.match(/scored|points/), number);

@@ -122,7 +122,7 @@ TEST_F(Actions, GoOnAfterOneThatCannotBe) {
   const Outcome outcome = say(server, {"reports", "send", "7", "8", "9"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out, "report 7 is queued\nreport 9 is queued\n");
-  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it once more, resubmit it\n");
+  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it again, resubmit it\n");
 }
 
 /// A console at which somebody gives that answer; `asked` gets the question.

@@ -97,7 +97,7 @@ class Everyday(Contained):
 
     def says(self, why):
         said = self.box.attention()
-        self.assertIn("no report is taken: the ledger cannot be written: ", said)
+        self.assertIn("reports are not accepted: the box cannot write the ledger: ", said)
         self.assertIn(why, said)
 
     def takes_no(self, report):

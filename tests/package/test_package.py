@@ -144,7 +144,7 @@ class Packages(Story):
         self.assertNotIn("0", rights["Uid"].split())
         with neighbour.Neighbour(self.stage.network, self.stage.network.team, "team0") as other:
             other.take(self.stage.network.box_address)
-            programs.wait_until(lambda: f"is also {other.mac}'s" in self.box.shell("adit status", good=False), "the alarm", 60)
+            programs.wait_until(lambda: f"{other.mac} also uses" in self.box.shell("adit status", good=False), "the alarm", 60)
             self.assertEqual(self.box.run("adit", "status").returncode, 1)
             other.leave()
             programs.wait_until(lambda: "address is taken" not in self.box.shell("adit status", good=False), "the alarm to go", 60)

@@ -115,7 +115,7 @@ class Reader {
 
   void read_secrets() {
     const auto folder = card_.folder(kCardSecrets);
-    if (!folder) return refuse(kCardSecrets, "expected a folder");
+    if (!folder) return refuse(kCardSecrets, "expected a directory");
     if (!*folder) return;
     const auto names = (*folder)->names();
     if (!names) return refuse(kCardSecrets, names.error());
@@ -132,7 +132,7 @@ class Reader {
         known, [&file](const std::string& token) { return token + settings::kTokenEnding == file; });
     if (!is_known)
       return refuse(name,
-                    icd::sentence("no token is called so; expected one of ", listed(known), ", ", kCardCode));
+                    icd::sentence("unknown name; expected one of ", listed(known), ", ", kCardCode));
     const auto text = text_of(folder, file, name);
     if (!text) return;
     auto token = icd::BearerToken::parse(trimmed(*text));

@@ -119,7 +119,7 @@ TEST_F(UpdatesTest, TakeOneAtATime) {
   EXPECT_TRUE((*first)->write(piece));
   EXPECT_EQ(updates_.update().progress, 50);
   EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence,
-            "the box is receiving already: wait for its end");
+            "the box is already receiving: wait");
   EXPECT_EQ(updates_.restart(true).error().status, icd::Status::Conflict);
   first->reset();
   EXPECT_EQ(updates_.update().doing, "");
@@ -183,7 +183,7 @@ TEST_F(UpdatesTest, GiveTheRoomBackAtOnceWhereTheDiskIsFullBeforeTheEnd) {
   std::optional<icd::Checked<void>> ended;
   (*upload)->finish([&ended](icd::Checked<void> outcome) { ended = std::move(outcome); });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return ended.has_value(); }));
-  EXPECT_EQ(ended->error().sentence, "the bundle cannot be written: File too large");
+  EXPECT_EQ(ended->error().sentence, "cannot write the bundle: File too large");
   EXPECT_TRUE(fs::is_empty(state_.path()));
   EXPECT_FALSE(asked());
 }
@@ -194,10 +194,10 @@ TEST_F(UpdatesTest, AreOverOnceAditUpdateHasAnswered) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->what, update::Request::What::Stick);
   EXPECT_EQ(updates_.update().doing, "checking");
-  say({.nonce = request->nonce, .refusal = "there is no update on a stick"});
+  say({.nonce = request->nonce, .refusal = "no stick has an update"});
   wait();
   EXPECT_EQ(updates_.update().doing, "");
-  EXPECT_EQ(updates_.update().refusal, "there is no update on a stick");
+  EXPECT_EQ(updates_.update().refusal, "no stick has an update");
 }
 
 TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {

@@ -80,7 +80,7 @@ void the_box(std::vector<Facts>& days) {
   facts.notices = {{"card", "what happened"}};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
   days.push_back(named());
-  days.back().rests = "it was put to rest, for its spare to take over";
+  days.back().rests = "the operator put it in standby, so that a spare takes over";
 }
 
 void the_network(std::vector<Facts>& days) {

@@ -105,7 +105,7 @@ const ConditionCase kConditionCases[] = {
     {"set_aside", Ask, Side::CommandPost, "3 messages are set aside", "would not take them",
      [](Facts& facts) { facts.set_aside = 3; }},
     {"rests", Bad, Side::Box, "This box rests and sends nothing", "for its spare",
-     [](Facts& facts) { facts.rests = "it was put to rest, for its spare to take over"; }},
+     [](Facts& facts) { facts.rests = "the operator put it in standby, so that a spare takes over"; }},
     {"ledger_unwritable", Bad, Side::Box, "No report is taken", "the ledger cannot be written: no space",
      [](Facts& facts) { facts.ledger_refusal = "no space"; }},
     {"ledger_damaged", Ask, Side::Box, "The ledger was damaged", "a page",

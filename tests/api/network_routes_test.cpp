@@ -115,10 +115,10 @@ TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
   EXPECT_THAT(network.confirmed, ElementsAre("192.168.8.11"));
   post("/adit/network/back");
   EXPECT_EQ(network.taken_back, 1);
-  network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "no change waits to be confirmed"});
+  network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "there is no change to confirm"});
   const auto answer = post("/adit/network/confirm");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
-  EXPECT_EQ(json::parse(answer.body), "no change waits to be confirmed");
+  EXPECT_EQ(json::parse(answer.body), "there is no change to confirm");
 }
 
 TEST_F(NetworkRoutesTest, RunOneTestAtATime) {

@@ -39,7 +39,7 @@ TEST(AditNetworkOptions, AreRefusedByTheirWord) {
   EXPECT_THAT(parse({"--factory", ""}).error(), HasSubstr("--factory wants a value"));
   for (const char* name :
        {"*", "eth*", "!team0", "a b", "eth0\nName=*", "..", ".", "sixteen-letters-", "a/b", "en:0"}) {
-    EXPECT_THAT(parse({"--team", name}).error(), HasSubstr("--team wants an interface's name")) << name;
+    EXPECT_THAT(parse({"--team", name}).error(), HasSubstr("--team: expected an interface's name")) << name;
     EXPECT_THAT(parse({"--command-post", name}).error(), HasSubstr("--command-post wants")) << name;
   }
   EXPECT_THAT(parse({"--team", "darpa0"}).error(), HasSubstr("the same interface"));

@@ -117,7 +117,7 @@ class Stick(Sticks):
     def test_that_fills_up_meanwhile_is_left_as_it_was(self):
         self.plug(size=8 << 20)
         self.hook('[ "$1" != rw ] || dd if=/dev/zero of="$2/filler" bs=64k 2>/dev/null || true\n')
-        self.expect_refused(self.write(), "the stick has no room for it")
+        self.expect_refused(self.write(), "the stick is full")
         self.assertTrue(self.is_read_only())
         self.assertFalse({NAME, PART} & set(os.listdir(self.place())))
 
@@ -144,7 +144,7 @@ class Stick(Sticks):
 
     def test_that_is_not_in_is_missed(self):
         self.expect_refused(self.write(), "there is no stick in the box")
-        self.expect_refused(self.ask("take"), "there is no such export on a stick")
+        self.expect_refused(self.ask("take"), "no stick has this export")
 
     def test_beside_another_is_not_guessed(self):
         self.plug()
@@ -167,7 +167,7 @@ class Stick(Sticks):
             with self.subTest(moment):
                 self.plug()
                 self.hook(f'[ "$1" != {moment} ] || {{ {out} "$2"; }}\n')
-                self.expect_refused(self.write(), "the stick was pulled out before")
+                self.expect_refused(self.write(), "the stick was removed before")
                 self.assertEqual(self.run_it()["hindrance"], "there is no stick in the box")
                 (self.folder / "hook").unlink()
 
@@ -176,7 +176,7 @@ class Stick(Sticks):
         self.plug()
         lies = f'[ "$1" != ro ] || {{ umount "$2"; mount -o loop,rw {self.folder}/dev/sda1 "$2"; printf x >>"$2/{NAME}"; mount -o remount,ro "$2"; }}\n'
         self.hook(lies)
-        self.expect_refused(self.write(), "the stick has not kept the export as it was written")
+        self.expect_refused(self.write(), "the export on the stick differs from what was written")
 
     def test_that_fails_while_it_is_written_is_told_of(self):
         """Every write beyond what its medium takes comes to nothing, as with one that dies."""
@@ -202,7 +202,7 @@ class Stick(Sticks):
             self.run_it()
         self.assertFalse(self.is_read_only(), "it was killed there")
         status = self.run_it()
-        self.assertEqual((status["doing"], status["refusal"]), ("", "it was cut off: try again"))
+        self.assertEqual((status["doing"], status["refusal"]), ("", "the last action was interrupted: try again"))
         self.assertTrue(self.is_read_only())
         self.assertEqual(self.write()["written"], NAME)
 
@@ -235,7 +235,7 @@ class Stick(Sticks):
         self.assertEqual(len(self.run_it()["exports"]), 6, "they are names so far")
         for name, why in (("link", "link.adit-spare"), ("pipe", "expected a plain file"), ("folder", "expected a plain file"),
                           ("none", "it is no export of an Adit"), ("empty", "it is no export of an Adit"),
-                          ("large", "too large for an export")):
+                          ("large", "larger than an export may be")):
             with self.subTest(name):
                 self.expect_refused(self.ask("take", f"{name}.adit-spare"), why)
         self.assertFalse((self.folder / "status/export.adit-spare").exists())

@@ -95,10 +95,10 @@ TEST_F(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
 
 TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {
   const Server server(
-      {{"POST /adit/network/confirm", Server::reply("409 Conflict", "\"no change waits to be confirmed\"")}});
+      {{"POST /adit/network/confirm", Server::reply("409 Conflict", "\"there is no change to confirm\"")}});
   const Outcome outcome = say(server, {"network", "confirm"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_EQ(outcome.err, "adit: no change waits to be confirmed\n");
+  EXPECT_EQ(outcome.err, "adit: there is no change to confirm\n");
   EXPECT_EQ(say(Server("nonsense"), {"network"}).exit, Exit::Unable);
   EXPECT_THAT(say(Server(Server::ok("{}")), {"network"}).err, HasSubstr("not of this version of Adit"));
 }

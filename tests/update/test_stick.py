@@ -46,7 +46,7 @@ class AStick(OnABox):
         shutil.copy(self.newer, os.fsencode(self.box.folder / "sticks/sda1") + b"/adit-\xff.raucb")
         status = self.box.update()
         self.assertIsNone(status["stick"])
-        self.assertEqual(status["stick_trouble"], "adit-\\xff.raucb: call it by letters of ASCII alone")
+        self.assertEqual(status["stick_trouble"], "adit-\\xff.raucb: rename the file: only ASCII characters are allowed")
         self.put("adit-good.raucb", "0.3.0")
         self.assertEqual(self.box.update()["stick"]["version"], "0.3.0")
 
@@ -66,4 +66,4 @@ class AStick(OnABox):
 
     def test_that_is_gone_is_said(self):
         self.box.ask("stick")
-        self.expect_refused(self.box.update(), "there is no update on a stick")
+        self.expect_refused(self.box.update(), "no stick has an update")

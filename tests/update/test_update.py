@@ -69,7 +69,7 @@ class Refused(OnABox):
     def test_a_restart_that_systemd_refuses(self):
         raucs.script(self.box.folder / "bin/systemctl", "echo no bus >&2; exit 1\n")
         self.box.ask("restart")
-        self.expect_refused(self.box.update(), "it cannot be restarted: systemctl reboot: no bus (exit status 1)")
+        self.expect_refused(self.box.update(), "cannot restart the machine: systemctl reboot: no bus (exit status 1)")
 
     def test_another_board(self):
         self.expect_refused(self.box.install(self.bundles.make(board="adit-other"), again=True), "another board")
@@ -94,7 +94,7 @@ class Refused(OnABox):
         unsigned = self.scratch / "unsigned"
         subprocess.run(["mksquashfs", self.newer.parent / "in", unsigned, "-quiet", "-no-progress"], check=True,
                        stdout=subprocess.DEVNULL)
-        for name, content, sentence in (("empty", b"", "it is empty"),
+        for name, content, sentence in (("empty", b"", "got an empty file"),
                                         ("truncated", whole[:len(whole) // 2], "Invalid bundle format"),
                                         ("without its end", whole[:-1], "Invalid bundle format"),
                                         ("noise", os.urandom(100_000), "Invalid bundle format"),
@@ -151,7 +151,7 @@ class Refused(OnABox):
         shutil.copy(self.newer, path)
         with open(path, "ab"):
             self.box.ask("install")
-            self.expect_refused(self.box.update(), "somebody writes to it")
+            self.expect_refused(self.box.update(), "another program is writing to it")
         self.expect_untouched()
 
     def test_a_request_that_is_none(self):

@@ -153,7 +153,9 @@ TEST_F(ClockSettingTest, AsksAgainWhatWasRefused) {
   const auto first = asked();
   ASSERT_TRUE(first);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
-  say({.nonce = first->nonce, .refusal = "at: not within the last minute", .source = Source::None});
+  say({.nonce = first->nonce,
+       .refusal = "at: expected a time within the last minute",
+       .source = Source::None});
   time_.pass(ClockSetting::kAskAgain - 1ms);
   setting_.offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());

@@ -70,7 +70,7 @@ TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
 
 TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
   say({.running = {"adit-board", "0.1.0", "A", "B"},
-       .refusal = "it is older",
+       .refusal = "the update is older",
        .doing = "installing",
        .progress = 40,
        .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
@@ -79,7 +79,7 @@ TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
   EXPECT_EQ(view.running.version, "0.1.0");
   EXPECT_EQ(view.doing, "installing");
   EXPECT_EQ(view.progress, 40);
-  EXPECT_EQ(view.refusal, "it is older");
+  EXPECT_EQ(view.refusal, "the update is older");
   EXPECT_TRUE(updates_.running());
 }
 
@@ -118,8 +118,7 @@ TEST_F(UpdatesTest, TakeOneAtATime) {
   const std::uint8_t piece[50] = {};
   EXPECT_TRUE((*first)->write(piece));
   EXPECT_EQ(updates_.update().progress, 50);
-  EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence,
-            "the box is already receiving: wait");
+  EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence, "the box is already receiving: wait");
   EXPECT_EQ(updates_.restart(true).error().status, icd::Status::Conflict);
   first->reset();
   EXPECT_EQ(updates_.update().doing, "");

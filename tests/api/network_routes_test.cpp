@@ -70,7 +70,7 @@ TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
 TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
   network.view.pending = PendingNetwork{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
   network.view.last = "taken back";
-  network.view.last_why = "nobody confirmed it within 90 s";
+  network.view.last_why = "the change was not confirmed within 90 s";
   const json shown = json::parse(get("/adit/network").body);
   EXPECT_EQ(shown["pending"]["until"], 1234.5);
   EXPECT_EQ(shown["pending"]["team"]["address"], "192.168.8.11");

@@ -74,7 +74,7 @@ struct PlayedSpare final : Spare {
     } else if (stick.doing == "reading") {
       stick.doing.clear();
       view.asks_code = taken_ != "zip.adit-spare";
-      if (!view.asks_code) stick.refusal = "it is no export of an Adit";
+      if (!view.asks_code) stick.refusal = "the file is not an export from Adit";
     }
   }
 

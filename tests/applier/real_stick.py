@@ -111,7 +111,7 @@ class Stick(Sticks):
         self.plug(size=3 << 20)
         self.put({"photo": bytes(1 << 20)})
         before = set(os.listdir(self.place()))
-        self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "and the export has")
+        self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "but the export has")
         self.assertEqual((self.calls.read_text(), set(os.listdir(self.place()))), ("", before))
 
     def test_that_fills_up_meanwhile_is_left_as_it_was(self):
@@ -234,7 +234,7 @@ class Stick(Sticks):
         self.mount_stick()
         self.assertEqual(len(self.run_it()["exports"]), 6, "they are names so far")
         for name, why in (("link", "link.adit-spare"), ("pipe", "expected a plain file"), ("folder", "expected a plain file"),
-                          ("none", "it is no export of an Adit"), ("empty", "it is no export of an Adit"),
+                          ("none", "the file is not an export from Adit"), ("empty", "the file is not an export from Adit"),
                           ("large", "larger than an export may be")):
             with self.subTest(name):
                 self.expect_refused(self.ask("take", f"{name}.adit-spare"), why)
@@ -247,7 +247,7 @@ class Stick(Sticks):
 
     def test_is_written_nothing_that_is_no_export(self):
         self.plug()
-        for export, why in ((b"#!/bin/sh", "it is no export of an Adit"), (EXPORT + bytes(9 << 20), "too large")):
+        for export, why in ((b"#!/bin/sh", "the file is not an export from Adit"), (EXPORT + bytes(9 << 20), "too large")):
             self.expect_refused(self.write(export), why)
         target = self.folder / "secret"
         target.write_bytes(EXPORT)

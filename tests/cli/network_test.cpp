@@ -20,7 +20,7 @@ const std::string kSides =
 std::string view(const std::string& pending, const std::string& last, bool managed = true) {
   return Server::ok(std::string(R"({"managed":)") + (managed ? "true" : "false") +
                     R"(,"why":"it is set elsewhere",)" + kSides + R"(,"pending":)" + pending +
-                    R"(,"ports":[],"last":)" + last + R"(,"last_why":"nobody confirmed it"})");
+                    R"(,"ports":[],"last":)" + last + R"(,"last_why":"the change was not confirmed"})");
 }
 
 const std::string kPending =
@@ -77,7 +77,7 @@ TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
 TEST_F(NetworkCommand, ShowsHowTheLastChangeEndedAndWhyNoneCanBeMade) {
   const Server server({{"GET /adit/network", view("null", "\"taken back\"", false)}});
   const Outcome outcome = say(server, {"network"});
-  EXPECT_THAT(outcome.out, HasSubstr("The last change: taken back, nobody confirmed it\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("The last change: taken back, the change was not confirmed\n"));
   EXPECT_THAT(outcome.out, HasSubstr("Nothing can be changed here: it is set elsewhere\n"));
 }
 
@@ -90,7 +90,7 @@ TEST_F(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
   EXPECT_EQ(confirmed.out, "the change is confirmed\n");
   const Outcome back = say(server, {"network", "back"});
   EXPECT_EQ(back.exit, Exit::Attention) << "it was confirmed meanwhile";
-  EXPECT_EQ(back.out, "the change is confirmed: nobody confirmed it\n");
+  EXPECT_EQ(back.out, "the change is confirmed: the change was not confirmed\n");
 }
 
 TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {

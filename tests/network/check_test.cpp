@@ -143,7 +143,7 @@ TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
     const Findings findings = check(with_mode(mode), numbers(), usual());
     EXPECT_THAT(findings.errors, IsEmpty());
     EXPECT_THAT(findings.warnings,
-                ElementsAre(AllOf(HasSubstr("not known yet"), HasSubstr("http://pc-17.local:8000"))));
+                ElementsAre(AllOf(HasSubstr("not yet known"), HasSubstr("http://pc-17.local:8000"))));
     ASSERT_THAT(findings.changes, SizeIs(3));
     EXPECT_EQ(findings.changes[0].path, "team.mode");
     EXPECT_EQ(findings.changes[0].to, name_of(mode));

@@ -50,7 +50,7 @@ TEST(NetworkMessages, TellTheWholeStatus) {
                            std::chrono::seconds(5)};
   status.ended = Ended::TakenBack;
   status.ended_nonce = kNonce;
-  status.why = "nobody confirmed it";
+  status.why = "the change was not confirmed";
   EXPECT_EQ(read<Status>(write(status)), status);
   EXPECT_EQ(json::parse(write(status))["pending"]["until_ms"], 123456);
 }

@@ -59,9 +59,9 @@ class AStick(OnABox):
         self.put("adit-old.raucb", "0.0.1")
         status = self.box.update()
         self.assertIsNone(status["stick"])
-        self.assertIn("adit-old.raucb: it is older", status["stick_trouble"])
+        self.assertIn("adit-old.raucb: the update is older", status["stick_trouble"])
         self.box.ask("stick")
-        self.expect_refused(self.box.update(), "it is older")
+        self.expect_refused(self.box.update(), "the update is older")
         self.expect_untouched()
 
     def test_that_is_gone_is_said(self):

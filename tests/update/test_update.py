@@ -77,7 +77,7 @@ class Refused(OnABox):
 
     def test_an_older_version(self):
         for version in ("0.0.9", "0.1.0-rc.1"):
-            self.expect_refused(self.box.install(self.bundles.make(version), again=True), "older than what runs: " + version)
+            self.expect_refused(self.box.install(self.bundles.make(version), again=True), f"the update is older ({version})")
         self.expect_untouched()
 
     def test_a_version_that_is_none(self):

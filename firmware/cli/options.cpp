@@ -238,7 +238,7 @@ command_line::Program command_line_of(Options& options) {
             "that can be read (by root)",
             &options.token_file},
            {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
-           {"--version", "", "prints the version", &options.version},
+           {"--version", "", "print the version", &options.version},
            {"--help", "", "this, or more about a command", &options.help}},
       .ending = "",
   };

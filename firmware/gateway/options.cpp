@@ -37,8 +37,8 @@ command_line::Program command_line_of(Options& options) {
            {"--notices", "DIR",
             "sentences for the operator, a file each, of the programs that start the box and watch it",
             &options.notices},
-           {"--version", "", "prints the version", &options.version},
-           {"--help", "", "prints this", &options.help}},
+           {"--version", "", "print the version", &options.version},
+           {"--help", "", "print this help", &options.help}},
       .ending =
           "What waits and who is logged in is kept across a restart in $RUNTIME_DIRECTORY, or else in the "
           "state folder.\n"

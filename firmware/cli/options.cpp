@@ -239,7 +239,7 @@ command_line::Program command_line_of(Options& options) {
             &options.token_file},
            {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
            {"--version", "", "print the version", &options.version},
-           {"--help", "", "this, or more about a command", &options.help}},
+           {"--help", "", "print this help, or more about a command", &options.help}},
       .ending = "",
   };
 }

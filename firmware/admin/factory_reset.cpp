@@ -29,7 +29,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
   NetworkRequests network(state_, "", "");
   if (const auto asked = network.ask(network::Forget{draw_nonce()}); !asked)
     return std::unexpected(asked.error());
-  for (const char* kept : {"journal", "waiting", "aside"}) {
+  for (const char* kept : {"journal", "waiting", "rejected"}) {
     std::error_code error;
     std::filesystem::remove_all(runtime_ + '/' + kept, error);
     if (error) return std::unexpected("cannot remove " + runtime_ + '/' + kept + ": " + error.message());

@@ -116,7 +116,7 @@ struct Facts {
   std::map<std::string, std::size_t> reports_elsewhere = {};  // by the Command Post that they wait for
   std::optional<std::int64_t> reports_left = {};
   std::string run_unreliable = {};  // why its count of reports proves nothing; or ""
-  std::size_t set_aside = 0;
+  std::size_t messages_rejected = 0;
 
   std::string ledger_refusal = {}, ledger_damage = {};
   Disk disk = {};

@@ -100,15 +100,16 @@ void find_report_troubles(const Facts& facts, Found& found) {
                      .what = "The reports' count is not certain",
                      .why = facts.run_unreliable});
   }
-  if (facts.set_aside > 0) {
-    const bool one = facts.set_aside == 1;
-    found.push_back({.id = "set_aside",
-                     .severity = Severity::Ask,
-                     .side = Side::CommandPost,
-                     .what = sentence(facts.set_aside, one ? " message is" : " messages are", " set aside"),
-                     .why = sentence("the Command Post would not take ", one ? "it" : "them"),
-                     .action = {"Show", "/#aside"},
-                     .degree = facts.set_aside});
+  if (facts.messages_rejected > 0) {
+    const bool one = facts.messages_rejected == 1;
+    found.push_back(
+        {.id = "messages_rejected",
+         .severity = Severity::Ask,
+         .side = Side::CommandPost,
+         .what = sentence(facts.messages_rejected, one ? " message is" : " messages are", " rejected"),
+         .why = sentence("the Command Post would not take ", one ? "it" : "them"),
+         .action = {"Show", "/#rejected"},
+         .degree = facts.messages_rejected});
   }
 }
 

@@ -123,11 +123,11 @@ void write_link(Exposition& out, const Measured& measured) {
   out.sample(measured.view.budget_mbit * kBytesPerMbit);
   out.gauge("adit_queue_bytes", "Bytes of queued maps.");
   out.sample(number(measured.view.queued_bytes));
-  out.gauge("adit_set_aside", "Rejected messages that no newer message has replaced.");
-  out.sample(
-      number(static_cast<std::size_t>(std::ranges::count(measured.view.aside, false, &AsideRow::overtaken))));
-  out.counter("adit_set_aside_dropped_total", "Rejected messages deleted to make room for newer ones.");
-  out.sample(number(measured.usage.aside_dropped));
+  out.gauge("adit_rejected_messages", "Rejected messages that no newer message has replaced.");
+  out.sample(number(
+      static_cast<std::size_t>(std::ranges::count(measured.view.rejected, false, &RejectedRow::replaced))));
+  out.counter("adit_rejected_messages_dropped_total", "Rejected messages deleted to make room for newer ones.");
+  out.sample(number(measured.usage.rejected_dropped));
 }
 
 /// Of each robot and kind.
@@ -189,8 +189,8 @@ void write_updates(Exposition& out, const RunView& view) {
   for (const ActivityRow& row : view.activities) {
     if (row.kind == "cloud") out.sample({{"robot", row.robot}}, number(row.no_valid_point));
   }
-  out.gauge("adit_updates_waiting", "Queued updates.");
-  sample_each(out, view, &ActivityRow::waiting);
+  out.gauge("adit_updates_queued", "Queued updates.");
+  sample_each(out, view, &ActivityRow::queued);
   out.gauge("adit_updates_accepted_age_seconds", "Time since the last update was accepted.");
   for (const ActivityRow& row : view.activities) {
     if (!row.last_accepted) continue;

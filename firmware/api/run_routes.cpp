@@ -22,10 +22,10 @@ intake::Answer RunRoutes::begin_run() {
   return object({{"run", json(number)}});
 }
 
-intake::Answer RunRoutes::aside(std::uint64_t number, AsideAction action) {
-  const auto done = operator_.aside(number, action);
+intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) {
+  const auto done = operator_.rejected(number, action);
   live_.changed();
-  return done ? object({{"aside", json(number)}}) : refusal(icd::Status::Conflict, done.error());
+  return done ? object({{"rejected", json(number)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
 intake::Answer RunRoutes::acknowledge(const std::string& body) {

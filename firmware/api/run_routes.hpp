@@ -23,9 +23,9 @@ class RunRoutes {
   void events(const Call& call);
   intake::Answer begin_run();
   /// An action on a message that the Command Post did not take.
-  template <AsideAction action>
-  intake::Answer aside(std::uint64_t number) {
-    return aside(number, action);
+  template <RejectedAction action>
+  intake::Answer rejected(std::uint64_t number) {
+    return rejected(number, action);
   }
   /// An operator has seen an alarm.
   intake::Answer acknowledge(const std::string& body);
@@ -33,7 +33,7 @@ class RunRoutes {
   intake::Answer identify(const std::string& body);
 
  private:
-  intake::Answer aside(std::uint64_t number, AsideAction action);
+  intake::Answer rejected(std::uint64_t number, RejectedAction action);
 
   const Source& source_;
   Operator& operator_;

@@ -64,7 +64,7 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::failed>("failed"),
     member<&ActivityRow::refused_upstream>("refused_upstream"),
     member<&ActivityRow::no_room>("no_room", "rejected because the queue is full"),
-    member<&ActivityRow::waiting>("waiting"),
+    member<&ActivityRow::queued>("queued"),
     member<&ActivityRow::behind_since>(
         "behind_since",
         "when the oldest undelivered update was accepted, in seconds since 1970; null if all are delivered"),
@@ -122,16 +122,16 @@ constexpr Member kEndpoint[] = {
         "foreign", "number of answers that are not from a Command Post: pages of HTML, redirects"),
 };
 
-constexpr Member kAside[] = {
-    member<&AsideRow::number>("number").from(1),
-    member<&AsideRow::kind>("kind").one_of(kKinds),
-    member<&AsideRow::robot>("robot", "empty if it is of several robots or of none"),
-    member<&AsideRow::at>("at", "when the message was rejected"),
-    member<&AsideRow::status>("status", "status of the Command Post's answer"),
-    member<&AsideRow::why>("why"),
-    member<&AsideRow::bytes>("bytes"),
-    member<&AsideRow::overtaken>(
-        "overtaken",
+constexpr Member kRejected[] = {
+    member<&RejectedRow::number>("number").from(1),
+    member<&RejectedRow::kind>("kind").one_of(kKinds),
+    member<&RejectedRow::robot>("robot", "empty if it is of several robots or of none"),
+    member<&RejectedRow::at>("at", "when the message was rejected"),
+    member<&RejectedRow::status>("status", "status of the Command Post's answer"),
+    member<&RejectedRow::why>("why"),
+    member<&RejectedRow::bytes>("bytes"),
+    member<&RejectedRow::replaced>(
+        "replaced",
         "whether a newer message that contains all of this one was sent since: it cannot be sent again"),
 };
 
@@ -170,7 +170,7 @@ constexpr Member kView[] = {
                                   "two reports of one type that are this near may be of one artifact"),
     member<&RunView::activities>("activities"),
     member<&RunView::refusals>("refusals", "the last 50, newest first"),
-    member<&RunView::aside>("aside", "rejected messages, oldest first, at most 100"),
+    member<&RunView::rejected>("rejected", "rejected messages, oldest first, at most 100"),
     member<&RunView::lights>("lights"),
     member<&RunView::links>("links", "the interfaces of the settings"),
     member<&RunView::identify_until>("identify_until", "end of the flashing that identifies the box"),
@@ -200,7 +200,7 @@ constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of
                                           kByTraffic};
 constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "A rejected message.", kByMoment};
 constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
-constexpr codec::Row AsideRow::kRow = {"Aside", kAside, "", kByNumber};
+constexpr codec::Row RejectedRow::kRow = {"Rejected", kRejected, "", kByNumber};
 constexpr codec::Row RobotRow::kRow = {"Robot", kRobot, "", kByName};
 constexpr codec::Row LightRow::kRow = {"Light", kLight, "", kByName};
 constexpr codec::Row LinkRow::kRow = {"Link", kLink, "", kBySide};

@@ -69,7 +69,7 @@ struct ReportDetail {
 struct ActivityRow {
   std::string kind, robot;
   std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
-                refused_upstream = 0, no_room = 0, waiting = 0;
+                refused_upstream = 0, no_room = 0, queued = 0;
   std::optional<Time> behind_since, last_accepted, last_forwarded, last_no_room;
   std::optional<double> behind, age;  // judge()'s
   std::uint64_t bytes_received = 0, bytes_sent = 0;
@@ -106,14 +106,14 @@ struct EndpointRow {
 };
 
 /// A map, state or markers that the Command Post would not take: kept until it is sent again or discarded.
-struct AsideRow {
+struct RejectedRow {
   std::uint64_t number = 0;
   std::string kind, robot;
   Time at = 0;
   int status = 0;
   std::string why;
   std::size_t bytes = 0;
-  bool overtaken = false;
+  bool replaced = false;
 
   static const codec::Row kRow;
 };
@@ -158,7 +158,7 @@ struct RunView {
   double near_metres = 0;
   std::vector<ActivityRow> activities;
   std::vector<RefusalRow> refusals;
-  std::vector<AsideRow> aside;
+  std::vector<RejectedRow> rejected;
   std::vector<LightRow> lights;
   std::vector<LinkRow> links;
   std::optional<Time> identify_until, setup_open_until;

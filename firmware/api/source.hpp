@@ -35,8 +35,8 @@ class Source {
 /// An operator's action on a report: see dispatch::Reports.
 enum class Action : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
 
-/// An operator's action on a message that was set aside.
-enum class AsideAction : std::uint8_t { Send, Discard };
+/// An operator's action on a message that was rejected.
+enum class RejectedAction : std::uint8_t { Send, Discard };
 
 /// What carries out the operator's actions.
 class Operator {
@@ -49,7 +49,7 @@ class Operator {
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
   /// A sentence: why not.
-  virtual std::expected<void, std::string> aside(std::uint64_t number, AsideAction action) = 0;
+  virtual std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) = 0;
   /// The alarm of that id is quiet until it gets worse or comes again. A sentence: why not.
   virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
   /// Gives the new run's number.

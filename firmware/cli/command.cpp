@@ -1,7 +1,6 @@
 #include "cli/command.hpp"
 
 #include "cli/actions.hpp"
-#include "cli/aside.hpp"
 #include "cli/ask.hpp"
 #include "cli/check.hpp"
 #include "cli/clock.hpp"
@@ -9,6 +8,7 @@
 #include "cli/help.hpp"
 #include "cli/network.hpp"
 #include "cli/options.hpp"
+#include "cli/rejected.hpp"
 #include "cli/reports.hpp"
 #include "cli/runs.hpp"
 #include "cli/settings.hpp"
@@ -32,8 +32,8 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
       return watch(*options, console);
     case Command::Reports:
       return reports(*options, console);
-    case Command::Aside:
-      return aside(*options, colour);
+    case Command::Rejected:
+      return rejected(*options, colour);
     case Command::Run:
       return begin_run(*options);
     case Command::Runs:

@@ -7,8 +7,8 @@ constexpr std::size_t kMany = 1000;
 constexpr Argument kNothing{"", "", 0, 0, 0};
 constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX, Among::Reports};
 constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX, Among::Reports};
-constexpr Argument kSetAside{"NUMBER...", "the number of what is set aside", 1, kMany, INT64_MAX,
-                             Among::Aside};
+constexpr Argument kRejectedNumber{"NUMBER...",    "the number of what is rejected", 1, kMany, INT64_MAX,
+                                   Among::Rejected};
 constexpr Argument kSeconds{"[SECONDS]", "seconds, a whole number from 1 to 60", 0, 1, 60};
 constexpr Argument kName{"NAME", "a course's name", 1, 1, 0, Among::Courses};
 constexpr Argument kRunKey{"KEY", "a run's key", 1, 1, 0, Among::Runs};
@@ -39,12 +39,12 @@ constexpr Form kReportForms[] = {
      "a finished report once more on purpose, as a new one with a number of its own"},
     {"export", Verb::Export, kNothing, "all reports of all runs, as CSV for a spreadsheet or as JSON",
      "--csv"}};
-constexpr Form kAsideForms[] = {
+constexpr Form kRejectedForms[] = {
     {"show", Verb::Show, kNothing, "lists them", "", true},
-    {"send", Verb::Send, kSetAside,
+    {"send", Verb::Send, kRejectedNumber,
      "sends it once more, when its turn comes. Adit does not where something newer that says all of it was "
      "sent since: that would put the older in its place"},
-    {"discard", Verb::Discard, kSetAside, "forgets it"}};
+    {"discard", Verb::Discard, kRejectedNumber, "forgets it"}};
 constexpr Form kRunForms[] = {{"new", Verb::New, kNothing, "declares that a new run begins"}};
 constexpr Form kRunsForms[] = {
     {"", Verb::List, kNothing, "", "", true},
@@ -104,7 +104,7 @@ constexpr Form kUpdateForms[] = {
 constexpr Form kHelpForms[] = {{"", Verb::List, kCommand, "", "", true}};
 constexpr Form kCompleteForms[] = {
     {"reports", Verb::Reports, kWord, "reports by their numbers: all, or those that WORD can be said of"},
-    {"aside", Verb::Aside, kNothing, "what is set aside, by its numbers"},
+    {"rejected", Verb::Rejected, kNothing, "what is rejected, by its numbers"},
     {"courses", Verb::Courses, kNothing, "the names of courses"},
     {"runs", Verb::Runs, kNothing, "the runs that are kept, by their keys"},
     {"keys", Verb::Keys, kNothing,
@@ -176,13 +176,13 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit reports send 15 16\n"
      "  sudo adit reports export > reports.csv\n"
      "  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'"},
-    {Command::Aside, "aside",
-     "maps, states and markers that the Command Post would not take, and your word on them", kAsideForms,
-     "Each message that was set aside: because the Command Post refused it (400, 413, 422), or because it "
+    {Command::Rejected, "rejected",
+     "maps, states and markers that the Command Post would not take, and your word on them", kRejectedForms,
+     "Each message that was rejected: because the Command Post refused it (400, 413, 422), or because it "
      "failed at it again and again (500) while others passed. They are kept, the newest hundred, until you "
      "say what becomes of them.",
      "nothing needs your word; of your word: it is done",
-     "something is set aside that nothing newer has replaced, or your word could not be done", ""},
+     "something is rejected that nothing newer has replaced, or your word could not be done", ""},
     {Command::Run, "run", "tells Adit that a new run begins", kRunForms,
      "Adit notices a new run by itself where the run's name or the team changes, where more reports are left "
      "than before, or where a run clock that was seen to run goes back. Where only that clock tells of it, "

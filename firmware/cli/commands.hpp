@@ -11,7 +11,7 @@ enum class Command : std::uint8_t {
   Status,
   Watch,
   Reports,
-  Aside,
+  Rejected,
   Run,
   Runs,
   Settings,
@@ -45,7 +45,7 @@ enum class Verb : std::uint8_t {
   Set,
   Back,
   Reports,
-  Aside,
+  Rejected,
   Courses,
   Runs,
   Keys,
@@ -56,7 +56,7 @@ enum class Verb : std::uint8_t {
 };
 
 /// What an argument may be, for the completion of shells: `adit complete` lists all but files.
-enum class Among : std::uint8_t { Anything, Files, Reports, Aside, Courses, Runs, Keys, Commands };
+enum class Among : std::uint8_t { Anything, Files, Reports, Rejected, Courses, Runs, Keys, Commands };
 
 /// What stands behind a command, or behind its word.
 struct Argument {

@@ -39,13 +39,13 @@ Candidates reports_by_number(const Adit& adit, const std::string& word) {
   return all;
 }
 
-Candidates aside_by_number(const Adit& adit) {
+Candidates rejected_by_number(const Adit& adit) {
   const auto json = get(adit, "/adit/run");
   if (!json) return std::unexpected(json.error());
   const auto view = read<api::RunView>(adit, *json);
   if (!view) return std::unexpected(view.error());
   std::vector<Candidate> all;
-  for (const api::AsideRow& row : view->aside)
+  for (const api::RejectedRow& row : view->rejected)
     all.push_back({std::to_string(row.number), row.kind + (row.robot.empty() ? "" : " of " + row.robot)});
   return all;
 }
@@ -78,7 +78,7 @@ Candidates runs_by_key(const Adit& adit) {
 Candidates asked_for(const Options& options) {
   const auto adit = adit_of(options);
   if (!adit) return std::unexpected(adit.error());
-  if (options.verb == Verb::Aside) return aside_by_number(*adit);
+  if (options.verb == Verb::Rejected) return rejected_by_number(*adit);
   if (options.verb == Verb::Courses) return courses_by_name(*adit);
   if (options.verb == Verb::Runs) return runs_by_key(*adit);
   return reports_by_number(*adit, options.word);

@@ -36,7 +36,7 @@ ReportState state_of(const api::ReportRow& report) {
 
 bool needs_the_operator(const api::ReportRow& report) {
   const ReportState state = state_of(report);
-  return state == ReportState::Received || (state == ReportState::InDoubt && !report.asking);
+  return state == ReportState::Held || (state == ReportState::InDoubt && !report.asking);
 }
 
 bool is_finished(const api::ReportRow& report) {
@@ -44,8 +44,8 @@ bool is_finished(const api::ReportRow& report) {
 }
 
 std::string life_of(const api::ReportRow& report) {
-  switch (dispatch::state_named(report.state).value_or(ReportState::Waiting)) {
-    case ReportState::Received:
+  switch (dispatch::state_named(report.state).value_or(ReportState::Queued)) {
+    case ReportState::Held:
       return "held";
     case ReportState::InDoubt:
       return report.asking ? "in doubt, asking" : "in doubt";
@@ -61,7 +61,7 @@ std::string life_of(const api::ReportRow& report) {
 Tone tone_of(const api::ReportRow& report) {
   if (needs_the_operator(report)) return Tone::Bad;
   switch (state_of(report)) {
-    case ReportState::Refused:
+    case ReportState::Rejected:
       return Tone::Bad;
     case ReportState::Answered:
       return Tone::Good;

@@ -168,7 +168,7 @@ std::string activities_table(const RunView& view, bool colour) {
                arrival_cell(row),
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},
-               {std::to_string(row.waiting)},
+               {std::to_string(row.queued)},
                {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
                {row.age ? ago(*row.age) : "never"},
                {sent_size(row)},

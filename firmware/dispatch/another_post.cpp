@@ -18,8 +18,8 @@ Open open_here(const Reports& reports) {
   for (const std::int64_t number : reports.book().open()) {
     const Report& report = reports.book().at(number);
     if (!reports.runs().is_at(report.run, reports.meant_run().post)) continue;
-    open.waiting += report.state == ReportState::Waiting ? 1 : 0;
-    open.held += report.state == ReportState::Received ? 1 : 0;
+    open.waiting += report.state == ReportState::Queued ? 1 : 0;
+    open.held += report.state == ReportState::Held ? 1 : 0;
     // What is under way now is in doubt where it has no answer by then.
     const bool unclear = report.state == ReportState::InDoubt || report.state == ReportState::Sending;
     open.in_doubt += unclear ? 1 : 0;

@@ -38,7 +38,7 @@ struct Report {
   std::string sender = "";  // address of who posted it, "operator", or kLost
   double received = 0;      // seconds since 1970
   double changed = 0;
-  ReportState state = ReportState::Waiting;
+  ReportState state = ReportState::Queued;
   std::string note = "";  // a sentence for the operator: why it is where it is
 
   std::int64_t run = 0;      // Run::number of the run that it belongs to

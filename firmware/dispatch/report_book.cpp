@@ -13,7 +13,7 @@ namespace {
 bool has_happened(ReportEvent event) {
   switch (event) {
     case ReportEvent::Recorded:
-    case ReportEvent::Refused:
+    case ReportEvent::Rejected:
     case ReportEvent::Throttled:
     case ReportEvent::Barred:
     case ReportEvent::NeverLeft:
@@ -27,7 +27,7 @@ bool has_happened(ReportEvent event) {
 
 /// With its answer lost in a power cut the report would be in doubt, and the run's status would tell.
 bool can_be_found_out(const Report& report, ReportEvent event) {
-  const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Refused;
+  const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Rejected;
   return is_answer && report.before.has_value();
 }
 
@@ -40,7 +40,7 @@ void ReportBook::open(std::vector<Report> all) {
 std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events, const std::string& note,
                              const Edit& edit) {
   report.number = reports_.empty() ? 1 : reports_.rbegin()->first + 1;
-  report.state = ReportState::Waiting;
+  report.state = ReportState::Queued;
   std::vector<Report> steps{report};
   for (const ReportEvent event : events) {
     report.state = transition(report.state, event)->to;
@@ -143,7 +143,7 @@ void ReportBook::put(Report report) {
       numbers.erase(number);
     }
   };
-  keep(waiting_, state == ReportState::Waiting);
+  keep(waiting_, state == ReportState::Queued);
   keep(in_doubt_, state == ReportState::InDoubt);
   keep(open_, !is_final(state));
   reports_.insert_or_assign(reports_.end(), number, std::move(report));

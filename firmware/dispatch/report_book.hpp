@@ -59,7 +59,7 @@ class ReportBook {
   const std::map<std::int64_t, Report>& all() const { return reports_; }
   /// The same report (same_report.hpp), in any run, oldest first.
   std::vector<const Report*> same_as(const icd::ArtifactReport& report) const;
-  /// Those in state Waiting, oldest first.
+  /// Those in state Queued, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
   /// Those with which something is still to happen, oldest first: few of many.
   const std::set<std::int64_t>& open() const { return open_; }

@@ -12,39 +12,39 @@ using Event = ReportEvent;
 using Action = ReportAction;
 
 constexpr std::array kLife = {
-    ReportTransition{Waiting, Event::Chosen, Sending, Action::Send},
-    ReportTransition{Waiting, Event::Held, Received, Action::Nothing},
-    ReportTransition{Waiting, Event::HeldBack, Received, Action::TellClients},
-    ReportTransition{Waiting, Event::Joined, Withdrawn, Action::Nothing},
-    ReportTransition{Waiting, Event::Withdrawn, Withdrawn, Action::TellClients},
-    ReportTransition{Waiting, Event::Released, Waiting, Action::Nothing},
-    ReportTransition{Waiting, Event::Restarted, Waiting, Action::Nothing},
+    ReportTransition{Queued, Event::Chosen, Sending, Action::Send},
+    ReportTransition{Queued, Event::Held, Held, Action::Nothing},
+    ReportTransition{Queued, Event::HeldBack, Held, Action::TellClients},
+    ReportTransition{Queued, Event::Joined, Withdrawn, Action::Nothing},
+    ReportTransition{Queued, Event::Withdrawn, Withdrawn, Action::TellClients},
+    ReportTransition{Queued, Event::Released, Queued, Action::Nothing},
+    ReportTransition{Queued, Event::Restarted, Queued, Action::Nothing},
 
-    ReportTransition{Received, Event::Released, Waiting, Action::Nothing},
-    ReportTransition{Received, Event::Withdrawn, Withdrawn, Action::TellClients},
-    ReportTransition{Received, Event::Joined, Withdrawn, Action::Nothing},
-    ReportTransition{Received, Event::Cleared, Waiting, Action::Nothing},
-    ReportTransition{Received, Event::Held, Received, Action::Nothing},
-    ReportTransition{Received, Event::Restarted, Received, Action::Nothing},
+    ReportTransition{Held, Event::Released, Queued, Action::Nothing},
+    ReportTransition{Held, Event::Withdrawn, Withdrawn, Action::TellClients},
+    ReportTransition{Held, Event::Joined, Withdrawn, Action::Nothing},
+    ReportTransition{Held, Event::Cleared, Queued, Action::Nothing},
+    ReportTransition{Held, Event::Held, Held, Action::Nothing},
+    ReportTransition{Held, Event::Restarted, Held, Action::Nothing},
 
     ReportTransition{Sending, Event::Recorded, Answered, Action::AnswerClients},
-    ReportTransition{Sending, Event::Refused, Refused, Action::AnswerClients},
-    ReportTransition{Sending, Event::Throttled, Waiting, Action::Nothing},
-    ReportTransition{Sending, Event::Barred, Waiting, Action::TellClients},
-    ReportTransition{Sending, Event::NeverLeft, Waiting, Action::Nothing},
+    ReportTransition{Sending, Event::Rejected, Rejected, Action::AnswerClients},
+    ReportTransition{Sending, Event::Throttled, Queued, Action::Nothing},
+    ReportTransition{Sending, Event::Barred, Queued, Action::TellClients},
+    ReportTransition{Sending, Event::NeverLeft, Queued, Action::Nothing},
     ReportTransition{Sending, Event::Lost, InDoubt, Action::Ask},
     ReportTransition{Sending, Event::Restarted, InDoubt, Action::Ask},
 
     ReportTransition{InDoubt, Event::Found, Settled, Action::AnswerClients},
-    ReportTransition{InDoubt, Event::Missing, Waiting, Action::Nothing},
-    ReportTransition{InDoubt, Event::Held, Received, Action::TellClients},
-    ReportTransition{InDoubt, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{InDoubt, Event::Missing, Queued, Action::Nothing},
+    ReportTransition{InDoubt, Event::Held, Held, Action::TellClients},
+    ReportTransition{InDoubt, Event::Released, Queued, Action::Nothing},
     ReportTransition{InDoubt, Event::CalledDone, Settled, Action::TellClients},
     ReportTransition{InDoubt, Event::Restarted, InDoubt, Action::Ask},
 
-    ReportTransition{Refused, Event::Released, Waiting, Action::Nothing},
-    ReportTransition{Refused, Event::Restarted, Refused, Action::Nothing},
-    ReportTransition{Withdrawn, Event::Released, Waiting, Action::Nothing},
+    ReportTransition{Rejected, Event::Released, Queued, Action::Nothing},
+    ReportTransition{Rejected, Event::Restarted, Rejected, Action::Nothing},
+    ReportTransition{Withdrawn, Event::Released, Queued, Action::Nothing},
     ReportTransition{Withdrawn, Event::Restarted, Withdrawn, Action::Nothing},
     ReportTransition{Answered, Event::Restarted, Answered, Action::Nothing},
     ReportTransition{Settled, Event::Restarted, Settled, Action::Nothing},
@@ -64,7 +64,7 @@ const ReportTransition* transition(ReportState state, ReportEvent event) {
 }
 
 bool is_final(ReportState state) {
-  return state == Answered || state == Refused || state == Settled || state == Withdrawn;
+  return state == Answered || state == Rejected || state == Settled || state == Withdrawn;
 }
 
 std::optional<ReportState> state_named(std::string_view text) {

@@ -9,20 +9,25 @@ namespace adit::dispatch {
 
 /// Where an artifact report is in its life (promise 1).
 enum class ReportState : std::uint8_t {
-  Received,   // on disk, and held: only the operator can release it
-  Waiting,    // to be sent when its turn comes
+  Held,       // on disk, and held: only the operator can release it
+  Queued,     // to be sent when its turn comes
   Sending,    // its bytes are about to leave
   Answered,   // the Command Post recorded it and said so
-  Refused,    // the Command Post said that it did not record it, and that sending it again is no use
+  Rejected,   // the Command Post said that it did not record it, and that sending it again is no use
   InDoubt,    // its bytes may have left and no answer is known; only evidence or the operator moves it on
   Settled,    // no answer came, but it is known, or the operator says, that there is nothing left to do
   Withdrawn,  // the operator took it back before it was sent, or it is a repeat of an earlier one
 };
-/// In the order of the states: the words of the ledger, the API, the metrics and `adit`.
-inline constexpr std::string_view kStateWords[] = {"received", "waiting",  "sending", "answered",
-                                                   "refused",  "in doubt", "settled", "withdrawn"};
+/// In the order of the states: the words of the API, the metrics and `adit`.
+inline constexpr std::string_view kStateWords[] = {"held",     "queued",   "sending", "answered",
+                                                   "rejected", "in_doubt", "settled", "withdrawn"};
 constexpr std::string_view name_of(ReportState state) {
   return kStateWords[static_cast<std::size_t>(state)];
+}
+
+/// The same word as people read it: "in doubt".
+constexpr std::string_view shown_name_of(ReportState state) {
+  return state == ReportState::InDoubt ? "in doubt" : name_of(state);
 }
 
 enum class ReportEvent : std::uint8_t {
@@ -31,7 +36,7 @@ enum class ReportEvent : std::uint8_t {
   Released,   // the operator says that it is to be sent
   Chosen,     // its turn has come
   Recorded,   // answered 2xx
-  Refused,    // answered 4xx: the Command Post will not have it
+  Rejected,   // answered 4xx: the Command Post will not have it
   Throttled,  // answered 429: not recorded, may be sent again
   Barred,  // answered 401, 403, 404, 405 or 407: nothing is wrong with it, but with the token or the address
   NeverLeft,   // no byte of it was given to the kernel

@@ -22,7 +22,7 @@ ReportEvent event_of(int status, bool tells_of_a_report, Body body) {
       return ReportEvent::Throttled;
     default:
       if (status < 400 || status >= 500 || body == Body::Other) return ReportEvent::Lost;
-      return ReportEvent::Refused;
+      return ReportEvent::Rejected;
   }
 }
 

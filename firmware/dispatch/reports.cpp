@@ -147,7 +147,7 @@ const Report* Reports::choose(Time time) {
           step(*number, ReportEvent::Chosen, "", time, [&](Report& report) { prepare(report, time); });
       return chosen ? &book_.at(*number) : nullptr;
     }
-    if (book_.at(*number).state == ReportState::Waiting) return nullptr;  // the disk refuses
+    if (book_.at(*number).state == ReportState::Queued) return nullptr;  // the disk refuses
   }
   return nullptr;
 }

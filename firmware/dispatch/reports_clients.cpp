@@ -20,7 +20,7 @@ std::string metres(double distance) {
 
 /// A report in this state stands for all that are the same: they get its answer, or wait for it with it.
 bool stands_for_others(const Report& report) {
-  if (report.state == ReportState::Refused) return false;  // not recorded: asking again costs nothing
+  if (report.state == ReportState::Rejected) return false;  // not recorded: asking again costs nothing
   return !effect_of(report).again;
 }
 
@@ -66,7 +66,7 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
   if (now) events.push_back(ReportEvent::Chosen);
   const std::int64_t number = book_.add(report, events, hold.why, [&](Report& chosen) {
     if (chosen.state == ReportState::Sending) prepare(chosen, time);
-    if (chosen.state == ReportState::Received) chosen.same_as = hold.same_as;
+    if (chosen.state == ReportState::Held) chosen.same_as = hold.same_as;
   });
   if (number == 0) {
     output_.tell(client,
@@ -111,10 +111,10 @@ const Report* Reports::earlier(const Report& report) const {
 /// Another one of the present run that is the same, and was sent, is under way or waits for its turn.
 const Report* Reports::twin(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
-    const bool is_compared_later = other->state == ReportState::Waiting && !other->asked &&
+    const bool is_compared_later = other->state == ReportState::Queued && !other->asked &&
                                    other->number > report.number && unchecked_.contains(other->number);
     const bool held_back =
-        other->state == ReportState::Received || other->state == ReportState::Withdrawn || is_compared_later;
+        other->state == ReportState::Held || other->state == ReportState::Withdrawn || is_compared_later;
     if (other->number != report.number && !held_back && stands_for_others(*other)) return other;
   }
   return nullptr;
@@ -147,7 +147,7 @@ Reports::Hold Reports::reason_to_hold(const Report& report) const {
   if (rules_.review == Review::Off) return {};
   for (const auto& [number, other] : book_.all()) {
     // Of two that wait, the later one is held.
-    const bool later = report.number != 0 && number > report.number && other.state == ReportState::Waiting;
+    const bool later = report.number != 0 && number > report.number && other.state == ReportState::Queued;
     const bool counts =
         is_of_run(other) && !later && number != report.number && other.state != ReportState::Withdrawn;
     if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
@@ -213,7 +213,7 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
   ClientAnswer answer{.number = report.number};
   switch (report.state) {
     case ReportState::Answered:
-    case ReportState::Refused:
+    case ReportState::Rejected:
       break;  // the Command Post's own answer
     case ReportState::Settled:
       if (report.reconciled) break;
@@ -226,14 +226,14 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
       answer.sentence = name + " was withdrawn by the operator and is not sent any more" + why +
                         "; to send it, post it with the header Adit-Resubmit: yes";
       break;
-    case ReportState::Received:
+    case ReportState::Held:
       answer.sentence = name + " is kept, and waits for the operator's word" + why + again;
       break;
     case ReportState::InDoubt:
       answer.status = icd::Status::GatewayTimeout;
       answer.sentence = name + " is in doubt: it may or may not have been recorded" + why + again;
       break;
-    case ReportState::Waiting:
+    case ReportState::Queued:
       answer.sentence =
           (stopping_ ? "the gateway is stopping; " : "") + name + " is kept and waiting" + why + again;
       break;

@@ -120,7 +120,7 @@ ReportBook::Step Reports::after_loss(const Report& doubt, const Evidence& eviden
     return {.number = doubt.number,
             .event = ReportEvent::Held,
             .note = icd::sentence("held: not recorded, and report ", same->number, " is the same, and is ",
-                                  name_of(same->state), " in this run")};
+                                  shown_name_of(same->state), " in this run")};
   }
   if (doubt.tries >= kMostTries) {
     return {

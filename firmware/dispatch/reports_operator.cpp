@@ -14,7 +14,8 @@ std::unexpected<std::string> no_such(std::int64_t number) {
 
 /// "report 7 is answered: ..."
 std::unexpected<std::string> cannot(const Report& report, const std::string& what) {
-  return std::unexpected(icd::sentence("report ", report.number, " is ", name_of(report.state), ": ", what));
+  return std::unexpected(
+      icd::sentence("report ", report.number, " is ", shown_name_of(report.state), ": ", what));
 }
 
 }  // namespace
@@ -28,9 +29,9 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
   if (report->is_lost()) return cannot(*report, kLost);
   const bool judged = report->state == ReportState::InDoubt;
   if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
-    return cannot(*report,
-                  icd::sentence("report ", other->number, " is the same, and is ", name_of(other->state),
-                                " in this run; to send it once more, resubmit that one"));
+    return cannot(
+        *report, icd::sentence("report ", other->number, " is the same, and is ", shown_name_of(other->state),
+                               " in this run; to send it once more, resubmit that one"));
   }
   if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
   const bool moved = step(number, ReportEvent::Released, "the operator sends it", time, [&](Report& sent) {
@@ -48,8 +49,8 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::HeldBack) == nullptr) {
-    return cannot(*report, report->state == ReportState::Received ? "it is held already"
-                           : is_final(report->state)              ? "there is nothing to hold"
+    return cannot(*report, report->state == ReportState::Held ? "it is held already"
+                           : is_final(report->state)          ? "there is nothing to hold"
                                                      : "it may have left already, and nothing takes it back");
   }
   if (!step(number, ReportEvent::HeldBack, "held: the operator holds it", time)) {

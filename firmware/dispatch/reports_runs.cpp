@@ -28,7 +28,7 @@ Report passed_on(Report report, std::int64_t run, Time time) {
 
 /// Until it is known which run is on.
 bool is_held_as_repeat(const Report& report) {
-  return report.state == ReportState::Received && report.same_as != 0;
+  return report.state == ReportState::Held && report.same_as != 0;
 }
 
 /// What is_held_as_repeat() is a repeat of `original` for certain.
@@ -237,7 +237,7 @@ void Reports::return_to(const Run& known, Time time) {
     changed.run = number;
     changed.changed = time.stamp;
     if (report.state == ReportState::InDoubt) changed.before.reset();
-    if (report.state == ReportState::Waiting) unchecked_.insert(each);
+    if (report.state == ReportState::Queued) unchecked_.insert(each);
     if (!is_held_as_repeat(report)) continue;
     changed = joined_to(report.same_as, changed, time);
     joined.emplace_back(each, report.same_as);

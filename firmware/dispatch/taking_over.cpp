@@ -231,10 +231,10 @@ class TakingOver {
       ++next.tries;
       return step(next, ReportState::InDoubt, "the first box stopped while it was being sent");
     }
-    if (there.state != ReportState::Waiting) return false;
+    if (there.state != ReportState::Queued) return false;
     if (const Report* const own = sent_here(next); own != nullptr) {
       next.same_as = own->number;
-      return step(next, ReportState::Received,
+      return step(next, ReportState::Held,
                   icd::sentence("held: the same as report ", own->number, ", which this box had"));
     }
     next.before = there.run == there_runs_.present().number ? handover_.expected : std::nullopt;
@@ -264,18 +264,18 @@ class TakingOver {
     const Run* const its = here_runs_.find(own.run);
     const bool is_of_own = own_ != 0 && own.run == own_;
     const bool is_of_none = its != nullptr && !its->was_heard() && !merged_.contains(own.run);
-    if (own.state != ReportState::Waiting || (!is_of_own && !is_of_none)) return;
+    if (own.state != ReportState::Queued || (!is_of_own && !is_of_none)) return;
     Report next = own;
     if (is_of_own && own_is_another_) {
-      step(next, ReportState::Received, "held: the run of the first box goes on");
+      step(next, ReportState::Held, "held: the run of the first box goes on");
     } else if (const TakenOver* const same = taken_like(own); same != nullptr && !own.asked) {
       next.run = present_;
       next.same_as = same->report.number;
-      step(next, ReportState::Received,
+      step(next, ReportState::Held,
            icd::sentence("held: the same as report ", same->report.number, ", which the first box had"));
     } else {
       next.run = present_;
-      step(next, ReportState::Waiting, "");
+      step(next, ReportState::Queued, "");
     }
     result_.reports.push_back({.report = std::move(next), .there = 0, .has_stepped = true});
   }

@@ -84,16 +84,17 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
   record_.refused(uri, sender, refusal, loop_.wall_now());
 }
 
-std::expected<void, std::string> Flow::aside(std::uint64_t number, api::AsideAction action) {
+std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::RejectedAction action) {
   if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
   if (!rests_.empty()) return std::unexpected(rests_);
-  if (action == api::AsideAction::Discard) return aside_.discard(number);
-  auto message = aside_.to_be_sent(number);
+  if (action == api::RejectedAction::Discard) return rejected_.discard(number);
+  auto message = rejected_.to_be_sent(number);
   if (!message) return std::unexpected(message.error());
   if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
-    maps_.send_again(std::move(*map), [this, number](bool kept) { return aside_.sent_again(number, kept); });
+    maps_.send_again(std::move(*map),
+                     [this, number](bool kept) { return rejected_.sent_again(number, kept); });
   } else {
-    aside_.sent_again(number, telemetry_.send_again(*message));
+    rejected_.sent_again(number, telemetry_.send_again(*message));
   }
   return {};
 }
@@ -155,7 +156,7 @@ std::vector<api::ActivityRow> Flow::activities() const {
   std::vector<api::ActivityRow> rows;
   for (const auto& [traffic, counted] : record_.rows()) {
     api::ActivityRow& row = rows.emplace_back(counted);
-    row.waiting = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
+    row.queued = is_map(traffic.kind) ? maps_.waiting(traffic) : telemetry_.waiting(traffic.kind);
     row.behind_since = behind_since(traffic);
   }
   return rows;

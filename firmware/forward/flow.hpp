@@ -12,13 +12,13 @@
 #include "api/source.hpp"
 #include "archive/archive.hpp"
 #include "forward/as_forwarded.hpp"
-#include "forward/aside.hpp"
 #include "forward/clocks.hpp"
 #include "forward/ending.hpp"
 #include "forward/map_picture.hpp"
 #include "forward/maps.hpp"
 #include "forward/meter.hpp"
 #include "forward/record.hpp"
+#include "forward/rejected.hpp"
 #include "forward/scoring.hpp"
 #include "forward/telemetry.hpp"
 #include "icd/bearer_token.hpp"
@@ -117,14 +117,14 @@ class Flow final : public intake::Desk {
     if (!rests_.empty()) return std::unexpected(rests_);
     return scoring_.report(report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, api::AsideAction action);
+  std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action);
   std::int64_t begin_run() { return scoring_.begin_run(); }
 
   const Scoring& scoring() const { return scoring_; }
   const dispatch::Reports& reports() const { return scoring_.reports(); }
   const Maps& maps() const { return maps_; }
   const Telemetry& telemetry() const { return telemetry_; }
-  const Aside& aside() const { return aside_; }
+  const RejectedStore& rejected() const { return rejected_; }
   const Record& record() const { return record_; }
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
@@ -177,7 +177,7 @@ class Flow final : public intake::Desk {
   loop::Workers workers_;  // after the writer: what a job holds is the writer's to the end
   journal::Journal journal_;
   Clocks clocks_;
-  Aside aside_;
+  RejectedStore rejected_;
   Record record_;
   Scoring scoring_;
   MapPicture picture_;

@@ -10,10 +10,10 @@ namespace adit::forward {
 namespace {
 
 /// What is in the runtime folder beside maps: of the journal, which is made smaller beside itself, four times
-/// what waits, what is set aside, and what others keep there.
+/// what waits, what is rejected, and what others keep there.
 std::uint64_t beside_maps(const settings::Settings& settings) {
   constexpr std::uint64_t kOthers = 8u << 20;
-  return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::SetAside::kMostBytes + kOthers;
+  return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::RejectedMessages::kMostBytes + kOthers;
 }
 
 archive::Limits limits_of(const settings::Settings& settings) {
@@ -41,16 +41,16 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       workers_(loop, 0),
       journal_(loop, folders.runtime + "/journal"),
       clocks_(loop, journal_, folders.state),
-      aside_(loop, writer_, folders.runtime + "/aside"),
+      rejected_(loop, writer_, folders.runtime + "/rejected"),
       record_([this] { changed(); }),
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.restart),
       picture_(
           loop, workers_, [this] { changed(); }, legacy_ ? std::move(legacy_->picture) : Pictured()),
-      maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, aside_, random_, journal_,
+      maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
-      telemetry_(loop, workers_, settings, tokens_.mapping, record_, aside_, random_, journal_, as_forwarded_,
-                 told_.restart),
+      telemetry_(loop, workers_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
+                 as_forwarded_, told_.restart),
       pictured_run_(legacy_ ? legacy_->pictured_run : 0),
       archive_(legacy_ && legacy_->archive ? std::move(legacy_->archive)
                                            : std::make_unique<archive::Archive>(loop, folders.state)),
@@ -117,7 +117,7 @@ void Flow::hold_back() {
 /// What is kept in files of its own. What a release before the journal left is stamped again, and waits: what
 /// that sent last, and when, is not known.
 void Flow::restore(bool is_first) {
-  aside_.restore();
+  rejected_.restore();
   spool::Spool::Kept kept = spool_.read();
   const double now = loop_.stamp_now();
   const bool is_left = !kept.maps.empty() || !kept.state.poses.empty() || !kept.markers.markers.empty();
@@ -194,7 +194,7 @@ void Flow::drain() {
   if (ending_.is_over(loop_.now())) return over_();
   drained_.call_at(loop_.now() + Ending::kStep);
   const bool scoring = scoring_.stop(), maps = maps_.stop(), telemetry = telemetry_.stop();
-  const bool kept = maps_.all_kept() && aside_.all_kept();
+  const bool kept = maps_.all_kept() && rejected_.all_kept();
   if (!ending_.dismisses(loop_.now(), scoring && maps && telemetry, kept)) return;
   drained_.call_at(loop_.now() + Ending::kFlush);
   scoring_.dismiss();

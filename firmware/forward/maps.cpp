@@ -38,7 +38,7 @@ std::string whose(const icd::MapUpdate& map) {
 
 Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
            const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
-           Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+           RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
            std::function<void(icd::MapUpdate)> taken)
     : loop_(loop),
       workers_(workers),
@@ -48,7 +48,7 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       settings_(settings),
       record_(record),
       journal_(journal),
-      aside_(aside),
+      rejected_(rejected),
       taken_(std::move(taken)),
       channel_(loop, "mapping",
                endpoint_of(settings.command_post, settings.command_post.mapping,
@@ -204,7 +204,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer does the one before the other.
   loop::guarded("what a map overtook", [&] {
-    for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) aside_.taken(*said);
+    for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) rejected_.taken(*said);
   });
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
@@ -231,7 +231,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return give_up(sent, answered.status, sentence);
     case MappingVerdict::Suspect:
       pace_.lost(now);
-      if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == lanes::Blame::Next::SetAside)
+      if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == lanes::Blame::Next::Reject)
         return give_up(sent, answered.status, sentence + " (others passed, this one failed again and again)");
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
       return again(sent);
@@ -258,7 +258,7 @@ void Maps::put_back(Place& prepared) {
   forget(replaced);
 }
 
-/// A map that will not be taken is set aside; of one that was merged or stitched each part is tried by
+/// A map that will not be taken is rejected; of one that was merged or stitched each part is tried by
 /// itself.
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   ahead_.failed(false);
@@ -266,8 +266,8 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   record_.not_taken(traffic_of(waiting.map), NotTaken::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (waiting.parts.empty()) {
-    aside_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
-               {.let_go = [this, numbers = waiting.updates] { forget(numbers); }});
+    rejected_.add(waiting.map, status, sentence, waiting.map.data.bytes.size(),
+                  {.let_go = [this, numbers = waiting.updates] { forget(numbers); }});
     return leaves(sent);
   }
   if (sent == prepared_) put_back(following_);

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "dispatch/run_watch.hpp"
-#include "forward/aside.hpp"
 #include "forward/channel.hpp"
 #include "forward/map_arrival.hpp"
 #include "forward/record.hpp"
+#include "forward/rejected.hpp"
 #include "forward/slot.hpp"
 #include "forward/stitched.hpp"
 #include "forward/taken_points.hpp"
@@ -48,7 +48,7 @@ class Maps {
   /// `taken` is given each map that the Command Post took. `spool` outlives the writer.
   Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
        const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
-       Aside& aside, std::mt19937_64& random, journal::Journal& journal,
+       RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
        std::function<void(icd::MapUpdate)> taken);
 
   /// `ran_before`: this box may have sent maps before.
@@ -78,7 +78,7 @@ class Maps {
   void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
 
-  /// What was set aside, on the operator's word: before all that waits of its sender's. `done` is told
+  /// What was rejected, on the operator's word: before all that waits of its sender's. `done` is told
   /// whether it is kept; if not, nothing has become of it. It says whether it is still to go: nothing newer
   /// that says all of it was taken since.
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done);
@@ -189,7 +189,7 @@ class Maps {
   const settings::Settings& settings_;
   Record& record_;
   journal::Journal& journal_;
-  Aside& aside_;
+  RejectedStore& rejected_;
   std::function<void(icd::MapUpdate)> taken_;
   Channel channel_;
   UriPace pace_;

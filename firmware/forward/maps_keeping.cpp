@@ -189,12 +189,12 @@ void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done
 void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done) {
   const bool is_wanted = done(keeping.kept.has_value());
   if (!keeping.kept) {
-    return host::log(host::Level::Error, "what was set aside is not sent again",
+    return host::log(host::Level::Error, "what was rejected is not sent again",
                      {{"why", keeping.kept.error().sentence}});
   }
   lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
   if (!is_wanted || is_said_by_what_goes(back)) return forget({&keeping.number, 1});
-  unread_.insert(keeping.number);  // it may have been set aside in a life before
+  unread_.insert(keeping.number);  // it may have been rejected in a life before
   forget(lane_.put_back(std::move(back)));
   pump();
 }

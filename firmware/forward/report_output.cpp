@@ -34,9 +34,9 @@ void ReportOutput::follow_up() {
   if (!flushed)
     host::log(host::Level::Error, "the ledger cannot be flushed", {{"why", flushed.error().what}});
   for (const Step& step : std::exchange(unlogged_, {})) {
-    const bool for_the_operator = step.state == ReportState::InDoubt || step.state == ReportState::Received;
+    const bool for_the_operator = step.state == ReportState::InDoubt || step.state == ReportState::Held;
     host::log(for_the_operator ? host::Level::Warning : host::Level::Notice,
-              "report " + std::string(dispatch::name_of(step.state)),
+              "report " + std::string(dispatch::shown_name_of(step.state)),
               {{"report", std::to_string(step.number)},
                {"type", step.type},
                {"sender", step.sender},

@@ -35,13 +35,13 @@ lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
 }  // namespace
 
 Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-                     std::optional<icd::BearerToken> token, Record& record, Aside& aside,
+                     std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
                      std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
                      std::function<void()> restart)
     : loop_(loop),
       settings_(settings),
       record_(record),
-      aside_(aside),
+      rejected_(rejected),
       journal_(journal),
       as_forwarded_(as_forwarded),
       restart_(std::move(restart)),
@@ -117,8 +117,8 @@ icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses, 
 
 void Telemetry::pump() {
   if (to_show_ && show_some()) return wake_.call_at(loop_.now());
-  if (!stopping_ && !aside_writes_ && channel_.turns()) endpoint_turned();
-  if (stopping_ || aside_writes_ || channel_.busy() || !channel_.has_token()) return;
+  if (!stopping_ && !rejected_writes_ && channel_.turns()) endpoint_turned();
+  if (stopping_ || rejected_writes_ || channel_.busy() || !channel_.has_token()) return;
   whole(restart_, [this] { send_next(); });
 }
 

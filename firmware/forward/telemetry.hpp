@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "forward/as_forwarded.hpp"
-#include "forward/aside.hpp"
 #include "forward/channel.hpp"
 #include "forward/marker_arrivals.hpp"
 #include "forward/record.hpp"
+#include "forward/rejected.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/status.hpp"
 #include "lanes/marker_lane.hpp"
@@ -28,8 +28,9 @@ class Telemetry {
   /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
   /// `restart`: see whole.hpp.
   Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
-            std::optional<icd::BearerToken> token, Record& record, Aside& aside, std::mt19937_64& random,
-            journal::Journal& journal, AsForwarded& as_forwarded, std::function<void()> restart);
+            std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
+            std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
+            std::function<void()> restart);
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);
@@ -72,7 +73,7 @@ class Telemetry {
   /// Another run is on: it is told of no robot that has not posted since, but for news that waits.
   void change_run() { state_.begin_run(); }
 
-  /// What was set aside, on the operator's word: before what came since, and not what that says more than.
+  /// What was rejected, on the operator's word: before what came since, and not what that says more than.
   /// Not a map. False: it stays aside, for it is not kept, or newer markers that it would delete are under
   /// way, or some come in just now.
   bool send_again(const lanes::Message& message);
@@ -129,11 +130,11 @@ class Telemetry {
   void show(const Shared<lanes::WaitingMarkers>& markers);
   /// Before anything more is sent. False: that was all, at once; otherwise the turn is over.
   bool show_some();
-  /// It is done once what it overtook is written down as overtaken: the other way round, a kill in between
+  /// It is done once what it replaced is written down as replaced: the other way round, a kill in between
   /// would leave a life to come that knows of neither, and lets an operator send the older one.
   template <class Waiting>
-  void overtake(const Shared<Waiting>& sent);
-  /// Refused, or failed alone: the one at fault is looked for among several, and set aside by itself.
+  void replace(const Shared<Waiting>& sent);
+  /// Refused, or failed alone: the one at fault is looked for among several, and rejected by itself.
   void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
   void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
                std::size_t bytes);
@@ -149,7 +150,7 @@ class Telemetry {
   loop::Loop& loop_;
   const settings::Settings& settings_;
   Record& record_;
-  Aside& aside_;
+  RejectedStore& rejected_;
   journal::Journal& journal_;
   AsForwarded& as_forwarded_;
   std::function<void()> restart_;
@@ -167,7 +168,7 @@ class Telemetry {
   lanes::Blame state_blame_, marker_blame_;
   std::map<std::pair<std::string, std::int32_t>, lanes::Trial> marker_trials_;  // by ns and id
   std::optional<std::pair<Kind, loop::Instant>> under_way_;  // and when its oldest news was accepted
-  bool aside_writes_ = false;  // nothing is sent meanwhile: the journal knows of one answer at a time
+  bool rejected_writes_ = false;  // nothing is sent meanwhile: the journal knows of one answer at a time
   bool stopping_ = false;
 };
 

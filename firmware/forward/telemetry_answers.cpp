@@ -64,7 +64,7 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std
     case MappingVerdict::Taken:
       pace.taken(answer->sent, now);
       passed(*sent);
-      overtake(sent);
+      replace(sent);
       show(sent);
       break;
     case MappingVerdict::Refused:
@@ -118,14 +118,14 @@ bool Telemetry::show_some() {
 }
 
 template <class Waiting>
-void Telemetry::overtake(const Shared<Waiting>& sent) {
+void Telemetry::replace(const Shared<Waiting>& sent) {
   const auto written = [this, sent] {
-    aside_writes_ = false;
+    rejected_writes_ = false;
     done(*sent);
     pump();
   };
-  aside_writes_ = !aside_.empty() && aside_.taken(sent->update, written);
-  if (!aside_writes_) done(*sent);
+  rejected_writes_ = !rejected_.empty() && rejected_.taken(sent->update, written);
+  if (!rejected_writes_) done(*sent);
 }
 
 void Telemetry::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
@@ -154,12 +154,12 @@ void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const 
 void Telemetry::set_aside(const lanes::Message& message, int status, const std::string& sentence,
                           std::size_t bytes, std::function<void(bool kept)> told) {
   const auto go_on = [this, told = std::move(told)](bool kept) {
-    aside_writes_ = false;
+    rejected_writes_ = false;
     told(kept);
     pump();
   };
-  aside_.add(message, status, sentence, bytes, {.told = go_on});
-  aside_writes_ = true;
+  rejected_.add(message, status, sentence, bytes, {.told = go_on});
+  rejected_writes_ = true;
 }
 
 bool Telemetry::is_to_blame(const lanes::WaitingState& state) {
@@ -167,7 +167,7 @@ bool Telemetry::is_to_blame(const lanes::WaitingState& state) {
   if (state.update.poses.size() == 1) {
     const icd::RobotName& name = state.update.poses.front().name;
     to_blame =
-        state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) == lanes::Blame::Next::SetAside;
+        state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) == lanes::Blame::Next::Reject;
   }
   if (!to_blame) put_back(state);
   return to_blame;
@@ -183,7 +183,7 @@ bool Telemetry::is_to_blame(const lanes::WaitingMarkers& markers) {
   const icd::Marker& marker = markers.update.markers.front();
   if (marker_trials_.size() >= kMostTrials) marker_trials_.clear();
   const bool to_blame = marker_blame_.failed("", marker_trials_[{marker.ns, marker.id}], loop_.now()) ==
-                        lanes::Blame::Next::SetAside;
+                        lanes::Blame::Next::Reject;
   if (!to_blame) {
     journal_.markers_answered(false);
     markers_.put_behind(markers);

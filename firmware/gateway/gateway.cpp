@@ -272,7 +272,7 @@ void Gateway::add_to(api::Usage& usage) const {
   usage.wrong_tokens = crowding_.count(intake::Ended::WrongToken);
   usage.sent_bytes = flow_.sent_bytes();
   usage.exceptions = loop::caught_so_far();
-  usage.aside_dropped = flow_.aside().dropped();
+  usage.rejected_dropped = flow_.rejected().dropped();
   usage.refused = flow_.record().refused_counts();
 }
 

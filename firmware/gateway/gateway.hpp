@@ -100,8 +100,8 @@ class Gateway final : public api::Source, public api::Operator {
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return flow_.report(report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, api::AsideAction action) override {
-    return flow_.aside(number, action);
+  std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action) override {
+    return flow_.rejected(number, action);
   }
   std::expected<void, std::string> acknowledge(const std::string& id) override;
   std::int64_t begin_run() override { return flow_.begin_run(); }

@@ -12,7 +12,7 @@ namespace {
 /// Nothing: the operator need not know of it.
 std::optional<alarms::ReportFact> fact_of(const dispatch::Report& report) {
   using enum dispatch::ReportState;
-  if (report.state != Received && report.state != InDoubt) return std::nullopt;
+  if (report.state != Held && report.state != InDoubt) return std::nullopt;
   using Is = alarms::ReportFact::Is;
   const bool in_doubt = report.state == InDoubt;
   return alarms::ReportFact{.number = report.number,
@@ -67,8 +67,8 @@ void Gateway::add_reports(alarms::Facts& facts) const {
   if (flow_.scoring().run()) facts.reports_left = flow_.scoring().run()->remaining_reports;
   const std::string& unreliable = reports.run().unreliable;
   if (unreliable != dispatch::Run::kCountsStand) facts.run_unreliable = unreliable;
-  facts.set_aside =
-      static_cast<std::size_t>(std::ranges::count(flow_.aside().rows(), false, &api::AsideRow::overtaken));
+  facts.messages_rejected = static_cast<std::size_t>(
+      std::ranges::count(flow_.rejected().rows(), false, &api::RejectedRow::replaced));
 }
 
 void Gateway::add_box(alarms::Facts& facts) const {

@@ -79,7 +79,7 @@ api::RunView Gateway::view() const {
                     .near_metres = settings_.reports.near_metres,
                     .activities = flow_.activities(),
                     .refusals = flow_.record().refusals(),
-                    .aside = flow_.aside().rows(),
+                    .rejected = flow_.rejected().rows(),
                     .lights = {},
                     .links = links_.rows(),
                     .identify_until = {},

@@ -25,7 +25,7 @@ Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now) {
   trial.failed = now;
   trial.steps_behind = true;
   trial.rests_until = trial.strikes == 0 ? now : now + kFirstRest * (1 << std::min(trial.strikes - 1, 8));
-  return trial.strikes >= kMostStrikes ? Next::SetAside : Next::Again;
+  return trial.strikes >= kMostStrikes ? Next::Reject : Next::Again;
 }
 
 bool Blame::somebody_wavered(const std::string& but, Instant since) const {

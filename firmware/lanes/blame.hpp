@@ -24,7 +24,7 @@ struct Trial {
 ///
 /// If the handler fails for everything, there is an outage: everything waits. If a message fails again and
 /// again while others pass, it is at fault: each time it steps behind one other and rests longer, and after
-/// kMostStrikes it is set aside. A strike does not count if another sender's messages passed and then failed
+/// kMostStrikes it is rejected. A strike does not count if another sender's messages passed and then failed
 /// in between: then the Command Post wavers, and the message may still pass.
 class Blame {
  public:
@@ -32,7 +32,7 @@ class Blame {
   static constexpr std::chrono::seconds kFirstRest{2};  // after a strike; twice as long after each more
   static constexpr std::size_t kMostSenders = 1000;
 
-  enum class Next { Again, SetAside };
+  enum class Next { Again, Reject };
 
   /// A message of `whose` (a robot's maps of one kind) was taken.
   void passed(const std::string& whose, Instant now);

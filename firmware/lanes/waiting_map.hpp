@@ -46,8 +46,8 @@ struct WaitingMap {
   /// Of a cloud that was taken to be sent: how far it may be rounded; not Auto.
   Precision precision = Precision::Exact;
   Trial trial{};  // where the Command Post's handler failed at it
-  /// Only of a map that was set aside and is sent again by hand: the stamp that it had. By it the map is
-  /// older than all that were never set aside, and is told from others that are sent again.
+  /// Only of a map that was rejected and is sent again by hand: the stamp that it had. By it the map is
+  /// older than all that were never rejected, and is told from others that are sent again.
   std::optional<icd::Stamp> again{};
 };
 

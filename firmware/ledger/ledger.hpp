@@ -78,7 +78,7 @@ class Ledger {
   /// All runs, oldest first.
   Result<std::vector<dispatch::Run>> runs() const;
 
-  /// One step of a report's life. `state` is as it was written, whatever wrote it.
+  /// One step of a report's life. `state` is the API's word, or a word that this version does not know.
   struct Step {
     std::int64_t report = 0;
     double at = 0;  // seconds since 1970

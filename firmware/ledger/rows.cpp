@@ -9,7 +9,23 @@ namespace adit::ledger {
 namespace {
 
 using dispatch::Report;
+using dispatch::ReportState;
 using dispatch::Run;
+
+/// The words of the tables, in the order of the states. Other words than the API's: a ledger outlives
+/// versions.
+constexpr std::string_view kStored[] = {"received", "waiting",  "sending", "answered",
+                                        "refused",  "in doubt", "settled", "withdrawn"};
+
+std::string_view stored_word(ReportState state) {
+  return kStored[static_cast<std::size_t>(state)];
+}
+
+std::optional<ReportState> state_stored_as(std::string_view word) {
+  const auto* const at = std::ranges::find(kStored, word);
+  if (at == std::end(kStored)) return std::nullopt;
+  return static_cast<ReportState>(at - std::begin(kStored));
+}
 
 /// The columns of a row that is read, one after the other.
 class Columns {
@@ -23,7 +39,7 @@ class Columns {
   void take(std::string& bytes) { bytes = row_.bytes(next_++); }
   void take(dispatch::ReportState& state) {
     unknown_ = row_.bytes(next_++);
-    const auto known = dispatch::state_named(unknown_);
+    const auto known = state_stored_as(unknown_);
     state = known.value_or(dispatch::ReportState::InDoubt);
     if (known) unknown_.clear();
   }
@@ -63,7 +79,7 @@ void put(Query& query, const std::string& text) {
   query.bind(text);
 }
 void put(Query& query, dispatch::ReportState state) {
-  query.bind(dispatch::name_of(state));
+  query.bind(stored_word(state));
 }
 void put(Query& query, const std::optional<dispatch::Clock>& clock) {
   clock ? query.bind(clock->shows) : query.bind_null();
@@ -312,7 +328,7 @@ void bind_robot(Query& query, std::int64_t number, const icd::RobotName& robot) 
 std::string history_of(std::span<const dispatch::Report> steps) {
   std::string history;
   for (const dispatch::Report& step : steps) {
-    const std::string_view state = dispatch::name_of(step.state);
+    const std::string_view state = stored_word(step.state);
     history += icd::sentence(step.changed, " ", state.size(), ":", state, " ", step.note.size(), ":",
                              step.note, "\n");
   }
@@ -328,6 +344,7 @@ std::optional<std::vector<Ledger::Step>> steps_of(std::int64_t number, std::stri
         !take(history, ' ') || !take_text(history, step.note) || !take(history, '\n')) {
       return std::nullopt;
     }
+    if (const auto state = state_stored_as(step.state)) step.state = dispatch::name_of(*state);
   }
   return steps;
 }

@@ -165,7 +165,7 @@ class SetUp(unittest.TestCase):
         wait_until(lambda: other.heard("/map/update") and other.heard("/state/update"), "the map and the state")
         self.assertEqual(other.heard("/map/update")[0][0], real_aditd.TOKENS["mapping"])
         report, = self.box.ask("GET /adit/reports", **self.me)[1]
-        self.assertEqual(report["state"], "waiting", "it is kept for the Command Post that it was meant for")
+        self.assertEqual(report["state"], "queued", "it is kept for the Command Post that it was meant for")
         self.assertIn("kept for the Command Post at ", report["note"])
         self.assertEqual(other.heard("/api/artifact_reports"), [])
         for action in ("hold", "send"):  # the operator wants it here

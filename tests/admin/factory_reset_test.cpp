@@ -20,7 +20,7 @@ class FactoryResetTest : public testing::Test {
     std::filesystem::create_directory(state_ / "secrets");
     state_.put("secrets/team.token", "secret");
     runtime_.put("sessions.json", "who is logged in");
-    for (const char* folder : {"journal", "waiting", "aside"}) {
+    for (const char* folder : {"journal", "waiting", "rejected"}) {
       std::filesystem::create_directory(runtime_ / folder);
       runtime_.put(std::string(folder) + "/1", "a message of the team before");
     }
@@ -31,7 +31,7 @@ class FactoryResetTest : public testing::Test {
                              "settings.json", "secrets", "reset"})
       EXPECT_FALSE(kept(gone)) << gone;
     EXPECT_FALSE(std::filesystem::exists(runtime_ / "sessions.json"));
-    for (const char* gone : {"journal", "waiting", "aside"}) {
+    for (const char* gone : {"journal", "waiting", "rejected"}) {
       EXPECT_FALSE(std::filesystem::exists(runtime_ / gone)) << "the next team would send it";
     }
     EXPECT_TRUE(kept("forget.json")) << "adit-network is asked to forget the addresses";

@@ -177,7 +177,7 @@ TEST(Acknowledged, AreBoundedHoweverManyThereAre) {
 
 TEST(Acknowledged, AreNoneWhereTheFileIsNotWhole) {
   const std::string good = write_acknowledged(
-      {{.id = "set_aside", .severity = Severity::Ask, .degree = 2, .what = "2 are", .at = 7}});
+      {{.id = "messages_rejected", .severity = Severity::Ask, .degree = 2, .what = "2 are", .at = 7}});
   ASSERT_EQ(read_acknowledged(good).value().front().degree, 2u);
   for (std::size_t at = 0; at + 2 < good.size(); ++at) EXPECT_FALSE(read_acknowledged(good.substr(0, at)));
   EXPECT_EQ(read_acknowledged(R"({"version":2,"acknowledged":[]})").error(), "version: expected 1");

@@ -61,7 +61,7 @@ void reports(std::vector<Facts>& days) {
   days.back().reports_left = 5;
   days.back().reports_elsewhere["ADDRESS"] = 2;
   days.back().run_unreliable = "somebody else reports with this token";
-  days.back().set_aside = 3;
+  days.back().messages_rejected = 3;
   days.push_back(named());
   days.back().reports_left = 0;
 }

@@ -102,8 +102,8 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.reports_elsewhere["10.9.9.9:1"] = 2; }},
     {"run_unreliable", Ask, Side::CommandPost, "The reports' count is not certain", "somebody else",
      [](Facts& facts) { facts.run_unreliable = "somebody else reports"; }},
-    {"set_aside", Ask, Side::CommandPost, "3 messages are set aside", "would not take them",
-     [](Facts& facts) { facts.set_aside = 3; }},
+    {"messages_rejected", Ask, Side::CommandPost, "3 messages are rejected", "would not take them",
+     [](Facts& facts) { facts.messages_rejected = 3; }},
     {"rests", Bad, Side::Box, "This box rests and sends nothing", "for its spare",
      [](Facts& facts) { facts.rests = "the operator put it in standby, so that a spare takes over"; }},
     {"ledger_unwritable", Bad, Side::Box, "No report is taken", "the ledger cannot be written: no space",
@@ -259,10 +259,10 @@ TEST(Causes, NeverHideWhatOnlyTheOperatorDecides) {
   both_down<PostTrouble::Silent>(facts);
   facts.cables[1].carrier = false;
   report<ReportFact::Is::InDoubt>(facts);
-  facts.set_aside = 1;
+  facts.messages_rejected = 1;
   facts.reports_left = 0;
-  EXPECT_THAT(ids_of(conditions_of(facts)),
-              ElementsAre("cable_out:command_post", "report_in_doubt:7", "reports_left", "set_aside"));
+  EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("cable_out:command_post", "report_in_doubt:7",
+                                                        "reports_left", "messages_rejected"));
 }
 
 TEST(Causes, OfThrottlingHideNothing) {

@@ -21,7 +21,7 @@ ReportRow report() {
   row.robot = "spot1";
   row.received = 940;
   row.changed = 941.25;
-  row.state = "in doubt";
+  row.state = "in_doubt";
   row.status = 500;
   row.report_status = "scored";
   row.score_change = -1;
@@ -56,7 +56,7 @@ RunView view() {
   ActivityRow activity;
   activity.kind = "grid", activity.robot = "r", activity.accepted = 1, activity.forwarded = 2;
   activity.replaced = 3, activity.merged = 4;
-  activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.waiting = 8;
+  activity.throttled = 5, activity.failed = 6, activity.refused_upstream = 7, activity.queued = 8;
   activity.no_room = 13, activity.behind_since = 14, activity.last_no_room = 15;
   activity.behind = 17, activity.age = 18;
   activity.last_accepted = 9, activity.bytes_received = 10, activity.bytes_sent = 11;
@@ -66,14 +66,14 @@ RunView view() {
   activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
   view.activities = {activity};
   view.refusals = {{.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2}};
-  view.aside = {{.number = 1,
-                 .kind = "grid",
-                 .robot = "r",
-                 .at = 2,
-                 .status = 400,
-                 .why = "w",
-                 .bytes = 3,
-                 .overtaken = true}};
+  view.rejected = {{.number = 1,
+                    .kind = "grid",
+                    .robot = "r",
+                    .at = 2,
+                    .status = 400,
+                    .why = "w",
+                    .bytes = 3,
+                    .replaced = true}};
   view.lights = {{.name = "health", .pattern = "on"}};
   view.links = {{.side = "team", .interface = "team0", .carrier = true},
                 {.side = "command_post", .interface = "d", .carrier = std::nullopt}};
@@ -97,7 +97,7 @@ RunView view() {
 
 constexpr const char* kReport =
     R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-    R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+    R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in_doubt","status":500,)"
     R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
     R"("reconciled":true,"same_as":3})";
 
@@ -112,19 +112,19 @@ TEST(Bytes, OfARun) {
       R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
       R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
       R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","robot":"spot1","received":940.0,"changed":941.25,)"
-      R"("state":"in doubt","status":500,"report_status":"scored","score_change":-1,)"
+      R"("state":"in_doubt","status":500,"report_status":"scored","score_change":-1,)"
       R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
       R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","robot":"","received":0.0,"changed":0.0,)"
       R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
       R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
-      R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"waiting":8,)"
+      R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"queued":8,)"
       R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
       R"("invisible":21,)"
       R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
-      R"("sentence":"no","parts":2}],"aside":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
-      R"("status":400,"why":"w","bytes":3,"overtaken":true}],"lights":[{"name":"health",)"
+      R"("sentence":"no","parts":2}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
+      R"("status":400,"why":"w","bytes":3,"replaced":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
       R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"
       R"("setup_open_until":null,"budget_mbit":100.0,"sent_mbit":1.5,"queued_bytes":6,)"
@@ -140,11 +140,11 @@ TEST(Bytes, OfReports) {
   EXPECT_EQ(codec::to_json(std::vector{report()}), std::string("[") + kReport + "]");
   EXPECT_EQ(codec::to_json(std::vector<ReportRow>()), "[]");
   EXPECT_EQ(codec::to_json(ReportDetail{
-                .row = report(), .history = {{.at = 1, .state = "waiting", .note = "n"}}, .answer = "{}"}),
+                .row = report(), .history = {{.at = 1, .state = "queued", .note = "n"}}, .answer = "{}"}),
             R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-            R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in doubt","status":500,)"
+            R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in_doubt","status":500,)"
             R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
-            R"("reconciled":true,"same_as":3,"history":[{"at":1.0,"state":"waiting","note":"n"}],)"
+            R"("reconciled":true,"same_as":3,"history":[{"at":1.0,"state":"queued","note":"n"}],)"
             R"("answer":"{}"})");
 }
 

@@ -67,8 +67,8 @@ struct FakeOperator final : Operator {
     reported.emplace_back(report, resubmit);
     return outcome ? *outcome : 41;
   }
-  std::expected<void, std::string> aside(std::uint64_t number, AsideAction action) override {
-    set_aside.emplace_back(number, action);
+  std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) override {
+    judged_messages.emplace_back(number, action);
     if (!aside_trouble.empty()) return std::unexpected(aside_trouble);
     return {};
   }
@@ -87,8 +87,8 @@ struct FakeOperator final : Operator {
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of judge() and report(), where it is not the same number or 41
-  std::vector<std::pair<std::uint64_t, AsideAction>> set_aside;
-  std::string aside_trouble;  // of aside(), where there is any
+  std::vector<std::pair<std::uint64_t, RejectedAction>> judged_messages;
+  std::string aside_trouble;  // of rejected(), where there is any
   std::vector<std::string> acknowledged;
   std::string alarm_trouble;  // of acknowledge(), where there is any
   std::int64_t run = 1;

@@ -226,7 +226,7 @@ TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {
   const auto page = open();
   ReportRow report = source.now.reports.front();
   report.number = 1001;
-  report.state = "waiting";
+  report.state = "queued";
   source.now.reports.insert(source.now.reports.begin(), report);
   source.now.reports.pop_back();
   live.changed();

@@ -99,10 +99,10 @@ TEST(Metrics, CarryWhatTheViewSays) {
 
 TEST(Metrics, CountReportsByTheirStates) {
   Measured all = measured("empty");
-  all.reports.in[static_cast<std::size_t>(dispatch::ReportState::Waiting)] = 2;
+  all.reports.in[static_cast<std::size_t>(dispatch::ReportState::Queued)] = 2;
   all.reports.asking = 1;
   const std::string text = write_metrics(all);
-  EXPECT_THAT(text, HasSubstr("adit_reports{state=\"waiting\"} 2\n"));
+  EXPECT_THAT(text, HasSubstr("adit_reports{state=\"queued\"} 2\n"));
   EXPECT_THAT(text, HasSubstr("adit_reports{state=\"settled\"} 0\n"))
       << "so that it is known before there is one";
   EXPECT_THAT(text, HasSubstr("adit_reports_asking 1\n"));

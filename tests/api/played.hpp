@@ -34,10 +34,10 @@ class Played {
   std::expected<std::int64_t, std::string> judge(const RunView& view, std::int64_t number, Action action) {
     const auto found = std::ranges::find(view.reports, number, &ReportRow::number);
     if (found == view.reports.end()) return std::unexpected("there is no such report");
-    if (found->state == "refused") return std::unexpected("the step could not be written down; try again");
+    if (found->state == "rejected") return std::unexpected("the step could not be written down; try again");
     if (action == Action::Resubmit) return add(view, found->type, found->position.value_or(icd::Point{}));
-    states_[number] = action == Action::Send       ? "waiting"
-                      : action == Action::Hold     ? "received"
+    states_[number] = action == Action::Send       ? "queued"
+                      : action == Action::Hold     ? "held"
                       : action == Action::Withdraw ? "withdrawn"
                                                    : "settled";
     return number;
@@ -52,16 +52,16 @@ class Played {
     return add(view, report.type, report.position);
   }
 
-  std::expected<void, std::string> aside(const RunView& view, std::uint64_t number) {
-    const auto found = std::ranges::find(view.aside, number, &AsideRow::number);
-    if (found == view.aside.end()) return std::unexpected("nothing of that number is set aside");
+  std::expected<void, std::string> rejected(const RunView& view, std::uint64_t number) {
+    const auto found = std::ranges::find(view.rejected, number, &RejectedRow::number);
+    if (found == view.rejected.end()) return std::unexpected("nothing of that number is rejected");
     judged_aside_.insert(number);
     return {};
   }
 
   std::int64_t begin_run(const RunView& view) {
     for (const ReportRow& row : view.reports) {
-      if (row.state == "waiting") states_[row.number] = "received";
+      if (row.state == "queued") states_[row.number] = "held";
     }
     ++runs_;
     return view.run_number + 1;
@@ -77,7 +77,8 @@ class Played {
   void apply(RunView& view) const {
     for (alarms::Alarm& alarm : view.alarms) alarm.acknowledged |= acknowledged_.contains(alarm.id);
     view.run_number += runs_;
-    std::erase_if(view.aside, [this](const AsideRow& row) { return judged_aside_.contains(row.number); });
+    std::erase_if(view.rejected,
+                  [this](const RejectedRow& row) { return judged_aside_.contains(row.number); });
     for (ReportRow& row : view.reports) {
       if (const auto state = states_.find(row.number); state != states_.end()) {
         row.state = state->second;
@@ -95,7 +96,7 @@ class Played {
     row.position = position;
     row.sender = "operator";
     row.received = row.changed = view.now;
-    row.state = "waiting";
+    row.state = "queued";
     row.run = view.run_number;
     added_.push_back(row);
     return row.number;

@@ -26,7 +26,7 @@ class ReportRoutesTest : public OnPage {
       detail.row.number = number;
       detail.row.type = "Survivor";
       detail.row.run = 2;
-      detail.history = {{1000, "waiting", ""}, {1001.5, "in doubt", "the connection was lost"}};
+      detail.history = {{1000, "queued", ""}, {1001.5, "in_doubt", "the connection was lost"}};
       detail.answer = "{\"score_change\": 1}";
       source.details[number] = detail;
     }
@@ -108,8 +108,8 @@ TEST_F(ReportRoutesTest, GiveAReportWithItsHistoryAndItsAnswer) {
   const json report = json::parse(get("/adit/reports/12").body);
   EXPECT_EQ(report["number"], 12);
   EXPECT_EQ(report["history"],
-            (json{{{"at", 1000.0}, {"state", "waiting"}, {"note", ""}},
-                  {{"at", 1001.5}, {"state", "in doubt"}, {"note", "the connection was lost"}}}));
+            (json{{{"at", 1000.0}, {"state", "queued"}, {"note", ""}},
+                  {{"at", 1001.5}, {"state", "in_doubt"}, {"note", "the connection was lost"}}}));
   EXPECT_EQ(report["answer"], "{\"score_change\": 1}");
 }
 

@@ -67,7 +67,7 @@ TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
   settled.reconciled = true;
   settled.same_as = 3;
   EXPECT_THAT(csv({settled}), HasSubstr(",settled,no,yes,3,201,scored,0,"));
-  settled.state = "in doubt";
+  settled.state = "in_doubt";
   settled.asking = true;
   EXPECT_THAT(csv({settled}), HasSubstr(",in doubt,yes,yes,"));
 }

@@ -18,27 +18,28 @@ class RunRoutesTest : public OnPage {
   intake::Answer identify(const std::string& body) { return post("/adit/identify", body); }
 };
 
-TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsSetAside) {
-  const auto sent = post("/adit/aside/7/send");
+TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsRejectedMessages) {
+  const auto sent = post("/adit/rejected/7/send");
   EXPECT_EQ(sent.status, icd::Status::Ok);
-  EXPECT_EQ(sent.body, R"({"aside":7})");
-  EXPECT_EQ(post("/adit/aside/8/discard").status, icd::Status::Ok);
-  EXPECT_THAT(judge.set_aside, ElementsAre(Pair(7, AsideAction::Send), Pair(8, AsideAction::Discard)));
+  EXPECT_EQ(sent.body, R"({"rejected":7})");
+  EXPECT_EQ(post("/adit/rejected/8/discard").status, icd::Status::Ok);
+  EXPECT_THAT(judge.judged_messages, ElementsAre(Pair(7, RejectedAction::Send), Pair(8, RejectedAction::Discard)));
 }
 
-TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsSetAside) {
+TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsRejectedMessages) {
   judge.aside_trouble = "something newer was sent since";
-  const auto answer = post("/adit/aside/7/send");
+  const auto answer = post("/adit/rejected/7/send");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(answer.body, R"("something newer was sent since")");
 }
 
-TEST_F(RunRoutesTest, KnowNothingSetAsideByWhatIsNoNumber) {
-  for (const char* const wrong : {"/adit/aside/", "/adit/aside/7", "/adit/aside/x/send", "/adit/aside/7/hold",
-                                  "/adit/aside/-1/send", "/adit/aside/7/send/more"}) {
+TEST_F(RunRoutesTest, KnowNothingRejectedMessagesByWhatIsNoNumber) {
+  for (const char* const wrong :
+       {"/adit/rejected/", "/adit/rejected/7", "/adit/rejected/x/send", "/adit/rejected/7/hold",
+        "/adit/rejected/-1/send", "/adit/rejected/7/send/more"}) {
     EXPECT_EQ(post(wrong).status, icd::Status::NotFound) << wrong;
   }
-  EXPECT_TRUE(judge.set_aside.empty());
+  EXPECT_TRUE(judge.judged_messages.empty());
 }
 
 TEST_F(RunRoutesTest, MakeTheLightsBlinkAndSayUntilWhen) {

@@ -50,11 +50,11 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["endpoints"][0]["connected"], true);
   EXPECT_EQ(parsed["endpoints"][0]["answer_ms"], 3.4);
   EXPECT_EQ(parsed["reports"][0]["number"], 10);
-  EXPECT_EQ(parsed["reports"][2]["state"], "in doubt");
+  EXPECT_EQ(parsed["reports"][2]["state"], "in_doubt");
   EXPECT_EQ(parsed["reports"][3]["position"], (json{{"x", 85.75}, {"y", -4.5}, {"z", 0.25}}));
   EXPECT_EQ(parsed["reports"][3]["score_change"], 1);
   EXPECT_EQ(parsed["activities"][2]["merged"], 96);
-  EXPECT_EQ(parsed["activities"][1]["waiting"], 12);
+  EXPECT_EQ(parsed["activities"][1]["queued"], 12);
   EXPECT_EQ(parsed["refusals"][0]["status"], 422);
   EXPECT_EQ(parsed["lights"][3], (json{{"name", "attention"}, {"pattern", "fast"}}));
   EXPECT_EQ(parsed["budget_mbit"], 100.0);

@@ -127,7 +127,7 @@ RunView trouble(Time now, double elapsed) {
   view.queued_bytes = 214'000'000;
   for (const std::size_t stuck : {1u, 2u}) {
     ActivityRow& row = view.activities[stuck];
-    row.waiting = 12;
+    row.queued = 12;
     row.behind_since = began - 110;
     row.failed = 9;
     row.last_accepted = began - 110;
@@ -136,7 +136,7 @@ RunView trouble(Time now, double elapsed) {
     row.last_sentence = "connecting to 10.100.1.201:8000: Connection refused";
   }
   view.activities[2].behind_since = began - 125;
-  view.activities[3].waiting = 247;
+  view.activities[3].queued = 247;
   view.activities[3].behind_since = began - 33;
   view.activities[4].last_status = 429;
   view.activities[4].throttled = 3;
@@ -146,9 +146,9 @@ RunView trouble(Time now, double elapsed) {
   view.activities[9].refused_upstream = 2;
   view.activities[9].last_status = 422;
   view.activities[9].last_sentence = "\"Missing field: 'pose'\"";
-  view.reports.insert(view.reports.begin(), {report(10, "Helmet", now - 1, "waiting", 0, {}),
+  view.reports.insert(view.reports.begin(), {report(10, "Helmet", now - 1, "queued", 0, {}),
                                              report(9, "Cube", now - 3, "sending", 0, {}),
-                                             report(8, "Vent", now - 42, "in doubt", 0, {})});
+                                             report(8, "Vent", now - 42, "in_doubt", 0, {})});
   view.reports[2].note = "the connection was lost before an answer came";
   view.refusals.push_back(
       {began - 20, "/state/update", "10.0.0.8", 422,
@@ -169,16 +169,16 @@ RunView reports(Time now, double elapsed) {
   RunView view = calm(now, elapsed);
   view.run_number = 2;
   view.run_id = "cave-2";
-  view.reports = {report(28, "Drill", now - 1, "waiting", 0, {}),
+  view.reports = {report(28, "Drill", now - 1, "queued", 0, {}),
                   report(27, "Cube", now - 2, "sending", 0, {}),
-                  report(26, "Vent", now - 12, "in doubt", 0, {}),
-                  report(25, "Gas", now - 60, "in doubt", 0, {}),
-                  report(24, "Rope", now - 80, "received", 0, {}),
+                  report(26, "Vent", now - 12, "in_doubt", 0, {}),
+                  report(25, "Gas", now - 60, "in_doubt", 0, {}),
+                  report(24, "Rope", now - 80, "held", 0, {}),
                   report(23, "Helmet", now - 90, "settled", 201, 1),
                   report(22, "Helmet", now - 95, "settled", 0, {}),
                   report(21, "Backpack", now - 100, "withdrawn", 0, {}),
                   report(20, "Backpack", now - 110, "withdrawn", 0, {}),
-                  report(19, "Survivor", now - 120, "refused", 422, {}),
+                  report(19, "Survivor", now - 120, "rejected", 422, {}),
                   report(18, "Survivor", now - 900, "answered", 201, 1)};
   for (ReportRow& row : view.reports) row.run = row.number == 18 ? 1 : 2;
   view.reports[4].position = {306.25, -2.5, 0.25};  // near report 25, and of its type

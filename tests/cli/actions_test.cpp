@@ -37,7 +37,7 @@ class Actions : public testing::Test {
 };
 
 TEST_F(Actions, AreAskedForByTheirNames) {
-  const Server server({{"GET /adit/reports/7", report("received")},
+  const Server server({{"GET /adit/reports/7", report("held")},
                        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
@@ -57,40 +57,41 @@ TEST_F(Actions, AreAskedForByTheirNames) {
   EXPECT_EQ(outcome.exit, Exit::Fine);
 }
 
-TEST_F(Actions, AreAskedForOfWhatIsSetAside) {
+TEST_F(Actions, AreAskedForOfWhatIsRejectedMessages) {
   api::RunView view = sample_view();
-  view.aside = {{.number = 3,
-                 .kind = "cloud",
-                 .robot = "r2",
-                 .at = 940,
-                 .status = 500,
-                 .why = "it failed",
-                 .bytes = 1200},
-                {.number = 4,
-                 .kind = "state",
-                 .robot = "",
-                 .at = 950,
-                 .status = 422,
-                 .why = "no",
-                 .bytes = 90,
-                 .overtaken = true}};
+  view.rejected = {{.number = 3,
+                    .kind = "cloud",
+                    .robot = "r2",
+                    .at = 940,
+                    .status = 500,
+                    .why = "it failed",
+                    .bytes = 1200},
+                   {.number = 4,
+                    .kind = "state",
+                    .robot = "",
+                    .at = 950,
+                    .status = 422,
+                    .why = "no",
+                    .bytes = 90,
+                    .replaced = true}};
   const Server server(
       {{"GET /adit/run", Server::ok(codec::to_json(view))},
-       {"POST /adit/aside/3/send", Server::ok("{\"aside\":3}")},
-       {"POST /adit/aside/3/discard", Server::ok("{\"aside\":3}")},
-       {"POST /adit/aside/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});
-  const Outcome listed = say(server, {"aside"});
+       {"POST /adit/rejected/3/send", Server::ok("{\"rejected\":3}")},
+       {"POST /adit/rejected/3/discard", Server::ok("{\"rejected\":3}")},
+       {"POST /adit/rejected/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});
+  const Outcome listed = say(server, {"rejected"});
   EXPECT_THAT(listed.out, HasSubstr("500: it failed"));
   EXPECT_THAT(listed.out, HasSubstr("something newer was sent"));
   EXPECT_EQ(listed.exit, Exit::Attention);
-  EXPECT_THAT(say(server, {"aside", "--json"}).out, HasSubstr("\"overtaken\":true"));
-  EXPECT_EQ(say(server, {"aside", "send", "3"}).out, "3 is sent again when its turn comes\n");
-  EXPECT_EQ(say(server, {"aside", "discard", "3"}).out, "3 is discarded\n");
-  const Outcome refused = say(server, {"aside", "send", "4"});
+  EXPECT_THAT(say(server, {"rejected", "--json"}).out, HasSubstr("\"replaced\":true"));
+  EXPECT_EQ(say(server, {"rejected", "send", "3"}).out, "3 is sent again when its turn comes\n");
+  EXPECT_EQ(say(server, {"rejected", "discard", "3"}).out, "3 is discarded\n");
+  const Outcome refused = say(server, {"rejected", "send", "4"});
   EXPECT_THAT(refused.err, HasSubstr("something newer was sent"));
   EXPECT_EQ(refused.exit, Exit::Attention);
-  EXPECT_THAT(say(server, {"aside", "send"}).err, HasSubstr("is missing after send"));
-  EXPECT_THAT(say(server, {"aside", "keep", "3"}).err, HasSubstr("expected show, send or discard, got keep"));
+  EXPECT_THAT(say(server, {"rejected", "send"}).err, HasSubstr("is missing after send"));
+  EXPECT_THAT(say(server, {"rejected", "keep", "3"}).err,
+              HasSubstr("expected show, send or discard, got keep"));
 }
 
 TEST_F(Actions, MakeTheLightsFlash) {
@@ -111,9 +112,9 @@ TEST_F(Actions, ShowTheTokenToAditAlone) {
 
 TEST_F(Actions, GoOnAfterOneThatCannotBe) {
   const Server server(
-      {{"GET /adit/reports/7", report("received")},
+      {{"GET /adit/reports/7", report("held")},
        {"GET /adit/reports/8", report("answered")},
-       {"GET /adit/reports/9", report("received")},
+       {"GET /adit/reports/9", report("held")},
        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
        {"POST /adit/reports/8/send",
         Server::reply("409 Conflict", "\"report 8 is answered: to send it once more, resubmit it\"")},
@@ -133,7 +134,7 @@ Console answering(bool answer, std::string& asked) {
 }
 
 TEST_F(Actions, OnAReportInDoubtAreAskedAboutFirst) {
-  const Server server({{"GET /adit/reports/3", report("in doubt")},
+  const Server server({{"GET /adit/reports/3", report("in_doubt")},
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   std::string asked;
   const Outcome refused = say(server, {"reports", "send", "3"}, answering(false, asked));
@@ -150,7 +151,7 @@ TEST_F(Actions, OnAReportInDoubtAreAskedAboutFirst) {
 }
 
 TEST_F(Actions, OnAReportInDoubtAreRefusedWhereThereIsNobodyToAsk) {
-  const Server server({{"GET /adit/reports/3", report("in doubt", true)},
+  const Server server({{"GET /adit/reports/3", report("in_doubt", true)},
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   const Outcome refused = say(server, {"reports", "send", "3"});
   EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
@@ -162,7 +163,7 @@ TEST_F(Actions, OnAReportInDoubtAreRefusedWhereThereIsNobodyToAsk) {
 
 TEST_F(Actions, OnOtherReportsAreNotAskedAbout) {
   std::string asked;
-  for (const char* const state : {"received", "refused", "withdrawn"}) {
+  for (const char* const state : {"held", "rejected", "withdrawn"}) {
     const Server server({{"GET /adit/reports/3", report(state)},
                          {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
     EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(false, asked)).exit, Exit::Fine) << state;

@@ -18,16 +18,16 @@ class Completion : public testing::Test {
     api::RunView view = sample_view();
     std::vector<api::ReportRow> reports(3, view.reports.front());
     for (std::size_t i = 0; i < reports.size(); ++i) reports[i].number = static_cast<std::int64_t>(i) + 3;
-    reports[1].state = "in doubt";
-    reports[2].state = "received";
+    reports[1].state = "in_doubt";
+    reports[2].state = "held";
     reports[2].type = "Cell\nPhone";
-    api::AsideRow cloud, state;
+    api::RejectedRow cloud, state;
     cloud.number = 8;
     cloud.kind = "cloud";
     cloud.robot = "r2";
     state.number = 9;
     state.kind = "state";
-    view.aside = {cloud, state};
+    view.rejected = {cloud, state};
     return {{"GET /adit/reports", Server::ok(codec::to_json(reports))},
             {"GET /adit/run", Server::ok(codec::to_json(view))},
             {"GET /adit/settings",
@@ -60,8 +60,8 @@ TEST_F(Completion, ListsReportsThatAWordCanBeSaidOf) {
             "[{\"word\":\"4\",\"what\":\"Survivor, in doubt\"}]\n");
 }
 
-TEST_F(Completion, ListsWhatIsSetAsideAndCourses) {
-  EXPECT_EQ(listed({"aside"}).out, "8\tcloud of r2\n9\tstate\n");
+TEST_F(Completion, ListsWhatIsRejectedMessagesAndCourses) {
+  EXPECT_EQ(listed({"rejected"}).out, "8\tcloud of r2\n9\tstate\n");
   EXPECT_EQ(listed({"courses"}).out, "B\t10.100.2.200\n") << "and none that a shell would run";
 }
 

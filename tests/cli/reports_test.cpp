@@ -25,8 +25,7 @@ api::ReportRow report(std::int64_t number, std::int64_t run, const std::string& 
 
 /// Two runs, of which the second is the present one.
 std::vector<api::ReportRow> two_runs() {
-  return {report(1, 1, "answered"), report(2, 1, "received"), report(3, 2, "settled"),
-          report(4, 2, "waiting")};
+  return {report(1, 1, "answered"), report(2, 1, "held"), report(3, 2, "settled"), report(4, 2, "queued")};
 }
 
 std::string csv_of(const std::vector<api::ReportRow>& rows) {
@@ -38,7 +37,7 @@ std::string csv_of(const std::vector<api::ReportRow>& rows) {
 Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_view> words) {
   api::RunView view = sample_view();
   view.run_number = 2;
-  const api::ReportDetail detail{rows.back(), {{1000, "waiting", "posted"}}, "{}"};
+  const api::ReportDetail detail{rows.back(), {{1000, "queued", "posted"}}, "{}"};
   const Server server({{"GET /adit/run", Server::ok(codec::to_json(view))},
                        {"GET /adit/reports", Server::ok(codec::to_json(rows))},
                        {"GET /adit/reports.csv", Server::ok(csv_of(rows))},
@@ -76,9 +75,9 @@ TEST(Reports, AreAListForScripts) {
 TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
   EXPECT_EQ(asked(two_runs(), {"reports", "--run", "2"}).exit, Exit::Attention)
       << "though it is of another run";
-  EXPECT_EQ(asked({report(4, 2, "in doubt")}, {"reports"}).exit, Exit::Attention);
-  EXPECT_EQ(asked({report(4, 2, "in doubt")}, {"reports", "show", "4"}).exit, Exit::Attention);
-  api::ReportRow asking = report(4, 2, "in doubt");
+  EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports"}).exit, Exit::Attention);
+  EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports", "show", "4"}).exit, Exit::Attention);
+  api::ReportRow asking = report(4, 2, "in_doubt");
   asking.asking = true;
   EXPECT_EQ(asked({asking}, {"reports"}).exit, Exit::Fine);
   EXPECT_EQ(asked({report(4, 2, "answered")}, {"reports"}).exit, Exit::Fine);

@@ -21,7 +21,7 @@ api::ReportRow in_state(const std::string& state) {
 }
 
 TEST(ReportsText, HasARowForEachReport) {
-  api::ReportRow doubtful = in_state("in doubt");
+  api::ReportRow doubtful = in_state("in_doubt");
   doubtful.number = 14;
   doubtful.run = 2;
   doubtful.type = "Cell Phone";
@@ -44,7 +44,7 @@ TEST(ReportsText, HasARowForEachReport) {
 }
 
 TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
-  api::ReportRow lost = in_state("in doubt");
+  api::ReportRow lost = in_state("in_doubt");
   lost.position = {};
   lost.position.reset();
   EXPECT_THAT(reports_text({lost}, 0, 1000, false), HasSubstr("lost  lost  lost"));
@@ -69,14 +69,14 @@ TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
 }
 
 TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
-  api::ReportRow doubt = in_state("in doubt");
+  api::ReportRow doubt = in_state("in_doubt");
   EXPECT_EQ(life_of(doubt), "in doubt");
   EXPECT_TRUE(needs_the_operator(doubt));
   doubt.asking = true;
   EXPECT_EQ(life_of(doubt), "in doubt, asking");
   EXPECT_FALSE(needs_the_operator(doubt));
-  EXPECT_EQ(life_of(in_state("received")), "held");
-  EXPECT_TRUE(needs_the_operator(in_state("received")));
+  EXPECT_EQ(life_of(in_state("held")), "held");
+  EXPECT_TRUE(needs_the_operator(in_state("held")));
 }
 
 TEST(LifeOf, TellsWhatBecameOfIt) {
@@ -108,7 +108,7 @@ TEST(ReportText, TellsAllOfOneReport) {
   report.run = 2;
   report.robot = "spot1";
   const api::ReportDetail detail{report,
-                                 {{1566309785.125, "waiting", ""}, {1566309786, "in doubt", "no answer"}},
+                                 {{1566309785.125, "queued", ""}, {1566309786, "in_doubt", "no answer"}},
                                  "{\"score_change\": 1}"};
   EXPECT_EQ(report_text(detail, false),
             "  report    3\n"
@@ -136,12 +136,12 @@ TEST(ReportText, OffersTheActionsThatCanBe) {
     const auto begin = text.find("actions   ");
     return begin == std::string::npos ? "" : text.substr(begin + 10, text.find('\n', begin) - begin - 10);
   };
-  EXPECT_EQ(actions("received"), "send, withdraw");
-  EXPECT_EQ(actions("waiting"), "send, hold, withdraw");
+  EXPECT_EQ(actions("held"), "send, withdraw");
+  EXPECT_EQ(actions("queued"), "send, hold, withdraw");
   EXPECT_EQ(actions("sending"), "");
-  EXPECT_EQ(actions("in doubt"), "send, done");
+  EXPECT_EQ(actions("in_doubt"), "send, done");
   EXPECT_EQ(actions("answered"), "resubmit");
-  EXPECT_EQ(actions("refused"), "send, resubmit");
+  EXPECT_EQ(actions("rejected"), "send, resubmit");
   EXPECT_EQ(actions("withdrawn"), "send, resubmit");
 }
 

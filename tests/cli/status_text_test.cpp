@@ -97,7 +97,7 @@ TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
   api::RunView view = sample_view();
   view.activities[0].behind = 33;
   view.activities[0].arrival = alarms::Arrival::Late;
-  view.activities[0].waiting = 247;
+  view.activities[0].queued = 247;
   view.activities[0].no_room = 1110;
   EXPECT_THAT(status_text(view, false),
               HasSubstr("  r1     grid  33 s behind        12    11      247     1110"));

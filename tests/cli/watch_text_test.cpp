@@ -58,7 +58,7 @@ TEST(Watching, TellsOfReports) {
   now.reports.front().reconciled = true;
   now.reports.push_back(now.reports.front());
   now.reports.back().number = 4;
-  now.reports.back().state = "received";
+  now.reports.back().state = "held";
   now.reports.back().note = "a near duplicate of report 3";
   now.reports.back().score_change.reset();
   EXPECT_EQ(changed(sample_view(), now),

@@ -35,7 +35,7 @@ TEST_F(ReportBookTest, NumbersReportsFromOneAndGoesOnAfterARestart) {
 TEST_F(ReportBookTest, WritesAReportThatIsSentAtOnceWithBothStepsInOneGo) {
   add({ReportEvent::Chosen});
   EXPECT_EQ(output_.writes, 1);
-  EXPECT_THAT(output_.lives[1], ElementsAre(Waiting, Sending));
+  EXPECT_THAT(output_.lives[1], ElementsAre(Queued, Sending));
   EXPECT_EQ(book_.at(1).state, Sending);
 }
 
@@ -50,7 +50,7 @@ TEST_F(ReportBookTest, HasNoReportThatTheDiskRefused) {
 TEST_F(ReportBookTest, TakesNoStepThatIsNotInTheTable) {
   add();
   EXPECT_FALSE(book_.move({1, ReportEvent::Found}, 0));
-  EXPECT_EQ(book_.at(1).state, Waiting);
+  EXPECT_EQ(book_.at(1).state, Queued);
   EXPECT_EQ(output_.writes, 1);
 }
 
@@ -65,15 +65,15 @@ void PrintTo(const OnAFullDisk& one, std::ostream* out) {
 }
 
 const OnAFullDisk kFullDisk[] = {
-    {ReportEvent::Chosen, Waiting, false},     {ReportEvent::Held, Waiting, false},
-    {ReportEvent::Joined, Waiting, false},     {ReportEvent::Withdrawn, Waiting, false},
-    {ReportEvent::Recorded, Sending, true},    {ReportEvent::Refused, Sending, true},
+    {ReportEvent::Chosen, Queued, false},      {ReportEvent::Held, Queued, false},
+    {ReportEvent::Joined, Queued, false},      {ReportEvent::Withdrawn, Queued, false},
+    {ReportEvent::Recorded, Sending, true},    {ReportEvent::Rejected, Sending, true},
     {ReportEvent::Throttled, Sending, true},   {ReportEvent::Barred, Sending, true},
     {ReportEvent::NeverLeft, Sending, true},   {ReportEvent::Lost, Sending, true},
     {ReportEvent::Restarted, Sending, true},   {ReportEvent::Found, InDoubt, false},
     {ReportEvent::Missing, InDoubt, false},    {ReportEvent::Held, InDoubt, false},
     {ReportEvent::CalledDone, InDoubt, false}, {ReportEvent::Released, InDoubt, false},
-    {ReportEvent::Released, Received, false},  {ReportEvent::Released, Refused, false},
+    {ReportEvent::Released, Held, false},      {ReportEvent::Released, Rejected, false},
     {ReportEvent::Released, Withdrawn, false},
 };
 

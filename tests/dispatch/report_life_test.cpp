@@ -15,7 +15,7 @@ namespace {
 using enum ReportState;
 using Event = ReportEvent;
 
-constexpr std::array kStates = {Received, Waiting, Sending, Answered, Refused, InDoubt, Settled, Withdrawn};
+constexpr std::array kStates = {Held, Queued, Sending, Answered, Rejected, InDoubt, Settled, Withdrawn};
 
 std::set<Event> events_between(ReportState from, ReportState to) {
   std::set<Event> events;
@@ -27,12 +27,12 @@ std::set<Event> events_between(ReportState from, ReportState to) {
 
 TEST(ReportLife, IsSentOnlyFromWaiting) {
   for (const ReportState state : kStates) {
-    EXPECT_EQ(transition(state, Event::Chosen) != nullptr, state == Waiting) << name_of(state);
+    EXPECT_EQ(transition(state, Event::Chosen) != nullptr, state == Queued) << name_of(state);
   }
 }
 
 TEST(ReportLife, IsSentAgainByItselfOnlyWhereTheCommandPostCannotHaveRecordedIt) {
-  EXPECT_EQ(events_between(Sending, Waiting), (std::set{Event::Throttled, Event::Barred, Event::NeverLeft}));
+  EXPECT_EQ(events_between(Sending, Queued), (std::set{Event::Throttled, Event::Barred, Event::NeverLeft}));
 }
 
 TEST(ReportLife, LeavesDoubtOnlyByEvidenceOrTheOperator) {
@@ -59,7 +59,7 @@ TEST(ReportLife, IsAsWeLeftItAfterACrashInAnyOtherState) {
 TEST(ReportLife, AnswersAClientOnlyWhereAnAnswerIsKnown) {
   for (const ReportTransition& row : report_life()) {
     if (row.action != ReportAction::AnswerClients) continue;
-    EXPECT_TRUE(row.to == Answered || row.to == Refused || row.to == Settled) << name_of(row.to);
+    EXPECT_TRUE(row.to == Answered || row.to == Rejected || row.to == Settled) << name_of(row.to);
   }
 }
 
@@ -86,7 +86,7 @@ std::string_view words(ReportEvent event) {
       return "its turn";
     case Event::Recorded:
       return "2xx";
-    case Event::Refused:
+    case Event::Rejected:
       return "4xx";
     case Event::Throttled:
       return "429";
@@ -131,8 +131,8 @@ std::string_view words(ReportAction action) {
 }
 
 std::string diagram() {
-  std::string text = "stateDiagram-v2\n  state \"in doubt\" as in_doubt\n  [*] --> waiting: posted\n";
-  const auto id = [](ReportState state) { return state == InDoubt ? "in_doubt" : name_of(state); };
+  std::string text = "stateDiagram-v2\n  state \"in doubt\" as in_doubt\n  [*] --> queued: posted\n";
+  const auto id = [](ReportState state) { return name_of(state); };
   for (const ReportTransition& row : report_life()) {
     if (row.from == row.to) continue;  // nothing to see
     text.append("  ").append(id(row.from)).append(" --> ").append(id(row.to)).append(": ");

@@ -27,18 +27,18 @@ const ReportCase kReportCases[] = {
     {204, "", ReportEvent::Lost},
     {302, "", ReportEvent::Lost},
     {304, kReply, ReportEvent::Lost},
-    {400, "\"bad\"", ReportEvent::Refused},
+    {400, "\"bad\"", ReportEvent::Rejected},
     {401, "\"token\"", ReportEvent::Barred},
-    {402, "", ReportEvent::Refused},
+    {402, "", ReportEvent::Rejected},
     {403, "", ReportEvent::Barred},
     {404, "<html>", ReportEvent::Barred},
     {405, "", ReportEvent::Barred},
     {407, "", ReportEvent::Barred},
     {408, "", ReportEvent::Lost},
-    {409, "", ReportEvent::Refused},
-    {413, "", ReportEvent::Refused},
-    {415, "", ReportEvent::Refused},
-    {422, kReply, ReportEvent::Refused},
+    {409, "", ReportEvent::Rejected},
+    {413, "", ReportEvent::Rejected},
+    {415, "", ReportEvent::Rejected},
+    {422, kReply, ReportEvent::Rejected},
     {400, "<html>blocked by the firewall</html>", ReportEvent::Lost},
     {413, "<html>too large</html>", ReportEvent::Lost},
     {422, "<html>log in to the network</html>", ReportEvent::Lost},
@@ -101,8 +101,8 @@ TEST(Effect, OfAReconciledReportIsThatItWasScored) {
 
 TEST(Effect, IsNoneWhereNothingIsKnownToBeRecorded) {
   EXPECT_FALSE(effect_of(with_answer(ReportState::Settled, kReply)).scored) << "called done by the operator";
-  for (const ReportState state : {ReportState::Refused, ReportState::InDoubt, ReportState::Waiting,
-                                  ReportState::Sending, ReportState::Received, ReportState::Withdrawn}) {
+  for (const ReportState state : {ReportState::Rejected, ReportState::InDoubt, ReportState::Queued,
+                                  ReportState::Sending, ReportState::Held, ReportState::Withdrawn}) {
     EXPECT_FALSE(effect_of(with_answer(state, kReply)).scored) << name_of(state);
   }
 }

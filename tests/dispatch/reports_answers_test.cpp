@@ -60,7 +60,7 @@ TEST(A2xx, ThatTellsOfAnotherReportIsADoubt) {
   EXPECT_THAT(scene.report(2).note, HasSubstr("the answer tells of report 1, not of this one"));
   EXPECT_FALSE(scene.is_told(client));
   scene.keep_hearing(14, 19, 0);
-  EXPECT_EQ(scene.state(2), Waiting) << "it was not recorded";
+  EXPECT_EQ(scene.state(2), Queued) << "it was not recorded";
   EXPECT_EQ(scene.send_next(), 2);
   scene.answer(tells_of(11));
   EXPECT_EQ(scene.told(client).body, tells_of(11).body);
@@ -95,7 +95,7 @@ TEST(A429, LeavesTheReportWaitingAndItsClientUntold) {
   const ClientId client = scene.post();
   for (int i = 0; i < 10; ++i) {
     scene.answer(answer_of(429));
-    EXPECT_EQ(scene.state(1), Waiting);
+    EXPECT_EQ(scene.state(1), Queued);
     EXPECT_FALSE(scene.is_told(client));
     scene.wait(1);
     ASSERT_EQ(scene.send_next(), 1);
@@ -120,7 +120,7 @@ TEST_P(Barring, LeavesTheReportWaitingTellsItsClientAndSendsNothingBeforeAStatus
   const ClientId client = scene.post(1);
   const ClientId other = scene.post(2);
   scene.answer(answer_of(GetParam()));
-  EXPECT_EQ(scene.state(1), Waiting);
+  EXPECT_EQ(scene.state(1), Queued);
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("is kept and waiting (the Command Post's words)"));
   EXPECT_FALSE(scene.is_told(other));
@@ -139,7 +139,7 @@ TEST_P(Refusal, IsTheClientsAnswerAndTheEnd) {
   Scene scene;
   const ClientId client = scene.post();
   scene.answer(answer_of(GetParam()));
-  EXPECT_EQ(scene.state(1), Refused);
+  EXPECT_EQ(scene.state(1), Rejected);
   EXPECT_EQ(scene.report(1).note, "the Command Post's words");
   EXPECT_EQ(scene.told(client).status, GetParam());
   EXPECT_EQ(scene.told(client).body, answer_of(GetParam()).body);
@@ -163,7 +163,7 @@ TEST(NoByteLeft, LeavesTheReportWaiting) {
   Scene scene;
   const ClientId client = scene.post();
   scene.reports().never_left("connecting to 10.100.1.200:8000: Connection refused", scene.time());
-  EXPECT_EQ(scene.state(1), Waiting);
+  EXPECT_EQ(scene.state(1), Queued);
   EXPECT_EQ(scene.report(1).tries, 0);
   EXPECT_FALSE(scene.is_told(client));
   EXPECT_EQ(scene.send_next(), 1);
@@ -181,7 +181,7 @@ TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
     scene.keep_hearing(10, 20, 0);
     EXPECT_EQ(scene.send_next(), tries < Reports::kMostTries ? 1 : 0);
   }
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.report(1).note, "held: sent 5 times without an answer, and never recorded");
   EXPECT_EQ(scene.told(client).status, 503);
   scene.post(2);

@@ -45,8 +45,8 @@ void PrintTo(const Telling& telling, std::ostream* out) {
 }
 
 const Telling kTellings[] = {
-    {Waiting, 503, "report 1 is kept and waiting (why)"},
-    {Received, 503, "report 1 is kept, and waits for the operator's word (why)"},
+    {Queued, 503, "report 1 is kept and waiting (why)"},
+    {Held, 503, "report 1 is kept, and waits for the operator's word (why)"},
     {InDoubt, 504, "report 1 is in doubt: it may or may not have been recorded (why)"},
 };
 
@@ -83,7 +83,7 @@ TEST(AClient, IsNotPromisedThatAReportOfAnEarlierRunNeverGoesAgain) {
   const ClientId client = scene.post_to_wait(1);
   scene.wait(11);
   scene.hear(25, 0, 3);
-  ASSERT_EQ(scene.state(1), Received);
+  ASSERT_EQ(scene.state(1), Held);
   scene.wait(9);
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, Not(HasSubstr(kNeverTwice)));

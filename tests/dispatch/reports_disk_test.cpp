@@ -35,7 +35,7 @@ TEST_F(FullDisk, SendsNothing) {
   fill();
   EXPECT_EQ(scene_.send_next(), 0);
   EXPECT_EQ(scene_.reports().sending(), nullptr);
-  EXPECT_EQ(scene_.state(1), Waiting);
+  EXPECT_EQ(scene_.state(1), Queued);
   make_room();
   EXPECT_EQ(scene_.send_next(), 1);
 }
@@ -105,11 +105,11 @@ TEST_F(FullDisk, BeginsANewRunAndWritesItWithItsReportsLater) {
   fill();
   scene_.hear(25, 0, 3);
   EXPECT_EQ(scene_.reports().run().number, 2);
-  EXPECT_EQ(scene_.state(1), Received);
+  EXPECT_EQ(scene_.state(1), Held);
   make_room();
   scene_.wait(1);
   EXPECT_EQ(scene_.output().run->number, 2);
-  EXPECT_EQ(on_disk(1), Received);
+  EXPECT_EQ(on_disk(1), Held);
 }
 
 TEST_F(FullDisk, TakesNoWordOfTheOperators) {
@@ -121,7 +121,7 @@ TEST_F(FullDisk, TakesNoWordOfTheOperators) {
   EXPECT_FALSE(scene_.reports().send(1, scene_.time()).has_value());
   EXPECT_FALSE(scene_.reports().withdraw(2, scene_.time()).has_value());
   EXPECT_EQ(scene_.state(1), InDoubt);
-  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.state(2), Queued);
 }
 
 /// The disk fills up after each of the first writes of a whole life in turn: whatever was on disk by then, a

@@ -50,7 +50,7 @@ TEST_F(Doubt, EndsWithTheReportSentAgainWhereItWasNeverCounted) {
   scene_.keep_hearing(9, 20, 0);
   EXPECT_EQ(scene_.state(1), InDoubt) << "the Command Post may still record it";
   scene_.keep_hearing(1, 20, 0);
-  EXPECT_EQ(scene_.state(1), Waiting);
+  EXPECT_EQ(scene_.state(1), Queued);
   EXPECT_FALSE(scene_.is_told(client_));
   EXPECT_EQ(scene_.send_next(), 1);
   EXPECT_EQ(scene_.report(1).before->remaining_reports, 20);
@@ -112,7 +112,7 @@ TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
   EXPECT_EQ(scene_.state(1), InDoubt) << "two statuses are not three";
   scene_.wait(1);
   scene_.hear(20, 0);
-  EXPECT_EQ(scene_.state(1), Waiting);
+  EXPECT_EQ(scene_.state(1), Queued);
 }
 
 TEST_F(Doubt, StaysWhileTheRunClockStandsStill) {

@@ -83,7 +83,7 @@ TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
   EXPECT_EQ(scene_.reports().run().number, 2);
   EXPECT_EQ(scene_.output().run->may_be, 1) << "on disk";
   const ClientId again = scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the run clock went back"));
   scene_.wait(21);
@@ -95,16 +95,16 @@ TEST_F(OnlyTheClock, HoldsItOverARestart) {
   scene_.restart();
   scene_.hear(19, 0, 4);
   scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
 }
 
 TEST_F(OnlyTheClock, HoldsWhatWasPostedBeforeTheRunWasKnown) {
   scene_.wait(16);
   scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.state(2), Queued);
   scene_.hear(19, 0, 20);
   EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
   EXPECT_EQ(scene_.report(2).same_as, 1);
 }
 
@@ -116,7 +116,7 @@ TEST_F(OnlyTheClock, SendsWhatIsNew) {
 TEST_F(OnlyTheClock, LetsItGoOnceAnAnswerNamesAnotherRun) {
   scene_.post(1);
   scene_.record(2, "2");
-  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_EQ(scene_.report(2).same_as, 0);
   EXPECT_EQ(scene_.reports().run().may_be, 0);
   EXPECT_EQ(scene_.send_next(), 2);
@@ -173,7 +173,7 @@ TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
   scene.hear(19, 0, 3);
   ASSERT_EQ(scene.reports().run().number, 2);
   scene.post(1);
-  ASSERT_EQ(scene.state(3), Received);
+  ASSERT_EQ(scene.state(3), Held);
   ASSERT_TRUE(scene.reports().send(3, scene.time()));
   ASSERT_EQ(scene.send_next(), 3);
   scene.answer(recorded(0, "scored", "1"));
@@ -181,7 +181,7 @@ TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
   ASSERT_EQ(scene.state(2), InDoubt);
   scene.keep_hearing(30, 18, 0);
   EXPECT_EQ(scene.send_next(), 0);
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
   EXPECT_THAT(scene.report(2).note, HasSubstr("report 3 is the same, and is answered in this run"));
 }
 
@@ -204,7 +204,7 @@ TEST_F(OnlyTheClock, DoesNotReleaseWhatTheReviewHolds) {
   ASSERT_TRUE(scene.reports().send(1, scene.time()));
   ASSERT_EQ(scene.send_next(), 1);
   scene.answer(recorded(0, "scored", "1"));
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
 }
 
 /// One report is recorded at the first place, then the settings name another.
@@ -236,7 +236,7 @@ TEST_F(AnotherPlace, IsAnotherRun) {
 TEST_F(AnotherPlace, TheSameReportWaitsUntilItHasAnswered) {
   go();
   scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 has answered"));
   scene_.reports().status_failed(true, scene_.time());
@@ -302,7 +302,7 @@ TEST_F(AnotherPlace, WhatWaitsForTheFirstIsNotSentTwiceOnTheOperatorsWord) {
 TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {
   scene_.post_to_wait(3);
   go();
-  EXPECT_EQ(scene_.state(2), Waiting);
+  EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_EQ(scene_.report(2).run, 1);
   scene_.hear(20, 0);
   EXPECT_EQ(scene_.send_next(), 0);
@@ -321,7 +321,7 @@ TEST_F(AnotherPlace, WhatWaitedForTheFirstIsHeldWhereAnotherRunHasBegunThere) {
   go();
   come_back();
   scene_.hear(25, 0, 4);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
 }
 
 TEST_F(AnotherPlace, ADoubtStaysWithTheFirstAndIsFoundOutThere) {

@@ -31,7 +31,7 @@ class Lost : public testing::Test {
 
 TEST_F(Lost, WhatIsPostedInItsRunIsHeldAsItMayBeTheSame) {
   const ClientId client = scene_.post(2);
-  EXPECT_EQ(scene_.state(3), Received);
+  EXPECT_EQ(scene_.state(3), Held);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
   scene_.wait(21);
   EXPECT_THAT(scene_.output().told[client].at(0).sentence, HasSubstr("waits for the operator's word"));
@@ -50,7 +50,7 @@ TEST_F(Lost, HoldsWhatCameBeforeTheRunWasKnown) {
   scene_.post(2);
   scene_.hear(19, 0);
   EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(3), Received);
+  EXPECT_EQ(scene_.state(3), Held);
 }
 
 TEST_F(Lost, NothingIsHeldOnceItIsCalledDone) {

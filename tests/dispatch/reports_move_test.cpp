@@ -46,7 +46,7 @@ TEST_F(AMoveToCome, LeavesTheRunAsItIsUntilTheAnswerIsThere) {
 TEST_F(AMoveToCome, MeansWhatIsPostedFromNowOnForTheOther) {
   const ClientId client = scene_.post(3);
   EXPECT_EQ(post_of(3), kThere);
-  EXPECT_EQ(scene_.state(3), Waiting);
+  EXPECT_EQ(scene_.state(3), Queued);
   be_there();
   EXPECT_EQ(scene_.send_next(), 3);
   scene_.answer(recorded(1));

@@ -20,9 +20,9 @@ void PrintTo(const Words& words, std::ostream* out) {
 }
 
 const Words kWords[] = {
-    {Received, true, false, true, false, false},  {Waiting, true, true, true, false, false},
+    {Held, true, false, true, false, false},      {Queued, true, true, true, false, false},
     {Sending, false, false, false, false, false}, {Answered, false, false, false, false, true},
-    {Refused, true, false, false, false, true},   {InDoubt, true, false, false, true, false},
+    {Rejected, true, false, false, false, true},  {InDoubt, true, false, false, true, false},
     {Settled, false, false, false, false, true},  {Withdrawn, true, false, false, false, true},
 };
 
@@ -75,7 +75,7 @@ TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
   Scene scene;
   const ClientId client = scene.post_to_wait();
   ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.report(1).note, "held: the operator holds it");
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("waits for the operator's word"));
@@ -92,7 +92,7 @@ TEST(Holding, HoldsWhatOutlivesARestartToo) {
   ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
   scene.restart();
   scene.hear(20, 0);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.send_next(), 0);
 }
 
@@ -131,7 +131,7 @@ TEST(Holding, IsRefusedByAFullDisk) {
   scene.post_to_wait();
   scene.output().full = true;
   EXPECT_FALSE(scene.reports().hold(1, scene.time()).has_value());
-  EXPECT_EQ(scene.state(1), Waiting);
+  EXPECT_EQ(scene.state(1), Queued);
 }
 
 TEST(Withdrawing, TellsTheClientsAndTheSameReportAgain) {
@@ -279,7 +279,7 @@ class HeldSinceTheRunBefore : public testing::Test {
     scene.post(1);
     scene.answer(recorded());
     scene.post(2);
-    ASSERT_EQ(scene.state(2), Received);
+    ASSERT_EQ(scene.state(2), Held);
     scene.reports().declare_new_run(scene.time());
     scene.hear(20, 0, 1);
   }
@@ -298,13 +298,13 @@ TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWasRecordedInThisRun) {
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);
   EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is answered in this run"));
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
 }
 
 /// Nobody compares what was asked for with what waits.
 TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
   scene.post_to_wait(2);
-  ASSERT_EQ(scene.state(3), Waiting);
+  ASSERT_EQ(scene.state(3), Queued);
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);
   EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is waiting in this run"));

@@ -43,7 +43,7 @@ TEST(AfterARestart, ADoubtHasItsWholeTimeAgain) {
   scene.keep_hearing(9, 20, 0);
   EXPECT_EQ(scene.state(1), InDoubt) << "its bytes may have been on the way when the program ended";
   scene.keep_hearing(1, 20, 0);
-  EXPECT_EQ(scene.state(1), Waiting);
+  EXPECT_EQ(scene.state(1), Queued);
 }
 
 TEST(AfterARestart, WhatWaitsGoesOnceTheRunIsKnownToBeTheSame) {
@@ -60,7 +60,7 @@ TEST(AfterARestart, WhatWaitsIsHeldWhereAnotherRunIsOn) {
   scene.post_to_wait();
   scene.restart();
   scene.hear(25, 0, 3);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
 }
 
 /// The run's clock was seen to run, for only then does it prove anything.
@@ -77,7 +77,7 @@ TEST_F(ARunningClock, ALongSilenceIsComparedWithIt) {
   scene.wait(3600);
   scene.restart();
   scene.hear(20, 0, 120);
-  EXPECT_EQ(scene.state(1), Received) << "it went on by 15 s in an hour";
+  EXPECT_EQ(scene.state(1), Held) << "it went on by 15 s in an hour";
 }
 
 TEST_F(ARunningClock, ALeapOfTheClockForStampsIsNoSilence) {
@@ -85,7 +85,7 @@ TEST_F(ARunningClock, ALeapOfTheClockForStampsIsNoSilence) {
   scene.restart();
   scene.hear(20, 0, 110);
   EXPECT_EQ(scene.reports().run().number, 1);
-  EXPECT_EQ(scene.state(1), Waiting) << "it is the same run";
+  EXPECT_EQ(scene.state(1), Queued) << "it is the same run";
 }
 
 TEST_F(ARunningClock, ASilenceBesideALeapIsOneStill) {
@@ -93,11 +93,11 @@ TEST_F(ARunningClock, ASilenceBesideALeapIsOneStill) {
   scene.wait(3600);
   scene.restart();
   scene.hear(20, 0, 120);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
 }
 
 TEST(AfterARestart, EveryOtherStateIsAsItWas) {
-  for (const ReportState state : {Received, Waiting, Answered, Refused, InDoubt, Settled, Withdrawn}) {
+  for (const ReportState state : {Held, Queued, Answered, Rejected, InDoubt, Settled, Withdrawn}) {
     Scene scene;
     Report report;
     report.number = 1;
@@ -151,7 +151,7 @@ TEST(AfterARestart, EachReportThatWaitsIsComparedWithTheOnesBefore) {
   EXPECT_EQ(scene.send_next(), 1);
   scene.answer(recorded());
   scene.send_next();
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
 }
 
 TEST(AfterARestart, ACommandPostAtAnotherPlaceIsAnotherRun) {
@@ -208,7 +208,7 @@ TEST(OtherRules, CountForWhoeverComesFromThenOn) {
   rules.review = Review::All;
   scene.reports().go_by(rules);
   const ClientId after = scene.post_to_wait(100);
-  EXPECT_EQ(scene.state(2), Received) << "held for review";
+  EXPECT_EQ(scene.state(2), Held) << "held for review";
   scene.wait(5);
   EXPECT_TRUE(scene.is_told(after));
   EXPECT_FALSE(scene.is_told(before));

@@ -68,9 +68,9 @@ TEST(ANewRun, HoldsWhatWaitsFromTheRunBefore) {
   scene.post_to_wait(1);
   scene.wait(11);
   scene.hear(25, 0, 3);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
   EXPECT_THAT(scene.report(1).note, HasSubstr("held: a new run began (the reports left went up"));
-  EXPECT_EQ(scene.output().ledger.at(1).state, Received) << "written down with the run";
+  EXPECT_EQ(scene.output().ledger.at(1).state, Held) << "written down with the run";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1) << "the operator asks for it";
   EXPECT_EQ(scene.report(1).run, 2);
@@ -103,7 +103,7 @@ TEST(ANewRun, HoldsEvenTheReportsThatWereSentOnPurposeInTheOneBefore) {
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   scene.wait(11);
   scene.hear(25, 0, 3);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
 }
 
 TEST(ANewRun, TakesTheSameReportAsANewOne) {
@@ -163,7 +163,7 @@ TEST(ADeclaredRun, BeginsLikeOneThatIsNoticed) {
   scene.post_to_wait(1);
   scene.wait(11);
   EXPECT_EQ(scene.reports().declare_new_run(scene.time()), 2);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.output().run->why, "the operator says so");
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2) << "the clock is no news";
@@ -200,7 +200,7 @@ TEST_F(DeclaredMeanwhile, ItsDoubtStandsForItInTheNewRun) {
 TEST_F(DeclaredMeanwhile, ItDoesNotGoAgainByItself) {
   scene_.answer(answer_of(429));
   EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(1), Received);
+  EXPECT_EQ(scene_.state(1), Held);
 }
 
 TEST_F(DeclaredMeanwhile, ItGoesAgainWhereSomebodyPostedItSince) {

@@ -21,7 +21,7 @@ TEST(Taking, SendsAReportAtOnceAfterOneWriteOfBothSteps) {
   const auto writes = scene.output().writes;
   scene.post();
   EXPECT_EQ(scene.output().writes, writes + 1);
-  EXPECT_THAT(scene.output().lives[1], ElementsAre(Waiting, Sending));
+  EXPECT_THAT(scene.output().lives[1], ElementsAre(Queued, Sending));
   ASSERT_NE(scene.reports().sending(), nullptr);
   EXPECT_EQ(scene.reports().sending()->before->remaining_reports, 20) << "for the case of a doubt";
 }
@@ -127,7 +127,7 @@ TEST(TheSameReport, IsComparedOnlyOnceTheRunIsKnown) {
   scene.wait(16);
   const ClientId client = scene.post(1);
   EXPECT_FALSE(scene.is_told(client)) << "it may be meant for another run";
-  EXPECT_EQ(scene.state(2), Waiting);
+  EXPECT_EQ(scene.state(2), Queued);
   scene.hear(19, 0);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.state(2), Withdrawn);
@@ -190,14 +190,14 @@ TEST(ANearReport, IsHeldForTheOperatorWithTheReason) {
   scene.post(1);
   scene.answer(recorded());
   const ClientId near = scene.post(4.26);
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
   EXPECT_EQ(scene.report(2).note, "held: the same type as report 1, 3.3 m from it");
   scene.wait(20);
   EXPECT_EQ(scene.told(near).status, 503);
   EXPECT_THAT(scene.told(near).sentence, HasSubstr("waits for the operator's word (held: the same type"));
   scene.hear(19, 0);
   scene.post(7, "Drill");
-  EXPECT_EQ(scene.state(3), Received) << "near the one that is held";
+  EXPECT_EQ(scene.state(3), Held) << "near the one that is held";
   scene.post(1, "Vent");
   EXPECT_EQ(scene.state(4), Sending) << "another type";
 }
@@ -229,13 +229,13 @@ TEST(TwoNearReports, ThatCameInSilenceAreNotHeldForEachOther) {
   EXPECT_EQ(scene.send_next(), 1);
   scene.answer(recorded());
   EXPECT_EQ(scene.send_next(), 0);
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
 }
 
 TEST(AReview, OfAllReportsHoldsEachUntilTheOperatorSendsIt) {
   Scene scene(reviewing(Review::All));
   scene.post(1);
-  EXPECT_EQ(scene.state(1), Received);
+  EXPECT_EQ(scene.state(1), Held);
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1);

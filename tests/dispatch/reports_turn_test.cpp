@@ -25,7 +25,7 @@ class AnsweredAtTheTurn : public testing::Test {
 TEST_F(AnsweredAtTheTurn, IsHeldWhereItIsPostedAgain) {
   ASSERT_EQ(scene_.reports().run().number, 2);
   const ClientId again = scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
   EXPECT_EQ(scene_.report(2).same_as, 1);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the reports left went up from 20 to 25"));
@@ -75,7 +75,7 @@ TEST_F(AnsweredAtTheTurn, IsHeldOverARestart) {
   scene_.restart();
   scene_.hear(25, 0, 4);
   scene_.post(1);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
   scene_.record(2, "1");
   EXPECT_EQ(scene_.state(2), Withdrawn);
 }
@@ -85,13 +85,13 @@ TEST_F(AnsweredAtTheTurn, IsHeldWhereItWasPostedBeforeTheRunWasKnown) {
   scene_.post(1);
   scene_.hear(25, 0, 20);
   EXPECT_EQ(scene_.send_next(), 0);
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
 }
 
 TEST_F(AnsweredAtTheTurn, StaysHeldWhereNoAnswerNamesARun) {
   scene_.post(1);
   scene_.record(2, "");
-  EXPECT_EQ(scene_.state(2), Received);
+  EXPECT_EQ(scene_.state(2), Held);
   EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
 }
 
@@ -105,7 +105,7 @@ TEST(AnsweredAtTheTurnAndCut, IsHeld) {
   scene.hear(25, 0, 3);
   ASSERT_EQ(scene.reports().run().number, 2);
   scene.post(1);
-  EXPECT_EQ(scene.state(2), Received);
+  EXPECT_EQ(scene.state(2), Held);
 }
 
 TEST(AnsweredBeforeTheLastStatus, IsOfTheRunBefore) {
@@ -129,7 +129,7 @@ TEST(AnsweredAtTheTurnWithoutAName, IsNotSentAgainWhateverIsNamedLater) {
   scene.wait(5);
   scene.hear(25, 0, 3);
   const ClientId again = scene.post(1);
-  ASSERT_EQ(scene.state(2), Received);
+  ASSERT_EQ(scene.state(2), Held);
   scene.record(2, "2");
   EXPECT_EQ(scene.report(1).run, 2);
   EXPECT_EQ(scene.send_next(), 0);

@@ -165,7 +165,7 @@ class Scene {
   std::vector<std::string> undecided() const {
     std::vector<std::string> notes;
     for (const std::int64_t number : reports().book().open()) {
-      const bool undecided = state(number) == ReportState::Received || state(number) == ReportState::InDoubt;
+      const bool undecided = state(number) == ReportState::Held || state(number) == ReportState::InDoubt;
       if (undecided) notes.push_back(report(number).note);
     }
     return notes;

@@ -106,7 +106,7 @@ TEST_F(TakingOverTest, WhatWasUnderWayIsFoundOut) {
     EXPECT_EQ(other.state(1), InDoubt);
     EXPECT_EQ(other.report(1).tries, 1);
     other.keep_hearing(12, was_recorded ? 19 : 20, 0);
-    EXPECT_EQ(other.state(1), was_recorded ? Settled : Waiting);
+    EXPECT_EQ(other.state(1), was_recorded ? Settled : Queued);
   }
 }
 
@@ -117,7 +117,7 @@ TEST_F(TakingOverTest, TheOperatorsWordStands) {
   ASSERT_TRUE(first.reports().withdraw(2, first.time()));
   take_over();
   spare.keep_hearing(30, 20, 0);
-  EXPECT_EQ(spare.state(1), Received);
+  EXPECT_EQ(spare.state(1), Held);
   EXPECT_EQ(spare.state(2), Withdrawn);
 }
 

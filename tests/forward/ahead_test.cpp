@@ -87,7 +87,7 @@ TEST_F(MapAhead, StaysUnderWayWhereTheOneBeforeIsRefused) {
   one_is_ahead();
   for (const char* answer : {"422 No", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(are_gone());
-  EXPECT_EQ(aside_.rows().size(), 1u);
+  EXPECT_EQ(rejected_.rows().size(), 1u);
 }
 
 TEST_F(MapAhead, GoesNotAheadOfAnOlderGridOfItsRobot) {

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "forward/aside.hpp"
 #include "forward/record.hpp"
+#include "forward/rejected.hpp"
 #include "host/folder.hpp"
 #include "journal/journal.hpp"
 #include "ledger/ledger.hpp"
@@ -25,11 +25,11 @@ struct Around {
 };
 
 struct AroundMaps : Around {
-  host::Folder aside_folder_;
+  host::Folder rejected_folder_;
   spool::Spool spool_{folder_.path()};
   loop::Workers workers_{loop_, 1};
   loop::Writer writer_{loop_};
-  Aside aside_{loop_, writer_, aside_folder_.path()};
+  RejectedStore rejected_{loop_, writer_, rejected_folder_.path()};
 };
 
 struct AroundScoring : Around {

@@ -40,7 +40,7 @@ class DamagedMap : public WithLettingPost {
   static constexpr std::uint64_t kOne = Maps::kFirstNumber + 1, kOther = Maps::kFirstNumber + 2;
 };
 
-TEST_F(DamagedMap, IsToldAndSetAsideAndTheNextOneGoes) {
+TEST_F(DamagedMap, IsToldAndRejectedMessagesAndTheNextOneGoes) {
   keep(kOne, "first", 0);
   keep(kOther, "second", 0);
   damage(kOne);
@@ -55,7 +55,7 @@ TEST_F(DamagedMap, IsToldAndSetAsideAndTheNextOneGoes) {
   EXPECT_TRUE(row().last_sentence.starts_with("what was kept of it is damaged: ")) << row().last_sentence;
 }
 
-TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndSetAsideToo) {
+TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
   keep(kOne, "first", 0);
   damage(kOne);
   auto kept = spool_.read();

@@ -58,7 +58,7 @@ class FlowTest : public testing::Test {
   }
   std::vector<std::uint64_t> waiting() const {
     std::vector<std::uint64_t> waiting;
-    for (const api::ActivityRow& row : flow_->activities()) waiting.push_back(row.waiting);
+    for (const api::ActivityRow& row : flow_->activities()) waiting.push_back(row.queued);
     return waiting;
   }
 
@@ -154,12 +154,12 @@ TEST_F(FlowTest, QuotesNoToken) {
   EXPECT_THAT(flow_->record().refusals().front().sentence, testing::Not(testing::HasSubstr("a-secret")));
 }
 
-TEST_F(FlowTest, EndsAndSendsNothingSetAsideFromThenOn) {
+TEST_F(FlowTest, EndsAndSendsNothingRejectedMessagesFromThenOn) {
   bool over = false;
   EXPECT_FALSE(flow_->is_ending());
   flow_->end([&] { over = true; });
   EXPECT_TRUE(flow_->is_ending());
-  EXPECT_FALSE(flow_->aside(1, api::AsideAction::Discard));
+  EXPECT_FALSE(flow_->rejected(1, api::RejectedAction::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
   EXPECT_FALSE(restart_);
 }

@@ -42,7 +42,7 @@ TEST_F(FollowingMap, GoesWhereTheOneBeforeIsRefused) {
   two_are_out_of_the_lane();
   post_.answer("422 No");
   EXPECT_TRUE(come({"first", "second"}));
-  EXPECT_EQ(aside_.rows().size(), 1u);
+  EXPECT_EQ(rejected_.rows().size(), 1u);
 }
 
 /// Else the newer grid, which covers the older one, would be followed by its old cells.

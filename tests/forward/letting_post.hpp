@@ -87,7 +87,7 @@ class WithLettingPost : public testing::Test, protected AroundMaps {
     settings_.command_post.rates.map_hz = 1000;
     settings_.command_post.mapping = post_.address();
     maps_.emplace(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), record_,
-                  aside_, random_, journal_, [](const icd::MapUpdate&) {});
+                  rejected_, random_, journal_, [](const icd::MapUpdate&) {});
   }
   void take(icd::MapUpdate map) {
     bool taken = false;

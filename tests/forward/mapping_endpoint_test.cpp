@@ -60,7 +60,7 @@ class MappingEndpoint : public testing::Test, protected AroundMaps {
 };
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
-  Maps maps(loop_, workers_, writer_, spool_, settings_, token_, record_, aside_, random_, journal_,
+  Maps maps(loop_, workers_, writer_, spool_, settings_, token_, record_, rejected_, random_, journal_,
             [](const icd::MapUpdate&) {});
   maps.take(spool::cloud(3), 10, nullptr, [](const icd::Checked<void>&) {});
   EXPECT_TRUE(is_left_at_once(maps));
@@ -68,7 +68,8 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
   AsForwarded as_forwarded;
-  Telemetry news(loop_, workers_, settings_, token_, record_, aside_, random_, journal_, as_forwarded, [] {});
+  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded,
+                 [] {});
   ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
 }
@@ -76,7 +77,7 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
 TEST_F(MappingEndpoint, ThatWantsASlashGetsEachMapOnceTheFirstWasRedirected) {
   settings_.command_post.mapping = with_slash_.address();
   settings_.command_post.rates.map_hz = 1000;
-  Maps maps(loop_, workers_, writer_, spool_, settings_, token_, record_, aside_, random_, journal_,
+  Maps maps(loop_, workers_, writer_, spool_, settings_, token_, record_, rejected_, random_, journal_,
             [](const icd::MapUpdate&) {});
   for (const int arrived : {1, 2}) {
     maps.take(spool::cloud(3), 10, nullptr, [](const icd::Checked<void>&) {});
@@ -89,7 +90,8 @@ TEST_F(MappingEndpoint, ThatWantsASlashGetsEachStateOnceTheFirstWasRedirected) {
   settings_.command_post.mapping = with_slash_.address();
   settings_.command_post.rates.state_hz = 1000;
   AsForwarded as_forwarded;
-  Telemetry news(loop_, workers_, settings_, token_, record_, aside_, random_, journal_, as_forwarded, [] {});
+  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded,
+                 [] {});
   for (const int arrived : {1, 2}) {
     ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0 * arrived}}, 10));
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return with_slash_.came == arrived; }));

@@ -45,7 +45,7 @@ class CloudsThatWait : public testing::Test, protected AroundMaps {
              settings_,
              {},
              record_,
-             aside_,
+             rejected_,
              random_,
              journal_,
              [](const icd::MapUpdate&) {}};

@@ -44,7 +44,7 @@ class MapsWithoutMemory : public testing::TestWithParam<std::tuple<std::string, 
     settings_.command_post.rates.map_hz = 1e9;  // the next one is packed in the same turn
     settings_.command_post.mapping = {peer_.endpoint().address, peer_.endpoint().port};
     maps_.emplace(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), record_,
-                  aside_, random_, journal_, [](const icd::MapUpdate&) {});
+                  rejected_, random_, journal_, [](const icd::MapUpdate&) {});
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
   }
   ~MapsWithoutMemory() override {

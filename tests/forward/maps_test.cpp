@@ -70,7 +70,7 @@ class MapsTest : public testing::Test, protected AroundMaps {
              settings_,
              std::nullopt,
              record_,
-             aside_,
+             rejected_,
              random_,
              journal_,
              [](const icd::MapUpdate&) {}};
@@ -150,7 +150,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandAreOlderThanWhatWaitsForALifeToComeAsWell
             settings_,
             std::nullopt,
             record_,
-            aside_,
+            rejected_,
             random_,
             journal_,
             [](const icd::MapUpdate&) {}};
@@ -168,7 +168,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandStayBehindANewerOneThatIsOnItsWay) {
             settings_,
             icd::BearerToken::parse("a-token"),
             record_,
-            aside_,
+            rejected_,
             random_,
             journal_,
             [](const icd::MapUpdate&) {}};
@@ -297,7 +297,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandAreKeptBeforeWhoSetThemAsideIsTold) {
   EXPECT_GT(maps_.queued_bytes(), 0u);
 }
 
-TEST_F(MapsTest, ThatCannotBeKeptStayWhereTheyWereSetAside) {
+TEST_F(MapsTest, ThatCannotBeKeptStayWhereTheyWereRejectedMessages) {
   fs::remove_all(folder_.path());
   {
     std::ofstream(folder_.path()) << "in the way";

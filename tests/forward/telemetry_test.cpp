@@ -49,8 +49,8 @@ struct Life {
       : writer(loop),
         workers(loop, 1),
         journal(loop, folder + "/journal"),
-        aside(loop, writer, folder + "/aside"),
-        news(loop, workers, settings, std::move(token), record, aside, random, journal, as_forwarded,
+        rejected(loop, writer, folder + "/rejected"),
+        news(loop, workers, settings, std::move(token), record, rejected, random, journal, as_forwarded,
              [this] { restart = true; }) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
@@ -70,7 +70,7 @@ struct Life {
   loop::Writer writer;
   loop::Workers workers;
   journal::Journal journal;
-  Aside aside;
+  RejectedStore rejected;
   AsForwarded as_forwarded;
   bool restart = false;  // another life is to follow
   Telemetry news;
@@ -152,19 +152,19 @@ TEST_F(NewsTest, SendsAPoseOfTheLifeBeforeOnce) {
 TEST_F(NewsTest, HasCareForWhatWasTakenUntilItIsWrittenWhatThatOvertook) {
   TelemetryPost post(true);
   const auto life = life_before(post.peer);
-  life->aside.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).named()}}, 422, "no", 100,
-                  {});
-  life->aside.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
+  life->rejected.add(icd::StateUpdate{.header = {1}, .poses = {pose("r1", 1).at(0).named()}}, 422, "no", 100,
+                     {});
+  life->rejected.add(icd::MarkersUpdate{{marker("a", "older")}}, 422, "no", 100, {});
   std::promise<void> held;
   life->writer.submit([until = held.get_future().share()] { until.wait(); }, [] {});
-  const auto overtaken = [&](std::size_t row) { return life->aside.rows().at(row).overtaken; };
+  const auto replaced = [&](std::size_t row) { return life->rejected.rows().at(row).replaced; };
   ASSERT_TRUE(life->news.take(pose("r1", 2), 10));
-  ASSERT_TRUE(comes(*life, [&] { return overtaken(0); }));
+  ASSERT_TRUE(comes(*life, [&] { return replaced(0); }));
   EXPECT_EQ(left().robots().size(), 1u);
-  EXPECT_FALSE(life->aside.all_kept());
+  EXPECT_FALSE(life->rejected.all_kept());
   ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "newer")}}));
   held.set_value();
-  ASSERT_TRUE(comes(*life, [&] { return overtaken(1) && life->aside.all_kept(); }));
+  ASSERT_TRUE(comes(*life, [&] { return replaced(1) && life->rejected.all_kept(); }));
   EXPECT_THAT(left().robots(), IsEmpty());
   EXPECT_THAT(left().markers().markers, IsEmpty());
 }
@@ -205,8 +205,9 @@ TEST_F(NewsTest, SetsAsideADeleteAllThatAloneFails) {
   const auto life = life_before(post.peer);
   ASSERT_TRUE(life->take(icd::MarkersUpdate{{kWipe, marker("a", "1"), marker("b", "2")}}));
   ASSERT_TRUE(comes(*life, [&] { return life->news.waiting(Kind::Markers) == 0; }));
-  ASSERT_TRUE(comes(*life, [&] { return !life->aside.rows().empty() && left().markers().markers.empty(); }));
-  EXPECT_EQ(life->aside.rows().size(), 1u);
+  ASSERT_TRUE(
+      comes(*life, [&] { return !life->rejected.rows().empty() && left().markers().markers.empty(); }));
+  EXPECT_EQ(life->rejected.rows().size(), 1u);
   EXPECT_EQ(life->as_forwarded.markers().changes(0).markers.size(), 2u);
 }
 
@@ -216,7 +217,7 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
   const icd::MarkersUpdate all{{kWipe, marker("a", "1"), marker("b", "2")}};
   ASSERT_TRUE(life->take(all));
   ASSERT_TRUE(comes(*life, [&] { return post.requests >= 20; }));
-  EXPECT_THAT(life->aside.rows(), IsEmpty());
+  EXPECT_THAT(life->rejected.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
 }
 

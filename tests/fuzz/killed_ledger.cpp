@@ -31,7 +31,7 @@ KilledLedger make_ledger() {
                   .sender = "10.0.0.7"};
     report.received = report.changed = 10;
     report.run = 1;
-    for (const auto state : {ReportState::Waiting, ReportState::Sending, ReportState::Answered}) {
+    for (const auto state : {ReportState::Queued, ReportState::Sending, ReportState::Answered}) {
       if (number % 3 == 0 && state == ReportState::Answered) continue;
       report.state = state;
       report.status = state == ReportState::Answered ? 201 : 0;

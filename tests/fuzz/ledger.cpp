@@ -28,8 +28,8 @@ void try_ledger(Input input) {
     if (report == was->second)
       ++same;
     else
-      require(report.state != dispatch::ReportState::Waiting &&
-              report.state != dispatch::ReportState::Refused);
+      require(report.state != dispatch::ReportState::Queued &&
+              report.state != dispatch::ReportState::Rejected);
   }
   require(same == now.reports.size() || !ledger->damage().empty());
 }

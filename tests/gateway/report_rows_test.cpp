@@ -30,15 +30,15 @@ std::vector<std::int64_t> latest(const std::vector<ReportState>& states, std::si
 }
 
 TEST(LatestReports, AreTheNewestAndNewestFirst) {
-  const std::vector all{ReportState::Answered, ReportState::Refused, ReportState::Withdrawn};
+  const std::vector all{ReportState::Answered, ReportState::Rejected, ReportState::Withdrawn};
   EXPECT_THAT(latest(all, 5), ElementsAre(3, 2, 1));
   EXPECT_THAT(latest(all, 2), ElementsAre(3, 2));
   EXPECT_THAT(latest({}, 2), ElementsAre());
 }
 
 TEST(LatestReports, HaveEachThatWaitsForSomething_HoweverOldItIs) {
-  const std::vector all{ReportState::InDoubt, ReportState::Answered, ReportState::Received,
-                        ReportState::Answered, ReportState::Answered};
+  const std::vector all{ReportState::InDoubt, ReportState::Answered, ReportState::Held, ReportState::Answered,
+                        ReportState::Answered};
   EXPECT_THAT(latest(all, 3), ElementsAre(5, 3, 1));
   EXPECT_THAT(latest(all, 2), ElementsAre(3, 1));
   EXPECT_THAT(latest(all, 1), ElementsAre(3));

@@ -19,7 +19,7 @@ namespace {
 using Server = std::function<bool(std::uint8_t, double)>;
 
 struct Outcome {
-  std::vector<std::uint8_t> taken, set_aside;
+  std::vector<std::uint8_t> taken, rejected;
   std::size_t waiting = 0;
   int tries_of_first = 0;
 };
@@ -45,8 +45,8 @@ Outcome played(const Server& server, int clouds, int senders, double until) {
     if (server(which, now)) {
       blame.passed(name, at(now));
       outcome.taken.push_back(which);
-    } else if (blame.failed(name, map->trial, at(now)) == Blame::Next::SetAside) {
-      outcome.set_aside.push_back(which);
+    } else if (blame.failed(name, map->trial, at(now)) == Blame::Next::Reject) {
+      outcome.rejected.push_back(which);
     } else {
       lane.put_back(std::move(*map));
     }
@@ -59,7 +59,7 @@ TEST(Blame, SetsNothingAsideInAnOutageHoweverLongItIs) {
   for (const double length : {3.0, 30.0, 600.0}) {
     const Server outage = [&](std::uint8_t, double now) { return now < 5 || now >= 5 + length; };
     const Outcome outcome = played(outage, 20, 3, 5 + length + 30);
-    EXPECT_TRUE(outcome.set_aside.empty()) << length;
+    EXPECT_TRUE(outcome.rejected.empty()) << length;
     EXPECT_EQ(outcome.taken.size(), 20) << length;
     EXPECT_EQ(outcome.waiting, 0) << length;
   }
@@ -68,7 +68,7 @@ TEST(Blame, SetsNothingAsideInAnOutageHoweverLongItIs) {
 TEST(Blame, SetsTheOneAsideThatFailsAloneAndLetsOthersPass) {
   for (const int senders : {1, 2, 5}) {
     const Outcome outcome = played([](std::uint8_t which, double) { return which != 1; }, 30, senders, 60);
-    EXPECT_EQ(outcome.set_aside, std::vector<std::uint8_t>{1}) << senders;
+    EXPECT_EQ(outcome.rejected, std::vector<std::uint8_t>{1}) << senders;
     EXPECT_EQ(outcome.taken.size(), 29) << senders;
     EXPECT_GE(outcome.tries_of_first, 4) << senders << ": its tries are few";
     EXPECT_LE(outcome.tries_of_first, 6) << senders << ": it holds others up";
@@ -78,14 +78,14 @@ TEST(Blame, SetsTheOneAsideThatFailsAloneAndLetsOthersPass) {
 TEST(Blame, SetsSeveralAsideThatFailWhileOthersPass) {
   const auto is_good = [](std::uint8_t which, double) { return which % 5 != 0 || which > 30; };
   const Outcome outcome = played(is_good, 100, 5, 300);
-  EXPECT_EQ(outcome.set_aside.size(), 6) << "a robot whose first maps all fail";
+  EXPECT_EQ(outcome.rejected.size(), 6) << "a robot whose first maps all fail";
   EXPECT_EQ(outcome.taken.size(), 94);
 }
 
 TEST(Blame, LeavesWaitingWhatFailsWhileNothingElseIsSent) {
   const Outcome outcome = played([](std::uint8_t which, double) { return which % 5 != 0; }, 30, 5, 200);
-  EXPECT_GE(outcome.set_aside.size(), 1);
-  EXPECT_EQ(outcome.set_aside.size() + outcome.waiting, 6) << "the last wait until another passes";
+  EXPECT_GE(outcome.rejected.size(), 1);
+  EXPECT_EQ(outcome.rejected.size() + outcome.waiting, 6) << "the last wait until another passes";
   EXPECT_EQ(outcome.taken.size(), 24);
 }
 
@@ -129,15 +129,15 @@ TEST(Blame, AcceptsNoStrikeWhereSomebodyElsesMessagesWaver) {
 }
 
 TEST(Blame, SetsHardlyAnythingAsideWhereHalfFailsByChance) {
-  std::size_t aside = 0, taken = 0;
+  std::size_t rejected = 0, taken = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 random{seed};
     const Outcome outcome = played([&](std::uint8_t, double) { return random() % 2 == 0; }, 60, 4, 400);
-    aside += outcome.set_aside.size();
+    rejected += outcome.rejected.size();
     taken += outcome.taken.size();
     EXPECT_EQ(outcome.waiting, 0);
   }
-  EXPECT_LE(aside, taken / 50);
+  EXPECT_LE(rejected, taken / 50);
 }
 
 TEST(MapLaneOnTrial, LetsOneOtherGoFirst) {

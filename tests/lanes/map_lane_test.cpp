@@ -234,7 +234,7 @@ TEST(MapLane, SendsACloudAgainByHandBeforeTheOthersOfItsSender) {
   for (const std::uint64_t number : {1, 7}) EXPECT_THAT(lane.take()->updates, ElementsAre(number));
 }
 
-TEST(MapLane, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasSetAside) {
+TEST(MapLane, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasRejectedMessages) {
   MapLane lane{kPlenty};
   lane.add(7, grid_update("R1", kSmall), at(1));
   auto failed = *lane.take();

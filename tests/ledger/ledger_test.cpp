@@ -99,7 +99,7 @@ TEST(Ledger, KeepsEveryStepOfAReportInOrder) {
     std::vector<dispatch::Report> steps{report};
     for (const ReportState state : {ReportState::Sending, ReportState::InDoubt, ReportState::Settled}) {
       report.state = state;
-      report.note = "now " + std::string(dispatch::name_of(state));
+      report.note = "now " + std::string(dispatch::shown_name_of(state));
       report.changed -= 1;  // a clock that was set back does not change the order
       steps.push_back(report);
     }
@@ -108,8 +108,8 @@ TEST(Ledger, KeepsEveryStepOfAReportInOrder) {
   }
   const auto ledger = open_or_fail(folder);
   EXPECT_THAT(*ledger.history(2),
-              ElementsAre(Ledger::Step{2, 10, "waiting", ""}, Ledger::Step{2, 9, "sending", "now sending"},
-                          Ledger::Step{2, 8, "in doubt", "now in doubt"},
+              ElementsAre(Ledger::Step{2, 10, "queued", ""}, Ledger::Step{2, 9, "sending", "now sending"},
+                          Ledger::Step{2, 8, "in_doubt", "now in doubt"},
                           Ledger::Step{2, 7, "settled", "now settled"}));
   EXPECT_TRUE(ledger.history(7)->empty());
 }
@@ -117,7 +117,7 @@ TEST(Ledger, KeepsEveryStepOfAReportInOrder) {
 TEST(Ledger, KeepsEveryStateThereIs) {
   const Folder folder;
   auto ledger = open_or_fail(folder);
-  for (auto state = ReportState::Received;; state = static_cast<ReportState>(static_cast<int>(state) + 1)) {
+  for (auto state = ReportState::Held;; state = static_cast<ReportState>(static_cast<int>(state) + 1)) {
     dispatch::Report report = backpack(1);
     report.state = state;
     ASSERT_TRUE(write(ledger, report));

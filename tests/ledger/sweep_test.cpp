@@ -54,7 +54,7 @@ class Life {
       report.before = icd::RunStatus{3, 100.0 + i, 40 - i, "adit"};
       step(report);
       if (random() % 12 == 0) continue;  // nobody answers
-      report.state = random() % 10 == 0 ? ReportState::Refused : ReportState::Answered;
+      report.state = random() % 10 == 0 ? ReportState::Rejected : ReportState::Answered;
       report.status = report.state == ReportState::Answered ? 201 : 422;
       report.content_type = "application/json";
       report.answer = std::string(60 + random() % 200, 'a');
@@ -121,7 +121,7 @@ Files closed() {
 
 /// In that state it, or the same posted again, would be sent.
 bool is_sent(const dispatch::Report& report) {
-  return report.state == ReportState::Waiting || report.state == ReportState::Refused;
+  return report.state == ReportState::Queued || report.state == ReportState::Rejected;
 }
 
 bool stays_what_it_was(const dispatch::Report& was, const dispatch::Report& is) {

@@ -73,10 +73,10 @@ TEST(LedgerThatTakesOver, HasEachReportWithItsHistoryAlsoAfterAnEnd) {
   EXPECT_EQ(find_or_fail(here, 2).answer, answered(waiting(1, 1)).answer);
   EXPECT_EQ(find_or_fail(here, 3).report, named.report);
   EXPECT_THAT(*here.history(2),
-              ElementsAre(Ledger::Step{2, 11, "waiting", ""}, Ledger::Step{2, 12, "answered", ""}));
+              ElementsAre(Ledger::Step{2, 11, "queued", ""}, Ledger::Step{2, 12, "answered", ""}));
   const auto steps = *here.history(3);
   ASSERT_THAT(steps, SizeIs(2));
-  EXPECT_EQ(steps[1].state, "in doubt");
+  EXPECT_EQ(steps[1].state, "in_doubt");
   EXPECT_THAT(steps[1].note, HasSubstr("the first box"));
 }
 

@@ -50,8 +50,8 @@ void expect_the_three_reports(const Ledger& ledger) {
   second.note = "no answer came";
   EXPECT_THAT(*ledger.reports(), ElementsAre(first, second, backpack(5, 5.5)));
   EXPECT_THAT(*ledger.history(2),
-              ElementsAre(Ledger::Step{2, 10, "waiting", ""}, Ledger::Step{2, 10.5, "sending", ""},
-                          Ledger::Step{2, 11, "in doubt", "no answer came"}));
+              ElementsAre(Ledger::Step{2, 10, "queued", ""}, Ledger::Step{2, 10.5, "sending", ""},
+                          Ledger::Step{2, 11, "in_doubt", "no answer came"}));
   EXPECT_TRUE(ledger.runs()->empty());
 }
 
@@ -167,7 +167,7 @@ TEST(LedgerOfVersion2, IsBroughtUpToThisOneWithAllThatIsInIt) {
   second.same_as = 1;
   EXPECT_THAT(*ledger.reports(), ElementsAre(first, second));
   EXPECT_THAT(*ledger.history(1),
-              ElementsAre(Ledger::Step{1, 10, "waiting", ""}, Ledger::Step{1, 11, "sending", ""},
+              ElementsAre(Ledger::Step{1, 10, "queued", ""}, Ledger::Step{1, 11, "sending", ""},
                           Ledger::Step{1, 12, "settled", "it was \"there\""}));
   EXPECT_THAT(*ledger.history(2), ElementsAre());
   const auto runs = *ledger.runs();

@@ -65,7 +65,7 @@ test("asks before what costs a report, and does nothing where the answer is no",
   assert.match(await row(page, 25).innerText(), /in doubt/);
   await button(page, "Send once more", 25).click();
   await question.getByRole("button", { name: "Send once more" }).click();
-  await becomes(page, 25, "waiting");
+  await becomes(page, 25, "queued");
 });
 
 test("asks before it sends what another of its type is close to, and what was withdrawn", async (t) => {
@@ -79,7 +79,7 @@ test("asks before it sends what another of its type is close to, and what was wi
   await button(page, "Send", 20).click();
   assert.match(await question.textContent(), /report 20.*withdrawn.*spends a report/s);
   await question.getByRole("button", { name: "Send" }).click();
-  await becomes(page, 20, "waiting");
+  await becomes(page, 20, "queued");
 });
 
 test("resubmits as a new report, and says its number", async (t) => {
@@ -88,7 +88,7 @@ test("resubmits as a new report, and says its number", async (t) => {
   await button(page, "Resubmit", 23).click();
   await page.getByRole("alertdialog").getByRole("button", { name: "Resubmit" }).click();
   await becomes(page, 23, "as report 29");
-  await becomes(page, 29, "waiting");
+  await becomes(page, 29, "queued");
 });
 
 test("shows the box's sentence where an action cannot be", async (t) => {

@@ -37,7 +37,7 @@ test("composes a report: what, where, a look at what is near, and away", async (
   assert.equal(await text(page, "#compose .send"), "Send Gas");
   assert.ok(await page.locator("#compose .again").isHidden());
   await send(page);
-  await becomes(page, 29, "waiting");
+  await becomes(page, 29, "queued");
   await becomes(page, 29, "Taken; it is sent in its turn.");
   await page.waitForFunction(() => document.activeElement.closest("li")?.dataset.key === "29");
   assert.deepEqual(page.complaints, []);
@@ -97,7 +97,7 @@ test("says that the very same was reported, and sends it again only when told to
   await fill(page, "Helmet", "281.75", "-4.5", "0.25");
   await page.locator("#compose .again").click();
   await send(page);
-  await becomes(page, 29, "waiting");
+  await becomes(page, 29, "queued");
 });
 
 test("shows the box's sentence where it was not taken, and keeps what was typed", async (t) => {

@@ -15,7 +15,7 @@ test("shows the run on one screen, without anything to press", async (t) => {
     assert.equal(await text(page, "#score"), "7");
     assert.equal(await text(page, "#remaining"), "18");
     assert.match(await text(page, "#arriving"), /Every map arrives/);
-    assert.match(await text(page, "#reports ol"), /Drill.*waiting.*#28.*Cube.*sending.*#27/);
+    assert.match(await text(page, "#reports ol"), /Drill.*queued.*#28.*Cube.*sending.*#27/);
     assert.match(await text(page, "#attention"), /report 25 is in doubt/i);
     assert.equal(await page.locator("button, input, a, select, [tabindex]").count(), 0);
     assert.deepEqual(page.complaints, []);

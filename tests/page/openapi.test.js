@@ -128,7 +128,7 @@ test("every path and method does as it is described to an operator", async (t) =
   const bodies = { "POST /adit/settings": async () => (({ settings, tag }) => ({ settings, base: tag }))(await current()) };
   const never = ["POST /adit/alarms/acknowledge", // nothing is to be acknowledged
     "POST /adit/reports/{number}/done", // no report is in doubt: 409
-    "POST /adit/aside/{number}/send", "POST /adit/aside/{number}/discard", // and nothing is set aside
+    "POST /adit/rejected/{number}/send", "POST /adit/rejected/{number}/discard", // and nothing is rejected
     "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/back", // no change can be made here
     "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart", "POST /adit/update/back", "POST /adit/update/stay", // nor an update
     "POST /adit/spare/wake", "GET /adit/spare/export", "POST /adit/spare/to-stick", // it does not rest

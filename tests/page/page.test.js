@@ -29,10 +29,10 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   stage.play("trouble");
   await said(page, "Report 8 is in doubt");
   assert.match(await text(page, "#arriving"), /3 of 4 arrive.*not ANYmal1; oldest other \d+ s/);
-  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ s behind/ }).and(page.getByTitle(/grid: 247 waiting/)).waitFor(); // though one was just sent
+  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ s behind/ }).and(page.getByTitle(/grid: 247 queued/)).waitFor(); // though one was just sent
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
   assert.match(await text(page, "#post"), /unreachable.*Connection refused/);
-  assert.match(await text(page, "#reports .rows"), /Vent.*in doubt.*Helmet.*waiting.*Cube.*sending/);
+  assert.match(await text(page, "#reports .rows"), /Vent.*in doubt.*Helmet.*queued.*Cube.*sending/);
   stage.play("calm");
   await page.waitForFunction(() => document.getElementById("attention").textContent.startsWith("No alarm"));
   assert.match(await text(page, "#arriving"), /Every map arrives/);
@@ -103,7 +103,7 @@ test("tells where each report is in its life, and what waits for the operator's 
   const expected = [
     ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send once more Call it done$/],
     ["ask", /^Gas.*held.*2 m from it.* Send Withdraw$/],
-    ["wait", /^Drill.*waiting/],
+    ["wait", /^Drill.*queued/],
     ["wait", /^Cube.*sending/],
     ["wait", /^Vent.*in doubt, asking.*is being asked$/],
     ["good", /^Helmet.*scored \+1$/],

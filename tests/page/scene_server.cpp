@@ -60,8 +60,8 @@ class Stage final : public Source, public Operator {
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return played_.report(view(), report, resubmit);
   }
-  std::expected<void, std::string> aside(std::uint64_t number, AsideAction) override {
-    return played_.aside(view(), number);
+  std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction) override {
+    return played_.rejected(view(), number);
   }
   std::expected<void, std::string> acknowledge(const std::string& id) override {
     return played_.acknowledge(view(), id);

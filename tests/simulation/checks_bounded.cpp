@@ -14,18 +14,18 @@ constexpr std::uint64_t kMiB = 1u << 20;
 constexpr std::uint64_t kLedger = 6 * kMiB;
 /// The journal that is written, and the one that is made smaller beside its snapshot.
 constexpr std::uint64_t kJournal = 5 * kMiB / 2;
-/// Who is logged in, and what is set aside in a run.
+/// Who is logged in, and what is rejected in a run.
 constexpr std::uint64_t kBeside = kMiB;
 
 struct Most {
   const char* list;
   std::size_t rows;
 };
-constexpr Most kLists[] = {{"activities", 200}, {"refusals", 50}, {"reports", 200}, {"aside", 100}};
+constexpr Most kLists[] = {{"activities", 200}, {"refusals", 50}, {"reports", 200}, {"rejected", 100}};
 
 class Looking {
  public:
-  /// `ledgers`: that may be there: the one in use, and each damaged one that was set aside, with its log.
+  /// `ledgers`: that may be there: the one in use, and each damaged one that was rejected, with its log.
   Looking(const Reading& reading, std::uint64_t ledgers, Broken& broken)
       : reading_(reading), ledgers_(ledgers * kLedger), broken_(broken) {}
 
@@ -64,7 +64,7 @@ std::uint64_t ledgers_after(std::size_t events, const Evidence& evidence) {
 }
 
 bool nothing_waits(const nlohmann::json& view) {
-  return std::ranges::all_of(view.at("activities"), [](const auto& row) { return row.at("waiting") == 0; });
+  return std::ranges::all_of(view.at("activities"), [](const auto& row) { return row.at("queued") == 0; });
 }
 
 }  // namespace

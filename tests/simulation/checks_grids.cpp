@@ -29,7 +29,7 @@ struct PostedGrid {
   std::size_t taken = 0;    // the last event by which it was; 0: none
   int failures = 0;         // answers of 5xx to it
   bool is_taken = false;    // as an answer said
-  bool is_refused = false;  // it is set aside, and follows later at the operator's word
+  bool is_refused = false;  // it is rejected, and follows later at the operator's word
 
   void answered(const Event& reply) {
     if (reply.status >= 500) ++failures;

@@ -56,12 +56,12 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
 }
 
 /// Between one taking and the next the process was killed, or the first one's answer was lost or no 200; or
-/// the operator sent again what was still set aside after a kill, though it waited by then, or was set aside
+/// the operator sent again what was still rejected after a kill, though it waited by then, or was rejected
 /// twice.
 bool may_be_double(const std::vector<Event>& events, std::size_t first, std::size_t second) {
   const auto is_kill = [](const Event& event) { return event.kind == Kind::Dies; };
   const auto is_word = [](const Event& event) {
-    return event.kind == Kind::Invoke && event.what == kSendAside;
+    return event.kind == Kind::Invoke && event.what == kSendRejected;
   };
   const auto at = [&](std::size_t place) { return events.begin() + static_cast<std::ptrdiff_t>(place); };
   const auto kill = std::find_if(at(0), at(second), is_kill);

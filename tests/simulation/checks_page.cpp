@@ -225,15 +225,14 @@ bool is_at_rest(const Evidence& evidence, const Reading& reading) {
 
 /// Long after the last fault nothing waits, and nobody is called but for what only the operator can judge.
 void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken) {
-  for (const auto& [stream, count] : counts(reading.view, "waiting")) {
+  for (const auto& [stream, count] : counts(reading.view, "queued")) {
     if (count > 0)
       broken.push_back(icd::sentence("Honest: at rest ", count, " of ", stream.path, " of ", stream.who,
                                      " are said to wait"));
   }
   const auto& reports = reading.view.at("reports");
-  const auto judged = std::ranges::count_if(reports, [](const Json& row) {
-    return row.at("state") == "received" || row.at("state") == "in doubt";
-  });
+  const auto judged = std::ranges::count_if(
+      reports, [](const Json& row) { return row.at("state") == "held" || row.at("state") == "in_doubt"; });
   const auto called = static_cast<std::size_t>(std::ranges::count_if(
       reading.view.at("alarms"), [](const Json& alarm) { return !is_of_the_past(alarm); }));
   // Of reports that Adit cannot account for he is told.
@@ -241,7 +240,7 @@ void judge_rest(const Evidence& evidence, const Reading& reading, Broken& broken
     const bool is_told = event.what != kSameMap && !event.who.ends_with(kNameless);
     return event.kind == Kind::Another || (event.kind == Kind::NewRun && !is_told);
   });
-  if (called > 0 && judged == 0 && !beside && reading.view.at("aside").empty())
+  if (called > 0 && judged == 0 && !beside && reading.view.at("rejected").empty())
     broken.push_back(
         icd::sentence("Honest: at rest the operator is called: ", reading.view.at("alarms").dump()));
   constexpr std::int64_t kOneByOne = 10;  // more are told of together

@@ -104,7 +104,7 @@ void not_lost(const Evidence& evidence, Broken& broken) {
 
 void live(const Evidence& evidence, Broken& broken) {
   for (const dispatch::Report& report : evidence.reports) {
-    if (report.state != ReportState::Waiting && report.state != ReportState::Sending) continue;
+    if (report.state != ReportState::Queued && report.state != ReportState::Sending) continue;
     broken.push_back(
         icd::sentence("Live: report ", serial_of(report), " is still ", dispatch::name_of(report.state)));
   }

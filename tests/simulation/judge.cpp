@@ -59,12 +59,12 @@ void Judge::viewed(const nlohmann::json& view) {
   if (looks_) {
     for (const nlohmann::json& row : view.at("reports")) {
       // What is in doubt elsewhere is found out there.
-      const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in doubt";
+      const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in_doubt";
       if (!elsewhere) judge_report(row, now);
     }
     if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
   }
-  for (const nlohmann::json& row : view.at("aside")) judge_aside(row);
+  for (const nlohmann::json& row : view.at("rejected")) judge_aside(row);
 }
 
 void Judge::judge_report(const nlohmann::json& row, double now) {
@@ -74,10 +74,10 @@ void Judge::judge_report(const nlohmann::json& row, double now) {
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);
   const double age = now - row.at("changed").get<double>();
   if (!is_over() && random_.chance(0.4)) return;
-  if (state == "in doubt" && !row.at("asking") && age > kSure)
+  if (state == "in_doubt" && !row.at("asking") && age > kSure)
     say(id, is_recorded(serial) ? kDone : kSend, serial);
-  if (state == "received") judge_held(id, serial);
-  if (state == "waiting" && !is_over() && random_.chance(0.2)) say(id, kHold, serial);
+  if (state == "held") judge_held(id, serial);
+  if (state == "queued" && !is_over() && random_.chance(0.2)) say(id, kHold, serial);
 }
 
 /// It is worth sending where the present run has no record of it.
@@ -87,11 +87,11 @@ void Judge::judge_held(std::int64_t id, std::int64_t serial) {
 }
 
 void Judge::judge_aside(const nlohmann::json& row) {
-  const bool overtaken = row.at("overtaken");
+  const bool replaced = row.at("replaced");
   if (!is_over() && !looks_) return;
-  if (overtaken && random_.chance(0.5)) return;
-  const std::string path = "/adit/aside/" + number(row.at("number"));
-  words_.push_back({path + (overtaken ? "/discard" : "/send"), overtaken ? "discard" : kSendAside, "", 0});
+  if (replaced && random_.chance(0.5)) return;
+  const std::string path = "/adit/rejected/" + number(row.at("number"));
+  words_.push_back({path + (replaced ? "/discard" : "/send"), replaced ? "discard" : kSendRejected, "", 0});
 }
 
 /// A report of his own.

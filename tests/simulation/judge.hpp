@@ -14,12 +14,12 @@ class World;
 
 /// The operator's words, as the history calls them by Event::what.
 inline constexpr const char *kSend = "send", *kHold = "hold", *kWithdraw = "withdraw", *kDone = "done",
-                            *kCompose = "compose", *kSendAside = "send aside";
+                            *kCompose = "compose", *kSendRejected = "send rejected";
 /// As Event::who.
 inline constexpr const char* kOperator = "operator";
 
 /// An operator who looks at the page every few seconds and says what is to become of reports and of what is
-/// set aside. He is truthful: before he judges a report in doubt he looks at the Command Post's own record.
+/// rejected. He is truthful: before he judges a report in doubt he looks at the Command Post's own record.
 class Judge {
  public:
   /// Until then all he does is drawn; after it he decides whatever waits for him. `world` outlives this.

@@ -28,7 +28,7 @@ std::string pattern_of(const std::string& light, const Json& view) {
   const auto row =
       std::ranges::find_if(view.at("endpoints"), [&](const Json& each) { return each.at("name") == light; });
   if (row->at("trouble") != "") return "fast";
-  if (light == "scoring" && reports_in(view, "waiting") > 0) return "slow";
+  if (light == "scoring" && reports_in(view, "queued") > 0) return "slow";
   return row->at("connected") ? "on" : "off";
 }
 
@@ -38,7 +38,7 @@ std::string status_line(const Json& view) {
                          ? "no word from the Command Post yet"
                          : icd::sentence("score ", run.at("score").get<std::int64_t>(), ", ",
                                          run.at("remaining_reports").get<std::int64_t>(), " reports left");
-  if (const auto waiting = reports_in(view, "waiting"); waiting > 0)
+  if (const auto waiting = reports_in(view, "queued"); waiting > 0)
     line += icd::sentence(", ", waiting, " reports waiting");
   const Json& alarms = view.at("alarms");
   if (!alarms.empty() && calls(alarms.front())) line += "; " + said(alarms.front());

@@ -26,9 +26,9 @@ bool is_silent(const Event& event) {
 
 bool anything_waits(const nlohmann::json& view) {
   const auto is_going = [](const nlohmann::json& report) {
-    return report.at("state") == "waiting" || report.at("state") == "sending";
+    return report.at("state") == "queued" || report.at("state") == "sending";
   };
-  return std::ranges::any_of(view.at("activities"), [](const auto& row) { return row.at("waiting") > 0; }) ||
+  return std::ranges::any_of(view.at("activities"), [](const auto& row) { return row.at("queued") > 0; }) ||
          std::ranges::any_of(view.at("reports"), is_going);
 }
 

@@ -15,7 +15,7 @@ from reporting import submit
 # Given up by its client after this long; what it was told by then must be true all the same.
 GIVES_UP = patient(15.0)
 DOUBTED = patient(1.0)  # seconds after which the operator looks at a report in doubt
-ENDS = {"answered", "settled", "refused", "withdrawn"}
+ENDS = {"answered", "settled", "rejected", "withdrawn"}
 
 
 @dataclasses.dataclass
@@ -82,14 +82,14 @@ class Operator:
         return {
             row["number"]: row
             for row in self.stage.box.reports()
-            if row["state"] == "received" or (row["state"] == "in doubt" and time.time() - row["changed"] > DOUBTED)
+            if row["state"] == "held" or (row["state"] == "in_doubt" and time.time() - row["changed"] > DOUBTED)
         }
 
     def looks(self):
         waiting = self.waiting()
         recorded = {(made["x"], made["y"]) for made in self.stage.post.recorded()}
         for number, row in waiting.items():
-            done = row["state"] == "in doubt" and at_of(row) in recorded
+            done = row["state"] == "in_doubt" and at_of(row) in recorded
             self.judges(row, "done" if done else "send")
 
     def judges(self, row, action):

@@ -1,4 +1,4 @@
-"""Each source of facts about alarms reaches /adit/run: files of other programs, reports, clients, messages that are set aside, a full disk.
+"""Each source of facts about alarms reaches /adit/run: files of other programs, reports, clients, messages that are rejected, a full disk.
 The rules and the words of each alarm are in tests/alarms/conditions_test."""
 
 import json
@@ -85,19 +85,19 @@ class Facts(WithAlarms):
         stage.box.apply("POST /adit/settings", {"settings": held["settings"], "base": held["tag"]})
         wait_until(lambda: self.alarm(stage, "settings_not_changed"), "settings_not_changed")
 
-    def test_a_message_is_set_aside(self):
+    def test_a_message_is_rejected(self):
         stage = self.stage()
         stage.post.will(mapping=["500,robot=r2,for=600"])
         self.send_map(stage, "r2")
         for seed in range(300):  # others pass all the while
             self.send_map(stage, f"r{3 + seed % 3}", seed)
-            if self.alarm(stage, "set_aside"):
+            if self.alarm(stage, "messages_rejected"):
                 break
             time.sleep(0.2)
-        self.sees(stage, "set_aside", "ask", "command_post", "1 message is set aside", "would not take it")
-        number = self.view(stage)["aside"][0]["number"]
-        self.assertEqual(stage.box.ask(f"POST /adit/aside/{number}/discard", body={})[0], 200)
-        self.goes(stage, "set_aside")
+        self.sees(stage, "messages_rejected", "ask", "command_post", "1 message is rejected", "would not take it")
+        number = self.view(stage)["rejected"][0]["number"]
+        self.assertEqual(stage.box.ask(f"POST /adit/rejected/{number}/discard", body={})[0], 200)
+        self.goes(stage, "messages_rejected")
 
     def test_maps_and_states_cannot_be_kept(self):
         """In a runtime folder that is a file system of its own, as with systemd."""

@@ -101,7 +101,7 @@ class Clients(unittest.TestCase):
             with self.subTest(name), Stage(**QUICK, reports__review="all") as stage:
                 began(stage)
                 run = Run(self, stage, name, words(report(1)))
-                wait_until(lambda stage=stage: [made["state"] for made in stage.box.reports()] == ["received"], "it to be held")
+                wait_until(lambda stage=stage: [made["state"] for made in stage.box.reports()] == ["held"], "it to be held")
                 self.assertEqual(stage.box.judge(1, "withdraw")[0], 200)
                 status, said = run.ended()
                 self.assertEqual(status, NOT_KNOWN)

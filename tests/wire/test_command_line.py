@@ -225,10 +225,10 @@ class ForScripts(Case):
         with self.stage() as stage:
             is_taken(stage, REPORT)
             file = str(stage.box.settings)
-            for said in (["status"], ["reports"], ["reports", "show", "1"], ["reports", "export"], ["aside"], ["settings"],
+            for said in (["status"], ["reports"], ["reports", "show", "1"], ["reports", "export"], ["rejected"], ["settings"],
                          ["settings", "show", "reports"], ["settings", "check", file], ["settings", "export"], ["network"],
                          ["test"], ["update"], ["identify", "1"], ["complete", "reports"], ["complete", "keys"],
-                         ["complete", "aside"], ["complete", "courses"], ["runs"], ["complete", "runs"],
+                         ["complete", "rejected"], ["complete", "courses"], ["runs"], ["complete", "runs"],
                          ["run", "new"]):
                 with self.subTest(said):
                     json.loads(adit(stage, *said, "--json").stdout)

@@ -99,7 +99,7 @@ class InPlace(unittest.TestCase):
         self.assertEqual(submit(stage, another(1)).status_code, 201)
         report = Report(stage, another(2))
         report.start()
-        wait_until(lambda: [row["state"] for row in stage.box.reports()] == ["answered", "waiting"], "it to wait")
+        wait_until(lambda: [row["state"] for row in stage.box.reports()] == ["answered", "queued"], "it to wait")
         return report
 
     def all_are_taken(self, uploads):

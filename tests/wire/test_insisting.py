@@ -12,7 +12,7 @@ class Box:
     """Has one report, in doubt when it is looked at first and `then` from his word on, which it answers so."""
 
     def __init__(self, then, answer):
-        self.row = {"number": 1, "state": "in doubt", "changed": 10.0, "position": {"x": 1.0, "y": 2.0}}
+        self.row = {"number": 1, "state": "in_doubt", "changed": 10.0, "position": {"x": 1.0, "y": 2.0}}
         self.then, self.answer = then, answer
 
     def reports(self):

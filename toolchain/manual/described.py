@@ -103,7 +103,7 @@ class Program:
             return ""
         behind = {row.word: row.value for row in self.commands[command].words}.get(word, self.commands[command].argument)
         return {
-            ("reports", "NUMBER"): f"reports {word}", ("reports", "NUMBER..."): f"reports {word}", ("aside", "NUMBER..."): "aside",
+            ("reports", "NUMBER"): f"reports {word}", ("reports", "NUMBER..."): f"reports {word}", ("rejected", "NUMBER..."): "rejected",
             ("course", "NAME"): "courses", ("runs", "KEY"): "runs", ("settings", "[KEY]"): "keys",
         }.get((command, behind), "")
 

@@ -14,11 +14,11 @@ const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once 
 
 /** By the state that a report is in: the actions that the box takes (README.md). */
 const DEEDS = {
-  received: [SEND, WITHDRAW],
-  waiting: [HOLD, WITHDRAW],
+  held: [SEND, WITHDRAW],
+  queued: [HOLD, WITHDRAW],
   sending: [],
-  "in doubt": [COSTLY_SEND, DONE],
-  refused: [AGAIN],
+  in_doubt: [COSTLY_SEND, DONE],
+  rejected: [AGAIN],
   withdrawn: [LATE_SEND],
   answered: [RESUBMIT],
   settled: [RESUBMIT],
@@ -26,10 +26,10 @@ const DEEDS = {
 
 /** `isNear`: another of its type was reported close by. */
 export function actionsOf(report, isNear = false) {
-  if (!report.position) return report.state === "in doubt" ? [DONE] : []; // it is lost
+  if (!report.position) return report.state === "in_doubt" ? [DONE] : []; // it is lost
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
-  if (report.state === "received" && report.same_as) return [COSTLY_SEND, WITHDRAW];
-  if (report.state === "received" && isNear) return [NEAR_SEND, WITHDRAW];
+  if (report.state === "held" && report.same_as) return [COSTLY_SEND, WITHDRAW];
+  if (report.state === "held" && isNear) return [NEAR_SEND, WITHDRAW];
   return DEEDS[report.state] ?? [];
 }
 

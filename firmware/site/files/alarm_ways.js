@@ -1,4 +1,4 @@
-// Where an alarm's action leads on this page: /#report=7, /#reports, /#robot=uav5, /#aside.
+// Where an alarm's action leads on this page: /#report=7, /#reports, /#robot=uav5, /#rejected.
 import { reveal } from "./reports.js";
 import { closeSide, goTab, openSide } from "./side.js";
 
@@ -21,7 +21,7 @@ const WAYS = {
     goTab("robots");
     show(find("#robots > li", name));
   },
-  aside: () => openSide("more", document.querySelector("#aside button") ?? undefined),
+  rejected: () => openSide("more", document.querySelector("#rejected button") ?? undefined),
 };
 
 function go() {

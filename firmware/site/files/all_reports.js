@@ -3,7 +3,7 @@ import { get } from "./session.js";
 
 const IN_EVENT = 200;
 const RETRY = 5000, EVERY = 60_000; // ms
-const OPEN = ["received", "waiting", "sending", "in doubt"];
+const OPEN = ["held", "queued", "sending", "in_doubt"];
 
 const known = new Map(); // by number
 let newest = new Set(); // numbers, of the last event

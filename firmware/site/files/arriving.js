@@ -27,11 +27,11 @@ function gained({ score_change, report_status }) {
 /** Where a report is in its life. */
 export function life(report) {
   switch (report.state) {
-    case "received": return { level: "ask", word: "held" };
-    case "waiting": return { level: "wait", word: "waiting" };
+    case "held": return { level: "ask", word: "held" };
+    case "queued": return { level: "wait", word: "queued" };
     case "sending": return { level: "wait", word: "sending" };
-    case "in doubt": return report.asking ? { level: "wait", word: "in doubt, asking" } : { level: "ask", word: "in doubt" };
-    case "refused": return { level: "bad", word: "refused" };
+    case "in_doubt": return report.asking ? { level: "wait", word: "in doubt, asking" } : { level: "ask", word: "in doubt" };
+    case "rejected": return { level: "bad", word: "rejected" };
     case "answered": return gained(report);
     case "settled": return report.reconciled ? gained(report) : { level: "quiet", word: "called done" };
     case "withdrawn": return { level: "quiet", word: report.same_as ? `same as #${report.same_as}` : "withdrawn" };

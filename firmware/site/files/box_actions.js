@@ -14,8 +14,8 @@ const named = (reports) => reports.map(({ number }) => `#${number}`).join(", ");
 /** What will happen, in sentences. */
 function consequences({ reports, run_number }) {
   const ofRun = reports.filter(({ run }) => run === run_number);
-  const waiting = ofRun.filter(({ state }) => state === "waiting");
-  const doubts = ofRun.filter(({ state }) => state === "in doubt" || state === "sending");
+  const waiting = ofRun.filter(({ state }) => state === "queued");
+  const doubts = ofRun.filter(({ state }) => state === "in_doubt" || state === "sending");
   return [
     `Run ${run_number} ends, and a new one begins.`,
     waiting.length

@@ -11,7 +11,7 @@ export async function showHistory(node, { number, changed }) {
     const { history, answer: said, sender } = await answer.json();
     const steps = history.map((step) => {
       const time = make("time", timeOfDay(step.at));
-      return make("li", time, ` ${clip(step.state, 40)}`, step.note ? `: ${clip(step.note)}` : "");
+      return make("li", time, ` ${clip(step.state.replace("_", " "), 40)}`, step.note ? `: ${clip(step.note)}` : "");
     });
     node.replaceChildren(make("p", `From ${clip(sender, 60)}`), make("ol", ...steps));
     if (said) node.append(make("p", `Answer: ${clip(said)}`));

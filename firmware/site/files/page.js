@@ -3,7 +3,7 @@ import "./presses.js";
 import { followWays } from "./alarm_ways.js";
 import { showAlarms } from "./alarms.js";
 import { allReports } from "./all_reports.js";
-import { showAside } from "./aside.js";
+import { showRejected } from "./rejected.js";
 import { say } from "./dom.js";
 import { follow } from "./live.js";
 import { showBoxActions } from "./box_actions.js";
@@ -45,7 +45,7 @@ function show({ view: told, time, lost }) {
   sampleLink(view, time, lost);
   if (!lost) followHistory(view, time);
   showPost(view, lost);
-  showAside(view.aside, time);
+  showRejected(view.rejected, time);
   showRefusals(view.refusals, time);
   say(document.getElementById("about"), `Adit ${clip(view.version, 40)} · the box's clock ${timeOfDay(time)}`);
 }

@@ -17,7 +17,7 @@ const opened = new Set();
 let last = null; // what was shown: {view, now}
 let showsOthers = false; // what is done of other runs: of earlier ones, and of those at other Command Posts
 
-const isOpen = (report) => ["received", "waiting", "sending", "in doubt"].includes(report.state);
+const isOpen = (report) => ["held", "queued", "sending", "in_doubt"].includes(report.state);
 const isOfOther = (report, view) => report.run !== view.run_number && !isOpen(report);
 
 const rowOf = (number) => rows.querySelector(`[data-key="${number}"]`);
@@ -165,8 +165,8 @@ const inOrder = (reports) => {
 /** "20 sent, 1 in doubt" */
 function counted(reports) {
   const count = (...states) => reports.filter(({ state }) => states.includes(state)).length;
-  const parts = [[count("sending", "in doubt", "answered", "settled", "refused"), "sent"], [count("in doubt"), "in doubt"], [count("received"), "held"],
-    [count("waiting"), count("waiting") === 1 ? "waits" : "wait"]];
+  const parts = [[count("sending", "in_doubt", "answered", "settled", "rejected"), "sent"], [count("in_doubt"), "in doubt"], [count("held"), "held"],
+    [count("queued"), "queued"]];
   return parts.filter(([n]) => n).map(([n, words]) => `${n} ${words}`).join(", ");
 }
 

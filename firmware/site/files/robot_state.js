@@ -11,7 +11,7 @@ export const mapAge = (seconds) => (seconds === null ? "never" : seconds >= 60 &
 /** All that was counted, for who wants to know. */
 function counts(row) {
   const parts = [`${row.accepted} accepted`, `${row.forwarded} forwarded`];
-  if (row.waiting && row.kind !== "state") parts.unshift(`${row.waiting} waiting`);
+  if (row.queued && row.kind !== "state") parts.unshift(`${row.queued} queued`);
   for (const what of ["replaced", "merged", "throttled", "failed"]) if (row[what]) parts.push(`${row[what]} ${what}`);
   if (row.clouds) parts.push(`taken as ${row.clouds}`);
   if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
@@ -24,7 +24,7 @@ function counts(row) {
 }
 
 function details(row) {
-  if (row.waiting && row.kind !== "state") return `${row.waiting} waiting`;
+  if (row.queued && row.kind !== "state") return `${row.queued} queued`;
   if (row.invisible) return `${row.invisible} invisible`;
   return row.bytes_sent ? bytes(row.bytes_sent) : "";
 }

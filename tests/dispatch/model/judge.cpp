@@ -89,9 +89,9 @@ void World::judge_ledger(std::vector<std::string>& broken) const {
     if (claimed && !was_recorded(key) && !blurred) broken.push_back(name + " and was never recorded");
     // What waits for another Command Post is kept for it; where nobody is, nothing goes.
     const auto runs = disk_.content().runs;
-    const bool waits = report.state == ReportState::Waiting &&
+    const bool waits = report.state == ReportState::Queued &&
                        (!is_anybody_there() || runs.at(report.run).post != reports_->run().post);
-    if (!waits && (report.state == ReportState::Waiting || report.state == ReportState::Sending)) {
+    if (!waits && (report.state == ReportState::Queued || report.state == ReportState::Sending)) {
       broken.push_back(name + " though nothing was in its way");
     }
     const auto reply =

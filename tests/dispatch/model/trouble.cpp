@@ -63,7 +63,7 @@ void World::take_operators_word() {
   if (!trouble_.operator_acts || !reports_) return;
   std::vector<Report> stuck;
   for (const auto& [number, report] : reports_->book().all()) {
-    const bool waits = report.state == ReportState::Received || report.state == ReportState::InDoubt;
+    const bool waits = report.state == ReportState::Held || report.state == ReportState::InDoubt;
     if (waits && !reports_->is_asking(report)) stuck.push_back(report);
   }
   const std::set<std::int64_t> waiting = reports_->book().waiting();

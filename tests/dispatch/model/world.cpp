@@ -80,7 +80,7 @@ void World::live() {
   tally_.recorded = static_cast<std::int64_t>(recorded().size());
   for (const auto& [number, report] : disk_.content().reports) {
     tally_.undecided += report.state == ReportState::InDoubt ? 1 : 0;
-    tally_.held += report.state == ReportState::Received ? 1 : 0;
+    tally_.held += report.state == ReportState::Held ? 1 : 0;
   }
 }
 
@@ -101,7 +101,7 @@ bool World::write(std::span<const Report> steps, const Run* run, Flush flush) {
                              name_of(report.state), " in run ", report.run, ": ", report.note));
     tally_.settled += report.reconciled ? 1 : 0;
     tally_.sent_again +=
-        report.state == ReportState::Waiting && report.note.starts_with("not recorded") ? 1 : 0;
+        report.state == ReportState::Queued && report.note.starts_with("not recorded") ? 1 : 0;
   }
   return true;
 }

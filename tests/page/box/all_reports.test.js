@@ -10,7 +10,7 @@ test("reaches reports beyond the newest 200, as they are, and asks for them once
   const made = await box(t, { post: ["--reports", "1000", "--rate", "0"], settings: { reports: { review: "duplicates" }, command_post: { rates: { reports_hz: 1000, status_hz: 20 } } } });
   await made.becomes(await made.compose("Rope", -50), "answered");
   assert.equal(await made.compose("Rope", -51), HELD);
-  await made.becomes(HELD, "received");
+  await made.becomes(HELD, "held");
   for (let i = 0; i < REPORTS; i += AT_ONCE) await Promise.all(Array.from({ length: AT_ONCE }, (_, j) => made.compose("Rope", 10 * (i + j), 5)));
   await until(async () => (await made.run()).run.remaining_reports === 1000 - REPORTS - 1, "the reports to be recorded", 300_000);
 

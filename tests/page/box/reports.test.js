@@ -11,7 +11,7 @@ const recorded = async (made, x) => (await made.record()).reports.filter((report
 async function waiting(made, x = 50, type = "Drill") {
   await made.becomes(await made.compose("Rope", -900 - x), "answered");
   const number = await made.compose(type, x);
-  await made.becomes(number, "waiting");
+  await made.becomes(number, "queued");
   return number;
 }
 
@@ -23,12 +23,12 @@ test("holds a report that waits, and sends it on the operator's further word", a
   await action(page, "Hold", number).click();
   await says(page, number, "held");
   await says(page, number, "Held: it goes only when you send it.");
-  assert.equal(await made.state(number), "received");
+  assert.equal(await made.state(number), "held");
   await page.waitForFunction((words) => document.getElementById("attention").innerText.includes(words), `eport ${number} is held`);
   assert.deepEqual(await made.ask(`/adit/reports/${number}/hold`, {}), { status: 409, said: `report ${number} is received: it is held already` });
   await action(page, "Send", number).click();
   await says(page, number, "It will be sent.");
-  assert.equal(await made.state(number), "waiting");
+  assert.equal(await made.state(number), "queued");
   await action(page, "Withdraw", number).click();
   await says(page, number, "withdrawn");
   assert.equal(await recorded(made, 50), 0);
@@ -58,7 +58,7 @@ test("is sent once where two operators press send at once", async (t) => {
   await Promise.all(pages.map((page) => action(page, "Send", number).click()));
   for (const page of pages) {
     await page.evaluate(() => (globalThis.deaf = false));
-    await says(page, number, "waiting");
+    await says(page, number, "queued");
     await says(page, number, "It will be sent.");
   }
   await made.becomes(number, "answered");
@@ -69,7 +69,7 @@ test("is sent once where two operators press send at once", async (t) => {
 test("tells the second of two operators why his send was not taken", async (t) => {
   const made = await box(t, { settings: { reports: { review: "all" } } });
   const number = await made.compose("Drill", 50);
-  await made.becomes(number, "received");
+  await made.becomes(number, "held");
   const first = await logIn(t, made), second = await logIn(t, made, canBeDeaf);
   await action(second, "Send", number).waitFor();
   await second.evaluate(() => (globalThis.deaf = true));
@@ -88,7 +88,7 @@ test("shows near duplicates side by side, on the map and in words", async (t) =>
   const made = await box(t, { settings: { reports: { review: "duplicates" } } });
   await made.becomes(await made.compose("Gas", 40, 10, 1), "answered");
   const second = await made.compose("Gas", 42, 10, 1);
-  await made.becomes(second, "received");
+  await made.becomes(second, "held");
   const page = await look(t, made);
   const show = page.getByRole("button", { name: `Show both on the map: reports ${second} and 1` });
   await show.click();
@@ -114,13 +114,13 @@ test("begins a new run on the operator's word, and says before what becomes of w
   assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and a new one begins\\. What waits is held, and goes only when you send it: #${number}\\.`));
   await question.getByRole("button", { name: "Leave it" }).click();
   assert.equal((await made.run()).run_number, before);
-  assert.equal(await made.state(number), "waiting");
+  assert.equal(await made.state(number), "queued");
   await until(() => Date.now() > posted + 10_500, "the report to be too old for another run");
   await press();
   await question.getByRole("button", { name: "New run" }).click();
   await page.waitForFunction((words) => document.querySelector("#more .outcome").textContent === words, `Run ${before + 1} began.`);
   assert.equal((await made.run()).run_number, before + 1);
-  await made.becomes(number, "received");
+  await made.becomes(number, "held");
   await says(page, number, "a new run began");
   assert.equal(await recorded(made, 50), 0);
 });

@@ -1,4 +1,4 @@
-#include "lanes/set_aside.hpp"
+#include "lanes/rejected_messages.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -52,18 +52,18 @@ bool says_all_of(const Message& newer, const Message& older) {
 
 }  // namespace
 
-bool overtakes(const Message& newer, const Message& older) {
+bool replaces(const Message& newer, const Message& older) {
   return says_all_of(newer, older) && !is_older_map(newer, older);
 }
 
-std::vector<std::uint64_t> SetAside::add(AsideItem item) {
+std::vector<std::uint64_t> RejectedMessages::add(RejectedMessage item) {
   std::vector<std::uint64_t> gone;
-  const auto drop = [&](const AsideItem& each) {
+  const auto drop = [&](const RejectedMessage& each) {
     bytes_ -= each.bytes;
     gone.push_back(each.number);
   };
-  std::erase_if(items_, [&](const AsideItem& older) {
-    const bool said = overtakes(item.message, older.message);
+  std::erase_if(items_, [&](const RejectedMessage& older) {
+    const bool said = replaces(item.message, older.message);
     if (said) drop(older);
     return said;
   });
@@ -77,37 +77,37 @@ std::vector<std::uint64_t> SetAside::add(AsideItem item) {
   return gone;
 }
 
-void SetAside::restore(AsideItem item) {
+void RejectedMessages::restore(RejectedMessage item) {
   numbers_ = std::max(numbers_, item.number);
   bytes_ += item.bytes;
   items_.push_back(std::move(item));
 }
 
-std::vector<std::uint64_t> SetAside::overtaken_by(const Message& newer) const {
-  std::vector<std::uint64_t> overtaken;
-  for (const AsideItem& item : items_) {
-    if (item.overtaken) continue;
-    if (!overtakes(newer, item.message) && !deletes_newer(item.message, newer)) continue;
-    overtaken.push_back(item.number);
+std::vector<std::uint64_t> RejectedMessages::replaced_by(const Message& newer) const {
+  std::vector<std::uint64_t> replaced;
+  for (const RejectedMessage& item : items_) {
+    if (item.replaced) continue;
+    if (!replaces(newer, item.message) && !deletes_newer(item.message, newer)) continue;
+    replaced.push_back(item.number);
   }
-  return overtaken;
+  return replaced;
 }
 
-void SetAside::overtake(const std::vector<std::uint64_t>& numbers) {
-  for (AsideItem& item : items_) {
-    if (std::ranges::find(numbers, item.number) != numbers.end()) item.overtaken = true;
+void RejectedMessages::mark_replaced(const std::vector<std::uint64_t>& numbers) {
+  for (RejectedMessage& item : items_) {
+    if (std::ranges::find(numbers, item.number) != numbers.end()) item.replaced = true;
   }
 }
 
-const AsideItem* SetAside::find(std::uint64_t number) const {
-  const auto found = std::ranges::find(items_, number, &AsideItem::number);
+const RejectedMessage* RejectedMessages::find(std::uint64_t number) const {
+  const auto found = std::ranges::find(items_, number, &RejectedMessage::number);
   return found == items_.end() ? nullptr : &*found;
 }
 
-std::optional<AsideItem> SetAside::take(std::uint64_t number) {
-  const auto found = std::ranges::find(items_, number, &AsideItem::number);
+std::optional<RejectedMessage> RejectedMessages::take(std::uint64_t number) {
+  const auto found = std::ranges::find(items_, number, &RejectedMessage::number);
   if (found == items_.end()) return std::nullopt;
-  AsideItem item = std::move(*found);
+  RejectedMessage item = std::move(*found);
   bytes_ -= item.bytes;
   items_.erase(found);
   return item;

@@ -26,7 +26,7 @@ async function send(made, name, cells = [0, 100, 0, 100]) {
   const { status, said } = await made.ask("/map/update", gridOf(name, cells));
   assert.equal(status, 200, said);
 }
-const asideOf = async (made) => (await made.run()).aside;
+const rejectedOf = async (made) => (await made.run()).rejected;
 
 const QUICK = { map_hz: 20 };
 
@@ -38,22 +38,22 @@ async function withRefused(t, options) {
   for (const [name, status] of Object.entries(REFUSED)) post.refuses.set(name, status);
   for (const name of Object.keys(REFUSED)) {
     await send(made, name);
-    await until(async () => (await asideOf(made)).some(({ robot }) => robot === name), `${name} to be set aside`);
+    await until(async () => (await rejectedOf(made)).some(({ robot }) => robot === name), `${name} to be rejected`);
   }
   const page = await look(t, made, "", options);
   await openMore(page);
-  await page.locator("#aside li").nth(3).waitFor();
+  await page.locator("#rejected li").nth(3).waitFor();
   return { page, made, post };
 }
 
-const row = (page, name) => page.locator("#aside li", { hasText: name });
+const row = (page, name) => page.locator("#rejected li", { hasText: name });
 const button = (page, name, word) => row(page, name).getByRole("button", { name: word });
 const focusIs = (page, selector) => page.waitForFunction((selector) => document.activeElement.matches(selector), selector);
-const counted = (page, count) => page.locator("#aside .count", { hasText: new RegExp(`^${count}$`) }).waitFor();
+const counted = (page, count) => page.locator("#rejected .count", { hasText: new RegExp(`^${count}$`) }).waitFor();
 const numberOf = (page, name) => row(page, name).getAttribute("data-key");
 
 for (const [hand, { options, press }] of Object.entries(HANDS)) {
-  test(`what is set aside is sent again or discarded by ${hand}, and the focus goes to what is next`, async (t) => {
+  test(`what is rejected is sent again or discarded by ${hand}, and the focus goes to what is next`, async (t) => {
     const { page, made, post } = await withRefused(t, options);
     for (const [name, status] of Object.entries(REFUSED)) assert.match(await row(page, name).innerText(), new RegExp(`${status}: .*not to my taste`));
     await counted(page, 4);
@@ -64,21 +64,21 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await until(() => post.taken.includes("robot_2"), "it to arrive at the Command Post");
     await row(page, "robot_2").waitFor({ state: "detached" });
     await counted(page, 3);
-    await focusIs(page, `#aside li[data-key="${third}"] .send`);
-    await page.locator("#aside .said", { hasText: "is sent again when its turn comes" }).waitFor();
+    await focusIs(page, `#rejected li[data-key="${third}"] .send`);
+    await page.locator("#rejected .said", { hasText: "is sent again when its turn comes" }).waitFor();
 
     await press(button(page, "robot_3", "Discard"));
     await row(page, "robot_3").waitFor({ state: "detached" });
     await counted(page, 2);
-    await focusIs(page, `#aside li[data-key="${fourth}"] .discard`);
+    await focusIs(page, `#rejected li[data-key="${fourth}"] .discard`);
 
     await press(button(page, "robot_4", "Discard"));
     await row(page, "robot_4").waitFor({ state: "detached" });
-    await focusIs(page, "#aside li:only-child .discard");
+    await focusIs(page, "#rejected li:only-child .discard");
     await press(button(page, "robot_1", "Discard"));
     await row(page, "robot_1").waitFor({ state: "detached" });
     await focusIs(page, "#post-title");
-    assert.deepEqual(await asideOf(made), []);
+    assert.deepEqual(await rejectedOf(made), []);
     assert.deepEqual(post.taken, ["robot_2"]);
     assert.deepEqual(page.complaints, []);
   });
@@ -88,15 +88,15 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await page.evaluate(() => (globalThis.deaf = true));
     post.refuses.clear();
     await send(made, "robot_2", [100, 0, 100, 0]);
-    await until(async () => (await asideOf(made)).some(({ robot, overtaken }) => robot === "robot_2" && overtaken), "it to be overtaken");
+    await until(async () => (await rejectedOf(made)).some(({ robot, replaced }) => robot === "robot_2" && replaced), "it to be replaced");
     const number = await numberOf(page, "robot_2");
     await press(button(page, "robot_2", "Send again"));
-    await page.locator("#aside .said", { hasText: "something newer that says all of it was sent since" }).waitFor();
-    await focusIs(page, `#aside li[data-key="${number}"] .send`);
+    await page.locator("#rejected .said", { hasText: "something newer that says all of it was sent since" }).waitFor();
+    await focusIs(page, `#rejected li[data-key="${number}"] .send`);
     await page.evaluate(() => (globalThis.deaf = false));
     await row(page, "robot_2").getByText("Something newer that covers it was sent since.").waitFor();
     await counted(page, 3);
-    await focusIs(page, `#aside li[data-key="${number}"] .discard`);
+    await focusIs(page, `#rejected li[data-key="${number}"] .discard`);
     assert.ok(await button(page, "robot_2", "Send again").isDisabled());
     await press(button(page, "robot_2", "Discard"));
     await row(page, "robot_2").waitFor({ state: "detached" });
@@ -112,8 +112,8 @@ test("what alone gets a 500 while others pass is listed, and arrives once it is 
   let turn = 0;
   await until(async () => {
     await send(made, "robot_1", [turn++ % 100, 0, 0, 0]); // others pass all the while
-    return (await asideOf(made)).length;
-  }, "it to be set aside");
+    return (await rejectedOf(made)).length;
+  }, "it to be rejected");
   await openMore(page);
   await row(page, "robot_2").getByText(/^500: /).waitFor();
   await counted(page, 1);

@@ -1,4 +1,4 @@
-// What is set aside, as a phone shows it and a screen reader reads it.
+// What is rejected, as a phone shows it and a screen reader reads it.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";
@@ -6,28 +6,28 @@ import { axeFindsNothing, openMore, text, watch } from "./watch.js";
 
 const WHY = "msg.data: expected 4800 cells for a width of 80 and a height of 60, got 4799, and the last row is cut short";
 const ROWS = [7, 8, 9].map((number) =>
-  ({ number, kind: "cloud", robot: "ANYmal1", at: Date.now() / 1000 - 40, status: 422, why: WHY, bytes: 412_000, overtaken: number === 8 }));
+  ({ number, kind: "cloud", robot: "ANYmal1", at: Date.now() / 1000 - 40, status: 422, why: WHY, bytes: 412_000, replaced: number === 8 }));
 
-/** A page of a box that has set `globalThis.setAside` of the page aside. */
+/** A page of a box that has set `globalThis.rejectedRows` of the page aside. */
 async function withRows(t, options) {
   const prepare = (page) => retell(page, (rows) => {
-    globalThis.setAside = rows;
-    return (view) => ({ ...view, aside: globalThis.setAside });
+    globalThis.rejectedRows = rows;
+    return (view) => ({ ...view, rejected: globalThis.rejectedRows });
   }, ROWS);
   const { page } = await watch(t, "calm", { prepare, ...options });
   await openMore(page);
-  await page.locator("#aside .why").first().waitFor();
+  await page.locator("#rejected .why").first().waitFor();
   return page;
 }
 
 /** What the box tells from now on. */
-const become = (page, rows) => page.evaluate((rows) => (globalThis.setAside = rows), rows);
+const become = (page, rows) => page.evaluate((rows) => (globalThis.rejectedRows = rows), rows);
 const discard = (page, number) => page.getByRole("button", { name: `Discard: ${number}`, exact: true });
 const hasFocus = (page, number) =>
-  page.waitForFunction((number) => document.activeElement.matches(`#aside li[data-key="${number}"] .discard`), number);
+  page.waitForFunction((number) => document.activeElement.matches(`#rejected li[data-key="${number}"] .discard`), number);
 
 const boxes = (page, part) =>
-  page.$$eval(`#aside li:first-child ${part}`, (nodes) => nodes.map((node) => node.getBoundingClientRect().toJSON()));
+  page.$$eval(`#rejected li:first-child ${part}`, (nodes) => nodes.map((node) => node.getBoundingClientRect().toJSON()));
 
 for (const [name, width] of [["a phone", 360], ["a narrow column", 1056]]) {
   test(`gives the sentence the whole width on ${name}, and the buttons a line below it`, async (t) => {
@@ -53,33 +53,33 @@ test("names each button by what it is for, and counts what nothing newer has rep
   for (const { number } of ROWS) {
     for (const word of ["Send again", "Discard"]) assert.equal(await page.getByRole("button", { name: `${word}: ${number}`, exact: true }).count(), 1);
   }
-  assert.equal(await text(page, "#aside .count"), "2");
-  await axeFindsNothing(page, "what is set aside");
+  assert.equal(await text(page, "#rejected .count"), "2");
+  await axeFindsNothing(page, "what is rejected");
 });
 
 test("has its title gone with the last row, and the last word once it could be read", async (t) => {
   const page = await withRows(t);
-  await page.route("**/adit/aside/*/discard", async (route) => {
-    await page.evaluate(() => (globalThis.setAside = []));
-    await route.fulfill({ json: { aside: 7 } });
+  await page.route("**/adit/rejected/*/discard", async (route) => {
+    await page.evaluate(() => (globalThis.rejectedRows = []));
+    await route.fulfill({ json: { rejected: 7 } });
   });
   await page.getByRole("button", { name: "Discard: 7" }).click();
-  await page.locator("#aside .said", { hasText: "7 is discarded." }).waitFor();
-  await page.locator("#aside-title").waitFor({ state: "hidden" });
-  await page.locator("#aside").waitFor({ state: "hidden" });
-  assert.equal(await text(page, "#aside .said"), "");
+  await page.locator("#rejected .said", { hasText: "7 is discarded." }).waitFor();
+  await page.locator("#rejected-title").waitFor({ state: "hidden" });
+  await page.locator("#rejected").waitFor({ state: "hidden" });
+  assert.equal(await text(page, "#rejected .said"), "");
 });
 
 test("keeps the focus where it is while other rows come and go", async (t) => {
   const page = await withRows(t);
   await page.evaluate(() => {
     globalThis.lost = 0;
-    document.getElementById("aside").addEventListener("focusout", () => ++globalThis.lost);
+    document.getElementById("rejected").addEventListener("focusout", () => ++globalThis.lost);
   });
   await discard(page, 9).focus();
   await become(page, [{ ...ROWS[0], number: 6 }, ROWS[2], { ...ROWS[0], number: 11 }]);
-  await page.locator('#aside li[data-key="11"]').waitFor();
-  assert.equal(await page.locator("#aside li").count(), 3);
+  await page.locator('#rejected li[data-key="11"]').waitFor();
+  assert.equal(await page.locator("#rejected li").count(), 3);
   await hasFocus(page, 9);
   assert.equal(await page.evaluate(() => globalThis.lost), 0, "not even for a moment");
 });

@@ -1,4 +1,4 @@
-#include "forward/aside.hpp"
+#include "forward/rejected.hpp"
 
 #include <gtest/gtest.h>
 
@@ -26,31 +26,31 @@ struct Told {
   int kept = 0, not_kept = 0, let_go = 0;
 };
 
-class AsideTest : public testing::Test {
+class RejectedStoreTest : public testing::Test {
  protected:
-  AsideTest() { restart(); }
-  ~AsideTest() override { let_go(); }
+  RejectedStoreTest() { restart(); }
+  ~RejectedStoreTest() override { let_go(); }
 
   /// As another service finds what this one left, which has ended as it should.
   void restart() {
     let_go();
-    aside_.reset();
+    rejected_.reset();
     writer_ = std::make_unique<loop::Writer>(loop_);  // the one before finishes first
-    aside_ = std::make_unique<Aside>(loop_, *writer_, folder_.path());
-    aside_->restore();
+    rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_.path());
+    rejected_->restore();
   }
   /// What another service would find if this one were killed now.
-  std::vector<api::AsideRow> found_after_a_kill() {
+  std::vector<api::RejectedRow> found_after_a_kill() {
     loop::Writer writer(loop_);
-    Aside other(loop_, writer, folder_.path());
+    RejectedStore other(loop_, writer, folder_.path());
     other.restore();
     return other.rows();
   }
 
   void add(lanes::Message message, int status = 422, const std::string& why = "no", std::size_t bytes = 100) {
-    aside_->add(std::move(message), status, why, bytes,
-                {.told = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
-                 .let_go = [this] { ++told_.let_go; }});
+    rejected_->add(std::move(message), status, why, bytes,
+                   {.told = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
+                    .let_go = [this] { ++told_.let_go; }});
   }
 
   /// The writer does nothing until let_go().
@@ -70,7 +70,7 @@ class AsideTest : public testing::Test {
   Told told_;
   std::optional<std::promise<void>> held_;
   std::unique_ptr<loop::Writer> writer_;
-  std::unique_ptr<Aside> aside_;
+  std::unique_ptr<RejectedStore> rejected_;
 };
 
 icd::MapUpdate grid(double x = 0, std::uint32_t side = 2) {
@@ -83,13 +83,13 @@ icd::MapUpdate grid(double x = 0, std::uint32_t side = 2) {
       icd::RobotName::parse("r1"), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
 }
 
-TEST_F(AsideTest, OutlivesTheServiceWithItsReason) {
+TEST_F(RejectedStoreTest, OutlivesTheServiceWithItsReason) {
   add(grid(), 422, "no \"such\" robot", 100);
   add(state(), 500, "it failed", 200);
   add(markers(), 413, "too long", 300);
-  const auto before = aside_->rows();
+  const auto before = rejected_->rows();
   restart();
-  const auto rows = aside_->rows();
+  const auto rows = rejected_->rows();
   ASSERT_EQ(rows.size(), 3);
   for (std::size_t i = 0; i < rows.size(); ++i) {
     EXPECT_EQ(rows[i].number, i + 1);
@@ -102,78 +102,78 @@ TEST_F(AsideTest, OutlivesTheServiceWithItsReason) {
   }
   EXPECT_EQ(rows[0].kind, "grid");
   EXPECT_EQ(rows[1].robot, "r2");
-  const auto map = aside_->to_be_sent(1);
+  const auto map = rejected_->to_be_sent(1);
   ASSERT_TRUE(map);
   EXPECT_EQ(std::get<icd::MapUpdate>(*map).data.raw_size, 4);
 }
 
-TEST_F(AsideTest, IsAsLongAgoAsItWasWhereverTheClockIsSet) {
+TEST_F(RejectedStoreTest, IsAsLongAgoAsItWasWhereverTheClockIsSet) {
   add(grid());
   for (const double step : {3e8, -6e8}) {
     loop_.set_wall(loop_.wall_now() + step);
-    EXPECT_NEAR(aside_->rows().at(0).at, loop_.wall_now(), 60);
+    EXPECT_NEAR(rejected_->rows().at(0).at, loop_.wall_now(), 60);
   }
   settle();
   restart();
-  EXPECT_NEAR(aside_->rows().at(0).at, loop_.wall_now(), 60) << "nor by a restart";
+  EXPECT_NEAR(rejected_->rows().at(0).at, loop_.wall_now(), 60) << "nor by a restart";
 }
 
-TEST_F(AsideTest, ForgetsWhatIsSentAgainOrDiscarded) {
+TEST_F(RejectedStoreTest, ForgetsWhatIsSentAgainOrDiscarded) {
   add(grid());
   add(state(), 500);
-  EXPECT_TRUE(aside_->to_be_sent(1));
-  EXPECT_FALSE(aside_->to_be_sent(1));
-  EXPECT_FALSE(aside_->discard(1));
-  aside_->sent_again(1, true);
-  EXPECT_FALSE(aside_->to_be_sent(1));
-  EXPECT_TRUE(aside_->discard(2));
-  EXPECT_EQ(aside_->discard(2).error(), "nothing of number 2 is set aside");
+  EXPECT_TRUE(rejected_->to_be_sent(1));
+  EXPECT_FALSE(rejected_->to_be_sent(1));
+  EXPECT_FALSE(rejected_->discard(1));
+  rejected_->sent_again(1, true);
+  EXPECT_FALSE(rejected_->to_be_sent(1));
+  EXPECT_TRUE(rejected_->discard(2));
+  EXPECT_EQ(rejected_->discard(2).error(), "nothing of number 2 is rejected");
   settle();
   EXPECT_TRUE(fs::is_empty(folder_.path()));
   restart();
-  EXPECT_TRUE(aside_->rows().empty());
+  EXPECT_TRUE(rejected_->rows().empty());
 }
 
-TEST_F(AsideTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
+TEST_F(RejectedStoreTest, RefusesToSendWhatSomethingNewerSaysAllOf) {
   add(grid());
-  aside_->taken(grid(0, 5));
-  EXPECT_TRUE(aside_->rows().front().overtaken);
-  const auto sent = aside_->to_be_sent(1);
+  rejected_->taken(grid(0, 5));
+  EXPECT_TRUE(rejected_->rows().front().replaced);
+  const auto sent = rejected_->to_be_sent(1);
   ASSERT_FALSE(sent);
   EXPECT_NE(sent.error().find("newer"), std::string::npos);
   restart();
-  EXPECT_TRUE(aside_->rows().front().overtaken) << "over a restart, too";
-  EXPECT_TRUE(aside_->discard(1));
+  EXPECT_TRUE(rejected_->rows().front().replaced) << "over a restart, too";
+  EXPECT_TRUE(rejected_->discard(1));
 }
 
-TEST_F(AsideTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
+TEST_F(RejectedStoreTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
   add(grid());
   settle();
   int written = 0;
-  EXPECT_FALSE(aside_->taken(state(), [&] { ++written; })) << "it overtakes nothing";
+  EXPECT_FALSE(rejected_->taken(state(), [&] { ++written; })) << "it replaces nothing";
   hold();
-  EXPECT_TRUE(aside_->taken(grid(), [&] { ++written; }));
-  EXPECT_FALSE(aside_->taken(grid(), [&] { ++written; })) << "it was overtaken before";
-  EXPECT_FALSE(found_after_a_kill().front().overtaken);
-  EXPECT_FALSE(aside_->all_kept());
+  EXPECT_TRUE(rejected_->taken(grid(), [&] { ++written; }));
+  EXPECT_FALSE(rejected_->taken(grid(), [&] { ++written; })) << "it was replaced before";
+  EXPECT_FALSE(found_after_a_kill().front().replaced);
+  EXPECT_FALSE(rejected_->all_kept());
   EXPECT_EQ(written, 0);
   let_go();
   settle();
-  EXPECT_TRUE(aside_->all_kept());
+  EXPECT_TRUE(rejected_->all_kept());
   EXPECT_EQ(written, 1);
-  EXPECT_TRUE(found_after_a_kill().front().overtaken);
+  EXPECT_TRUE(found_after_a_kill().front().replaced);
 }
 
-TEST_F(AsideTest, CountsWhatMadePlaceAndWasNotSaidAgain) {
+TEST_F(RejectedStoreTest, CountsWhatMadePlaceAndWasNotSaidAgain) {
   for (int i = 0; i < 5; ++i) add(state());
-  EXPECT_EQ(aside_->dropped(), 0) << "the newer state says all of it";
-  for (std::size_t i = 0; i < lanes::SetAside::kMostItems + 3; ++i) {
+  EXPECT_EQ(rejected_->dropped(), 0) << "the newer state says all of it";
+  for (std::size_t i = 0; i < lanes::RejectedMessages::kMostItems + 3; ++i) {
     add(grid(static_cast<double>(i)));
   }
-  EXPECT_EQ(aside_->dropped(), 4);
+  EXPECT_EQ(rejected_->dropped(), 4);
 }
 
-TEST_F(AsideTest, PassesOverWhatCannotBeRead) {
+TEST_F(RejectedStoreTest, PassesOverWhatCannotBeRead) {
   add(grid());
   add(state());
   settle();
@@ -181,121 +181,121 @@ TEST_F(AsideTest, PassesOverWhatCannotBeRead) {
   folder_.put("9.json", "{}");
   folder_.put("x.json.part", "{}");
   restart();
-  ASSERT_EQ(aside_->rows().size(), 1);
-  EXPECT_EQ(aside_->rows().front().number, 2);
+  ASSERT_EQ(rejected_->rows().size(), 1);
+  EXPECT_EQ(rejected_->rows().front().number, 2);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "1.json.damaged"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "1.cbor.damaged")) << "the message is not gone";
 }
 
-TEST_F(AsideTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {
+TEST_F(RejectedStoreTest, LetsTheOriginGoOnceItIsKeptAndNotBefore) {
   hold();
   add(grid());
   for (int i = 0; i < 10; ++i) loop_.turn(std::chrono::milliseconds{5});
-  EXPECT_EQ(aside_->rows().size(), 1u) << "it is seen at once";
-  EXPECT_FALSE(aside_->all_kept());
+  EXPECT_EQ(rejected_->rows().size(), 1u) << "it is seen at once";
+  EXPECT_FALSE(rejected_->all_kept());
   EXPECT_EQ(told_.kept + told_.let_go, 0);
   EXPECT_TRUE(found_after_a_kill().empty()) << "so the origin's is the one to be found";
   let_go();
   settle();
-  EXPECT_TRUE(aside_->all_kept());
+  EXPECT_TRUE(rejected_->all_kept());
   EXPECT_EQ(told_.kept, 1);
   EXPECT_EQ(told_.let_go, 1);
   EXPECT_EQ(found_after_a_kill().size(), 1u);
 }
 
-TEST_F(AsideTest, IsFinishedWhenTheServiceStops) {
+TEST_F(RejectedStoreTest, IsFinishedWhenTheServiceStops) {
   hold();
   add(grid());
   restart();
-  EXPECT_EQ(aside_->rows().size(), 1u);
+  EXPECT_EQ(rejected_->rows().size(), 1u);
 }
 
-TEST_F(AsideTest, KeepsWhatIsSentAgainUntilItIsKeptElsewhere) {
+TEST_F(RejectedStoreTest, KeepsWhatIsSentAgainUntilItIsKeptElsewhere) {
   add(grid());
   settle();
-  ASSERT_TRUE(aside_->to_be_sent(1));
-  EXPECT_TRUE(aside_->rows().empty()) << "nobody sends it twice";
+  ASSERT_TRUE(rejected_->to_be_sent(1));
+  EXPECT_TRUE(rejected_->rows().empty()) << "nobody sends it twice";
   settle();
   EXPECT_EQ(found_after_a_kill().size(), 1u);
-  aside_->sent_again(1, true);
+  rejected_->sent_again(1, true);
   settle();
   EXPECT_TRUE(found_after_a_kill().empty());
 }
 
-TEST_F(AsideTest, SaysWhatWasOvertakenOnItsWay) {
+TEST_F(RejectedStoreTest, SaysWhatWasOvertakenOnItsWay) {
   add(grid());
   add(state());
-  ASSERT_TRUE(aside_->to_be_sent(1));
-  ASSERT_TRUE(aside_->to_be_sent(2));
-  aside_->taken(grid());
-  EXPECT_FALSE(aside_->sent_again(1, true));
-  EXPECT_TRUE(aside_->sent_again(2, true));
+  ASSERT_TRUE(rejected_->to_be_sent(1));
+  ASSERT_TRUE(rejected_->to_be_sent(2));
+  rejected_->taken(grid());
+  EXPECT_FALSE(rejected_->sent_again(1, true));
+  EXPECT_TRUE(rejected_->sent_again(2, true));
 }
 
-TEST_F(AsideTest, TakesBackWhatCouldNotBeSentAgain) {
+TEST_F(RejectedStoreTest, TakesBackWhatCouldNotBeSentAgain) {
   add(grid());
   settle();
-  ASSERT_TRUE(aside_->to_be_sent(1));
-  aside_->sent_again(1, false);
-  EXPECT_EQ(aside_->rows().size(), 1u);
-  EXPECT_TRUE(aside_->to_be_sent(1));
+  ASSERT_TRUE(rejected_->to_be_sent(1));
+  rejected_->sent_again(1, false);
+  EXPECT_EQ(rejected_->rows().size(), 1u);
+  EXPECT_TRUE(rejected_->to_be_sent(1));
 }
 
-TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
+TEST_F(RejectedStoreTest, LetsTheOriginOfWhatCannotBeKeptGoOnlyWhenTheMessageGoes) {
   folder_.put("in the way", "");
-  aside_ = std::make_unique<Aside>(loop_, *writer_, folder_ / "in the way/aside");
+  rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "in the way/rejected");
   add(grid());
   add(state());
   settle();
-  EXPECT_EQ(aside_->rows().size(), 2u) << "in memory alone";
+  EXPECT_EQ(rejected_->rows().size(), 2u) << "in memory alone";
   EXPECT_EQ(told_.not_kept, 2);
   EXPECT_EQ(told_.let_go, 0);
-  ASSERT_TRUE(aside_->discard(1));
+  ASSERT_TRUE(rejected_->discard(1));
   EXPECT_EQ(told_.let_go, 1);
-  ASSERT_TRUE(aside_->to_be_sent(2));
+  ASSERT_TRUE(rejected_->to_be_sent(2));
   EXPECT_EQ(told_.let_go, 1);
-  aside_->sent_again(2, true);
+  rejected_->sent_again(2, true);
   EXPECT_EQ(told_.let_go, 2);
 }
 
-TEST_F(AsideTest, ReadsNoDataOfMapsAsItRestoresThem) {
+TEST_F(RejectedStoreTest, ReadsNoDataOfMapsAsItRestoresThem) {
   add(spool::cloud(1'000'000));  // 12 MB
   const auto before = spool::BytesRead::of(folder_.path());
   restart();
   const auto after = spool::BytesRead::of(folder_.path());
   EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
   EXPECT_LT(after.in_mappings, 1'000'000U);
-  const auto map = aside_->to_be_sent(1);
+  const auto map = rejected_->to_be_sent(1);
   ASSERT_TRUE(map);
   EXPECT_EQ(std::get<icd::MapUpdate>(*map), spool::cloud(1'000'000));
 }
 
-TEST_F(AsideTest, WritesOverNothingThatItCouldNotRead) {
-  folder_.put("aside", "no folder");
-  aside_ = std::make_unique<Aside>(loop_, *writer_, folder_ / "aside");
-  aside_->restore();
-  fs::remove(folder_ / "aside");
-  fs::create_directory(folder_ / "aside");
-  folder_.put("aside/1.cbor", "of a life before");
+TEST_F(RejectedStoreTest, WritesOverNothingThatItCouldNotRead) {
+  folder_.put("rejected", "no folder");
+  rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "rejected");
+  rejected_->restore();
+  fs::remove(folder_ / "rejected");
+  fs::create_directory(folder_ / "rejected");
+  folder_.put("rejected/1.cbor", "of a life before");
   add(grid());
   settle();
   EXPECT_EQ(told_.not_kept, 1);
-  ASSERT_TRUE(aside_->discard(1));
+  ASSERT_TRUE(rejected_->discard(1));
   settle();
-  EXPECT_EQ(host::read_file(folder_ / "aside/1.cbor"), "of a life before");
+  EXPECT_EQ(host::read_file(folder_ / "rejected/1.cbor"), "of a life before");
 }
 
 /// Else a life to come would send it of itself, behind the newer one.
-TEST_F(AsideTest, LetsTheOriginOfWhatCannotBeKeptGoOnceItIsOvertaken) {
+TEST_F(RejectedStoreTest, LetsTheOriginOfWhatCannotBeKeptGoOnceItIsOvertaken) {
   folder_.put("in the way", "");
-  aside_ = std::make_unique<Aside>(loop_, *writer_, folder_ / "in the way/aside");
+  rejected_ = std::make_unique<RejectedStore>(loop_, *writer_, folder_ / "in the way/rejected");
   add(grid());
   settle();
-  EXPECT_FALSE(aside_->taken(grid()));
+  EXPECT_FALSE(rejected_->taken(grid()));
   EXPECT_EQ(told_.let_go, 1);
   hold();
   add(grid(9));
-  aside_->taken(grid(9));
+  rejected_->taken(grid(9));
   EXPECT_EQ(told_.let_go, 1) << "whether it can be kept is not known yet";
   let_go();
   settle();

@@ -1,4 +1,4 @@
-#include "cli/aside.hpp"
+#include "cli/rejected.hpp"
 
 #include <algorithm>
 
@@ -15,22 +15,22 @@ namespace {
 using Align = Table::Align;
 
 std::string table_of(const api::RunView& view, bool colour) {
-  if (view.aside.empty()) return "nothing is set aside\n";
+  if (view.rejected.empty()) return "nothing is rejected\n";
   Table table({{"number", Align::Right},
                {"kind"},
                {"robot"},
-               {"set aside", Align::Right},
+               {"rejected", Align::Right},
                {"size", Align::Right},
                {"the Command Post said"},
                {""}});
-  for (const api::AsideRow& row : view.aside) {
+  for (const api::RejectedRow& row : view.rejected) {
     table.add({{std::to_string(row.number), Tone::Strong},
                {row.kind},
                {row.robot.empty() ? "(all)" : row.robot},
                {duration(view.now - row.at) + " ago"},
                {size(row.bytes)},
-               {std::to_string(row.status) + ": " + row.why, row.overtaken ? Tone::Faint : Tone::Bad},
-               {row.overtaken ? "something newer was sent" : "", Tone::Faint}});
+               {std::to_string(row.status) + ": " + row.why, row.replaced ? Tone::Faint : Tone::Bad},
+               {row.replaced ? "something newer was sent" : "", Tone::Faint}});
   }
   return table.written(colour);
 }
@@ -41,23 +41,24 @@ Outcome list_aside(const Adit& adit, const Options& options, bool colour) {
   const auto view = read<api::RunView>(adit, *json);
   if (!view) return unable(view.error());
   const bool waits =
-      std::ranges::any_of(view->aside, [](const api::AsideRow& row) { return !row.overtaken; });
+      std::ranges::any_of(view->rejected, [](const api::RejectedRow& row) { return !row.replaced; });
   const Exit exit = waits ? Exit::Attention : Exit::Fine;
-  if (options.json) return {exit, codec::to_json(view->aside) + '\n', ""};
+  if (options.json) return {exit, codec::to_json(view->rejected) + '\n', ""};
   return {exit, table_of(*view, colour), ""};
 }
 
 }  // namespace
 
-Outcome aside(const Options& options, bool colour) {
+Outcome rejected(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   if (options.verb == Verb::Show) return list_aside(*adit, options, colour);
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);
-    const auto answer = post(
-        *adit, "/adit/aside/" + text + (options.verb == Verb::Send ? "/send" : "/discard"), "", "adit aside");
+    const auto answer =
+        post(*adit, "/adit/rejected/" + text + (options.verb == Verb::Send ? "/send" : "/discard"), "",
+             "adit rejected");
     if (!answer) {
       outcome.exit = std::max(outcome.exit, answer.error().exit);
       outcome.err += unable(answer.error().sentence).err;

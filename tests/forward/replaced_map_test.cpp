@@ -1,4 +1,4 @@
-// A map that was taken, and an older one that it overtook while that was set aside: in which order a life to
+// A map that was taken, and an older one that it replaced while that was rejected: in which order a life to
 // come learns of both.
 #include <gtest/gtest.h>
 #include <sys/inotify.h>
@@ -54,24 +54,24 @@ class Watched {
   std::vector<std::string> names_;
 };
 
-class OvertakenMap : public testing::Test, protected AroundMaps {};
+class ReplacedMap : public testing::Test, protected AroundMaps {};
 
-TEST_F(OvertakenMap, IsKnownAsOvertakenBeforeTheNewerOneIsForgotten) {
+TEST_F(ReplacedMap, IsKnownAsOvertakenBeforeTheNewerOneIsForgotten) {
   uplink::ListeningPeer peer([](uplink::Wire& wire) {
     while (!wire.read_request().empty()) {
       if (!wire.write(uplink::answer("200 OK", "null"))) return;
     }
   });
   settings_.command_post.mapping = {peer.endpoint().address, peer.endpoint().port};
-  Maps maps(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), record_, aside_,
-            random_, journal_, [](const icd::MapUpdate&) {});
-  aside_.add(grid_at_stamp(10, 1), 422, "no", 100, {});
+  Maps maps(loop_, workers_, writer_, spool_, settings_, icd::BearerToken::parse("a-token"), record_,
+            rejected_, random_, journal_, [](const icd::MapUpdate&) {});
+  rejected_.add(grid_at_stamp(10, 1), 422, "no", 100, {});
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
-  Watched watched(aside_folder_.path(), folder_.path());
+  Watched watched(rejected_folder_.path(), folder_.path());
   maps.take(grid_at_stamp(20, 2), 10, nullptr, [](const icd::Checked<void>&) {});
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return watched.names().size() >= 2; }));
   EXPECT_EQ(watched.names().front(), "1.json");
-  EXPECT_TRUE(aside_.rows().front().overtaken);
+  EXPECT_TRUE(rejected_.rows().front().replaced);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "forward/aside.hpp"
+#include "forward/rejected.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -39,13 +39,13 @@ std::expected<void, std::string> write_message(const std::string& path, const ic
 
 constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // as the alternatives of lanes::Message
 
-std::string reason_of(const lanes::AsideItem& item, bool overtaken) {
+std::string reason_of(const lanes::RejectedMessage& item, bool replaced) {
   return codec::write_json({Value::Object{{"kind", {std::string(kKinds[item.message.index()])}},
                                           {"status", {std::int64_t{item.status}}},
                                           {"why", {item.why}},
                                           {"at", {item.at}},
                                           {"bytes", {static_cast<std::uint64_t>(item.bytes)}},
-                                          {"overtaken", {overtaken}}}});
+                                          {"replaced", {replaced}}}});
 }
 
 icd::ChunkedBytes text_bytes(const std::string& text) {
@@ -63,8 +63,8 @@ void remove(const std::string& reason, const std::string& message) {
   fs::remove(message, error);
 }
 
-/// Where there is no room to write that it was overtaken, it goes: nothing is lost by that.
-void write_overtaken(const Files& files) {
+/// Where there is no room to write that it was replaced, it goes: nothing is lost by that.
+void write_replaced(const Files& files) {
   if (!spool::write_whole(files.reason, text_bytes(files.text))) remove(files.reason, files.message);
 }
 
@@ -82,19 +82,19 @@ std::optional<lanes::Message> read_message(const std::string& path, std::string_
 }
 
 /// All but number and message.
-std::optional<std::pair<std::string, lanes::AsideItem>> read_reason(const std::string& path) {
+std::optional<std::pair<std::string, lanes::RejectedMessage>> read_reason(const std::string& path) {
   const auto text = host::read_file(path);
   const auto value = codec::parse_json(text.value_or(""));
   if (!text || !value) return std::nullopt;
   codec::Reading reading;
   const codec::Field root(*value, reading);
-  lanes::AsideItem item;
+  lanes::RejectedMessage item;
   const std::string kind(root.member("kind").text());
   item.status = static_cast<int>(root.member("status").whole(0, 999));
   item.why = root.member("why").text();
   item.at = root.member("at").number();
   item.bytes = static_cast<std::size_t>(root.member("bytes").whole<std::int64_t>(0, std::int64_t{1} << 40));
-  item.overtaken = root.member("overtaken").truth();
+  item.replaced = root.member("replaced").truth();
   if (!reading.outcome(0)) return std::nullopt;
   return std::pair(kind, std::move(item));
 }
@@ -111,25 +111,25 @@ std::string kind_of(const lanes::Message& message) {
 }
 
 std::string no_such(std::uint64_t number) {
-  return icd::sentence("nothing of number ", number, " is set aside");
+  return icd::sentence("nothing of number ", number, " is rejected");
 }
 
 }  // namespace
 
-Aside::Aside(const loop::Loop& loop, loop::Writer& writer, std::string folder)
+RejectedStore::RejectedStore(const loop::Loop& loop, loop::Writer& writer, std::string folder)
     : loop_(loop), writer_(writer), folder_(std::move(folder)) {
   spool::make_folder_of_ours(folder_);
 }
 
-std::string Aside::path(std::uint64_t number, const char* ending) const {
+std::string RejectedStore::path(std::uint64_t number, const char* ending) const {
   return folder_ + "/" + std::to_string(number) + ending;
 }
 
-void Aside::restore() {
+void RejectedStore::restore() {
   spool::remove_parts(folder_);
   const auto numbers = host::numbers_in(folder_, "", kReason);
   unread_ = numbers ? "" : numbers.error();
-  if (!numbers) host::log(host::Level::Error, "what was set aside cannot be read", {{"why", unread_}});
+  if (!numbers) host::log(host::Level::Error, "what was rejected cannot be read", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     if (restore_one(number)) continue;
     for (const char* const ending : {kMessage, kReason})
@@ -137,33 +137,33 @@ void Aside::restore() {
   }
 }
 
-bool Aside::restore_one(std::uint64_t number) {
+bool RejectedStore::restore_one(std::uint64_t number) {
   auto reason = read_reason(path(number, kReason));
   if (!reason) return false;
   auto message = read_message(path(number, kMessage), reason->first);
   if (!message) return false;
-  lanes::AsideItem& item = reason->second;
+  lanes::RejectedMessage& item = reason->second;
   item.number = number;
   item.message = std::move(*message);
   items_.restore(std::move(item));
   return true;
 }
 
-void Aside::add(lanes::Message message, int status, const std::string& why, std::size_t bytes,
-                Origin origin) {
-  lanes::AsideItem item{
+void RejectedStore::add(lanes::Message message, int status, const std::string& why, std::size_t bytes,
+                        Origin origin) {
+  lanes::RejectedMessage item{
       .message = std::move(message), .status = status, .why = why, .at = loop_.stamp_now(), .bytes = bytes};
-  host::log(host::Level::Warning, "the Command Post would not take a message: it is set aside",
+  host::log(host::Level::Warning, "the Command Post would not take a message: it is rejected",
             {{"kind", kind_of(item.message)},
              {"robot", who(item.message)},
              {"status", std::to_string(status)},
              {"why", why}});
   const auto said_again = [&](std::uint64_t number) {
-    const lanes::AsideItem* const older = items_.find(number);
-    return older == nullptr || older->overtaken || lanes::overtakes(item.message, older->message);
+    const lanes::RejectedMessage* const older = items_.find(number);
+    return older == nullptr || older->replaced || lanes::replaces(item.message, older->message);
   };
   std::vector<std::uint64_t> covered;
-  for (const lanes::AsideItem& older : items_.items()) {
+  for (const lanes::RejectedMessage& older : items_.items()) {
     if (said_again(older.number)) covered.push_back(older.number);
   }
   for (const std::uint64_t gone : items_.add(std::move(item))) {
@@ -173,10 +173,10 @@ void Aside::add(lanes::Message message, int status, const std::string& why, std:
   keep(items_.items().back(), std::move(origin));
 }
 
-void Aside::keep(const lanes::AsideItem& item, Origin origin) {
+void RejectedStore::keep(const lanes::RejectedMessage& item, Origin origin) {
   const auto well = std::make_shared<bool>(false);
   writer_.submit(
-      [well, message = item.message, reason = reason_of(item, item.overtaken), unread = unread_,
+      [well, message = item.message, reason = reason_of(item, item.replaced), unread = unread_,
        message_file = path(item.number, kMessage), reason_file = path(item.number, kReason)] {
         std::expected<void, std::string> written;
         if (!unread.empty()) written = std::unexpected(unread);
@@ -185,22 +185,22 @@ void Aside::keep(const lanes::AsideItem& item, Origin origin) {
         if (written) written = spool::write_whole(reason_file, text_bytes(reason));
         *well = written.has_value();
         if (*well) return;
-        host::log(host::Level::Warning, "what is set aside is in memory alone", {{"why", written.error()}});
+        host::log(host::Level::Warning, "what is rejected is in memory alone", {{"why", written.error()}});
       },
       [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
   ++being_written_;  // only now: where it could not be submitted, nothing is
 }
 
-void Aside::kept(std::uint64_t number, bool well, const Origin& origin) {
+void RejectedStore::kept(std::uint64_t number, bool well, const Origin& origin) {
   --being_written_;
   origin.told(well);
-  const lanes::AsideItem* const item = items_.find(number);
-  if (well || item == nullptr || item->overtaken) return origin.let_go();
+  const lanes::RejectedMessage* const item = items_.find(number);
+  if (well || item == nullptr || item->replaced) return origin.let_go();
   in_memory_[number] = origin.let_go;
 }
 
 /// Of memory it has gone.
-void Aside::forget(std::uint64_t number) {
+void RejectedStore::forget(std::uint64_t number) {
   if (unread_.empty())
     writer_.submit(
         [reason = path(number, kReason), message = path(number, kMessage)] { remove(reason, message); },
@@ -209,37 +209,37 @@ void Aside::forget(std::uint64_t number) {
   let_origin_go(number);
 }
 
-void Aside::let_origin_go(std::uint64_t number) {
+void RejectedStore::let_origin_go(std::uint64_t number) {
   const auto origin = in_memory_.find(number);
   if (origin == in_memory_.end()) return;
   origin->second();
   in_memory_.erase(origin);
 }
 
-bool Aside::taken(const lanes::Message& message, std::function<void()> written) {
-  const std::vector<std::uint64_t> overtaken = items_.overtaken_by(message);
+bool RejectedStore::taken(const lanes::Message& message, std::function<void()> written) {
+  const std::vector<std::uint64_t> replaced = items_.replaced_by(message);
   std::vector<Files> all;
-  for (const std::uint64_t number : overtaken) {
+  for (const std::uint64_t number : replaced) {
     if (in_memory_.contains(number)) continue;
     all.push_back({path(number, kReason), path(number, kMessage), reason_of(*items_.find(number), true)});
   }
-  for (const std::uint64_t number : overtaken) let_origin_go(number);
+  for (const std::uint64_t number : replaced) let_origin_go(number);
   if (!all.empty()) {
-    writer_.submit([all] { std::ranges::for_each(all, write_overtaken); },
+    writer_.submit([all] { std::ranges::for_each(all, write_replaced); },
                    [this, written = std::move(written)] {
                      --being_written_;
                      written();
                    });
     ++being_written_;
   }
-  items_.overtake(overtaken);
+  items_.mark_replaced(replaced);
   return !all.empty();
 }
 
-std::expected<lanes::Message, std::string> Aside::to_be_sent(std::uint64_t number) {
-  const lanes::AsideItem* const item = items_.find(number);
+std::expected<lanes::Message, std::string> RejectedStore::to_be_sent(std::uint64_t number) {
+  const lanes::RejectedMessage* const item = items_.find(number);
   if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
-  if (item->overtaken) {
+  if (item->replaced) {
     return std::unexpected(
         "something newer that says all of it was sent since: sent now, it would only put the "
         "older in its place");
@@ -248,9 +248,9 @@ std::expected<lanes::Message, std::string> Aside::to_be_sent(std::uint64_t numbe
   return item->message;
 }
 
-bool Aside::sent_again(std::uint64_t number, bool kept) {
-  const lanes::AsideItem* const item = items_.find(number);
-  const bool is_wanted = item == nullptr || !item->overtaken;
+bool RejectedStore::sent_again(std::uint64_t number, bool kept) {
+  const lanes::RejectedMessage* const item = items_.find(number);
+  const bool is_wanted = item == nullptr || !item->replaced;
   if (kept && items_.take(number)) {
     forget(number);
   } else {
@@ -259,15 +259,15 @@ bool Aside::sent_again(std::uint64_t number, bool kept) {
   return is_wanted;
 }
 
-std::expected<void, std::string> Aside::discard(std::uint64_t number) {
+std::expected<void, std::string> RejectedStore::discard(std::uint64_t number) {
   if (leaving_.contains(number) || !items_.take(number)) return std::unexpected(no_such(number));
   forget(number);
   return {};
 }
 
-std::vector<api::AsideRow> Aside::rows() const {
-  std::vector<api::AsideRow> rows;
-  for (const lanes::AsideItem& item : items_.items()) {
+std::vector<api::RejectedRow> RejectedStore::rows() const {
+  std::vector<api::RejectedRow> rows;
+  for (const lanes::RejectedMessage& item : items_.items()) {
     if (leaving_.contains(item.number)) continue;
     rows.push_back({.number = item.number,
                     .kind = kind_of(item.message),
@@ -276,7 +276,7 @@ std::vector<api::AsideRow> Aside::rows() const {
                     .status = item.status,
                     .why = item.why,
                     .bytes = item.bytes,
-                    .overtaken = item.overtaken});
+                    .replaced = item.replaced});
   }
   return rows;
 }

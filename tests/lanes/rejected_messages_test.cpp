@@ -1,4 +1,4 @@
-#include "lanes/set_aside.hpp"
+#include "lanes/rejected_messages.hpp"
 
 #include <gtest/gtest.h>
 
@@ -29,8 +29,8 @@ icd::Marker marker(const std::string& ns, std::int32_t id,
   return marker;
 }
 
-AsideItem item(Message message, std::size_t bytes = 100) {
-  AsideItem item;
+RejectedMessage item(Message message, std::size_t bytes = 100) {
+  RejectedMessage item;
   item.message = std::move(message);
   item.status = 422;
   item.why = "no";
@@ -38,64 +38,64 @@ AsideItem item(Message message, std::size_t bytes = 100) {
   return item;
 }
 
-/// Those that it overtakes, now that the Command Post took it.
-std::vector<std::uint64_t> taken(SetAside& aside, const Message& message) {
-  auto overtaken = aside.overtaken_by(message);
-  aside.overtake(overtaken);
-  return overtaken;
+/// Those that it replaces, now that the Command Post took it.
+std::vector<std::uint64_t> taken(RejectedMessages& rejected, const Message& message) {
+  auto replaced = rejected.replaced_by(message);
+  rejected.mark_replaced(replaced);
+  return replaced;
 }
 
-TEST(SetAside, KnowsWhatOvertakesAnother) {
+TEST(RejectedMessages, KnowsWhatOvertakesAnother) {
   const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
                 large = grid_update("ugv1", grid(0, 0, 20, 20)),
                 others = grid_update("ugv2", grid(0, 0, 20, 20)), cloud = cloud_update("ugv1", {1});
-  EXPECT_TRUE(overtakes(large, small));
-  EXPECT_TRUE(overtakes(small, small));
-  EXPECT_FALSE(overtakes(small, large));
-  EXPECT_FALSE(overtakes(others, small));
-  EXPECT_FALSE(overtakes(cloud, cloud)) << "nothing covers a cloud";
-  EXPECT_FALSE(overtakes(cloud, small));
+  EXPECT_TRUE(replaces(large, small));
+  EXPECT_TRUE(replaces(small, small));
+  EXPECT_FALSE(replaces(small, large));
+  EXPECT_FALSE(replaces(others, small));
+  EXPECT_FALSE(replaces(cloud, cloud)) << "nothing covers a cloud";
+  EXPECT_FALSE(replaces(cloud, small));
 
   const Message one = state_of({"ugv1"}), both = state_of({"ugv1", "ugv2"});
-  EXPECT_TRUE(overtakes(both, one));
-  EXPECT_FALSE(overtakes(one, both));
-  EXPECT_FALSE(overtakes(both, small));
+  EXPECT_TRUE(replaces(both, one));
+  EXPECT_FALSE(replaces(one, both));
+  EXPECT_FALSE(replaces(both, small));
 
   const Message a = icd::MarkersUpdate{{marker("a", 1)}},
                 ab = icd::MarkersUpdate{{marker("a", 1), marker("b", 1)}},
                 gone = icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Delete)}},
                 all_gone = icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}};
-  EXPECT_TRUE(overtakes(ab, a));
-  EXPECT_FALSE(overtakes(a, ab));
-  EXPECT_TRUE(overtakes(gone, a));
-  EXPECT_TRUE(overtakes(all_gone, ab));
-  EXPECT_FALSE(overtakes(ab, all_gone));
+  EXPECT_TRUE(replaces(ab, a));
+  EXPECT_FALSE(replaces(a, ab));
+  EXPECT_TRUE(replaces(gone, a));
+  EXPECT_TRUE(replaces(all_gone, ab));
+  EXPECT_FALSE(replaces(ab, all_gone));
 }
 
-TEST(SetAside, MarksWhatSomethingNewerSaysAllOf) {
-  SetAside aside;
-  aside.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
-  aside.add(item(cloud_update("ugv1", {1})));
-  EXPECT_TRUE(taken(aside, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
-  EXPECT_EQ(aside.overtaken_by(grid_update("ugv1", grid(0, 0, 30, 30))).size(), 1u);
-  EXPECT_FALSE(aside.find(1)->overtaken) << "not before it is marked";
-  EXPECT_EQ(taken(aside, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
-  EXPECT_TRUE(taken(aside, grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
-  EXPECT_TRUE(aside.find(1)->overtaken);
-  EXPECT_FALSE(aside.find(2)->overtaken);
+TEST(RejectedMessages, MarksWhatSomethingNewerSaysAllOf) {
+  RejectedMessages rejected;
+  rejected.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
+  rejected.add(item(cloud_update("ugv1", {1})));
+  EXPECT_TRUE(taken(rejected, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
+  EXPECT_EQ(rejected.replaced_by(grid_update("ugv1", grid(0, 0, 30, 30))).size(), 1u);
+  EXPECT_FALSE(rejected.find(1)->replaced) << "not before it is marked";
+  EXPECT_EQ(taken(rejected, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(taken(rejected, grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
+  EXPECT_TRUE(rejected.find(1)->replaced);
+  EXPECT_FALSE(rejected.find(2)->replaced);
 }
 
-TEST(SetAside, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
+TEST(RejectedMessages, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
   const auto made_at = [](icd::Stamp stamp, std::uint32_t cells) {
     icd::MapUpdate map = grid_update("ugv1", grid(0, 0, cells, cells));
     map.header().stamp = stamp;
     return map;
   };
-  SetAside aside;
-  aside.add(item(made_at(20, 10)));
-  EXPECT_TRUE(taken(aside, made_at(10, 30)).empty());
-  EXPECT_TRUE(aside.add(item(made_at(10, 30))).empty()) << "nor where that is set aside again";
-  EXPECT_EQ(taken(aside, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+  RejectedMessages rejected;
+  rejected.add(item(made_at(20, 10)));
+  EXPECT_TRUE(taken(rejected, made_at(10, 30)).empty());
+  EXPECT_TRUE(rejected.add(item(made_at(10, 30))).empty()) << "nor where that is rejected again";
+  EXPECT_EQ(taken(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
 }
 
 /// Of 30 x 10 cells, of which nothing was made but the ten at the left and the ten at the right.
@@ -108,21 +108,21 @@ WaitingMap with_a_gap() {
   return stitched;
 }
 
-TEST(SetAside, IsNotOvertakenByTheGapOfAStitchedGrid) {
+TEST(RejectedMessages, IsNotOvertakenByTheGapOfAStitchedGrid) {
   WaitingMap stitched = with_a_gap();
-  SetAside aside;
-  aside.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
-  aside.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
-  std::vector<std::uint64_t> overtaken;
+  RejectedMessages rejected;
+  rejected.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
+  rejected.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
+  std::vector<std::uint64_t> replaced;
   for (const icd::MapUpdate* const map : said_by(stitched))
-    std::ranges::copy(taken(aside, *map), std::back_inserter(overtaken));
-  EXPECT_EQ(overtaken, std::vector<std::uint64_t>{2});
+    std::ranges::copy(taken(rejected, *map), std::back_inserter(replaced));
+  EXPECT_EQ(replaced, std::vector<std::uint64_t>{2});
   stitched.has_gaps = false;
   ASSERT_EQ(said_by(stitched).size(), 1u);
-  EXPECT_EQ(taken(aside, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+  EXPECT_EQ(taken(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
 }
 
-TEST(SetAside, IsSentAgainWhereWhatGoesHasAGapThere) {
+TEST(RejectedMessages, IsSentAgainWhereWhatGoesHasAGapThere) {
   const auto back = [](double x, std::uint32_t cells) {
     return WaitingMap{
         .map = grid_update("ugv1", grid(x, 0, cells, cells)), .accepted = {}, .updates = {3}, .again = 10};
@@ -133,36 +133,37 @@ TEST(SetAside, IsSentAgainWhereWhatGoesHasAGapThere) {
   EXPECT_TRUE(replaces(goes, back(2, 5))) << "within it";
 }
 
-TEST(SetAside, MarksADeleteAllThatWouldDeleteSomethingNewer) {
-  SetAside aside;
-  aside.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
-  EXPECT_TRUE(taken(aside, state_of({"ugv1"})).empty());
-  EXPECT_EQ(taken(aside, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
+TEST(RejectedMessages, MarksADeleteAllThatWouldDeleteSomethingNewer) {
+  RejectedMessages rejected;
+  rejected.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
+  EXPECT_TRUE(taken(rejected, state_of({"ugv1"})).empty());
+  EXPECT_EQ(taken(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
 }
 
-TEST(SetAside, HoldsOneForEachThatWouldSayTheSame) {
-  SetAside aside;
-  for (int i = 0; i < 1000; ++i) aside.add(item(state_of({"ugv1", "ugv2"}, i)));
-  EXPECT_EQ(aside.items().size(), 1);
-  EXPECT_EQ(aside.items().front().number, 1000);
+TEST(RejectedMessages, HoldsOneForEachThatWouldSayTheSame) {
+  RejectedMessages rejected;
+  for (int i = 0; i < 1000; ++i) rejected.add(item(state_of({"ugv1", "ugv2"}, i)));
+  EXPECT_EQ(rejected.items().size(), 1);
+  EXPECT_EQ(rejected.items().front().number, 1000);
 }
 
-TEST(SetAside, IsBounded) {
-  SetAside aside;
-  for (std::size_t i = 0; i < 3 * SetAside::kMostItems; ++i) aside.add(item(cloud_update("ugv1", {1})));
-  EXPECT_EQ(aside.items().size(), SetAside::kMostItems);
-  EXPECT_EQ(aside.items().front().number, 2 * SetAside::kMostItems + 1) << "the oldest go";
+TEST(RejectedMessages, IsBounded) {
+  RejectedMessages rejected;
+  for (std::size_t i = 0; i < 3 * RejectedMessages::kMostItems; ++i)
+    rejected.add(item(cloud_update("ugv1", {1})));
+  EXPECT_EQ(rejected.items().size(), RejectedMessages::kMostItems);
+  EXPECT_EQ(rejected.items().front().number, 2 * RejectedMessages::kMostItems + 1) << "the oldest go";
 
-  aside.add(item(cloud_update("ugv1", {1}), SetAside::kMostBytes + 1));
-  EXPECT_EQ(aside.items().size(), 1) << "one is always kept";
+  rejected.add(item(cloud_update("ugv1", {1}), RejectedMessages::kMostBytes + 1));
+  EXPECT_EQ(rejected.items().size(), 1) << "one is always kept";
 }
 
-TEST(SetAside, GivesAwayWhatIsTakenOnce) {
-  SetAside aside;
-  aside.add(item(cloud_update("ugv1", {1})));
-  EXPECT_TRUE(aside.take(1));
-  EXPECT_FALSE(aside.take(1));
-  EXPECT_EQ(aside.find(1), nullptr);
+TEST(RejectedMessages, GivesAwayWhatIsTakenOnce) {
+  RejectedMessages rejected;
+  rejected.add(item(cloud_update("ugv1", {1})));
+  EXPECT_TRUE(rejected.take(1));
+  EXPECT_FALSE(rejected.take(1));
+  EXPECT_EQ(rejected.find(1), nullptr);
 }
 
 TEST(StateLaneApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {

@@ -1,10 +1,10 @@
-// What the Command Post would not take: set aside until the operator sends it again or discards it.
+// What the Command Post would not take: rejected until the operator sends it again or discards it.
 import { barred } from "./actions.js";
 import { giveFocus, list, make, say } from "./dom.js";
 import { post } from "./session.js";
 import { ago, clip } from "./words.js";
 
-const block = document.getElementById("aside");
+const block = document.getElementById("rejected");
 const said = block.querySelector(".said");
 const READ = 10_000; // ms: a last word without a row below it is read by then
 const underWay = new Set();
@@ -19,7 +19,7 @@ async function judge(row, word) {
   if (underWay.has(row.number) || barred()) return;
   underWay.add(row.number);
   try {
-    await post(`/adit/aside/${row.number}/${word}`);
+    await post(`/adit/rejected/${row.number}/${word}`);
     tell(word === "send" ? `${row.number} is sent again when its turn comes.` : `${row.number} is discarded.`);
   } catch (error) {
     tell(clip(error.message));
@@ -42,17 +42,17 @@ function update(node, row, now) {
   const kilobytes = Math.max(1, Math.round(row.bytes / 1000));
   say(what, `${row.number}: ${row.kind} of ${row.robot ? clip(row.robot, 40) : "all"}, ${kilobytes} kB`);
   say(since, ago(now - row.at));
-  say(why, row.overtaken ? "Something newer that covers it was sent since." : `${row.status}: ${clip(row.why)}`);
-  if (row.overtaken && send === document.activeElement) giveFocus(discard);
+  say(why, row.replaced ? "Something newer that covers it was sent since." : `${row.status}: ${clip(row.why)}`);
+  if (row.replaced && send === document.activeElement) giveFocus(discard);
   // Not while it is under way: what is disabled loses the focus.
   discard.disabled = Boolean(barred());
-  send.disabled = discard.disabled || row.overtaken;
+  send.disabled = discard.disabled || row.replaced;
   send.onclick = () => judge(row, "send");
   discard.onclick = () => judge(row, "discard");
 }
 
-export function showAside(rows, now) {
-  const waiting = rows.filter(({ overtaken }) => !overtaken).length; // adit_set_aside counts the same
+export function showRejected(rows, now) {
+  const waiting = rows.filter(({ replaced }) => !replaced).length; // adit_rejected_messages counts the same
   if (!rows.length && performance.now() - saidAt > READ) say(said, "");
   block.hidden = !rows.length && !said.textContent;
   block.querySelector("h4").hidden = !rows.length;

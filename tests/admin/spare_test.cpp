@@ -253,11 +253,11 @@ TEST(SpareFile, NamesWhatWasTakenOverFromBefore) {
   };
   EXPECT_EQ(hindrance("other", 101), "");
   EXPECT_EQ(hindrance("third", 1), "");
-  EXPECT_THAT(hindrance("other", 100), HasSubstr("took over from this export already"));
-  EXPECT_THAT(hindrance("other", 99), HasSubstr("a later export of that box already"));
+  EXPECT_THAT(hindrance("other", 100), HasSubstr("already took over from this export"));
+  EXPECT_THAT(hindrance("other", 99), HasSubstr("a later export of the same box"));
   EXPECT_EQ(hindrance("counts", 50, 3), "") << "its clock was set back since";
-  EXPECT_THAT(hindrance("counts", 100, 2), HasSubstr("took over from this export already"));
-  EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of that box already"));
+  EXPECT_THAT(hindrance("counts", 100, 2), HasSubstr("already took over from this export"));
+  EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of the same box"));
 }
 
 TEST(SpareFile, IsReadAsAnEarlierAditWroteIt) {

@@ -206,7 +206,7 @@ TEST_F(ImportTest, RefusesTokensWithoutShowingThem) {
   expect_refused("secrets/mapping.token", std::string(70000, 'x'), "large");
   expect_refused("secrets/scorin.token", "token-1", "unknown name; expected one of scoring.token, ");
   expect_refused("secrets/course.B.scoring.token", "token-1", "course.A.scoring.token");
-  expect_refused("secrets/scoring.token.txt", "token-1", "no token is called so");
+  expect_refused("secrets/scoring.token.txt", "token-1", "unknown name");
 }
 
 TEST_F(ImportTest, TellsAllThatIsWrongAtOnce) {
@@ -264,7 +264,7 @@ TEST_F(ImportTest, PutsSettingsOnTrial) {
 TEST_F(ImportTest, KnowsTheCoursesOfTheSettingsThatAreInForce) {
   bring("secrets/course.A.scoring.token", "token-1");
   import();
-  EXPECT_THAT(taken(), HasSubstr("no token is called so"));
+  EXPECT_THAT(taken(), HasSubstr("unknown name"));
   fs::create_directories(options.state);
   std::ofstream(options.state + "/settings.json") << settings::sample("", "", kCourse);
   import();

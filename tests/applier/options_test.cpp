@@ -30,7 +30,7 @@ TEST(AditNetworkOptions, MayAskForNothingButTheFilesOfTheStart) {
 TEST(AditNetworkOptions, MayAskForTheWatchAlone) {
   EXPECT_TRUE(parse({"--watch", "--status", "/tmp/x"})->watch);
   EXPECT_EQ(parse({"--watch"})->told, "/run/adit-network");
-  EXPECT_THAT(parse({"--watch", "--start"}).error(), HasSubstr("two different things"));
+  EXPECT_THAT(parse({"--watch", "--start"}).error(), HasSubstr("exclude each other"));
 }
 
 TEST(AditNetworkOptions, AreRefusedByTheirWord) {

@@ -18,7 +18,7 @@ using testing::HasSubstr;
 constexpr const char* kAtWork =
     R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false})";
 constexpr const char* kRests =
-    R"({"rests":true,"why":"it was put to rest","since":1.75e9,"code":"1234 5678 9012 3456","asks_code":false,)"
+    R"({"rests":true,"why":"the operator put it in standby","since":1.75e9,"code":"1234 5678 9012 3456","asks_code":false,)"
     R"("taken_in":null,"takes_over":false})";
 constexpr const char* kTakenIn =
     R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":{"name":"10.0.0.1",)"
@@ -53,7 +53,7 @@ TEST_F(SpareCommand, TellsHowTheBoxStands) {
   const Server rests({{"GET /adit/spare", Server::ok(kRests)}});
   const Outcome outcome = say(rests, {"show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_EQ(outcome.out, "This box rests: it was put to rest\nThe code of its export: 1234 5678 9012 3456\n");
+  EXPECT_EQ(outcome.out, "This box rests: the operator put it in standby\nThe code of its export: 1234 5678 9012 3456\n");
 }
 
 TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {

@@ -34,7 +34,8 @@ class Stray(OnB):
     def test_it_is_told_from_start_to_start_until_the_operator_decides(self):
         for _ in range(2):
             status = self.box.update()
-            self.assertRegex(status["stray"], r"^slot A is running, with 0\.1\.0, not slot B with 0\.2\.0, because that slot has used up its starts")
+            self.assertRegex(status["stray"],
+                             r"^slot A is running, with 0\.1\.0, not slot B with 0\.2\.0, because that slot has used up its starts")
             self.assertEqual((status["trial"], status["last"]["stage"]), (False, "good"))
             self.good()  # this slot is healthy too, and its tries are counted from none again
 

@@ -137,7 +137,7 @@ class Refused(OnABox):
         path = self.box.folder / "wanted/update.raucb"
         for make, sentence in ((lambda: path.symlink_to(self.newer), "Too many levels"),
                                (lambda: os.mkfifo(path), "expected a plain file"), (path.mkdir, "expected a plain file"),
-                               (lambda: (path.touch(), os.truncate(path, (256 << 20) + 1)), "were expected"),
+                               (lambda: (path.touch(), os.truncate(path, (256 << 20) + 1)), "expected at most"),
                                (lambda: None, "No such file")):
             with self.subTest(sentence):
                 make()

@@ -22,8 +22,7 @@ using host::Level;
 access::Accounts accounts_in(const std::string& file) {
   auto accounts = read_kept_file(file, &access::read_accounts);
   if (accounts) return std::move(*accounts);
-  host::log(Level::Error, "cannot read the passwords: set them again",
-            {{"why", accounts.error()}});
+  host::log(Level::Error, "cannot read the passwords: set them again", {{"why", accounts.error()}});
   return {};
 }
 
@@ -31,8 +30,7 @@ std::vector<access::Device> read_known(const std::string& file, const access::Ac
   auto devices =
       read_kept_file(file, [&](std::string_view json) { return access::read_devices(json, accounts); });
   if (devices) return std::move(*devices);
-  host::log(Level::Warning, "cannot read the known devices: no browser is known",
-            {{"why", devices.error()}});
+  host::log(Level::Warning, "cannot read the known devices: no browser is known", {{"why", devices.error()}});
   return {};
 }
 

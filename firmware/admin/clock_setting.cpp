@@ -121,7 +121,8 @@ std::string ClockSetting::ntp_said() const {
   if (auto trouble = ntp_trouble(); !trouble.empty()) return trouble;
   std::string said;
   if (!ntp_.server.empty())
-    said = icd::sentence("the NTP server ", ntp_.server, is_kept_by_ntp() ? " keeps the time" : " is being asked");
+    said = icd::sentence("the NTP server ", ntp_.server,
+                         is_kept_by_ntp() ? " keeps the time" : " is being asked");
   if (ntp_.clients.empty()) return said;
   if (!said.empty()) said += "; ";
   return said +

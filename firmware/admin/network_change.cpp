@@ -198,8 +198,7 @@ void NetworkChange::lead_to_endpoints() {
   if (status_->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
   told_at_ = loop_.now();
   if (const auto asked = requests_.ask(all); !asked) {
-    host::log(host::Level::Error, "cannot tell adit-network the endpoints",
-              {{"why", asked.error()}});
+    host::log(host::Level::Error, "cannot tell adit-network the endpoints", {{"why", asked.error()}});
   }
 }
 

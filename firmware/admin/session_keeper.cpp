@@ -25,7 +25,8 @@ void SessionKeeper::keep() {
   const auto written = host::write_file(file_, access::write_sessions(kept), host::kOursAlone);
   const bool failed_before = std::exchange(failed_, !written.has_value());
   if (written || failed_before) return;
-  host::log(host::Level::Warning, "cannot store the sessions: they are only in memory", {{"why", written.error()}});
+  host::log(host::Level::Warning, "cannot store the sessions: they are only in memory",
+            {{"why", written.error()}});
 }
 
 }  // namespace adit::admin

@@ -162,8 +162,8 @@ void Spare::seal(const Named& done) {
   auto text = std::make_shared<std::string>(spare::write(*content));
   if (text->size() > spare::kLargestExport - spare::kSealing)
     return refused(Status::Conflict, "the ledger is larger than an export may be");
-  auto sealed =
-      std::make_shared<std::expected<std::string, std::string>>(std::unexpected("the export could not be sealed"));
+  auto sealed = std::make_shared<std::expected<std::string, std::string>>(
+      std::unexpected("the export could not be sealed"));
   const spare::Seed seed{.salt = random<16>(), .nonce = random<24>()};
   workers_.submit(
       loop::Urgency::CanWait,
@@ -182,8 +182,7 @@ icd::Checked<void> Spare::take_from_stick(const std::string& name) {
 /// By the checks of one that is uploaded.
 void Spare::taken_from_stick(std::string file) {
   if (const auto taken = take_in(std::move(file)); !taken)
-    host::log(host::Level::Warning, "export from the stick rejected",
-              {{"why", taken.error().sentence}});
+    host::log(host::Level::Warning, "export from the stick rejected", {{"why", taken.error().sentence}});
 }
 
 icd::Checked<void> Spare::take_in(std::string file) {
@@ -199,8 +198,8 @@ void Spare::open(const std::string& code, Done done) {
     return done(
         refuse(Status::UnprocessableEntity, icd::sentence("code: expected ", spare::kCodeDigits, " digits")));
   if (!sealed_) return done(refuse(Status::Conflict, "there is no export to open: import one first"));
-  auto text =
-      std::make_shared<std::expected<std::string, std::string>>(std::unexpected("the export could not be opened"));
+  auto text = std::make_shared<std::expected<std::string, std::string>>(
+      std::unexpected("the export could not be opened"));
   workers_.submit(
       loop::Urgency::CanWait,
       [sealed = sealed_, text, code = *typed] { *text = spare::unseal(*sealed, code); },

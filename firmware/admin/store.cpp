@@ -68,8 +68,8 @@ std::expected<Store::Loaded, std::string> Store::load() {
   const std::vector<std::string> names = token_names(loaded.settings);
   auto secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
   if (!secrets && secrets.error().in == host::SecretsError::In::Saved) {
-    loaded.trouble = "the saved tokens were set aside; the initial tokens are in use: " +
-                     secrets.error().sentence;
+    loaded.trouble =
+        "the saved tokens were set aside; the initial tokens are in use: " + secrets.error().sentence;
     set_aside(secrets_folder(), loaded.trouble);
     secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
   }
@@ -107,8 +107,7 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
 void Store::settle(const settings::Settings& settings) {
   const std::vector<std::string> names = token_names(settings);
   const auto files = host::names_in(secrets_folder());
-  if (!files)
-    host::log(host::Level::Warning, "unused tokens may remain", {{"why", files.error()}});
+  if (!files) host::log(host::Level::Warning, "unused tokens may remain", {{"why", files.error()}});
   for (const fs::path file : files.value_or(std::vector<std::string>())) {
     const bool known = std::ranges::find(names, file.stem().string()) != names.end();
     if (known || file.extension() != ".token") continue;

@@ -134,9 +134,11 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
 std::expected<std::vector<std::string>, std::string> TakingOver::check(const spare::Content& content) const {
   auto saved = settings::parse_saved(content.settings);
   if (!saved)
-    return std::unexpected("this box cannot use the export's settings: " + settings::sentence_of(saved.error()));
+    return std::unexpected("this box cannot use the export's settings: " +
+                           settings::sentence_of(saved.error()));
   const FirstLedger there(runtime_, content.ledger);
-  if (!there.ledger()) return std::unexpected("this box cannot use the export's ledger: " + there.ledger().error());
+  if (!there.ledger())
+    return std::unexpected("this box cannot use the export's ledger: " + there.ledger().error());
   return std::move(saved->passed_over);
 }
 

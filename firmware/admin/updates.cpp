@@ -98,8 +98,7 @@ api::UpdateView Updates::update() const {
 std::optional<icd::Refusal> Updates::hindrance() const {
   const api::UpdateView view = update();
   if (!view.managed) return conflicting(view.why);
-  if (!view.doing.empty())
-    return conflicting(icd::sentence("the box is already ", view.doing, ": wait"));
+  if (!view.doing.empty()) return conflicting(icd::sentence("the box is already ", view.doing, ": wait"));
   return std::nullopt;
 }
 
@@ -165,8 +164,8 @@ icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool any
 icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
   update::Request request{.nonce = draw_nonce(), .what = what, .again = again};
   if (const auto asked = requests_.ask(request); !asked) {
-    return std::unexpected(
-        icd::Refusal{icd::Status::ServiceUnavailable, "cannot request it from adit-update: " + asked.error()});
+    return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
+                                        "cannot request it from adit-update: " + asked.error()});
   }
   asked_ = Asked{std::move(request), loop_.now()};
   not_taken_up_.clear();

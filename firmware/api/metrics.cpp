@@ -126,7 +126,8 @@ void write_link(Exposition& out, const Measured& measured) {
   out.gauge("adit_rejected_messages", "Rejected messages that no newer message has replaced.");
   out.sample(number(
       static_cast<std::size_t>(std::ranges::count(measured.view.rejected, false, &RejectedRow::replaced))));
-  out.counter("adit_rejected_messages_dropped_total", "Rejected messages deleted to make room for newer ones.");
+  out.counter("adit_rejected_messages_dropped_total",
+              "Rejected messages deleted to make room for newer ones.");
   out.sample(number(measured.usage.rejected_dropped));
 }
 

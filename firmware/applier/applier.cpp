@@ -153,8 +153,7 @@ bool Applier::forget(const std::string& text) {
     return true;
   }
   if (const auto forgotten = change_->forget(loop_.now()); !forgotten) {
-    host::log(Level::Error, "cannot forget the addresses",
-              {{"why", forgotten.error()}});
+    host::log(Level::Error, "cannot forget the addresses", {{"why", forgotten.error()}});
     return false;
   }
   host::log(Level::Notice, "the initial addresses are in use");

@@ -71,7 +71,8 @@ std::expected<Mac, std::string> mac_of(const std::string& interface) {
   ifreq asked{};
   interface.copy(asked.ifr_name, IFNAMSIZ - 1);
   if (ioctl(any.get(), SIOCGIFHWADDR, &asked) != 0) return failed(interface, "reading its MAC address");
-  if (asked.ifr_hwaddr.sa_family != ARPHRD_ETHER) return std::unexpected(interface + ": expected an Ethernet interface");
+  if (asked.ifr_hwaddr.sa_family != ARPHRD_ETHER)
+    return std::unexpected(interface + ": expected an Ethernet interface");
   Mac mac{};
   std::memcpy(mac.data(), asked.ifr_hwaddr.sa_data, mac.size());
   return mac;

@@ -7,7 +7,8 @@ command_line::Program clock_command_line_of(ClockOptions& options) {
       .name = "adit-clock",
       .usage = "",
       .about =
-          "Set the time of day on aditd's requests, and write which source set it last. If requested, run chronyd for NTP on the team's "
+          "Set the time of day on aditd's requests, and write which source set it last. If requested, run "
+          "chronyd for NTP on the team's "
           "network. End when there are no more requests.",
       .rows = {{"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
                {"--status", "DIR", "directory of the answers", &options.status},
@@ -17,8 +18,7 @@ command_line::Program clock_command_line_of(ClockOptions& options) {
                {"--systemctl", "CMD", "systemctl, to start and stop chronyd", &options.systemctl},
                {"--version", "", "print the version", &options.version},
                {"--help", "", "print this help", &options.help}},
-      .ending =
-          "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
 

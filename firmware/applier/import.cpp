@@ -69,9 +69,9 @@ std::string said_of(const Found& found, bool lasting) {
   } else {
     const char* of_token = lasting ? ": accepted, and removed from here\n" : ": accepted\n";
     if (!found.brought.nothing()) {
-      text = lasting
-                 ? "Adit accepted these files:\n"
-                 : "Adit cannot store these files because its state partition is unusable. It reads them at each boot:\n";
+      text = lasting ? "Adit accepted these files:\n"
+                     : "Adit cannot store these files because its state partition is unusable. It reads them "
+                       "at each boot:\n";
     }
     if (found.brought.settings) text += icd::sentence("adit/", kCardSettings, ": accepted\n");
     if (found.brought.numbers) text += icd::sentence("adit/", kCardNetwork, ": accepted\n");

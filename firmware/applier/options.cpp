@@ -21,7 +21,8 @@ command_line::Program command_line_of(Options& options) {
       .name = "adit-network",
       .usage = "",
       .about =
-          "Change the addresses of Adit's two network interfaces by systemd-networkd, on aditd's requests. Take a change back unless it is confirmed in time. End when no change is pending.",
+          "Change the addresses of Adit's two network interfaces by systemd-networkd, on aditd's requests. "
+          "Take a change back unless it is confirmed in time. End when no change is pending.",
       .rows = {{"--team", "NAME", "interface to the team", &options.team},
                {"--command-post", "NAME", "interface to the Command Post", &options.command_post},
                {"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
@@ -29,18 +30,19 @@ command_line::Program command_line_of(Options& options) {
                {"--state", "DIR", "directory of the confirmed addresses", &options.state},
                {"--factory", "FILE", "addresses if none were confirmed", &options.factory},
                {"--networkd", "DIR", "networkd's directory until the next boot", &options.networkd},
-               {"--networkctl", "CMD", "command that makes networkd read its files, called with the word reload",
+               {"--networkctl", "CMD",
+                "command that makes networkd read its files, called with the word reload",
                 &options.networkctl},
                {"--start", "", "only write networkd's files, before networkd starts", &options.start},
                {"--watch", "",
                 "only write to the directory of --status which other machine uses the box's addresses",
                 &options.watch},
-               {"--told", "DIR", "directory from which --watch reads the endpoints",
-                &options.told},
+               {"--told", "DIR", "directory from which --watch reads the endpoints", &options.told},
                {"--version", "", "print the version", &options.version},
                {"--help", "", "print this help", &options.help}},
       .ending =
-          "Exit code: 0 if no change is pending; 1 if an error occurred, networkd has not read its files, or a request cannot be removed or done; 2 for a wrong command line.",
+          "Exit code: 0 if no change is pending; 1 if an error occurred, networkd has not read its files, or "
+          "a request cannot be removed or done; 2 for a wrong command line.",
   };
 }
 
@@ -53,8 +55,7 @@ std::expected<Options, std::string> parse_options(std::span<const char* const> a
   }
   if (options->team == options->command_post)
     return std::unexpected("--team and --command-post name the same interface");
-  if (options->start && options->watch)
-    return std::unexpected("--start and --watch exclude each other");
+  if (options->start && options->watch) return std::unexpected("--start and --watch exclude each other");
   return options;
 }
 

@@ -29,8 +29,7 @@ constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime";
 std::vector<std::string> names_at(const std::string& folder, std::size_t most) {
   auto names = host::names_in(folder, most);
   if (names) return *std::move(names);
-  host::log(host::Level::Warning, "cannot read a stick",
-            {{"folder", folder}, {"why", names.error()}});
+  host::log(host::Level::Warning, "cannot read a stick", {{"folder", folder}, {"why", names.error()}});
   return {};
 }
 
@@ -112,7 +111,8 @@ std::expected<void, std::string> Sticks::remount(const std::string& name, Mode m
     std::this_thread::sleep_for(kBetween);
   }
   if (!is_in(name)) return std::unexpected("the stick is gone");
-  return std::unexpected("the stick could not be mounted: " + (done ? "systemd-mount gave no reason" : done.error()));
+  return std::unexpected("the stick could not be mounted: " +
+                         (done ? "systemd-mount gave no reason" : done.error()));
 }
 
 void Sticks::settle() const {

@@ -9,9 +9,11 @@ command_line::Program update_command_line_of(UpdateOptions& options) {
       .name = "adit-update",
       .usage = "[good]",
       .about =
-          "Update the box by RAUC, on aditd's requests: check a bundle, install it into the slot that is not running, and reboot. End when there are no more requests.",
+          "Update the box by RAUC, on aditd's requests: check a bundle, install it into the slot that is not "
+          "running, and reboot. End when there are no more requests.",
       .rows = {{"good", "",
-                "watch a boot instead: mark the slot good once aditd is healthy, or reboot if a slot on trial does not become healthy",
+                "watch a boot instead: mark the slot good once aditd is healthy, or reboot if a slot on "
+                "trial does not become healthy",
                 &options.good},
                {"--within", "SECONDS", "time that a slot on trial has for this (300)",
                 command_line::number<1, 3600>(options.within)},
@@ -26,8 +28,7 @@ command_line::Program update_command_line_of(UpdateOptions& options) {
                {"--systemctl", "CMD", "systemd", &options.systemctl},
                {"--version", "", "print the version", &options.version},
                {"--help", "", "print this help", &options.help}},
-      .ending =
-          "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
 

@@ -52,7 +52,8 @@ void Updater::find_out() {
   update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
   if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
     if (const auto left = rauc_.leave_other(); !left)
-      host::log(Level::Error, "cannot stop the boot loader from starting the failed update again", {{"why", left.error()}});
+      host::log(Level::Error, "cannot stop the boot loader from starting the failed update again",
+                {{"why", left.error()}});
   }
   if (last_update == kept) {
     status_.last = std::move(last_update);

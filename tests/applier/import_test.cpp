@@ -74,8 +74,8 @@ class ImportTest : public testing::Test {
     bring_all();
     bring(name, brought);
     import();
-    EXPECT_THAT(taken(),
-                AllOf(StartsWith("Adit accepted no file."), HasSubstr("adit/" + name + ": "), HasSubstr(what)));
+    EXPECT_THAT(taken(), AllOf(StartsWith("Adit accepted no file."), HasSubstr("adit/" + name + ": "),
+                               HasSubstr(what)));
     EXPECT_FALSE(fs::exists(options.state)) << name << ' ' << brought;
     EXPECT_FALSE(fs::exists(options.network));
     for (const char* stays : {"settings.json", "network.json", "secrets/scoring.token"})

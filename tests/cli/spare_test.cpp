@@ -53,7 +53,8 @@ TEST_F(SpareCommand, TellsHowTheBoxStands) {
   const Server rests({{"GET /adit/spare", Server::ok(kRests)}});
   const Outcome outcome = say(rests, {"show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_EQ(outcome.out, "This box rests: the operator put it in standby\nThe code of its export: 1234 5678 9012 3456\n");
+  EXPECT_EQ(outcome.out,
+            "This box rests: the operator put it in standby\nThe code of its export: 1234 5678 9012 3456\n");
 }
 
 TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {

@@ -44,7 +44,7 @@ AddressWatch::AddressWatch(loop::Loop& loop, const Options& options)
       due_(loop.timer([this] { work(); })) {}
 
 std::expected<void, std::string> AddressWatch::start() {
-  if (!kernel_) return std::unexpected("the kernel does not tell what becomes of the interfaces");
+  if (!kernel_) return std::unexpected("cannot watch the interfaces for changes");
   changed_ = loop_.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
     if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
     look();

@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /// So that the box still serves a page on which it can be set right.
 void set_aside(const std::string& path, const std::string& why) {
-  host::set_damaged_aside(path, "saved settings or tokens", why);
+  host::set_damaged_aside(path, "the saved set-up", why);
 }
 
 std::expected<settings::Settings, std::string> read_settings(const std::string& file) {

@@ -234,7 +234,7 @@ TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnc
   const auto refused = setting_.set_clock(1.8e9);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, icd::Status::Conflict);
-  EXPECT_THAT(refused.error().sentence, HasSubstr("10.0.0.5 keeps it"));
+  EXPECT_THAT(refused.error().sentence, HasSubstr("10.0.0.5 keeps the time"));
   setting_.offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
   ntp_ = {};

@@ -71,7 +71,7 @@ TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
   EXPECT_EQ(asked()->what, spare::StickRequest::What::Write);
   EXPECT_EQ(asked()->name, kName);
   EXPECT_EQ(stick_.view()->doing, "writing");
-  EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is writing already"));
+  EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is already writing"));
   answer({.doing = "checking"});
   EXPECT_EQ(stick_.view()->doing, "checking");
   say({.nonce =

@@ -127,7 +127,7 @@ TEST_F(UpdatesTest, TakeOneAtATime) {
 }
 
 TEST_F(UpdatesTest, AskForNothingWhereABundleCameShort) {
-  EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("3 of 5 bytes came"));
+  EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("got 3 of 5 bytes"));
   EXPECT_FALSE(asked());
   EXPECT_TRUE(fs::is_empty(state_.path()));
   EXPECT_EQ(updates_.update().doing, "");
@@ -143,7 +143,7 @@ TEST_F(UpdatesTest, RefuseWhatTheDiskHasNoRoomFor) {
 
 TEST_F(UpdatesTest, SayThatABundleCannotBeWritten) {
   fs::create_directory(state_ / "update.raucb.part");
-  EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("the bundle cannot be written"));
+  EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("cannot write the bundle"));
   EXPECT_FALSE(asked());
 }
 

@@ -104,7 +104,7 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.run_unreliable = "somebody else reports"; }},
     {"messages_rejected", Ask, Side::CommandPost, "3 messages are rejected", "would not take them",
      [](Facts& facts) { facts.messages_rejected = 3; }},
-    {"rests", Bad, Side::Box, "This box rests and sends nothing", "for its spare",
+    {"rests", Bad, Side::Box, "This box rests and sends nothing", "so that a spare takes over",
      [](Facts& facts) { facts.rests = "the operator put it in standby, so that a spare takes over"; }},
     {"ledger_unwritable", Bad, Side::Box, "No report is taken", "the ledger cannot be written: no space",
      [](Facts& facts) { facts.ledger_refusal = "no space"; }},

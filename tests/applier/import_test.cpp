@@ -231,7 +231,7 @@ TEST_F(ImportTest, TakesPlainFilesAlone) {
   fs::remove_all(options.card + "/secrets");
   bring("secrets", "no folder");
   import();
-  EXPECT_THAT(taken(), HasSubstr("adit/secrets: expected a folder"));
+  EXPECT_THAT(taken(), HasSubstr("adit/secrets: expected a directory"));
 }
 
 TEST_F(ImportTest, IsNotKeptBusyByACardFullOfFiles) {
@@ -245,9 +245,8 @@ TEST_F(ImportTest, LeavesOtherFilesAloneAndSaysWhatItTakes) {
   bring("._settings.json", "");
   bring("secrets/._team.token", "");
   import();
-  EXPECT_EQ(
-      taken(),
-      "adit/settings.json.txt: left alone; Adit takes settings.json, network.json and secrets/*.token\n");
+  EXPECT_EQ(taken(),
+            "adit/settings.json.txt: ignored; Adit reads settings.json, network.json and secrets/*.token\n");
 }
 
 TEST_F(ImportTest, PutsSettingsOnTrial) {
@@ -318,7 +317,7 @@ TEST_F(ImportTest, TakesNothingFromACardThatCannotBeWritten) {
   fs::create_directory(options.card + "/taken.txt");  // no file can take its place
   const auto done = Import(options).run();
   ASSERT_FALSE(done);
-  EXPECT_THAT(done.error(), HasSubstr("cannot be written"));
+  EXPECT_THAT(done.error(), HasSubstr("cannot write to the card"));
   EXPECT_FALSE(fs::exists(options.state));
 }
 

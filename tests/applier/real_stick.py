@@ -247,7 +247,7 @@ class Stick(Sticks):
 
     def test_is_written_nothing_that_is_no_export(self):
         self.plug()
-        for export, why in ((b"#!/bin/sh", "the file is not an export from Adit"), (EXPORT + bytes(9 << 20), "too large")):
+        for export, why in ((b"#!/bin/sh", "the file is not an export from Adit"), (EXPORT + bytes(9 << 20), "larger than an export may be")):
             self.expect_refused(self.write(export), why)
         target = self.folder / "secret"
         target.write_bytes(EXPORT)

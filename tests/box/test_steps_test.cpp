@@ -26,14 +26,15 @@ TEST(TheLinkStep, LooksForACarrier) {
 
 TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
   network::Probed probed{.nonce = "", .address = "10.100.1.10"};
-  expect(address("darpa0", kOwn, probed, ""), "good", "darpa0 has 10.100.1.10/24, and nobody else has it");
+  expect(address("darpa0", kOwn, probed, ""), "good",
+         "darpa0 has 10.100.1.10/24, without an address conflict");
   probed.address = "10.100.1.11";
   probed.claimant = "02:00:00:00:00:09";
-  expect(address("darpa0", kOwn, probed, ""), "bad", "darpa0 has 10.100.1.11, and so has the machine");
+  expect(address("darpa0", kOwn, probed, ""), "bad", "darpa0 has 10.100.1.11, but the machine");
   probed.address = "10.100.1.10";
-  expect(address("darpa0", kOwn, probed, ""), "bad", "and so has the machine 02:00:00:00:00:09");
+  expect(address("darpa0", kOwn, probed, ""), "bad", "but the machine 02:00:00:00:00:09");
   probed.own = "team0";
-  expect(address("darpa0", kOwn, probed, ""), "bad", "the box's own team0 answers for it");
+  expect(address("darpa0", kOwn, probed, ""), "bad", "the box's own team0 also answers for this address");
   probed.trouble = "darpa0: Network is down";
   expect(address("darpa0", kOwn, probed, ""), "skipped", "Network is down");
   expect(address("darpa0", kOwn, std::nullopt, "adit-network does not run here"), "skipped",
@@ -80,12 +81,12 @@ TestStep with_status(Asked asked, int status, const std::string& body = "\"a sen
 
 TEST(TheTokenStep, OfScoringReadsTheAnswerToAStatus) {
   expect(with_status(Asked::Scoring, 200), "good", "the scoring token is accepted");
-  expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is refused");
-  expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is refused");
+  expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is rejected");
+  expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is rejected");
   expect(with_status(Asked::Scoring, 404, "<html>"), "bad", "404");
   expect(with_status(Asked::Scoring, 422), "bad", "422");
   expect(with_status(Asked::Scoring, 501, ""), "bad", "501");
-  expect(with_status(Asked::Scoring, 429), "skipped", "too often");
+  expect(with_status(Asked::Scoring, 429), "skipped", "too many requests");
   expect(with_status(Asked::Scoring, 500), "skipped", "failed");
   expect(no_token(Asked::Scoring), "bad", "there is no scoring token");
 }
@@ -98,7 +99,7 @@ TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
   for (const int status : {404, 405, 501})
     expect(with_status(Asked::Mapping, status, ""), "bad", std::to_string(status));
   EXPECT_THAT(with_status(Asked::Mapping, 404).advice, HasSubstr("no mapping endpoint"));
-  expect(with_status(Asked::Mapping, 429), "skipped", "too often");
+  expect(with_status(Asked::Mapping, 429), "skipped", "too many requests");
 }
 
 TEST(TheTokenStep, TellsOfTheSlashThatTheEndpointWants) {

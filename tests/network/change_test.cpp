@@ -156,7 +156,7 @@ TEST_F(ChangeTest, IsTakenBackWhereItCannotBeKept) {
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24", "take back"));
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
   EXPECT_EQ(change.status().kept, numbers());
-  EXPECT_THAT(change.status().why, HasSubstr("could not be kept: the disk is full"));
+  EXPECT_THAT(change.status().why, HasSubstr("could not be stored: the disk is full"));
 }
 
 TEST_F(ChangeTest, IsTakenBackAgainAndAgainUntilItSucceeds) {
@@ -180,7 +180,7 @@ TEST_F(ChangeTest, IsGivenUpWhereItCannotBeTakenBack) {
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
   EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
   EXPECT_FALSE(change.status().pending);
-  EXPECT_THAT(change.status().why, HasSubstr("is tried again: the disk is full"));
+  EXPECT_THAT(change.status().why, HasSubstr("retrying: the disk is full"));
 }
 
 TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {

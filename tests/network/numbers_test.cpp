@@ -139,10 +139,10 @@ TEST(Numbers, AreRefusedByTheirPaths) {
       {kTeam, R"({"addresses":[{"address":"169.254.1.1","prefix":16}]})",
        "command_post.addresses[0].address: 169.254.1.1 is link-local"},
       {kTeam, R"({"addresses":[{"address":"10.100.1.10","prefix":24,"name":"x"}]})",
-       "command_post.addresses[0].\"name\": no such member"},
-      {kTeam, R"({"addresses":[],"address":"10.100.1.10"})", "command_post.\"address\": no such member"},
+       "command_post.addresses[0].\"name\": unknown member"},
+      {kTeam, R"({"addresses":[],"address":"10.100.1.10"})", "command_post.\"address\": unknown member"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"interface":"eth0"})",
-       "command_post.\"interface\": no such member"},
+       "command_post.\"interface\": unknown member"},
   };
   for (const auto& [team, post, sentence] : cases) {
     EXPECT_THAT(faults(with(team, post)), ElementsAre(StartsWith(sentence))) << team << post;

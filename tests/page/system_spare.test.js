@@ -22,7 +22,7 @@ test("one press puts the box to rest and its export on the stick; what fails can
   assert.equal(asked(page, "/adit/spare/rest"), 0, "nothing is asked for on a no");
   await press("Rest and export to the stick");
   await yes();
-  await said("The stick has no room for it.");
+  await said("The stick is full.");
   assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "true");
   assert.equal(await section.locator("dd").first().innerText(), "1234 5678 9012 3456");
   await press("Export to the stick");

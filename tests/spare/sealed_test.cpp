@@ -48,7 +48,7 @@ TEST(Sealed, ALaterAditsExportIsRefusedByItsFirstBytes) {
   std::string file = sealed("a ledger");
   file[10] = 2;
   const char* const why =
-      "a later Adit made this export (version 2, and this one reads 1): update this box first";
+      "a later Adit made this export (version 2, this box reads 1): update this box first";
   EXPECT_EQ(not_an_export(file.substr(0, kExportHead)), why);
   EXPECT_EQ(why_not(file), why);
 }

@@ -144,7 +144,8 @@ TEST(Hindrance, IsAVersionThatCannotBeCompared) {
               HasSubstr("cannot read the update's version"));
   Running unknown = kRunning;
   unknown.version = "";
-  EXPECT_THAT(hindrance({"adit-qemu-virt", "9.0.0"}, unknown, true), HasSubstr("that runs cannot be read"));
+  EXPECT_THAT(hindrance({"adit-qemu-virt", "9.0.0"}, unknown, true),
+              HasSubstr("cannot read the running version"));
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ class Stray(OnB):
         self.runs("B", "0.2.0")
         for what in "back", "stay":
             self.box.ask(what)
-            self.assertIn("good last", self.box.update()["refusal"])
+            self.assertIn("no unexpected slot", self.box.update()["refusal"])
         self.assertNotIn("reboot", self.box.calls.read_text())
 
     def test_a_record_that_is_damaged_is_none(self):
@@ -83,7 +83,7 @@ class Overwritten(OnB):
     def expect_nowhere_to_go_back_to(self):
         self.assertEqual(self.box.status()["stray"], "")
         self.box.ask("back")
-        self.assertIn("good last", self.box.update()["refusal"])
+        self.assertIn("no unexpected slot", self.box.update()["refusal"])
         self.assertNotIn("reboot", self.box.calls.read_text())
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "0")
         self.good()

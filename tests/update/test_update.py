@@ -34,7 +34,7 @@ class Installed(OnABox):
 
     def test_the_same_version_only_where_that_is_said(self):
         same = self.bundles.make("0.1.0")
-        self.expect_refused(self.box.install(same), "0.1.0 runs already")
+        self.expect_refused(self.box.install(same), "0.1.0 is already running")
         self.expect_untouched()
         self.assertEqual(self.box.install(same, again=True)["last"]["stage"], "installed")
 
@@ -81,7 +81,7 @@ class Refused(OnABox):
         self.expect_untouched()
 
     def test_a_version_that_is_none(self):
-        self.expect_refused(self.box.install(self.bundles.make("newest")), "cannot be read")
+        self.expect_refused(self.box.install(self.bundles.make("newest")), "cannot read the update's version")
         self.expect_untouched()
 
     def test_a_signature_of_another_key(self):

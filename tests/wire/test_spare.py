@@ -113,7 +113,7 @@ class Spare(WithAlarms):
         asked = len(stage.post.requests())
         stage.exported()
         asked = max(asked, len(stage.post.requests()))
-        self.sees(stage, "rests", "bad", "box", "This box rests and sends nothing", "for its spare")
+        self.sees(stage, "rests", "bad", "box", "This box rests and sends nothing", "so that a spare takes over")
         refused = submit(stage, another(1))
         self.assertEqual((refused.status_code, refused.json()),
                          (503, "this box rests, for its spare to take over: nothing is taken or sent"))

@@ -55,9 +55,9 @@ Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, 
   } else if (!unread.empty()) {
     rests_ = "it is not known whether a spare took over: " + unread;
   } else if (file_.rest) {
-    rests_ = "the operator put it in standby, so that a spare takes over";
+    rests_ = "its spare takes over";
   }
-  if (!rests_.empty()) host::log(host::Level::Warning, "this box is in standby", {{"why", rests_}});
+  if (!rests_.empty()) host::log(host::Level::Warning, "this box is on standby", {{"why", rests_}});
 }
 
 void Spare::ends(const std::optional<icd::RunStatus>& expected) {
@@ -117,13 +117,13 @@ icd::Checked<void> Spare::rest() {
   next.rest_count = next.rest_count.value_or(0) + 1;
   if (auto kept = keep(next); !kept) return kept;
   goes_to_rest_ = true;
-  host::log(host::Level::Notice, "this box goes to standby, so that a spare takes over");
+  host::log(host::Level::Notice, "this box goes on standby, so that a spare takes over");
   restart_.call_at(loop_.now());
   return {};
 }
 
 icd::Checked<void> Spare::wake() {
-  if (rests_.empty()) return refuse(Status::Conflict, "this box is not in standby");
+  if (rests_.empty()) return refuse(Status::Conflict, "this box is not on standby");
   if (!is_stuck()) {
     SpareFile next = file_;
     next.rest.reset();
@@ -150,7 +150,7 @@ void Spare::export_to_stick(Done done) {
 void Spare::seal(const Named& done) {
   const auto refused = [&done](Status status, std::string why) { done(refuse(status, std::move(why)), ""); };
   if (!file_.rest || rests_.empty() || is_stuck())
-    return refused(Status::Conflict, "this box is not in standby: only a box in standby can be exported");
+    return refused(Status::Conflict, "this box is not on standby: only a box on standby can be exported");
   auto content = asked_.content();
   if (!content) return refused(Status::ServiceUnavailable, std::move(content.error()));
   content->about.box = file_.box;

@@ -49,6 +49,8 @@ constexpr Route kRoutes[] = {
         "text/html; charset=utf-8"),
     get("/display", Open, by<&PageRoutes::file>(), "page",
         "The run's page for a wall display, without controls.", "The page.", "text/html; charset=utf-8"),
+    get("/help", Open, by<&PageRoutes::file>(), "page", "The meaning of each alarm, and its remedy.",
+        "The page.", "text/html; charset=utf-8"),
     get("/runs", Open, by<&PageRoutes::file>(), "page", "The page of stored runs.", "The page.",
         "text/html; charset=utf-8"),
     get("/setup", Open, by<&PageRoutes::file>(), "page", "The set-up page.", "The page.",
@@ -208,20 +210,20 @@ constexpr Route kRoutes[] = {
     post("/adit/clock", Operator, kJson<1024>, by<&ClockRoutes::set>(), "ClockToSet", "box",
          "Set the time of day to the client's time.", "The time is about to be set.", "Clock", "400 409"),
     get("/adit/spare", Operator, by<&SpareRoutes::shown>(), "box",
-        "Whether the box is in standby, the code of its export, and the export of another box.", "The state.",
+        "Whether the box is on standby, the code of its export, and the export of another box.", "The state.",
         "Spare"),
     post("/adit/spare/rest", Operator, kJson<1024>, by<&SpareRoutes::rest>(), "Nothing", "box",
-         "Put the box in standby, so that a spare can take over: it accepts and sends no messages, also "
+         "Put the box on standby, so that a spare can take over: it accepts and sends no messages, also "
          "after a power cut.",
          "Standby is about to begin.", "Spare", "409 503"),
     post("/adit/spare/wake", Operator, kJson<1024>, by<&SpareRoutes::wake>(), "Nothing", "box",
          "End standby. Do this only if no spare took over.", "Standby is about to end.", "Spare", "409 503"),
     get("/adit/spare/export", Operator, by<&SpareRoutes::exported>(), "box",
-        "The export for the spare: ledger, settings and tokens, sealed by a code. Only while the box is in "
+        "The export for the spare: ledger, settings and tokens, sealed by a code. Only while the box is on "
         "standby.",
         "The export.", "application/octet-stream", "409 503"),
     post("/adit/spare/to-stick", Operator, kJson<1024>, by<&SpareRoutes::to_stick>(), "Nothing", "box",
-         "Write the export to the stick in the box. Only while the box is in standby.",
+         "Write the export to the stick in the box. Only while the box is on standby.",
          "The export is about to be written.", "Spare", "409 503"),
     post("/adit/spare/from-stick", Operator, kJson<1024>, by<&SpareRoutes::from_stick>(), "ExportOnStick",
          "box", "Import another box's export from the stick in the box. The box does not change yet.",

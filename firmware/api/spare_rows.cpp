@@ -33,10 +33,10 @@ constexpr codec::Member kStickMembers[] = {
 
 constexpr codec::Member kSpareMembers[] = {
     codec::member<&SpareView::rests>("rests",
-                                     "whether the box is in standby: it accepts and sends no messages"),
-    codec::member<&SpareView::why>("why", "why the box is in standby, or empty"),
+                                     "whether the box is on standby: it accepts and sends no messages"),
+    codec::member<&SpareView::why>("why", "why the box is on standby, or empty"),
     codec::member<&SpareView::since>(
-        "since", "start of standby in seconds since 1970; null if the box is not in standby"),
+        "since", "start of standby in seconds since 1970; null if the box is not on standby"),
     codec::member<&SpareView::code>(
         "code", "code that opens the box's export, in groups of digits; empty if there is no export"),
     codec::member<&SpareView::asks_code>("asks_code", "whether an imported export needs its code"),

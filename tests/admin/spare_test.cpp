@@ -102,12 +102,12 @@ std::string why(const icd::Checked<void>& done) {
 
 TEST(SpareBox, IsExportedOnlyOnceItRests) {
   Box box;
-  EXPECT_THAT(box.exported().error().sentence, HasSubstr("not in standby"));
+  EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().rest());
   EXPECT_EQ(box.turned().restarts, 1);
   EXPECT_EQ(box.spare().rests(), "") << "what is under way ends first";
   box.restart();
-  EXPECT_THAT(box.spare().rests(), HasSubstr("put it in standby"));
+  EXPECT_THAT(box.spare().rests(), HasSubstr("its spare takes over"));
   EXPECT_EQ(box.spare().spare().code.size(), 19U);
   EXPECT_TRUE(box.exported());
 }
@@ -122,7 +122,7 @@ TEST(SpareBox, GoesOnRestingUntilItIsWokenUp) {
   ASSERT_TRUE(box.spare().wake());
   box.restart();
   EXPECT_EQ(box.spare().rests(), "");
-  EXPECT_EQ(why(box.spare().wake()), "this box is not in standby");
+  EXPECT_EQ(why(box.spare().wake()), "this box is not on standby");
 }
 
 TEST(SpareBox, AnotherRestHasAnotherCode) {
@@ -161,7 +161,7 @@ TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
 TEST(SpareBox, IsExportedToTheStickOnlyOnceItRests) {
   Box box;
   box.say({});
-  EXPECT_THAT(why(box.to_stick()), HasSubstr("not in standby"));
+  EXPECT_THAT(why(box.to_stick()), HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().rest());
   box.restart();
   ASSERT_TRUE(box.to_stick());
@@ -199,7 +199,7 @@ TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
   box.trouble = "no space left";
   box.restart();
   EXPECT_EQ(box.spare().rests(), "the take-over is not finished: no space left");
-  EXPECT_THAT(box.exported().error().sentence, HasSubstr("not in standby"))
+  EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"))
       << "it has nothing whole to hand on";
 }
 

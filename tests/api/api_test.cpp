@@ -113,7 +113,7 @@ TEST_F(PageTest, LetsABrowserKeepForGoodOnlyWhatIsNamedByItsContent) {
     EXPECT_THAT(path, testing::ContainsRegex("^/index[.][0-9a-f]{12}[.](css|js)$"));
     EXPECT_EQ(header(get_file(path), "Cache-Control"), "public, max-age=31536000, immutable");
   }
-  for (const char* path : {"/", "/setup", "/icon.svg", "/login.html"})
+  for (const char* path : {"/", "/setup", "/help", "/icon.svg", "/login.html"})
     EXPECT_EQ(header(get_file(path), "Cache-Control"), "no-cache") << path;
 }
 

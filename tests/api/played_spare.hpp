@@ -26,7 +26,7 @@ struct PlayedSpare final : Spare {
   }
   icd::Checked<void> rest() override {
     view.rests = true;
-    view.why = "the operator put it in standby, so that a spare takes over";
+    view.why = "its spare takes over";
     view.code = "1234 5678 9012 3456";
     return {};
   }

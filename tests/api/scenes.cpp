@@ -155,11 +155,11 @@ RunView trouble(Time now, double elapsed) {
        R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id takes any))"});
   view.alarms = {
       alarm("command_post_unreachable", alarms::Severity::Bad, began - 130, "Mapping is unreachable",
-            "connecting to 10.100.1.201:8000: Connection refused; all is kept until it answers",
+            "connecting to 10.100.1.201:8000: Connection refused; the box tries again",
             {"Open test", "/setup#test"}),
       alarm("report_in_doubt:8", alarms::Severity::Ask, now - 42, "Report 8 is in doubt",
             "the connection was lost before an answer came", {"Decide", "/#report=8"}),
-      alarm("reports_left", alarms::Severity::Wait, began - 9, "5 reports are left", "of this run", {})};
+      alarm("reports_left", alarms::Severity::Wait, began - 9, "5 reports are left", "in this run", {})};
   view.alarms[0].hides = 3;
   return view;
 }

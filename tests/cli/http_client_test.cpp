@@ -90,7 +90,7 @@ TEST(HttpClient, NamesTheAddressThatNobodyListensAt) {
   ASSERT_FALSE(reply.has_value());
   EXPECT_FALSE(reply.error().sent);
   EXPECT_EQ(reply.error().sentence,
-            "Adit at 127.0.0.1:" + std::to_string(address.port) + " cannot be asked: Connection refused");
+            "cannot reach Adit at 127.0.0.1:" + std::to_string(address.port) + ": Connection refused");
 }
 
 TEST(HttpClient, GivesUpOnAServerThatSaysNothing) {

@@ -296,7 +296,7 @@ TEST_F(AnotherPlace, WhatWaitsForTheFirstIsNotSentTwiceOnTheOperatorsWord) {
   come_back();
   const auto sent = scene_.reports().send(3, scene_.time());
   ASSERT_FALSE(sent);
-  EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same, and is waiting in this run"));
+  EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same, and is queued in this run"));
 }
 
 TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {

@@ -46,7 +46,7 @@ class OperatorsWord : public testing::TestWithParam<Words> {
     const auto outcome = say(scene.reports(), scene.time());
     if (!outcome) {
       EXPECT_EQ(scene.report(1), before);
-      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(name_of(GetParam().state))));
+      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(shown_name_of(GetParam().state))));
     }
     return outcome.has_value();
   }
@@ -307,7 +307,7 @@ TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
   ASSERT_EQ(scene.state(3), Queued);
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);
-  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is waiting in this run"));
+  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is queued in this run"));
   EXPECT_EQ(scene.send_next(), 3);
 }
 

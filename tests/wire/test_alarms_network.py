@@ -20,7 +20,7 @@ class Networks(WithAlarms):
             with neighbour.Neighbour(stage.network, host, interface) as other:
                 other.take(address)
                 name = f"address_taken:{side}"
-                self.sees(stage, name, "bad", "network", "Our address is taken", f"{address} on {interface} is also {other.mac}'s")
+                self.sees(stage, name, "bad", "network", "The box's address is in conflict", f"{other.mac} also uses {address} on {interface}")
                 other.leave()
                 self.goes(stage, name)
 

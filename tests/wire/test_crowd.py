@@ -85,7 +85,7 @@ class Crowd(unittest.TestCase):
         self.assertEqual(len(stage.post.recorded()), 5)
         self.assertGreaterEqual(self.metric(stage, 'adit_connections_ended_total{why="gave_way"}'), SOCKETS)
         self.assertEqual(self.metric(stage, 'adit_connections_ended_total{why="no_room"}'), 0)
-        self.assertIn("strangers", [alarm["id"] for alarm in stage.box.ask("GET /adit/run")[1]["alarms"]])
+        self.assertIn("unauthenticated", [alarm["id"] for alarm in stage.box.ask("GET /adit/run")[1]["alarms"]])
         wait_until(lambda: "too many connections are open" in stage.box.said(), "a line of the log")
         self.assertLessEqual(stage.box.said().count("too many connections are open"), 2, "one a minute")
 

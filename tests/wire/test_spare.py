@@ -113,7 +113,7 @@ class Spare(WithAlarms):
         asked = len(stage.post.requests())
         stage.exported()
         asked = max(asked, len(stage.post.requests()))
-        self.sees(stage, "rests", "bad", "box", "This box rests and sends nothing", "so that a spare takes over")
+        self.sees(stage, "standby", "bad", "box", "This box is on standby", "its spare takes over")
         refused = submit(stage, another(1))
         self.assertEqual((refused.status_code, refused.json()),
                          (503, "this box rests, for its spare to take over: nothing is taken or sent"))
@@ -121,11 +121,11 @@ class Spare(WithAlarms):
         self.assertEqual(stage.box.judge(1, "resubmit")[0], 409)
         stage.unplug()
         stage.restart_box()
-        wait_until(lambda: self.alarm(stage, "rests"), "it to rest after a power cut, too")
+        wait_until(lambda: self.alarm(stage, "standby"), "it to rest after a power cut, too")
         self.assertEqual(len(stage.post.requests()), asked, "nothing was asked of the Command Post")
         self.assertEqual(len(stage.box.reports()), 1, "nothing was kept")
         stage.adit("wake", "--yes")
-        wait_until(lambda: self.view(stage)["lights"] and not self.alarm(stage, "rests"), "it to go on")
+        wait_until(lambda: self.view(stage)["lights"] and not self.alarm(stage, "standby"), "it to go on")
         began(stage)
         self.assertEqual(submit(stage, another(1)).status_code, 201)
 

@@ -240,7 +240,7 @@ class SetUp(unittest.TestCase):
         status, said, _ = self.box.ask("POST /adit/settings", {"settings": mine["settings"], "base": mine["tag"]},
                                        **self.me)
         self.assertEqual(status, 409)
-        self.assertIn("somebody else", said)
+        self.assertIn("another user", said)
         self.assertEqual(self.settings()["settings"]["reports"]["near_metres"], 5)
 
     def test_an_alias_goes_on_as_the_robots_name_and_an_unknown_robot_is_taken_and_told_of(self):

@@ -63,7 +63,7 @@ TEST_F(SetupTest, WarnsOfPagesThatMayPostWithoutAToken) {
   EXPECT_THAT(setup_.warnings(next), testing::IsEmpty()) << "all need a token";
   next.team.require_token = false;
   EXPECT_THAT(setup_.warnings(next),
-              testing::ElementsAre(testing::HasSubstr("whoever is on the team's network"),
+              testing::ElementsAre(testing::HasSubstr("every machine on the team's network"),
                                    testing::HasSubstr("pages of http://10.0.0.20:3000 may post reports")));
 }
 

@@ -161,7 +161,7 @@ TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
     const auto answer = get_file(path);
     EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
     EXPECT_EQ(answer.content_type, "application/json");
-    EXPECT_EQ(nlohmann::json::parse(answer.body), "there is nothing at \"" + std::string(path) + "\"");
+    EXPECT_EQ(nlohmann::json::parse(answer.body), "there is no resource at \"" + std::string(path) + "\"");
   }
 }
 

@@ -230,7 +230,7 @@ TEST_F(SettingsRoutesTest, SlowDownWhoGuessesThePasswordByResetting) {
 }
 
 TEST_F(SettingsRoutesTest, PassOnWhyAChangeIsNotMade) {
-  setup.refusal = {Status::ServiceUnavailable, "the change cannot be kept: No space left on device"};
+  setup.refusal = {Status::ServiceUnavailable, "cannot store the change: No space left on device"};
   json said = shown();
   said["settings"]["team"]["connections"] = 65;
   for (const auto& answer :

@@ -320,7 +320,7 @@ class Everyday(Contained):
         self.wait_for_stick(lambda said: not said["hindrance"] and said["exports"], "the full stick to be found")
         self.asked("POST /adit/spare/to-stick")
         refusal = self.wait_for_stick(lambda said: said["refusal"] and not said["doing"], "a refusal")["refusal"]
-        self.assertRegex(refusal, "the stick has room for|the stick has no room")
+        self.assertRegex(refusal, "the stick has room for|the stick is full")
         self.assertEqual(stick.as_it_is(name), kept, "what was there before is there still")
         self.asked("POST /adit/spare/wake")
         programs.wait_until(self.box.knows_the_run, "it to go on", 60)

@@ -55,8 +55,8 @@ TEST_F(ClockCommand, SaysHowToSetItWhereItIsNot) {
 
 TEST_F(ClockCommand, TellsWhyItWasNotSet) {
   const Server server(
-      {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "the clock cannot be set: no")}});
-  EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: the clock cannot be set: no"));
+      {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "cannot set the clock: no")}});
+  EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: cannot set the clock: no"));
 }
 
 TEST_F(ClockCommand, SetsItToThisComputersTime) {

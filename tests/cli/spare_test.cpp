@@ -79,7 +79,7 @@ TEST_F(SpareCommand, RefusesWhatIsNoExportBeforeItIsSent) {
   const Server server(Server::Answers{});
   const std::string other = folder_.put("other", "PK a zip file of more bytes");
   EXPECT_THAT(say(server, {"take", other, "--code", "1234567890123456"}).err,
-              HasSubstr("it is no export of an Adit"));
+              HasSubstr("the file is not an export from Adit"));
   EXPECT_THAT(say(server, {"take", folder_ / "none", "--code", "1"}).err, HasSubstr("none: cannot be read"));
   EXPECT_THAT(say(server, {"take", other}).err, HasSubstr("the code of the export is missing: give --code"));
 }

@@ -61,9 +61,9 @@ TEST_F(Update, GoesBackOrStaysWhereItIsAskedTo) {
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{\"anyway\": true}"));
   EXPECT_EQ(say(server, {"--stay"}).out, "the box keeps the slot that runs\n");
   const Server none(
-      {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no other slot was good last\"")}});
+      {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no unexpected slot is running\"")}});
   const Outcome refused = say(none, {"--stay"});
-  EXPECT_EQ(refused.err, "adit: no other slot was good last\n");
+  EXPECT_EQ(refused.err, "adit: no unexpected slot is running\n");
   EXPECT_EQ(refused.exit, Exit::Attention);
 }
 

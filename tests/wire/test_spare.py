@@ -113,7 +113,7 @@ class Spare(WithAlarms):
         asked = len(stage.post.requests())
         stage.exported()
         asked = max(asked, len(stage.post.requests()))
-        self.sees(stage, "standby", "bad", "box", "This box is on standby", "for its spare")
+        self.sees(stage, "standby", "bad", "box", "This box is on standby", "its spare takes over")
         refused = submit(stage, another(1))
         self.assertEqual((refused.status_code, refused.json()),
                          (503, "this box is in standby, for its spare to take over; it accepts and sends no messages"))

@@ -11,7 +11,6 @@ namespace {
 using icd::sentence;
 using Is = ReportFact::Is;
 
-constexpr std::string_view kHeld = "held: ";
 constexpr const char* kCallDone = "; mark it as done";
 constexpr const char* kUntilDone = "; until you mark it as done, new reports of this run are held";
 
@@ -26,7 +25,7 @@ constexpr struct {
 
 std::string why(const ReportFact& report) {
   if (report.is == Is::Lost) return report.note + (report.of_run ? kUntilDone : kCallDone);
-  return report.note.starts_with(kHeld) ? report.note.substr(kHeld.size()) : report.note;
+  return report.note;
 }
 
 void find_undecided(const Facts& facts, Found& found) {

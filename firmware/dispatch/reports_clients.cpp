@@ -123,13 +123,13 @@ const Report* Reports::twin(const Report& report) const {
 /// It is the same as one of which an answer is to tell yet whether it is of the present run.
 Reports::Hold Reports::maybe_repeat(const Report& report) const {
   if (const Report* const other = same_in_maybe(report); other != nullptr) {
-    return {icd::sentence("held: the same as report ", other->number,
+    return {icd::sentence("the same as report ", other->number,
                           ", and its run may still go on: only the clock shows that a new run began (",
                           run().why, ")"),
             other->number};
   }
   if (const Report* const other = unclaimed_same(report); other != nullptr) {
-    return {icd::sentence("held: the same as report ", other->number,
+    return {icd::sentence("the same as report ", other->number,
                           ", which was answered when the new run may already have begun (", run().why,
                           "); the next answer decides"),
             other->number};
@@ -141,7 +141,7 @@ Reports::Hold Reports::maybe_repeat(const Report& report) const {
 Reports::Hold Reports::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
   for (const Report* const doubt : book_.doubts(run().number)) {
-    if (doubt->is_lost()) return {icd::sentence("held: ", doubt->note, "; this may be the same report")};
+    if (doubt->is_lost()) return {icd::sentence("", doubt->note, "; this may be the same report")};
   }
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   if (rules_.review == Review::Off) return {};
@@ -151,18 +151,18 @@ Reports::Hold Reports::reason_to_hold(const Report& report) const {
     const bool counts =
         is_of_run(other) && !later && number != report.number && other.state != ReportState::Withdrawn;
     if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
-      return {icd::sentence("held: the same type as report ", number, ", ",
+      return {icd::sentence("the same type as report ", number, ", ",
                             metres(distance(other.report, report.report)), " from it")};
     }
   }
-  return rules_.review == Review::All ? Hold{"held: every report is reviewed"} : Hold{};
+  return rules_.review == Review::All ? Hold{"every report is reviewed"} : Hold{};
 }
 
 /// What take() could not do because the run was not known. False: it is not to be sent (or not yet).
 bool Reports::check(std::int64_t number, Time time) {
   const Report report = book_.at(number);
   if (report.run != run().number && !report.asked && !is_young(report, time.now)) {
-    step(number, ReportEvent::Held, "held: a new run began (" + run().why + ")", time);
+    step(number, ReportEvent::Held, "a new run began (" + run().why + ")", time);
     return false;
   }
   if (!unchecked_.contains(number)) return true;

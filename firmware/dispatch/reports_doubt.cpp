@@ -120,13 +120,13 @@ ReportBook::Step Reports::after_loss(const Report& doubt, const Evidence& eviden
   if (same != nullptr) {
     return {.number = doubt.number,
             .event = ReportEvent::Held,
-            .note = icd::sentence("held: not recorded, and report ", same->number, " is the same and is ",
+            .note = icd::sentence("not recorded, and report ", same->number, " is the same and is ",
                                   shown_name_of(same->state), " in this run")};
   }
   if (doubt.tries >= kMostTries) {
     return {.number = doubt.number,
             .event = ReportEvent::Held,
-            .note = icd::sentence("held: sent ", doubt.tries, " times without an answer, and not recorded")};
+            .note = icd::sentence("sent ", doubt.tries, " times without an answer, and not recorded")};
   }
   return {.number = doubt.number, .event = ReportEvent::Missing, .note = "not recorded: " + evidence.why};
 }

@@ -53,7 +53,7 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
                            : is_final(report->state)          ? "only a queued report can be held"
                                                               : "it may have been sent already");
   }
-  if (!step(number, ReportEvent::HeldBack, "held: the operator held it", time)) {
+  if (!step(number, ReportEvent::HeldBack, "the operator held it", time)) {
     return std::unexpected(kDisk);
   }
   unchecked_.erase(number);  // his later word is enough

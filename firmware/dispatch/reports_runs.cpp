@@ -146,7 +146,7 @@ std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& wh
       changed.before.reset();
     } else {
       changed.state = transition(report.state, ReportEvent::Held)->to;
-      changed.note = "held: a new run began (" + why + ")";
+      changed.note = "a new run began (" + why + ")";
     }
   };
   for (const Report* const doubt : book_.doubts(run().number)) {

@@ -235,7 +235,7 @@ class TakingOver {
     if (const Report* const own = sent_here(next); own != nullptr) {
       next.same_as = own->number;
       return step(next, ReportState::Held,
-                  icd::sentence("held: the same as report ", own->number, ", which this box had"));
+                  icd::sentence("the same as report ", own->number, ", which this box had"));
     }
     next.before = there.run == there_runs_.present().number ? handover_.expected : std::nullopt;
     next.sending = ++next_sending_;
@@ -267,12 +267,12 @@ class TakingOver {
     if (own.state != ReportState::Queued || (!is_of_own && !is_of_none)) return;
     Report next = own;
     if (is_of_own && own_is_another_) {
-      step(next, ReportState::Held, "held: the run of the first box goes on");
+      step(next, ReportState::Held, "the run of the first box goes on");
     } else if (const TakenOver* const same = taken_like(own); same != nullptr && !own.asked) {
       next.run = present_;
       next.same_as = same->report.number;
       step(next, ReportState::Held,
-           icd::sentence("held: the same as report ", same->report.number, ", which the first box had"));
+           icd::sentence("the same as report ", same->report.number, ", which the first box had"));
     } else {
       next.run = present_;
       step(next, ReportState::Queued, "");

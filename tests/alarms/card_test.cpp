@@ -56,7 +56,7 @@ void robots_and_queue(std::vector<Facts>& days) {
 void reports(std::vector<Facts>& days) {
   days.push_back(named());
   days.back().reports = {
-      {.number = 7, .is = ReportFact::Is::Held, .note = "held: close to report 5"},
+      {.number = 7, .is = ReportFact::Is::Held, .note = "close to report 5"},
       {.number = 7, .is = ReportFact::Is::InDoubt, .note = "the status cannot tell"},
       {.number = 7, .is = ReportFact::Is::Lost, .of_run = false, .note = "a row is damaged"}};
   days.back().reports_left = 5;

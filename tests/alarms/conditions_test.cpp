@@ -40,7 +40,7 @@ void both_down(Facts& facts) {
 
 template <ReportFact::Is is>
 void report(Facts& facts) {
-  facts.reports.push_back({.number = 7, .is = is, .note = "held: it may be the same", .since = kNow - 5});
+  facts.reports.push_back({.number = 7, .is = is, .note = "it may be the same", .since = kNow - 5});
 }
 
 const ConditionCase kConditionCases[] = {
@@ -348,7 +348,7 @@ TEST(Queue, NamesThreeWhoAreRefusedForAMinute) {
 TEST(ReportsToDecide, AreToldOneByOneUpToSoMany) {
   Facts facts = well();
   for (std::int64_t number = 1; number <= 12; ++number)
-    facts.reports.push_back({.number = number, .is = ReportFact::Is::Held, .note = "held: all are"});
+    facts.reports.push_back({.number = number, .is = ReportFact::Is::Held, .note = "all are"});
   const auto found = conditions_of(facts);
   EXPECT_EQ(found.size(), kOneByOne + 1);
   EXPECT_EQ(find(found, "report_held:more").headline.now(), "2 more reports are held");

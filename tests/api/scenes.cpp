@@ -186,7 +186,7 @@ RunView reports(Time now, double elapsed) {
   view.reports[2].asking = true;
   view.reports[2].note = "the connection was lost before an answer came; the run's status is being asked";
   view.reports[3].note = "no answer came, and the run's status shows that another client reports, too";
-  view.reports[4].note = "held: the same type as report 25, 2 m from it";
+  view.reports[4].note = "the same type as report 25, 2 m from it";
   view.reports[5].reconciled = true;
   view.reports[6].note = "the operator called it done";
   view.reports[7].same_as = 17;

@@ -182,7 +182,7 @@ TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
     EXPECT_EQ(scene.send_next(), tries < Reports::kMostTries ? 1 : 0);
   }
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_EQ(scene.report(1).note, "held: sent 5 times without an answer, and not recorded");
+  EXPECT_EQ(scene.report(1).note, "sent 5 times without an answer, and not recorded");
   EXPECT_EQ(scene.told(client).status, 503);
   scene.post(2);
   EXPECT_EQ(scene.state(2), Sending) << "nothing else is blocked";

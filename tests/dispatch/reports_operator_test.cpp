@@ -76,10 +76,10 @@ TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
   const ClientId client = scene.post_to_wait();
   ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_EQ(scene.report(1).note, "held: the operator held it");
+  EXPECT_EQ(scene.report(1).note, "the operator held it");
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, HasSubstr("is held until the operator decides"));
-  EXPECT_THAT(scene.undecided(), ElementsAre("held: the operator held it"));
+  EXPECT_THAT(scene.undecided(), ElementsAre("the operator held it"));
   scene.keep_hearing(60, 20, 0);
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());

@@ -69,7 +69,7 @@ TEST(ANewRun, HoldsWhatWaitsFromTheRunBefore) {
   scene.wait(11);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_THAT(scene.report(1).note, HasSubstr("held: a new run began (the reports left went up"));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began (the reports left went up"));
   EXPECT_EQ(scene.output().ledger.at(1).state, Held) << "written down with the run";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1) << "the operator asks for it";

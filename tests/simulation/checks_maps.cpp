@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <ranges>
+#include <set>
 #include <utility>
 
 #include "icd/sentence.hpp"
@@ -94,6 +95,15 @@ bool may_go_whole(const std::vector<Event>& events, std::size_t first, std::size
 
 void check_clouds(const Evidence& evidence, const Name& name, const std::vector<Posted>& all,
                   Broken& broken) {
+  // Of a merged cloud all goes whole again, also a part that had no more.
+  const auto message_of = [&](std::size_t taken) {
+    return std::pair(evidence.events[taken].request, evidence.events[taken].at);
+  };
+  std::set<std::pair<std::uint64_t, double>> had_more;
+  for (const Posted& cloud : all) {
+    if (cloud.asked->items.size() < 2) continue;
+    for (const std::size_t at : cloud.taken) had_more.insert(message_of(at));
+  }
   for (const Posted& cloud : all) {
     if (cloud.asked->accepted() && cloud.taken.empty()) {
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
@@ -101,8 +111,9 @@ void check_clouds(const Evidence& evidence, const Name& name, const std::vector<
     }
     for (std::size_t i = 1; i < cloud.taken.size() && !cloud.again; ++i) {
       if (may_be_double(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
-      const bool had_more = cloud.asked->items.size() > 1;
-      if (had_more && may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i])) continue;
+      if (had_more.contains(message_of(cloud.taken[i - 1])) &&
+          may_go_whole(evidence.events, cloud.taken[i - 1], cloud.taken[i]))
+        continue;
       broken.push_back(icd::sentence("CloudArrived: ", cloud.item->serial, " of '", name,
                                      "' was taken again at ", evidence.events[cloud.taken[i]].at));
     }

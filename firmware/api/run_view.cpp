@@ -109,6 +109,8 @@ constexpr Member kRefusal[] = {
     member<&RefusalRow::parts>("parts",
                                "how many parts of a state or of markers were refused; the others of it were "
                                "taken, unless all were bad. 0: no parts"),
+    member<&RefusalRow::setting>("setting",
+                                 "the key of a setting that can prevent this refusal; empty: no setting can"),
 };
 
 constexpr Member kEndpoint[] = {

@@ -36,7 +36,7 @@ test("tries a token as it is typed, and neither keeps nor shows it", async (t) =
   for (const [label, port] of [["Scoring port", box.scoring], ["Mapping port", box.mapping]]) await page.getByLabel(label, { exact: true }).fill(String(port));
   await step(page, "Tokens").click();
   await page.getByLabel("Scoring endpoint’s token", { exact: true }).fill("typed-and-wrong");
-  await page.getByRole("link", { name: "Try these before setting them" }).click();
+  await page.getByRole("link", { name: "Try these tokens before you set them" }).click();
   await tries(page).click();
   await tried(page, "typed", "1 of 12 steps failed");
   assert.match(await page.locator("[data-tried=typed] .trial").first().innerText(), /scoring token is refused/);
@@ -99,7 +99,7 @@ test("tries a course before it is switched to, and tells it from the Test of wha
   await tried(page, "course", "All is well. Nothing is applied yet");
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
   await step(page, "Test").click();
-  await page.getByRole("button", { name: "Test it" }).click();
+  await page.getByRole("button", { name: "Run the test" }).click();
   await tried(page, "applied", "2 of 12 steps failed. No report was spent.");
   await step(page, "Test").getByText("failed").waitFor();
 });

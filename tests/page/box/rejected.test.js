@@ -65,7 +65,7 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await row(page, "robot_2").waitFor({ state: "detached" });
     await counted(page, 3);
     await focusIs(page, `#rejected li[data-key="${third}"] .send`);
-    await page.locator("#rejected .said", { hasText: "is sent again when its turn comes" }).waitFor();
+    await page.locator("#rejected .said", { hasText: "is queued again" }).waitFor();
 
     await press(button(page, "robot_3", "Discard"));
     await row(page, "robot_3").waitFor({ state: "detached" });
@@ -94,7 +94,7 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await page.locator("#rejected .said", { hasText: "something newer that says all of it was sent since" }).waitFor();
     await focusIs(page, `#rejected li[data-key="${number}"] .send`);
     await page.evaluate(() => (globalThis.deaf = false));
-    await row(page, "robot_2").getByText("Something newer that covers it was sent since.").waitFor();
+    await row(page, "robot_2").getByText("A newer message that contains it was sent.").waitFor();
     await counted(page, 3);
     await focusIs(page, `#rejected li[data-key="${number}"] .discard`);
     assert.ok(await button(page, "robot_2", "Send again").isDisabled());

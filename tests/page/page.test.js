@@ -59,7 +59,7 @@ test("has what is done of other runs behind one press, and says how many there a
   const { page } = await watch(t, "reports");
   const others = page.getByRole("button", { name: "All runs" });
   const shown = () => page.locator("#reports .rows li").count();
-  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 waits$/);
+  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 queued$/);
   assert.equal(await shown(), 10);
   assert.equal(await others.getAttribute("aria-pressed"), "false");
   await others.click();
@@ -110,7 +110,7 @@ test("tells where each report is in its life, and what waits for the operator's 
     ["quiet", /^Helmet.*settled$/],
     ["quiet", /^Backpack.*same as #17/],
     ["quiet", /^Backpack.*withdrawn/],
-    ["bad", /^Survivor.*refused.*status 422$/],
+    ["bad", /^Survivor.*rejected.*status 422$/],
     ["good", /^Survivor #18 · .* · run 1 · 15 min ago scored \+1$/],
   ];
   assert.equal(rows.length, expected.length);
@@ -118,7 +118,7 @@ test("tells where each report is in its life, and what waits for the operator's 
     assert.equal(rows[i][0], level, rows[i][1]);
     assert.match(rows[i][1], words);
   });
-  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 waits$/);
+  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 queued$/);
   assert.deepEqual(page.complaints, []);
 });
 

@@ -88,7 +88,7 @@ test("switches to another course by one press, once it was said what that change
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   const own = page.locator("form.token", { hasText: "Course B: own scoring token" });
-  await own.getByLabel("Course B: scoring", { exact: false }).first().fill(TOKENS.scoring);
+  await own.getByLabel("Course B: own scoring", { exact: false }).first().fill(TOKENS.scoring);
   await own.getByRole("button", { name: "Set" }).click();
   await own.getByText("Set.", { exact: true }).waitFor();
   await page.getByRole("button", { name: "Switch to Course B" }).click();
@@ -103,7 +103,7 @@ test("switches to another course by one press, once it was said what that change
   await page.waitForFunction(() => document.activeElement.id === "courses-title"); // the button that had it is gone
   await until(async () => (await ask("/adit/run")).said.endpoints.every(({ last_status: status }) => status === 200 || status === 0) && (await ask("/adit/run")).said.endpoints[0].last_status === 200, "the scoring endpoint's answer");
   await step(page, "Command Post").click();
-  await page.getByText("Course B is in use. These addresses apply without a course.").waitFor();
+  await page.getByText("Course B is in use and overrides these addresses.").waitFor();
   await step(page, "Courses").click();
   await page.getByRole("button", { name: "Switch to No course" }).click();
   await page.locator("#review").getByRole("button", { name: "Cancel" }).click();

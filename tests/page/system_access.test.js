@@ -79,10 +79,10 @@ test("sets and removes the viewers' password", async (t) => {
   await outcome.filter({ hasText: "Viewers cannot log in" }).waitFor();
   await other.waitForURL(/login\.html/);
   await fill(form, { current: OPERATOR, password: "for the teammates", again: "for the team" });
-  await form.getByRole("button", { name: "Set it" }).click();
+  await form.getByRole("button", { name: "Set", exact: true }).click();
   await outcome.filter({ hasText: "differ" }).waitFor();
   await fill(form, { again: "for the teammates" });
-  await form.getByRole("button", { name: "Set it" }).click();
+  await form.getByRole("button", { name: "Set", exact: true }).click();
   await outcome.filter({ hasText: "Set. All viewers" }).waitFor();
   await other.locator("#login").getByLabel("Password").fill("for the teammates");
   await other.keyboard.press("Enter");

@@ -166,7 +166,7 @@ export function showCourses() {
     list(document.getElementById("switch"), ["", ...courses.map(({ name }) => name)], (name) => name, createCourse, updateCourse);
     overruled.hidden = !course;
     overruled.dataset.level = "wait";
-    badge(overruled.firstElementChild, "wait", `Course ${course} is in use. These addresses apply without a course.`);
+    badge(overruled.firstElementChild, "wait", `Course ${course} is in use and overrides these addresses.`);
   };
   onDraft(show);
   show();

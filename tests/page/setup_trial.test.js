@@ -18,12 +18,12 @@ test("tries addresses as they are typed, before they are applied, and says what 
   const { box, ask, page } = await ready(t, "setup#post");
   await page.getByLabel("Scoring port", { exact: true }).fill(String(box.scoring));
   await tries(page).click();
-  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. Nothing is applied yet, and no report was spent.");
+  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet. No report was spent.");
   assert.deepEqual([scoring[3], scoring[4], mapping[3]], ["good", "good", "bad"]);
   assert.match(await page.locator("[data-tried=typed] .trial").last().innerText(), /127\.0\.0\.1:2[\s\S]*no server at that port[\s\S]*Compare the port/);
   await page.getByLabel("Mapping port", { exact: true }).fill(String(box.mapping));
   await tries(page).click();
-  const all = await tried(page, "typed", "All is well. Nothing is applied yet");
+  const all = await tried(page, "typed", "All is well. These values are not applied yet");
   assert.deepEqual(all.map((each) => each.slice(3, 5)), [["good", "good"], ["good", "good"]]);
   const { settings } = (await ask("/adit/settings")).said;
   assert.deepEqual([settings.command_post.scoring.port, settings.command_post.mapping.port], [1, 2]);
@@ -96,7 +96,7 @@ test("tries a course before it is switched to, and tells it from the Test of wha
   const course = page.locator("#switch li", { hasText: "Course B" });
   await course.getByText(`127.0.0.1:${box.scoring}`).waitFor();
   await course.getByRole("button", { name: "Try Course B" }).click();
-  await tried(page, "course", "All is well. Nothing is applied yet");
+  await tried(page, "course", "All is well. These values are not applied yet");
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
   await step(page, "Test").click();
   await page.getByRole("button", { name: "Run the test" }).click();

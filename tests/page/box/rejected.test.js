@@ -90,8 +90,9 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await send(made, "robot_2", [100, 0, 100, 0]);
     await until(async () => (await rejectedOf(made)).some(({ robot, replaced }) => robot === "robot_2" && replaced), "it to be replaced");
     const number = await numberOf(page, "robot_2");
+    const refused = page.waitForResponse((answer) => answer.url().endsWith(`/adit/rejected/${number}/send`));
     await press(button(page, "robot_2", "Send again"));
-    await page.locator("#rejected .said", { hasText: "something newer that says all of it was sent since" }).waitFor();
+    await page.locator("#rejected .said", { hasText: await (await refused).json() }).waitFor();
     await focusIs(page, `#rejected li[data-key="${number}"] .send`);
     await page.evaluate(() => (globalThis.deaf = false));
     await row(page, "robot_2").getByText("A newer message that contains it was sent.").waitFor();

@@ -20,7 +20,7 @@ bool only_reads(std::string_view method) {
 icd::Checked<void> check_whence(const Request& request) {
   if (!names_this_box(request.host)) {
     return refuse(icd::Status::Forbidden,
-                  "Host: expected the box's address, localhost or its name in .local");
+                  "Host: expected the box's address, localhost or the box's name in .local");
   }
   if (!request.origin.empty() && !is_same_origin(request.origin, request.host)) {
     return refuse(icd::Status::Forbidden, "Origin: expected a page of this box");
@@ -43,14 +43,14 @@ icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const i
   if (auto whence = check_whence(request); !whence) return std::unexpected(whence.error());
   const auto visitor = who(request, tokens, sessions, now);
   if (!visitor) {
-    return refuse(icd::Status::Unauthorized, "log in, or send Authorization: Bearer and the team's token");
+    return refuse(icd::Status::Unauthorized, "log in, or send the team's token as Authorization: Bearer");
   }
   if (visitor->session != nullptr && !only_reads(request.method) &&
       !visitor->session->csrf.matches(request.csrf)) {
     return refuse(icd::Status::Forbidden, std::string(kCsrfHeader) + ": expected the session's CSRF token");
   }
   if (visitor->role < role) {
-    return refuse(icd::Status::Forbidden, "this needs the operator's role; you are logged in as viewer");
+    return refuse(icd::Status::Forbidden, "this needs the operator's role, but you are logged in as viewer");
   }
   return *visitor;
 }

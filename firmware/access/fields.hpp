@@ -20,7 +20,7 @@ namespace adit::access {
 template <class Kept, class Read>
 std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t version, Read read) {
   const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("it is no JSON: " + root.error());
+  if (!root) return std::unexpected("the text is not JSON: " + root.error());
   codec::Reading reading;
   const codec::Field object(*root, reading);
   const codec::Field said = object.member("version");

@@ -63,7 +63,7 @@ std::expected<std::string, std::string> hash(const std::string& password, const 
   const char* const made = crypt_gensalt_rn("$y$", 0, bytes, static_cast<int>(salt.size()), setting,
                                             static_cast<int>(sizeof setting));
   std::string text = made == nullptr ? "" : crypted(password, made);
-  if (text.empty()) return std::unexpected("the password cannot be hashed: is there no memory left?");
+  if (text.empty()) return std::unexpected("cannot hash the password: there may not be enough memory");
   return text;
 }
 

@@ -22,8 +22,7 @@ using host::Level;
 access::Accounts accounts_in(const std::string& file) {
   auto accounts = read_kept_file(file, &access::read_accounts);
   if (accounts) return std::move(*accounts);
-  host::log(Level::Error, "the passwords cannot be read: they have to be set again",
-            {{"why", accounts.error()}});
+  host::log(Level::Error, "cannot read the passwords: set them again", {{"why", accounts.error()}});
   return {};
 }
 
@@ -31,8 +30,7 @@ std::vector<access::Device> read_known(const std::string& file, const access::Ac
   auto devices =
       read_kept_file(file, [&](std::string_view json) { return access::read_devices(json, accounts); });
   if (devices) return std::move(*devices);
-  host::log(Level::Warning, "the browsers that have been in cannot be read: they are strangers",
-            {{"why", devices.error()}});
+  host::log(Level::Warning, "cannot read the known devices: no browser is known", {{"why", devices.error()}});
   return {};
 }
 
@@ -43,7 +41,7 @@ icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
   if (!password) return accounts;
   if (access::role_of(*password, accounts)) {
     return refuse(icd::Status::UnprocessableEntity,
-                  "password: expected another than the other role's, as it alone says who comes");
+                  "password: expected a password that the other role does not have");
   }
   auto hashed = access::hash(*password, salt);
   if (!hashed) return refuse(icd::Status::ServiceUnavailable, hashed.error());
@@ -85,7 +83,7 @@ icd::BearerToken Accounts::kept_code() {
     host::fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
     code = access::code_from(random);
     if (const auto written = host::write_file(code_file(), code + "\n", host::kOursAlone); !written) {
-      host::log(Level::Warning, "the code of the first start is good until the next start only",
+      host::log(Level::Warning, "cannot store the first start's code: the code is valid until the next start",
                 {{"why", written.error()}});
     }
   }
@@ -108,10 +106,10 @@ void Accounts::check(std::string password, std::string address,
         // another was set while it was checked
         if (*role && accounts_.of(**role) != accounts.of(**role)) role->reset();
         if (*role) {
-          host::log(Level::Notice, "somebody logged in",
+          host::log(Level::Notice, "logged in",
                     {{"role", std::string(name_of(**role))}, {"sender", address}});
         } else {
-          host::log(Level::Warning, "a log-in was refused: wrong password", {{"sender", address}});
+          host::log(Level::Warning, "login rejected: wrong password", {{"sender", address}});
         }
         done(*role);
       },
@@ -126,7 +124,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
   access::Salt salt{};
   host::fill_random(salt);
   auto changed = std::make_shared<icd::Checked<access::Accounts>>(
-      refuse(icd::Status::ServiceUnavailable, "the password could not be set: try again"));
+      refuse(icd::Status::ServiceUnavailable, "cannot set the password: try again"));
   const auto change = [changed, role, password = std::move(password), salt, accounts = accounts_] {
     *changed = with(accounts, role, password, salt);
   };
@@ -134,7 +132,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
     if (!*changed) return;
     if (const auto written = host::write_file(file, access::write_accounts(**changed), host::kOursAlone);
         !written) {
-      *changed = refuse(icd::Status::ServiceUnavailable, "the password cannot be kept: " + written.error());
+      *changed = refuse(icd::Status::ServiceUnavailable, "cannot store the password: " + written.error());
     } else {
       unlink(code_file.c_str());  // if there was one, it has done its service
     }
@@ -147,12 +145,12 @@ void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
                        const std::function<void(icd::Checked<void>)>& done) {
   setting_ = false;
   if (!changed) {
-    host::log(Level::Warning, "a password was not set", {{"why", changed.error().sentence}});
+    host::log(Level::Warning, "password not set", {{"why", changed.error().sentence}});
     return done(std::unexpected(changed.error()));
   }
   accounts_ = *changed;
   if (role == Role::Operator) set_up_.close();
-  host::log(Level::Notice, accounts_.of(role) ? "a password was set" : "a password was taken away",
+  host::log(Level::Notice, accounts_.of(role) ? "password set" : "password removed",
             {{"role", std::string(name_of(role))}});
   done({});
 }
@@ -166,14 +164,14 @@ void Accounts::keep_devices() {
       },
       [written] {
         if (*written) return;
-        host::log(Level::Warning, "the browsers that have been in are known until the next start only",
+        host::log(Level::Warning, "cannot store the known devices: they are known until the next start",
                   {{"why", written->error()}});
       });
 }
 
 void Accounts::open_set_up() {
   set_up_.open(loop_.now(), kSetUp);
-  host::log(Level::Warning, "set-up is opened at the box: a new password may be set without the present one",
+  host::log(Level::Warning, "set-up opened at the box: a new password can be set without the present one",
             {{"minutes", std::to_string(kSetUp.count())}});
 }
 

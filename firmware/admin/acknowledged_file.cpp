@@ -14,7 +14,7 @@ AcknowledgedFile::AcknowledgedFile(const std::string& state_folder, loop::Writer
 std::vector<alarms::Acknowledged> AcknowledgedFile::read() {
   auto read = read_kept_file(file_, &alarms::read_acknowledged);
   if (!read) {
-    host::log(host::Level::Warning, "which alarms were acknowledged cannot be read: none is",
+    host::log(host::Level::Warning, "cannot read the acknowledged alarms: no alarm is acknowledged",
               {{"why", read.error()}});
     return {};
   }
@@ -29,7 +29,7 @@ void AcknowledgedFile::keep(std::vector<alarms::Acknowledged> all) {
     const auto written = host::write_file(file, text, host::kOursAlone);
     const bool failed_before = std::exchange(*failed, !written.has_value());
     if (written || failed_before) return;
-    host::log(host::Level::Warning, "which alarms are acknowledged is kept in memory alone",
+    host::log(host::Level::Warning, "cannot store the acknowledged alarms: they are only in memory",
               {{"why", written.error()}});
   };
   writer_.submit(write, [] {});

@@ -41,7 +41,7 @@ icd::Checked<void> ClockSetting::set_clock(double time) {
   if (!status_) return refuse(icd::Status::Conflict, clock().why);
   if (is_kept_by_ntp())
     return refuse(icd::Status::Conflict, icd::sentence("the NTP server ", ntp_.server,
-                                                       " keeps it: clock.ntp_server in the settings"));
+                                                       " keeps the time: clock.ntp_server in the settings"));
   if (!clock::to_be_set(status_->source, {clock::Source::Operator, time}, loop_.wall_now()))
     return refuse(icd::Status::UnprocessableEntity, "time: expected seconds since 1970, from 2026 to 2099");
   if (const auto asked = ask(clock::Source::Operator, time); !asked)
@@ -93,7 +93,7 @@ void ClockSetting::ask_for_ntp() {
   if (has_been && loop_.now() < ntp_asked_at_ + kAskAgain) return;
   ntp_asked_at_ = loop_.now();
   const auto written = host::write_file(ntp_request_, clock::write(ntp_), host::kOursAlone);
-  if (!written) host::log(host::Level::Error, "NTP cannot be asked for", {{"why", written.error()}});
+  if (!written) host::log(host::Level::Error, "cannot request NTP", {{"why", written.error()}});
 }
 
 /// Once its time is set, chronyd keeps it by itself.
@@ -109,7 +109,7 @@ bool ClockSetting::is_kept_by_ntp() const {
 
 std::string ClockSetting::ntp_trouble() const {
   if (!ntp_.is_on()) return "";
-  if (!status_) return "the settings ask for NTP, but this machine keeps its time by itself";
+  if (!status_) return "the settings ask for NTP, but Adit does not set the clock of this machine";
   if (status_->ntp == ntp_ && !status_->trouble.empty()) return status_->trouble;
   if (ntp_.server.empty() || watch_.behind() || loop_.now() < ntp_since_ + kFirstAnswer) return "";
   return icd::sentence(
@@ -121,12 +121,13 @@ std::string ClockSetting::ntp_said() const {
   if (auto trouble = ntp_trouble(); !trouble.empty()) return trouble;
   std::string said;
   if (!ntp_.server.empty())
-    said = icd::sentence("the NTP server ", ntp_.server, is_kept_by_ntp() ? " keeps it" : " is being asked");
+    said = icd::sentence("the NTP server ", ntp_.server,
+                         is_kept_by_ntp() ? " keeps the time" : " is being asked");
   if (ntp_.clients.empty()) return said;
   if (!said.empty()) said += "; ";
   return said +
-         (status_ && clock::is_set(status_->source) ? "given by NTP to "
-                                                    : "once it is set, given by NTP to ") +
+         (status_ && clock::is_set(status_->source) ? "NTP gives the time to "
+                                                    : "once the time is set, NTP gives it to ") +
          ntp_.clients;
 }
 
@@ -140,8 +141,8 @@ void ClockSetting::note_what_became_of_it() {
 void ClockSetting::give_up() {
   unlink(request_.c_str());
   waits_ = false;
-  not_taken_up_ = "adit-clock did not take it up: see journalctl -u adit-clock";
-  host::log(host::Level::Error, "the clock was not set by adit-clock");
+  not_taken_up_ = "adit-clock did not read the request: see journalctl -u adit-clock";
+  host::log(host::Level::Error, "adit-clock did not set the clock");
 }
 
 }  // namespace adit::admin

@@ -56,7 +56,7 @@ class ClockSetting final : public api::Clock {
   NtpWatch watch_;
   clock::Ntp ntp_;  // as the settings have it
   loop::Instant ntp_asked_at_{}, ntp_since_{};
-  std::expected<clock::Status, std::string> status_ = std::unexpected("nobody has looked yet");
+  std::expected<clock::Status, std::string> status_ = std::unexpected("its status has not been read yet");
   std::string asked_;   // the nonce of what was asked for last; "": nothing
   bool waits_ = false;  // for it to be in the status
   loop::Instant asked_at_{};

@@ -32,11 +32,11 @@ std::expected<bool, std::string> FactoryReset::finish() {
   for (const char* kept : {"journal", "waiting", "rejected"}) {
     std::error_code error;
     std::filesystem::remove_all(runtime_ + '/' + kept, error);
-    if (error) return std::unexpected(runtime_ + '/' + kept + ": cannot be removed: " + error.message());
+    if (error) return std::unexpected("cannot remove " + runtime_ + '/' + kept + ": " + error.message());
   }
   std::error_code error;
   std::filesystem::remove_all(state_ + "/runs", error);
-  if (error) return std::unexpected(state_ + "/runs: cannot be removed: " + error.message());
+  if (error) return std::unexpected("cannot remove " + state_ + "/runs: " + error.message());
   // Last: until then the box does not look as if it were reset.
   for (const std::string& file :
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
@@ -44,7 +44,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
         state_ + '/' + Accounts::kFile, state_ + '/' + TakingOver::kFile, begun()}) {
     if (const auto done = host::remove_file(file); !done) return std::unexpected(done.error());
   }
-  host::log(host::Level::Notice, "all that was set up is forgotten");
+  host::log(host::Level::Notice, "factory reset: settings, tokens, passwords and sessions deleted");
   return true;
 }
 

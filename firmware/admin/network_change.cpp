@@ -58,8 +58,8 @@ void NetworkChange::note_what_became_of_it() {
   if (loop_.now() < asked_->at + kTakenUpWithin) return;
   requests_.forget_wanted();
   asked_.reset();
-  not_taken_up_ = "adit-network did not take it up: see journalctl -u adit-network";
-  host::log(host::Level::Error, "a change of the network was not taken up by adit-network");
+  not_taken_up_ = "adit-network did not read the request: see journalctl -u adit-network";
+  host::log(host::Level::Error, "adit-network did not read a change of the addresses");
 }
 
 void NetworkChange::every_second() {
@@ -77,7 +77,7 @@ std::string NetworkChange::hindrance() const {
   if (!status_) return "adit-network does not run here: " + status_.error();
   if (status_->team_interface != team || status_->command_post_interface != post) {
     return icd::sentence("adit-network has ", status_->team_interface, " and ",
-                         status_->command_post_interface, ", and the settings name ", team, " and ", post);
+                         status_->command_post_interface, ", but the settings name ", team, " and ", post);
   }
   return "";
 }
@@ -146,12 +146,12 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 }
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
-  if (pending()) return refuse_now("a change waits to be confirmed or taken back");
+  if (pending()) return refuse_now("another change is not yet confirmed or taken back");
   if (const std::string why = hindrance(); !why.empty()) return refuse_now(why);
   network::Wanted request{draw_nonce(), settings_.network.confirm_within, wanted};
   if (const auto asked = requests_.ask(request); !asked)
-    return refuse_now("it cannot be asked for: " + asked.error());
-  host::log(host::Level::Notice, "a change of the network is asked for",
+    return refuse_now("cannot request the change: " + asked.error());
+  host::log(host::Level::Notice, "change of the addresses requested",
             {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
   asked_ = Asked{std::move(request), loop_.now()};
   not_taken_up_.clear();
@@ -160,7 +160,7 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
-  if (!waits) return refuse_now("no change waits to be confirmed");
+  if (!waits) return refuse_now("there is no change to confirm");
   if (auto may = check_confirmable(waits->wanted, local); !may) return may;
   return say(network::Word::What::Confirm, *waits);
 }
@@ -172,12 +172,12 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const auto kept = status_ ? status_->kept : std::nullopt;
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
   if ((stays || !fixed) && is_asked())
-    return refuse_now("the change is not made yet: try again in a few seconds");
+    return refuse_now("the change is not applied yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
   if (stays || new_one) return {};
-  return refuse_now(icd::sentence("confirm it at ", page_at(wanted), ": this came to ", local,
-                                  ", and says nothing of the new address"));
+  return refuse_now(icd::sentence("confirm it at ", page_at(wanted), ": this request came to ", local,
+                                  " and does not show that the new address works"));
 }
 
 void NetworkChange::lead_to_endpoints() {
@@ -198,8 +198,7 @@ void NetworkChange::lead_to_endpoints() {
   if (status_->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
   told_at_ = loop_.now();
   if (const auto asked = requests_.ask(all); !asked) {
-    host::log(host::Level::Error, "adit-network cannot be told where the endpoints are",
-              {{"why", asked.error()}});
+    host::log(host::Level::Error, "cannot tell adit-network the endpoints", {{"why", asked.error()}});
   }
 }
 
@@ -214,13 +213,13 @@ std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
 
 icd::Checked<void> NetworkChange::take_back() {
   const auto waits = pending();
-  if (!waits) return refuse_now("no change waits: there is nothing to take back");
+  if (!waits) return refuse_now("there is no change to take back");
   return say(network::Word::What::Back, *waits);
 }
 
 icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {
   if (const auto asked = requests_.ask(network::Word{pending.nonce, what}); !asked) {
-    return refuse_now("it cannot be said: " + asked.error());
+    return refuse_now("cannot tell adit-network: " + asked.error());
   }
   return {};
 }

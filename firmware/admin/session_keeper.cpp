@@ -13,7 +13,7 @@ SessionKeeper::SessionKeeper(std::string file, access::Instant now)
     : file_(std::move(file)), boot_(host::boot()), sessions_([this] { keep(); }) {
   auto kept = read_kept_file(file_, &access::read_sessions);
   if (!kept) {
-    host::log(host::Level::Warning, "who is logged in cannot be read: all have to log in again",
+    host::log(host::Level::Warning, "cannot read the sessions: users have to log in again",
               {{"why", kept.error()}});
   } else if (kept->boot == boot_) {
     sessions_.restore(std::move(kept->sessions), kept->last, now);
@@ -25,7 +25,8 @@ void SessionKeeper::keep() {
   const auto written = host::write_file(file_, access::write_sessions(kept), host::kOursAlone);
   const bool failed_before = std::exchange(failed_, !written.has_value());
   if (written || failed_before) return;
-  host::log(host::Level::Warning, "who is logged in is kept in memory alone", {{"why", written.error()}});
+  host::log(host::Level::Warning, "cannot store the sessions: they are only in memory",
+            {{"why", written.error()}});
 }
 
 }  // namespace adit::admin

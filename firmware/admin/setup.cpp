@@ -74,7 +74,7 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   if (now.team.listen != then.team.listen || now.team.interface != then.team.interface) {
     sentences.push_back(icd::sentence("Adit and this page move from ", listed(now.team.listen), " to ",
                                       listed(then.team.listen),
-                                      ": open it there, and point robots and stations there"));
+                                      ": open the page there, and point robots and stations there"));
   }
   if (now.command_post.scoring != then.command_post.scoring) {
     sentences.push_back(for_reports_(forward::address_text(then.command_post.scoring)));
@@ -82,10 +82,10 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   if (now.command_post.mapping != then.command_post.mapping) {
     sentences.push_back(icd::sentence("maps, states and markers go to ",
                                       forward::address_text(then.command_post.mapping),
-                                      " from then on, also those that wait"));
+                                      " from then on, also the queued ones"));
   }
   if (!next.team.require_token && settings_.team.require_token) {
-    sentences.emplace_back("whoever is on the team's network may post reports, without a token");
+    sentences.emplace_back("every machine on the team's network may post reports without a token");
   }
   const bool opens_to_pages = !next.team.require_token && !next.team.origins.empty();
   if (opens_to_pages && (settings_.team.require_token || next.team.origins != settings_.team.origins)) {
@@ -98,10 +98,10 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
 icd::Checked<void> Setup::applied(const std::expected<void, std::string>& written, const char* what,
                                   const std::function<void()>& apply) {
   if (!written) {
-    host::log(host::Level::Error, "a change cannot be kept", {{"what", what}, {"why", written.error()}});
-    return refuse(icd::Status::ServiceUnavailable, "the change cannot be kept: " + written.error());
+    host::log(host::Level::Error, "cannot store a change", {{"what", what}, {"why", written.error()}});
+    return refuse(icd::Status::ServiceUnavailable, "cannot store the change: " + written.error());
   }
-  host::log(host::Level::Notice, "a change is applied", {{"what", what}});
+  host::log(host::Level::Notice, "change applied", {{"what", what}});
   applying_ = true;
   apply();
   return {};
@@ -112,7 +112,7 @@ icd::Checked<void> Setup::save(const Settings& next) {
   const auto changes = settings::changes(settings_, next);
   if (changes.empty() && is_kept_) return {};
   for (const settings::Change& change : changes) {
-    host::log(host::Level::Notice, "a setting is changed", {{"setting", change.path}});
+    host::log(host::Level::Notice, "setting changed", {{"setting", change.path}});
   }
   const auto written = store_.save(next);
   is_kept_ = written || store_.take_back();

@@ -51,13 +51,13 @@ Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, 
   const std::string unread = file ? "" : file.error();
   if (file) file_ = *std::move(file);
   if (!trouble_.empty()) {
-    rests_ = "it could not take over yet: " + trouble_;
+    rests_ = "the take-over is not finished: " + trouble_;
   } else if (!unread.empty()) {
-    rests_ = "nobody knows whether its spare took over: " + unread;
+    rests_ = "it is not known whether a spare took over: " + unread;
   } else if (file_.rest) {
-    rests_ = "it was put to rest, for its spare to take over";
+    rests_ = "its spare takes over";
   }
-  if (!rests_.empty()) host::log(host::Level::Warning, "this box rests", {{"why", rests_}});
+  if (!rests_.empty()) host::log(host::Level::Warning, "this box is on standby", {{"why", rests_}});
 }
 
 void Spare::ends(const std::optional<icd::RunStatus>& expected) {
@@ -65,7 +65,7 @@ void Spare::ends(const std::optional<icd::RunStatus>& expected) {
   SpareFile next = file_;
   next.rest->expected = expected;
   if (const auto kept = keep(next); !kept)
-    host::log(host::Level::Warning, "what the Command Post counted is not known to the spare",
+    host::log(host::Level::Warning, "cannot store the run's status for the spare",
               {{"why", kept.error().sentence}});
 }
 
@@ -117,18 +117,18 @@ icd::Checked<void> Spare::rest() {
   next.rest_count = next.rest_count.value_or(0) + 1;
   if (auto kept = keep(next); !kept) return kept;
   goes_to_rest_ = true;
-  host::log(host::Level::Notice, "this box goes to rest, for its spare to take over");
+  host::log(host::Level::Notice, "this box goes on standby, so that a spare takes over");
   restart_.call_at(loop_.now());
   return {};
 }
 
 icd::Checked<void> Spare::wake() {
-  if (rests_.empty()) return refuse(Status::Conflict, "this box does not rest");
+  if (rests_.empty()) return refuse(Status::Conflict, "this box is not on standby");
   if (!is_stuck()) {
     SpareFile next = file_;
     next.rest.reset();
     if (auto kept = keep(next); !kept) return kept;
-    host::log(host::Level::Notice, "this box was woken up: its spare did not take over");
+    host::log(host::Level::Notice, "this box was woken up: no spare took over");
   }
   restart_.call_at(loop_.now());
   return {};
@@ -150,7 +150,7 @@ void Spare::export_to_stick(Done done) {
 void Spare::seal(const Named& done) {
   const auto refused = [&done](Status status, std::string why) { done(refuse(status, std::move(why)), ""); };
   if (!file_.rest || rests_.empty() || is_stuck())
-    return refused(Status::Conflict, "this box does not rest: only then is there an export of it");
+    return refused(Status::Conflict, "this box is not on standby: only a box on standby can be exported");
   auto content = asked_.content();
   if (!content) return refused(Status::ServiceUnavailable, std::move(content.error()));
   content->about.box = file_.box;
@@ -161,9 +161,9 @@ void Spare::seal(const Named& done) {
   content->about.expected = file_.rest->expected;
   auto text = std::make_shared<std::string>(spare::write(*content));
   if (text->size() > spare::kLargestExport - spare::kSealing)
-    return refused(Status::Conflict, "there is more in the ledger than an export may hold");
-  auto sealed =
-      std::make_shared<std::expected<std::string, std::string>>(std::unexpected("it could not be sealed"));
+    return refused(Status::Conflict, "the ledger is larger than an export may be");
+  auto sealed = std::make_shared<std::expected<std::string, std::string>>(
+      std::unexpected("the export could not be sealed"));
   const spare::Seed seed{.salt = random<16>(), .nonce = random<24>()};
   workers_.submit(
       loop::Urgency::CanWait,
@@ -182,8 +182,7 @@ icd::Checked<void> Spare::take_from_stick(const std::string& name) {
 /// By the checks of one that is uploaded.
 void Spare::taken_from_stick(std::string file) {
   if (const auto taken = take_in(std::move(file)); !taken)
-    host::log(host::Level::Warning, "the export from the stick was not taken in",
-              {{"why", taken.error().sentence}});
+    host::log(host::Level::Warning, "export from the stick rejected", {{"why", taken.error().sentence}});
 }
 
 icd::Checked<void> Spare::take_in(std::string file) {
@@ -198,14 +197,14 @@ void Spare::open(const std::string& code, Done done) {
   if (!typed)
     return done(
         refuse(Status::UnprocessableEntity, icd::sentence("code: expected ", spare::kCodeDigits, " digits")));
-  if (!sealed_) return done(refuse(Status::Conflict, "no export waits for its code: take one in first"));
-  auto text =
-      std::make_shared<std::expected<std::string, std::string>>(std::unexpected("it could not be opened"));
+  if (!sealed_) return done(refuse(Status::Conflict, "there is no export to open: import one first"));
+  auto text = std::make_shared<std::expected<std::string, std::string>>(
+      std::unexpected("the export could not be opened"));
   workers_.submit(
       loop::Urgency::CanWait,
       [sealed = sealed_, text, code = *typed] { *text = spare::unseal(*sealed, code); },
       [this, sealed = sealed_, text, done = std::move(done)] {
-        if (sealed != sealed_) return done(refuse(Status::Conflict, "another export was taken in meanwhile"));
+        if (sealed != sealed_) return done(refuse(Status::Conflict, "another export was imported meanwhile"));
         auto checked = opened(std::move(*text));
         if (checked) sealed_.reset();
         done(std::move(checked));
@@ -241,7 +240,7 @@ icd::Checked<void> Spare::forget() {
 
 icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
-  if (!taken_in_) return refuse(Status::Conflict, "nothing is taken in: take in the export first");
+  if (!taken_in_) return refuse(Status::Conflict, "no export is open: import and open one first");
   spare::Content content = *taken_in_;
   if (!asked_.is_time_set()) content.about.told_at.reset();  // nobody can compare them
   if (auto begun = taking_over_.begin(spare::write(content)); !begun)

@@ -44,15 +44,15 @@ std::expected<void, std::string> SpareFile::write(const std::string& state_folde
 }
 
 std::string SpareFile::hindrance(const spare::About& about) const {
-  if (about.box == box) return "this box made the export itself: wake it up, if no spare took over";
+  if (about.box == box) return "this box made the export itself: wake the box up if no spare took over";
   const auto before = std::ranges::find(taken, about.box, &TakenFrom::box);
   if (before == taken.end()) return "";
   // That box's clock may have been set back in between: its count goes before.
   const bool are_counted = about.rest_count && before->rest_count;
   const auto order = are_counted ? *about.rest_count <=> *before->rest_count : about.at <=> before->at;
   if (order > 0) return "";
-  return order == 0 ? "this box took over from this export already"
-                    : "this box took over from a later export of that box already";
+  return order == 0 ? "this box already took over from this export"
+                    : "this box already took over from a later export of the same box";
 }
 
 }  // namespace adit::admin

@@ -18,7 +18,7 @@ namespace {
 
 using icd::Status;
 
-constexpr const char* kNotHere = "no stick is written or read here: adit-spare does not run";
+constexpr const char* kNotHere = "USB sticks are not available: adit-spare does not run";
 
 icd::Refusal conflict(std::string sentence) {
   return {Status::Conflict, std::move(sentence)};
@@ -33,7 +33,7 @@ const char* doing_of(spare::StickRequest::What what) {
 std::optional<icd::Refusal> hindrance_in(const std::optional<api::StickRow>& now) {
   if (!now) return conflict(kNotHere);
   if (now->doing.empty()) return std::nullopt;
-  return conflict(icd::sentence("the box is ", now->doing, " already: wait"));
+  return conflict(icd::sentence("the box is already ", now->doing, " an export: wait"));
 }
 
 /// Of adit-spare's folder, in memory.
@@ -42,7 +42,7 @@ std::expected<std::string, std::string> read_from_stick(const std::string& path)
   std::string bytes(spare::kLargestExport, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   if (!file.is_open() || file.bad())
-    return std::unexpected("what was read from the stick is gone: try again");
+    return std::unexpected("the export that was read from the stick is gone: try again");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
   return bytes;
 }
@@ -96,7 +96,7 @@ icd::Checked<void> SpareStick::write(const std::string& name, const std::string&
 
 icd::Checked<void> SpareStick::take(const std::string& name) {
   if (!spare::is_file_name(name))
-    return refuse(Status::UnprocessableEntity, "name: expected that of an export on the stick");
+    return refuse(Status::UnprocessableEntity, "name: expected the name of an export on the stick");
   if (auto why = hindrance()) return std::unexpected(std::move(*why));
   return ask(What::Take, name);
 }
@@ -107,7 +107,7 @@ icd::Checked<void> SpareStick::ask(What what, const std::string& name) {
                                       host::kOursAlone);
   if (!asked) {
     forget();
-    return refuse(Status::ServiceUnavailable, "it cannot be asked for: " + asked.error());
+    return refuse(Status::ServiceUnavailable, "cannot request it from adit-spare: " + asked.error());
   }
   asked_ = Asked{.request = std::move(request), .at = loop_.now()};
   refusal_.clear();
@@ -123,8 +123,8 @@ void SpareStick::look() {
   if (is_taken_up || loop_.now() < asked_->at + kTakenUpWithin) return timer_.call_at(loop_.now() + kLook);
   forget();
   asked_.reset();
-  refusal_ = "adit-spare did not take it up: see journalctl -u adit-spare";
-  host::log(host::Level::Error, "an export was not taken up by adit-spare");
+  refusal_ = "adit-spare did not read the request: see journalctl -u adit-spare";
+  host::log(host::Level::Error, "adit-spare did not read the request for an export");
 }
 
 void SpareStick::finish(const spare::StickStatus& status) {

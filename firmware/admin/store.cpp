@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 /// So that the box still serves a page on which it can be set right.
 void set_aside(const std::string& path, const std::string& why) {
-  host::set_damaged_aside(path, "what was saved", why);
+  host::set_damaged_aside(path, "the saved set-up", why);
 }
 
 std::expected<settings::Settings, std::string> read_settings(const std::string& file) {
@@ -33,7 +33,7 @@ std::expected<settings::Settings, std::string> read_saved(const std::string& fil
   auto saved = settings::parse_saved(*text);
   if (!saved) return std::unexpected(file + ": " + settings::sentence_of(saved.error()));
   if (!saved->passed_over.empty()) {
-    trouble = "a later Adit saved the settings, and these are passed over:";
+    trouble = "a later Adit saved the settings; these settings are ignored:";
     for (const std::string& path : saved->passed_over) trouble += " " + path;
     host::log(host::Level::Warning, trouble);
   }
@@ -59,7 +59,7 @@ std::expected<Store::Loaded, std::string> Store::load() {
   loaded.saved = settings.has_value() && host::may_exist(file());
   if (!settings && host::may_exist(file())) {
     loaded.trouble =
-        "the saved settings are set aside, those that the box was given are in use: " + settings.error();
+        "the saved settings were set aside; the initial settings are in use: " + settings.error();
     set_aside(file(), loaded.trouble);
     settings = read_settings(given_settings_);
   }
@@ -68,8 +68,8 @@ std::expected<Store::Loaded, std::string> Store::load() {
   const std::vector<std::string> names = token_names(loaded.settings);
   auto secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
   if (!secrets && secrets.error().in == host::SecretsError::In::Saved) {
-    loaded.trouble = "the saved tokens are set aside, those that the box was given are in use: " +
-                     secrets.error().sentence;
+    loaded.trouble =
+        "the saved tokens were set aside; the initial tokens are in use: " + secrets.error().sentence;
     set_aside(secrets_folder(), loaded.trouble);
     secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
   }
@@ -107,16 +107,15 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
 void Store::settle(const settings::Settings& settings) {
   const std::vector<std::string> names = token_names(settings);
   const auto files = host::names_in(secrets_folder());
-  if (!files)
-    host::log(host::Level::Warning, "tokens that nothing needs may be left", {{"why", files.error()}});
+  if (!files) host::log(host::Level::Warning, "unused tokens may remain", {{"why", files.error()}});
   for (const fs::path file : files.value_or(std::vector<std::string>())) {
     const bool known = std::ranges::find(names, file.stem().string()) != names.end();
     if (known || file.extension() != ".token") continue;
     if (const auto removed = host::remove_file(secrets_folder() / file); !removed)
-      host::log(host::Level::Warning, "tokens that nothing needs may be left", {{"why", removed.error()}});
+      host::log(host::Level::Warning, "unused tokens may remain", {{"why", removed.error()}});
   }
   if (!host::remove_file(file_before())) {
-    host::log(host::Level::Warning, "cannot be removed", {{"file", file_before()}});
+    host::log(host::Level::Warning, "cannot remove a file", {{"file", file_before()}});
   }
 }
 
@@ -126,7 +125,7 @@ bool Store::take_back() {
   if (before->empty()) {
     if (!host::remove_file(file())) return false;
   } else if (const auto written = host::write_file(file(), *before, host::kOursAlone); !written) {
-    host::log(host::Level::Error, "the settings before cannot be written", {{"why", written.error()}});
+    host::log(host::Level::Error, "cannot write the previous settings", {{"why", written.error()}});
     return false;
   }
   return host::remove_file(file_before()).has_value();

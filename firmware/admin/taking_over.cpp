@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 std::expected<std::string, std::string> read_whole(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file) return std::unexpected(path + ": it cannot be read");
+  if (!file) return std::unexpected(path + ": cannot read the file");
   return bytes;
 }
 
@@ -126,7 +126,7 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
       .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
   if (auto taken = take_ledger(content, handover); !taken) return taken;
   stamps.write({.floor = std::max(kept.floor, least), .wall = kept.wall, .least = least});
-  if (stamps.read().least < least) return std::unexpected("the stamps of the first box cannot be kept");
+  if (stamps.read().least < least) return std::unexpected("cannot store the first box's time stamps");
   if (auto taken = take_settings(content); !taken) return taken;
   return note(content.about);
 }
@@ -134,9 +134,11 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
 std::expected<std::vector<std::string>, std::string> TakingOver::check(const spare::Content& content) const {
   auto saved = settings::parse_saved(content.settings);
   if (!saved)
-    return std::unexpected("its settings cannot be used here: " + settings::sentence_of(saved.error()));
+    return std::unexpected("this box cannot use the export's settings: " +
+                           settings::sentence_of(saved.error()));
   const FirstLedger there(runtime_, content.ledger);
-  if (!there.ledger()) return std::unexpected("its ledger cannot be used here: " + there.ledger().error());
+  if (!there.ledger())
+    return std::unexpected("this box cannot use the export's ledger: " + there.ledger().error());
   return std::move(saved->passed_over);
 }
 

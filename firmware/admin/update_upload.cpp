@@ -15,7 +15,7 @@ namespace adit::admin {
 namespace {
 
 icd::Refusal cannot(const std::string& why) {
-  return {icd::Status::ServiceUnavailable, "the bundle cannot be written: " + why};
+  return {icd::Status::ServiceUnavailable, "cannot write the bundle: " + why};
 }
 
 }  // namespace
@@ -105,7 +105,7 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   icd::Checked<void> whole() {
     if (error_ != 0) return std::unexpected(cannot(std::strerror(error_)));
     if (received_ != ends_.size)
-      return std::unexpected(cannot(icd::sentence(received_, " of ", ends_.size, " bytes came")));
+      return std::unexpected(cannot(icd::sentence("got ", received_, " of ", ends_.size, " bytes")));
     file_ = loop::FileDescriptor();  // adit-update takes no file that somebody could still write to
     if (std::rename(ends_.part.c_str(), ends_.whole.c_str()) != 0)
       return std::unexpected(cannot(std::strerror(errno)));

@@ -29,12 +29,12 @@ std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t siz
   struct statvfs disk{};
   if (statvfs(folder.c_str(), &disk) != 0) {
     return icd::Refusal{icd::Status::ServiceUnavailable,
-                        "the disk cannot be asked for its room: " + std::string(std::strerror(errno))};
+                        "cannot read the free space of the disk: " + std::string(std::strerror(errno))};
   }
   const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
   if (free >= size + Updates::kSpared) return std::nullopt;
   return icd::Refusal{icd::Status::ServiceUnavailable,
-                      icd::sentence("the bundle has ", size, " bytes, and the disk has room for ",
+                      icd::sentence("the bundle has ", size, " bytes, but the disk has room for ",
                                     free > Updates::kSpared ? free - Updates::kSpared : 0)};
 }
 
@@ -63,8 +63,8 @@ void Updates::every_second() {
   if (loop_.now() < asked_->at + kTakenUpWithin) return;
   requests_.forget();
   asked_.reset();
-  not_taken_up_ = "adit-update did not take it up: see journalctl -u adit-update";
-  host::log(host::Level::Error, "an update was not taken up by adit-update");
+  not_taken_up_ = "adit-update did not read the request: see journalctl -u adit-update";
+  host::log(host::Level::Error, "adit-update did not read the request");
 }
 
 api::UpdateView Updates::update() const {
@@ -98,8 +98,7 @@ api::UpdateView Updates::update() const {
 std::optional<icd::Refusal> Updates::hindrance() const {
   const api::UpdateView view = update();
   if (!view.managed) return conflicting(view.why);
-  if (!view.doing.empty())
-    return conflicting(icd::sentence("the box is ", view.doing, " already: wait for its end"));
+  if (!view.doing.empty()) return conflicting(icd::sentence("the box is already ", view.doing, ": wait"));
   return std::nullopt;
 }
 
@@ -128,7 +127,7 @@ icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, 
                 .asked = [this, again] { return ask(update::Request::What::Install, again); },
                 .over = [this] { receiving_ = nullptr; }});
   if (!upload) return std::unexpected(std::move(upload.error()));
-  host::log(host::Level::Notice, "an update is being received", {{"bytes", std::to_string(size)}});
+  host::log(host::Level::Notice, "receiving an update", {{"bytes", std::to_string(size)}});
   receiving_ = upload->get();
   expected_ = size;
   not_taken_up_.clear();
@@ -165,8 +164,8 @@ icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool any
 icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
   update::Request request{.nonce = draw_nonce(), .what = what, .again = again};
   if (const auto asked = requests_.ask(request); !asked) {
-    return std::unexpected(
-        icd::Refusal{icd::Status::ServiceUnavailable, "it cannot be asked for: " + asked.error()});
+    return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
+                                        "cannot request it from adit-update: " + asked.error()});
   }
   asked_ = Asked{std::move(request), loop_.now()};
   not_taken_up_.clear();

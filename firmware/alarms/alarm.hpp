@@ -28,6 +28,17 @@ struct Action {
   friend bool operator==(const Action&, const Action&) = default;
 };
 
+/// "uav5 is silent", and once that is over: "uav5 was silent".
+struct Headline {
+  std::string subject = {};  // "uav5"
+  std::string state = {};    // "silent"
+  bool plural = false;       // of the subject: "are", "were"
+
+  std::string now() const { return subject + (plural ? " are " : " is ") + state; }
+  std::string past() const { return subject + (plural ? " were " : " was ") + state; }
+  friend bool operator==(const Headline&, const Headline&) = default;
+};
+
 /// What is not as it should be, as the rules find it.
 struct Condition {
   std::string id = {};  // stable while it lasts: "robot_silent:uav5"
@@ -35,7 +46,7 @@ struct Condition {
   Side side = Side::Box;
   std::string subject = {};  // the part of the id behind the colon: a robot, an endpoint, a report's number
   double since = 0;          // seconds since 1970; 0: since it was first found
-  std::string what = {};     // a headline of few words, with "is" or "are": "uav5 is silent"
+  Headline headline = {};    // at most six words
   std::string why = {};      // a short sentence, in lower case and without a full stop; may be ""
   Action action = {};
   std::uint64_t degree = 0;  // grows as it gets worse: an acknowledgement holds only up to that

@@ -4,8 +4,6 @@
 #include <set>
 #include <tuple>
 
-#include "alarms/words.hpp"
-
 namespace adit::alarms {
 
 bool Board::is_worse(const Condition& condition, const Known& known) {
@@ -17,7 +15,7 @@ Over Board::over(const Known& known, double now) {
   return {.id = condition.id,
           .severity = condition.severity,
           .side = condition.side,
-          .was = past(condition.what),
+          .was = condition.headline.past(),
           .since = known.since,
           .until = now};
 }
@@ -28,7 +26,7 @@ void Board::see(Known& known, double now) {
   known.seen = {.id = condition.id,
                 .severity = condition.severity,
                 .degree = condition.degree,
-                .what = condition.what,
+                .what = condition.headline.now(),
                 .why = condition.why,
                 .at = now};
 }
@@ -72,7 +70,7 @@ void Board::take_up_before(const std::vector<Condition>& conditions, double now)
     Known& known = known_.at(condition.id);
     const bool worse = condition.severity < before->severity || condition.degree > before->degree;
     const bool same = condition.severity == before->severity && condition.degree == before->degree &&
-                      condition.what == before->what && condition.why == before->why;
+                      condition.headline.now() == before->what && condition.why == before->why;
     if (same) see(known, before->at);
     if (same || worse || known.acknowledged) before_.erase(before);
   }
@@ -120,7 +118,7 @@ std::vector<Alarm> Board::shown(const std::vector<Condition>& conditions, double
          .side = condition.side,
          .subject = condition.subject,
          .since = since,
-         .what = condition.what,
+         .what = condition.headline.now(),
          .why = condition.why,
          .action = condition.action,
          .acknowledged = known && found->second.acknowledged && !is_worse(condition, found->second),

@@ -19,13 +19,13 @@ const Action kOpenSystem{"Open system", "/system"};
 void find_pending_change(const NetworkFact& network, Found& found) {
   if (!network.confirm_within) return;
   const auto left = static_cast<std::int64_t>(std::ceil(*network.confirm_within));
-  found.push_back(
-      {.id = "network_change",
-       .severity = Severity::Ask,
-       .side = Side::Network,
-       .what = "A network change is waiting",
-       .why = left > 0 ? sentence("confirm within ", left, " s at ", network.page) : "it is being taken back",
-       .action = {"Confirm", left > 0 ? network.page : "/setup#network"}});
+  found.push_back({.id = "network_change",
+                   .severity = Severity::Ask,
+                   .side = Side::Network,
+                   .headline = {"A network change", "unconfirmed"},
+                   .why = left > 0 ? sentence("confirm it within ", left, " s at ", network.page)
+                                   : "the box is returning to the old addresses",
+                   .action = {"Confirm", left > 0 ? network.page : "/setup#network"}});
 }
 
 std::string side_of(bool is_team) {
@@ -36,13 +36,13 @@ void find_cables(const Facts& facts, Found& found) {
   for (const Cable& cable : facts.cables) {
     if (cable.carrier.value_or(false)) continue;
     const std::string side = side_of(cable.is_team);
-    const std::string whose = cable.is_team ? "The team's" : "The Command Post's";
+    const std::string whose = cable.is_team ? "Team" : "Command Post";
     Condition condition{.id = "cable_out:" + side, .side = Side::Network, .subject = side};
     if (cable.carrier) {
-      condition.what = whose + " cable is out";
-      condition.why = cable.interface + " has no carrier";
+      condition.headline = {whose + " cable", "unplugged"};
+      condition.why = cable.interface + " has no link";
     } else {
-      condition.what = "There is no interface " + cable.interface;
+      condition.headline = {"Interface " + cable.interface, "missing"};
       condition.why = "set-up names it for the " + std::string(cable.is_team ? "team" : "Command Post");
       condition.action = kOpenSetUp;
     }
@@ -61,8 +61,8 @@ void find_exchanged_cables(const Facts& facts, Found& found) {
   if (!exchanged || std::ranges::any_of(facts.endpoints, is_heard)) return;
   found.push_back({.id = "cables_exchanged",
                    .side = Side::Network,
-                   .what = "The two cables are exchanged",
-                   .why = sentence(exchanged->address, " is at ", exchanged->found_on, " and not at ",
+                   .headline = {"The two cables", "exchanged", true},
+                   .why = sentence(exchanged->address, " answers on ", exchanged->found_on, " instead of ",
                                    exchanged->sought_on)});
 }
 
@@ -71,8 +71,8 @@ void find_addresses(const Facts& facts, Found& found) {
   if (network.no_address) {
     found.push_back({.id = "no_address",
                      .side = Side::Box,
-                     .what = "The box has no address upstream",
-                     .why = "set one in the Command Post's subnet",
+                     .headline = {"The upstream address", "missing"},
+                     .why = "set an address in the Command Post's subnet",
                      .action = kOpenNetwork});
   }
   for (const TakenAddress& taken : network.taken) {
@@ -80,9 +80,9 @@ void find_addresses(const Facts& facts, Found& found) {
     found.push_back({.id = "address_taken:" + side,
                      .side = Side::Network,
                      .subject = side,
-                     .what = "Our address is taken",
-                     .why = sentence(taken.address, " on ", taken.interface, " is also ", taken.mac,
-                                     "'s: are a box and its spare both in? unplug one, or change an address"),
+                     .headline = {"The box's address", "in conflict"},
+                     .why = sentence(taken.mac, " also uses ", taken.address, " on ", taken.interface,
+                                     "; is a spare box plugged in?"),
                      .action = kOpenNetwork});
   }
 }
@@ -97,36 +97,35 @@ void add(Found& found, const std::string& trouble, Condition condition) {
 void find_disk_troubles(const Facts& facts, Found& found) {
   add(found, facts.ledger_refusal,
       {.id = "ledger_unwritable",
-       .what = "No report is taken",
-       .why = "the ledger cannot be written: ",
+       .headline = {"Reports", "not accepted", true},
+       .why = "the box cannot write the ledger: ",
        .action = kOpenSystem});
   add(found, facts.ledger_damage,
-      {.id = "ledger_damaged", .severity = Severity::Ask, .what = "The ledger was damaged"});
-  add(found, facts.disk.map, {.id = "map_not_kept", .what = "The last map was not taken"});
+      {.id = "ledger_damaged", .severity = Severity::Ask, .headline = {"The ledger", "damaged"}});
+  add(found, facts.disk.map, {.id = "map_not_kept", .headline = {"The last map", "not accepted"}});
   add(found, facts.disk.state,
-      {.id = "state_not_kept", .what = "States and markers are not taken", .why = "they cannot be kept: "});
+      {.id = "state_not_kept",
+       .headline = {"States and markers", "rejected", true},
+       .why = "the box cannot store them: "});
   add(found, facts.disk.run,
       {.id = "run_not_kept",
-       .what = "The run's map is not kept",
-       .why = "it and the tracks will not outlive a restart: "});
+       .headline = {"The run's map", "not stored"},
+       .why = "a restart would lose the map and the tracks: "});
   if (facts.disk.free && *facts.disk.free < kLeastFree) {
     found.push_back({.id = "disk_full",
                      .side = Side::Box,
-                     .what = "The disk is nearly full",
-                     .why = sentence(*facts.disk.free >> 10, " kB are free for reports"),
+                     .headline = {"The disk", "nearly full"},
+                     .why = sentence(*facts.disk.free / 1000, " kB are free for reports"),
                      .action = kOpenSystem});
   }
 }
 
-/// "the last change was taken back: binding to..." in its two parts.
 void find_change_trouble(const std::string& trouble, Found& found) {
   if (trouble.empty()) return;
-  const std::size_t colon = trouble.find(": ");
-  const std::string what = trouble.substr(0, colon);
   found.push_back({.id = "settings_not_changed",
                    .side = Side::Box,
-                   .what = capital(what),
-                   .why = colon == std::string::npos ? "" : trouble.substr(colon + 2),
+                   .headline = {"The last change", "not used"},
+                   .why = trouble,
                    .action = kOpenSetUp});
 }
 
@@ -136,14 +135,14 @@ void find_update_troubles(const UpdateFact& update, Found& found) {
                      .severity = Severity::Wait,
                      .side = Side::Box,
                      .subject = update.version,
-                     .what = sentence("Version ", update.version, " is on trial"),
-                     .why = "leave the power on until it has shown that it works",
+                     .headline = {"Version " + update.version, "on trial"},
+                     .why = "keep the power on until the trial ends",
                      .action = kOpenSystem});
   }
   add(found, update.stray,
       {.id = "other_slot",
        .severity = Severity::Ask,
-       .what = "Another slot is running",
+       .headline = {"An unexpected slot", "running"},
        .action = kOpenSystem});
 }
 
@@ -158,32 +157,37 @@ void find_network_troubles(const Facts& facts, Found& found) {
 
 void find_box_troubles(const Facts& facts, Found& found) {
   add(found, facts.rests,
-      {.id = "rests",
-       .what = "This box rests and sends nothing",
+      {.id = "standby",
+       .headline = {"This box", "on standby"},
+       .why = "it accepts and sends no data: ",
        .action = {"Open system", "/system#spare"}});
   find_disk_troubles(facts, found);
   if (!facts.time_set.value_or(true)) {
     found.push_back({.id = "time_not_set",
                      .severity = Severity::Wait,
                      .side = Side::Box,
-                     .what = "The box's time is not set",
-                     .why = "times and logs are of a wrong day: log in, or adit clock set",
+                     .headline = {"The time of day", "not set"},
+                     .why = "log in to the page, or run adit clock set",
                      .action = kOpenSystem});
   }
   add(found, facts.ntp_trouble,
       {.id = "ntp",
        .severity = Severity::Wait,
        .side = Side::Box,
-       .what = "NTP does not work",
+       .headline = {"NTP", "not working"},
        .action = kOpenSetUp});
   find_change_trouble(facts.change_trouble, found);
   add(found, facts.settings_trouble,
-      {.id = "settings_not_used", .what = "The saved settings are not used", .action = kOpenSetUp});
-  add(found, facts.board_trouble, {.id = "board_not_used", .what = "The board's file is not used"});
+      {.id = "settings_not_used",
+       .headline = {"The saved settings", "not used", true},
+       .action = kOpenSetUp});
+  add(found, facts.board_trouble, {.id = "board_not_used", .headline = {"The board file", "not used"}});
   add(found, facts.lights_trouble,
-      {.id = "lights_not_set", .what = "The lights are not to be trusted", .why = "they cannot be set: "});
+      {.id = "lights_not_set",
+       .headline = {"The lights", "unreliable", true},
+       .why = "the box cannot set them: "});
   for (const auto& [name, why] : facts.notices)
-    add(found, why, {.id = "notice:" + name, .subject = name, .what = "The box is not well"});
+    add(found, why, {.id = "notice:" + name, .subject = name, .headline = {"The box", "not healthy"}});
   find_update_troubles(facts.update, found);
 }
 

@@ -43,7 +43,7 @@ bool is_for_the_spare(const Condition& condition) {
 
 /// Whether `other` follows from `cause`.
 bool explains(const Condition& cause, const Condition& other) {
-  if (cause.id == "rests") return is_for_the_spare(other);
+  if (cause.id == "standby") return is_for_the_spare(other);
   if (cuts_off(cause) && (is_post(other) || is(other, "command_post_throttling"))) return true;
   if (stops(cause, "mapping") && (is_of_maps(other) || is_robots_silence(other))) return true;
   if (stops(cause, "scoring") && is(other, "report_in_doubt") && other.severity == Severity::Wait)

@@ -43,49 +43,48 @@ void find_missing_tokens(const Facts& facts, Found& found) {
   for (const Endpoint& endpoint : facts.endpoints) {
     if (endpoint.trouble != PostTrouble::NoToken) continue;
     const bool scoring = endpoint.name == "scoring";
-    found.push_back(
-        {.id = "no_token:" + endpoint.name,
-         .side = Side::Box,
-         .subject = endpoint.name,
-         .since = endpoint.since,
-         .what = sentence("No ", endpoint.name, " token is set"),
-         .why = scoring ? "reports wait until one is" : "maps, states and markers wait until one is",
-         .action = kSetUp});
+    found.push_back({.id = "no_token:" + endpoint.name,
+                     .side = Side::Box,
+                     .subject = endpoint.name,
+                     .since = endpoint.since,
+                     .headline = {"The " + endpoint.name + " token", "missing"},
+                     .why = sentence(scoring ? "reports" : "maps, states and markers", " stay queued"),
+                     .action = kSetUp});
   }
 }
 
 void say_unreachable(const Trouble& trouble, Condition& condition) {
-  condition.what = trouble.who() + " is unreachable";
-  condition.why = trouble.first().said + "; all is kept until it answers";
+  condition.headline = {trouble.who(), "unreachable"};
+  condition.why = trouble.first().said + "; the box tries again";
 }
 
 void say_foreign(const Trouble& trouble, Condition& condition) {
-  condition.what = "What answers is no Command Post";
+  condition.headline = {"The server", "not a Command Post"};
   condition.why = sentence(trouble.where(), trouble.both() ? "" : " (" + trouble.first().name + ")",
-                           ": nothing counts as taken there; is the address right?");
+                           "; check the address");
   condition.action = kSetUp;
 }
 
 void say_refusing(const Trouble& trouble, Condition& condition) {
-  condition.what = trouble.both() ? "Both tokens are refused"
-                                  : sentence(capital(trouble.first().name), " token is refused");
-  condition.why = "the Command Post does not know it: is it the one of this course?";
+  condition.headline = trouble.both() ? Headline{"Both tokens", "rejected", true}
+                                      : Headline{"The " + trouble.first().name + " token", "rejected"};
+  condition.why = "the Command Post answers 401 or 403; is the course right?";
   condition.action = kSetUp;
 }
 
 void say_silent(const Trouble& trouble, Condition& condition) {
-  condition.what = trouble.who() + " is silent";
-  condition.why = sentence("no answer from ", trouble.where(), "; all is kept until one comes");
+  condition.headline = {trouble.who(), "silent"};
+  condition.why = sentence("no answer from ", trouble.where());
 }
 
 void say_failing(const Trouble& trouble, Condition& condition) {
-  condition.what = trouble.who() + " is failing";
-  condition.why = sentence("to everything that is sent: ", trouble.first().said);
+  condition.headline = {trouble.who(), "failing"};
+  condition.why = sentence("its answer to every request: ", trouble.first().said);
 }
 
 void say_throttling(const Trouble& trouble, Condition& condition) {
-  condition.what = trouble.who() + " is throttling";
-  condition.why = "it answers 429: Adit sends less until it takes more";
+  condition.headline = {trouble.who(), "throttling"};
+  condition.why = "it answers 429; Adit sends less often";
   condition.action = {};
 }
 

@@ -1,4 +1,4 @@
-// What waits for the operator's word: reports, and what the Command Post would not take.
+// What the operator has to decide: reports, and messages that the Command Post rejected.
 #include <array>
 
 #include "alarms/conditions.hpp"
@@ -11,23 +11,21 @@ namespace {
 using icd::sentence;
 using Is = ReportFact::Is;
 
-constexpr std::string_view kHeld = "held: ";
-constexpr const char* kCallDone = "; call it done";
-constexpr const char* kUntilDone =
-    "; what is posted in this run is held for the operator, as it may be the same, until he calls it done";
+constexpr const char* kCallDone = "; mark it as done";
+constexpr const char* kUntilDone = "; until you mark it as done, new reports of this run are held";
 
 constexpr struct {
   Is is;
-  const char *id, *state, *more;
+  const char *id, *state;
 } kStates[] = {
-    {Is::Held, "report_held", " is held", " more reports are held"},
-    {Is::InDoubt, "report_in_doubt", " is in doubt", " more reports are in doubt"},
-    {Is::Lost, "report_lost", " is lost", " more are lost"},
+    {Is::Held, "report_held", "held"},
+    {Is::InDoubt, "report_in_doubt", "in doubt"},
+    {Is::Lost, "report_lost", "lost"},
 };
 
 std::string why(const ReportFact& report) {
   if (report.is == Is::Lost) return report.note + (report.of_run ? kUntilDone : kCallDone);
-  return report.note.starts_with(kHeld) ? report.note.substr(kHeld.size()) : report.note;
+  return report.note;
 }
 
 void find_undecided(const Facts& facts, Found& found) {
@@ -41,8 +39,7 @@ void find_undecided(const Facts& facts, Found& found) {
                      .side = report.is == Is::InDoubt ? Side::CommandPost : Side::Box,
                      .subject = number,
                      .since = report.since,
-                     .what = report.is == Is::Lost ? "The ledger is not whole"
-                                                   : sentence("Report ", number, kStates[at].state),
+                     .headline = {"Report " + number, kStates[at].state},
                      .why = why(report),
                      .action = {report.asking ? "Show report" : "Decide", "/#report=" + number}});
   }
@@ -53,7 +50,7 @@ void find_undecided(const Facts& facts, Found& found) {
                      .severity = Severity::Ask,
                      .side = Side::Box,
                      .subject = "more",
-                     .what = sentence(more, kStates[at].more),
+                     .headline = {sentence(more, " more reports"), kStates[at].state, true},
                      .action = {"Show reports", "/#reports"},
                      .degree = more});
   }
@@ -65,25 +62,25 @@ void find_few_left(const Facts& facts, Found& found) {
   found.push_back({.id = "reports_left",
                    .severity = left == 0 ? Severity::Bad : Severity::Wait,
                    .side = Side::CommandPost,
-                   .what = left == 0   ? "No reports are left"
-                           : left == 1 ? "1 report is left"
-                                       : sentence(left, " reports are left"),
-                   .why = left == 0 ? "the Command Post scores no more of this run" : "of this run",
+                   .headline = {left == 0   ? "No reports"
+                                : left == 1 ? "1 report"
+                                            : sentence(left, " reports"),
+                                "left", left != 1},
+                   .why = left == 0 ? "the Command Post scores no more reports of this run" : "in this run",
                    .degree = static_cast<std::uint64_t>(kFewReports - left)});
 }
 
 void find_elsewhere(const Facts& facts, Found& found) {
   for (const auto& [post, count] : facts.reports_elsewhere) {
-    found.push_back(
-        {.id = "reports_elsewhere:" + post,
-         .severity = Severity::Ask,
-         .side = Side::Box,
-         .subject = post,
-         .what =
-             count == 1 ? "1 report is for another post" : sentence(count, " reports are for another post"),
-         .why = sentence("they wait for the Command Post at ", post, ", which the settings do not name now"),
-         .action = {"Open set-up", "/setup"},
-         .degree = count});
+    found.push_back({.id = "reports_elsewhere:" + post,
+                     .severity = Severity::Ask,
+                     .side = Side::Box,
+                     .subject = post,
+                     .headline = {count == 1 ? "1 report" : sentence(count, " reports"), "for another server",
+                                  count != 1},
+                     .why = sentence("queued for ", post, ", which the settings do not name"),
+                     .action = {"Open set-up", "/setup"},
+                     .degree = count});
   }
 }
 
@@ -97,7 +94,7 @@ void find_report_troubles(const Facts& facts, Found& found) {
     found.push_back({.id = "run_unreliable",
                      .severity = Severity::Ask,
                      .side = Side::CommandPost,
-                     .what = "The reports' count is not certain",
+                     .headline = {"The count of reports", "uncertain"},
                      .why = facts.run_unreliable});
   }
   if (facts.messages_rejected > 0) {
@@ -106,8 +103,8 @@ void find_report_troubles(const Facts& facts, Found& found) {
         {.id = "messages_rejected",
          .severity = Severity::Ask,
          .side = Side::CommandPost,
-         .what = sentence(facts.messages_rejected, one ? " message is" : " messages are", " rejected"),
-         .why = sentence("the Command Post would not take ", one ? "it" : "them"),
+         .headline = {sentence(facts.messages_rejected, one ? " message" : " messages"), "rejected", !one},
+         .why = sentence("the Command Post did not accept ", one ? "it" : "them"),
          .action = {"Show", "/#rejected"},
          .degree = facts.messages_rejected});
   }

@@ -12,6 +12,7 @@ namespace {
 
 using icd::sentence;
 
+constexpr std::size_t kMegabyte = 1'000'000;
 constexpr double kNoRoomRecent = 60;    // seconds that a refusal for want of room is told of
 constexpr std::size_t kNamed = 3;       // robots, in a sentence
 constexpr std::size_t kManyBehind = 4;  // robots: told of together
@@ -38,16 +39,16 @@ void find_silent(const Facts& facts, Found& found) {
                      .side = Side::Robot,
                      .subject = name,
                      .since = facts.now - robot.quiet,
-                     .what = name + " is silent",
-                     .why = sentence("its habit is a message each ", age_text(std::max(robot.gap, 1.0))),
+                     .headline = {name, "silent"},
+                     .why = sentence("it usually sends a message every ", age_text(std::max(robot.gap, 1.0))),
                      .action = show(name)});
   }
   if (count < 2 || count < facts.robots.size()) return;
   put_in_place_of(found, count,
                   {.id = "robots_silent",
                    .side = Side::Robot,
-                   .what = sentence("All ", count, " robots are silent"),
-                   .why = "is the team's network up, or its base station off?"});
+                   .headline = {sentence("All ", count, " robots"), "silent", true},
+                   .why = "check the team's network and the base station"});
 }
 
 /// Of all maps of one robot the one that is longest behind, and longer than `least`, the endpoint's own
@@ -81,8 +82,8 @@ void find_behind(const Facts& facts, Found& found) {
                      .side = Side::CommandPost,
                      .subject = name,
                      .since = facts.now - *longest->behind,
-                     .what = name.empty() ? "The merged map is behind" : name + "'s map is behind",
-                     .why = sentence("its newest ", longest->kind, " is not at the Command Post"),
+                     .headline = {name.empty() ? "The merged map" : name + "'s map", "behind"},
+                     .why = sentence("its newest ", longest->kind, " has not reached the Command Post"),
                      .action = name.empty() ? Action{} : show(name)});
   }
   if (count < kManyBehind) return;
@@ -92,8 +93,8 @@ void find_behind(const Facts& facts, Found& found) {
                   {.id = "maps_behind",
                    .severity = bad ? Severity::Bad : Severity::Wait,
                    .side = Side::Network,
-                   .what = sentence("Maps of ", count, " robots are behind"),
-                   .why = "more comes in than the link and the Command Post take"});
+                   .headline = {sentence("Maps of ", count, " robots"), "behind", true},
+                   .why = "the robots send more than the box can forward"});
 }
 
 void find_full_queue(const Facts& facts, Found& found) {
@@ -107,24 +108,24 @@ void find_full_queue(const Facts& facts, Found& found) {
     names += stream.kind;
   }
   if (count > kNamed) names += sentence(" and ", count - kNamed, " more");
-  const std::string full = sentence(facts.queue_room >> 20, " MB wait at most");
+  const std::string full = sentence("the limit is ", facts.queue_room / kMegabyte, " MB");
   if (count > 0) {
     found.push_back({.id = "queue_full",
                      .side = Side::Network,
-                     .what = "The queue is full",
-                     .why = "robots are refused until less waits: " + names});
+                     .headline = {"The queue", "full"},
+                     .why = "the box rejects messages until the queue has room: " + names});
   } else if (static_cast<double>(facts.queued) > kNearlyFull * static_cast<double>(facts.queue_room)) {
     found.push_back({.id = "queue_nearly_full",
                      .severity = Severity::Bad,
                      .side = Side::Network,
-                     .what = "The map queue is nearly full",
+                     .headline = {"The map queue", "nearly full"},
                      .why = full});
   } else if (facts.queue_grows) {
     found.push_back({.id = "queue_growing",
                      .severity = Severity::Wait,
                      .side = Side::Network,
-                     .what = "The map queue is growing",
-                     .why = sentence(facts.queued >> 20, " MB wait: more comes in than goes out")});
+                     .headline = {"The map queue", "growing"},
+                     .why = sentence(facts.queued / kMegabyte, " MB are queued")});
   }
 }
 
@@ -136,43 +137,42 @@ void find_unknown(const Facts& facts, Found& found) {
                      .severity = Severity::Ask,
                      .side = Side::Robot,
                      .subject = name,
-                     .what = sentence("Robot ", name, " is unknown"),
-                     .why = "it posts, and set-up has " + known,
+                     .headline = {"Robot " + name, "unknown"},
+                     .why = "it sends messages, but set-up lists only " + known,
                      .action = {"Open set-up", "/setup#robots"}});
   }
 }
 
 void find_crowds(const Facts& facts, Found& found) {
   for (const Crowd& crowd : facts.crowds) {
-    const std::string most = "most of " + crowd.address;
+    const std::string most = "most of them from " + crowd.address;
     if (crowd.is == Crowd::Is::NoRoom) {
-      found.push_back(
-          {.id = "clients_refused",
-           .side = Side::Robot,
-           .what = "Clients are refused",
-           .why = sentence("too many requests are under way at once, ", most, ": some are answered 503"),
-           .action = {"Open set-up", "/setup?setting=team.connections#all"}});
+      found.push_back({.id = "clients_refused",
+                       .side = Side::Robot,
+                       .headline = {"Clients", "rejected", true},
+                       .why = "too many requests at once, " + most,
+                       .action = {"Open set-up", "/setup?setting=team.connections#all"}});
     } else if (crowd.is == Crowd::Is::WrongToken) {
       found.push_back({.id = "wrong_tokens",
                        .severity = Severity::Ask,
                        .side = Side::Robot,
-                       .what = "Wrong tokens are shown",
-                       .why = sentence(most, ": robots with an old one, or somebody who guesses"),
+                       .headline = {"Wrong tokens", "in use", true},
+                       .why = most,
                        .action = {"Open set-up", "/setup#tokens"}});
     } else {
-      found.push_back({.id = "strangers",
+      found.push_back({.id = "unauthenticated",
                        .severity = Severity::Wait,
                        .side = Side::Robot,
-                       .what = "Too many strangers are connected",
-                       .why = sentence("without a token, ", most, ": the oldest are ended for new ones")});
+                       .headline = {"Too many clients", "anonymous", true},
+                       .why = most});
     }
   }
   if (!facts.shut_out) return;
   found.push_back({.id = "no_token:team",
                    .side = Side::Box,
                    .subject = "team",
-                   .what = "No token is set at all",
-                   .why = "every robot is turned away",
+                   .headline = {"The team token", "missing"},
+                   .why = "the box rejects every robot",
                    .action = {"Open set-up", "/setup#tokens"}});
 }
 

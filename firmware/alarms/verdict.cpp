@@ -79,7 +79,7 @@ Verdict partly(const std::map<std::string, Maps>& all, std::optional<double> old
   const std::vector<std::string> lacking = names_at(all, Level::Bad);
   const std::size_t arrive = all.size() - lacking.size();
   std::string why = "not " + names_of(lacking);
-  if (arrive == 0) return {Level::Bad, "Nothing arrives", std::move(why)};
+  if (arrive == 0) return {Level::Bad, "No map arrives", std::move(why)};
   if (oldest) why += sentence(arrive == 1 ? "; the other " : "; oldest other ", age_text(*oldest));
   return {Level::Wait, sentence(arrive, " of ", all.size(), " arrive"), std::move(why)};
 }
@@ -92,9 +92,9 @@ Verdict verdict_of(const Facts& facts) {
   const auto all = maps_of(facts);
   if (const Endpoint* endpoint = stopped(facts); endpoint != nullptr && !all.empty()) {
     const std::string why = endpoint->trouble == PostTrouble::NoToken
-                                ? "no mapping token is set"
+                                ? "the mapping token is missing"
                                 : "for " + clock_text(facts.now - endpoint->since);
-    return {Level::Bad, "Nothing arrives", why + "; the box keeps all"};
+    return {Level::Bad, "No map arrives", why + "; the box keeps all maps"};
   }
   if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one"};
   Level worst = Level::Quiet;

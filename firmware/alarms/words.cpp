@@ -31,18 +31,6 @@ std::string clock_text(double seconds) {
   return std::to_string(all / 60) + ":" + two(all % 60);
 }
 
-std::string past(std::string_view what) {
-  constexpr struct {
-    std::string_view now, then;
-  } kForms[] = {{" is ", " was "}, {" are ", " were "}};
-  for (const auto& [now, then] : kForms) {
-    const std::size_t at = what.find(now);
-    if (at == std::string_view::npos) continue;
-    return std::string(what.substr(0, at)).append(then).append(what.substr(at + now.size()));
-  }
-  return std::string(what);
-}
-
 std::string capital(std::string text) {
   if (!text.empty() && text[0] >= 'a' && text[0] <= 'z') text[0] = static_cast<char>(text[0] - 'a' + 'A');
   return text;

@@ -9,12 +9,10 @@ namespace adit::alarms {
 std::string age_text(double seconds);
 /// Minutes and seconds: "1:34", "61:15".
 std::string clock_text(double seconds);
-/// "uav5 is silent" -> "uav5 was silent"
-std::string past(std::string_view what);
-/// "the disk is full" -> "The disk is full"
+/// "scoring" -> "Scoring"
 std::string capital(std::string text);
 
-/// What one line has room for: "No scoring token is set: reports wait"
+/// What one line has room for: "The scoring token is missing: reports stay queued until a token is set"
 template <class Said>
 std::string line_of(const Said& said) {
   return said.why.empty() ? said.what : said.what + ": " + said.why;

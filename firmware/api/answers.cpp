@@ -48,7 +48,7 @@ intake::Answer refusal(icd::Status status, std::string_view sentence) {
 }
 
 intake::Answer nothing_at(std::string_view path) {
-  return refusal(icd::Status::NotFound, icd::sentence("there is nothing at ", icd::in_quotes(path)));
+  return refusal(icd::Status::NotFound, icd::sentence("there is no resource at ", icd::in_quotes(path)));
 }
 
 intake::Answer wrong_method(std::string_view allowed) {

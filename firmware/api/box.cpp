@@ -24,7 +24,7 @@ using codec::Member;
 constexpr std::string_view kLevels[] = {"error", "warning", "notice", "info", "debug"};
 
 constexpr Member kRecord[] = {
-    member<&LogRecord::seq>("seq", "counts all that was logged since the start"),
+    member<&LogRecord::seq>("seq", "number of the record since the start of aditd"),
     member<&LogRecord::at>("at", "seconds since 1970"),
     member<&LogRecord::level>("level").one_of(kLevels),
     member<&LogRecord::message>("message"),
@@ -33,7 +33,7 @@ constexpr Member kRecord[] = {
 
 constexpr Member kPage[] = {
     member<&LogPage::last>("last",
-                           "number of the last record there was: less than since, and the box was restarted"),
+                           "number of the last record; if it is less than since, aditd was restarted"),
     member<&LogPage::records>("records"),
 };
 
@@ -55,8 +55,8 @@ constexpr Member kAbout[] = {
     member<&About::started>("started", "seconds since 1970"),
     member<&About::uptime>("uptime", "seconds"),
     member<&About::kernel>("kernel"),
-    member<&About::model>("model", "empty: not known"),
-    member<&About::board>("board", "null: it was not told"),
+    member<&About::model>("model", "empty if unknown"),
+    member<&About::board>("board", "null if unknown"),
     member<&About::parts>("parts"),
 };
 
@@ -84,7 +84,7 @@ constexpr Member kNetwork[] = {
 
 constexpr codec::Row LogRecord::kRow = {"LogRecord", kRecord};
 constexpr codec::Row LogPage::kRow = {"Log", kPage};
-constexpr codec::Row PartRow::kRow = {"", kPart, "A library in the program."};
+constexpr codec::Row PartRow::kRow = {"", kPart, "A library of the program."};
 constexpr codec::Row BoardRow::kRow = {"", kBoard};
 constexpr codec::Row About::kRow = {"About", kAbout};
 constexpr codec::Row InterfaceRow::kRow = {"", kInterface};

@@ -6,15 +6,16 @@ namespace {
 
 constexpr codec::Member kClockMembers[] = {
     codec::member<&ClockView::now>("now", "seconds since 1970"),
-    codec::member<&ClockView::managed>("managed", "it can be set here"),
-    codec::member<&ClockView::why>("why", "why it cannot be"),
-    codec::member<&ClockView::source>("source", "who set it last since the box started")
+    codec::member<&ClockView::managed>("managed", "whether the clock can be set here"),
+    codec::member<&ClockView::why>("why", "why the clock cannot be set here"),
+    codec::member<&ClockView::source>("source", "source that set the clock last since the boot")
         .one_of(clock::kSourceWords),
-    codec::member<&ClockView::is_set>("is_set", "it is known well enough"),
-    codec::member<&ClockView::refusal>("refusal", "why the last change came to nothing"),
+    codec::member<&ClockView::is_set>("is_set", "whether the time is known well enough"),
+    codec::member<&ClockView::refusal>("refusal", "why the last change failed"),
     codec::member<&ClockView::ntp>(
-        "ntp", "what is done about NTP, or why it is not; empty where it is not asked for"),
-    codec::member<&ClockView::is_kept>("is_kept", "an NTP server keeps it, and nobody else may set it"),
+        "ntp", "state of NTP, or why it does not work; empty if the settings have no NTP"),
+    codec::member<&ClockView::is_kept>("is_kept",
+                                       "whether an NTP server keeps the time, so that no user can set it"),
 };
 
 }  // namespace

@@ -8,26 +8,26 @@ using codec::member;
 using codec::Row;
 
 constexpr Member kMapAges[] = {
-    member<&MapAges::robot>("robot", "empty: merged maps"),
-    member<&MapAges::ages>("ages", "seconds; null: it has none"),
+    member<&MapAges::robot>("robot", "empty for merged maps"),
+    member<&MapAges::ages>("ages", "seconds; null if the Command Post has no map"),
 };
 
 constexpr Member kAttentionStep[] = {
     member<&AttentionStep::at>("at", "seconds since 1970"),
-    member<&AttentionStep::came>("came", "false: it went"),
+    member<&AttentionStep::came>("came", "whether the alarm began; false if it ended"),
     member<&AttentionStep::sentence>("sentence"),
 };
 
 constexpr Member kHistory[] = {
-    member<&History::spacing>("spacing", "seconds between two samples, at least"),
-    member<&History::at>("at", "seconds since 1970, oldest first; all other lists are as long"),
+    member<&History::spacing>("spacing", "least seconds between two samples"),
+    member<&History::at>("at", "seconds since 1970, oldest first; all other lists have the same length"),
     member<&History::sent_mbit>("sent_mbit", "megabits a second to the Command Post"),
-    member<&History::queued_bytes>("queued_bytes", "of maps that wait"),
-    member<&History::scoring_ms>("scoring_ms", "how long the last answer took"),
-    member<&History::mapping_ms>("mapping_ms", "how long the last answer took"),
-    member<&History::throttled>("throttled", "how often the Command Post said 429 since the sample before"),
-    member<&History::robots>("robots", "how old the newest map is that the Command Post has"),
-    member<&History::attention>("attention", "what needed the operator: when it came, when it went"),
+    member<&History::queued_bytes>("queued_bytes", "bytes of queued maps"),
+    member<&History::scoring_ms>("scoring_ms", "duration of the last answer"),
+    member<&History::mapping_ms>("mapping_ms", "duration of the last answer"),
+    member<&History::throttled>("throttled", "number of answers of 429 since the previous sample"),
+    member<&History::robots>("robots", "age of the newest map at the Command Post"),
+    member<&History::attention>("attention", "begins and ends of alarms that needed the operator"),
 };
 
 }  // namespace

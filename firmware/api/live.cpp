@@ -54,7 +54,7 @@ void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
   if (pages_.size() >= kMostPages) {
     return responder.answer(intake::error_answer(
         icd::Status::ServiceUnavailable,
-        "as many pages are open as this box serves at once (" + std::to_string(kMostPages) + ")"));
+        "too many pages are open: the box serves at most " + std::to_string(kMostPages) + " at once"));
   }
   if (pages_.empty()) {
     begin();

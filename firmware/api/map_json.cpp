@@ -16,7 +16,7 @@ constexpr Member kTileMembers[] = {
     member<&TileView::first>("first", "seconds since 1970"),
     member<&TileView::stamp>("stamp", "seconds since 1970"),
     member<&TileView::version>("version"),
-    member<&TileView::blank>("blank", "wiped since: 404 now"),
+    member<&TileView::blank>("blank", "whether the tile was deleted since: 404 now"),
 };
 constexpr Row kTile = {"", kTileMembers};
 
@@ -74,11 +74,11 @@ namespace adit::api {
 namespace {
 
 constexpr Member kFinerMembers[] = {
-    member<&picture::Finer::level>("level", "the finest: -1 or -2"),
+    member<&picture::Finer::level>("level", "finest level: -1 or -2"),
     member<&picture::Finer::version>("version"),
-    member<&picture::Finer::area>("area", "what of it changed"),
+    member<&picture::Finer::area>("area", "area that changed"),
 };
-constexpr Row kFiner = {"", kFinerMembers, "Of what tiles can be had of now."};
+constexpr Row kFiner = {"", kFinerMembers, "The finer tiles that exist now."};
 
 }  // namespace
 }  // namespace adit::api
@@ -92,16 +92,16 @@ namespace {
 constexpr std::string_view kMapKinds[] = {"grid", "cloud"};
 
 constexpr Member kLayerMembers[] = {
-    member<&LayerView::layer, &picture::Layer::robot>("robot", "empty: merged"),
+    member<&LayerView::layer, &picture::Layer::robot>("robot", "empty for the merged map"),
     member<&LayerView::layer, &picture::Layer::kind>("kind").one_of(kMapKinds),
     member<&LayerView::bounds>("bounds"),
     member<&LayerView::heights>("heights"),
     member<&LayerView::first>("first"),
     member<&LayerView::last>("last"),
     member<&LayerView::version>("version"),
-    member<&LayerView::missed>("missed", "maps that are not in it"),
-    member<&LayerView::left_out>("left_out", "of the last map, out of reach"),
-    member<&LayerView::finer>("finer", "null: nothing is finer than the base"),
+    member<&LayerView::missed>("missed", "number of maps that the picture lacks"),
+    member<&LayerView::left_out>("left_out", "cells or points of the last map beyond the picture"),
+    member<&LayerView::finer>("finer", "null if no tiles are finer than the base"),
     member<&LayerView::tiles>("tiles"),
 };
 constexpr Row kLayer = {"Layer", kLayerMembers};
@@ -125,11 +125,11 @@ constexpr Member kColours[] = {
 constexpr Member kMap[] = {
     member<&MapView::version>("version"),
     member<&MapView::tile_side>("tile_side", "pixels"),
-    member<&MapView::metres_per_pixel>("metres_per_pixel", "for each level, the base first"),
+    member<&MapView::metres_per_pixel>("metres_per_pixel", "for each level, base first"),
     member<&MapView::finer_metres_per_pixel>("finer_metres_per_pixel", "for levels -1, -2"),
     member<&MapView::colours>("colours"),
-    member<&MapView::spacing>("spacing", "seconds between the states that are kept"),
-    member<&MapView::wiped>("wiped", "when the last run began, if the box saw it begin"),
+    member<&MapView::spacing>("spacing", "seconds between two stored states"),
+    member<&MapView::wiped>("wiped", "begin of the last run, if the box saw it begin"),
     member<&MapView::layers>("layers"),
 };
 

@@ -53,7 +53,7 @@ std::string etag_of(const picture::Packed& tile) {
 }
 
 intake::Answer nothing_drawn() {
-  return refusal(icd::Status::NotFound, "nothing is drawn here");
+  return refusal(icd::Status::NotFound, "this tile is empty");
 }
 
 intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std::string_view kept) {
@@ -85,11 +85,12 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
   const AskedNumber at = asked_number(head, "at"), low = asked_number(head, "low"),
                     high = asked_number(head, "high");
   if (at.wrong) return std::unexpected(bad_tile("at: expected seconds since 1970"));
-  if (at.number && *level < 0) return std::unexpected(bad_tile("at: finer levels are of now alone"));
+  if (at.number && *level < 0) return std::unexpected(bad_tile("at: finer levels exist only for now"));
   if (low.wrong || high.wrong) return std::unexpected(bad_tile("low and high: expected metres"));
   const AskedColour from = asked_colour(head, "from"), to = asked_colour(head, "to");
   if (from.wrong || to.wrong || from.colour.has_value() != to.colour.has_value()) {
-    return std::unexpected(bad_tile("from and to: expected both or none, each as six digits: 2266ee"));
+    return std::unexpected(
+        bad_tile("from and to: expected both or neither, each with six hexadecimal digits, as in 2266ee"));
   }
   return TileAsked{.layer = {.robot = parts[1] == kMerged ? "" : parts[1],
                              .kind = parts[0] == "grid" ? picture::Kind::Grid : picture::Kind::Cloud},

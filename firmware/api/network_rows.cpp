@@ -34,7 +34,7 @@ constexpr Row kTeamSide = {"TeamSide", kTeamSideMembers};
 constexpr Member kCommandPostSideMembers[] = {
     member<&NetworkView::command_post_interface>("interface"),
     member<&NetworkView::command_post>("addresses"),
-    member<&NetworkView::gateway>("gateway", "empty: none")
+    member<&NetworkView::gateway>("gateway", "empty if there is no gateway")
         .as(codec::kind_as<std::optional<std::uint32_t>, network::AddressOrNone>),
 };
 constexpr Row kCommandPostSide = {"CommandPostSide", kCommandPostSideMembers};
@@ -42,25 +42,25 @@ constexpr Row kCommandPostSide = {"CommandPostSide", kCommandPostSideMembers};
 constexpr Member kPendingMembers[] = {
     member<&PendingNetwork::until>("until", "seconds since 1970"),
     member<&PendingNetwork::wanted>(""),
-    member<&PendingNetwork::previous>("previous", "what it goes back to"),
-    member<&PendingNetwork::page>("page", "where to confirm it"),
+    member<&PendingNetwork::previous>("previous", "addresses to which the box returns"),
+    member<&PendingNetwork::page>("page", "address of the page to confirm on"),
 };
 
 constexpr std::string_view kPortSides[] = {"team", "command_post"};
 constexpr Member kPortMembers[] = {
     member<&PortRow::side>("side").one_of(kPortSides),
     member<&PortRow::interface>("interface"),
-    member<&PortRow::mac>("mac", "empty: there is no such interface"),
+    member<&PortRow::mac>("mac", "empty if the interface does not exist"),
     member<&PortRow::addresses>("addresses"),
-    member<&PortRow::name>("name", "that finds it (mDNS); empty: none on this side"),
-    member<&PortRow::carrier>("carrier", "null: there is no such interface"),
-    member<&PortRow::mbit>("mbit", "of the link; null: not told").from(0),
-    member<&PortRow::duplex>("duplex", "full, half; empty: not told"),
+    member<&PortRow::name>("name", "mDNS name; empty if there is none on this side"),
+    member<&PortRow::carrier>("carrier", "null if the interface does not exist"),
+    member<&PortRow::mbit>("mbit", "speed of the link; null if unknown").from(0),
+    member<&PortRow::duplex>("duplex", "full or half; empty if unknown"),
 };
 
 constexpr Member kNetworkMembers[] = {
     member<&NetworkView::managed>("managed"),
-    member<&NetworkView::why>("why", "why they cannot be changed here"),
+    member<&NetworkView::why>("why", "why the addresses cannot be changed here"),
     group<NetworkView, kTeamSide>("team"),
     group<NetworkView, kCommandPostSide>("command_post"),
     member<&NetworkView::pending>("pending"),

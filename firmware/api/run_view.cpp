@@ -19,22 +19,25 @@ constexpr std::string_view kSides[] = {"team", "command_post"};
 
 constexpr Member kReport[] = {
     member<&ReportRow::number>("number").csv(1),
-    member<&ReportRow::type>("type", "of the artifact, or what the client sent").csv(3),
-    member<&ReportRow::position>("position", "null: damage took from the ledger what it said").exact().csv(4),
+    member<&ReportRow::type>("type", "type of the artifact, or the text that the client sent").csv(3),
+    member<&ReportRow::position>("position", "null if damage of the ledger lost it").exact().csv(4),
     member<&ReportRow::sender>("sender").csv(5),
-    member<&ReportRow::robot>("robot", "that its sender named; empty: none").csv(16),
+    member<&ReportRow::robot>("robot", "the robot that the sender named; empty if there is none").csv(16),
     member<&ReportRow::received>("received", kWhen).csv(6, Cell::Time),
     member<&ReportRow::changed>("changed", kWhen).csv(7, Cell::Time),
     member<&ReportRow::state>("state").one_of(dispatch::kStateWords).csv(8),
-    member<&ReportRow::status>("status", "the Command Post's; 0: none yet").csv(12, Cell::NotZero),
+    member<&ReportRow::status>("status", "status of the Command Post's answer; 0 if there is none yet")
+        .csv(12, Cell::NotZero),
     member<&ReportRow::report_status>("report_status").csv(13),
     member<&ReportRow::score_change>("score_change").csv(14),
     member<&ReportRow::note>("note").csv(15),
     member<&ReportRow::run>("run").csv(2),
-    member<&ReportRow::asking>("asking", "in doubt, and Adit is finding out").csv(9),
-    member<&ReportRow::reconciled>("reconciled", "its answer was found out from the run's status").csv(10),
+    member<&ReportRow::asking>("asking", "whether the report is in doubt and Adit is finding out its outcome")
+        .csv(9),
+    member<&ReportRow::reconciled>("reconciled", "whether the answer was derived from the run's status")
+        .csv(10),
     member<&ReportRow::same_as>(
-        "same_as", "the earlier report that it turned out to be, of a held one: that it may be; or 0")
+        "same_as", "number of the earlier report that this report repeats (if held: may repeat), or 0")
         .csv(11, Cell::NotZero),
 };
 
@@ -52,7 +55,7 @@ constexpr Member kDetail[] = {
 
 constexpr Member kActivity[] = {
     member<&ActivityRow::kind>("kind").one_of(kKinds),
-    member<&ActivityRow::robot>("robot", "empty: merged maps, markers"),
+    member<&ActivityRow::robot>("robot", "empty for merged maps and markers"),
     member<&ActivityRow::accepted>("accepted"),
     member<&ActivityRow::forwarded>("forwarded"),
     member<&ActivityRow::replaced>("replaced"),
@@ -60,43 +63,38 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::throttled>("throttled"),
     member<&ActivityRow::failed>("failed"),
     member<&ActivityRow::refused_upstream>("refused_upstream"),
-    member<&ActivityRow::no_room>("no_room", "refused to the robot, because too much waits"),
+    member<&ActivityRow::no_room>("no_room", "rejected because the queue is full"),
     member<&ActivityRow::queued>("queued"),
-    member<&ActivityRow::behind_since>("behind_since",
-                                       "when the oldest news that the Command Post lacks was accepted, in "
-                                       "seconds since 1970; null: it lacks none"),
-    member<&ActivityRow::behind>("behind", "for how many seconds it has lacked that; null: it lacks none"),
+    member<&ActivityRow::behind_since>(
+        "behind_since",
+        "when the oldest undelivered update was accepted, in seconds since 1970; null if all are delivered"),
+    member<&ActivityRow::behind>("behind", "seconds since behind_since; null if all are delivered"),
     member<&ActivityRow::last_accepted>("last_accepted", kWhen),
     member<&ActivityRow::last_forwarded>("last_forwarded", kWhen),
-    member<&ActivityRow::age>("age",
-                              "seconds since the Command Post took the last one that was posted; null: it "
-                              "took none"),
+    member<&ActivityRow::age>("age", "age of the last delivered update in seconds; null if there is none"),
     member<&ActivityRow::last_no_room>("last_no_room", kWhen),
-    member<&ActivityRow::bytes_received>("bytes_received", "of the last"),
-    member<&ActivityRow::bytes_sent>("bytes_sent", "of the last"),
-    member<&ActivityRow::last_status>("last_status", "the Command Post's, to the last try; 0: none came"),
-    member<&ActivityRow::last_sentence>("last_sentence", "what it said, or why nothing came"),
+    member<&ActivityRow::bytes_received>("bytes_received", "size of the last accepted update"),
+    member<&ActivityRow::bytes_sent>("bytes_sent", "size of the last delivered update"),
+    member<&ActivityRow::last_status>(
+        "last_status", "status of the Command Post's answer to the last try; 0 if there was no answer"),
+    member<&ActivityRow::last_sentence>("last_sentence", "the answer's sentence, or why there was no answer"),
     member<&ActivityRow::clouds>("clouds",
-                                 "what the last clouds were taken for. whole: the newest says all that those "
-                                 "before it said, and replaces them; parts: each arrives; empty: no two of "
-                                 "them have waited")
+                                 "whole: the newest cloud contains the earlier ones and replaces them. "
+                                 "parts: each cloud is delivered. empty: no two clouds were queued yet")
         .one_of(kClouds),
-    member<&ActivityRow::precision>("precision",
-                                    "how far the last cloud was rounded that the Command Post took "
-                                    "(robots[].precision); empty: it took none")
+    member<&ActivityRow::precision>(
+        "precision", "rounding of the last delivered cloud (robots[].precision); empty if there is none")
         .one_of(kPrecisions),
     member<&ActivityRow::points_left_out>(
         "points_left_out",
-        "of its clouds, because another of their voxel went, or was taken by the Command Post "
-        "(robots[].voxel_metres)"),
+        "points not sent because another point of their voxel was sent or delivered (robots[].voxel_metres)"),
     member<&ActivityRow::no_valid_point>(
-        "no_valid_point",
-        "of its clouds, accepted and not sent, for each of their points is NaN or infinite"),
-    member<&ActivityRow::invisible>(
-        "invisible", "of its markers, forwarded although nobody sees them: the alpha of their color is 0"),
-    member<&ActivityRow::arrival>("arrival", "whether it reaches the Command Post")
+        "no_valid_point", "clouds accepted but not sent because all of their points are NaN or infinite"),
+    member<&ActivityRow::invisible>("invisible",
+                                    "markers forwarded with an alpha of 0, which makes them invisible"),
+    member<&ActivityRow::arrival>("arrival", "whether updates reach the Command Post")
         .one_of(alarms::kArrivalWords),
-    member<&ActivityRow::level>("level", "how well that is").one_of(alarms::kLevelWords),
+    member<&ActivityRow::level>("level", "severity of arrival").one_of(alarms::kLevelWords),
 };
 
 constexpr Member kRefusal[] = {
@@ -104,11 +102,11 @@ constexpr Member kRefusal[] = {
     member<&RefusalRow::uri>("uri"),
     member<&RefusalRow::sender>("sender"),
     member<&RefusalRow::status>("status"),
-    member<&RefusalRow::sentence>("sentence",
-                                  "as its sender got it: of bad parts, one for each of the first ten"),
+    member<&RefusalRow::sentence>(
+        "sentence", "the sentence for the sender; for wrong parts, one for each of the first ten"),
     member<&RefusalRow::parts>("parts",
-                               "how many parts of a state or of markers were refused; the others of it were "
-                               "taken, unless all were bad. 0: no parts"),
+                               "number of rejected parts of a state or of markers; the other parts were "
+                               "accepted. 0 if the message has no parts"),
     member<&RefusalRow::setting>("setting",
                                  "the key of a setting that can prevent this refusal; empty: no setting can"),
 };
@@ -118,30 +116,33 @@ constexpr Member kEndpoint[] = {
     member<&EndpointRow::address>("address"),
     member<&EndpointRow::connected>("connected"),
     member<&EndpointRow::trouble>("trouble"),
-    member<&EndpointRow::last_status>("last_status", "to the last try; 0: none came"),
+    member<&EndpointRow::last_status>("last_status",
+                                      "status of the answer to the last try; 0 if there was no answer"),
     member<&EndpointRow::answer_ms>("answer_ms"),
-    member<&EndpointRow::throttled>("throttled", "answers of 429"),
-    member<&EndpointRow::foreign>("foreign", "answers that no Command Post gives: pages of HTML, redirects"),
+    member<&EndpointRow::throttled>("throttled", "number of answers of 429"),
+    member<&EndpointRow::foreign>(
+        "foreign", "number of answers that are not from a Command Post: pages of HTML, redirects"),
 };
 
 constexpr Member kRejected[] = {
     member<&RejectedRow::number>("number").from(1),
     member<&RejectedRow::kind>("kind").one_of(kKinds),
-    member<&RejectedRow::robot>("robot", "empty: of several, or of none"),
-    member<&RejectedRow::at>("at", "when it was rejected"),
-    member<&RejectedRow::status>("status", "the Command Post's"),
+    member<&RejectedRow::robot>("robot", "empty if it is of several robots or of none"),
+    member<&RejectedRow::at>("at", "when the message was rejected"),
+    member<&RejectedRow::status>("status", "status of the Command Post's answer"),
     member<&RejectedRow::why>("why"),
     member<&RejectedRow::bytes>("bytes"),
     member<&RejectedRow::replaced>(
-        "replaced", "something newer that says all of it was sent since: it is not sent again"),
+        "replaced",
+        "whether a newer message that contains all of this one was sent since: it cannot be sent again"),
 };
 
 constexpr Member kRobot[] = {
     member<&RobotRow::name>("name"),
     member<&RobotRow::position>("position"),
     member<&RobotRow::heading>("heading", "radians about z"),
-    member<&RobotRow::at>("at", "when its last pose was forwarded first"),
-    member<&RobotRow::age>("age", "seconds since then"),
+    member<&RobotRow::at>("at", "when the last pose was first forwarded"),
+    member<&RobotRow::age>("age", "seconds since at"),
 };
 
 constexpr Member kLight[] = {
@@ -152,7 +153,7 @@ constexpr Member kLight[] = {
 constexpr Member kLink[] = {
     member<&LinkRow::side>("side").one_of(kSides),
     member<&LinkRow::interface>("interface"),
-    member<&LinkRow::carrier>("carrier", "null: there is no such interface"),
+    member<&LinkRow::carrier>("carrier", "null if the interface does not exist"),
 };
 
 constexpr Member kView[] = {
@@ -161,32 +162,31 @@ constexpr Member kView[] = {
     member<&RunView::run>("run"),
     member<&RunView::run_heard>("run_heard", kWhen),
     member<&RunView::run_number>("run_number"),
-    member<&RunView::run_id>("run_id", "the Command Post's; empty: it names none"),
-    member<&RunView::run_seconds>("run_seconds", "that a run lasts, as the settings say"),
+    member<&RunView::run_id>("run_id", "the Command Post's name of the run; empty if there is none"),
+    member<&RunView::run_seconds>("run_seconds", "length of a run, from the settings"),
     member<&RunView::endpoints>("endpoints"),
     member<&RunView::robots>("robots", "by name"),
     member<&RunView::reports>("reports",
-                              "newest first, at most 200: those with which something is still to happen, "
-                              "and the newest others"),
+                              "newest first, at most 200: all open reports, and the newest of the others"),
     member<&RunView::near_metres>("near_metres",
-                                  "of one type and this near, two reports may be of one artifact"),
+                                  "two reports of one type that are this near may be of one artifact"),
     member<&RunView::activities>("activities"),
-    member<&RunView::refusals>("refusals", "newest first, the last 50"),
-    member<&RunView::rejected>("rejected", "what the Command Post would not take, oldest first, at most 100"),
+    member<&RunView::refusals>("refusals", "the last 50, newest first"),
+    member<&RunView::rejected>("rejected", "rejected messages, oldest first, at most 100"),
     member<&RunView::lights>("lights"),
-    member<&RunView::links>("links", "of the interfaces that the settings name"),
-    member<&RunView::identify_until>("identify_until", "the lights flash so that the box can be found"),
-    member<&RunView::setup_open_until>(
-        "setup_open_until",
-        "the box's button opened set-up: a new password can be set without the present one"),
+    member<&RunView::links>("links", "the interfaces of the settings"),
+    member<&RunView::identify_until>("identify_until", "end of the flashing that identifies the box"),
+    member<&RunView::setup_open_until>("setup_open_until",
+                                       "end of the time in which a new password can be set without the "
+                                       "present one, opened by the box's button"),
     member<&RunView::budget_mbit>("budget_mbit"),
-    member<&RunView::sent_mbit>("sent_mbit", "over the last seconds, to both endpoints"),
+    member<&RunView::sent_mbit>("sent_mbit", "rate to both endpoints over the last seconds"),
     member<&RunView::queued_bytes>("queued_bytes"),
-    member<&RunView::map_version>("map_version", "says whether /adit/map has changed"),
-    member<&RunView::marker_version>("marker_version", "says whether /adit/markers has changed"),
+    member<&RunView::map_version>("map_version", "changes when /adit/map changes"),
+    member<&RunView::marker_version>("marker_version", "changes when /adit/markers changes"),
     member<&RunView::verdict>("verdict"),
     member<&RunView::alarms>("alarms", "bad before ask before wait, then the oldest first"),
-    member<&RunView::alarms_over>("alarms_over", "the last few that went, the newest first"),
+    member<&RunView::alarms_over>("alarms_over", "the last few ended alarms, newest first"),
 };
 
 // By what a row of a list is told from the others.
@@ -200,12 +200,12 @@ constexpr codec::Row ReportStep::kRow = {"", kStep};
 constexpr codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
 constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind.",
                                           kByTraffic};
-constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "What was refused to its sender.", kByMoment};
+constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "A rejected message.", kByMoment};
 constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
 constexpr codec::Row RejectedRow::kRow = {"Rejected", kRejected, "", kByNumber};
 constexpr codec::Row RobotRow::kRow = {"Robot", kRobot, "", kByName};
 constexpr codec::Row LightRow::kRow = {"Light", kLight, "", kByName};
 constexpr codec::Row LinkRow::kRow = {"Link", kLink, "", kBySide};
-constexpr codec::Row RunView::kRow = {"RunView", kView, "How all stands."};
+constexpr codec::Row RunView::kRow = {"RunView", kView, "The present state of the run."};
 
 }  // namespace adit::api

@@ -109,19 +109,20 @@ constexpr Member kMarker[] = {
         "points",
         "x, y, x, y, ... in metres of the frame darpa, seen from above: with the pose applied, thinned"),
     member<&MarkerRow::marker, &DrawnMarker::colors>(
-        "colors", "none, or one for each point (LINE_LIST: line; TRIANGLE_LIST: triangle) of points"),
-    member<&MarkerRow::marker, &DrawnMarker::point_count>("point_count", "how many points it has"),
+        "colors",
+        "empty, or one colour for each point of points (LINE_LIST: each line; TRIANGLE_LIST: each triangle)"),
+    member<&MarkerRow::marker, &DrawnMarker::point_count>("point_count", "number of points"),
     member<&MarkerRow::marker, &DrawnMarker::text>("text", "its first 120 bytes"),
     member<&MarkerRow::marker, &DrawnMarker::mesh>(
-        "mesh", "the name of mesh_resource's file, without folder and ending"),
+        "mesh", "file name of mesh_resource, without directory and extension"),
     member<&MarkerRow::marker, &DrawnMarker::lifetime>("lifetime").from(0),
-    member<&MarkerRow::at>("at", "when it was forwarded"),
+    member<&MarkerRow::at>("at", "when the marker was forwarded"),
 };
 
 constexpr Member kChanges[] = {
     member<&MarkerChanges::version>("version"),
-    member<&MarkerChanges::whole>("whole", "markers are all there are"),
-    member<&MarkerChanges::left_out>("left_out", "older ones than are kept"),
+    member<&MarkerChanges::whole>("whole", "whether markers has all markers"),
+    member<&MarkerChanges::left_out>("left_out", "number of older markers that were left out"),
     member<&MarkerChanges::markers>("markers"),
     member<&MarkerChanges::gone>("gone"),
 };

@@ -29,9 +29,10 @@ constexpr Member kTestedEndpoint[] = {
 
 constexpr Member kTest[] = {
     member<&TestView::running>("running"),
-    member<&TestView::applied>("applied", "of what is in use; else of what was named"),
-    member<&TestView::course>("course",
-                              "whose addresses and tokens count where none were named; empty: none's"),
+    member<&TestView::applied>("applied",
+                               "whether the settings in use are tested; false for named endpoints"),
+    member<&TestView::course>(
+        "course", "course whose addresses and tokens are used if none were named; empty for no course"),
     member<&TestView::endpoints>("endpoints"),
 };
 

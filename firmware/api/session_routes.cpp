@@ -34,9 +34,9 @@ intake::Answer slow_down(const access::Wait& wait) {
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(wait.left).count();
   auto answer =
       refusal(icd::Status::TooManyRequests,
-              wait.for_others ? icd::sentence("others are trying passwords: your turn is in ", seconds,
-                                              " s; or press the box's button, and try again at once")
-                              : icd::sentence("wait ", seconds, " s and try again"));
+              wait.for_others ? icd::sentence("other clients are trying passwords: wait ", seconds,
+                                              " s, or press the box's button and try again at once")
+                              : icd::sentence("too many attempts: wait ", seconds, " s and try again"));
   answer.headers.push_back({"Retry-After", std::to_string(seconds)});
   return answer;
 }
@@ -191,7 +191,7 @@ void SessionRoutes::change_password(const Call& call) {
   if (is_by_button(*change)) return set(*change, poster);
   if (keys_.first_start()) {
     if (change->role != Role::Operator) {
-      return poster.responder->answer(refusal(icd::Status::Conflict, "the operator's password is set first"));
+      return poster.responder->answer(refusal(icd::Status::Conflict, "set the operator's password first"));
     }
     if (!may_try(poster)) return;
     if (!keys_.is_code(change->code)) return poster.responder->answer(wrong("the code"));
@@ -222,7 +222,7 @@ void SessionRoutes::reset(const Call& call) {
     if (const auto done = setup_->reset(); !done)
       return poster.responder->answer(refused_change(done.error()));
     auto answer =
-        object({{"said", {"settings, tokens, passwords and sessions are gone; the reports are kept"}}});
+        object({{"said", {"settings, tokens, passwords and sessions are deleted; the reports are kept"}}});
     answer.headers.push_back(session_cookie("", std::chrono::seconds(0)));
     poster.responder->answer(std::move(answer));
   });

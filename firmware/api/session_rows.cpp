@@ -21,20 +21,21 @@ constexpr Member kSession[] = {
     member<&SessionRow::number>("number"),
     member<&SessionRow::role>("role"),
     member<&SessionRow::address>("address"),
-    member<&SessionRow::agent>("agent", "what the browser calls itself"),
+    member<&SessionRow::agent>("agent", "User-Agent of the browser"),
     member<&SessionRow::made>("made", "seconds since 1970"),
     member<&SessionRow::seen>("seen", "seconds since 1970"),
-    member<&SessionRow::own>("own", "of the one who asks"),
+    member<&SessionRow::own>("own", "whether this is the client's own session"),
 };
 
 constexpr Member kWhoAsks[] = {
     member<&WhoAsks::role>("role"),
-    member<&WhoAsks::csrf>("csrf", "what actions by cookie send as Adit-CSRF; null: nobody, or by a token")
+    member<&WhoAsks::csrf>(
+        "csrf", "value of the header Adit-CSRF for requests with the cookie; null without a session")
         .as(codec::kTextOrNull),
-    member<&WhoAsks::first_start>("first_start", "no password is set: the code sets one"),
+    member<&WhoAsks::first_start>("first_start", "whether no password is set yet, so that the code sets one"),
     member<&WhoAsks::set_up_open>("set_up_open",
-                                  "the box's button opened set-up: the operator's password can be set "
-                                  "without the present one"),
+                                  "whether the operator's password can be set without the present one, "
+                                  "because the box's button opened set-up"),
 };
 
 }  // namespace

@@ -48,7 +48,7 @@ std::vector<settings::Error> unfit_to_save(const settings::Settings& now, const 
     const settings::Address& listen = next.team.listen[i];
     if (listen.port != 0 || std::ranges::find(now.team.listen, listen) != now.team.listen.end()) continue;
     errors.push_back({icd::sentence("team.listen[", i, "].port"),
-                      "expected 1 to 65535, got 0: nobody could tell where this page would be"});
+                      "expected 1 to 65535, got 0: the address of this page would be unknown"});
   }
   return errors;
 }
@@ -67,7 +67,8 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
     if (!posted.token) token.refuse("expected null or 1 to 256 visible ASCII characters");
     // The others are the Command Post's to choose.
     if (posted.token && posted.name == "team" && posted.token->reveal().size() < kShortestTeamToken) {
-      token.refuse("expected at least ", kShortestTeamToken, " characters: it is as good as the password");
+      token.refuse("expected at least ", kShortestTeamToken,
+                   " characters, because the token has the password's rights");
     }
     return posted;
   });
@@ -104,8 +105,7 @@ intake::Answer SettingsRoutes::save(const std::string& body) {
   const auto posted = read_posted(body, true);
   if (!posted) return refused(posted.error());
   if (posted->base != settings::tag_of(setup_.settings())) {
-    return refusal(icd::Status::Conflict,
-                   "somebody else has changed the settings meanwhile: look at them again");
+    return refusal(icd::Status::Conflict, "another user has changed the settings meanwhile: reload them");
   }
   const auto next = settings::parse(posted->settings);
   if (!next) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(next.error()));

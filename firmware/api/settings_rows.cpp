@@ -35,8 +35,8 @@ constexpr Row kFaultRow = {"Fault", kFault};
 
 constexpr Member kChange[] = {
     member<&settings::Change::path>("path"),
-    member<&settings::Change::from>("from", "null: not there"),
-    member<&settings::Change::to>("to", "null: not there"),
+    member<&settings::Change::from>("from", "null if absent"),
+    member<&settings::Change::to>("to", "null if absent"),
 };
 constexpr Row kChangeRow = {"Change", kChange};
 
@@ -72,7 +72,7 @@ constexpr Member kKey[] = {
     member<&KeyRow::kind>("kind").one_of(kKeyKinds),
     member<&KeyRow::required>("required"),
     member<&KeyRow::default_value>("default"),
-    member<&KeyRow::range>("range", "in words"),
+    member<&KeyRow::range>("range", "range of the value in words"),
     member<&KeyRow::words>("words").if_any(),
     member<&KeyRow::least>("least").as(kNumber).if_any(),
     member<&KeyRow::most>("most").as(kNumber).if_any(),
@@ -80,19 +80,20 @@ constexpr Member kKey[] = {
 
 constexpr Member kSetup[] = {
     member<&SetupView::settings>("settings").as(kSettings),
-    member<&SetupView::tag>("tag", "names this version of them"),
-    member<&SetupView::saved>("saved", "here; else they are those that the box was given"),
-    member<&SetupView::applying>("applying", "a change was taken, and is in use within a second"),
-    member<&SetupView::trouble>("trouble", "why the last change is not in use (it was taken back), or empty"),
-    member<&SetupView::tokens>("tokens", "for each that there can be, whether there is one"),
-    member<&SetupView::odd_tokens>("odd_tokens", "of those that are set, by name: what may be wrong"),
+    member<&SetupView::tag>("tag", "identifies this version of the settings"),
+    member<&SetupView::saved>("saved",
+                              "whether the settings were saved here; false for the initial settings"),
+    member<&SetupView::applying>("applying", "whether a change is being applied, within a second"),
+    member<&SetupView::trouble>("trouble", "why the last change was taken back, or empty"),
+    member<&SetupView::tokens>("tokens", "all possible tokens, and whether each is set"),
+    member<&SetupView::odd_tokens>("odd_tokens", "warnings about tokens that are set, by name"),
     member<&SetupView::keys>("keys"),
 };
 
 constexpr Member kChanged[] = {
     member<&ChangesView::changes>("changes"),
     member<&ChangesView::warnings>(
-        "warnings", "what they mean, also for the reports that wait, are in doubt or are held"),
+        "warnings", "effects of the changes, also on reports that are queued, held or in doubt"),
 };
 
 constexpr Member kCheck[] = {

@@ -114,7 +114,7 @@ intake::Answer SpareRoutes::take_over(const std::string& body) {
   if (!unplugged) return refused(unplugged.error());
   if (!*unplugged)
     return refusal(icd::Status::UnprocessableEntity,
-                   "unplugged: expected true, for the box that made the export must be off");
+                   "unplugged: expected true, because the box that made the export must be off");
   return after(spare_.take_over());
 }
 

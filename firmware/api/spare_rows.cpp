@@ -4,42 +4,46 @@ namespace adit::api {
 namespace {
 
 constexpr codec::Member kExportMembers[] = {
-    codec::member<&ExportRow::name>("name", "where the team found the box that made it"),
-    codec::member<&ExportRow::version>("version", "of that box's Adit"),
-    codec::member<&ExportRow::at>("at", "when that box came to rest; seconds since 1970, by its clock"),
-    codec::member<&ExportRow::reports>("reports", "all that it knows"),
-    codec::member<&ExportRow::open>("open", "of these, those with which something is still to happen"),
-    codec::member<&ExportRow::post>("post", "the Command Post: address and port"),
-    codec::member<&ExportRow::run>("run", "as it last heard; null: never"),
-    codec::member<&ExportRow::left_out>("left_out", "of its settings, those that are not known here"),
+    codec::member<&ExportRow::name>("name", "address at which the team used the box that made the export"),
+    codec::member<&ExportRow::version>("version", "version of that box"),
+    codec::member<&ExportRow::at>("at", "start of that box's standby: seconds since 1970 by its clock"),
+    codec::member<&ExportRow::reports>("reports", "number of reports"),
+    codec::member<&ExportRow::open>("open", "number of reports that are still open"),
+    codec::member<&ExportRow::post>("post", "address and port of the Command Post"),
+    codec::member<&ExportRow::run>("run", "the run's last status; null if there was none"),
+    codec::member<&ExportRow::left_out>("left_out", "settings of that box that are unknown here"),
 };
 
 constexpr codec::Member kStickExportMembers[] = {
-    codec::member<&StickExportRow::name>("name", "of the file"),
+    codec::member<&StickExportRow::name>("name", "name of the file"),
     codec::member<&StickExportRow::box>(
-        "box", "where the team found the box that made it, as the name says; empty: it does not"),
-    codec::member<&StickExportRow::at>("at",
-                                       "when that box came to rest, as the name says; null: it does not"),
+        "box", "address of the box that made the export, from the file's name; empty if the name has none"),
+    codec::member<&StickExportRow::at>(
+        "at", "start of that box's standby, from the file's name; null if the name has none"),
 };
 
 constexpr codec::Member kStickMembers[] = {
-    codec::member<&StickRow::hindrance>("hindrance", "why no export can be written to it; empty: it can"),
-    codec::member<&StickRow::doing>("doing", "writing, checking or reading; empty: nothing"),
-    codec::member<&StickRow::refusal>("refusal", "why what was asked of it last came to nothing; or empty"),
-    codec::member<&StickRow::written>("written",
-                                      "the file on it that is this box's export, read back; or empty"),
-    codec::member<&StickRow::exports>("exports", "that are on it, the latest first"),
+    codec::member<&StickRow::hindrance>("hindrance", "why no export can be written to the stick, or empty"),
+    codec::member<&StickRow::doing>("doing", "writing, checking or reading, or empty"),
+    codec::member<&StickRow::refusal>("refusal", "why the last action failed, or empty"),
+    codec::member<&StickRow::written>(
+        "written", "name of this box's export on the stick after it was checked, or empty"),
+    codec::member<&StickRow::exports>("exports", "exports on the stick, latest first"),
 };
 
 constexpr codec::Member kSpareMembers[] = {
-    codec::member<&SpareView::rests>("rests", "it takes nothing and sends nothing"),
-    codec::member<&SpareView::why>("why", "it rests; empty where it does not"),
-    codec::member<&SpareView::since>("since", "it rests; seconds since 1970. null: it does not"),
-    codec::member<&SpareView::code>("code", "that opens its export, in groups; empty: there is none"),
-    codec::member<&SpareView::asks_code>("asks_code", "an export was taken in, and waits for its code"),
-    codec::member<&SpareView::taken_in>("taken_in", "and opened; null: nothing is"),
-    codec::member<&SpareView::takes_over>("takes_over", "that is under way"),
-    codec::member<&SpareView::stick>("stick", "in the box; null: here no stick is written or read"),
+    codec::member<&SpareView::rests>("rests",
+                                     "whether the box is on standby: it accepts and sends no messages"),
+    codec::member<&SpareView::why>("why", "why the box is on standby, or empty"),
+    codec::member<&SpareView::since>(
+        "since", "start of standby in seconds since 1970; null if the box is not on standby"),
+    codec::member<&SpareView::code>(
+        "code", "code that opens the box's export, in groups of digits; empty if there is no export"),
+    codec::member<&SpareView::asks_code>("asks_code", "whether an imported export needs its code"),
+    codec::member<&SpareView::taken_in>("taken_in",
+                                        "content of the opened export; null if no export is open"),
+    codec::member<&SpareView::takes_over>("takes_over", "whether a take-over is in progress"),
+    codec::member<&SpareView::stick>("stick", "the stick in the box; null if sticks are not available here"),
 };
 
 }  // namespace

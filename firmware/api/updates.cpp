@@ -32,21 +32,20 @@ struct LastOrNull {
 
 constexpr Member kUpdate[] = {
     member<&UpdateView::managed>("managed"),
-    member<&UpdateView::why>("why", "why it cannot be updated here"),
+    member<&UpdateView::why>("why", "why the box cannot be updated here"),
     member<&UpdateView::running, &update::Running::compatible>("board"),
     member<&UpdateView::running, &update::Running::version>("version"),
-    member<&UpdateView::running, &update::Running::slot>("slot", "which runs"),
-    member<&UpdateView::running, &update::Running::other>("other_slot", "into which an update goes"),
-    member<&UpdateView::trial>("trial",
-                               "what runs was installed last, and has not been healthy for a minute"),
-    member<&UpdateView::stray>("stray", "which other slot runs than the one that was good last, and why")
-        .as(codec::kTextOrNull),
+    member<&UpdateView::running, &update::Running::slot>("slot", "running slot"),
+    member<&UpdateView::running, &update::Running::other>("other_slot", "slot for the next update"),
+    member<&UpdateView::trial>(
+        "trial", "whether the running version was installed last and has not yet been healthy for a minute"),
+    member<&UpdateView::stray>("stray", "which unexpected slot is running, and why").as(codec::kTextOrNull),
     member<&UpdateView::doing>("doing").as(codec::kTextOrNull).one_of(kDoing),
     member<&UpdateView::progress>("progress").from(0).to(100),
-    member<&UpdateView::refusal>("refusal", "why the last one was not installed").as(codec::kTextOrNull),
+    member<&UpdateView::refusal>("refusal", "why the last update was not installed").as(codec::kTextOrNull),
     member<&UpdateView::last>("last").as(codec::kind_as<LastUpdate, LastOrNull>),
     member<&UpdateView::stick>("stick"),
-    member<&UpdateView::stick_why>("stick_why", "why what is on a stick cannot be installed")
+    member<&UpdateView::stick_why>("stick_why", "why the update on a stick cannot be installed")
         .as(codec::kTextOrNull),
 };
 

@@ -44,7 +44,7 @@ AddressWatch::AddressWatch(loop::Loop& loop, const Options& options)
       due_(loop.timer([this] { work(); })) {}
 
 std::expected<void, std::string> AddressWatch::start() {
-  if (!kernel_) return std::unexpected("the kernel does not tell what becomes of the interfaces");
+  if (!kernel_) return std::unexpected("cannot watch the interfaces for changes");
   changed_ = loop_.watch(kernel_.get(), EPOLLIN, [this](std::uint32_t) {
     if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
     look();
@@ -77,7 +77,7 @@ void AddressWatch::look(Side& side, const std::vector<Mac>& macs, const std::vec
   if (side.arp) {
     // What is heard is judged again: without it there is only more to read.
     if (const auto set = side.arp->hear_only(addresses); !set)
-      host::log(Level::Warning, "all ARP is heard", {{"why", set.error()}});
+      host::log(Level::Warning, "cannot filter ARP: reading all of it", {{"why", set.error()}});
   }
   const bool had_carrier = std::exchange(side.carrier, host::carrier(side.interface).value_or(false));
   if (!side.carrier || had_carrier) return;
@@ -92,7 +92,7 @@ void AddressWatch::open(Side& side, unsigned index) {
   if (index == 0) return;
   auto arp = ArpSocket::open(side.interface);
   if (!arp) {
-    if (side.trouble != arp.error()) host::log(Level::Error, "nothing is heard", {{"why", arp.error()}});
+    if (side.trouble != arp.error()) host::log(Level::Error, "cannot listen to ARP", {{"why", arp.error()}});
     side.trouble = std::move(arp.error());
     return;
   }
@@ -151,7 +151,7 @@ void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addre
   for (const std::uint32_t address : addresses) {
     if (!side.arp || !side.carrier) continue;  // asked again once there is a cable
     if (const auto asked = side.arp->ask(address); !asked)
-      host::log(Level::Debug, "nobody was asked", {{"why", asked.error()}});
+      host::log(Level::Debug, "cannot send an ARP request", {{"why", asked.error()}});
   }
 }
 

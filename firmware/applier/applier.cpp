@@ -20,7 +20,7 @@ namespace {
 using host::Level;
 
 void refused(const char* file, const std::string& why) {
-  host::log(Level::Warning, "refused what was asked for", {{"file", file}, {"why", why}});
+  host::log(Level::Warning, "request rejected", {{"file", file}, {"why", why}});
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ std::expected<void, std::string> Applier::start() {
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
   if (found_a_change()) {
-    host::log(Level::Warning, "a change that nobody had confirmed was taken back");
+    host::log(Level::Warning, "a change that was not confirmed was taken back");
     change_->interrupted();
   }
   auto folder = host::UntrustedFolder::open(options_.wanted);
@@ -48,9 +48,9 @@ std::expected<void, std::string> Applier::start() {
     watch_folder();
     if (first) drop_requests();
   } else {
-    host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+    host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
   }
-  if (!tell()) return std::unexpected("the status cannot be told");
+  if (!tell()) return std::unexpected("cannot write the status");
   look();
   return {};
 }
@@ -74,7 +74,7 @@ void Applier::watch_folder() {
   notices_ = loop::FileDescriptor(inotify_init1(IN_NONBLOCK | IN_CLOEXEC));
   if (!notices_ ||
       inotify_add_watch(notices_.get(), folder_->path_by_descriptor().c_str(), IN_MOVED_TO) < 0) {
-    host::log(Level::Error, "what aditd asks for is not noticed while a change is pending",
+    host::log(Level::Error, "cannot watch for requests while a change is pending",
               {{"why", std::strerror(errno)}});
     return;
   }
@@ -120,7 +120,7 @@ std::optional<Request> Applier::asked(const char* name) {
 void Applier::take_wanted() {
   const auto wanted = asked<network::Wanted>(network::kWantedFile);
   if (!wanted) return;
-  host::log(Level::Notice, "asked for a change",
+  host::log(Level::Notice, "change requested",
             {{"team", network::team_text(wanted->numbers)},
              {"command_post", network::command_post_text(wanted->numbers)}});
   change_->want(*wanted, loop_.now());
@@ -153,11 +153,10 @@ bool Applier::forget(const std::string& text) {
     return true;
   }
   if (const auto forgotten = change_->forget(loop_.now()); !forgotten) {
-    host::log(Level::Error, "the addresses are not forgotten as they should be",
-              {{"why", forgotten.error()}});
+    host::log(Level::Error, "cannot forget the addresses", {{"why", forgotten.error()}});
     return false;
   }
-  host::log(Level::Notice, "the addresses are those that the box came with");
+  host::log(Level::Notice, "the initial addresses are in use");
   return true;
 }
 
@@ -165,7 +164,7 @@ void Applier::take_endpoints() {
   const auto endpoints = asked<network::Endpoints>(network::kEndpointsFile);
   if (!endpoints) return;
   if (const auto done = files_.lead_to(*endpoints); !done) {
-    return host::log(Level::Error, "there are no routes to the endpoints", {{"why", done.error()}});
+    return host::log(Level::Error, "cannot set the routes to the endpoints", {{"why", done.error()}});
   }
   change_->set_endpoints(*endpoints);
 }
@@ -174,7 +173,7 @@ std::optional<std::string> Applier::taken(const char* name) {
   auto text = folder_->take(name);
   if (text) return std::move(*text);
   is_stuck_ = is_stuck_ || text.error().stays;
-  host::log(text.error().stays ? Level::Error : Level::Warning, "refused what was asked for",
+  host::log(text.error().stays ? Level::Error : Level::Warning, "request rejected",
             {{"why", text.error().why}});
   return std::nullopt;
 }
@@ -197,7 +196,7 @@ void Applier::answer_probe(const network::Probe& probe) {
   if (const auto sought = settings::ipv4_of(probe.sought)) probed.found_on = side_of(*sought);
   const auto written =
       host::write_file(options_.status + '/' + network::kProbedFile, network::write(probed), host::kForAll);
-  if (!written) host::log(Level::Error, "an answer cannot be given", {{"why", written.error()}});
+  if (!written) host::log(Level::Error, "cannot write an answer", {{"why", written.error()}});
 }
 
 /// The interface on which somebody answers for an address; "": nobody does, or nobody can be asked.
@@ -215,9 +214,9 @@ bool Applier::tell() {
   const auto told = file_.tell(network::write(status));
   if (!told || !*told) return told.has_value();
   if (status.pending) {
-    host::log(Level::Notice, "a change waits to be confirmed");
+    host::log(Level::Notice, "change applied: confirm it");
   } else if (status.ended != network::Ended::NotYet) {
-    host::log(Level::Notice, "a change has ended",
+    host::log(Level::Notice, "change ended",
               {{"how", std::string(name_of(status.ended))}, {"why", status.why}});
   }
   return true;

@@ -70,8 +70,9 @@ std::expected<Mac, std::string> mac_of(const std::string& interface) {
   const loop::FileDescriptor any(socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   ifreq asked{};
   interface.copy(asked.ifr_name, IFNAMSIZ - 1);
-  if (ioctl(any.get(), SIOCGIFHWADDR, &asked) != 0) return failed(interface, "asking for its MAC address");
-  if (asked.ifr_hwaddr.sa_family != ARPHRD_ETHER) return std::unexpected(interface + ": is no Ethernet");
+  if (ioctl(any.get(), SIOCGIFHWADDR, &asked) != 0) return failed(interface, "reading its MAC address");
+  if (asked.ifr_hwaddr.sa_family != ARPHRD_ETHER)
+    return std::unexpected(interface + ": expected an Ethernet interface");
   Mac mac{};
   std::memcpy(mac.data(), asked.ifr_hwaddr.sa_data, mac.size());
   return mac;
@@ -90,7 +91,7 @@ std::expected<ArpSocket, std::string> ArpSocket::open(const std::string& interfa
   place.sll_protocol = kArpInNetworkOrder;
   place.sll_ifindex = static_cast<int>(if_nametoindex(interface.c_str()));
   if (bind(arp.socket_.get(), reinterpret_cast<const sockaddr*>(&place), sizeof place) != 0) {
-    return failed(interface, "binding to it");
+    return failed(interface, "binding a socket to it");
   }
   arp.everybody_ = place;
   arp.everybody_.sll_halen = ETH_ALEN;
@@ -102,7 +103,7 @@ std::expected<void, std::string> ArpSocket::hear_only(const std::vector<std::uin
   auto program = arp_filter(addresses);
   const sock_fprog set{static_cast<std::uint16_t>(program.size()), program.data()};
   if (setsockopt(socket_.get(), SOL_SOCKET, SO_ATTACH_FILTER, &set, sizeof set) != 0)
-    return failed(interface_, "setting what is heard");
+    return failed(interface_, "setting the socket's filter");
   return {};
 }
 
@@ -110,7 +111,7 @@ std::expected<void, std::string> ArpSocket::ask(std::uint32_t address) const {
   const auto packet = arp_probe(own_, address);
   if (sendto(socket_.get(), packet.data(), packet.size(), 0, reinterpret_cast<const sockaddr*>(&everybody_),
              sizeof everybody_) < 0) {
-    return failed(interface_, "asking by ARP");
+    return failed(interface_, "sending an ARP request");
   }
   return {};
 }

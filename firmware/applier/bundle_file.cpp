@@ -24,10 +24,10 @@ std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& p
   struct stat status{};
   if (fstat(file.get(), &status) != 0) return std::unexpected(host::trouble(name, errno));
   if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
-  if (status.st_size == 0) return std::unexpected(name + ": it is empty");
+  if (status.st_size == 0) return std::unexpected(name + ": expected a bundle, got an empty file");
   if (std::cmp_greater(status.st_size, update::kLargestBundle)) {
-    return std::unexpected(icd::sentence(name, ": it has ", status.st_size, " bytes, and at most ",
-                                         update::kLargestBundle, " were expected"));
+    return std::unexpected(
+        icd::sentence(name, ": expected at most ", update::kLargestBundle, " bytes, got ", status.st_size));
   }
   return file;
 }
@@ -38,7 +38,8 @@ std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, con
   if (fchown(file.get(), geteuid(), getegid()) != 0 || fchmod(file.get(), S_IRUSR) != 0)
     return std::unexpected(host::trouble(name, errno));
   if (fcntl(file.get(), F_SETLEASE, F_RDLCK) != 0) {
-    return std::unexpected(errno == EAGAIN ? name + ": somebody writes to it" : host::trouble(name, errno));
+    return std::unexpected(errno == EAGAIN ? name + ": another program is writing to it"
+                                           : host::trouble(name, errno));
   }
   fcntl(file.get(), F_SETLEASE, F_UNLCK);
   return {};

@@ -115,7 +115,7 @@ class Reader {
 
   void read_secrets() {
     const auto folder = card_.folder(kCardSecrets);
-    if (!folder) return refuse(kCardSecrets, "expected a folder");
+    if (!folder) return refuse(kCardSecrets, "expected a directory");
     if (!*folder) return;
     const auto names = (*folder)->names();
     if (!names) return refuse(kCardSecrets, names.error());
@@ -131,8 +131,7 @@ class Reader {
     const bool is_known = std::ranges::any_of(
         known, [&file](const std::string& token) { return token + settings::kTokenEnding == file; });
     if (!is_known)
-      return refuse(name,
-                    icd::sentence("no token is called so; expected one of ", listed(known), ", ", kCardCode));
+      return refuse(name, icd::sentence("unknown name; expected one of ", listed(known), ", ", kCardCode));
     const auto text = text_of(folder, file, name);
     if (!text) return;
     auto token = icd::BearerToken::parse(trimmed(*text));

@@ -39,18 +39,18 @@ std::string Chronyd::start(const clock::Chrony& chrony) const {
   }
   const auto started = host::run_command({systemctl_, "restart", kUnit}, kUnitAnswer);
   if (started) {
-    host::log(host::Level::Notice, "NTP is spoken on the team's network");
+    host::log(host::Level::Notice, "NTP is on in the team's network");
     return "";
   }
   (void)host::remove_file(path(clock::kConfigurationFile));
-  return "chronyd cannot be started: " + started.error();
+  return "cannot start chronyd: " + started.error();
 }
 
 std::string Chronyd::stop() const {
   if (!host::may_exist(path(clock::kConfigurationFile))) return "";
   const auto stopped = host::run_command({systemctl_, "stop", kUnit}, kUnitAnswer);
-  if (!stopped) return "chronyd cannot be stopped: " + stopped.error();
-  host::log(host::Level::Notice, "NTP is not spoken any more");
+  if (!stopped) return "cannot stop chronyd: " + stopped.error();
+  host::log(host::Level::Notice, "NTP is off");
   const auto removed = host::remove_file(path(clock::kConfigurationFile));
   return removed ? "" : removed.error();
 }

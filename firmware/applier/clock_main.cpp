@@ -13,6 +13,6 @@ int main(int argc, char** argv) {
   const auto done =
       adit::applier::ClockSetter(*options, adit::applier::clocks_of_machine(options->chip_device)).work();
   if (done) return 0;
-  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", done.error()}});
+  adit::host::log(adit::host::Level::Error, "cannot run", {{"why", done.error()}});
   return 1;
 }

@@ -7,19 +7,18 @@ command_line::Program clock_command_line_of(ClockOptions& options) {
       .name = "adit-clock",
       .usage = "",
       .about =
-          "Sets the time of day, as aditd asks, and tells who set it last. Has chronyd speak NTP on the "
-          "team's "
-          "network, where that is asked for. Ends once nothing is asked for.",
-      .rows = {{"--wanted", "DIR", "where aditd asks", &options.wanted},
-               {"--status", "DIR", "where it is answered", &options.status},
-               {"--chip", "DIR", "where the kernel tells of a clock with a battery", &options.chip},
-               {"--chip-device", "FILE", "that clock, which is set too", &options.chip_device},
-               {"--team", "NAME", "the interface on which NTP is spoken", &options.team},
-               {"--systemctl", "CMD", "systemd, which runs chronyd", &options.systemctl},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "prints this", &options.help}},
-      .ending =
-          "Exits 0 once it is done, 1 where it cannot do its work (and says why), 2 on a wrong command line.",
+          "Set the time of day on aditd's requests, and write which source set it last. If requested, run "
+          "chronyd for NTP on the team's "
+          "network. End when there are no more requests.",
+      .rows = {{"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
+               {"--status", "DIR", "directory of the answers", &options.status},
+               {"--chip", "DIR", "the kernel's directory of a battery-backed clock", &options.chip},
+               {"--chip-device", "FILE", "that clock's device, to set it", &options.chip_device},
+               {"--team", "NAME", "interface for NTP", &options.team},
+               {"--systemctl", "CMD", "systemctl, to start and stop chronyd", &options.systemctl},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
 

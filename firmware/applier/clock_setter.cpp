@@ -37,7 +37,7 @@ std::expected<void, std::string> ClockSetter::work() {
   if (const auto told = file_.tell(clock::write(status_)); !told) return std::unexpected(told.error());
   auto folder = host::UntrustedFolder::open(options_.wanted);
   if (!folder) {
-    host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+    host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
     return {};
   }
   while (true) {
@@ -62,7 +62,7 @@ std::expected<ClockSetter::Taken, std::string> ClockSetter::take(
   if (asked) {
     done(*asked);
   } else {
-    host::log(Level::Warning, "refused what was asked for", {{"why", asked.error()}});
+    host::log(Level::Warning, "request rejected", {{"why", asked.error()}});
   }
   return Taken::One;
 }
@@ -79,18 +79,18 @@ void ClockSetter::answer(const clock::Request& request) {
   status_.refusal = clock::hindrance(request, at, status_);
   if (status_.refusal.empty()) {
     const auto set = clocks_.set(time);
-    status_.refusal = set ? "" : "the clock cannot be set: " + set.error();
+    status_.refusal = set ? "" : "cannot set the clock: " + set.error();
   }
   if (status_.refusal.empty()) {
     status_.source = request.source;
     if (request.source == clock::Source::Ntp) status_.server = request.server;
     // Not a guess: the next start would trust the chip more than the Command Post.
     if (clock::is_set(request.source)) clocks_.set_chip(time);
-    host::log(Level::Notice, "the clock was set",
+    host::log(Level::Notice, "clock set",
               {{"by", std::string(clock::kSourceWords[static_cast<std::size_t>(request.source)])},
                {"ahead_by_s", icd::sentence(time - before)}});
   } else {
-    host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+    host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
   }
 }
 

@@ -38,8 +38,7 @@ void set_chip(const std::string& device, std::time_t now) {
                       .tm_yday = 0,
                       .tm_isdst = 0};
   if (ioctl(chip.get(), RTC_SET_TIME, &time) != 0)
-    host::log(host::Level::Warning, "the clock with the battery was not set",
-              {{"why", std::strerror(errno)}});
+    host::log(host::Level::Warning, "cannot set the battery-backed clock", {{"why", std::strerror(errno)}});
 }
 
 }  // namespace

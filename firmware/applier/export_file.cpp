@@ -27,7 +27,7 @@ FileDescriptor open_folder(const std::string& path) {
 
 std::unexpected<std::string> failed(const std::string& name, int error) {
   std::string why = host::trouble(name, error);
-  if (error == ENOSPC || error == EDQUOT) why = "the stick has no room for it";
+  if (error == ENOSPC || error == EDQUOT) why = "the stick is full";
   if (error == EROFS) why = "the stick is write-protected, or its file system is damaged";
   return std::unexpected(std::move(why));
 }
@@ -81,7 +81,7 @@ std::expected<std::string, std::string> read_export(const std::string& folder, c
     if (count == 0) break;
     size += static_cast<std::size_t>(count);
   }
-  if (size == bytes.size()) return std::unexpected(name + ": it is too large for an export");
+  if (size == bytes.size()) return std::unexpected(name + ": the file is larger than an export may be");
   bytes.resize(size);
   return bytes;
 }

@@ -33,10 +33,10 @@ update::Ready ready(const std::string& systemctl) {
 }
 
 std::expected<void, std::string> restart(const std::string& systemctl) {
-  host::log(Level::Error, "this slot did not come up healthy in time: the machine is restarted");
+  host::log(Level::Error, "the slot on trial did not become healthy in time: restarting the machine");
   auto restarted = host::run_command({systemctl, "reboot"}, kSystemctlAnswer);
   if (restarted) return restarted;
-  return std::unexpected("the machine cannot be restarted: " + restarted.error());
+  return std::unexpected("cannot restart the machine: " + restarted.error());
 }
 
 /// Where this cannot be kept, the slot is good all the same: a later start keeps it.
@@ -51,7 +51,7 @@ std::expected<void, std::string> pass_trial(const UpdateOptions& options, update
             {{"version", last_update.version}, {"slot", last_update.slot}});
   last_update.stage = update::Stage::Good;
   last_update.why.clear();  // of one that adit-update has not settled yet
-  if (!save(options.state, last_update)) return std::unexpected("the trial cannot be ended");
+  if (!save(options.state, last_update)) return std::unexpected("cannot store the end of the trial");
   return {};
 }
 

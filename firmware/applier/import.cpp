@@ -64,24 +64,23 @@ std::expected<UntrustedFolder, std::string> open_state(const std::string& path) 
 std::string said_of(const Found& found, bool lasting) {
   std::string text;
   if (!found.errors.empty()) {
-    text = "Adit took nothing. Set right what is named here, and start it again.\n";
+    text = "Adit accepted no file. Correct these errors and restart Adit.\n";
     for (const std::string& error : found.errors) text += error + '\n';
   } else {
-    const char* of_token = lasting ? ": taken, and removed from here\n" : ": taken\n";
+    const char* of_token = lasting ? ": accepted, and removed from here\n" : ": accepted\n";
     if (!found.brought.nothing()) {
-      text = lasting
-                 ? "Adit took what was here:\n"
-                 : "Adit cannot keep what it takes, for its state partition is unusable: it takes what is "
-                   "here at each start.\n";
+      text = lasting ? "Adit accepted these files:\n"
+                     : "Adit cannot store these files because its state partition is unusable. It reads them "
+                       "at each boot:\n";
     }
-    if (found.brought.settings) text += icd::sentence("adit/", kCardSettings, ": taken\n");
-    if (found.brought.numbers) text += icd::sentence("adit/", kCardNetwork, ": taken\n");
+    if (found.brought.settings) text += icd::sentence("adit/", kCardSettings, ": accepted\n");
+    if (found.brought.numbers) text += icd::sentence("adit/", kCardNetwork, ": accepted\n");
     for (const auto& [file, token] : found.brought.tokens) {
       text += icd::sentence("adit/", kCardSecrets, "/", file, of_token);
     }
   }
   for (const std::string& name : found.left_alone) {
-    text += icd::sentence("adit/", host::escaped(name), ": left alone; Adit takes ", kCardSettings, ", ",
+    text += icd::sentence("adit/", host::escaped(name), ": ignored; Adit reads ", kCardSettings, ", ",
                           kCardNetwork, " and ", kCardSecrets, "/*", settings::kTokenEnding, "\n");
   }
   return text;
@@ -99,7 +98,7 @@ void rename_taken(UntrustedFolder& folder, const std::string& name) {
   if (rename(path.c_str(), taken.c_str()) == 0) return;
   // A folder of that name: what cannot be renamed would be taken again at each start.
   if (folder.remove(name + kTakenEnding) && rename(path.c_str(), taken.c_str()) == 0) return;
-  host::log(Level::Warning, "a file that was taken cannot be renamed",
+  host::log(Level::Warning, "cannot rename an accepted file",
             {{"file", name}, {"why", std::strerror(errno)}});
 }
 
@@ -111,7 +110,7 @@ void wipe_taken(UntrustedFolder& card) {
   const std::vector<std::string> names = (*secrets)->names().value_or(std::vector<std::string>());
   for (const std::string& name : names) {
     if (!name.ends_with(kTakenEnding) || (*secrets)->wipe(name)) continue;
-    host::log(Level::Warning, "a token that was taken may still be on the card", {{"file", name}});
+    host::log(Level::Warning, "an accepted token may still be on the card", {{"file", name}});
   }
 }
 
@@ -125,7 +124,7 @@ void leave(UntrustedFolder& card, const Brought& brought) {
   if (brought.settings) rename_taken(card, kCardSettings);
   const loop::FileDescriptor folder(
       open(card.path_by_descriptor().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!folder || syncfs(folder.get()) != 0) host::log(Level::Warning, "the card cannot be synced");
+  if (!folder || syncfs(folder.get()) != 0) host::log(Level::Warning, "cannot sync the card");
 }
 
 }  // namespace
@@ -133,7 +132,7 @@ void leave(UntrustedFolder& card, const Brought& brought) {
 Done Import::run() {
   auto card = UntrustedFolder::open(options_.card);
   if (!card) {
-    host::log(Level::Debug, "nothing was brought", {{"why", card.error()}});
+    host::log(Level::Debug, "no directory adit on the card", {{"why", card.error()}});
     return {};
   }
   wipe_taken(*card);
@@ -142,18 +141,18 @@ Done Import::run() {
   const std::string said = said_of(found, lasting);
   if (said.empty()) return {};
   for (const std::string& error : found.errors)
-    host::log(Level::Error, "refused what was brought", {{"why", error}});
+    host::log(Level::Error, "file on the card rejected", {{"why", error}});
   // First, because files of a card that cannot be written would be taken again at each start.
   if (auto told = tell(*card, said); !told) {
-    return std::unexpected("nothing is taken from a card that cannot be written: " + told.error());
+    return std::unexpected("cannot write to the card, so its files are ignored: " + told.error());
   }
   if (!found.errors.empty() || found.brought.nothing()) return {};
   if (auto saved = save(found.brought); !saved) {
-    (void)tell(*card, "Adit could not take what is here: " + saved.error() + '\n');  // the log has it as well
+    (void)tell(*card, "Adit could not store these files: " + saved.error() + '\n');  // the log has it as well
     return saved;
   }
   if (lasting) leave(*card, found.brought);
-  host::log(Level::Notice, "took what was brought",
+  host::log(Level::Notice, "files from the card accepted",
             {{"settings", found.brought.settings ? "yes" : "no"},
              {"network", found.brought.numbers ? "yes" : "no"},
              {"tokens", std::to_string(found.brought.tokens.size())}});

@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   if (const auto exit = adit::command_line::answer(import_command_line_of, ADIT_VERSION, options))
     return *exit;
   if (const auto done = Import(*options).run(); !done) {
-    adit::host::log(adit::host::Level::Error, "cannot take what was brought", {{"why", done.error()}});
+    adit::host::log(adit::host::Level::Error, "cannot accept the card's files", {{"why", done.error()}});
     return 1;
   }
   return 0;

@@ -7,22 +7,21 @@ command_line::Program import_command_line_of(ImportOptions& options) {
       .name = "adit-import",
       .usage = "",
       .about =
-          "Takes the settings, the network's numbers and the tokens that somebody put on Adit's boot "
-          "partition, all of them or, where anything is wrong, nothing; taken.txt beside them says what "
-          "became of each. Runs before aditd.",
-      .rows = {{"--card", "DIR", "where they were put: settings.json, network.json, secrets/*.token",
-                &options.card},
-               {"--state", "DIR", "aditd's state", &options.state},
-               {"--network", "DIR", "adit-network's state", &options.network},
-               {"--given", "FILE", "the settings that count until others are saved", &options.given},
-               {"--memory", "FILE",
-                "where it is there, the state is lost at the next start, and what is taken stays on the card",
-                &options.in_memory},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "prints this", &options.help}},
+          "Accept settings, addresses and tokens from Adit's boot partition: all of them, or none if any is "
+          "wrong. Write the outcome to taken.txt beside them. To be run before aditd.",
+      .rows =
+          {{"--card", "DIR", "directory with settings.json, network.json and secrets/*.token", &options.card},
+           {"--state", "DIR", "state directory of aditd", &options.state},
+           {"--network", "DIR", "state directory of adit-network", &options.network},
+           {"--given", "FILE", "settings in use until others are saved", &options.given},
+           {"--memory", "FILE",
+            "if this file exists, the state is lost at the next boot, and accepted files stay on the card",
+            &options.in_memory},
+           {"--version", "", "print the version", &options.version},
+           {"--help", "", "print this help", &options.help}},
       .ending =
-          "Exits 0 also where there was nothing, or what was there is wrong; 1 where what is right could not "
-          "be taken (and says why); 2 on a wrong command line.",
+          "Exit code: 0 if there are no files, or if they are wrong or accepted; 1 if correct files could "
+          "not be stored; 2 for a wrong command line.",
   };
 }
 

@@ -17,18 +17,18 @@ Message load(const std::string& path, std::string_view what) {
   if (!text && text.error() == ENOENT) return {};
   auto kept = text ? update::read<Message>(text->text) : std::unexpected(host::trouble(path, text.error()));
   if (kept) return *std::move(kept);
-  host::log(host::Level::Error, std::string(what) + " is not known", {{"why", kept.error()}});
+  host::log(host::Level::Error, "cannot read " + std::string(what), {{"why", kept.error()}});
   return {};
 }
 
 bool save(const std::string& path, const std::string& text, std::string_view what) {
   const auto written = host::write_file(path, text, host::kForAll);
   if (!written)
-    host::log(host::Level::Error, std::string(what) + " cannot be kept", {{"why", written.error()}});
+    host::log(host::Level::Error, "cannot store " + std::string(what), {{"why", written.error()}});
   return written.has_value();
 }
 
-constexpr std::string_view kLast = "what became of the last update", kGood = "which slot was good last";
+constexpr std::string_view kLast = "the outcome of the last update", kGood = "the slot that was good last";
 
 std::string last_update_in(const std::string& folder) {
   return folder + '/' + update::kLastUpdateFile;

@@ -15,7 +15,7 @@
 namespace {
 
 int fail(const std::string& why) {
-  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", why}});
+  adit::host::log(adit::host::Level::Error, "cannot run", {{"why", why}});
   return 1;
 }
 

@@ -53,7 +53,7 @@ std::expected<void, std::string> NetworkdFiles::settle() {
 
 std::expected<void, std::string> NetworkdFiles::write_at_start() {
   if (const auto read = this->read(); !read) {
-    host::log(host::Level::Error, "what was confirmed cannot be read: the box has the addresses it came with",
+    host::log(host::Level::Error, "cannot read the confirmed addresses: using the initial ones",
               {{"why", read.error()}});
     use_factory();
   }
@@ -91,7 +91,7 @@ void NetworkdFiles::use_factory() {
   if (factory) {
     kept_ = *factory;
   } else {
-    host::log(host::Level::Error, "the addresses that the box comes with cannot be read",
+    host::log(host::Level::Error, "cannot read the initial addresses",
               {{"file", options_.factory}, {"why", factory.error()}});
   }
 }
@@ -115,7 +115,7 @@ std::expected<void, std::string> NetworkdFiles::write(Then then) {
 /// A change can be made all the same.
 std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why) {
   const std::string file = confirmed_file();
-  host::log(host::Level::Error, "what was confirmed last is damaged and set aside",
+  host::log(host::Level::Error, "the confirmed addresses are damaged: file set aside",
             {{"file", file}, {"why", why}});
   if (rename(file.c_str(), (file + ".damaged").c_str()) == 0) return {};
   return std::unexpected(host::trouble(file, errno));
@@ -146,10 +146,10 @@ std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place)
   if (place.addresses.empty()) return {};
   const auto claim = probe_(place.interface, place.addresses);
   if (!claim) {
-    host::log(host::Level::Warning, "nobody could be asked for an address", {{"why", claim.error()}});
+    host::log(host::Level::Warning, "cannot ask whether an address is in use", {{"why", claim.error()}});
   } else if (*claim) {
     const std::string& own = (*claim)->own;
-    return std::unexpected(icd::sentence(settings::ipv4_text((*claim)->address), " is in use already on ",
+    return std::unexpected(icd::sentence(settings::ipv4_text((*claim)->address), " is already in use on ",
                                          place.interface, ", by ",
                                          own.empty() ? (*claim)->mac : "this box's own " + own));
   }
@@ -165,7 +165,7 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
   kept_ = numbers;
   tried_.reset();
   if (const auto written = write_kept(numbers, Then::Nothing); !written) {
-    host::log(host::Level::Error, "kept, but not for networkd: that is tried again at the next start",
+    host::log(host::Level::Error, "addresses stored, but not written for networkd: retry at the next start",
               {{"why", written.error()}});
   }
   return {};

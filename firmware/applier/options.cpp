@@ -21,28 +21,28 @@ command_line::Program command_line_of(Options& options) {
       .name = "adit-network",
       .usage = "",
       .about =
-          "Changes the addresses of Adit's two network interfaces, as aditd asks, by systemd-networkd; and "
-          "takes a change back by itself unless it is confirmed in time. Ends once nothing is left to do.",
-      .rows = {{"--team", "NAME", "the interface to the team", &options.team},
-               {"--command-post", "NAME", "the interface to the Command Post", &options.command_post},
-               {"--wanted", "DIR", "where aditd asks", &options.wanted},
-               {"--status", "DIR", "where it is answered", &options.status},
-               {"--state", "DIR", "where what was confirmed is kept", &options.state},
-               {"--factory", "FILE", "the addresses where none were confirmed", &options.factory},
-               {"--networkd", "DIR", "networkd's folder until the next start", &options.networkd},
-               {"--networkctl", "CMD", "what makes networkd read them, called with the word reload",
+          "Change the addresses of Adit's two network interfaces by systemd-networkd, on aditd's requests. "
+          "Take a change back unless it is confirmed in time. End when no change is pending.",
+      .rows = {{"--team", "NAME", "interface to the team", &options.team},
+               {"--command-post", "NAME", "interface to the Command Post", &options.command_post},
+               {"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
+               {"--status", "DIR", "directory of the answers", &options.status},
+               {"--state", "DIR", "directory of the confirmed addresses", &options.state},
+               {"--factory", "FILE", "addresses if none were confirmed", &options.factory},
+               {"--networkd", "DIR", "networkd's directory until the next boot", &options.networkd},
+               {"--networkctl", "CMD",
+                "command that makes networkd read its files, called with the word reload",
                 &options.networkctl},
-               {"--start", "", "only writes networkd's files: before networkd starts", &options.start},
+               {"--start", "", "only write networkd's files, before networkd starts", &options.start},
                {"--watch", "",
-                "only tells, in the folder of --status, which other machine uses the box's addresses",
+                "only write to the directory of --status which other machine uses the box's addresses",
                 &options.watch},
-               {"--told", "DIR", "where --watch reads what adit-network tells of the endpoints",
-                &options.told},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "prints this", &options.help}},
+               {"--told", "DIR", "directory from which --watch reads the endpoints", &options.told},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
       .ending =
-          "Exits 0 once nothing is pending, 1 where it cannot do its work, networkd has not read its files, "
-          "or what is asked for cannot be taken away or done (and says why), 2 on a wrong command line.",
+          "Exit code: 0 if no change is pending; 1 if an error occurred, networkd has not read its files, or "
+          "a request cannot be removed or done; 2 for a wrong command line.",
   };
 }
 
@@ -51,12 +51,11 @@ std::expected<Options, std::string> parse_options(std::span<const char* const> a
   if (!options) return options;
   for (const auto& [word, name] :
        {std::pair("--team", options->team), std::pair("--command-post", options->command_post)}) {
-    if (!is_interface(name)) return std::unexpected(std::string(word) + " wants an interface's name");
+    if (!is_interface(name)) return std::unexpected(std::string(word) + ": expected an interface's name");
   }
   if (options->team == options->command_post)
     return std::unexpected("--team and --command-post name the same interface");
-  if (options->start && options->watch)
-    return std::unexpected("--start and --watch are two different things");
+  if (options->start && options->watch) return std::unexpected("--start and --watch exclude each other");
   return options;
 }
 

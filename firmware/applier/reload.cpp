@@ -14,7 +14,8 @@ void Reload::set_due() {
   if (is_due()) return;
   is_due_ = true;
   if (const auto noted = host::write_file(file(), "", host::kForAll); !noted)
-    host::log(host::Level::Error, "a kill would leave networkd as it is", {{"why", noted.error()}});
+    host::log(host::Level::Error, "cannot note that networkd has to read its files",
+              {{"why", noted.error()}});
 }
 
 std::expected<void, std::string> Reload::run() {

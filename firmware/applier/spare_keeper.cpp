@@ -32,15 +32,15 @@ std::expected<void, std::string> SpareKeeper::work() {
   if (const auto before = host::read_file(file)) {
     const auto known = spare::read_message<spare::StickStatus>(*before);
     if (known) status_ = *known;
-    if (!status_.doing.empty()) status_.refusal = "it was cut off: try again";
+    if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
     status_.doing.clear();
   }
   sticks_.settle();
   look();
-  if (!tell()) return std::unexpected("the status cannot be told");
+  if (!tell()) return std::unexpected("cannot write the status");
   auto folder = host::UntrustedFolder::open(options_.wanted);
   if (folder) return take_requests(*folder, first);
-  host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+  host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
   return {};
 }
 
@@ -56,7 +56,7 @@ std::expected<void, std::string> SpareKeeper::take_requests(host::UntrustedFolde
     if (request) {
       answer(*request, folder);
     } else {
-      host::log(Level::Warning, "refused what was asked for", {{"why", request.error()}});
+      host::log(Level::Warning, "request rejected", {{"why", request.error()}});
     }
   }
   if (drop) (void)folder.remove(spare::kForStickFile);
@@ -71,7 +71,7 @@ void SpareKeeper::answer(const spare::StickRequest& request, host::UntrustedFold
                         ? write(request.name, take_export(folder))
                         : take(request.name);
   status_.doing.clear();
-  if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+  if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
   look();  // it may be another by now, or gone
   tell();
 }
@@ -86,14 +86,14 @@ std::string SpareKeeper::write(const std::string& name,
   // Unmounted in any case: it may be pulled out.
   const auto done = sticks_.remount(medium->name, Mode::ReadOnly);
   if (!sticks_.is_in(medium->name))
-    return "the stick was pulled out before the export was whole: put it in again";
+    return "the stick was removed before the export was complete: insert it again";
   if (!why.empty()) return why;
   if (!done) return done.error();
   doing("checking");
   why = check(*medium, name, *bytes);
   if (why.empty()) {
     status_.written = name;
-    host::log(Level::Notice, "an export was written to a stick", {{"name", name}, {"stick", medium->name}});
+    host::log(Level::Notice, "export written to a stick", {{"name", name}, {"stick", medium->name}});
   }
   return why;
 }
@@ -110,15 +110,14 @@ std::string SpareKeeper::check(const spare::Medium& medium, const std::string& n
                                const std::string& bytes) {
   const auto kept = read_export(sticks_.folder(medium.name), name);
   if (kept && *kept == bytes) return "";
-  if (!sticks_.is_in(medium.name))
-    return "the stick was pulled out before it was read back: export once more";
-  return "the stick has not kept the export as it was written: use another stick";
+  if (!sticks_.is_in(medium.name)) return "the stick was removed before the export was checked: export again";
+  return "the export on the stick differs from what was written: use another stick";
 }
 
 std::string SpareKeeper::take(const std::string& name) {
   doing("reading");
   const std::string folder = sticks_.folder_with(name);
-  if (folder.empty()) return "there is no such export on a stick";
+  if (folder.empty()) return "no stick has this export";
   const auto bytes = read_export(folder, name);
   if (!bytes) return bytes.error();
   if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));

@@ -12,6 +12,6 @@ int main(int argc, char** argv) {
     return *exit;
   const auto done = adit::applier::SpareKeeper(*options).work();
   if (done) return 0;
-  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", done.error()}});
+  adit::host::log(adit::host::Level::Error, "cannot run", {{"why", done.error()}});
   return 1;
 }

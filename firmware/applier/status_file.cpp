@@ -8,7 +8,7 @@ namespace adit::applier {
 std::expected<bool, std::string> StatusFile::tell(std::string text) {
   if (text == told_) return false;
   if (auto written = host::write_file(path_, text, host::kForAll); !written) {
-    host::log(host::Level::Error, "the status cannot be told", {{"why", written.error()}});
+    host::log(host::Level::Error, "cannot write the status", {{"why", written.error()}});
     return std::unexpected(std::move(written.error()));
   }
   told_ = std::move(text);

@@ -44,7 +44,8 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
 /// What could be installed, or why not.
 std::expected<update::Offer, std::string> judge(const Candidate& candidate, const Rauc& rauc,
                                                 const update::Running& running) {
-  if (!update::is_plain(candidate.name)) return std::unexpected("call it by letters of ASCII alone");
+  if (!update::is_plain(candidate.name))
+    return std::unexpected("rename the file: only ASCII characters are allowed");
   const auto file = BundleFile::open(candidate.folder + '/' + candidate.name);
   if (!file) return std::unexpected(file.error());
   const auto bundle = rauc.info(file->path());

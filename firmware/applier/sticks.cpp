@@ -29,8 +29,7 @@ constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime";
 std::vector<std::string> names_at(const std::string& folder, std::size_t most) {
   auto names = host::names_in(folder, most);
   if (names) return *std::move(names);
-  host::log(host::Level::Warning, "a stick cannot be looked at",
-            {{"folder", folder}, {"why", names.error()}});
+  host::log(host::Level::Warning, "cannot read a stick", {{"folder", folder}, {"why", names.error()}});
   return {};
 }
 
@@ -96,8 +95,8 @@ std::expected<void, std::string> Sticks::unmount(const std::string& name) const 
     done = host::run_command({options_.mount, "--umount", folder(name)}, kMount);
   }
   if (!is_mounted(name)) return {};
-  return std::unexpected("the stick is in use, and could not be unmounted: " +
-                         (done ? "systemd says nothing" : done.error()));
+  return std::unexpected("the stick is in use and could not be unmounted: " +
+                         (done ? "systemd-mount gave no reason" : done.error()));
 }
 
 std::expected<void, std::string> Sticks::remount(const std::string& name, Mode mode) const {
@@ -112,7 +111,8 @@ std::expected<void, std::string> Sticks::remount(const std::string& name, Mode m
     std::this_thread::sleep_for(kBetween);
   }
   if (!is_in(name)) return std::unexpected("the stick is gone");
-  return std::unexpected("the stick could not be mounted: " + (done ? "systemd says nothing" : done.error()));
+  return std::unexpected("the stick could not be mounted: " +
+                         (done ? "systemd-mount gave no reason" : done.error()));
 }
 
 void Sticks::settle() const {
@@ -122,7 +122,7 @@ void Sticks::settle() const {
         (now.f_flag & ST_RDONLY) != 0)
       continue;
     if (const auto done = remount(medium.name, Mode::ReadOnly); !done)
-      host::log(host::Level::Error, "a stick is left writable", {{"why", done.error()}});
+      host::log(host::Level::Error, "cannot mount a stick read-only again", {{"why", done.error()}});
   }
 }
 

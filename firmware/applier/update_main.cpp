@@ -14,6 +14,6 @@ int main(int argc, char** argv) {
   const auto done =
       options->good ? adit::applier::watch_health(*options) : adit::applier::Updater(*options).work();
   if (done) return 0;
-  adit::host::log(adit::host::Level::Error, "cannot work", {{"why", done.error()}});
+  adit::host::log(adit::host::Level::Error, "cannot run", {{"why", done.error()}});
   return 1;
 }

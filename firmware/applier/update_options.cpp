@@ -9,27 +9,26 @@ command_line::Program update_command_line_of(UpdateOptions& options) {
       .name = "adit-update",
       .usage = "[good]",
       .about =
-          "Updates the box, by RAUC, as aditd asks: checks a bundle, installs it into the slot that does not "
-          "run, and restarts the machine. Ends once nothing is asked for.",
+          "Update the box by RAUC, on aditd's requests: check a bundle, install it into the slot that is not "
+          "running, and reboot. End when there are no more requests.",
       .rows = {{"good", "",
-                "watches a start of the machine instead: marks the slot good once aditd is healthy, or "
-                "restarts the machine where a slot on trial does not become so",
+                "watch a boot instead: mark the slot good once aditd is healthy, or reboot if a slot on "
+                "trial does not become healthy",
                 &options.good},
-               {"--within", "SECONDS", "how long a slot on trial may take for that (300)",
+               {"--within", "SECONDS", "time that a slot on trial has for this (300)",
                 command_line::number<1, 3600>(options.within)},
-               {"--wanted", "DIR", "where aditd asks", &options.wanted},
-               {"--status", "DIR", "where it is answered", &options.status},
-               {"--state", "DIR", "where what became of the last update is kept", &options.state},
-               {"--sticks", "DIR", "in whose folders USB sticks are mounted", &options.sticks},
-               {"--os-release", "FILE", "says by VERSION_ID which version runs", &options.os_release},
-               {"--hindrance", "FILE", "says, where it is there, why none may be installed",
+               {"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
+               {"--status", "DIR", "directory of the answers", &options.status},
+               {"--state", "DIR", "directory of the last update's outcome", &options.state},
+               {"--sticks", "DIR", "directory in which USB sticks are mounted", &options.sticks},
+               {"--os-release", "FILE", "file whose VERSION_ID is the running version", &options.os_release},
+               {"--hindrance", "FILE", "if this file exists, install no update: it has the reason",
                 &options.hindrance},
                {"--rauc", "CMD", "RAUC", &options.rauc},
                {"--systemctl", "CMD", "systemd", &options.systemctl},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "prints this", &options.help}},
-      .ending =
-          "Exits 0 once it is done, 1 where it cannot do its work (and says why), 2 on a wrong command line.",
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
   };
 }
 

@@ -19,7 +19,7 @@ using host::Level;
 using update::Stage;
 
 constexpr std::chrono::seconds kRestart{30};
-constexpr const char* kNotKept = "it cannot be written down";
+constexpr const char* kNotKept = "cannot store the state of the update";
 
 }  // namespace
 
@@ -32,10 +32,10 @@ std::expected<void, std::string> Updater::work() {
   boot_ = host::boot();
   find_out();
   look_at_sticks();
-  if (!tell()) return std::unexpected("the status cannot be told");
+  if (!tell()) return std::unexpected("cannot write the status");
   auto folder = host::UntrustedFolder::open(options_.wanted);
   if (folder) return take_requests(*folder, first);
-  host::log(Level::Info, "nobody asks for anything", {{"why", folder.error()}});
+  host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
   return {};
 }
 
@@ -52,7 +52,8 @@ void Updater::find_out() {
   update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
   if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
     if (const auto left = rauc_.leave_other(); !left)
-      host::log(Level::Error, "the boot loader would try it again", {{"why", left.error()}});
+      host::log(Level::Error, "cannot stop the boot loader from starting the failed update again",
+                {{"why", left.error()}});
   }
   if (last_update == kept) {
     status_.last = std::move(last_update);
@@ -61,7 +62,7 @@ void Updater::find_out() {
   }
   status_.trial = update::on_trial(status_.last, status_.running, boot_);
   status_.stray = update::stray(load_proven(options_.state), status_.running, status_.trial);
-  if (!status_.stray.empty()) host::log(Level::Error, "another slot was started", {{"what", status_.stray}});
+  if (!status_.stray.empty()) host::log(Level::Error, "unexpected slot started", {{"what", status_.stray}});
 }
 
 void Updater::look_at_sticks() {
@@ -87,7 +88,7 @@ std::expected<void, std::string> Updater::take_requests(host::UntrustedFolder& f
     if (request) {
       answer(*request, folder);
     } else {
-      host::log(Level::Warning, "refused what was asked for", {{"why", request.error()}});
+      host::log(Level::Warning, "request rejected", {{"why", request.error()}});
     }
   }
   if (drop) (void)BundleFile::take(folder, update::kBundleFile);  // whatever it is, it is gone
@@ -109,9 +110,9 @@ void Updater::answer(const update::Request& request, host::UntrustedFolder& fold
   } else if (status_.stick) {
     status_.refusal = install(BundleFile::open(on_stick_), request.again);
   } else {
-    status_.refusal = status_.stick_trouble.empty() ? "there is no update on a stick" : status_.stick_trouble;
+    status_.refusal = status_.stick_trouble.empty() ? "no stick has an update" : status_.stick_trouble;
   }
-  if (!status_.refusal.empty()) host::log(Level::Warning, "refused", {{"why", status_.refusal}});
+  if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
   look_at_sticks();  // it may be another by now, or gone
   tell();
 }
@@ -173,7 +174,7 @@ std::string Updater::restart() {
   const auto restarted = host::run_command({options_.systemctl, "reboot"}, kRestart);
   if (restarted) return "";
   status_.doing.clear();
-  return "it cannot be restarted: " + restarted.error();
+  return "cannot restart the machine: " + restarted.error();
 }
 
 std::string Updater::go_back() {
@@ -185,7 +186,7 @@ std::string Updater::go_back() {
 std::string Updater::stay() {
   if (status_.stray.empty()) return std::string(update::kNoStray);
   if (!save(options_.state, update::Proven{status_.running.slot, status_.running.version})) return kNotKept;
-  host::log(Level::Notice, "the slot that runs is to stay", {{"slot", status_.running.slot}});
+  host::log(Level::Notice, "the running slot is to stay", {{"slot", status_.running.slot}});
   status_.stray.clear();
   return "";
 }

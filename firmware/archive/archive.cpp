@@ -30,8 +30,7 @@ void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
               const std::function<bool()>& enough) {
   const auto all_read = read_run(runs.folder_of(key), told, enough);
   if (!all_read)
-    host::log(host::Level::Warning, "a part of a run that is kept cannot be read",
-              {{"why", all_read.error()}});
+    host::log(host::Level::Warning, "cannot read a part of a stored run", {{"why", all_read.error()}});
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
 /// What the disk gives of a run.
 struct Archive::Opening {
   Head head;
-  std::expected<std::string, std::string> key = std::unexpected("there is no memory for it");
+  std::expected<std::string, std::string> key = std::unexpected("no memory");
   std::shared_ptr<RunFolder> folder;
   std::optional<Told> told;
 };
@@ -108,7 +107,7 @@ void Archive::has_folder(const Opening& opening) {
     folder_ = opening.folder;
     trouble_.clear();
   } else if (std::exchange(trouble_, opening.key.error()) != opening.key.error()) {
-    host::log(host::Level::Warning, "the run's map and tracks are not kept", {{"why", trouble_}});
+    host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", trouble_}});
   }
 }
 
@@ -210,7 +209,7 @@ std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::
                                              const api::RunRow& present,
                                              const std::function<bool()>& enough) {
   const auto known = runs.facts_of(key);
-  if (!known) host::log(host::Level::Warning, "a run that is kept cannot be read", {{"why", known.error()}});
+  if (!known) host::log(host::Level::Warning, "cannot read a stored run", {{"why", known.error()}});
   if (!known || !*known) return nullptr;
   const api::RunRow& facts = **known;
   Told told(Archive::kLookedAt);
@@ -243,9 +242,8 @@ void Archive::report(const std::string& key, std::vector<api::ReportDetail> repo
 }
 
 void Archive::remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) {
-  if (key == key_) return done(std::unexpected("it is the present run"));
-  const auto outcome =
-      std::make_shared<std::expected<void, std::string>>(std::unexpected("there is no memory for it"));
+  if (key == key_) return done(std::unexpected("the present run cannot be deleted"));
+  const auto outcome = std::make_shared<std::expected<void, std::string>>(std::unexpected("no memory"));
   writer_.submit([outcome, key, runs = runs_]() mutable { *outcome = runs.remove(key); },
                  [this, key, outcome, done = std::move(done)] {
                    if (*outcome) std::erase_if(list_, [&](const api::RunRow& row) { return row.key == key; });

@@ -23,7 +23,7 @@ struct Archive::Writing {
   std::shared_ptr<RunFolder> folder;
   std::uint64_t most = 0;
   std::optional<std::uint64_t> goes;  // this file
-  std::expected<RunFolder::Written, std::string> outcome = std::unexpected("there is no memory for it");
+  std::expected<RunFolder::Written, std::string> outcome = std::unexpected("no memory");
 };
 
 void Archive::tick(const Seen& seen) {
@@ -167,12 +167,12 @@ void Archive::written(const Writing& writing) {
   const std::string why = outcome ? "" : outcome.error();
   if (writing.begun != begun_) {
     if (!why.empty())
-      host::log(host::Level::Warning, "the end of the run before is not kept", {{"why", why}});
+      host::log(host::Level::Warning, "cannot store the end of the previous run", {{"why", why}});
     return;
   }
   due_.done(writing.number, outcome ? std::optional(outcome->file) : std::nullopt);
   if (std::exchange(trouble_, why) != why && !why.empty())
-    host::log(host::Level::Warning, "the run's map and tracks are not kept", {{"why", why}});
+    host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", why}});
   if (!outcome) {
     next_facts_ = loop_.now();
     steps_.insert(0, writing.steps);

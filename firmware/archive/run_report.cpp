@@ -57,7 +57,7 @@ std::string facts(const api::KeptRun& kept) {
   const double began = run.began > 0 || kept.history.at.empty() ? run.began : kept.history.at.front();
   return "<dl>\n" + fact("Score", number(run.score)) + fact("Reports left", number(run.remaining_reports)) +
          fact("Team", run.team) + fact("Course", run.course) + fact("Command Post", run.post) +
-         fact("Its name of the run", run.id) + fact("Began (UTC)", icd::utc(began)) +
+         fact("Command Post's name of the run", run.id) + fact("Began (UTC)", icd::utc(began)) +
          fact("Last written (UTC)", icd::utc(run.last)) +
          fact("Lasted", began > 0 ? lasted(run.last - began) : "") + "</dl>\n";
 }
@@ -72,17 +72,17 @@ std::string life_of(const api::ReportDetail& report) {
 }
 
 std::string reports_table(const std::vector<api::ReportDetail>& reports) {
-  if (reports.empty()) return "<p>No report was made.</p>\n";
+  if (reports.empty()) return "<p>No reports.</p>\n";
   std::string rows;
   for (const api::ReportDetail& report : reports) {
     const api::ReportRow& row = report.row;
     rows += "<tr>" + cell(std::to_string(row.number), true) + cell(row.type) + cell(row.robot) +
-            cell(place(row.position)) + cell(row.asking ? row.state + ", being found out" : row.state) +
+            cell(place(row.position)) +
+            cell(row.asking ? row.state + ", Adit asks for the status" : row.state) +
             cell(signed_change(row.score_change), true) + life_of(report) + "</tr>\n";
   }
   return "<table><thead><tr><th class=\"n\">No.</th><th>Type</th><th>Robot</th><th>Place "
-         "(m)</th><th>State</th>"
-         "<th class=\"n\">Score</th><th>Its life (UTC)</th></tr></thead><tbody>\n" +
+         "(m)</th><th>State</th><th class=\"n\">Score</th><th>History (UTC)</th></tr></thead><tbody>\n" +
          rows + "</tbody></table>\n";
 }
 
@@ -108,7 +108,7 @@ std::string robots_table(const api::KeptRun& run) {
   std::map<std::string, double> metres;
   for (const std::string& robot : run.facts.robots) metres[robot] = 0;
   for (const api::Track& track : run.tracks) metres[track.robot] = length_of(track);
-  if (metres.empty()) return "<p>No robot was heard of.</p>\n";
+  if (metres.empty()) return "<p>No robot sent a message.</p>\n";
   std::string rows;
   for (const auto& [robot, length] : metres) {
     std::string maps;
@@ -118,18 +118,18 @@ std::string robots_table(const api::KeptRun& run) {
     rows += "<tr>" + cell(robot) + cell(fixed(length, 1) + " m", true) + cell(maps) +
             cell(oldest_map(run, robot), true) + "</tr>\n";
   }
-  return "<table><thead><tr><th>Robot</th><th class=\"n\">Way</th><th>Maps</th>"
-         "<th class=\"n\">Oldest map at the Command Post</th></tr></thead><tbody>\n" +
+  return "<table><thead><tr><th>Robot</th><th class=\"n\">Distance</th><th>Maps</th><th class=\"n\">Oldest "
+         "map at the Command Post</th></tr></thead><tbody>\n" +
          rows + "</tbody></table>\n";
 }
 
 std::string attention_table(const api::KeptRun& run) {
-  if (run.history.attention.empty()) return "<p>Nothing needed the operator.</p>\n";
+  if (run.history.attention.empty()) return "<p>No alarm needed the operator.</p>\n";
   std::string rows;
   for (const api::AttentionStep& step : run.history.attention)
-    rows += "<tr>" + cell(icd::utc(step.at)) + cell(step.came ? "came" : "went") + cell(step.sentence) +
+    rows += "<tr>" + cell(icd::utc(step.at)) + cell(step.came ? "raised" : "cleared") + cell(step.sentence) +
             "</tr>\n";
-  return "<table><thead><tr><th>UTC</th><th></th><th>What</th></tr></thead><tbody>\n" + rows +
+  return "<table><thead><tr><th>Time (UTC)</th><th></th><th>Alarm</th></tr></thead><tbody>\n" + rows +
          "</tbody></table>\n";
 }
 
@@ -141,10 +141,10 @@ std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDet
   return icd::sentence(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>", title, "</title><style>",
       kStyle, "</style></head><body><main>\n<h1>", title, "</h1>\n", facts(run), "<h2>Reports</h2>\n",
-      reports_table(reports), "<h2>The map as it was forwarded</h2>\n", drawn_map(run, reports),
-      "<h2>Coverage over time</h2>\n", coverage.empty() ? "<p>No map was kept.</p>\n" : coverage,
-      "<h2>Robots</h2>\n", robots_table(run), "<h2>What needed the operator</h2>\n", attention_table(run),
-      "</main></body></html>\n");
+      reports_table(reports), "<h2>The map as forwarded</h2>\n", drawn_map(run, reports),
+      "<h2>Coverage over time</h2>\n", coverage.empty() ? "<p>No map is stored.</p>\n" : coverage,
+      "<h2>Robots</h2>\n", robots_table(run), "<h2>Alarms that needed the operator</h2>\n",
+      attention_table(run), "</main></body></html>\n");
 }
 
 }  // namespace adit::archive

@@ -110,7 +110,7 @@ std::string marked(double x, double y, const std::string& label, const char* col
 std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports) {
   const auto layers = run.picture.layers();
   const auto area = area_of(run, layers, reports);
-  if (!area) return "<p>No map was kept.</p>\n";
+  if (!area) return "<p>No map is stored.</p>\n";
   const double width = std::max(area->right - area->left, 1.0),
                height = std::max(area->top - area->bottom, 1.0);
   const double size = std::max(width, height) / 50, margin = 2 * size;
@@ -134,7 +134,7 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
       fixed(area->left - margin, 2), " ", fixed(-area->top - margin, 2), " ", fixed(width + 2 * margin, 2),
       " ", fixed(height + 2 * margin, 2), "\">\n", drawn, "</svg>\n<p>", fixed(width, 0), " m by ",
       fixed(height, 0), " m of the frame darpa",
-      left_out == 0 ? "" : ", without parts for which there is no room here", ".</p>\n");
+      left_out == 0 ? "" : ", without parts that exceed the size of this report", ".</p>\n");
 }
 
 std::string drawn_coverage(const api::KeptRun& run) {
@@ -157,8 +157,8 @@ std::string drawn_coverage(const api::KeptRun& run) {
       "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"Coverage over time\" "
       "viewBox=\"-4 -4 608 168\"><polyline fill=\"none\" stroke=\"#000\" stroke-width=\"1.5\" points=\"",
       points, "\"/></svg>\n<p>From 0 to ", fixed(most, 0),
-      " m\u00b2, as known by each robot's grids and clouds, each counted by itself; from ", icd::utc(first),
-      " to ", icd::utc(last), " (UTC).</p>\n");
+      " m\u00b2, the sum over each robot's grids and clouds; from ", icd::utc(first), " to ", icd::utc(last),
+      " (UTC).</p>\n");
 }
 
 }  // namespace adit::archive

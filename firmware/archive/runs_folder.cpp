@@ -85,13 +85,12 @@ std::vector<api::RunRow> RunsFolder::list() const {
   std::vector<api::RunRow> rows;
   const auto names = host::names_in(path_, kMostRuns);
   if (!names)
-    host::log(host::Level::Warning, "runs that are kept cannot be listed",
-              {{"why", path_ + ": " + names.error()}});
+    host::log(host::Level::Warning, "cannot list stored runs", {{"why", path_ + ": " + names.error()}});
   for (const std::string& name : names.value_or(std::vector<std::string>())) {
     if (!has(name)) continue;
     auto row = facts_of(name);
     if (!row) {
-      host::log(host::Level::Warning, "a run that is kept cannot be read", {{"why", row.error()}});
+      host::log(host::Level::Warning, "cannot read a stored run", {{"why", row.error()}});
     } else if (*row) {
       rows.push_back(**std::move(row));
     }
@@ -123,7 +122,7 @@ std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
     if (!is_new) return std::unexpected(is_new.error());
     if (*is_new) return key;
   }
-  return std::unexpected(path_ + ": " + (error ? error.message() : "no folder can be made in it"));
+  return std::unexpected(path_ + ": " + (error ? error.message() : "cannot create a directory"));
 }
 
 std::expected<void, std::string> RunsFolder::remove(const std::string& key) {
@@ -152,7 +151,7 @@ void RunsFolder::tidy(std::uint64_t most, const std::string& present) {
     if (row->key == present) continue;
     if (const auto removed = remove(row->key); !removed) continue;
     all -= row->bytes;
-    host::log(host::Level::Notice, "the oldest run makes room for others", {{"run", row->key}});
+    host::log(host::Level::Notice, "oldest run deleted to free space", {{"run", row->key}});
   }
 }
 

@@ -58,8 +58,8 @@ void ButtonWatch::look() {
 
 void ButtonWatch::begin(bool pressed) {
   button_.emplace(pressed, loop_.now());
-  if (std::exchange(is_lost_, false)) host::log(host::Level::Notice, "the button can be read again");
-  if (pressed) host::log(host::Level::Warning, "the button is held already: let it go before it is used");
+  if (std::exchange(is_lost_, false)) host::log(host::Level::Notice, "button works again");
+  if (pressed) host::log(host::Level::Warning, "button is pressed at the start: release it before use");
 }
 
 /// Without it the page does all that the button does, but for the forgotten password.
@@ -67,7 +67,7 @@ void ButtonWatch::lose(const std::string& why) {
   due_.call_at(loop_.now() + kAgain);
   if (std::exchange(button_, std::nullopt)) show();
   if (!std::exchange(is_lost_, true)) {
-    host::log(host::Level::Error, "the button cannot be read, and is looked for again", {{"why", why}});
+    host::log(host::Level::Error, "cannot read the button: retrying", {{"why", why}});
   }
 }
 

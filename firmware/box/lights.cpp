@@ -100,9 +100,9 @@ void Lights::paint() {
 void Lights::log_trouble() {
   if (!painter_.has_turned()) return;
   if (trouble().empty()) {
-    host::log(host::Level::Notice, "the panel's lights can be set again");
+    host::log(host::Level::Notice, "panel lights work again");
   } else {
-    host::log(host::Level::Error, "the panel's lights cannot be set", {{"why", trouble()}});
+    host::log(host::Level::Error, "cannot set the panel lights", {{"why", trouble()}});
   }
 }
 

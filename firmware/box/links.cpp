@@ -43,8 +43,8 @@ void Links::look() {
     changed = true;
     const bool is_up = link.carrier.value_or(false);
     back = back || (is_up && &link == &links_.back());
-    host::log(is_up ? host::Level::Notice : host::Level::Warning, is_up ? "a cable is in" : "a cable is out",
-              {{"interface", link.interface}});
+    host::log(is_up ? host::Level::Notice : host::Level::Warning,
+              is_up ? "cable connected" : "cable disconnected", {{"interface", link.interface}});
   }
   if (changed) changed_();
   if (back) back_();

@@ -20,7 +20,7 @@ KnownBoard read_board(const std::string& file) {
       text ? settings::parse_board(*text) : std::unexpected(std::vector<settings::Error>{{"", text.error()}});
   if (board) return {std::move(*board), ""};
   std::string trouble =
-      "what the board is cannot be read: " + file + ": " + settings::sentence_of(board.error());
+      "cannot read the board's description: " + file + ": " + settings::sentence_of(board.error());
   host::log(host::Level::Error, trouble);
   return {{}, std::move(trouble)};
 }
@@ -30,8 +30,7 @@ panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
   if (!place.socket.empty()) {
     auto held = panel::remote(place.socket, settings, std::move(announced));
     if (held) return std::move(*held);
-    host::log(host::Level::Error, "the panel is simulated: adit-panel cannot be had",
-              {{"why", held.error()}});
+    host::log(host::Level::Error, "cannot use adit-panel: the panel is simulated", {{"why", held.error()}});
   }
   return panel::hold(settings, kConsumer, place.folder + "/panel",
                      [](const std::string& sentence) { host::log(host::Level::Error, sentence); });

@@ -42,15 +42,15 @@ std::string done(Verb verb, std::int64_t number, std::int64_t moved) {
   const std::string report = "report " + std::to_string(number);
   switch (verb) {
     case Verb::Send:
-      return report + " is sent when its turn comes";
+      return report + " is queued";
     case Verb::Hold:
-      return report + " is held: it goes only when you send it";
+      return report + " is held until you send it";
     case Verb::Withdraw:
       return report + " is withdrawn";
     case Verb::Done:
-      return report + " is called done";
+      return report + " is settled";
     default:
-      return report + " is sent once more, as report " + std::to_string(moved);
+      return report + " is sent again as report " + std::to_string(moved);
   }
 }
 
@@ -98,8 +98,8 @@ Outcome begin_run(const Options& options) {
   } else if (options.json) {
     outcome.out = json_line("run", *run);
   } else {
-    outcome.out =
-        "run " + std::to_string(*run) + " begins; what was not sent before is held: see adit reports\n";
+    outcome.out = "run " + std::to_string(*run) +
+                  " begins; unsent reports of earlier runs are held: see adit reports\n";
   }
   return outcome;
 }
@@ -113,7 +113,7 @@ Outcome identify(const Options& options) {
   if (!answer) {
     add(outcome, answer.error());
   } else {
-    outcome.out = options.json ? *answer + '\n' : "all lights flash twice a second, for " + seconds + " s\n";
+    outcome.out = options.json ? *answer + '\n' : "all lights flash for " + seconds + " s\n";
   }
   return outcome;
 }

@@ -1,6 +1,7 @@
 #include "cli/ask.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "alarms/board.hpp"
 #include "api/run_view.hpp"
@@ -21,22 +22,32 @@ bool all_is_well(const api::RunView& view) {
   return std::ranges::none_of(view.alarms, alarms::calls);
 }
 
-/// The file that was named, or else the one that counts.
-std::string settings_file(const Options& options) {
-  const bool named = options.settings != kGivenSettings;
-  return !named && host::read_file(options.saved_settings) ? options.saved_settings : options.settings;
+/// The option's value, or else the variable's; "" if neither is set.
+std::string given(const std::string& option, const char* variable) {
+  const char* const value = std::getenv(variable);
+  return option.empty() && value != nullptr ? value : option;
+}
+
+std::expected<settings::Address, std::string> address_in(const std::string& file) {
+  const auto text = host::read_file(file);
+  if (!text) return std::unexpected(text.error() + "; give Adit's address by --at ADDR[:PORT]");
+  const auto settings = settings::parse(*text);
+  if (!settings) {
+    return std::unexpected(file + ": " + settings.error().front().sentence() + " (see adit check)");
+  }
+  return reach(settings->team);
 }
 
 std::expected<settings::Address, std::string> address_of(const Options& options) {
-  if (!options.at.empty()) return parse_address(options.at);
-  const std::string file = settings_file(options);
-  const auto text = host::read_file(file);
-  if (!text) return std::unexpected(text.error() + " (say where Adit listens by --at ADDR:PORT)");
-  const auto settings = settings::parse(*text);
-  if (!settings) {
-    return std::unexpected(file + ": " + settings.error().front().sentence() + " (see: adit check)");
+  const bool file_named = options.settings != kGivenSettings;
+  const std::string at = file_named ? options.at : given(options.at, "ADIT_AT");
+  if (!at.empty()) {
+    auto address = parse_address(at);
+    if (!address) return std::unexpected((options.at.empty() ? "ADIT_AT: " : "--at: ") + address.error());
+    return address;
   }
-  return reach(settings->team);
+  const bool saved = !file_named && host::read_file(options.saved_settings);
+  return address_in(saved ? options.saved_settings : options.settings);
 }
 
 }  // namespace
@@ -45,42 +56,31 @@ std::expected<Adit, std::string> adit_of(const Options& options) {
   const auto address = address_of(options);
   if (!address) return std::unexpected(address.error());
   const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
-  auto token = find_token(options.token_file, folders);
+  auto token = find_token(given(options.token_file, "ADIT_TOKEN_FILE"), folders);
   if (!token) return std::unexpected(token.error());
   if (*token) return Adit{*address, std::move(**token)};
-  return std::unexpected("Adit asks for the team's token, and there is none to be read in " +
-                         options.saved_secrets + " or " + options.secrets +
-                         ": run this as root, or name a file that holds it by --token-file FILE");
-}
-
-std::string unknown_token(const Adit& adit) {
-  return "Adit does not know the token in " + adit.token.file;
+  return std::unexpected("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
+                         ": run adit as root, or name a token file by --token-file FILE");
 }
 
 std::expected<std::string, std::string> get(const Adit& adit, const std::string& target) {
   auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kReadPatience);
   if (!reply) return std::unexpected(reply.error().sentence);
   if (reply->status == 200) return std::move(reply->body);
-  if (reply->status == 401) return std::unexpected(unknown_token(adit));
-  const std::string sentence = sentence_in(reply->body);
-  if (!sentence.empty()) return std::unexpected(sentence);
-  return std::unexpected("Adit at " + written(adit.address) + " cannot be asked: it answered " +
-                         std::to_string(reply->status) + " (is that Adit?)");
+  return std::unexpected(failure(adit, *reply).sentence);
 }
-
-namespace {
 
 Failure failure(const Adit& adit, const HttpReply& reply) {
-  if (reply.status == 401) return {Exit::Unable, unknown_token(adit)};
+  if (reply.status == 401) return {Exit::Unable, "Adit rejects the token in " + adit.token.file};
   const std::string sentence = sentence_in(reply.body);
-  const bool judged =
-      (reply.status == 404 || reply.status == 409 || reply.status == 422) && !sentence.empty();
-  if (judged) return {Exit::Attention, sentence};
-  return {Exit::Unable, "Adit at " + written(adit.address) + " answered " + std::to_string(reply.status) +
-                            (sentence.empty() ? " (is that Adit?)" : ": " + sentence)};
+  if (sentence.empty())
+    return {Exit::Unable, "the server at " + written(adit.address) +
+                              " is not Adit, or is another version (HTTP status " +
+                              std::to_string(reply.status) + ")"};
+  const bool decided =
+      reply.status == 404 || reply.status == 409 || reply.status == 413 || reply.status == 422;
+  return {decided ? Exit::Attention : Exit::Unable, sentence};
 }
-
-}  // namespace
 
 std::expected<std::string, Failure> find(const Adit& adit, const std::string& target,
                                          std::chrono::milliseconds within) {
@@ -97,7 +97,7 @@ std::expected<std::string, Failure> post(const Adit& adit, const std::string& ta
       {.method = HttpRequest::Method::Post, .target = target, .token = adit.token.token, .body = body},
       kActionPatience);
   if (!reply) {
-    const std::string unsure = reply.error().sent ? "; whether it was done is not known, see: " + check : "";
+    const std::string unsure = reply.error().sent ? "; the action may have been done: see " + check : "";
     return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});
   }
   if (reply->status != 200) return std::unexpected(failure(adit, *reply));

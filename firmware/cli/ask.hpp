@@ -4,6 +4,7 @@
 #include <expected>
 #include <string>
 
+#include "cli/http_client.hpp"
 #include "cli/options.hpp"
 #include "cli/outcome.hpp"
 #include "settings/settings.hpp"
@@ -26,7 +27,7 @@ std::expected<std::string, std::string> get(const Adit& adit, const std::string&
 
 /// An action that was not done, or of which that is not known.
 struct Failure {
-  Exit exit = Exit::Unable;  // Attention: Adit says that it cannot be
+  Exit exit = Exit::Unable;  // Attention: Adit rejected the action
   std::string sentence;
 };
 
@@ -39,8 +40,8 @@ std::expected<std::string, Failure> post(const Adit& adit, const std::string& ta
 std::expected<std::string, Failure> find(const Adit& adit, const std::string& target,
                                          std::chrono::milliseconds within = kReadPatience);
 
-/// For an answer of 401.
-std::string unknown_token(const Adit& adit);
+/// For an answer that is not 200.
+Failure failure(const Adit& adit, const HttpReply& reply);
 
 /// The sentence that an error's body is (a JSON string); "" where it is none.
 std::string sentence_in(const std::string& body);

@@ -22,13 +22,12 @@ using codec::Value;
 using settings::Settings;
 
 std::string by(const std::string& interface) {
-  return interface.empty() ? "by any interface" : "by " + interface + " alone";
+  return interface.empty() ? "on any interface" : "on " + interface + " only";
 }
 
 std::string asked_of(const settings::Team& team) {
   if (team.require_token) return "";
-  return ", no token asked for" +
-         (team.origins.empty() ? "" : ", not of pages of " + team.origins + " either");
+  return ", without a token" + (team.origins.empty() ? "" : ", also for pages of " + team.origins);
 }
 
 std::string lines_of(const settings::Panel& panel) {
@@ -59,17 +58,17 @@ std::vector<settings::Subnet> team_subnets(const settings::Team& team,
   return subnets;
 }
 
-/// Warnings. aditd takes the settings all the same.
+/// Warnings. aditd accepts the settings.
 std::vector<std::string> warnings_of(const Options& options, const Settings& settings) {
   std::vector<std::string> sentences;
   const auto secrets =
       host::read_secrets(options.secrets, options.saved_secrets, settings::token_names(settings));
-  if (!secrets) sentences.push_back("the tokens are not checked: " + secrets.error().sentence);
+  if (!secrets) sentences.push_back("cannot check the tokens: " + secrets.error().sentence);
   if (secrets) {
     for (const auto& [name, sentence] : secrets->odd_tokens()) sentences.push_back(sentence);
   }
   const auto interfaces = host::interfaces();
-  if (!interfaces) sentences.push_back("the team's network is not checked: " + interfaces.error());
+  if (!interfaces) sentences.push_back("cannot check the team's network: " + interfaces.error());
   network::Circumstances around;
   around.command_post = settings.command_post;
   around.courses = settings.courses;
@@ -102,7 +101,7 @@ std::string summary(const std::string& file, const Settings& settings,
   const std::string chip = panel.chip.empty() ? "any chip" : panel.chip;
   table.add({{"panel", Tone::Strong}, {panel.is_simulated() ? "simulated" : chip}, {lines_of(panel)}});
   std::string text =
-      host::escaped(file) + ": " + painted("good", Tone::Good, colour) + '\n' + table.written(colour);
+      host::escaped(file) + ": " + painted("correct", Tone::Good, colour) + '\n' + table.written(colour);
   for (const std::string& warning : warnings)
     text += "  " + painted("warning", Tone::Warning, colour) + ": " + host::escaped(warning) + '\n';
   return text;

@@ -38,11 +38,11 @@ double time_here() {
 }
 
 std::string spoken(const std::string& source) {
-  if (source == "none") return "nobody set it since the box started";
-  if (source == "last_known") return "it went on from the last time known";
+  if (source == "none") return "not set since boot";
+  if (source == "last_known") return "continued from the last known time";
   if (source == "robots") return "set by the robots' stamps";
   if (source == "command_post") return "set by the Command Post's answers";
-  if (source == "chip") return "set by the box's own clock";
+  if (source == "chip") return "set by the box's clock chip";
   if (source == "ntp") return "set by an NTP server";
   return "set by an operator";
 }
@@ -51,15 +51,15 @@ std::string text_of(const ToldClock& view, double here) {
   const double ahead = view.now - here;
   const std::string apart =
       std::abs(ahead) <= kAsHere
-          ? "as here"
-          : icd::sentence(duration(std::abs(ahead)), ahead > 0 ? " ahead of here" : " behind here");
+          ? "the same as on this computer"
+          : icd::sentence(duration(std::abs(ahead)), ahead > 0 ? " ahead of" : " behind", " this computer");
   const std::string date = icd::utc(view.now);
-  std::string out = icd::sentence(date.empty() ? "no date" : date + " UTC", ", ", apart, "\n");
+  std::string out = icd::sentence(date.empty() ? "date unknown" : date + " UTC", ", ", apart, "\n");
   out += view.managed ? spoken(view.source) + '\n'
-                      : icd::sentence("It cannot be set by Adit: ", host::escaped(view.why), "\n");
+                      : icd::sentence("Adit cannot set it: ", host::escaped(view.why), "\n");
   if (!view.refusal.empty()) out += icd::sentence("Not set: ", host::escaped(view.refusal), "\n");
   if (!view.ntp.empty()) out += host::escaped(view.ntp) + '\n';
-  if (!view.is_set) out += "Set it by this computer's: adit clock set\n";
+  if (!view.is_set) out += "To set it to this computer's time: adit clock set\n";
   return out;
 }
 
@@ -81,11 +81,7 @@ Outcome clock(const Options& options) {
   }
   const std::string body = "{\"time\":" + std::to_string(time_here()) + "}";
   const auto json = post(*adit, "/adit/clock", body, "adit clock");
-  if (!json) {
-    Outcome outcome = unable(json.error().sentence);
-    outcome.exit = json.error().exit;
-    return outcome;
-  }
+  if (!json) return unable(json.error());
   return {Exit::Fine, options.json ? *json + '\n' : "the clock is being set\n", ""};
 }
 

@@ -22,7 +22,9 @@ namespace adit::cli {
 
 Outcome run(std::span<const std::string_view> words, const Console& console) {
   const auto options = parse_options(words);
-  if (!options) return {Exit::Unable, "", "adit: " + host::escaped(options.error()) + '\n' + kSeeHelp};
+  if (!options)
+    return {Exit::Unable, "",
+            "adit: " + host::escaped(options.error().sentence) + '\n' + see_help(options.error().command)};
   if (options->version) return {Exit::Fine, "adit " ADIT_VERSION "\n", ""};
   const bool colour = console.colour;
   switch (options->command) {
@@ -35,13 +37,13 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
     case Command::Rejected:
       return rejected(*options, colour);
     case Command::Run:
-      return begin_run(*options);
+      return options->verb == Verb::New ? begin_run(*options) : present_run(*options, colour);
     case Command::Runs:
       return runs(*options, console);
     case Command::Settings:
       return settings(*options, colour);
     case Command::Course:
-      return switch_course(*options, colour);
+      return course(*options, colour);
     case Command::Identify:
       return identify(*options);
     case Command::Clock:

@@ -7,294 +7,250 @@ constexpr std::size_t kMany = 1000;
 constexpr Argument kNothing{"", "", 0, 0, 0};
 constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX, Among::Reports};
 constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX, Among::Reports};
-constexpr Argument kRejectedNumber{"NUMBER...",    "the number of what is rejected", 1, kMany, INT64_MAX,
+constexpr Argument kRejectedNumber{"NUMBER...",    "a rejected message's number", 1, kMany, INT64_MAX,
                                    Among::Rejected};
 constexpr Argument kSeconds{"[SECONDS]", "seconds, a whole number from 1 to 60", 0, 1, 60};
-constexpr Argument kName{"NAME", "a course's name", 1, 1, 0, Among::Courses};
+constexpr Argument kName{"[NAME]", "a course's name", 0, 1, 0, Among::Courses};
 constexpr Argument kRunKey{"KEY", "a run's key", 1, 1, 0, Among::Runs};
-constexpr Argument kKey{"[KEY]", "a key of the settings", 0, 1, 0, Among::Keys};
+constexpr Argument kKey{"[KEY]", "a settings key", 0, 1, 0, Among::Keys};
+constexpr Argument kKeyAndValue{"KEY VALUE", "a settings key or its value", 2, 2, 0, Among::Keys};
 constexpr Argument kFile{"FILE", "a file", 1, 1, 0, Among::Files};
 constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kExport{"[FILE]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kCommand{"[COMMAND]", "a command", 0, 1, 0, Among::Commands};
-constexpr Argument kWord{"[WORD]", "a word of `adit reports`", 0, 1, 0};
+constexpr Argument kWord{"[WORD]", "a subcommand of `adit reports`", 0, 1, 0};
 
 constexpr Form kPlain[] = {{"", Verb::List, kNothing, "", "", true}};
 constexpr Form kReportForms[] = {
-    {"", Verb::List, kNothing, "", "--run", true},
-    {"show", Verb::Show, kReport,
-     "all of one report: its history, the answer that is kept, and what you can do"},
+    {"", Verb::List, kNothing, "", "--run --last", true},
+    {"show", Verb::Show, kReport, "show one report, its history and the possible actions"},
     {"send", Verb::Send, kReports,
-     "a held report: it is meant. One in doubt: only where you know that it was not recorded (ask the "
-     "Command Post, or look at its count of reports), for else it uses up a second one of the allotment. A "
-     "refused or withdrawn one: try it all the same",
+     "send a held, rejected or withdrawn report; or one in doubt, if the Command Post did not record it "
+     "(otherwise this uses up a second report)",
      "--yes"},
-    {"hold", Verb::Hold, kReports, "a waiting report: it goes only when you send it"},
-    {"withdraw", Verb::Withdraw, kReports,
-     "a held or waiting report: it is not to be sent. It can still be sent later"},
-    {"done", Verb::Done, kReports,
-     "a report in doubt that was recorded, or that is not worth a second one of the allotment"},
+    {"hold", Verb::Hold, kReports, "hold a queued report until you send it"},
+    {"withdraw", Verb::Withdraw, kReports, "withdraw a held or queued report. You can still send it later"},
+    {"done", Verb::Done, kReports, "settle a report in doubt without sending it again"},
     {"resubmit", Verb::Resubmit, kReport,
-     "a finished report once more on purpose, as a new one with a number of its own"},
-    {"export", Verb::Export, kNothing, "all reports of all runs, as CSV for a spreadsheet or as JSON",
+     "send a finished report again, as a new report with its own number"},
+    {"export", Verb::Export, kNothing, "print all reports of all runs as CSV, or with --json as JSON",
      "--csv"}};
 constexpr Form kRejectedForms[] = {
-    {"show", Verb::Show, kNothing, "lists them", "", true},
+    {"show", Verb::Show, kNothing, "list them (default)", "", true},
     {"send", Verb::Send, kRejectedNumber,
-     "sends it once more, when its turn comes. Adit does not where something newer that says all of it was "
-     "sent since: that would put the older in its place"},
-    {"discard", Verb::Discard, kRejectedNumber, "forgets it"}};
-constexpr Form kRunForms[] = {{"new", Verb::New, kNothing, "declares that a new run begins"}};
+     "send a message again. Adit rejects this if it has sent a newer message that replaces it"},
+    {"discard", Verb::Discard, kRejectedNumber, "delete a message"}};
+constexpr Form kRunForms[] = {{"show", Verb::Show, kNothing, "show the present run (default)", "", true},
+                              {"new", Verb::New, kNothing, "declare that a new run begins"}};
 constexpr Form kRunsForms[] = {
     {"", Verb::List, kNothing, "", "", true},
-    {"show", Verb::Show, kRunKey, "all that is known of one run"},
+    {"show", Verb::Show, kRunKey, "show one run"},
     {"report", Verb::Report, kRunKey,
-     "its report to print, one HTML file: score, each report with its life, the map, coverage, robots, what "
-     "needed the operator",
-     "--to"},
+     "print the run's report as one HTML file: score, reports, map, coverage, robots, alarms", "--to"},
     {"delete", Verb::Delete, kRunKey,
-     "forgets its map, tracks and plots, for good. Its reports stay in the ledger", "--yes"}};
+     "delete the run's map, tracks and plots for good. Its reports stay in the ledger", "--yes"}};
 constexpr Form kSettingsForms[] = {
     {"show", Verb::Show, kKey,
-     "the settings that differ from what is by default, and which tokens are set; with --json all, and what "
-     "each key means. Of KEY (reports.review; or where several begin, reports): its value, what it means and "
-     "what it may be",
+     "show the settings that differ from the defaults, and the tokens that are set (default); with KEY: its "
+     "value, meaning and range",
      "", true},
-    {"check", Verb::Check, kFile,
-     "what is wrong with FILE, or what it would change and what to mind. Nothing is changed"},
-    {"apply", Verb::Apply, kFile,
-     "saves FILE on the box and applies it at once: within a second it is in use, and nobody is cut but who "
-     "is connected to an address that goes. Where the new settings cannot be used, those before are in use "
-     "still, and `adit status` says why"},
-    {"export", Verb::Export, kNothing, "the whole settings file, for `apply`. Tokens are never in it"}};
+    {"set", Verb::Set, kKeyAndValue, "change one setting and apply it at once"},
+    {"check", Verb::Check, kFile, "list the errors in FILE, or the changes that it would make"},
+    {"apply", Verb::Apply, kFile, "replace all settings by FILE and apply them at once"},
+    {"export", Verb::Export, kNothing, "print the settings file for `apply`. It contains no tokens"}};
 constexpr Form kCourseForms[] = {{"", Verb::List, kName, "", "", true}};
 constexpr Form kIdentifyForms[] = {{"", Verb::List, kSeconds, "", "", true}};
 constexpr Form kNetworkForms[] = {
-    {"show", Verb::Show, kNothing,
-     "which addresses the box has on its two sides, and which change waits to be confirmed", "", true},
+    {"show", Verb::Show, kNothing, "show the addresses of both ports, and a change to be confirmed (default)",
+     "", true},
     {"confirm", Verb::Confirm, kNothing,
-     "the change is good and stays. It must be said at the new address, as what reaches Adit there shows "
-     "that the address works: adit finds it by team.interface, or name it by --at"},
-    {"back", Verb::Back, kNothing, "the change is taken back now"}};
+     "keep the change. The box accepts this at its new address only; adit finds that address by "
+     "team.interface or --at"},
+    {"back", Verb::Back, kNothing, "return to the old addresses now"}};
 constexpr Form kClockForms[] = {
     {"show", Verb::Show, kNothing,
-     "the box's time of day, who set it, and how far it is from this computer's", "", true},
+     "show the box's time of day, its source, and the difference to this computer (default)", "", true},
     {"set", Verb::Set, kNothing,
-     "to this computer's time. Nothing hangs on it: stamps, sessions and reports go on as they were"}};
+     "set the time to this computer's. Stamps, sessions and reports are not affected"}};
 constexpr Form kSpareForms[] = {
     {"show", Verb::Show, kNothing,
-     "whether the box rests, with the code of its export, and what it took in of another box", "", true},
+     "show whether the box is on standby, and the export that it imported (default)", "", true},
     {"export", Verb::Export, kExport,
-     "puts the box to rest, and writes its export into FILE: ledger, settings and tokens; with --stick onto "
-     "the USB stick in the box. It prints the code that opens it: note it. From then on the box takes "
-     "nothing and sends nothing, also after a power cut",
+     "put the box on standby: it accepts and sends no messages, even after a power cut. Write its ledger, "
+     "settings and tokens to FILE, and print the code that opens it",
      "--stick --yes"},
     {"take", Verb::Take, kExport,
-     "on the spare: takes in FILE, or with --stick the file of that name on the USB stick in the box (FILE "
-     "may be left out where there is one export on it). It shows what is in it, and takes over once you say "
-     "that the box that made it is unplugged",
+     "on the spare: import FILE, show its content, and take over once you confirm. With --stick, FILE may be "
+     "left out if the stick holds one export",
      "--stick --code --yes"},
     {"wake", Verb::Wake, kNothing,
-     "the box goes on. Only where no spare took over from it: else a report may be sent twice", "--yes"}};
+     "end the standby. If a spare has taken over from this box, reports may be sent twice", "--yes"}};
 constexpr Form kTestForms[] = {
     {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
 constexpr Form kUpdateForms[] = {
     {"", Verb::List, kBundle, "", "--stick --restart --back --stay --again --anyway", true}};
 constexpr Form kHelpForms[] = {{"", Verb::List, kCommand, "", "", true}};
 constexpr Form kCompleteForms[] = {
-    {"reports", Verb::Reports, kWord, "reports by their numbers: all, or those that WORD can be said of"},
-    {"rejected", Verb::Rejected, kNothing, "what is rejected, by its numbers"},
-    {"courses", Verb::Courses, kNothing, "the names of courses"},
-    {"runs", Verb::Runs, kNothing, "the runs that are kept, by their keys"},
-    {"keys", Verb::Keys, kNothing,
-     "the keys of the settings, with --json all that is to be known of each; no Adit is asked"}};
+    {"reports", Verb::Reports, kWord, "list the reports that `adit reports WORD` applies to"},
+    {"rejected", Verb::Rejected, kNothing, "list the rejected messages"},
+    {"courses", Verb::Courses, kNothing, "list the courses"},
+    {"runs", Verb::Runs, kNothing, "list the kept runs"},
+    {"keys", Verb::Keys, kNothing, "list the settings keys, without asking Adit"}};
 constexpr Form kCheckForms[] = {{"", Verb::List, kSettingsFile, "", "", true}};
 
 constexpr CommandRow kCommands[] = {
-    {Command::Status, "status", "the run, the Command Post, each robot's maps, and what the operator must do",
-     kPlain,
-     "First the alarms, then the run as the Command Post last told of it, whether every map arrives, the two "
-     "endpoints, how many reports are in which state, and a row for each robot and kind of update.\n"
-     "An alarm is\n"
-     "  x bad    something does not work\n"
-     "  ? ask    it waits for the operator's word\n"
-     "  ! wait   it may pass by itself\n"
-     "The column 'arriving' says:\n"
-     "  up to date, arriving     the Command Post has it, or something waits for its turn\n"
-     "  12 s behind              longer than taking turns explains\n"
-     "  throttled, failing       the last try came to nothing: the row says why\n"
-     "  not arriving, refused    so it has been for long, or for good\n"
-     "  quiet                    all has arrived, and nothing new came for a minute\n"
-     "  silent                   the robot says nothing any more, against its habit\n"
-     "  waiting                  accepted, and nothing has been sent so far\n"
-     "Times are as of now; the size is that of the last update that was sent, as it was sent.",
-     "there is no alarm, or only ones that may pass (wait)", "there is an alarm that is bad, or asks",
+    {Command::Status, "status", "show alarms, run, Command Post, reports and each robot's maps", kPlain,
+     "Alarms:\n"
+     "  x bad    a fault\n"
+     "  ? ask    the operator must decide\n"
+     "  ! wait   may end by itself\n"
+     "Column `arriving`:\n"
+     "  waiting                  accepted, but none sent so far\n"
+     "  up to date, arriving     delivered, or queued for its turn\n"
+     "  12 s behind              later than its turn explains\n"
+     "  throttled, failing       the last attempt failed; the row says why\n"
+     "  not arriving, refused    attempts have failed for long, or for good\n"
+     "  quiet                    all delivered, and no new message for a minute\n"
+     "  silent                   the robot has stopped posting\n"
+     "The size is that of the last message, as sent.",
+     "no alarm is bad or asks", "an alarm is bad or asks",
      "  sudo adit status\n"
-     "  adit status --at 10.0.0.1:8000 --token-file team.token\n"
+     "  adit status --at 10.0.0.1 --token-file team.token\n"
      "  sudo adit status --json | jq '.run.remaining_reports'"},
-    {Command::Watch, "watch", "the same as `adit status`, as it changes, until you end it", kPlain,
-     "On a terminal the screen is drawn again as it changes, at most each second; q or Ctrl-C ends it. "
-     "Elsewhere, in a pipe or a file: first all of it, then a line for each change: of the run, of a report, "
-     "of an endpoint, of a robot's maps that stop or arrive, of what needs the operator. With --json: what "
-     "Adit says, a line as it changes, at most one a second. Where Adit does not answer, it says so and goes "
-     "on asking.",
-     "it was ended", "",
+    {Command::Watch, "watch", "show `adit status` continuously", kPlain,
+     "On a terminal: redraw at most once a second until q or Ctrl-C. In a pipe or a file: print the status "
+     "once, then a line for each change. With --json: print the view on one line, at most once a second. If "
+     "Adit does not answer, print the error and try again.",
+     "you ended it", "",
      "  sudo adit watch\n"
      "  sudo adit watch | tee run.log\n"
      "  sudo adit watch --json | jq --unbuffered '.run.score'"},
-    {Command::Reports, "reports",
-     "every artifact report and what became of it; and your word on those that wait for it", kReportForms,
-     "Without a word: a row for each report of the present run, and for those of other runs that are not "
-     "finished, the newest first; with --run those of one run or of all. A line at the end says how many "
-     "there are of other runs that are not listed: of earlier ones, and of those at other Command Posts. A "
-     "report in doubt holds up no other: take your time.\n"
+    {Command::Reports, "reports", "list artifact reports; send, hold, withdraw or settle them", kReportForms,
+     "Without a subcommand: list the reports of the present run and the unfinished ones of other runs, the "
+     "newest first. A report in doubt delays no other report.\n"
      "\n"
-     "The states (as the JSON and the CSV name them, where that is another word):\n"
-     "  held              waits for your word before it is sent; the row says why: a near duplicate,\n"
-     "                    the review of all reports, a new run, too many failures, or you hold it\n"
-     "                    (received)\n"
-     "  waiting           kept on disk; it is sent when its turn comes\n"
-     "  sending           on its way\n"
-     "  answered          the Command Post recorded it and said so\n"
-     "  refused           the Command Post did not record it, and asking again is no use\n"
-     "  in doubt, asking  it may have been recorded, but its answer was lost. Adit asks the run's status\n"
-     "                    until it is clear, and then settles it or sends it again by itself: there is\n"
-     "                    nothing for you to do\n"
-     "  in doubt          it may have been recorded, and the run's status cannot tell: only you can\n"
-     "                    decide\n"
-     "  settled           its answer was lost, and the run's status showed that it was recorded\n"
-     "  called done       you said that nothing is left to do about it (settled)\n"
-     "  withdrawn         taken back before it was sent\n"
-     "  same as 3         it is report 3 over again, and got that one's answer (withdrawn)",
-     "no report waits for your word; of your word: all is done",
-     "one does (held, or in doubt); of your word: a report is not there, or is where that\n"
-     "     cannot be said of it",
-     "  sudo adit reports\n"
+     "States (JSON and CSV write in_doubt):\n"
+     "  held              Adit sends it only after `adit reports send`; the row gives the reason\n"
+     "  queued            on disk, to be sent in its turn\n"
+     "  sending           sent, not yet answered\n"
+     "  answered          the Command Post recorded it\n"
+     "  rejected          the Command Post rejected it; Adit does not retry\n"
+     "  in doubt, asking  the answer was lost. Adit asks the run's status, then settles or retries it\n"
+     "  in doubt          the answer was lost, and the run's status does not decide: send it or settle it\n"
+     "  settled           the answer was lost; the run's status showed that the report was recorded, or\n"
+     "                    the operator settled it\n"
+     "  withdrawn         the operator withdrew it, or it repeats an earlier report and got that answer",
+     "no report is held or waits for a decision, or the action succeeded",
+     "a report is held, or in doubt and for you to decide, or the action was rejected",
+     "  sudo adit reports --last 5\n"
      "  sudo adit reports show 14\n"
-     "  sudo adit reports done 14\n"
      "  sudo adit reports send 15 16\n"
      "  sudo adit reports export > reports.csv\n"
      "  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'"},
-    {Command::Rejected, "rejected",
-     "maps, states and markers that the Command Post would not take, and your word on them", kRejectedForms,
-     "Each message that was rejected: because the Command Post refused it (400, 413, 422), or because it "
-     "failed at it again and again (500) while others passed. They are kept, the newest hundred, until you "
-     "say what becomes of them.",
-     "nothing needs your word; of your word: it is done",
-     "something is rejected that nothing newer has replaced, or your word could not be done", ""},
-    {Command::Run, "run", "tells Adit that a new run begins", kRunForms,
-     "Adit notices a new run by itself where the run's name or the team changes, where more reports are left "
-     "than before, or where a run clock that was seen to run goes back. Where only that clock tells of it, "
-     "the same report as one of the run before is held until an answer names the run. Where Adit cannot "
-     "notice it (the next run went on from the same clock), this declares it. Reports that were not sent "
-     "before are held, so that none of the old run is sent into the new one unless you say so: adit reports "
-     "send. The same report as one of an earlier run is then a new report.",
-     "a new run has begun", "", "  sudo adit run new"},
-    {Command::Runs, "runs", "the runs that are kept: their scores, their reports to print, their end",
-     kRunsForms,
-     "Without a word: a row for each run whose map, tracks and plots are kept, the latest first. KEY is what "
-     "stands first in its row: the run's number, and more where two have the same. On the page they can be "
-     "looked at again (/runs).",
-     "they are shown, or it is done", "there is no such run, or it cannot be done",
+    {Command::Rejected, "rejected", "list maps, states and markers that the Command Post rejected",
+     kRejectedForms,
+     "A message is listed if the Command Post rejected it (400, 413, 422), or failed at it repeatedly (500) "
+     "while others were delivered. Adit keeps the newest 100.",
+     "no message needs a decision, or the action succeeded",
+     "a message is listed that no newer one has replaced, or the action was rejected", ""},
+    {Command::Run, "run", "show the present run, or begin a new one", kRunForms,
+     "Adit detects a new run if the run's name or team changes, more reports are left, or the run clock goes "
+     "back. If only the clock shows it, a report that repeats one of the old run is held until an answer "
+     "names the run. Otherwise declare it with `adit run new`. Unsent reports of the old run are then held, "
+     "and a report that repeats one of an old run is a new report.",
+     "the command succeeded", "", "  sudo adit run new"},
+    {Command::Runs, "runs", "list the kept runs; show, print or delete one", kRunsForms,
+     "Without a subcommand: list the runs whose map, tracks and plots are kept, the latest first. KEY is the "
+     "first column.",
+     "the command succeeded", "the run does not exist, or was not deleted",
      "  sudo adit runs\n"
      "  sudo adit runs report 3 --to run-3.html\n"
-     "  sudo adit runs delete 1\n"
      "  sudo adit runs --json | jq -r '.runs[] | [.key, .course, .score] | @tsv'"},
-    {Command::Settings, "settings", "what the running Adit is set to, and changes to it", kSettingsForms, "",
-     "all is well", "something is wrong with FILE, or somebody else changed the settings at the same time",
+    {Command::Settings, "settings", "show or change Adit's settings", kSettingsForms,
+     "New settings are in use within a second, and cut only connections to a removed address. If Adit cannot "
+     "use them, it keeps the old ones, and `adit status` says why.\n"
+     "An item of a list is named by its name or its index: robots[ugv1].alias, team.listen[0].port. VALUE is "
+     "JSON; a text needs no quotes.",
+     "the command succeeded", "the settings are wrong, or somebody else changed them at the same time",
+     "  sudo adit settings set reports.review all\n"
      "  sudo adit settings export > box.json\n"
      "  sudo adit settings check box.json && sudo adit settings apply box.json"},
-    {Command::Course, "course", "switches to the Command Post of another course", kCourseForms,
-     "NAME is one of the courses in the settings; \"\" means none, the endpoints of command_post itself. It "
-     "says how many reports wait, are in doubt or are held: they are kept for the run at the old endpoint, "
-     "and none of them is sent to the new one unless you say so (adit reports send). Back there, that run is "
-     "taken up again with its reports: what waits goes, what is in doubt is found out, and the same report "
-     "again gets the recorded answer. Where nothing was heard from the old endpoint (a mistyped address), "
-     "what waits is sent to the first that answers.",
-     "the course is in use", "there is no such course", "  sudo adit course B"},
-    {Command::Identify, "identify", "makes the box's lights flash, to tell it from others", kIdentifyForms,
-     "All lights flash twice a second, together, for SECONDS (1 to 60; 10 if not given): no condition shows "
-     "that. Then they show again how things stand.",
-     "they flash", "", "  sudo adit identify 30"},
-    {Command::Network, "network", "the box's own addresses, and your word on a change of them that waits",
-     kNetworkForms,
-     "A change is made on the page. It is tried at once, and takes itself back unless it is confirmed in "
-     "time (network.confirm_within_ms), so that a wrong address costs a minute and not the box.",
-     "no change waits; of your word: it is done",
-     "a change waits; of your word: none waits, or it cannot be said there",
+    {Command::Course, "course", "list the courses, or switch to another course's Command Post", kCourseForms,
+     "Without NAME: list the courses of the settings and mark the one in use. \"\" as NAME switches to the "
+     "endpoints of command_post itself.\n"
+     "Unfinished reports stay with the old Command Post until you switch back; `adit reports send` sends one "
+     "to the new one instead. If the old Command Post never answered, queued reports go to the first that "
+     "does.",
+     "the command succeeded", "the course does not exist", "  sudo adit course B"},
+    {Command::Identify, "identify", "flash the box's lights, to tell it from others", kIdentifyForms,
+     "All lights flash together, twice a second, for SECONDS (1 to 60; 10 if not given).", "the lights flash",
+     "", "  sudo adit identify 30"},
+    {Command::Network, "network", "show the box's own addresses; confirm or revert a change", kNetworkForms,
+     "The page changes addresses. The box applies the change at once and returns to the old addresses unless "
+     "you confirm within network.confirm_within_ms.",
+     "no change is to be confirmed, or the action succeeded",
+     "a change is to be confirmed, or the action was rejected",
      "  sudo adit network\n"
-     "  sudo adit network confirm --at 192.168.8.11:8000"},
-    {Command::Clock, "clock", "the box's time of day, and your word on it", kClockForms,
-     "A box without a battery begins with the last time it knew. Then the `Date` of the Command Post's "
-     "answers sets it, or a robot's stamps, or you do: here, or on the page, which asks where a browser's "
-     "time is another. An NTP server of the team that the settings name (clock.ntp_server) sets it and keeps "
-     "it: while it answers, nobody else may. With clock.serve_ntp the team's network has the box's time.",
-     "the time is set; of your word: it is being set", "it is not set, or could not be",
+     "  sudo adit network confirm --at 192.168.8.11"},
+    {Command::Clock, "clock", "show or set the box's time of day", kClockForms,
+     "After boot a box without a battery continues from the last time that it knew, until the Command Post's "
+     "answers, "
+     "robots' stamps, the page or `adit clock set` set it. While the NTP server of clock.ntp_server answers, "
+     "only that server sets it.",
+     "the time is set, or is being set", "the time is not set, or setting it failed",
      "  adit clock\n"
-     "  adit clock set --at 10.0.0.1:8000 --token-file team.token"},
-    {Command::Test, "test", "tries each endpoint of the Command Post step by step, and spends no report",
-     kTestForms,
-     "What it tries:\n"
-     "  link     does the interface to the Command Post have a carrier\n"
-     "  address  does it have an address, and does anybody else on its network have the same\n"
-     "  cables   is the Command Post's network at its own port, and not at the team's\n"
-     "  reach    does the endpoint take a connection\n"
-     "  token    does it take the token\n"
-     "  clock    does the box's clock agree with the Command Post's, to 2 s\n"
-     "Each step is good, BAD or skipped, with what was found, and with what to do about it.\n"
-     "\n"
-     "With an address, a token or a course it tries that before it is applied, and the run goes on: where "
-     "only one "
-     "endpoint is named, only that one is tried.",
-     "no step is bad", "one is",
+     "  adit clock set --at 10.0.0.1 --token-file team.token"},
+    {Command::Test, "test", "test each endpoint of the Command Post; uses up no report", kTestForms,
+     "Steps:\n"
+     "  link     the Command Post's port has a carrier\n"
+     "  address  the port has an address, and no other machine has the same\n"
+     "  cables   the two cables are not exchanged\n"
+     "  reach    the endpoint accepts a connection\n"
+     "  token    the endpoint accepts the token\n"
+     "  clock    the box's time of day agrees with the Command Post's, to 2 s\n"
+     "Options test an address, a token or a course before you apply it; the run goes on. If one endpoint is "
+     "named, only that one is tested.",
+     "no step is bad", "a step is bad",
      "  sudo adit test\n"
-     "  sudo adit test --scoring 10.100.2.200:8000 --mapping 10.100.2.201:8000\n"
+     "  sudo adit test --scoring 10.100.2.200 --mapping 10.100.2.201\n"
      "  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == \"bad\")'"},
-    {Command::Spare, "spare", "a second box takes over from this one, with all that is known of the reports",
-     kSpareForms,
-     "A report that the first box knows is known to its spare, so that none is sent twice over the swap. In "
-     "this order:\n"
-     "  1. on the first box: adit spare export FILE, or --stick; it rests from then on\n"
-     "  2. unplug it\n"
-     "  3. on the spare, at its own address: adit spare take FILE, or --stick\n"
-     "  4. give the spare the addresses of the first box (adit network, or the set-up page) and its cables\n"
-     "What the first box had not sent yet is in doubt at the spare until the run's status shows that nobody "
-     "sent it since: that takes some 10 s, and then it goes. The export is sealed by its code, which is not "
-     "in it.",
-     "the box neither rests nor has an export that waits; of your word: it is done",
-     "it rests, or an export waits; of your word: it cannot be done, or you said no",
+    {Command::Spare, "spare", "replace this box by a spare one, without sending a report twice", kSpareForms,
+     "Steps:\n"
+     "  1. on the first box: adit spare export FILE (or --stick)\n"
+     "  2. unplug the first box\n"
+     "  3. on the spare, at its own address: adit spare take FILE (or --stick)\n"
+     "  4. give the spare the first box's addresses (on the page) and its cables\n"
+     "Unsent reports of the first box are in doubt on the spare until the run's status decides, for about 10 "
+     "s. Then the spare sends them. The export is encrypted; the code is not part of it.",
+     "the box is not on standby and has no export to open, or the action succeeded",
+     "the box is on standby or has an export to open, or the action was rejected or not confirmed",
      "  sudo adit spare export /media/stick/box.adit-spare\n"
      "  sudo adit spare take /media/stick/box.adit-spare --code '1234 5678 9012 3456'\n"
-     "  adit spare export --stick --at 10.0.0.1:8000 --token-file team.token"},
-    {Command::Update, "update", "the box's version, and the installation of another", kUpdateForms,
-     "Without a word it tells which version runs, in which of the two slots, and what became of the last "
-     "update; and where another slot runs than the one that was good last, why, and the two ways on: --back "
-     "and --stay. FILE is an update, adit-BOARD-VERSION.raucb: it is sent to the box, checked there, and "
-     "installed into the slot that does not run. That takes some minutes, and all goes on meanwhile.\n"
+     "  adit spare export --stick --at 10.0.0.1 --token-file team.token"},
+    {Command::Update, "update", "show the box's version, or install another", kUpdateForms,
+     "Without FILE or an option: show the running version, its slot, and the result of the last update. FILE "
+     "is adit-BOARD-VERSION.raucb. The box checks it and installs it in the other slot, which takes some "
+     "minutes; reports and maps go on.\n"
      "\n"
-     "What is installed is on trial: it stays once it has been healthy for a minute; where it does not come "
-     "up in three starts, the box goes back to the version before by itself. Another board's update, one "
-     "that is not signed with a key that the box knows, and an older version are refused.",
-     "all is well",
-     "the update was refused, failed or was left; another slot runs than the one that was good last; a\n"
-     "     report is under way; nothing can be updated here",
+     "After a restart the update is on trial until it has been healthy for a minute. If it does not come up "
+     "in three starts, the box returns to the version before. Updates of another board, with an unknown "
+     "signature, or of an older version are rejected.",
+     "the command succeeded",
+     "the update was rejected or failed, an unexpected slot runs, a report is queued or being sent, or the\n"
+     "     box cannot be updated",
      "  sudo adit update adit-qemu-virt-0.2.0.raucb && sudo adit update --restart"},
-    {Command::Check, "check", "all that is wrong with a settings file, at once", kCheckForms,
-     "Reads SETTINGS (/etc/adit/settings.json if not given) exactly as aditd would, and names each error by "
-     "the path of its key, with what was expected and what was found. Of good settings it says what they "
-     "come to, and warns of a token of the Command Post's that has not 16 characters, and of a team's "
-     "network "
-     "that overlaps the Command Post's. It neither asks nor changes a running Adit.",
-     "aditd would take the file", "it would not",
+    {Command::Check, "check", "list all errors of a settings file", kCheckForms,
+     "Read SETTINGS (/etc/adit/settings.json if not given) as aditd does, and name each error by the path of "
+     "its key. Summarise correct settings, and warn if a Command Post's token does not have 16 characters or "
+     "the team's network overlaps the Command Post's.",
+     "the settings are correct", "they are wrong",
      "  adit check\n"
      "  adit check new.json && sudo install -m 644 new.json /etc/adit/settings.json"},
-    {Command::Complete, "complete", "lists what may stand in a command: for the completion of shells",
-     kCompleteForms,
-     "Each line is a word that may stand there, a tab, and what it is. Where Adit cannot be reached, there "
-     "is none.",
-     "they are listed", "", "  adit complete reports send"},
-    {Command::Help, "help", "explains a command: adit help COMMAND", kHelpForms, "", "", "", ""}};
+    {Command::Complete, "complete", "list the words that shells complete", kCompleteForms,
+     "Each line is a word, a tab, and its description.", "the command succeeded", "",
+     "  adit complete reports send"},
+    {Command::Help, "help", "explain a command: adit help COMMAND", kHelpForms, "", "", "", ""}};
 
 }  // namespace
 

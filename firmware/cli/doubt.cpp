@@ -10,11 +10,10 @@ namespace adit::cli {
 namespace {
 
 std::string warning(const api::ReportRow& report) {
-  const char* const asking =
-      report.asking ? " Adit asks the run's status and finds that out by itself, unless you do." : "";
+  const char* const asking = report.asking ? " Adit is asking the run's status to find out." : "";
   return icd::sentence("report ", report.number, " (", report.type,
-                       ") is in doubt: it may have been recorded, and then sending it again uses up a second "
-                       "one of the allotment.",
+                       ") is in doubt: if the Command Post recorded it, sending it again uses up a second "
+                       "report.",
                        asking);
 }
 
@@ -29,8 +28,8 @@ std::optional<Failure> doubt(const Adit& adit, std::int64_t number, const Consol
   if (dispatch::state_named(report.state) != dispatch::ReportState::InDoubt) return std::nullopt;
   const std::string why = warning(report);
   const auto meant = console.ask(host::escaped(why) + "\nSend it again?");
-  if (!meant) return Failure{Exit::Attention, why + " It is not sent; if that is meant: --yes"};
-  if (!*meant) return Failure{Exit::Attention, "report " + std::to_string(number) + " is not sent"};
+  if (!meant) return Failure{Exit::Attention, why + " It was not sent; to send it, add --yes"};
+  if (!*meant) return Failure{Exit::Attention, "report " + std::to_string(number) + " was not sent"};
   return std::nullopt;
 }
 

@@ -25,7 +25,7 @@ std::optional<Look> Follower::look() {
   if (!came->empty()) {
     heard_ = Clock::now();
   } else if (Clock::now() >= heard_ + kSilence) {
-    return lost("it says nothing any more");
+    return lost("no event for 6 s");
   }
   events_.feed(*came);
   return news();
@@ -56,7 +56,7 @@ std::optional<Look> Follower::ended(const HttpStream::Ended& end) {
 
 std::optional<Look> Follower::lost(const std::string& why) {
   stream_.reset();
-  return std::unexpected(cannot_be_asked(adit_.address, why));
+  return std::unexpected("lost the connection to Adit at " + written(adit_.address) + ": " + why);
 }
 
 Look Follower::ask() const {
@@ -64,17 +64,18 @@ Look Follower::ask() const {
   if (!json) return std::unexpected(json.error());
   const auto told = codec::parse_json(*json);
   if (!told)
-    return std::unexpected("Adit at " + written(adit_.address) + " answers no JSON: " + told.error());
+    return std::unexpected("cannot read the answer of Adit at " + written(adit_.address) + ": " +
+                           told.error());
   return seen(adit_, *told);
 }
 
 std::optional<Look> Follower::news() {
   bool is_news = false;
   while (const auto event = events_.next()) {
-    if (!take(*event)) return lost("what it tells cannot be understood");
+    if (!take(*event)) return lost("cannot read an event");
     is_news = true;
   }
-  if (events_.waiting() > kLargestBody) return lost("what it tells is too long");
+  if (events_.waiting() > kLargestBody) return lost("an event is too long");
   if (!is_news) return std::nullopt;
   has_told_ = true;
   return seen(adit_, told_);

@@ -4,6 +4,7 @@
 #include <deque>
 
 #include "cli/options.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::cli {
 namespace {
@@ -12,8 +13,7 @@ using command_line::Program;
 using command_line::Row;
 
 constexpr const char* kUnable =
-    "\n  2  Adit cannot be reached or wants another token, a file cannot be read, or the command line is\n"
-    "     wrong\n";
+    "\n  2  if Adit cannot be reached, or the token, a file or the command line is wrong\n";
 
 /// Rows that are only read by people, before the options.
 void put_first(Program& program, const std::vector<Row>& rows) {
@@ -30,7 +30,8 @@ void limit_to(Program& program, const CommandRow& command) {
   });
 }
 
-/// "with export: " or "without a word: ", where not all words of a command take an option; "" where they do.
+/// "with export: " or "without a subcommand: ", where not all words of a command take an option; "" where
+/// they do.
 std::string takers_of(const CommandRow& command, const char* option) {
   std::string words;
   bool by_all = true;
@@ -42,7 +43,7 @@ std::string takers_of(const CommandRow& command, const char* option) {
     }
   }
   if (by_all) return "";
-  return words.empty() ? "without a word: " : "with " + words + ": ";
+  return words.empty() ? "without a subcommand: " : "with " + words + ": ";
 }
 
 /// "[show|send]", "[FILE]"
@@ -63,9 +64,16 @@ void explain_all(Program& program) {
   limit_to(program, commands().back());  // help's own
   put_first(program, rows);
   program.ending =
-      "Exit status:\n  0  all is well\n  1  something needs the operator, or the settings are wrong";
+      "Exit status:\n  0  if the command succeeded and no alarm needs the operator\n"
+      "  1  if an alarm needs the operator, the settings are wrong, or Adit rejected an action";
   program.ending.append(kUnable).append(
-      "Where NO_COLOR is set in the environment, there is no colour on a terminal either.");
+      "Environment:\n"
+      "  ADIT_AT          used if --at and --settings are not given\n"
+      "  ADIT_TOKEN_FILE  used if --token-file is not given\n"
+      "  NO_COLOR         if set, print without colour\n"
+      "Files:\n"
+      "  /var/lib/adit/settings.json  the saved settings; without them, /etc/adit/settings.json\n"
+      "  /var/lib/adit/secrets        team.token or else scoring.token; without them, /etc/adit/secrets");
 }
 
 /// `sentences` keeps what the program's rows point to.
@@ -83,15 +91,19 @@ void explain(Program& program, const CommandRow& command, std::deque<std::string
       rows.push_back({form.word, form.argument.shown, form.sentence, command_line::Take()});
   }
   put_first(program, rows);
-  program.ending.append("Exit status:\n  0  ").append(command.fine);
-  if (*command.attention != '\0') program.ending.append("\n  1  ").append(command.attention);
+  program.ending.append("Exit status:\n  0  if ").append(command.fine);
+  if (*command.attention != '\0') program.ending.append("\n  1  if ").append(command.attention);
   program.ending.append(kUnable);
   if (*command.examples != '\0') program.ending.append("\nExamples:\n").append(command.examples);
 }
 
 }  // namespace
 
-const char* const kSeeHelp = "Try 'adit --help'.\n";
+std::string see_help(Command about) {
+  if (about == Command::Help) return "see \"adit help\"\n";
+  return icd::sentence("see \"adit help ", std::ranges::find(commands(), about, &CommandRow::command)->name,
+                       "\"\n");
+}
 
 std::string help_about(Command about) {
   Options options;

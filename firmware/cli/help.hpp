@@ -9,7 +9,7 @@ namespace adit::cli {
 /// What `adit --help`, or `adit COMMAND --help`, prints.
 [[gnu::cold]] std::string help_about(Command command);
 
-/// One line, for standard error.
-extern const char* const kSeeHelp;
+/// The line below an error of a command line: which help to read.
+[[gnu::cold]] std::string see_help(Command command);
 
 }  // namespace adit::cli

@@ -81,22 +81,22 @@ std::expected<loop::FileDescriptor, std::string> connected(const uplink::Endpoin
   return *std::move(fd);
 }
 
-}  // namespace
-
-std::string cannot_be_asked(const settings::Address& address, const std::string& why) {
-  return "Adit at " + written(address) + " cannot be asked: " + why;
+std::string cannot_reach(const settings::Address& address, const std::string& why) {
+  return "cannot reach Adit at " + written(address) + ": " + why;
 }
+
+}  // namespace
 
 std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
                                            std::chrono::milliseconds within) {
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
   const auto fd = connected(endpoint, deadline);
-  if (!fd) return std::unexpected(NoReply{cannot_be_asked(address, fd.error()), false});
+  if (!fd) return std::unexpected(NoReply{cannot_reach(address, fd.error()), false});
   const icd::BearerToken token = request.token;
   uplink::Exchange exchange(endpoint, token, upstream(std::move(request)));
   auto reply = exchanged(fd->get(), exchange, deadline);
-  if (!reply) return std::unexpected(NoReply{cannot_be_asked(address, reply.error()), true});
+  if (!reply) return std::unexpected(NoReply{cannot_reach(address, reply.error()), true});
   return std::move(*reply);
 }
 
@@ -106,14 +106,14 @@ std::expected<std::unique_ptr<HttpStream>, std::string> HttpStream::ask(const se
   const auto deadline = Clock::now() + within;
   const uplink::Endpoint endpoint = endpoint_of(address);
   auto fd = connected(endpoint, deadline);
-  if (!fd) return std::unexpected(cannot_be_asked(address, fd.error()));
+  if (!fd) return std::unexpected(cannot_reach(address, fd.error()));
   const icd::BearerToken token = request.token;
   auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, upstream(std::move(request)));
   while (stream->exchange_.wants_to_write()) {
     if (stream->exchange_.write(stream->fd()) != 0) break;  // reading tells why
     if (!stream->exchange_.wants_to_write()) break;
     if (const int error = wait_for(stream->fd(), POLLOUT, deadline); error != 0) {
-      return std::unexpected(cannot_be_asked(address, reason(error)));
+      return std::unexpected(cannot_reach(address, reason(error)));
     }
   }
   return stream;
@@ -134,7 +134,7 @@ void HttpStream::look() {
   const auto answer = exchange_.read(fd());
   if (answer == uplink::Exchange::Answer::Lost) ended_ = {.why = exchange_.doubt().why};
   if (answer == uplink::Exchange::Answer::Whole) {
-    ended_ = {.status = exchange_.status() == kOk ? 0 : exchange_.status(), .why = "it tells no more"};
+    ended_ = {.status = exchange_.status() == kOk ? 0 : exchange_.status(), .why = "closed by the server"};
   }
 }
 

@@ -30,9 +30,6 @@ struct NoReply {
   bool sent = false;     // the request may have arrived all the same
 };
 
-/// The sentence of that.
-std::string cannot_be_asked(const settings::Address& address, const std::string& why);
-
 /// One blocking request (RFC 9112) on a connection of its own: the whole reply, or why there is none. All of
 /// it within `within`.
 std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,

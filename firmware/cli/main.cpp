@@ -39,7 +39,7 @@ std::optional<bool> ask(const std::string& question) {
 int main(int count, char** arguments) {
   using namespace adit::cli;
   adit::loop::tell_of_caught(
-      [](const char*, const char* what) { std::fprintf(stderr, "adit: cannot go on: %s\n", what); });
+      [](const char*, const char* what) { std::fprintf(stderr, "adit: stopped: %s\n", what); });
   const std::vector<std::string_view> words(arguments + 1, arguments + count);
   const bool screen = is_terminal(STDOUT_FILENO);
   const bool utf8 = is_utf8_terminal();

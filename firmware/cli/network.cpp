@@ -91,16 +91,17 @@ std::string side_line(const char* name, const Side& side) {
 std::string text_of(const View& view, double now) {
   std::string out = side_line("team        ", view.team) + side_line("command post", view.post);
   if (view.pending) {
-    out += icd::sentence("\nA change waits to be confirmed, for ", duration(std::max(0.0, view.until - now)),
-                         " more:\n");
+    out += icd::sentence("\nA change is to be confirmed within ", duration(std::max(0.0, view.until - now)),
+                         ":\n");
     out += side_line("team        ", view.wanted_team) + side_line("command post", view.wanted_post);
     out += icd::sentence("Confirm it at ", host::escaped(view.page),
-                         " (adit network confirm), or it is taken back.\n");
+                         " (adit network confirm); otherwise the box returns to the old addresses.\n");
   } else if (!view.last.empty()) {
     const std::string why = view.last_why.empty() ? "" : icd::sentence(", ", view.last_why);
-    out += icd::sentence("\nThe last change: ", host::escaped(view.last + why), "\n");
+    out += icd::sentence("\nLast change: ", host::escaped(view.last + why), "\n");
   }
-  if (!view.managed) out += icd::sentence("\nNothing can be changed here: ", host::escaped(view.why), "\n");
+  if (!view.managed)
+    out += icd::sentence("\nAdit cannot change the addresses: ", host::escaped(view.why), "\n");
   return out;
 }
 
@@ -122,16 +123,6 @@ Outcome show_network(const Adit& adit, const Options& options) {
   return {exit, options.json ? *json + '\n' : text_of(*view, time_now()), ""};
 }
 
-Outcome said_no(const Adit& adit, const HttpReply& reply) {
-  if (reply.status == 401) return unable(unknown_token(adit));
-  const std::string sentence = sentence_in(reply.body);
-  Outcome outcome = unable(sentence.empty() ? "Adit at " + written(adit.address) + " answered " +
-                                                  std::to_string(reply.status) + " (is that Adit?)"
-                                            : sentence);
-  if (reply.status == 409) outcome.exit = Exit::Attention;
-  return outcome;
-}
-
 /// The word is said, and then what became of it is waited for. After `back` the address that was asked may be
 /// gone.
 Outcome say(const Adit& adit, const Options& options, bool confirms) {
@@ -141,7 +132,7 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
                                .token = adit.token.token},
                               kConfirmPatience);
   if (!reply) return unable(reply.error().sentence);
-  if (reply->status != 200) return said_no(adit, *reply);
+  if (reply->status != 200) return unable(failure(adit, *reply));
   for (int i = 0; i < kConfirmTimes; ++i) {
     const auto json = get(adit, "/adit/network");
     if (!json && !confirms) break;
@@ -157,8 +148,9 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
     }
     std::this_thread::sleep_for(kConfirmEvery);
   }
-  if (!confirms) return {Exit::Fine, options.json ? "{}\n" : "the change is being taken back\n", ""};
-  return unable("the change still waits, though it was confirmed: see adit network show");
+  if (!confirms)
+    return {Exit::Fine, options.json ? "{}\n" : "the box is returning to the old addresses\n", ""};
+  return unable("the change was confirmed but is still pending: see adit network");
 }
 
 }  // namespace

@@ -49,6 +49,9 @@ class Words {
     return take_argument(word);
   }
 
+  /// Help, if the line named no command.
+  Command command() const { return command_ == nullptr ? Command::Help : command_->command; }
+
   /// `given`: the options.
   [[gnu::cold]] Wrong finish(std::span<const std::string> given) {
     if (options_.version) return std::nullopt;
@@ -60,7 +63,7 @@ class Words {
     options_.command = command_->command;
     const std::string spoken = this->spoken();
     if (form_ == nullptr && !command_->forms.front().usual)
-      return "a word is missing after " + spoken + ": " + codec::in_turn(words_of(*command_));
+      return "a subcommand is missing after " + spoken + ": " + codec::in_turn(words_of(*command_));
     if (form_ == nullptr) form_ = command_->forms.data();
     options_.verb = form_->verb;
     for (const std::string& option : given) {
@@ -107,10 +110,10 @@ class Words {
   }
 
   std::string& text() {
-    if (command_->command == Command::Course) return options_.course;
+    if (command_->command == Command::Course) return options_.course.emplace();
     if (command_->command == Command::Complete) return options_.word;
     if (command_->command == Command::Runs) return options_.run_key;
-    if (form_->argument.among == Among::Keys) return options_.key;
+    if (form_->argument.among == Among::Keys) return count_ == 1 ? options_.key : options_.value;
     return command_->command == Command::Check ? options_.settings : options_.file;
   }
 
@@ -121,12 +124,12 @@ class Words {
 
   /// Two options of which the command takes only one.
   Wrong disagreement() const {
-    if (options_.csv && options_.json) return "--csv and --json are two formats: which one?";
+    if (options_.csv && options_.json) return "give --csv or --json, not both";
     if (command_->command == Command::Spare) return spare_disagreement();
     if (command_->command != Command::Update) return std::nullopt;
     const int asked = int{options_.stick} + int{options_.restart} + int{options_.back} + int{options_.stay} +
                       int{!options_.file.empty()};
-    if (asked > 1) return "a file, --stick, --restart, --back and --stay are five things: which one?";
+    if (asked > 1) return "give only one of FILE, --stick, --restart, --back and --stay";
     if (options_.again && !options_.stick && options_.file.empty()) return "update does not take --again";
     if (options_.anyway && !options_.restart && !options_.back) return "update does not take --anyway";
     return std::nullopt;
@@ -138,7 +141,7 @@ class Words {
     if (takes_file && !options_.stick && options_.file.empty())
       return "a file or --stick is missing after " + std::string(form_->word);
     if (options_.verb == Verb::Export && options_.stick && !options_.file.empty())
-      return "a file and --stick are two things: which one?";
+      return "give FILE or --stick, not both";
     return std::nullopt;
   }
 
@@ -172,6 +175,11 @@ Wrong take_run(Options& options, const std::string& value) {
   return "expected a run's number or all, got " + value;
 }
 
+Wrong take_last(Options& options, const std::string& value) {
+  options.last = number_in(value, INT64_MAX);
+  return options.last ? std::nullopt : Wrong("expected a number of reports, got " + value);
+}
+
 }  // namespace
 
 bool takes(const CommandRow& command, const Form& form, std::string_view option) {
@@ -185,66 +193,53 @@ command_line::Program command_line_of(Options& options) {
   return {
       .name = "adit",
       .usage = "COMMAND",
-      .about = "adit - what the gateway is doing, for a shell and for scripts",
-      .rows =
-          {{"--run", "N|all", "whose reports to list; if not given, the present run's",
-            command_line::take<take_run>(options)},
-           {"--csv", "", "as CSV, for a spreadsheet", &options.csv},
-           {"--yes", "",
-            "sends a report in doubt, deletes a run, or does what a spare needs, without asking. Without it, "
-            "you "
-            "are asked on a terminal, and it is not done where there is none",
-            &options.yes},
-           {"--code", "DIGITS", "of spare take: what the box that made the export showed", &options.code},
-           {"--to", "FILE", "where the report of a run is written; if not given, to standard output",
-            &options.to},
-           {"--stick", "",
-            "installs the update that is on the USB stick in the box; of spare: the export is written onto "
-            "that stick, or read from it",
-            &options.stick},
-           {"--restart", "",
-            "restarts the box, to use what was installed. Not while a report waits or is being sent",
-            &options.restart},
-           {"--back", "",
-            "where another slot runs than the one that was good last: restarts the box into that one. Not "
-            "while a report waits or is being sent",
-            &options.back},
-           {"--stay", "", "there: the slot that runs is the one to keep", &options.stay},
-           {"--anyway", "",
-            "with --restart or --back: also then. The report is not lost, but its answer has to be found out "
-            "afterwards",
-            &options.anyway},
-           {"--again", "", "installs the version that runs already", &options.again},
-           {"--course", "NAME", "of test: tries the Command Post of this course instead of that in use",
-            &options.trial.course},
-           {"--scoring", "ADDR:PORT", "of test: tries this address as the scoring endpoint",
-            command_line::take<take_endpoint<&Trial::scoring>>(options.trial)},
-           {"--mapping", "ADDR:PORT", "of test: tries this address as the mapping endpoint",
-            command_line::take<take_endpoint<&Trial::mapping>>(options.trial)},
-           {"--scoring-token", "FILE",
-            "of test: tries the token in this file at the scoring endpoint. It is not kept",
-            &options.trial.scoring_token},
-           {"--mapping-token", "FILE", "of test: the same at the mapping endpoint",
-            &options.trial.mapping_token},
-           {"--at", "ADDR:PORT", "where Adit listens for the team: 10.0.0.1:8000 or [fd00::1]:8000",
-            &options.at},
-           {"--settings", "FILE",
-            "the settings to find that in. If not given, those saved in /var/lib/adit/settings.json, or "
-            "else those that came with the box",
-            &options.settings},
-           {"--token-file", "FILE",
-            "what lets you in: a file that holds the team's token or the scoring token. If not given, "
-            "the first of team.token and scoring.token in /var/lib/adit/secrets and /etc/adit/secrets "
-            "that can be read (by root)",
-            &options.token_file},
-           {"--json", "", "for scripts: what Adit itself says, as JSON", &options.json},
-           {"--version", "", "prints the version", &options.version},
-           {"--help", "", "this, or more about a command", &options.help}},
+      .about = "adit - the command line of a running aditd",
+      .rows = {{"--run", "N|all", "list the reports of this run; if not given, of the present run",
+                command_line::take<take_run>(options)},
+               {"--last", "N", "list only the newest N reports", command_line::take<take_last>(options)},
+               {"--csv", "", "print CSV, for a spreadsheet (default)", &options.csv},
+               {"--yes", "", "do not ask for confirmation; required without a terminal", &options.yes},
+               {"--code", "DIGITS", "the export's code, as the first box printed it", &options.code},
+               {"--to", "FILE", "write the run's report to FILE instead of standard output", &options.to},
+               {"--stick", "", "use the USB stick in the box instead of FILE", &options.stick},
+               {"--restart", "",
+                "restart into the installed update. Rejected while a report is queued or being sent",
+                &options.restart},
+               {"--back", "",
+                "if an unexpected slot runs: restart into the slot that was good last. Rejected as --restart",
+                &options.back},
+               {"--stay", "", "if an unexpected slot runs: keep it", &options.stay},
+               {"--anyway", "",
+                "with --restart or --back: restart at once. No report is lost; a report being sent is then "
+                "in doubt",
+                &options.anyway},
+               {"--again", "", "install the version that already runs", &options.again},
+               {"--course", "NAME", "test this course's Command Post", &options.trial.course},
+               {"--scoring", "ADDR[:PORT]", "test this address as the scoring endpoint",
+                command_line::take<take_endpoint<&Trial::scoring>>(options.trial)},
+               {"--mapping", "ADDR[:PORT]", "test this address as the mapping endpoint",
+                command_line::take<take_endpoint<&Trial::mapping>>(options.trial)},
+               {"--scoring-token", "FILE", "test the token in FILE at the scoring endpoint; it is not saved",
+                &options.trial.scoring_token},
+               {"--mapping-token", "FILE", "test the token in FILE at the mapping endpoint; it is not saved",
+                &options.trial.mapping_token},
+               {"--at", "ADDR[:PORT]",
+                "Adit's address; without a port, port 8000 (default: $ADIT_AT, or the settings)",
+                &options.at},
+               {"--settings", "FILE", "read Adit's address from FILE instead of the saved settings or",
+                &options.settings},
+               {"--token-file", "FILE",
+                "a file with the team's or the scoring token (default: $ADIT_TOKEN_FILE, or as root the "
+                "box's own)",
+                &options.token_file},
+               {"--json", "", "print JSON, for scripts", &options.json},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
       .ending = "",
   };
 }
 
-std::expected<Options, std::string> parse_options(std::span<const std::string_view> words) {
+std::expected<Options, WrongLine> parse_options(std::span<const std::string_view> words) {
   const std::vector<std::string> texts(words.begin(), words.end());
   std::vector<const char*> arguments;
   arguments.reserve(texts.size());
@@ -258,7 +253,7 @@ std::expected<Options, std::string> parse_options(std::span<const std::string_vi
       command_line::take<[](Words& all, const std::string& word) { return all.take(word); }>(others);
   auto wrong = command_line::read(program, arguments);
   if (!wrong) wrong = others.finish(given);
-  if (wrong) return std::unexpected(*std::move(wrong));
+  if (wrong) return std::unexpected(WrongLine{*std::move(wrong), others.command()});
   return options;
 }
 

@@ -38,20 +38,22 @@ struct Options {
   std::vector<std::int64_t> numbers;  // of reports, or of what is rejected
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
-  std::int64_t seconds = 10;  // how long the lights are to blink
+  std::optional<std::int64_t> last;  // how many reports to list; nothing: all
+  std::int64_t seconds = 10;         // how long the lights are to blink
   bool json = false, csv = false;
   bool yes = false;     // what is asked on a terminal is meant
-  std::string at;       // "ADDR:PORT"; empty: as the settings say
+  std::string at;       // "ADDR[:PORT]"; empty: as the settings say
   std::string file;     // of settings: to check or apply; of Update: the bundle; of Spare: the export
-  std::string key;      // of settings show; or where several begin
+  std::string key;      // of settings show, or where several begin; of settings set
+  std::string value;    // of settings set
   std::string word;     // of Complete: of `adit reports`
   std::string run_key;  // of Runs
   std::string to;       // of Runs: the file for its report; "": standard output
   bool restart = false, stick = false, again = false, anyway = false, back = false,
-       stay = false;   // of Update; stick: of Spare, too
-  std::string code;    // of Spare: of the export; "": it is asked for
-  std::string course;  // to switch to; "": none
-  Trial trial;         // of Test
+       stay = false;                  // of Update; stick: of Spare, too
+  std::string code;                   // of Spare: of the export; "": it is asked for
+  std::optional<std::string> course;  // to switch to; "": the endpoints of command_post
+  Trial trial;                        // of Test
   std::string settings = kGivenSettings;
   std::string saved_settings = kSavedSettings;
   std::string token_file;  // empty: in `secrets`
@@ -62,7 +64,12 @@ struct Options {
 /// Whether a command, as it was said, has a use for the option.
 bool takes(const CommandRow& command, const Form& form, std::string_view option);
 
-/// What is wrong names the word it is about.
-[[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const std::string_view> words);
+/// Why a command line is wrong.
+struct WrongLine {
+  std::string sentence;             // names the word it is about
+  Command command = Command::Help;  // the command that the line named
+};
+
+[[gnu::cold]] std::expected<Options, WrongLine> parse_options(std::span<const std::string_view> words);
 
 }  // namespace adit::cli

@@ -30,14 +30,13 @@ template <class Message, class Parse>
 std::expected<Message, std::string> read(const codec::Value& root, Parse parse) {
   codec::Reading reading;
   auto message = reading.outcome(parse(codec::Field(root, reading)));
-  if (!message)
-    return std::unexpected("its answer is not of this version of Adit: " + message.error().sentence);
+  if (!message) return std::unexpected("it is another version: " + message.error().sentence);
   return std::move(*message);
 }
 template <class Message, class Parse>
 std::expected<Message, std::string> read(std::string_view json, Parse parse) {
   const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("its answer is no JSON: " + root.error());
+  if (!root) return std::unexpected("its answer is not JSON: " + root.error());
   return read<Message>(*root, parse);
 }
 /// The same, with where that Adit is.
@@ -45,7 +44,8 @@ template <class Message, class Json, class Parse>
 std::expected<Message, std::string> read(const Adit& adit, const Json& json, Parse parse) {
   auto message = read<Message>(json, parse);
   if (message) return message;
-  return std::unexpected("Adit at " + written(adit.address) + " cannot be understood: " + message.error());
+  return std::unexpected("cannot read the answer of Adit at " + written(adit.address) + ": " +
+                         message.error());
 }
 
 /// The row, or the rows, that Adit's answer is.

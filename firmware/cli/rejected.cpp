@@ -15,13 +15,13 @@ namespace {
 using Align = Table::Align;
 
 std::string table_of(const api::RunView& view, bool colour) {
-  if (view.rejected.empty()) return "nothing is rejected\n";
+  if (view.rejected.empty()) return "0 rejected messages\n";
   Table table({{"number", Align::Right},
                {"kind"},
                {"robot"},
                {"rejected", Align::Right},
                {"size", Align::Right},
-               {"the Command Post said"},
+               {"answer"},
                {""}});
   for (const api::RejectedRow& row : view.rejected) {
     table.add({{std::to_string(row.number), Tone::Strong},
@@ -29,8 +29,8 @@ std::string table_of(const api::RunView& view, bool colour) {
                {row.robot.empty() ? "(all)" : row.robot},
                {duration(view.now - row.at) + " ago"},
                {size(row.bytes)},
-               {std::to_string(row.status) + ": " + row.why, row.replaced ? Tone::Faint : Tone::Bad},
-               {row.replaced ? "something newer was sent" : "", Tone::Faint}});
+               {answer_of(row.status, row.why), row.replaced ? Tone::Faint : Tone::Bad},
+               {row.replaced ? "replaced by a newer one" : "", Tone::Faint}});
   }
   return table.written(colour);
 }
@@ -67,7 +67,7 @@ Outcome rejected(const Options& options, bool colour) {
       outcome.out += *answer + '\n';
     } else {
       outcome.out +=
-          text + (options.verb == Verb::Send ? " is sent again when its turn comes\n" : " is discarded\n");
+          "message " + text + (options.verb == Verb::Send ? " is queued again\n" : " is deleted\n");
     }
   }
   return outcome;

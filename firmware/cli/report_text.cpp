@@ -1,9 +1,11 @@
 #include "cli/report_text.hpp"
 
 #include "api/reports_csv.hpp"
+#include "cli/ask.hpp"
 #include "cli/report_verbs.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
+#include "dispatch/report_life.hpp"
 
 namespace adit::cli {
 namespace {
@@ -28,22 +30,27 @@ std::string facts(const api::ReportDetail& detail, bool colour) {
   add("type", report.type, Tone::Strong);
   add("at", report.position ? place_of(*report.position) : "lost");
   add("state", life_of(report), tone_of(report));
-  add("why", report.note);
-  add("said", said_of(report));
+  add("reason", report.note);
+  add("answer", said_of(report));
   add("score", gained_by(report));
   add("run", std::to_string(report.run));
   add("sender", report.sender);
   add("robot", report.robot);
   add("received", api::iso_time(report.received));
-  add("answer", detail.answer);
+  add("message", sentence_in(detail.answer));
   add("actions", actions_for(report));
   return table.written(colour);
+}
+
+std::string shown(const std::string& state) {
+  const auto known = dispatch::state_named(state);
+  return known ? std::string(dispatch::shown_name_of(*known)) : state;
 }
 
 std::string history(const api::ReportDetail& detail, bool colour) {
   Table table({{}, {}, {}});
   for (const api::ReportStep& step : detail.history) {
-    table.add({{api::iso_time(step.at), Tone::Faint}, {step.state, Tone::Strong}, {step.note}});
+    table.add({{api::iso_time(step.at), Tone::Faint}, {shown(step.state), Tone::Strong}, {step.note}});
   }
   return table.empty() ? "" : "\nHistory\n" + table.written(colour);
 }

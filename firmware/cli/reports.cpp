@@ -17,7 +17,7 @@ Exit exit_for(const std::vector<api::ReportRow>& reports) {
   return std::ranges::any_of(reports, needs_the_operator) ? Exit::Attention : Exit::Fine;
 }
 
-/// The present run's, and whatever is left of earlier ones: nothing that needs the operator is left out.
+/// By default: the present run's, and the unfinished ones of other runs.
 bool is_listed(const api::ReportRow& report, const Options& options, std::int64_t present) {
   if (options.all_runs) return true;
   return options.run ? report.run == *options.run : report.run == present || !is_finished(report);
@@ -37,8 +37,11 @@ Outcome list_reports(const Adit& adit, const Options& options, bool colour) {
   const std::size_t others = std::erase_if(
       *rows, [&](const api::ReportRow& row) { return !is_listed(row, options, run->run_number); });
   std::ranges::reverse(*rows);  // the newest first
+  const auto all = static_cast<std::int64_t>(rows->size()), shown = std::min(all, options.last.value_or(all));
+  rows->resize(static_cast<std::size_t>(shown));
+  const NotListed rest{.older = static_cast<std::size_t>(all - shown), .of_other_runs = others};
   const std::string text =
-      options.json ? codec::to_json(*rows) + '\n' : reports_text(*rows, others, run->now, colour);
+      options.json ? codec::to_json(*rows) + '\n' : reports_text(*rows, rest, run->now, colour);
   return {exit, text, ""};
 }
 

@@ -17,17 +17,21 @@ std::string joined(std::initializer_list<std::string> parts) {
   return text;
 }
 
-std::string of_other_runs(std::size_t count) {
-  if (count == 0) return "";
-  return std::to_string(count) + (count == 1 ? " report of another run is" : " reports of other runs are") +
-         " not listed: adit reports --run all\n";
+std::string counted(std::size_t count, const char* one, const char* several) {
+  return count == 0 ? "" : std::to_string(count) + (count == 1 ? one : several);
+}
+
+std::string not_listed(const NotListed& rest) {
+  return counted(rest.older, " older report is not listed\n", " older reports are not listed\n") +
+         counted(rest.of_other_runs, " report of another run is not listed: adit reports --run all\n",
+                 " reports of other runs are not listed: adit reports --run all\n");
 }
 
 std::string coordinate(const api::ReportRow& report, double icd::Point::* axis) {
   return report.position ? decimal((*report.position).*axis, 2) : "lost";
 }
 
-/// A state that this adit does not know is one that only the operator can judge.
+/// A state that this adit does not know is shown to the operator for a decision.
 ReportState state_of(const api::ReportRow& report) {
   return dispatch::state_named(report.state).value_or(ReportState::InDoubt);
 }
@@ -44,18 +48,10 @@ bool is_finished(const api::ReportRow& report) {
 }
 
 std::string life_of(const api::ReportRow& report) {
-  switch (dispatch::state_named(report.state).value_or(ReportState::Queued)) {
-    case ReportState::Held:
-      return "held";
-    case ReportState::InDoubt:
-      return report.asking ? "in doubt, asking" : "in doubt";
-    case ReportState::Settled:
-      return report.reconciled ? "settled" : "called done";
-    case ReportState::Withdrawn:
-      return report.same_as == 0 ? "withdrawn" : "same as " + std::to_string(report.same_as);
-    default:
-      return report.state;
-  }
+  const auto state = dispatch::state_named(report.state);
+  if (!state) return report.state;
+  std::string life(dispatch::shown_name_of(*state));
+  return report.asking && *state == ReportState::InDoubt ? life + ", asking" : life;
 }
 
 Tone tone_of(const api::ReportRow& report) {
@@ -76,7 +72,7 @@ Tone tone_of(const api::ReportRow& report) {
 
 std::string said_of(const api::ReportRow& report) {
   return joined({report.reconciled ? "found out" : "",
-                 report.status == 0 || report.reconciled ? "" : std::to_string(report.status),
+                 report.status < 300 || report.reconciled ? "" : "error " + std::to_string(report.status),
                  report.report_status});
 }
 
@@ -86,11 +82,11 @@ std::string gained_by(const api::ReportRow& report) {
   return text.append(std::to_string(*report.score_change));
 }
 
-std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t others, api::Time now,
+std::string reports_text(const std::vector<api::ReportRow>& reports, const NotListed& rest, api::Time now,
                          bool colour) {
-  const std::string elsewhere = of_other_runs(others);
   if (reports.empty())
-    return (others == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") + elsewhere;
+    return (rest.of_other_runs == 0 ? "No reports so far.\n" : "No reports in this run so far.\n") +
+           not_listed(rest);
   Table table({{"no.", Align::Right},
                {"run", Align::Right},
                {"type"},
@@ -99,7 +95,7 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t
                {"z", Align::Right},
                {"state"},
                {"score", Align::Right},
-               {"the Command Post said, or why"},
+               {"answer or reason"},
                {"sender"},
                {"robot"},
                {"received", Align::Right}});
@@ -117,7 +113,7 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t
                {report.robot},
                {duration(now - report.received) + " ago"}});
   }
-  return table.written(colour) + elsewhere;
+  return table.written(colour) + not_listed(rest);
 }
 
 }  // namespace adit::cli

@@ -8,21 +8,27 @@
 
 namespace adit::cli {
 
-/// It stays where it is until the operator decides.
+/// Whether the report stays in its state until the operator decides.
 bool needs_the_operator(const api::ReportRow& report);
-/// Nothing more happens to it, nor is there anything to decide.
+/// Whether the report is in a final state.
 bool is_finished(const api::ReportRow& report);
 
-/// Where a report is in its life, as the operator is told: "held", "in doubt, asking", "same as 3".
+/// The report's state as people read it: "held", "in doubt", "in doubt, asking".
 std::string life_of(const api::ReportRow& report);
 Tone tone_of(const api::ReportRow& report);
-/// "201, scored", "found out, scored", or "".
+/// The Command Post's answer in words: "scored", "found out, scored", "error 422", or "".
 std::string said_of(const api::ReportRow& report);
 /// "+1", "0", or "" where it is not known.
 std::string gained_by(const api::ReportRow& report);
 
-/// What `adit reports` prints. `others`: how many reports of other runs are not among them.
-std::string reports_text(const std::vector<api::ReportRow>& reports, std::size_t others, api::Time now,
+/// How many reports `adit reports` leaves out.
+struct NotListed {
+  std::size_t older = 0;  // than the reports of --last
+  std::size_t of_other_runs = 0;
+};
+
+/// What `adit reports` prints.
+std::string reports_text(const std::vector<api::ReportRow>& reports, const NotListed& rest, api::Time now,
                          bool colour);
 
 }  // namespace adit::cli

@@ -5,6 +5,7 @@
 
 #include "api/kept_runs.hpp"
 #include "api/reports_csv.hpp"
+#include "api/run_view.hpp"
 #include "cli/ask.hpp"
 #include "cli/reading.hpp"
 #include "cli/table.hpp"
@@ -24,7 +25,7 @@ std::string number_or_none(const std::optional<std::int64_t>& number) {
   return number ? std::to_string(*number) : "";
 }
 
-/// Of the first run of a box nobody knows it.
+/// Unknown for the first run of a box.
 std::string begin_of(const RunRow& run) {
   return run.began > 0 ? api::iso_time(run.began) : "";
 }
@@ -36,8 +37,8 @@ std::string course_of(const RunRow& run) {
 std::string table_of(const api::RunList& list, bool colour) {
   std::string text;
   if (!list.trouble.empty())
-    text = painted("Nothing is kept now: " + host::escaped(list.trouble), Tone::Bad, colour) + '\n';
-  if (list.runs.empty()) return text + "no run is kept\n";
+    text = painted("Runs are not being kept: " + host::escaped(list.trouble), Tone::Bad, colour) + '\n';
+  if (list.runs.empty()) return text + "0 runs are kept\n";
   Table table({{"key", Align::Right},
                {"began"},
                {"course"},
@@ -110,18 +111,18 @@ Outcome report(const Adit& adit, const Options& options) {
   if (!html) return unable(html.error());
   if (options.to.empty()) return {Exit::Fine, *html, ""};
   std::ofstream file(options.to, std::ios::binary);
-  if (!file || !(file << *html).flush()) return unable(options.to + ": it cannot be written");
+  if (!file || !(file << *html).flush()) return unable(options.to + ": cannot be written");
   if (!options.json)
-    return {Exit::Fine,
-            icd::sentence("run ", options.run_key, ": ", size(html->size()), " in ") +
-                host::escaped(options.to) + '\n',
-            ""};
+    return {
+        Exit::Fine,
+        icd::sentence("wrote the report of run ", options.run_key, " to ") + host::escaped(options.to) + '\n',
+        ""};
   const codec::Value said{codec::Value::Object{
       {"key", {options.run_key}}, {"file", {options.to}}, {"bytes", {std::uint64_t{html->size()}}}}};
   return {Exit::Fine, codec::write_json(said) + '\n', ""};
 }
 
-/// Why it is not to be deleted; nothing: it is meant.
+/// Why it is not deleted; nothing if the operator confirms.
 std::optional<Failure> doubt(const Adit& adit, const Options& options, const Console& console) {
   const auto json = find(adit, path_of(options));
   if (!json) return json.error();
@@ -131,10 +132,10 @@ std::optional<Failure> doubt(const Adit& adit, const Options& options, const Con
   const std::string score = run->score ? icd::sentence("score ", *run->score, ", ") : "";
   const std::string why =
       icd::sentence("run ", run->key, " (", began, score, size(run->bytes),
-                    "): its map, tracks and plots are gone for good then; its reports stay in the ledger.");
+                    "): its map, tracks and plots will be deleted for good; its reports stay in the ledger.");
   const auto meant = console.ask(host::escaped(why) + "\nDelete it?");
-  if (!meant) return Failure{Exit::Attention, why + " It is not deleted; if that is meant: --yes"};
-  if (!*meant) return Failure{Exit::Attention, "run " + run->key + " is not deleted"};
+  if (!meant) return Failure{Exit::Attention, why + " It was not deleted; to delete it, add --yes"};
+  if (!*meant) return Failure{Exit::Attention, "run " + run->key + " was not deleted"};
   return std::nullopt;
 }
 
@@ -144,10 +145,46 @@ Outcome remove(const Adit& adit, const Options& options, const Console& console)
   }
   const auto done = post(adit, path_of(options) + "/delete", "", "adit runs");
   if (!done) return unable(done.error());
-  return {Exit::Fine, options.json ? *done + '\n' : "run " + options.run_key + " is deleted\n", ""};
+  return {Exit::Fine, options.json ? *done + '\n' : "run " + options.run_key + " was deleted\n", ""};
+}
+
+std::string json_of(const api::RunView& view) {
+  codec::Value::Object run{{"run", {view.run_number}}, {"name", {view.run_id}}};
+  if (view.run) {
+    run.emplace_back("team", codec::Value{view.run->current_team});
+    run.emplace_back("run_clock", codec::Value{view.run->run_clock});
+    run.emplace_back("score", codec::Value{view.run->score});
+    run.emplace_back("remaining_reports", codec::Value{view.run->remaining_reports});
+  }
+  return codec::write_json({std::move(run)}) + '\n';
+}
+
+std::string text_of(const api::RunView& view, bool colour) {
+  Table table({{}, {}});
+  const auto add = [&table](const char* name, const std::string& text) {
+    if (!text.empty()) table.add({{name, Tone::Faint}, {text, Tone::Strong}});
+  };
+  add("run", std::to_string(view.run_number));
+  add("name", view.run_id);
+  if (!view.run) return table.written(colour) + "no status from the Command Post yet\n";
+  add("team", view.run->current_team);
+  add("clock", clock(view.run->run_clock));
+  add("score", std::to_string(view.run->score));
+  add("reports left", std::to_string(view.run->remaining_reports));
+  return table.written(colour);
 }
 
 }  // namespace
+
+Outcome present_run(const Options& options, bool colour) {
+  const auto adit = adit_of(options);
+  if (!adit) return unable(adit.error());
+  const auto json = get(*adit, "/adit/run");
+  if (!json) return unable(json.error());
+  const auto view = read<api::RunView>(*adit, *json);
+  if (!view) return unable(view.error());
+  return {Exit::Fine, options.json ? json_of(*view) : text_of(*view, colour), ""};
+}
 
 Outcome runs(const Options& options, const Console& console) {
   const auto adit = adit_of(options);

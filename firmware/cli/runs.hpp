@@ -6,7 +6,10 @@
 
 namespace adit::cli {
 
-/// `adit runs`: the runs that are kept, one of them, its report to print, and its end.
+/// `adit run`: the present run.
+Outcome present_run(const Options& options, bool colour);
+
+/// `adit runs`: the kept runs; one of them, its report, or its deletion.
 Outcome runs(const Options& options, const Console& console);
 
 }  // namespace adit::cli

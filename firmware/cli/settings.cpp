@@ -4,6 +4,7 @@
 #include "cli/reading.hpp"
 #include "cli/settings_key.hpp"
 #include "cli/table.hpp"
+#include "cli/where.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "settings/written.hpp"
@@ -11,7 +12,6 @@
 namespace adit::cli {
 namespace {
 
-using codec::Field;
 using codec::Value;
 
 constexpr const char* kSee = "adit settings";
@@ -34,7 +34,7 @@ std::vector<Value> items(const Value& object, std::string_view name) {
 
 std::string text_of(const Value& value) {
   const auto* const text = std::get_if<std::string>(&value.is);
-  return text == nullptr ? codec::write_json(value) : *text;
+  return text == nullptr ? "" : *text;
 }
 
 bool truth_of(const Value& value) {
@@ -43,7 +43,7 @@ bool truth_of(const Value& value) {
 }
 
 Outcome not_understood(const std::string& why) {
-  return unable("Adit's answer cannot be understood: " + why);
+  return unable("cannot read Adit's answer: " + why);
 }
 
 /// "  team.listen[0].port  8000 -> 8080"
@@ -51,16 +51,16 @@ std::string changed_text(const Value& answer, bool colour) {
   Table table({{}, {}, {}});
   for (const Value& change : items(answer, "changes")) {
     table.add({{text_of(member(change, "path")), Tone::Strong},
-               {codec::write_json(member(change, "from"))},
-               {"-> " + codec::write_json(member(change, "to"))}});
+               {plain(member(change, "from"))},
+               {"-> " + plain(member(change, "to"))}});
   }
-  return table.empty() ? "nothing changes\n" : table.written(colour);
+  return table.empty() ? "no changes\n" : table.written(colour);
 }
 
 std::string warnings_text(const Value& answer, bool colour) {
   std::string text;
   for (const Value& warning : items(answer, "warnings")) {
-    text += painted("mind", Tone::Warning, colour) + ": " + host::escaped(text_of(warning)) + '\n';
+    text += painted("warning", Tone::Warning, colour) + ": " + host::escaped(text_of(warning)) + '\n';
   }
   return text;
 }
@@ -74,7 +74,7 @@ std::string errors_text(const Value& answer) {
   return text;
 }
 
-/// The file's JSON; whether it is good is for Adit to say.
+/// The file's JSON. Adit checks the settings in it.
 std::expected<Value, std::string> read_file(const std::string& file) {
   const auto text = host::read_file(file);
   if (!text) return std::unexpected(text.error());
@@ -89,18 +89,18 @@ Outcome show(const std::string& body, const Options& options, bool colour) {
   if (!answer) return not_understood(answer.error());
   const auto settings = settings::parse(member(*answer, "settings"));
   if (!settings) return not_understood(settings::sentence_of(settings.error()));
-  std::string text = truth_of(member(*answer, "saved")) ? "saved on the box\n" : "as the box was given\n";
+  std::string text = truth_of(member(*answer, "saved")) ? "saved on this box\n" : "as installed\n";
   Table table({{}, {}});
   for (const settings::Change& change : settings::changes({}, *settings)) {
-    table.add({{change.path, Tone::Strong}, {codec::write_json(change.to)}});
+    table.add({{change.path, Tone::Strong}, {plain(change.to)}});
   }
-  text += table.written(colour) + "all else is as by default\n\ntokens\n";
+  text += table.written(colour) + "all others have their defaults\n\ntokens\n";
   Table tokens({{}, {}});
   const Value set = member(*answer, "tokens");
   if (const auto* members = std::get_if<Value::Object>(&set.is)) {
     for (const auto& [name, value] : *members) {
       const bool there = truth_of(value);
-      tokens.add({{name, Tone::Strong}, {there ? "set" : "none", there ? Tone::Good : Tone::Warning}});
+      tokens.add({{name, Tone::Strong}, {there ? "set" : "not set", there ? Tone::Good : Tone::Warning}});
     }
   }
   return {Exit::Fine, text + tokens.written(colour), ""};
@@ -114,26 +114,26 @@ Outcome show_keys(const std::string& body, const Options& options, bool colour) 
   return {Exit::Fine, options.json ? codec::write_json(json_of(*keys)) + '\n' : text_of(*keys, colour), ""};
 }
 
-/// What Adit says of the settings in a file: whether it would take them.
+/// Adit's check of settings.
 struct Checked {
   Value settings, answer;
   std::string body;
   bool good() const { return items(answer, "errors").empty(); }
 };
 
-std::expected<Checked, Failure> ask_check(const Adit& adit, const std::string& file) {
-  auto settings = read_file(file);
-  if (!settings) return std::unexpected(Failure{Exit::Unable, settings.error()});
-  const std::string question = codec::write_json({Value::Object{{"settings", *settings}}});
+std::expected<Checked, Failure> ask_check(const Adit& adit, Value settings) {
+  const std::string question = codec::write_json({Value::Object{{"settings", settings}}});
   auto body = post(adit, "/adit/settings/check", question, kSee);
   if (!body) return std::unexpected(body.error());
   auto answer = codec::parse_json(*body);
-  if (!answer) return std::unexpected(Failure{Exit::Unable, "Adit's answer is no JSON: " + answer.error()});
-  return Checked{std::move(*settings), std::move(*answer), std::move(*body)};
+  if (!answer) return std::unexpected(Failure{Exit::Unable, "cannot read Adit's answer: " + answer.error()});
+  return Checked{std::move(settings), std::move(*answer), std::move(*body)};
 }
 
 Outcome check(const Adit& adit, const Options& options, bool colour) {
-  const auto checked = ask_check(adit, options.file);
+  const auto settings = read_file(options.file);
+  if (!settings) return unable(settings.error());
+  const auto checked = ask_check(adit, *settings);
   if (!checked) return unable(checked.error());
   const Exit exit = checked->good() ? Exit::Fine : Exit::Attention;
   if (options.json) return {exit, checked->body + '\n', ""};
@@ -141,20 +141,67 @@ Outcome check(const Adit& adit, const Options& options, bool colour) {
   return {exit, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
 
+/// VALUE of the command line: JSON, or a text without quotes. `before`: the value that it replaces.
+Value value_in(const std::string& text, const Value& before) {
+  auto value = codec::parse_json(text);
+  const auto is_text = [](const Value& any) { return std::holds_alternative<std::string>(any.is); };
+  return value && (!is_text(before) || is_text(*value)) ? *std::move(value) : Value{text};
+}
+
+/// The settings of `now`, Adit's answer, with the change of `adit settings set`; or those of the file.
+std::expected<Value, std::string> wanted(const Value& now, const Options& options) {
+  if (options.verb == Verb::Apply) return read_file(options.file);
+  Value settings = member(now, "settings");
+  Value* const value = value_at(settings, options.key);
+  if (value == nullptr) {
+    const auto keys = keys_named(now, options.key);
+    return std::unexpected(keys ? "no such item of a list: " + options.key : keys.error());
+  }
+  *value = value_in(options.value, *value);
+  return settings;
+}
+
 Outcome apply(const Adit& adit, const Options& options, bool colour) {
-  const auto before = get(adit, "/adit/settings");
-  if (!before) return unable(before.error());
-  const auto tag = read<std::string>(*before, [](const Field& object) { return text(object, "tag"); });
-  if (!tag) return not_understood(tag.error());
-  const auto checked = ask_check(adit, options.file);
+  const auto body = get(adit, "/adit/settings");
+  if (!body) return unable(body.error());
+  const auto now = codec::parse_json(*body);
+  if (!now) return not_understood(now.error());
+  auto settings = wanted(*now, options);
+  if (!settings) return unable(settings.error());
+  const auto checked = ask_check(adit, *std::move(settings));
   if (!checked) return unable(checked.error());
   if (!checked->good()) return {Exit::Attention, "", errors_text(checked->answer)};
-  const auto done =
-      post(adit, "/adit/settings",
-           codec::write_json({Value::Object{{"settings", checked->settings}, {"base", {*tag}}}}), kSee);
+  const Value::Object changed{{"settings", checked->settings}, {"base", member(*now, "tag")}};
+  const auto done = post(adit, "/adit/settings", codec::write_json({changed}), kSee);
   if (!done) return unable(done.error());
   if (options.json) return {Exit::Fine, *done + '\n', ""};
   return {Exit::Fine, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
+}
+
+/// "" stands for the endpoints of command_post itself.
+Outcome list_courses(const Adit& adit, const Options& options, bool colour) {
+  const auto body = get(adit, "/adit/settings");
+  if (!body) return unable(body.error());
+  const auto answer = codec::parse_json(*body);
+  if (!answer) return not_understood(answer.error());
+  const Value all = member(*answer, "settings");
+  const auto settings = settings::parse(all);
+  if (!settings) return not_understood(settings::sentence_of(settings.error()));
+  const settings::CommandPost& post = settings->command_post;
+  if (options.json) {
+    const Value::Object listed{{"course", {post.course}}, {"courses", member(all, "courses")}};
+    return {Exit::Fine, codec::write_json({listed}) + '\n', ""};
+  }
+  Table table({{"course"}, {"scoring"}, {"mapping"}, {""}});
+  std::vector<settings::Course> courses = settings->courses;
+  courses.push_back({.name = "", .scoring = post.scoring, .mapping = post.mapping});
+  for (const settings::Course& each : courses) {
+    table.add({{each.name.empty() ? "\"\"" : each.name, Tone::Strong},
+               {written(each.scoring)},
+               {written(each.mapping)},
+               {each.name == post.course ? "in use" : "", Tone::Good}});
+  }
+  return {Exit::Fine, table.written(colour), ""};
 }
 
 }  // namespace
@@ -163,7 +210,7 @@ Outcome settings(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
   if (options.verb == Verb::Check) return check(*adit, options, colour);
-  if (options.verb == Verb::Apply) return apply(*adit, options, colour);
+  if (options.verb == Verb::Apply || options.verb == Verb::Set) return apply(*adit, options, colour);
   const bool exports = options.verb == Verb::Export;
   const auto body = get(*adit, exports ? "/adit/settings/export" : "/adit/settings");
   if (!body) return unable(body.error());
@@ -171,17 +218,19 @@ Outcome settings(const Options& options, bool colour) {
   return options.key.empty() ? show(*body, options, colour) : show_keys(*body, options, colour);
 }
 
-Outcome switch_course(const Options& options, bool colour) {
+Outcome course(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  const auto body =
-      post(*adit, "/adit/course", codec::write_json({Value::Object{{"name", {options.course}}}}), kSee);
+  if (!options.course) return list_courses(*adit, options, colour);
+  const auto body = post(*adit, "/adit/course",
+                         codec::write_json({Value::Object{{"name", {*options.course}}}}), "adit course");
   if (!body) return unable(body.error());
   if (options.json) return {Exit::Fine, *body + '\n', ""};
   const auto answer = codec::parse_json(*body);
   if (!answer) return not_understood(answer.error());
-  const std::string used =
-      options.course.empty() ? "no course is in use" : "course " + options.course + " is in use";
+  const std::string used = options.course->empty()
+                               ? "no course is in use: the endpoints are those of command_post"
+                               : "course " + *options.course + " is in use";
   return {Exit::Fine, used + '\n' + warnings_text(*answer, colour), ""};
 }
 

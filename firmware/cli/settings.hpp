@@ -8,7 +8,7 @@ namespace adit::cli {
 /// `adit settings`, asked of the running Adit.
 Outcome settings(const Options& options, bool colour);
 
-/// `adit course`
-Outcome switch_course(const Options& options, bool colour);
+/// `adit course`: lists the courses, or switches to one.
+Outcome course(const Options& options, bool colour);
 
 }  // namespace adit::cli

@@ -1,6 +1,7 @@
 #include "cli/settings_key.hpp"
 
 #include <algorithm>
+#include <charconv>
 
 #include "cli/table.hpp"
 #include "codec/json.hpp"
@@ -13,8 +14,9 @@ namespace {
 
 using codec::Value;
 
-const Value* member_of(const Value& object, std::string_view name) {
-  const auto* const members = std::get_if<Value::Object>(&object.is);
+template <class SomeValue>  // const, or not
+SomeValue* member_of(SomeValue& object, std::string_view name) {
+  auto* const members = std::get_if<Value::Object>(&object.is);
   if (members == nullptr) return nullptr;
   const auto found = std::ranges::find(*members, name, &Value::Member::first);
   return found == members->end() ? nullptr : &found->second;
@@ -24,6 +26,19 @@ std::string text_at(const Value& object, std::string_view name) {
   const Value* const value = member_of(object, name);
   const auto* const text = value == nullptr ? nullptr : std::get_if<std::string>(&value->is);
   return text == nullptr ? "" : *text;
+}
+
+/// The item of that index or that name; null if there is none.
+Value* item_of(Value& list, std::string_view which) {
+  auto* const items = std::get_if<Value::Array>(&list.is);
+  if (items == nullptr) return nullptr;
+  std::size_t index = 0;
+  const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), index);
+  const bool is_index = error == std::errc() && end == which.data() + which.size();
+  const auto found = std::ranges::find_if(*items, [&](const Value& item) {
+    return is_index ? &item == items->data() + index : text_at(item, "name") == which;
+  });
+  return found == items->end() ? nullptr : &*found;
 }
 
 bool begins(std::string_view path, std::string_view name) {
@@ -51,9 +66,9 @@ std::string allowed_of(const Value& key) {
   const Value* const required = member_of(key, "required");
   const auto* const is_required = required == nullptr ? nullptr : std::get_if<bool>(&required->is);
   const Value* const usual = member_of(key, "default");
-  std::string text = "  may be " + host::escaped(text_at(key, "range"));
-  if (is_required != nullptr && *is_required) return text + "; has to be there\n";
-  return usual == nullptr ? text + "\n" : text + "; if not given: " + codec::write_json(*usual) + "\n";
+  std::string text = "  allowed: " + host::escaped(text_at(key, "range"));
+  if (is_required != nullptr && *is_required) return text + "; required\n";
+  return usual == nullptr ? text + "\n" : text + "; default: " + host::escaped(plain(*usual)) + "\n";
 }
 
 }  // namespace
@@ -63,7 +78,7 @@ std::expected<std::vector<ShownKey>, std::string> keys_named(const Value& answer
   const Value* const settings = member_of(answer, "settings");
   const auto* const all = list == nullptr ? nullptr : std::get_if<Value::Array>(&list->is);
   if (all == nullptr || settings == nullptr)
-    return std::unexpected("Adit's answer cannot be understood: it names no keys");
+    return std::unexpected("cannot read Adit's answer: it has no keys");
   std::vector<ShownKey> found;
   std::vector<std::string> paths;
   for (const Value& key : *all) {
@@ -74,16 +89,34 @@ std::expected<std::vector<ShownKey>, std::string> keys_named(const Value& answer
   }
   if (!found.empty()) return found;
   const std::vector<std::string_view> known(paths.begin(), paths.end());
-  return std::unexpected("no such key of the settings: " + name + spelling::did_you_mean(name, known));
+  return std::unexpected("no such settings key: " + name + spelling::did_you_mean(name, known));
+}
+
+Value* value_at(Value& settings, std::string_view path) {
+  Value* value = &settings;
+  while (value != nullptr && !path.empty()) {
+    const std::size_t end = std::min(path.find_first_of(".[]"), path.size());
+    const std::string_view name = path.substr(0, end);
+    const bool is_item = path.substr(end).starts_with(']');
+    if (!name.empty()) value = is_item ? item_of(*value, name) : member_of(*value, name);
+    path.remove_prefix(std::min(end + 1, path.size()));
+  }
+  return value == &settings ? nullptr : value;
+}
+
+std::string plain(const Value& value) {
+  if (std::holds_alternative<std::nullptr_t>(value.is)) return "(none)";
+  const auto* const text = std::get_if<std::string>(&value.is);
+  if (text == nullptr) return codec::write_json(value);
+  return text->empty() ? "(empty)" : *text;
 }
 
 std::string text_of(const std::vector<ShownKey>& keys, bool colour) {
   std::string text;
   for (const ShownKey& key : keys) {
     Table values({{}, {}});
-    for (const auto& [path, value] : key.values)
-      values.add({{path, Tone::Strong}, {codec::write_json(value)}});
-    if (key.values.empty()) values.add({{text_at(key.described, "path"), Tone::Strong}, {"none"}});
+    for (const auto& [path, value] : key.values) values.add({{path, Tone::Strong}, {plain(value)}});
+    if (key.values.empty()) values.add({{text_at(key.described, "path"), Tone::Strong}, {"(none)"}});
     text += (text.empty() ? "" : "\n") + values.written(colour) + "  " +
             host::escaped(text_at(key.described, "meaning")) + "\n" + allowed_of(key.described);
   }

@@ -2,6 +2,8 @@
 
 #include <expected>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "codec/value.hpp"
 
@@ -18,6 +20,12 @@ struct ShownKey {
 /// there is none, and which was likely meant.
 std::expected<std::vector<ShownKey>, std::string> keys_named(const codec::Value& answer,
                                                              const std::string& name);
+
+/// The value at "reports.review", "team.listen[0].port" or "robots[ugv1].alias"; null if there is none.
+codec::Value* value_at(codec::Value& settings, std::string_view path);
+
+/// A value as people read it: a text without quotes.
+std::string plain(const codec::Value& value);
 
 std::string text_of(const std::vector<ShownKey>& keys, bool colour);
 codec::Value json_of(const std::vector<ShownKey>& keys);

@@ -30,15 +30,15 @@ constexpr std::chrono::milliseconds kAskEvery{300};
 std::string text_of(const api::ExportRow& row) {
   std::string out =
       host::escaped(icd::sentence("From the box at ", row.name, " (Adit ", row.version,
-                                  "), which came to rest at ", api::iso_time(row.at), " by its clock")) +
+                                  "), on standby since ", api::iso_time(row.at), " by its clock")) +
       '\n';
   out += host::escaped(icd::sentence("  ", row.reports, " reports, ", row.open,
-                                     " of them not finished, for the Command Post at ", row.post)) +
+                                     " of them unfinished, for the Command Post at ", row.post)) +
          '\n';
   if (row.run)
     out += icd::sentence("  score ", row.run->score, ", ", row.run->remaining_reports, " reports left\n");
   for (const std::string& path : row.left_out)
-    out += icd::sentence("  left out, for it is not known here: ", host::escaped(path), "\n");
+    out += icd::sentence("  left out, because this version does not know it: ", host::escaped(path), "\n");
   return out;
 }
 
@@ -47,8 +47,8 @@ std::string text_of(const api::StickRow& stick, bool rests) {
   if (!stick.doing.empty()) out += icd::sentence("The stick: ", host::escaped(stick.doing), "\n");
   if (!stick.refusal.empty()) out += icd::sentence("The stick: ", host::escaped(stick.refusal), "\n");
   if (rests && !stick.written.empty())
-    out += icd::sentence("Its export is on the stick, which may be unplugged: ", host::escaped(stick.written),
-                         "\n");
+    out += icd::sentence(
+        "Its export is on the stick, which you may now unplug: ", host::escaped(stick.written), "\n");
   for (const api::StickExportRow& each : stick.exports) {
     if (!rests || each.name != stick.written)
       out += icd::sentence("On the stick: ", host::escaped(each.name), "\n");
@@ -58,13 +58,13 @@ std::string text_of(const api::StickRow& stick, bool rests) {
 
 std::string text_of(const SpareView& view) {
   std::string out;
-  if (view.rests) out += icd::sentence("This box rests: ", host::escaped(view.why), "\n");
-  if (!view.code.empty()) out += icd::sentence("The code of its export: ", view.code, "\n");
-  if (view.takes_over) out += "It is taking over\n";
-  if (view.asks_code) out += "An export was taken in, and waits for its code\n";
+  if (view.rests) out += icd::sentence("This box is on standby: ", host::escaped(view.why), "\n");
+  if (!view.code.empty()) out += icd::sentence("Code of its export: ", view.code, "\n");
+  if (view.takes_over) out += "This box is taking over\n";
+  if (view.asks_code) out += "An export was imported, and needs its code\n";
   if (view.taken_in) out += text_of(*view.taken_in);
   if (view.stick) out += text_of(*view.stick, view.rests);
-  return out.empty() ? "This box is at work, and no export was taken in\n" : out;
+  return out.empty() ? "This box is in service\n" : out;
 }
 
 Outcome shown(const Options& options, const std::string& json, const SpareView& view) {
@@ -80,13 +80,13 @@ std::expected<SpareView, Failure> spare_of(const Adit& adit) {
   return *std::move(view);
 }
 
-/// Why it is not to be done; nothing: it is meant.
+/// Why it is not done; nothing if the operator confirms.
 std::optional<Failure> doubt(const Options& options, const Console& console, const std::string& why,
                              const std::string& question) {
   if (options.yes) return std::nullopt;
   const auto meant = console.ask(why + '\n' + question);
-  if (!meant) return Failure{Exit::Attention, why + " It is not done; if that is meant: --yes"};
-  if (!*meant) return Failure{Exit::Attention, "it is not done"};
+  if (!meant) return Failure{Exit::Attention, why + " It was not done; to do it, add --yes"};
+  if (!*meant) return Failure{Exit::Attention, "it was not done"};
   return std::nullopt;
 }
 
@@ -97,7 +97,7 @@ std::expected<SpareView, Failure> wait_until(const Adit& adit, bool (*is_so)(con
     auto view = spare_of(adit);
     if (view && is_so(*view)) return view;
     if (std::chrono::steady_clock::now() >= until)
-      return view ? std::unexpected(Failure{Exit::Unable, "the box is still at it: see adit spare"}) : view;
+      return view ? std::unexpected(Failure{Exit::Unable, "the box has not finished: see adit spare"}) : view;
     std::this_thread::sleep_for(kAskEvery);
   }
 }
@@ -105,9 +105,9 @@ std::expected<SpareView, Failure> wait_until(const Adit& adit, bool (*is_so)(con
 std::expected<SpareView, Failure> put_to_rest(const Adit& adit, const Options& options,
                                               const Console& console) {
   if (auto why = doubt(options, console,
-                       "From now on this box takes nothing and sends nothing. Reports that wait are in the "
-                       "export; maps, states and markers that wait stay here.",
-                       "Put it to rest?"))
+                       "On standby, this box accepts and sends no messages. Queued reports are part of the "
+                       "export; queued maps, states and markers stay here.",
+                       "Put it on standby?"))
     return std::unexpected(*std::move(why));
   if (auto done = post(adit, "/adit/spare/rest", "", "adit spare"); !done)
     return std::unexpected(std::move(done.error()));
@@ -121,7 +121,7 @@ std::expected<SpareView, Failure> ask_stick(const Adit& adit, const char* target
   auto view = wait_until(
       adit, [](const SpareView& seen) { return !seen.stick || seen.stick->doing.empty(); }, kStick);
   if (!view) return view;
-  if (!view->stick) return std::unexpected(Failure{Exit::Unable, "adit-spare does not run any more"});
+  if (!view->stick) return std::unexpected(Failure{Exit::Unable, "adit-spare is not running"});
   if (view->stick->refusal.empty()) return view;
   return std::unexpected(Failure{Exit::Attention, host::escaped(view->stick->refusal)});
 }
@@ -131,24 +131,25 @@ std::expected<api::StickRow, Failure> stick_of(const Adit& adit) {
   auto view = spare_of(adit);
   if (!view) return std::unexpected(std::move(view.error()));
   if (view->stick) return *std::move(view->stick);
-  return std::unexpected(Failure{Exit::Unable, "that box writes and reads no stick: name a file"});
+  return std::unexpected(Failure{Exit::Unable, "this box cannot use a stick: name a file"});
 }
 
 Outcome write_to_stick(const Adit& adit, const Options& options, const Console& console) {
   const auto stick = stick_of(adit);
   if (!stick) return unable(stick.error());
   if (!stick->hindrance.empty())
-    return unable(Failure{Exit::Attention, "the box is not put to rest: " + host::escaped(stick->hindrance)});
+    return unable(
+        Failure{Exit::Attention, "the box was not put on standby: " + host::escaped(stick->hindrance)});
   const auto rests = put_to_rest(adit, options, console);
   if (!rests) return unable(rests.error());
   const auto view = ask_stick(adit, "/adit/spare/to-stick", "");
   if (!view)
-    return unable(Failure{view.error().exit,
-                          "the box rests, and its export is not on the stick: " + view.error().sentence});
+    return unable(Failure{view.error().exit, "the box is on standby, but its export is not on the stick: " +
+                                                 view.error().sentence});
   if (options.json) return {Exit::Fine, codec::to_json(*view) + '\n', ""};
   return {Exit::Fine,
-          icd::sentence("This box rests. Its export is on the stick, which may be unplugged: ",
-                        host::escaped(view->stick->written), "\nIts code: ", view->code,
+          icd::sentence("This box is on standby. Its export is on the stick, which you may now unplug: ",
+                        host::escaped(view->stick->written), "\nCode of its export: ", view->code,
                         "\nUnplug this box before the spare takes over.\n"),
           ""};
 }
@@ -160,21 +161,22 @@ Outcome write_export(const Adit& adit, const Options& options, const Console& co
   const auto file = find(adit, "/adit/spare/export", kFile);
   if (!file) return unable(file.error());
   if (const auto kept = host::write_file(options.file, *file, host::kOursAlone); !kept)
-    return unable("the box rests, and its export could not be written: " + kept.error());
+    return unable("the box is on standby, but its export could not be written: " + kept.error());
   if (options.json) return {Exit::Fine, codec::to_json(*view) + '\n', ""};
-  return {Exit::Fine,
-          icd::sentence("This box rests. Its export is in ", host::escaped(options.file),
-                        "\nIts code: ", view->code, "\nUnplug this box before the spare takes over.\n"),
-          ""};
+  return {
+      Exit::Fine,
+      icd::sentence("This box is on standby. Its export is in ", host::escaped(options.file),
+                    "\nCode of its export: ", view->code, "\nUnplug this box before the spare takes over.\n"),
+      ""};
 }
 
 std::expected<std::string, std::string> read_export(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::string bytes(spare::kLargestExport + 1, '\0');
   file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file.is_open() || file.bad()) return std::unexpected(path + ": it cannot be read");
+  if (!file.is_open() || file.bad()) return std::unexpected(path + ": cannot be read");
   bytes.resize(static_cast<std::size_t>(file.gcount()));
-  if (bytes.size() > spare::kLargestExport) return std::unexpected(path + ": it is too large for an export");
+  if (bytes.size() > spare::kLargestExport) return std::unexpected(path + ": too large for an export");
   if (std::string why = spare::not_an_export(std::string_view(bytes).substr(0, spare::kExportHead));
       !why.empty())
     return std::unexpected(path + ": " + why);
@@ -191,8 +193,7 @@ std::optional<Failure> send(const Adit& adit, std::string file) {
                               kFile);
   if (!reply) return Failure{Exit::Unable, reply.error().sentence};
   if (reply->status == 200) return std::nullopt;
-  const std::string sentence = sentence_in(reply->body);
-  return Failure{Exit::Attention, reply->status == 401 ? unknown_token(adit) : sentence};
+  return failure(adit, *reply);
 }
 
 /// Which export on the stick is meant.
@@ -201,8 +202,8 @@ std::expected<std::string, Failure> name_on_stick(const Adit& adit, const Option
   const auto stick = stick_of(adit);
   if (!stick) return std::unexpected(stick.error());
   if (stick->exports.size() == 1) return stick->exports.front().name;
-  std::string why = stick->exports.empty() ? "there is no export on a stick in the box"
-                                           : "there are several exports on the stick: name one of";
+  std::string why = stick->exports.empty() ? "the box has no stick with an export"
+                                           : "the stick has several exports: name one of";
   for (const api::StickExportRow& each : stick->exports) why += ' ' + host::escaped(each.name);
   return std::unexpected(Failure{Exit::Attention, std::move(why)});
 }
@@ -222,34 +223,34 @@ std::optional<Failure> take_in(const Adit& adit, const Options& options) {
 }
 
 Outcome take(const Adit& adit, const Options& options, const Console& console) {
-  if (options.code.empty()) return unable("the code of the export is missing: --code");
+  if (options.code.empty()) return unable("the code of the export is missing: give --code");
   if (const auto failure = take_in(adit, options)) return unable(*failure);
   const codec::Value code{codec::Value::Object{{"code", {options.code}}}};
   const auto opened = post(adit, "/adit/spare/open", codec::write_json(code), "adit spare");
   if (!opened) return unable(opened.error());
   const auto view = spare_of(adit);
   if (!view) return unable(view.error());
-  if (!view->taken_in) return unable("the export was forgotten meanwhile: see adit spare");
+  if (!view->taken_in) return unable("the box no longer has the export: see adit spare");
   const std::string what = text_of(*view->taken_in);
   if (!options.json) console.print(what);
   if (const auto why =
           doubt(options, console,
-                "If that box is plugged in still, or was woken up since, a report may be sent twice.",
-                "Is it unplugged, and is this box to take over?"))
+                "If that box is still plugged in, or no longer on standby, reports may be sent twice.",
+                "Is that box unplugged, and should this box take over?"))
     return unable(*why);
   if (const auto done = post(adit, "/adit/spare/take-over", R"({"unplugged": true})", "adit spare"); !done)
     return unable(done.error());
-  return {Exit::Fine, options.json ? *opened + '\n' : "this box takes over\n", ""};
+  return {Exit::Fine, options.json ? *opened + '\n' : "this box is taking over\n", ""};
 }
 
 Outcome wake(const Adit& adit, const Options& options, const Console& console) {
   if (const auto why =
-          doubt(options, console, "If a spare took over from this box, a report may be sent twice.",
-                "Is no spare at work?"))
+          doubt(options, console, "If a spare has taken over from this box, reports may be sent twice.",
+                "End the standby?"))
     return unable(*why);
   const auto done = post(adit, "/adit/spare/wake", "", "adit spare");
   if (!done) return unable(done.error());
-  return {Exit::Fine, options.json ? *done + '\n' : "this box goes on\n", ""};
+  return {Exit::Fine, options.json ? *done + '\n' : "this box is in service\n", ""};
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ std::string to_go(const RunView& view, double run_clock) {
 }
 
 std::string run_line(const RunView& view, bool colour) {
-  if (!view.run) return painted("Run   no word from the Command Post yet", Tone::Warning, colour) + '\n';
+  if (!view.run) return painted("Run   no status from the Command Post yet", Tone::Warning, colour) + '\n';
   const icd::RunStatus& run = *view.run;
   std::string text = "Run   " + painted(clock(run.run_clock), Tone::Strong, colour) + "   " +
                      to_go(view, run.run_clock) + "   score " +
@@ -77,21 +77,20 @@ std::string run_line(const RunView& view, bool colour) {
 
 std::string link_line(const RunView& view) {
   return "Link  " + decimal(view.sent_mbit, 1) + " of " + decimal(view.budget_mbit, 1) + " Mbit/s   " +
-         size(view.queued_bytes) + " of maps wait\n";
+         size(view.queued_bytes) + " of maps queued\n";
 }
 
 std::string reports_line(const RunView& view, bool colour) {
   std::map<std::string, int> states;
   std::set<std::string> urgent;
   for (const api::ReportRow& report : view.reports) {
-    const std::string state = report.same_as == 0 ? life_of(report) : report.state;
+    const std::string state = life_of(report);
     ++states[state];
     if (needs_the_operator(report)) urgent.insert(state);
   }
-  std::string text = "Reports";
-  if (states.empty()) text += "  none so far";
+  std::string text = states.empty() ? "Reports  0" : "Reports";
   for (const auto& [state, number] : states) {
-    const std::string words = host::escaped(state) + " " + std::to_string(number);
+    const std::string words = std::to_string(number) + " " + host::escaped(state);
     text += "  " + painted(words, urgent.contains(state) ? Tone::Bad : Tone::Plain, colour);
   }
   return text + '\n';
@@ -99,7 +98,7 @@ std::string reports_line(const RunView& view, bool colour) {
 
 std::string last_answer(const api::EndpointRow& endpoint) {
   if (endpoint.last_status == 0) return "";
-  std::string text = "last answer " + std::to_string(endpoint.last_status);
+  std::string text = "last answer: " + answer_of(endpoint.last_status, "");
   if (endpoint.answer_ms)
     text += " in " + decimal(*endpoint.answer_ms, *endpoint.answer_ms < 10 ? 1 : 0) + " ms";
   return text;
@@ -134,13 +133,7 @@ std::string sent_size(const api::ActivityRow& row) {
   return row.age ? size(row.bytes_sent) : "";
 }
 
-std::string said(const api::ActivityRow& row) {
-  std::string status = row.last_status == 0 ? "" : std::to_string(row.last_status);
-  if (row.last_sentence.empty()) return status;
-  return status.empty() ? row.last_sentence : status + ": " + row.last_sentence;
-}
-
-/// With what its clouds are taken for, and what of them was not sent.
+/// With the mode of its clouds, and the points that were not sent.
 std::string kind_of(const api::ActivityRow& row) {
   std::string kind = row.kind;
   if (!row.clouds.empty()) kind += ", " + row.clouds;
@@ -157,11 +150,11 @@ std::string activities_table(const RunView& view, bool colour) {
                {"arriving"},
                {"accepted", Align::Right},
                {"sent", Align::Right},
-               {"waiting", Align::Right},
-               {"refused", Align::Right},
+               {"queued", Align::Right},
+               {"no room", Align::Right},
                {"last sent", Align::Right},
                {"size", Align::Right},
-               {"the Command Post said"}});
+               {"last answer"}});
   for (const api::ActivityRow& row : view.activities) {
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
                {kind_of(row)},
@@ -172,9 +165,10 @@ std::string activities_table(const RunView& view, bool colour) {
                {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
                {row.age ? ago(*row.age) : "never"},
                {sent_size(row)},
-               {said(row), row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain}});
+               {answer_of(row.last_status, row.last_sentence),
+                row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain}});
   }
-  return table.empty() ? "" : "\nIs my map arriving?\n" + table.written(colour);
+  return table.empty() ? "" : "\nMaps, states and markers\n" + table.written(colour);
 }
 
 std::string refusals_table(const RunView& view, bool colour) {
@@ -188,7 +182,7 @@ std::string refusals_table(const RunView& view, bool colour) {
                {std::to_string(refusal.status), Tone::Warning},
                {refusal.sentence}});
   }
-  return table.empty() ? "" : "\nRefused to the team, the latest\n" + table.written(colour);
+  return table.empty() ? "" : "\nRejected from clients, newest first\n" + table.written(colour);
 }
 
 }  // namespace

@@ -113,15 +113,8 @@ std::expected<void, Outcome> begin(const Adit& adit, const Trial& trial) {
                               kTestPatience);
   if (!begun) return std::unexpected(unable(begun.error().sentence));
   if (begun->status == 200) return {};
-  if (begun->status == 401) return std::unexpected(unable(unknown_token(adit)));
-  const std::string sentence = sentence_in(begun->body);
-  const bool runs_already = begun->status == 409 && !sentence.empty();
-  if (runs_already && trial.is_of_what_is_in_use()) return {};
-  if (runs_already || begun->status == 422)
-    return std::unexpected(Outcome{Exit::Attention, "", "adit: " + host::escaped(sentence) + '\n'});
-  return std::unexpected(unable("Adit at " + written(adit.address) + " answered " +
-                                std::to_string(begun->status) +
-                                (sentence.empty() ? " (is that Adit?)" : ": " + sentence)));
+  if (begun->status == 409 && trial.is_of_what_is_in_use()) return {};
+  return std::unexpected(unable(failure(adit, *begun)));
 }
 
 }  // namespace
@@ -140,12 +133,12 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
     if (!view->running) {
       if (options.json) print(*json + '\n');
       if (!is_whole(*view))
-        return unable("the test was cut short, as when Adit is restarted: begin it again");
+        return unable("the test was interrupted, perhaps by a restart of Adit: start it again");
       return {is_bad(*view) ? Exit::Attention : Exit::Fine, "", ""};
     }
     std::this_thread::sleep_for(kTestEvery);
   }
-  return unable("the test does not end: see journalctl -u adit");
+  return unable("the test has not ended after 2 minutes: see journalctl -u adit");
 }
 
 }  // namespace adit::cli

@@ -9,7 +9,7 @@
 #include "cli/ask.hpp"
 #include "cli/http_client.hpp"
 #include "cli/reading.hpp"
-#include "cli/where.hpp"
+#include "cli/words.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "update/messages.hpp"
@@ -36,15 +36,15 @@ std::string last_line(const UpdateView& view) {
   return host::escaped(icd::sentence(name, " was ", name_of(view.last.stage), ": ", view.last.why)) + '\n';
 }
 
-/// Why another slot runs than the one that was good last, and the ways on.
+/// Why an unexpected slot runs, and the two remedies.
 std::string stray_lines(const UpdateView& view) {
-  return icd::sentence("Another slot runs than the one that was good last: ", host::escaped(view.stray),
-                       "\n  adit update --back   restarts the box into the slot that was good last\n"
-                       "  adit update --stay   keeps the slot that runs\n");
+  return icd::sentence("An unexpected slot runs: ", host::escaped(view.stray),
+                       "\n  adit update --back   restart the box into the slot that was good last\n"
+                       "  adit update --stay   keep the slot that runs\n");
 }
 
 std::string text_of(const UpdateView& view) {
-  if (!view.managed) return icd::sentence("Nothing can be updated here: ", host::escaped(view.why), "\n");
+  if (!view.managed) return icd::sentence("This box cannot be updated: ", host::escaped(view.why), "\n");
   const update::Running& running = view.running;
   std::string out = host::escaped(icd::sentence(running.version, " runs, in slot ", running.slot,
                                                 " (an update goes into slot ", running.other, ") of ",
@@ -53,7 +53,7 @@ std::string text_of(const UpdateView& view) {
   if (!view.stray.empty()) out += stray_lines(view);
   if (!view.doing.empty()) out += icd::sentence("The box is ", host::escaped(view.doing), "\n");
   if (!view.refusal.empty())
-    out += icd::sentence("The last one was refused: ", host::escaped(view.refusal), "\n");
+    out += icd::sentence("The last update was rejected: ", host::escaped(view.refusal), "\n");
   out += last_line(view);
   if (view.stick)
     out += host::escaped(icd::sentence("On the stick is ", view.stick->version, " (", view.stick->name,
@@ -80,14 +80,14 @@ Outcome show_update(const Adit& adit, const Options& options) {
 
 std::expected<std::string, std::string> read_bundle(const std::string& path) {
   std::ifstream file(path, std::ios::binary | std::ios::ate);
-  if (!file) return std::unexpected(path + ": it cannot be read");
-  const auto size = static_cast<std::streamoff>(file.tellg());
-  if (size <= 0) return std::unexpected(path + ": it is empty, or no file");
-  if (std::cmp_greater(size, update::kLargestBundle))
-    return std::unexpected(path + ": it is too large for an update");
-  std::string bytes(static_cast<std::size_t>(size), '\0');
+  if (!file) return std::unexpected(path + ": cannot be read");
+  const auto length = static_cast<std::streamoff>(file.tellg());
+  if (length <= 0) return std::unexpected(path + ": is empty, or not a file");
+  if (std::cmp_greater(length, update::kLargestBundle))
+    return std::unexpected(path + ": too large for an update");
+  std::string bytes(static_cast<std::size_t>(length), '\0');
   file.seekg(0);
-  if (!file.read(bytes.data(), size)) return std::unexpected(path + ": it cannot be read");
+  if (!file.read(bytes.data(), length)) return std::unexpected(path + ": cannot be read");
   return bytes;
 }
 
@@ -102,34 +102,25 @@ Outcome follow(const Adit& adit, const Options& options,
     if (!view) return unable(view.error());
     if (view->doing.empty())
       return {exit_of(*view),
-              options.json            ? *json + '\n'
-              : view->refusal.empty() ? last_line(*view)
-                                      : icd::sentence("it was refused: ", host::escaped(view->refusal), "\n"),
+              options.json ? *json + '\n'
+              : view->refusal.empty()
+                  ? last_line(*view)
+                  : icd::sentence("the update was rejected: ", host::escaped(view->refusal), "\n"),
               ""};
     std::string line = icd::sentence(host::escaped(view->doing), "\n");
     if (view->progress) line = icd::sentence(host::escaped(view->doing), " ", *view->progress, " %\n");
     if (!options.json && line != told) print(line);
     told = line;
-    if (std::chrono::steady_clock::now() >= until) return unable("the box is still at it: see adit update");
+    if (std::chrono::steady_clock::now() >= until) return unable("the box has not finished: see adit update");
     std::this_thread::sleep_for(kUpdateEvery);
   }
-}
-
-Outcome refused(const Adit& adit, const HttpReply& reply) {
-  if (reply.status == 401) return unable(unknown_token(adit));
-  const std::string sentence = sentence_in(reply.body);
-  Outcome outcome = unable(sentence.empty() ? "Adit at " + written(adit.address) + " answered " +
-                                                  std::to_string(reply.status) + " (is that Adit?)"
-                                            : sentence);
-  if (reply.status == 409 || reply.status == 413) outcome.exit = Exit::Attention;
-  return outcome;
 }
 
 Outcome upload(const Adit& adit, const Options& options,
                const std::function<void(const std::string&)>& print) {
   auto bundle = read_bundle(options.file);
   if (!bundle) return unable(bundle.error());
-  if (!options.json) print(icd::sentence("sending ", bundle->size() >> 20, " MiB\n"));
+  if (!options.json) print("sending " + size(bundle->size()) + '\n');
   const auto reply = http_ask(adit.address,
                               {.method = HttpRequest::Method::Post,
                                .target = options.again ? "/adit/update?again=1" : "/adit/update",
@@ -138,7 +129,7 @@ Outcome upload(const Adit& adit, const Options& options,
                                .content_type = "application/octet-stream"},
                               kUpload);
   if (!reply) return unable(reply.error().sentence);
-  if (reply->status != 200) return refused(adit, *reply);
+  if (reply->status != 200) return unable(failure(adit, *reply));
   return follow(adit, options, print);
 }
 
@@ -152,8 +143,8 @@ Asked asked_of(const Options& options) {
   if (options.stick) return {"/adit/update/stick", options.again ? R"({"again": true})" : "{}", ""};
   if (options.restart) return {"/adit/update/restart", anyway, "the box restarts\n"};
   if (options.back)
-    return {"/adit/update/back", anyway, "the box restarts, into the slot that was good last\n"};
-  if (options.stay) return {"/adit/update/stay", "{}", "the slot that runs is the one to keep\n"};
+    return {"/adit/update/back", anyway, "the box restarts into the slot that was good last\n"};
+  if (options.stay) return {"/adit/update/stay", "{}", "the box keeps the slot that runs\n"};
   return {};
 }
 
@@ -166,11 +157,7 @@ Outcome update(const Options& options, const std::function<void(const std::strin
   const Asked asked = asked_of(options);
   if (asked.target.empty()) return show_update(*adit, options);
   const auto body = post(*adit, asked.target, asked.body, "adit update");
-  if (!body) {
-    Outcome outcome = unable(body.error().sentence);
-    outcome.exit = body.error().exit;
-    return outcome;
-  }
+  if (!body) return unable(body.error());
   if (options.stick) return follow(*adit, options, print);
   return {Exit::Fine, options.json ? *body + '\n' : asked.done, ""};
 }

@@ -73,11 +73,11 @@ class OnScreen : public Shown {
     if (seen) last_ = seen->view;
     const std::string at = last_ ? "  " + api::iso_time(last_->now) : "";
     const std::string head = "adit watch  " + where_ + at + "  q ends\n";
-    const std::string trouble =
-        seen ? ""
-             : painted("NO ANSWER  what follows is old: " + host::escaped(seen.error()), Tone::Bad,
-                       console_.colour) +
-                   '\n';
+    const std::string trouble = seen
+                                    ? ""
+                                    : painted("NO ANSWER, the display is old: " + host::escaped(seen.error()),
+                                              Tone::Bad, console_.colour) +
+                                          '\n';
     screen_.show(painted(head, Tone::Faint, console_.colour) + trouble +
                  (last_ ? status_text(*last_, console_.colour) : ""));
   }

@@ -40,13 +40,13 @@ void alarms_told(const api::RunView& before, const api::RunView& now, Lines& lin
       lines.add("ALARM  " + alarms::line_of(alarm), alarms::calls(alarm) ? Tone::Bad : Tone::Warning);
   }
   for (const alarms::Alarm& alarm : before.alarms) {
-    if (!is_in(now, alarm)) lines.add("no longer: " + alarms::line_of(alarm), Tone::Good);
+    if (!is_in(now, alarm)) lines.add("alarm over: " + alarms::line_of(alarm), Tone::Good);
   }
 }
 
 /// What is told of the run; not its clock, which always changes.
 std::string told_of_run(const api::RunView& view) {
-  if (!view.run) return "no word from the Command Post yet";
+  if (!view.run) return "no status from the Command Post yet";
   const icd::RunStatus& run = *view.run;
   return icd::sentence("score ", run.score, ", ", run.remaining_reports, " reports left",
                        run.current_team.empty() ? "" : ", team ", run.current_team);
@@ -104,13 +104,13 @@ Told said_of(alarms::Arrival arrival) {
     case Failing:
     case NotArriving:
     case Refused:
-      return {"NO", Tone::Bad};
+      return {"NOT ARRIVING", Tone::Bad};
     case Silent:
       return {"silent", Tone::Warning};
     case NotYet:
       break;
   }
-  return {"not yet", Tone::Faint};
+  return {"none sent yet", Tone::Faint};
 }
 
 void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines) {

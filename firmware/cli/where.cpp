@@ -14,6 +14,8 @@ namespace {
 
 using settings::Address;
 
+constexpr std::optional<std::uint16_t> kUsualPort = 8000;  // ICD 4, and the example settings
+
 bool is_ipv6(const std::string& address) {
   return address.find(':') != std::string::npos;
 }
@@ -65,16 +67,15 @@ std::optional<std::string> address_of(const std::string& interface, const std::s
 }  // namespace
 
 std::expected<Address, std::string> parse_address(std::string_view text) {
-  const auto colon = text.rfind(':');
-  if (colon != std::string_view::npos) {
-    std::string_view host = text.substr(0, colon);
-    const bool bracketed = host.starts_with('[') && host.ends_with(']');
-    if (bracketed) host = host.substr(1, host.size() - 2);
-    const std::string address(host);
-    const auto port = parse_port(text.substr(colon + 1));
-    if (port && is_numeric(address) && is_ipv6(address) == bracketed) return Address{address, *port};
-  }
-  return std::unexpected("expected ADDR:PORT, as in 10.0.0.1:8000 or [fd00::1]:8000, got '" +
+  const bool has_port = !text.ends_with(']') && text.contains(':');
+  const std::size_t colon = has_port ? text.rfind(':') : text.size();
+  std::string_view host = text.substr(0, colon);
+  const bool bracketed = host.starts_with('[') && host.ends_with(']');
+  if (bracketed) host = host.substr(1, host.size() - 2);
+  const std::string address(host);
+  const auto port = has_port ? parse_port(text.substr(colon + 1)) : kUsualPort;
+  if (port && is_numeric(address) && is_ipv6(address) == bracketed) return Address{address, *port};
+  return std::unexpected("expected an address, as 10.0.0.1, 10.0.0.1:8000 or [fd00::1]:8000, got '" +
                          std::string(text) + "'");
 }
 
@@ -91,7 +92,7 @@ std::string written(const Address& address) {
 std::expected<Address, std::string> reach(const settings::Team& team) {
   Address address = team.listen.front();
   if (address.port == 0)
-    return std::unexpected("team.listen[0].port is 0, any free port: say --at ADDR:PORT");
+    return std::unexpected("team.listen[0].port is 0 (any free port): give Adit's address by --at ADDR:PORT");
   if (!is_any(address.address)) return address;
   if (team.interface.empty()) {
     address.address = is_ipv6(address.address) ? "::1" : "127.0.0.1";

@@ -8,7 +8,7 @@
 
 namespace adit::cli {
 
-/// "10.0.0.1:8000" or "[fd00::1]:8000".
+/// "10.0.0.1:8000" or "[fd00::1]:8000"; without a port: port 8000.
 std::expected<settings::Address, std::string> parse_address(std::string_view text);
 std::string written(const settings::Address& address);
 

@@ -66,6 +66,12 @@ std::string size(std::uint64_t bytes) {
   return decimal(number / 1e6, 1) + " MB";
 }
 
+std::string answer_of(int status, const std::string& sentence) {
+  if (status == 0) return sentence;
+  const std::string answer = status < 300 ? "accepted" : "error " + std::to_string(status);
+  return sentence.empty() ? answer : answer + ": " + sentence;
+}
+
 std::string decimal(double number, int digits) {
   char text[400];
   const int length = std::snprintf(text, sizeof text, "%.*f", digits, number);

@@ -21,6 +21,8 @@ std::string duration(double seconds);
 std::string clock(double seconds);
 /// "812 B", "64 kB", "3.4 MB"
 std::string size(std::uint64_t bytes);
+/// A Command Post's answer: "accepted", "error 422: its sentence"; "" if it has not answered.
+std::string answer_of(int status, const std::string& sentence);
 /// With at most `digits` after the point, and none that are zero at the end.
 std::string decimal(double number, int digits);
 

@@ -42,13 +42,14 @@ constexpr codec::Row Ntp::kRow = {"", kNtp};
 constexpr codec::Row Status::kRow = {"", kClockStatus};
 
 std::string hindrance(const Request& request, double at, const Status& status) {
-  if (request.source == Source::None || request.source == Source::Chip) return "source: nobody who asks";
+  if (request.source == Source::None || request.source == Source::Chip)
+    return "source: expected a source that can set the clock";
   if (!(request.time >= kEarliest && request.time < kLatest))
-    return "time: expected seconds since 1970, from 2026 to 2100";
-  if (request.boot != status.boot) return "boot: another start of the machine";
-  if (!(request.at <= at && request.at >= at - kOldest)) return "at: not within the last minute";
+    return "time: expected seconds since 1970, from 2026 to 2099";
+  if (request.boot != status.boot) return "boot: the request is of another boot";
+  if (!(request.at <= at && request.at >= at - kOldest)) return "at: expected a time within the last minute";
   if (request.source == Source::Ntp && request.server != status.ntp.server)
-    return "server: not the one that is asked";
+    return "server: expected the NTP server of the settings";
   return "";
 }
 

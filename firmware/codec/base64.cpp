@@ -96,12 +96,12 @@ std::expected<void, std::string> Base64Decoder::take(char c) {
     return std::unexpected("character " + std::to_string(characters_) + ": " + std::string(what));
   };
   if (c == '=') {
-    if (padding_ == 0 ? pending_ < 2 : pending_ + padding_ >= 4) return bad("'=' where none belongs");
+    if (padding_ == 0 ? pending_ < 2 : pending_ + padding_ >= 4) return bad("unexpected '='");
     ++padding_;
   } else {
-    if (padding_ > 0) return bad("something after the padding");
+    if (padding_ > 0) return bad("unexpected character after the padding");
     const std::uint8_t value = sextet(c);
-    if (value == kNone) return bad(byte_name(c) + " is not of the base64 alphabet");
+    if (value == kNone) return bad(byte_name(c) + " is not in the base64 alphabet");
     bits_ = bits_ << 6 | value;
     ++pending_;
   }

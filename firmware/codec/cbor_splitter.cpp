@@ -52,7 +52,7 @@ icd::Checked<void> CborSplitter::check_head() const {
   if (head_.reserved()) return std::unexpected(fault("reserved additional information"));
   const Major major = head_.major();
   if (head_.indefinite() && (major == Major::Unsigned || major == Major::Negative || major == Major::Tag)) {
-    return std::unexpected(fault("an indefinite length where there is none"));
+    return std::unexpected(fault("an indefinite length in an item that allows none"));
   }
   if (major == Major::Simple && head_.info() == 24 && head_.argument() < 32) {
     return std::unexpected(fault("a simple value below 32 in two bytes"));
@@ -141,8 +141,7 @@ icd::Checked<void> CborSplitter::nest(Major kind) {
 }
 
 icd::Checked<void> CborSplitter::end_of_nest() {
-  if (nests_.empty() || !nests_.back().indefinite)
-    return std::unexpected(fault("a break where none belongs"));
+  if (nests_.empty() || !nests_.back().indefinite) return std::unexpected(fault("an unexpected break"));
   if (nests_.back().kind == Major::Map && !nests_.back().key_next) {
     return std::unexpected(fault("a key without its value"));
   }

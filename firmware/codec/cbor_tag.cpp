@@ -25,7 +25,7 @@ bool is_remark(std::uint64_t tag) {
 }
 
 std::string tag_that_changes(std::uint64_t tag) {
-  return icd::sentence("CBOR tag ", tag, ", which changes the meaning of what it stands before");
+  return icd::sentence("CBOR tag ", tag, ", which changes the meaning of its value");
 }
 
 }  // namespace adit::codec

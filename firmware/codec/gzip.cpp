@@ -44,8 +44,8 @@ class Inflater {
 
 icd::Refusal damaged(std::string_view path, const char* why, std::size_t after) {
   if (after > 0)
-    return icd::unprocessable(path, ": expected nothing after a gzip member but others, got ", after,
-                              " bytes more")
+    return icd::unprocessable(path, ": expected only gzip members after a gzip member, got ", after,
+                              " other bytes")
         .error();
   return icd::unprocessable(path, ": expected a gzip member, got ", why ? why : "damaged data").error();
 }

@@ -110,7 +110,7 @@ icd::Checked<std::size_t> JsonSplitter::structure(std::string_view in) {
 }
 
 icd::Checked<std::size_t> JsonSplitter::separator(char c) {
-  if (depth_ == 0) return std::unexpected(expected("nothing after the document", c));
+  if (depth_ == 0) return std::unexpected(expected("the end of the document", c));
   if (c == (in_object() ? '}' : ']')) return close(c);
   if (c != ',') return std::unexpected(expected(in_object() ? "',' or '}'" : "',' or ']'", c));
   keep(",");

@@ -43,7 +43,7 @@ std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rul
     field.refuse_by_setting(
         text.empty() ? "" : "robots[].alias", "expected 1 to ", icd::RobotName::kLongest,
         " letters, digits and underscores, got ", icd::in_quotes(text),
-        text.empty() ? "" : " (the setting robots[].alias gives a name to whoever calls itself so)");
+        text.empty() ? "" : " (the setting robots[].alias can map this name to a valid one)");
   }
   return name;
 }

@@ -79,8 +79,7 @@ icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
   const auto order = little_endian_order(cloud);
   if (!order && cloud.origin) {
     return icd::unprocessable(
-        "msg.is_bigendian: expected false where there is an origin and fields lie across each other, got "
-        "true");
+        "msg.is_bigendian: expected false for a cloud that has an origin and overlapping fields, got true");
   }
   if (!order) return data;
   cloud.is_bigendian = false;
@@ -105,7 +104,7 @@ icd::Checked<void> check_form(const icd::MapUpdate& map) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
   const auto expected = cloud == nullptr ? icd::Compression::Gzip : icd::Compression::None;
   if (map.data.compression != expected)
-    return icd::unprocessable("msg.compression: expected that of maps that are kept");
+    return icd::unprocessable("msg.compression: expected the compression of stored maps");
   return cloud == nullptr ? icd::Checked<void>() : icd::check_size(*cloud, map.data.bytes.size());
 }
 

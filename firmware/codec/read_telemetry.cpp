@@ -85,7 +85,7 @@ icd::Refusal RefusedParts::refusal() const {
   if (count > sentences.size())
     sentence += icd::sentence("; and ", count - sentences.size(), " more like these");
   if (others > 0)
-    sentence += icd::sentence(" (the other ", others, others == 1 ? " was taken)" : " were taken)");
+    sentence += icd::sentence(" (the other ", others, others == 1 ? " was accepted)" : " were accepted)");
   return {icd::Status::UnprocessableEntity, std::move(sentence), count, setting};
 }
 

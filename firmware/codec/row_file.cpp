@@ -58,7 +58,7 @@ std::string write_row_file(const Row& row, const void* from, const FileFormat& f
 
 std::string read_row_file(const Row& row, void* into, std::string_view json, const FileFormat& format) {
   const auto root = parse_json(json);
-  if (!root) return "no JSON: " + root.error();
+  if (!root) return "not JSON: " + root.error();
   Reading reading;
   const Field field(*root, reading);
   field.member(format.member).whole<std::int64_t>(format.number, format.number);

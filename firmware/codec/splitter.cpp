@@ -23,16 +23,17 @@ icd::Refusal bad_data(std::string_view why) {
 
 icd::Refusal text_too_large(std::size_t most) {
   return {icd::Status::ContentTooLarge,
-          icd::sentence("the document without its bulk data is larger than the ", most, " bytes taken")};
+          icd::sentence("the document without its bulk data is larger than the limit of ", most, " bytes")};
 }
 
 icd::Refusal too_many_values(std::size_t most) {
   return {icd::Status::ContentTooLarge,
-          icd::sentence("the document without its bulk data has more than the ", most, " values taken")};
+          icd::sentence("the document without its bulk data has more than the limit of ", most, " values")};
 }
 
 icd::Refusal too_many_outside_lists(std::size_t most) {
-  return {icd::Status::ContentTooLarge, icd::sentence("more than the ", most, " values taken outside lists")};
+  return {icd::Status::ContentTooLarge,
+          icd::sentence("more than the limit of ", most, " values outside lists")};
 }
 
 void mark_split_out(Value& root) {

@@ -35,7 +35,7 @@ std::string counted(const Open& open) {
     const char* const what = text.empty() ? (count == 1 ? " report " : " reports ") : " ";
     text += icd::sentence(text.empty() ? "" : ", ", count, what, count == 1 ? one : many);
   };
-  add(open.waiting, "waits", "wait");
+  add(open.waiting, "is queued", "are queued");
   add(open.in_doubt, "is in doubt", "are in doubt");
   add(open.held, "is held", "are held");
   return text;
@@ -46,7 +46,7 @@ std::string what_is_known_at(const Reports& reports, const std::string& post) {
   if (known == nullptr) return "";
   const auto count = std::ranges::count_if(
       reports.book().all(), [known](const auto& item) { return item.second.run == known->number; });
-  return icd::sentence("; run ", known->number, " there is taken up again, with ", count,
+  return icd::sentence("; run ", known->number, " there continues, with ", count,
                        count == 1 ? " report" : " reports");
 }
 
@@ -56,15 +56,15 @@ std::string meaning_of_another_post(const Reports& reports, const std::string& p
   const std::string& here = reports.meant_run().post;
   std::string text = "reports go to " + post + " from then on" + what_is_known_at(reports, post);
   const Open open = open_here(reports);
-  if (open.all() == 0) return text + "; none waits, is in doubt or is held now";
+  if (open.all() == 0) return text + "; no report is queued, in doubt or held now";
   text += "; " + counted(open);
   if (!reports.meant_run().was_heard()) {
-    return text + ": nothing was heard from " + here +
-           " yet, so what waits is sent to the first Command Post that answers";
+    return text + ": the Command Post at " + here +
+           " has not answered yet, so queued reports are sent to the first Command Post that answers";
   }
   const char* const kept =
-      open.all() == 1 ? ": it is kept for the run at " : ": they are kept for the run at ";
-  return text + kept + here + ", and not sent to the new one unless you say so";
+      open.all() == 1 ? ": Adit keeps it for the run at " : ": Adit keeps them for the run at ";
+  return text + kept + here + ", and sends them to the new Command Post only on request";
 }
 
 }  // namespace adit::dispatch

@@ -24,17 +24,22 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSinc
   const std::int64_t points = now.score - before.score - since.points;
   const std::string seen = figures(before, doubts, since, now);
   if (before.run_clock <= 0 && (used != 0 || points != 0)) {
-    return {Finding::Silent, seen + ": before the start of a run its counts may be set to anything", {}};
+    return {Finding::Silent,
+            seen + ": before a run starts, the Command Post may set its counts to any value",
+            {}};
   }
   if (used < 0 || used > doubts || points < 0 || points > used) {
-    return {Finding::Contradicts, seen + ": does somebody else report with this token?", {}};
+    return {Finding::Contradicts, seen + ": does another sender report with this token?", {}};
   }
   // With nothing left of the allotment, or a clock at 0, a record would not show.
   if (used == 0 && (before.remaining_reports - since.scored <= 0 || now.run_clock <= 0)) {
-    return {Finding::Silent, seen + ": reports are not being scored, so that a record would not show", {}};
+    return {Finding::Silent,
+            seen + ": reports are not scored now, so that the counts do not show a recorded report",
+            {}};
   }
   if (used == 0) return {Finding::NotRecorded, seen, {}};
-  if (used < doubts) return {Finding::Silent, seen + ": which of them was recorded does not show", {}};
+  if (used < doubts)
+    return {Finding::Silent, seen + ": the counts do not show which of them was recorded", {}};
   const bool alike = points == 0 || points == doubts;
   return {Finding::Recorded, seen, alike ? std::optional(points / doubts) : std::nullopt};
 }

@@ -27,7 +27,7 @@ void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, co
   }
   account_.open(std::move(runs), latest_run, post);
   for (const std::int64_t number : sending) {
-    step(number, ReportEvent::Restarted, "the gateway stopped while it was being sent", time,
+    step(number, ReportEvent::Restarted, "aditd stopped while it was in flight", time,
          [this](Report& report) {
            ++report.tries;
            enter_run(report);
@@ -197,7 +197,7 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   } else {
     const std::string note =
         another != nullptr && event == ReportEvent::Lost
-            ? icd::sentence("the answer tells of report ", another->number, ", not of this one")
+            ? icd::sentence("the answer is for report ", another->number, ", not for this report")
             : said(answer.status, answer.body);
     ended(event, note, time, keep);
   }
@@ -219,10 +219,10 @@ void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& rep
   const Effect effect = effect_of(reply);
   std::string note;
   if (effect.again) {
-    note = "not scored (" + reply.report_status + "): post it again once the run goes on";
+    note = "not scored (" + reply.report_status + "); post it again when the run continues";
   } else if (reply.report && !is_same(*reply.report, sending()->report)) {
     const icd::Point& at = reply.report->position;
-    note = icd::sentence("the answer tells of ", icd::in_quotes(reply.report->type), " at ", at.x, ", ", at.y,
+    note = icd::sentence("the answer is for ", icd::in_quotes(reply.report->type), " at ", at.x, ", ", at.y,
                          ", ", at.z);
   }
   ended(ReportEvent::Recorded, note, time, [&](Report& report) {

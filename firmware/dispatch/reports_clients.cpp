@@ -11,8 +11,9 @@
 namespace adit::dispatch {
 namespace {
 
-constexpr const char* kAskAgain = "; posting the same report again asks after it and never sends it twice";
-constexpr const char* kOldRun = "; it is of an earlier run: posting it again sends it in the present one";
+constexpr const char* kAskAgain =
+    "; post the same report again to ask for its state; Adit never sends it twice";
+constexpr const char* kOldRun = "; it is of an earlier run; post it again to send it in the present run";
 
 std::string metres(double distance) {
   return icd::number_text(std::round(distance * 10) / 10) + " m";
@@ -40,18 +41,18 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
     return false;
   }
   if (waiting_at(meant_run().post).size() >= rules_.most_waiting) {
-    output_.tell(
-        client,
-        {.status = icd::Status::TooManyRequests,
-         .sentence = icd::sentence(rules_.most_waiting, " reports wait already; this one was not taken")},
-        report);
+    output_.tell(client,
+                 {.status = icd::Status::TooManyRequests,
+                  .sentence = icd::sentence(rules_.most_waiting,
+                                            " reports are queued already; this report was not accepted")},
+                 report);
     return false;
   }
   const Hold hold = fresh ? reason_to_hold(report) : Hold{};
   if (const Report* const other = sent_to_another_post(report); other != nullptr) {
-    report.note = icd::sentence("it is the same as report ", other->number,
-                                ", which was sent to another Command Post: it waits until the one at ",
-                                run().post, " has answered");
+    report.note = icd::sentence("the same as report ", other->number,
+                                ", which was sent to another Command Post; queued until the Command Post at ",
+                                run().post, " answers");
   }
   return take_new(std::move(report), hold, client, may_send, time);
 }
@@ -69,8 +70,7 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
     if (chosen.state == ReportState::Held) chosen.same_as = hold.same_as;
   });
   if (number == 0) {
-    output_.tell(client,
-                 {.sentence = "the report could not be written down and was not taken; post it again"},
+    output_.tell(client, {.sentence = "the report could not be stored and was not accepted; post it again"},
                  report);
     return false;
   }
@@ -123,15 +123,15 @@ const Report* Reports::twin(const Report& report) const {
 /// It is the same as one of which an answer is to tell yet whether it is of the present run.
 Reports::Hold Reports::maybe_repeat(const Report& report) const {
   if (const Report* const other = same_in_maybe(report); other != nullptr) {
-    return {icd::sentence("held: the same as report ", other->number,
-                          ", and that run may go on still: nothing but the clock says that a new one began (",
+    return {icd::sentence("the same as report ", other->number,
+                          ", and its run may still go on: only the clock shows that a new run began (",
                           run().why, ")"),
             other->number};
   }
   if (const Report* const other = unclaimed_same(report); other != nullptr) {
-    return {icd::sentence("held: the same as report ", other->number,
-                          ", which was answered when the new run may have begun already (", run().why,
-                          "): the next answer tells"),
+    return {icd::sentence("the same as report ", other->number,
+                          ", which was answered when the new run may already have begun (", run().why,
+                          "); the next answer decides"),
             other->number};
   }
   return {};
@@ -141,7 +141,7 @@ Reports::Hold Reports::maybe_repeat(const Report& report) const {
 Reports::Hold Reports::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
   for (const Report* const doubt : book_.doubts(run().number)) {
-    if (doubt->is_lost()) return {icd::sentence("held: ", doubt->note, ", and this may be it")};
+    if (doubt->is_lost()) return {icd::sentence("", doubt->note, "; this may be the same report")};
   }
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   if (rules_.review == Review::Off) return {};
@@ -151,18 +151,18 @@ Reports::Hold Reports::reason_to_hold(const Report& report) const {
     const bool counts =
         is_of_run(other) && !later && number != report.number && other.state != ReportState::Withdrawn;
     if (counts && is_near(other.report, report.report, rules_.near_metres) && stands_for_others(other)) {
-      return {icd::sentence("held: the same type as report ", number, ", ",
+      return {icd::sentence("the same type as report ", number, ", ",
                             metres(distance(other.report, report.report)), " from it")};
     }
   }
-  return rules_.review == Review::All ? Hold{"held: every report is reviewed"} : Hold{};
+  return rules_.review == Review::All ? Hold{"every report is reviewed"} : Hold{};
 }
 
 /// What take() could not do because the run was not known. False: it is not to be sent (or not yet).
 bool Reports::check(std::int64_t number, Time time) {
   const Report report = book_.at(number);
   if (report.run != run().number && !report.asked && !is_young(report, time.now)) {
-    step(number, ReportEvent::Held, "held: a new run began (" + run().why + ")", time);
+    step(number, ReportEvent::Held, "a new run began (" + run().why + ")", time);
     return false;
   }
   if (!unchecked_.contains(number)) return true;
@@ -219,27 +219,26 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
       if (report.reconciled) break;
       answer.status = icd::Status::Conflict;
       answer.sentence = name + " was called done by the operator; its answer is not known" + why +
-                        "; to send it once more, post it with the header Adit-Resubmit: yes";
+                        "; to send it again, post it with the header Adit-Resubmit: yes";
       break;
     case ReportState::Withdrawn:
       answer.status = icd::Status::Conflict;
-      answer.sentence = name + " was withdrawn by the operator and is not sent any more" + why +
+      answer.sentence = name + " was withdrawn by the operator and is not sent" + why +
                         "; to send it, post it with the header Adit-Resubmit: yes";
       break;
     case ReportState::Held:
-      answer.sentence = name + " is kept, and waits for the operator's word" + why + again;
+      answer.sentence = name + " is held until the operator decides" + why + again;
       break;
     case ReportState::InDoubt:
       answer.status = icd::Status::GatewayTimeout;
       answer.sentence = name + " is in doubt: it may or may not have been recorded" + why + again;
       break;
     case ReportState::Queued:
-      answer.sentence =
-          (stopping_ ? "the gateway is stopping; " : "") + name + " is kept and waiting" + why + again;
+      answer.sentence = (stopping_ ? "aditd is stopping; " : "") + name + " is queued" + why + again;
       break;
     case ReportState::Sending:
       answer.status = icd::Status::GatewayTimeout;
-      answer.sentence = name + " is on its way, and may or may not have been recorded yet" + again;
+      answer.sentence = name + " is in flight, and may or may not have been recorded yet" + again;
       break;
   }
   output_.tell(client, answer, report);

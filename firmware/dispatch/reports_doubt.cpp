@@ -12,14 +12,14 @@ namespace {
 std::string undecidable(const Report& report, const Run& run, const Run* its) {
   if (its != nullptr && !its->post.empty() && its->post != run.post) {
     return "it was sent to the Command Post at " + its->post +
-           ", which is asked again once the settings name it again";
+           ", which Adit asks again when the settings name it again";
   }
-  if (report.run != run.number) return "a new run began before it was clear whether it had been recorded";
+  if (report.run != run.number) return "a new run began before the status showed whether it was recorded";
   if (!run.unreliable.empty()) return run.unreliable;
   if (!report.before && report.sent < run.began) {
-    return "a new run began when it had just been sent: it may have been recorded in either";
+    return "a new run began just after it was sent, so that it may have been recorded in either run";
   }
-  if (!report.before) return "what the Command Post counted before it was sent is not known for certain";
+  if (!report.before) return "the Command Post's counts before it was sent are not certain";
   return "";
 }
 
@@ -70,7 +70,8 @@ void Reports::status_failed(bool reached, Time time) {
   if (!inquiry_) return;
   inquiry_->asked(time.now);
   inquiry_->failed(time.now);
-  if (inquiry_->is_in_vain()) explain(book_.doubts(run().number), "the run's status cannot be had", time);
+  if (inquiry_->is_in_vain())
+    explain(book_.doubts(run().number), "the Command Post does not answer with the run's status", time);
 }
 
 void Reports::inquire(const icd::RunStatus& status, Instant asked, Time time) {
@@ -119,14 +120,13 @@ ReportBook::Step Reports::after_loss(const Report& doubt, const Evidence& eviden
   if (same != nullptr) {
     return {.number = doubt.number,
             .event = ReportEvent::Held,
-            .note = icd::sentence("held: not recorded, and report ", same->number, " is the same, and is ",
+            .note = icd::sentence("not recorded, and report ", same->number, " is the same and is ",
                                   shown_name_of(same->state), " in this run")};
   }
   if (doubt.tries >= kMostTries) {
-    return {
-        .number = doubt.number,
-        .event = ReportEvent::Held,
-        .note = icd::sentence("held: sent ", doubt.tries, " times without an answer, and never recorded")};
+    return {.number = doubt.number,
+            .event = ReportEvent::Held,
+            .note = icd::sentence("sent ", doubt.tries, " times without an answer, and not recorded")};
   }
   return {.number = doubt.number, .event = ReportEvent::Missing, .note = "not recorded: " + evidence.why};
 }

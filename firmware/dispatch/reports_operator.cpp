@@ -5,8 +5,8 @@
 namespace adit::dispatch {
 namespace {
 
-constexpr const char* kLost = "what it said is lost from the ledger: post it again, or call it done";
-constexpr const char* kDisk = "the step could not be written down, so it was not taken; try again";
+constexpr const char* kLost = "its content is lost from the ledger; post it again, or call it done";
+constexpr const char* kDisk = "the change could not be stored and was not made; try again";
 
 std::unexpected<std::string> no_such(std::int64_t number) {
   return std::unexpected(icd::sentence("there is no report ", number));
@@ -24,17 +24,17 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::Released) == nullptr) {
-    return cannot(*report, "to send it once more, resubmit it");
+    return cannot(*report, "to send it again, resubmit it");
   }
   if (report->is_lost()) return cannot(*report, kLost);
   const bool judged = report->state == ReportState::InDoubt;
   if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
-    return cannot(
-        *report, icd::sentence("report ", other->number, " is the same, and is ", shown_name_of(other->state),
-                               " in this run; to send it once more, resubmit that one"));
+    return cannot(*report,
+                  icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),
+                                " in this run; to send it again, resubmit that report"));
   }
   if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
-  const bool moved = step(number, ReportEvent::Released, "the operator sends it", time, [&](Report& sent) {
+  const bool moved = step(number, ReportEvent::Released, "the operator sent it", time, [&](Report& sent) {
     sent.asked = true;
     sent.same_as = 0;
     sent.tries = 0;
@@ -50,10 +50,10 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::HeldBack) == nullptr) {
     return cannot(*report, report->state == ReportState::Held ? "it is held already"
-                           : is_final(report->state)          ? "there is nothing to hold"
-                                                     : "it may have left already, and nothing takes it back");
+                           : is_final(report->state)          ? "only a queued report can be held"
+                                                              : "it may have been sent already");
   }
-  if (!step(number, ReportEvent::HeldBack, "held: the operator holds it", time)) {
+  if (!step(number, ReportEvent::HeldBack, "the operator held it", time)) {
     return std::unexpected(kDisk);
   }
   unchecked_.erase(number);  // his later word is enough
@@ -64,9 +64,8 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::Withdrawn) == nullptr) {
-    return cannot(*report, is_final(report->state)
-                               ? "there is nothing to withdraw"
-                               : "it may have been recorded; it can be sent, or called done");
+    return cannot(*report, is_final(report->state) ? "it is finished and cannot be withdrawn"
+                                                   : "it may have been recorded; send it, or call it done");
   }
   if (!step(number, ReportEvent::Withdrawn, "", time)) return std::unexpected(kDisk);
   unchecked_.erase(number);
@@ -80,7 +79,7 @@ Reports::Outcome Reports::call_done(std::int64_t number, Time time) {
     return cannot(*report, "only a report in doubt can be called done");
   }
   const bool done =
-      blur_doubts(number, time) && step(number, ReportEvent::CalledDone, "the operator calls it done", time);
+      blur_doubts(number, time) && step(number, ReportEvent::CalledDone, "the operator called it done", time);
   if (!done) return std::unexpected(kDisk);
   ask_for_others(time);
   return number;
@@ -95,7 +94,7 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
     if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, it is sent once
   }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
-  again.note = icd::sentence("report ", number, " once more");
+  again.note = icd::sentence("report ", number, " again");
   again.run = meant_run().number;
   again.asked = true;
   const std::int64_t made = book_.add(std::move(again), {}, "");

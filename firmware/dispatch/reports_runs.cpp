@@ -146,7 +146,7 @@ std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& wh
       changed.before.reset();
     } else {
       changed.state = transition(report.state, ReportEvent::Held)->to;
-      changed.note = "held: a new run began (" + why + ")";
+      changed.note = "a new run began (" + why + ")";
     }
   };
   for (const Report* const doubt : book_.doubts(run().number)) {
@@ -254,7 +254,7 @@ void Reports::clear_held(Time time) {
     const Report& report = book_.at(number);
     if (!is_held_as_repeat(report) || report.run != run().number) continue;
     steps.push_back({number, ReportEvent::Cleared,
-                     icd::sentence("report ", report.same_as, " is another run's"),
+                     icd::sentence("report ", report.same_as, " is of another run"),
                      [](Report& cleared) { cleared.same_as = 0; }});
     unchecked_.insert(number);
   }
@@ -294,7 +294,7 @@ const Report* Reports::sent_to_another_post(const Report& report) const {
 }
 
 std::int64_t Reports::declare_new_run(Time time) {
-  constexpr const char* kWhy = "the operator says so";
+  constexpr const char* kWhy = "the operator declared it";
   if (will_be_ != 0) return will_be_ = account_.announce(kWhy, meant_run().post, time);
   begin_run(kWhy, 0, std::nullopt, time);
   return run().number;

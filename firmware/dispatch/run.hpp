@@ -27,7 +27,7 @@ struct Run {
   /// Of `unreliable`: its counts were the same after Adit's reports as before the first of them. That says
   /// nothing of another sender.
   static constexpr const char* kCountsStand =
-      "the Command Post's counts have not moved since the first report: they prove nothing";
+      "the Command Post's counts have not changed since the first report, so that they prove no report";
 
   std::int64_t number = 1;                            // Adit's own, from 1
   std::string id = "";                                // the Command Post's (ICD 5.2 `run`); "": not heard yet

@@ -196,7 +196,7 @@ void RunAccount::settle(const icd::RunStatus& status, Time time) {
     } else if (!fits) {
       distrust(icd::sentence("the Command Post counts ", status.remaining_reports, " reports left and score ",
                              status.score, ", Adit's own reports make it ", remaining, " and ", score,
-                             ": somebody else reports with this token"),
+                             ": another sender reports with this token"),
                time.stamp);
     }
   }

@@ -14,10 +14,10 @@ std::optional<AnotherRun> clock_of_another(const std::optional<Clock>& clock, do
   }
   // A clock at 0 belongs to a run that has not started: it may stay there for as long as it likes.
   if (before > 0 && silence > kShortSilence && shows - before < silence / 2) {
-    return AnotherRun{icd::sentence("after ", static_cast<std::int64_t>(silence),
-                                    " s without word the run clock had gone on by only ",
-                                    static_cast<std::int64_t>(shows - before), " s"),
-                      false};
+    return AnotherRun{
+        icd::sentence("after ", static_cast<std::int64_t>(silence), " s of silence the run clock was only ",
+                      static_cast<std::int64_t>(shows - before), " s ahead"),
+        false};
   }
   return std::nullopt;
 }

@@ -229,18 +229,18 @@ class TakingOver {
   bool move(Report& next, const Report& there) {
     if (there.state == ReportState::Sending) {
       ++next.tries;
-      return step(next, ReportState::InDoubt, "the first box stopped while it was being sent");
+      return step(next, ReportState::InDoubt, "the first box stopped while it was in flight");
     }
     if (there.state != ReportState::Queued) return false;
     if (const Report* const own = sent_here(next); own != nullptr) {
       next.same_as = own->number;
       return step(next, ReportState::Held,
-                  icd::sentence("held: the same as report ", own->number, ", which this box had"));
+                  icd::sentence("the same as report ", own->number, ", which this box had"));
     }
     next.before = there.run == there_runs_.present().number ? handover_.expected : std::nullopt;
     next.sending = ++next_sending_;
     next.sent = handover_.stamp;
-    return step(next, ReportState::InDoubt, "it waited at the first box, which may have sent it since");
+    return step(next, ReportState::InDoubt, "it was queued at the first box, which may have sent it since");
   }
 
   bool step(Report& report, ReportState state, const std::string& note) const {
@@ -267,12 +267,12 @@ class TakingOver {
     if (own.state != ReportState::Queued || (!is_of_own && !is_of_none)) return;
     Report next = own;
     if (is_of_own && own_is_another_) {
-      step(next, ReportState::Held, "held: the run of the first box goes on");
+      step(next, ReportState::Held, "the run of the first box goes on");
     } else if (const TakenOver* const same = taken_like(own); same != nullptr && !own.asked) {
       next.run = present_;
       next.same_as = same->report.number;
       step(next, ReportState::Held,
-           icd::sentence("held: the same as report ", same->report.number, ", which the first box had"));
+           icd::sentence("the same as report ", same->report.number, ", which the first box had"));
     } else {
       next.run = present_;
       step(next, ReportState::Queued, "");

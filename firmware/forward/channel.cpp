@@ -56,7 +56,8 @@ void Channel::give_up() {
   if (!next_ || !busy() || !leads_elsewhere(*next_)) return;
   finished_bytes_ += connection_->sent_bytes();
   connection_.reset();
-  const uplink::InDoubt doubt{.why = "it was under way to " + address_ + ", where the settings lead no more"};
+  const uplink::InDoubt doubt{.why = "it was in flight to " + address_ +
+                                     " when the settings named another address"};
   for (const auto& request : std::vector(under_way_)) ended(request, doubt);
 }
 
@@ -150,11 +151,12 @@ void Channel::learn_path(const UnderWay& request, const uplink::Answered& answer
   bool wants_slash = wants_slash_ && !(request.has_slash && is_unknown);
   if (answered.wants_slash && request.uri != icd::Uri::ArtifactReports) wants_slash = true;
   if (std::exchange(wants_slash_, wants_slash) == wants_slash) return;
-  host::log(host::Level::Notice,
-            wants_slash
-                ? "the Command Post redirects: from now on each path ends with a slash"
-                : "the Command Post does not know a path with a slash at its end: from now on without",
-            {{"endpoint", name_}, {"address", address_}, {"status", std::to_string(answered.status)}});
+  host::log(
+      host::Level::Notice,
+      wants_slash
+          ? "the Command Post redirects; paths end with a slash from now on"
+          : "the Command Post does not know paths with a slash at the end; paths have no slash from now on",
+      {{"endpoint", name_}, {"address", address_}, {"status", std::to_string(answered.status)}});
 }
 
 std::optional<double> Channel::time_there() const {
@@ -186,13 +188,13 @@ std::string sentence_of(const uplink::Outcome& outcome) {
   if (const auto* doubt = std::get_if<uplink::InDoubt>(&outcome)) return doubt->why;
   const auto& answered = std::get<uplink::Answered>(outcome);
   if (answered.wants_slash)
-    return icd::sentence("the Command Post answered ", answered.status, ": the path is to end with a slash");
+    return icd::sentence("the Command Post answered ", answered.status, ": the path must end with a slash");
   if (dispatch::may_be_the_command_post(answered.status, dispatch::body_of(answered.body)))
     return dispatch::said(answered.status, answered.body);
-  return icd::sentence("what answered ", answered.status,
-                       answered.status < 400 && answered.status >= 300 ? " (look elsewhere)"
-                                                                       : " with something other than JSON",
-                       " is no Command Post");
+  return icd::sentence(
+      "the server that answered ", answered.status,
+      answered.status < 400 && answered.status >= 300 ? " (a redirect)" : " with a body that is not JSON",
+      " is not the Command Post");
 }
 
 }  // namespace adit::forward

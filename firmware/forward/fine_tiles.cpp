@@ -59,8 +59,8 @@ void FineTiles::tile(const picture::Layer& layer, const picture::TileAt& at, Don
   std::size_t waiting = 0;
   for (const auto& [each, askers] : askers_) waiting += askers.size();
   if (waiting == kMostAskers) {
-    return done(
-        std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "too many tiles are asked for"}));
+    return done(std::unexpected(
+        icd::Refusal{icd::Status::ServiceUnavailable, "too many requests for tiles; try again later"}));
   }
   auto& askers = askers_[place];
   if (askers.empty()) waiting_.push_back(place);

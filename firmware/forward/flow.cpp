@@ -67,7 +67,7 @@ std::string Flow::without_tokens(std::string sentence) const {
 
 void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) {
   host::log(
-      host::Level::Info, "left out",
+      host::Level::Info, "parts of a message rejected",
       {{"uri", std::string(icd::path_of(uri))}, {"sender", sender.address}, {"why", without_tokens(why)}});
 }
 
@@ -76,7 +76,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
   icd::Refusal refusal = told;
   refusal.sentence = without_tokens(told.sentence);
   if (refusal.status != icd::Status::Unauthorized) {
-    host::log(host::Level::Info, "refused",
+    host::log(host::Level::Info, "message rejected",
               {{"uri", std::string(icd::path_of(uri))},
                {"sender", sender.address},
                {"status", std::to_string(static_cast<int>(refusal.status))},
@@ -86,7 +86,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
 }
 
 std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::RejectedAction action) {
-  if (is_ending()) return std::unexpected("the gateway is stopping: nothing is sent any more");
+  if (is_ending()) return std::unexpected("aditd is stopping and sends no more messages");
   if (!rests_.empty()) return std::unexpected(rests_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
   auto message = rejected_.to_be_sent(number);

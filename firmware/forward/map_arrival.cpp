@@ -38,7 +38,7 @@ icd::Checked<icd::ChunkedBytes> MapArrival::stored() {
   icd::ChunkedBytes data = stored_->file->stored();
   if (data.empty()) {
     return std::unexpected(
-        icd::Refusal{icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"});
+        icd::Refusal{icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"});
   }
   return data;
 }

@@ -122,7 +122,7 @@ void MapPicture::drawn(Job& job) {
     }
   } else {
     mosaic_.missed(layer, stamp);
-    host::log(host::Level::Warning, "a map could not be drawn",
+    host::log(host::Level::Warning, "cannot draw a map",
               {{"robot", layer.robot}, {"why", job.drawing.error().sentence}});
   }
   if (mosaic_.version() != before) changed_();

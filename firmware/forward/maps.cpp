@@ -203,7 +203,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer does the one before the other.
-  loop::guarded("what a map overtook", [&] {
+  loop::guarded("replacing rejected maps", [&] {
     for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) rejected_.taken(*said);
   });
   forget(sent->waiting.updates);
@@ -232,7 +232,8 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
     case MappingVerdict::Suspect:
       pace_.lost(now);
       if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == lanes::Blame::Next::Reject)
-        return give_up(sent, answered.status, sentence + " (others passed, this one failed again and again)");
+        return give_up(sent, answered.status,
+                       sentence + " (other maps were delivered, this map failed repeatedly)");
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
       return again(sent);
     case MappingVerdict::Failing:

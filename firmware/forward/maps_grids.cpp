@@ -37,7 +37,7 @@ bool Maps::is_heard_from() const {
 
 void Maps::heard() {
   if (!is_heard_from()) return;
-  loop::guarded("what was sent in this run", [this] {
+  loop::guarded("recording sent maps", [this] {
     std::vector<const icd::MapUpdate*> under_way;
     for (const Place& place : {prepared_, following_}) {
       if (place) under_way.push_back(&place->waiting.map);

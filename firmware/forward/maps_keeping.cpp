@@ -13,7 +13,7 @@ namespace {
 
 /// For a writer that threw.
 icd::Refusal not_kept() {
-  return {icd::Status::ServiceUnavailable, "this map cannot be kept; send it again later"};
+  return {icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"};
 }
 
 /// Frees it on this thread, with the file that `data` may be in.
@@ -50,11 +50,11 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
   if (!has_room_for(update, replaces)) {
     record_.no_room(traffic_of(update), loop_.wall_now());
     if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
-    return done(std::unexpected(
-        icd::Refusal{icd::Status::TooManyRequests,
-                     icd::sentence(lane_.count() + static_cast<std::size_t>(being_kept_), " maps of ",
-                                   (lane_.bytes() + bytes_being_kept_) >> 20,
-                                   " MiB wait already; this one was not taken, send it again later")}));
+    return done(std::unexpected(icd::Refusal{
+        icd::Status::TooManyRequests,
+        icd::sentence("the queue is full: ", lane_.count() + static_cast<std::size_t>(being_kept_), " maps, ",
+                      (lane_.bytes() + bytes_being_kept_) / 1000000,
+                      " MB; this map was not accepted, send it again later")}));
   }
   if (!is_told(update)) {
     if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
@@ -114,7 +114,7 @@ void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>&
   }
   const std::string before = std::exchange(trouble_, keeping.kept ? "" : keeping.kept.error().sentence);
   if (!keeping.kept) {
-    if (before.empty()) host::log(host::Level::Error, "a map was not taken", {{"why", trouble_}});
+    if (before.empty()) host::log(host::Level::Error, "cannot store a map", {{"why", trouble_}});
     return done(std::unexpected(std::move(keeping.kept.error())));
   }
   record_.accepted(traffic_of(*keeping.kept), keeping.bytes_received, loop_.wall_now());
@@ -189,7 +189,7 @@ void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done
 void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done) {
   const bool is_wanted = done(keeping.kept.has_value());
   if (!keeping.kept) {
-    return host::log(host::Level::Error, "what was rejected is not sent again",
+    return host::log(host::Level::Error, "cannot send a rejected map again",
                      {{"why", keeping.kept.error().sentence}});
   }
   lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);

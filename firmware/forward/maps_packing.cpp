@@ -125,7 +125,7 @@ void Maps::is_damaged(Place& place) {
   for (const Damaged& each : it->damaged) {
     unread_.erase(each.number);
     record_.not_taken(traffic_of(it->waiting.map), NotTaken::Failed, 0,
-                      "what was kept of it is damaged: " + each.why);
+                      "its stored copy is damaged: " + each.why);
   }
   forget(gone);
 }
@@ -146,7 +146,7 @@ void Maps::is_packed(const Place& prepared) {
       prepared->waiting.map.data = std::move(prepared->packed.stitched);
     return;
   }
-  host::log(host::Level::Warning, "grids cannot be stitched: what they hold is damaged");
+  host::log(host::Level::Warning, "cannot join grids: their data is damaged");
   lane_.put_back_apart(prepared->waiting);
   place->reset();
 }
@@ -157,7 +157,7 @@ void Maps::not_packed(const Place& prepared) {
   prepared->packed = {};
   if (Place* const place = place_of(prepared)) {
     loop::guarded("putting a map back", [&] {
-      record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be packed");
+      record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be compressed");
       put_back(*place);
     });
   }

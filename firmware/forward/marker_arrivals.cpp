@@ -22,7 +22,7 @@ std::size_t bytes_of_all(const icd::MarkersUpdate& update) {
 constexpr std::string_view kMostThatWait = "queues.marker_bytes";  // the setting
 
 icd::Refusal no_memory() {
-  return {icd::Status::ServiceUnavailable, "the gateway could not hold these markers; send them again later"};
+  return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
 }
 
 }  // namespace
@@ -49,12 +49,12 @@ void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received,
 void MarkerArrivals::go(Step step) {
   Arrival& first = arrivals_.front();
   bool over = false;
-  if (!loop::guarded("taking markers", [&] { over = (this->*step)(first); })) return give_up();
+  if (!loop::guarded("receiving markers", [&] { over = (this->*step)(first); })) return give_up();
   if (over) end();
 }
 
 void MarkerArrivals::give_up() {
-  loop::guarded("refusing markers", [this] { fail(arrivals_.front(), no_memory()); });
+  loop::guarded("rejecting markers", [this] { fail(arrivals_.front(), no_memory()); });
   end();
 }
 
@@ -76,7 +76,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
     return fail(
         arrival,
         {.status = icd::Status::TooManyRequests,
-         .sentence = "not taken: more markers than can wait (queues.marker_bytes); send it again later",
+         .sentence = "not accepted: the queue of markers is full (queues.marker_bytes); send it again later",
          .setting = kMostThatWait});
   }
   if (bytes_of_all(*arrival.update) > kSmall) {
@@ -95,8 +95,8 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
   arrival.outcome = std::unexpected(
       icd::Refusal{icd::Status::TooManyRequests,
                    icd::sentence(taken, " of ", all,
-                                 " markers were taken, for others of theirs wait already; for new ones there "
-                                 "is no room (queues.marker_bytes); send them again later"),
+                                 " markers were accepted, because they replace queued markers; the queue has "
+                                 "no room for new markers (queues.marker_bytes); send them again later"),
                    all - taken, kMostThatWait});
   *arrival.update = std::move(known);
   return true;
@@ -116,7 +116,7 @@ void MarkerArrivals::make_record(const Arrival& arrival) {
 bool MarkerArrivals::keep(Arrival& arrival) {
   if (const auto kept = journal_.accepted_record(arrival.record); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
-                          "not taken: it cannot be kept: " + kept.error() + "; send it again later"});
+                          "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});
   }
   arrival.is_kept = true;
   arrival.record = {};

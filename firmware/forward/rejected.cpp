@@ -111,7 +111,7 @@ std::string kind_of(const lanes::Message& message) {
 }
 
 std::string no_such(std::uint64_t number) {
-  return icd::sentence("nothing of number ", number, " is rejected");
+  return icd::sentence("there is no rejected message ", number);
 }
 
 }  // namespace
@@ -129,7 +129,7 @@ void RejectedStore::restore() {
   spool::remove_parts(folder_);
   const auto numbers = host::numbers_in(folder_, "", kReason);
   unread_ = numbers ? "" : numbers.error();
-  if (!numbers) host::log(host::Level::Error, "what was rejected cannot be read", {{"why", unread_}});
+  if (!numbers) host::log(host::Level::Error, "rejected messages cannot be read", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     if (restore_one(number)) continue;
     for (const char* const ending : {kMessage, kReason})
@@ -153,7 +153,7 @@ void RejectedStore::add(lanes::Message message, int status, const std::string& w
                         Origin origin) {
   lanes::RejectedMessage item{
       .message = std::move(message), .status = status, .why = why, .at = loop_.stamp_now(), .bytes = bytes};
-  host::log(host::Level::Warning, "the Command Post would not take a message: it is rejected",
+  host::log(host::Level::Warning, "the Command Post rejected a message; it is kept",
             {{"kind", kind_of(item.message)},
              {"robot", who(item.message)},
              {"status", std::to_string(status)},
@@ -185,7 +185,8 @@ void RejectedStore::keep(const lanes::RejectedMessage& item, Origin origin) {
         if (written) written = spool::write_whole(reason_file, text_bytes(reason));
         *well = written.has_value();
         if (*well) return;
-        host::log(host::Level::Warning, "what is rejected is in memory alone", {{"why", written.error()}});
+        host::log(host::Level::Warning, "a rejected message is kept in memory only",
+                  {{"why", written.error()}});
       },
       [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
   ++being_written_;  // only now: where it could not be submitted, nothing is
@@ -241,8 +242,7 @@ std::expected<lanes::Message, std::string> RejectedStore::to_be_sent(std::uint64
   if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
   if (item->replaced) {
     return std::unexpected(
-        "something newer that says all of it was sent since: sent now, it would only put the "
-        "older in its place");
+        "a newer message that contains it was delivered since; sent now, it would replace the newer message");
   }
   leaving_.insert(number);
   return item->message;

@@ -27,8 +27,8 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
 /// For who asked, where the Command Post has answered, and not with a status.
 intake::Answer no_status_in(const uplink::Answered& answered) {
   if (answered.status >= 400) return client_answer(answered);
-  return intake::error_answer(icd::Status::BadGateway, dispatch::answered_with(answered.status) +
-                                                           " with something other than a status");
+  return intake::error_answer(icd::Status::BadGateway,
+                              dispatch::answered_with(answered.status) + " without a status");
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ void Scoring::endpoint_turned() {
   poll_due_ = true;
   const auto opened = whole(restart_, [this] { return open_reports(); });
   if (!opened) {
-    host::log(host::Level::Error, "the ledger cannot be read: restarting", {{"why", opened.error()}});
+    host::log(host::Level::Error, "cannot read the ledger; restarting", {{"why", opened.error()}});
     restart_();
   }
   watch_deadlines();
@@ -102,8 +102,8 @@ void Scoring::endpoint_turned() {
 void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& sender,
                    std::shared_ptr<intake::Responder> responder) {
   if (stopping_) {
-    responder->answer(intake::error_answer(
-        icd::Status::ServiceUnavailable, "the gateway is stopping; the report was not taken, send it again"));
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable,
+                                           "aditd is stopping; the report was not accepted, send it again"));
     return;
   }
   take({.report = report, .sender = sender.address, .resubmit = sender.resubmits},
@@ -122,7 +122,7 @@ void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
 
 void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   if (stopping_) {
-    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
+    responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, "aditd is stopping"));
     return;
   }
   if (!channel_.has_token()) {
@@ -162,13 +162,13 @@ void Scoring::poll() {
 
 std::string Scoring::why_no_status() const {
   if (!channel_.trouble().empty()) return channel_.trouble();
-  return asked_status_ ? "it has not answered yet" : "reports go first";
+  return asked_status_ ? "the Command Post has not answered yet" : "reports go first";
 }
 
 /// For a client that asks while the last known status is too old. `why`: the reason.
 intake::Answer Scoring::no_status(const std::string& why) {
-  intake::Answer answer = intake::error_answer(icd::Status::ServiceUnavailable,
-                                               "the status of the run is not known just now: " + why);
+  intake::Answer answer =
+      intake::error_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
   answer.headers.push_back({"Retry-After", "1"});
   return answer;
 }
@@ -382,7 +382,7 @@ dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action actio
 }
 
 dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
-  if (stopping_) return std::unexpected("the gateway is stopping; the report was not taken");
+  if (stopping_) return std::unexpected("aditd is stopping; the report was not accepted");
   const dispatch::ClientId nobody = output_.add_nobody();
   take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
   if (const auto number = reports_->awaited_by(nobody)) return *number;
@@ -406,7 +406,7 @@ void Scoring::link_is_back() {
 
 bool Scoring::stop() {
   stopping_ = true;
-  answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "the gateway is stopping"));
+  answer_askers(intake::error_answer(icd::Status::ServiceUnavailable, "aditd is stopping"));
   reports_->dismiss(false);
   return reports_->sending() == nullptr;
 }

@@ -35,7 +35,7 @@ StampFloor::Kept StampFloor::read() const {
     const double wall = std::max(0.0, rest.empty() ? floor - kAhead : take_time(rest));
     return {.floor = floor, .wall = wall, .least = std::max(0.0, take_time(rest))};
   }
-  host::log(host::Level::Warning, "which stamps were given out before is not known",
+  host::log(host::Level::Warning, "cannot read the last time stamps used",
             {{"why", text ? file_ + ": expected seconds since 1970" : text.error()}});
   return {};
 }
@@ -53,7 +53,9 @@ void StampFloor::write(const Kept& kept) {
   if (!written && host::write_over(file_, text)) written = {};  // on a full disk
   const std::string why = written ? "" : written.error();
   if (std::exchange(*trouble_, why) == why || written) return;
-  host::log(host::Level::Warning, "after a power cut, stamps may run backward", {{"why", written.error()}});
+  host::log(host::Level::Warning,
+            "cannot store the last time stamps; after a power cut, time stamps may run backward",
+            {{"why", written.error()}});
 }
 
 }  // namespace adit::forward

@@ -14,13 +14,13 @@ namespace adit::forward {
 namespace {
 
 std::unexpected<icd::Refusal> full(const char* of) {
-  return std::unexpected(
-      icd::Refusal{icd::Status::TooManyRequests, std::string("not taken: ") + of + "; send it again later"});
+  return std::unexpected(icd::Refusal{icd::Status::TooManyRequests,
+                                      std::string("not accepted: ") + of + "; send it again later"});
 }
 
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
-                                      "not taken: it cannot be kept: " + why + "; send it again later"});
+                                      "not accepted: it cannot be stored: " + why + "; send it again later"});
 }
 
 /// Markers that are written in the turn of the loop that takes them.
@@ -99,7 +99,7 @@ icd::Checked<void> Telemetry::has_room_for(const icd::StateUpdate& update) {
   if (state_.has_room_for(update)) return {};
   for (const icd::NamedPose& pose : update.poses)
     record_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
-  return full("more robots than can be kept apart");
+  return full("too many robots");
 }
 
 icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received) {

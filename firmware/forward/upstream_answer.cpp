@@ -16,7 +16,7 @@ intake::Answer client_answer(const uplink::Answered& answered) {
   }
   const std::string sentence =
       dispatch::answered_with(answered.status) +
-      (answered.body.empty() ? " with an empty body" : " with something other than JSON");
+      (answered.body.empty() ? " with an empty body" : " with a body that is not JSON");
   return intake::error_answer(answered.status < 400 ? icd::Status::BadGateway : status, sentence);
 }
 

@@ -46,15 +46,14 @@ const std::string& Crowding::most_of(intake::Ended why) const {
 std::string Crowding::sentence(intake::Ended why) const {
   const std::string& most = most_of(why);
   if (why == intake::Ended::NoRoom) {
-    return "requests are answered 503, most of " + most +
-           ": too many are under way at once (team.connections, team.connections_per_address)";
+    return "requests rejected with 503, most from " + most +
+           ": too many requests at once (team.connections, team.connections_per_address)";
   }
   if (why == intake::Ended::WrongToken) {
-    return "requests show wrong tokens, most of " + most +
-           ": robots with an old one, or somebody who guesses; right ones are let in";
+    return "requests with wrong tokens, most from " + most +
+           ": robots with an old token, or an attacker; right tokens are accepted";
   }
-  return "too many connections are open without a token, most of " + most +
-         ": the oldest are ended for new ones";
+  return "too many unauthenticated connections, most from " + most + ": the oldest are closed for new ones";
 }
 
 }  // namespace adit::gateway

@@ -130,14 +130,14 @@ std::vector<loop::Workers*> Gateway::threads() {
 }
 
 void Gateway::ledger_is_back() {
-  host::log(host::Level::Notice, "the state folder can be written to again: restarting with its ledger");
+  host::log(host::Level::Notice, "the state directory is writable again; restarting with its ledger");
   make_way();
 }
 
 std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
   if (!spare_.rests().empty())
-    flow_.rest("this box rests, for its spare to take over: nothing is taken or sent");
+    flow_.rest("this box is in standby, for its spare to take over; it accepts and sends no messages");
   if (auto started = flow_.start(); !started) return started;
   if (auto listening = listen(settings_.team); !listening) return listening;
   board_.remember(acknowledged_.read(), loop_.wall_now());
@@ -246,7 +246,7 @@ clock::Ntp Gateway::wanted_ntp() const {
 void Gateway::look_at_sockets() {
   const ListenSockets::Reach reach = parts_.sockets.reach();
   if (reach == ListenSockets::Reach::Well || flow_.is_ending()) return;
-  host::log(host::Level::Warning, "the team's interface is a new one: listening again");
+  host::log(host::Level::Warning, "the team's interface was replaced; listening again");
   reach == ListenSockets::Reach::Reopen ? make_way() : stop();
 }
 

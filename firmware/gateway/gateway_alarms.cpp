@@ -19,7 +19,7 @@ double Gateway::look_for_alarms() {
   if (!flow_.is_ending()) acknowledged_.keep(board_.acknowledged());
   std::vector<std::string> headlines;
   for (const alarms::Condition& each : conditions) {
-    if (each.severity != alarms::Severity::Wait) headlines.push_back(each.what);
+    if (each.severity != alarms::Severity::Wait) headlines.push_back(each.headline.now());
   }
   flow_.archive().needs_attention(headlines, found.now);
   return found.now;

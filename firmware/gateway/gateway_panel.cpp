@@ -69,9 +69,9 @@ void Gateway::pressed(panel::Press press) {
       show_lights();
       return;
     case panel::Press::Reset:
-      host::log(host::Level::Warning, "the button was held: all that was set up is forgotten");
+      host::log(host::Level::Warning, "button held: factory reset");
       if (const auto done = setup_.reset(); !done) {
-        host::log(host::Level::Error, "nothing was forgotten: hold the button again",
+        host::log(host::Level::Error, "the factory reset failed; hold the button again",
                   {{"why", done.error().sentence}});
       }
   }

@@ -74,7 +74,7 @@ void Gateway::take_back(const std::string& why) {
   const bool is_back = parts_.store.take_back();
   parts_.trouble = (is_back ? "the last change was taken back: " : "the last change cannot be used: ") + why;
   host::log(host::Level::Error,
-            is_back ? "the last change of the settings is taken back" : "the last change cannot be used",
+            is_back ? "the last change of the settings was taken back" : "the last change cannot be used",
             {{"why", why}});
   setup_.runs_with(parts_.loaded, parts_.trouble);
   if (auto listening = listen(settings_.team); !listening) return make_way();

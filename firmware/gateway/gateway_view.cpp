@@ -110,10 +110,10 @@ api::RunView Gateway::view() const {
 std::string Gateway::report_under_way() const {
   const dispatch::Reports& reports = flow_.reports();
   if (const auto* report = reports.sending())
-    return icd::sentence("report ", report->number, " is being sent: its answer would have to be found out");
+    return icd::sentence("report ", report->number, " is in flight; a restart would leave it in doubt");
   const std::size_t waiting = reports.waiting_here().size();
   if (waiting == 0) return "";
-  return icd::sentence(waiting, waiting == 1 ? " report waits" : " reports wait", " to be sent");
+  return icd::sentence(waiting, waiting == 1 ? " report is" : " reports are", " queued");
 }
 
 /// What is to be thought of it.
@@ -129,7 +129,7 @@ std::string Gateway::status_line() const {
                                std::to_string(flow_.scoring().run()->remaining_reports) + " reports left"
                          : "no word from the Command Post yet";
   if (const std::size_t waiting = flow_.reports().waiting_here().size(); waiting > 0) {
-    line += ", " + std::to_string(waiting) + " reports waiting";
+    line += ", " + std::to_string(waiting) + " reports queued";
   }
   const auto all = alarms();
   if (!all.empty() && alarms::calls(all.front())) line += "; " + alarms::line_of(all.front());

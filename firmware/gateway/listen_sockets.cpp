@@ -37,7 +37,7 @@ std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<h
     held.stored = held.name.starts_with(kStored);
     held.door = !held.stored;
     if (intake::is_deaf(held.socket.get())) {
-      host::log(host::Level::Warning, "a socket of systemd's is of no use: its interface is gone",
+      host::log(host::Level::Warning, "unusable socket from systemd: its interface is gone",
                 {{"name", held.name}});
       end(held);
       continue;
@@ -48,9 +48,9 @@ std::expected<ListenSockets, std::string> ListenSockets::take_over(std::vector<h
       sockets.held_.push_back(std::move(held));
     } else if (held.door) {
       return std::unexpected(
-          icd::sentence("the socket ", icd::in_quotes(held.name), " of systemd's: ", bound.error()));
+          icd::sentence("the socket ", icd::in_quotes(held.name), " from systemd: ", bound.error()));
     } else {
-      host::log(host::Level::Warning, "a socket that systemd kept is of no use",
+      host::log(host::Level::Warning, "unusable socket from systemd",
                 {{"name", held.name}, {"why", bound.error()}});
       end(held);
     }
@@ -83,7 +83,7 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
   for (const Held& held : held_) {
     if (!held.wanted || intake::is_deaf(held.socket.get())) continue;
     loop::FileDescriptor copy(fcntl(held.socket.get(), F_DUPFD_CLOEXEC, 0));
-    if (!copy) return std::unexpected(icd::sentence("a copy of a socket: ", std::strerror(errno)));
+    if (!copy) return std::unexpected(icd::sentence("copying a socket: ", std::strerror(errno)));
     if (auto adopted = intake::adopt_listen_socket(copy.get(), {}); !adopted) {
       return std::unexpected(std::move(adopted.error()));
     }

@@ -8,42 +8,43 @@ command_line::Program command_line_of(Options& options) {
       .name = "aditd",
       .usage = "",
       .about = "Adit's gateway between a robot team and the Command Post.",
-      .rows =
-          {{"--settings", "FILE",
-            "the settings (JSON, version 1) unless others were saved; `adit check FILE` explains what is "
-            "wrong with them",
-            &options.settings, Wanted::Always},
-           {"--secrets", "DIR",
-            "may hold scoring.token, mapping.token, team.token and label.code, readable by nobody else",
-            &options.secrets, Wanted::Always},
-           {"--state", "DIR",
-            "where the ledger of reports is kept, and what is set up by the page: settings.json and "
-            "secrets/, which count before the other two; made where it is absent",
-            &options.state, Wanted::Always},
-           {"--network", "DIR", "where adit-network tells how it stands", &options.network},
-           {"--watch", "DIR", "where adit-network --watch tells who else uses the box's addresses",
-            &options.watch},
-           {"--update", "DIR", "where adit-update tells how it stands", &options.update},
-           {"--clock", "DIR", "where adit-clock tells how it stands", &options.clock},
-           {"--spare", "DIR", "where adit-spare tells how it stands", &options.spare},
-           {"--board", "FILE",
-            "what the board is, and where its lights and its button are: counts before the settings' "
-            "panel; may be absent",
-            &options.board},
-           {"--panel", "SOCKET",
-            "of adit-panel, which holds lights and button; without it aditd holds them itself, and nobody "
-            "shows that it hangs",
-            &options.panel},
-           {"--notices", "DIR",
-            "sentences for the operator, a file each, of the programs that start the box and watch it",
-            &options.notices},
-           {"--version", "", "prints the version", &options.version},
-           {"--help", "", "prints this", &options.help}},
+      .rows = {{"--settings", "FILE",
+                "read the settings (JSON, version 1) from FILE, unless the state directory holds saved ones; "
+                "`adit check FILE` lists the errors in a file",
+                &options.settings, Wanted::Always},
+               {"--secrets", "DIR",
+                "read scoring.token, mapping.token, team.token and label.code from DIR, if present; only "
+                "their owner may have access (mode 0600)",
+                &options.secrets, Wanted::Always},
+               {"--state", "DIR",
+                "keep the ledger of reports in DIR, and what is set up on the page: settings.json and "
+                "secrets/, which replace the two above; create DIR if it is absent",
+                &options.state, Wanted::Always},
+               {"--network", "DIR", "read the status of adit-network from DIR", &options.network},
+               {"--watch", "DIR",
+                "read from DIR which other machines use the box's addresses (adit-network --watch)",
+                &options.watch},
+               {"--update", "DIR", "read the status of adit-update from DIR", &options.update},
+               {"--clock", "DIR", "read the status of adit-clock from DIR", &options.clock},
+               {"--spare", "DIR", "read the status of adit-spare from DIR", &options.spare},
+               {"--board", "FILE",
+                "read the board's name and the lines of its lights and button from FILE, if present; they "
+                "replace the settings' panel",
+                &options.board},
+               {"--panel", "SOCKET",
+                "use the lights and the button of adit-panel at SOCKET; without it aditd drives them itself, "
+                "and the lights do not show if aditd hangs",
+                &options.panel},
+               {"--notices", "DIR",
+                "show the notices in DIR to the operator: one file each, from the programs that start and "
+                "watch the box",
+                &options.notices},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
       .ending =
-          "What waits and who is logged in is kept across a restart in $RUNTIME_DIRECTORY, or else in the "
-          "state folder.\n"
-          "Exits 0 after SIGTERM or SIGINT, 1 where it cannot start (and says why), 2 on a wrong command "
-          "line.",
+          "Queued messages and sessions survive a restart in $RUNTIME_DIRECTORY, or in the state directory "
+          "if that is not set.\nExit status: 0 after SIGTERM or SIGINT, 1 if aditd cannot start (the log "
+          "says why), 2 if the command line is wrong.",
       .empty = command_line::Empty::Taken,
   };
 }

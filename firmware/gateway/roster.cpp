@@ -38,7 +38,7 @@ std::vector<std::string> Roster::unknown(loop::Instant now) const {
 std::string Roster::sentence(const std::string& name) const {
   std::string known;
   for (const std::string& each : names_) known.append(known.empty() ? "" : ", ").append(each);
-  return icd::sentence("unknown robot '", name, "' is posting; set-up has ", known);
+  return icd::sentence("unknown robot '", name, "' sends messages; the settings list ", known);
 }
 
 }  // namespace adit::gateway

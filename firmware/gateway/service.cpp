@@ -46,7 +46,7 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
     return error.kind == Full || error.kind == ReadOnly || error.kind == Failing;
   };
   if (!opened && (is_the_disk(opened.error()) || !is_there)) {
-    host::log(host::Level::Error, "no report is taken, the ledger cannot be written",
+    host::log(host::Level::Error, "rejecting reports: the ledger cannot be written",
               {{"why", opened.error().what}});
     opened = Ledger::stand_in(options.state, scratch, opened.error().what);
   }
@@ -110,7 +110,7 @@ int Service::run() {
   announce();
   if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
   if (auto made = make_folder(options_.state); !made) {
-    host::log(host::Level::Error, "the state folder cannot be made", {{"why", made.error()}});
+    host::log(host::Level::Error, "cannot create the state directory", {{"why", made.error()}});
   }
   for (const std::string& folder :
        {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
@@ -123,7 +123,7 @@ int Service::run() {
     if (again) continue;
     if (!store_.take_back()) return fail(again.error());
     trouble_ = "the last change was taken back: " + again.error();
-    host::log(host::Level::Error, "the last change of the settings is taken back", {{"why", again.error()}});
+    host::log(host::Level::Error, "the last change of the settings was taken back", {{"why", again.error()}});
   }
   host::log(host::Level::Notice, "stopped");
   return 0;
@@ -138,7 +138,7 @@ void Service::announce() {
 std::expected<bool, std::string> Service::run_one() {
   announce();
   if (const auto done = reset_.finish(); !done) {
-    trouble_ = "the factory reset is not finished: " + done.error();
+    trouble_ = "the factory reset is incomplete: " + done.error();
     host::log(host::Level::Error, trouble_);
   } else if (*done) {
     legacy_.reset();  // the team's before: its map, its robots
@@ -163,7 +163,7 @@ std::expected<bool, std::string> Service::run_one() {
 std::string Service::finish_taking_over() {
   const auto done = taking_over_.finish(loop_);
   if (!done) {
-    host::log(host::Level::Error, "the take-over is not finished", {{"why", done.error()}});
+    host::log(host::Level::Error, "the take-over is incomplete", {{"why", done.error()}});
     return done.error();
   }
   if (*done) legacy_.reset();  // of this box, which goes on as another

@@ -85,13 +85,13 @@ bool may_exist(const std::string& path) {
 }
 
 void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why) {
-  log(Level::Error, std::string(what) + " is set aside", {{"file", path}, {"why", why}});
+  log(Level::Error, std::string(what) + " is damaged; its file is renamed", {{"file", path}, {"why", why}});
   namespace fs = std::filesystem;
   std::error_code error;
   fs::remove_all(path + kDamaged, error);
   if (!error) fs::rename(path, path + kDamaged, error);
   if (error && error != std::errc::no_such_file_or_directory)
-    log(Level::Error, "it cannot be set aside", {{"file", path}, {"why", error.message()}});
+    log(Level::Error, "cannot rename a damaged file", {{"file", path}, {"why", error.message()}});
 }
 
 std::expected<std::string, std::string> read_file(const std::string& path) {

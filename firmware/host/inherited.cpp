@@ -12,7 +12,7 @@ std::expected<std::vector<Inherited>, std::string> inherited() {
   char** names = nullptr;
   const int count = sd_listen_fds_with_names(1, &names);
   if (count < 0) {
-    return std::unexpected(std::string("the sockets that systemd hands over: ") + std::strerror(-count));
+    return std::unexpected(std::string("reading the sockets from systemd: ") + std::strerror(-count));
   }
   std::vector<Inherited> all;
   for (int i = 0; i < count; ++i) {

@@ -12,7 +12,7 @@ namespace adit::host {
 void fill_random(std::span<std::uint8_t> bytes) {
   icd::require(bytes.size() <= 256);  // so many never fail once the machine has begun (getentropy(3))
   if (getentropy(bytes.data(), bytes.size()) == 0) return;
-  log(Level::Error, "the kernel gives no random bytes");
+  log(Level::Error, "no random bytes from the kernel");
   std::abort();
 }
 

@@ -34,7 +34,7 @@ std::expected<Token, std::string> read_token(const std::string& path, bool crede
   if (!file && file.error() == ENOENT) return Token();
   if (!file) return std::unexpected(trouble(path, file.error()));
   if (!credential && (file->status.st_mode & 077) != 0) {
-    return std::unexpected(path + ": others may read or write it; run: chmod 600 " + path);
+    return std::unexpected(path + ": other users may read or write it; run: chmod 600 " + path);
   }
   const std::string_view text = trimmed(file->text);
   if (text.empty()) return Token();
@@ -65,7 +65,7 @@ std::map<std::string, std::string> Secrets::odd_tokens() const {
     if (name == "team" || length == kLength) continue;  // the team's own may have any length
     odd.emplace(name,
                 icd::sentence("the token ", name, " has ", length, length == 1 ? " character" : " characters",
-                              ", the Command Post's have ", kLength, " (ICD 4): is all of it there?"));
+                              "; the Command Post's tokens have ", kLength, " (ICD 4); is it complete?"));
   }
   return odd;
 }

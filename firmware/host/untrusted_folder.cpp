@@ -66,7 +66,7 @@ std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFol
 
 std::expected<void, std::string> UntrustedFolder::remove(const std::string& name) {
   if (unlinkat(folder_.get(), name.c_str(), 0) == 0 || errno == ENOENT) return {};
-  const auto stays = [&name] { return std::unexpected("it cannot be taken away: " + trouble(name, errno)); };
+  const auto stays = [&name] { return std::unexpected("cannot remove it: " + trouble(name, errno)); };
   if (errno != EISDIR) return stays();
   const std::string path = path_by_descriptor() + '/' + name;
   std::string aside = path + ".XXXXXX";

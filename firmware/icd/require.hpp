@@ -12,7 +12,7 @@ namespace adit::icd {
 inline void require(bool holds, std::source_location where = std::source_location::current()) {
   if (holds) [[likely]]
     return;
-  std::fprintf(stderr, "%s, line %u: what it requires does not hold\n", where.function_name(),
+  std::fprintf(stderr, "%s, line %u: assertion failed\n", where.function_name(),
                static_cast<unsigned>(where.line()));
   std::abort();
 }

@@ -32,7 +32,7 @@ Checked<std::size_t> find_once(const std::vector<FieldSchema>& fields, std::stri
   if (count == 1) {
     return static_cast<std::size_t>(std::ranges::find(fields, name, &FieldSchema::name) - fields.begin());
   }
-  if (count == 0) return unprocessable("msg.fields: expected a field ", in_quotes(name), ", got none");
+  if (count == 0) return unprocessable("msg.fields: missing field ", in_quotes(name));
   return unprocessable("msg.fields: expected one field ", in_quotes(name), ", got ", count);
 }
 
@@ -96,7 +96,8 @@ Checked<void> check(const PointCloud2& cloud, const Rules& /*rules*/) {
     return unprocessable("msg.point_step: expected a whole number from 1 to ", kLargestPoint, ", got ",
                          cloud.point_step);
   }
-  if (cloud.fields.empty()) return unprocessable("msg.fields: expected at least x, y and z, got none");
+  if (cloud.fields.empty())
+    return unprocessable("msg.fields: expected at least x, y and z, got an empty list");
   if (cloud.fields.size() > kMostFields) {
     return unprocessable("msg.fields: expected at most ", kMostFields, " fields, got ", cloud.fields.size());
   }
@@ -116,7 +117,8 @@ Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
 Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules) {
   if (frame_id == kFrame || rules.rewrite_frame_id) return {};
   return unprocessable_by_setting("rules.rewrite_frame_id", path, ": expected \"", kFrame, "\", got ",
-                                  in_quotes(frame_id), " (the setting rules.rewrite_frame_id takes any)");
+                                  in_quotes(frame_id),
+                                  " (the setting rules.rewrite_frame_id accepts any frame)");
 }
 
 }  // namespace adit::icd

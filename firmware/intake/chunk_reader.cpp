@@ -26,9 +26,9 @@ std::size_t ChunkReader::take_line(std::string_view bytes) {
   const auto end = std::min(bytes.find('\n'), bytes.size());
   line_ += bytes.substr(0, end);
   if (line_.size() > kMostLine) {
-    refuse("chunked body: a line is longer than 4 KiB");
+    refuse("chunked body: a line is longer than 4096 bytes");
   } else if (in_ == In::AfterData && !std::string_view("\r").starts_with(line_)) {
-    refuse("chunked body: a chunk is longer than its size says");
+    refuse("chunked body: a chunk is longer than its size");
   } else if (end < bytes.size()) {
     whole_line();
     line_.clear();
@@ -72,9 +72,9 @@ void ChunkReader::trailer_line() {
   if (line_.empty()) {
     state_ = State::Whole;
   } else if (const auto field = parse_field_line(line_); !field) {
-    refuse("chunked body: its trailers are no header fields");
+    refuse("chunked body: expected header fields as trailers");
   } else if (trailers_ > kMostTrailers) {
-    refuse("chunked body: expected at most 16 KiB of trailers");
+    refuse("chunked body: expected at most 16384 bytes of trailers");
   }
 }
 

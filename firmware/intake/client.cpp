@@ -71,7 +71,7 @@ void Client::give_way() {
   engine_.tell(phase_ == Phase::Idle ? Ended::Idle : Ended::GaveWay, peer_);
   if (phase_ == Phase::Head || (phase_ == Phase::Request && request_->is_unanswered())) {
     say_last(last_answer_text(
-        no_room("too many connections are open, and this one gave way to another; try again"), true));
+        no_room("too many connections are open; this connection was closed for another; try again"), true));
   }
   cut();
 }

@@ -72,8 +72,7 @@ std::expected<FieldLine, std::string_view> parse_field_line(std::string_view lin
   if (name.ends_with(' ') || name.ends_with('\t')) {
     return std::unexpected("a header field: expected no blank before the colon");  // RFC 9112 5.1
   }
-  if (!is_token(name))
-    return std::unexpected("a header field: its name has a character that must not be there");
+  if (!is_token(name)) return std::unexpected("a header field: its name has a character that is not allowed");
   if (!has_no_controls(value))
     return std::unexpected("a header field: must have no control characters");  // RFC 9110 5.5
   return FieldLine{.name = name, .value = without_blanks(value)};

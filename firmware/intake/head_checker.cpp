@@ -43,7 +43,7 @@ HeadChecker::Verdict HeadChecker::look(std::string_view so_far) {
   while (verdict_ == Verdict::More) {
     const auto end = std::min(so_far.find('\n', looked_at_), so_far.size());
     if (end >= kMostBytes) {
-      refuse("the head of the request: expected at most 16 KiB", kFieldsTooLarge);
+      refuse("the head of the request: expected at most 16384 bytes", kFieldsTooLarge);
       break;
     }
     looked_at_ = end;
@@ -148,7 +148,7 @@ void HeadChecker::host(std::string_view so_far, std::string_view value) {
   if (host_) {
     refuse("Host: given twice");
   } else if (!is_authority(value)) {
-    refuse("Host: expected an address or a name, and a port or none");
+    refuse("Host: expected an address or a name, and optionally a port");
   } else {
     host_ = place_of(so_far, value);
   }
@@ -173,7 +173,7 @@ void HeadChecker::content_length(std::string_view value) {
 /// RFC 9112 6.1, 7
 void HeadChecker::transfer_encoding(std::string_view value) {
   if (std::exchange(has_coding_, true) || !same_word(value, "chunked")) {
-    refuse("Transfer-Encoding: expected chunked and nothing else");
+    refuse("Transfer-Encoding: expected only chunked");
   }
 }
 
@@ -182,7 +182,7 @@ void HeadChecker::cookie(std::string_view value) {
   count(count_of(value, ';') + count_of(value, ','));
   cookie_bytes_ += value.size();
   if (cookie_bytes_ > kMostCookieBytes) {
-    refuse("Cookie: expected at most 4 KiB", kFieldsTooLarge);
+    refuse("Cookie: expected at most 4096 bytes", kFieldsTooLarge);
   }
 }
 
@@ -191,11 +191,11 @@ void HeadChecker::end(std::string_view so_far) {
   if (!host_ && !is_version_1_0_) {
     refuse("Host: missing");  // RFC 9112 3.2
   } else if (authority_ && (!host_ || !same_word(text(*authority_), text(*host_)))) {
-    refuse("request target: its address is not the one in Host");  // RFC 9112 3.2.2
+    refuse("request target: its address differs from Host");  // RFC 9112 3.2.2
   } else if (has_coding_ && has_length_) {
-    refuse("Content-Length: must not stand beside Transfer-Encoding");  // RFC 9112 6.3
+    refuse("Content-Length: not allowed with Transfer-Encoding");  // RFC 9112 6.3
   } else if (has_coding_ && is_version_1_0_) {
-    refuse("Transfer-Encoding: must not stand in HTTP/1.0");  // RFC 9112 6.1
+    refuse("Transfer-Encoding: not allowed in HTTP/1.0");  // RFC 9112 6.1
   } else if (verdict_ == Verdict::More) {
     if (has_coding_) framing_ = {.has_body = true, .length = std::nullopt};
     verdict_ = Verdict::Whole;

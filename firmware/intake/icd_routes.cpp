@@ -46,7 +46,8 @@ icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
   const std::string_view encoding = head.header("Content-Encoding");
   const auto coding = codec::coding_of(encoding);
   if (!coding) {
-    return icd::unprocessable("Content-Encoding: expected gzip, deflate or none, got ", shown(encoding));
+    return icd::unprocessable("Content-Encoding: expected gzip, deflate or no such header, got ",
+                              shown(encoding));
   }
   return codec::BodyKind{.format = *format, .coding = *coding};
 }
@@ -69,20 +70,20 @@ icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::
   };
   if (!access::names_this_box(host)) {
     return needs_token(
-        icd::sentence("Host: expected the box's address, localhost or its name in .local, or the "
-                      "team's token, as this has the Origin ",
+        icd::sentence("Host: expected the box's address, localhost, its name in .local, or the team's token, "
+                      "because the request has the Origin ",
                       icd::in_quotes(origin), ", got ", icd::in_quotes(host)));
   }
   const bool is_listed = std::ranges::any_of(
       origins, [origin](const std::string& each) { return icd::same_but_for_case(each, origin); });
   if (is_listed || access::is_same_origin(origin, host)) return {};
   return needs_token(icd::sentence("Origin: a page of ", icd::in_quotes(origin),
-                                   " needs the team's token, or to be in the setting team.origins"),
+                                   " needs the team's token, or an entry in the setting team.origins"),
                      "team.origins");
 }
 
 icd::Refusal stops() {
-  return {icd::Status::ServiceUnavailable, "the gateway is stopping; this was not taken, send it again"};
+  return {icd::Status::ServiceUnavailable, "aditd is stopping; this message was not accepted, send it again"};
 }
 
 }  // namespace
@@ -119,7 +120,7 @@ icd::Checked<void> IcdRoutes::check_entry(const RequestHead& head) const {
   if (!options_.asks_token) return check_origin(head, options_.origins);
   return std::unexpected(
       icd::Refusal{icd::Status::Unauthorized, options_.tokens.empty()
-                                                  ? "Authorization: no token is set up on this gateway yet"
+                                                  ? "Authorization: no token is set on this box yet"
                                                   : "Authorization: expected Bearer and the team's token"});
 }
 

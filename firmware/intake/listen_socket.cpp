@@ -100,20 +100,21 @@ std::expected<loop::FileDescriptor, std::string> open_listen_socket(const Listen
 std::expected<void, std::string> adopt_listen_socket(int fd, const Listen& listen) {
   const int flags = ::fcntl(fd, F_GETFL);
   if (flags < 0 || ::fcntl(fd, F_SETFL, flags | O_NONBLOCK) != 0) {
-    return std::unexpected(failed("taking a socket over"));
+    return std::unexpected(failed("taking over a socket"));
   }
   set_keepalive(fd, listen.idle);
-  if (::listen(fd, kBacklog) != 0) return std::unexpected(failed("listening on a socket taken over"));
+  if (::listen(fd, kBacklog) != 0) return std::unexpected(failed("listening on an inherited socket"));
   return {};
 }
 
 std::expected<Bound, std::string> bound_at(int fd) {
-  static const std::string kExpected = "expected a TCP socket over IPv4 or IPv6 that listens, got ";
+  static const std::string kExpected = "expected a listening TCP socket over IPv4 or IPv6, got ";
   const auto type = get(fd, SO_TYPE), domain = get(fd, SO_DOMAIN);
   if (!type) return std::unexpected(kExpected + "no socket");
-  if (*domain != AF_INET && *domain != AF_INET6) return std::unexpected(kExpected + "one of another family");
-  if (*type != SOCK_STREAM) return std::unexpected(kExpected + "one that is no stream");
-  if (get(fd, SO_ACCEPTCONN) != 1) return std::unexpected(kExpected + "one that does not");
+  if (*domain != AF_INET && *domain != AF_INET6)
+    return std::unexpected(kExpected + "a socket of another family");
+  if (*type != SOCK_STREAM) return std::unexpected(kExpected + "a socket that is not a stream");
+  if (get(fd, SO_ACCEPTCONN) != 1) return std::unexpected(kExpected + "a socket that does not listen");
   std::array<char, IFNAMSIZ> interface{};
   socklen_t size = interface.size();
   if (::getsockopt(fd, SOL_SOCKET, SO_BINDTODEVICE, interface.data(), &size) != 0) interface[0] = '\0';

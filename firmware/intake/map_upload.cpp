@@ -136,7 +136,7 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   void stored(icd::ChunkedBytes left);
   void go_on();
   static icd::Refusal not_held() {
-    return {icd::Status::ServiceUnavailable, "the gateway could not hold this map; send it again later"};
+    return {icd::Status::ServiceUnavailable, "Adit has no memory for this map; send it again later"};
   }
   void failed() {
     at_work_ = false;
@@ -181,8 +181,7 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
 /// refused.
 bool MapUpload::State::charge() {
   if (share_.grow_to(std::max(visit_.sender.bytes, data_))) return true;
-  turn_away(
-      {icd::Status::TooManyRequests, "too many maps are being sent at once; send this one again later"});
+  turn_away({icd::Status::TooManyRequests, "too many maps at once; send this map again later"});
   return false;
 }
 
@@ -190,8 +189,7 @@ bool MapUpload::State::charge() {
 bool MapUpload::State::is_held() {
   const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
   if (without_room_.grow_to(holds)) return true;
-  turn_away({icd::Status::ServiceUnavailable,
-             "there is no room for this map: the room for maps that wait is full; send it again later"});
+  turn_away({icd::Status::ServiceUnavailable, "the queue of maps is full; send this map again later"});
   return false;
 }
 
@@ -225,7 +223,7 @@ void MapUpload::State::give_to_worker() {
 void MapUpload::State::worked() {
   at_work_ = false;
   if (over_) return;
-  const bool well = loop::guarded("taking a map", [this] {
+  const bool well = loop::guarded("receiving a map", [this] {
     if (auto& result = decoding_->result()) return take_result(std::move(*result));
     go_on();
   });

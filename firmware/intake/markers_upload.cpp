@@ -82,7 +82,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void read_large_one();
   void was_read(Parts parts) {
     if (over_) return;
-    if (!loop::guarded("taking markers", [&] { decoded(std::move(parts)); })) fail(not_held());
+    if (!loop::guarded("receiving markers", [&] { decoded(std::move(parts)); })) fail(not_held());
   }
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
@@ -99,8 +99,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
         });
   }
   static icd::Refusal not_held() {
-    return {icd::Status::ServiceUnavailable,
-            "the gateway could not hold these markers; send them again later"};
+    return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
   }
   void failed() { turn_away(not_held()); }
 
@@ -115,7 +114,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
 
 void MarkersUpload::State::charge() {
   if (share_.grow_to(visit_.sender.bytes + (at_once_ ? at_once_->size() : 0))) return;
-  turn_away({icd::Status::TooManyRequests, "too much is being sent at once; send these markers again later"});
+  turn_away({icd::Status::TooManyRequests, "too many markers at once; send these markers again later"});
 }
 
 void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {

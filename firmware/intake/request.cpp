@@ -23,7 +23,7 @@ constexpr std::size_t kLinger = 256 << 20, kLingerOfStranger = 256 << 10;
 
 Answer failure() {
   return error_answer(icd::Status::InternalServerError,
-                      "the gateway could not finish this request, which may have been taken: send it again");
+                      "Adit could not finish this request and may have accepted it; send it again");
 }
 
 /// What the handler is given to answer by. Whoever drops it unanswered, by an exception too, has answered

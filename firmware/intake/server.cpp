@@ -249,8 +249,7 @@ void Server::Impl::first_call(Client& client, std::string_view method) {
     client.is_known(known && has_room);
     if (has_room) return request->open(turnstile_);
     tell(Ended::NoRoom, client.peer());
-    request->refuse_for_room(
-        "too many requests are under way at once, from this address or in all; try again");
+    request->refuse_for_room("too many requests at once, from this address or in total; try again");
   }
 }
 

@@ -61,10 +61,9 @@ class Late final : public BodySink {
 };
 
 Answer not_looked_at() {
-  Answer answer =
-      error_answer(icd::Status::TooManyRequests,
-                   "too many wrong tokens came from this address, and this one was not looked at: "
-                   "try again in a second");
+  Answer answer = error_answer(
+      icd::Status::TooManyRequests,
+      "too many wrong tokens from this address; this token was not checked; try again in a second");
   answer.headers.push_back({"Retry-After", "1"});
   return answer;
 }

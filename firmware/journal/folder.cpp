@@ -37,7 +37,7 @@ bool replay(const std::string& path, Carried& carried, const std::atomic<bool>& 
     return !enough;
   });
   if (unknown > 0) {
-    host::log(host::Level::Error, "kept records could not be understood and are passed over",
+    host::log(host::Level::Error, "unknown journal records skipped",
               {{"file", path}, {"records", std::to_string(unknown)}});
   }
   return whole;
@@ -115,7 +115,7 @@ std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last, cons
     return size;
   }
   fs::remove(part, error);
-  return std::unexpected(enough ? "the gateway ends" : path + ": it cannot be written");
+  return std::unexpected(enough ? "aditd is stopping" : path + ": cannot be written");
 }
 
 void Folder::remove_before(std::uint64_t number) {

@@ -136,7 +136,7 @@ Journal::Kept Journal::write(std::string_view bytes) {
 
 Journal::Kept Journal::failed(const std::string& why) {
   if (trouble_.empty()) {
-    host::log(host::Level::Error, "states and markers cannot be kept and are not taken", {{"why", why}});
+    host::log(host::Level::Error, "states and markers cannot be stored; rejecting them", {{"why", why}});
   }
   trouble_ = why;
   return std::unexpected(why);
@@ -150,8 +150,7 @@ void Journal::turn_over() {
 
 void Journal::compact(std::uint64_t last) {
   compacting_ = true;
-  auto outcome =
-      std::make_shared<std::expected<std::size_t, std::string>>(std::unexpected("there is no memory for it"));
+  auto outcome = std::make_shared<std::expected<std::size_t, std::string>>(std::unexpected("no memory"));
   compactor_.submit(
       loop::Urgency::CanWait, [this, outcome, last] { *outcome = folder_.compact(last, ending_); },
       [this, outcome] {
@@ -161,7 +160,7 @@ void Journal::compact(std::uint64_t last) {
           snapshot_ = **outcome;
           return;
         }
-        host::log(host::Level::Warning, "the journal cannot be made smaller", {{"why", outcome->error()}});
+        host::log(host::Level::Warning, "cannot compact the journal", {{"why", outcome->error()}});
         least_ = size_ + kLeastTurn;  // to be tried again after as much
       });
 }

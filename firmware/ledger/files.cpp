@@ -81,7 +81,7 @@ Result<std::string> read_file(const std::string& path) {
 
 Result<void> make_file(const std::string& path) {
   const loop::FileDescriptor made(::open(path.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600));
-  if (!made && errno != EEXIST) return std::unexpected(system_error("making " + path));
+  if (!made && errno != EEXIST) return std::unexpected(system_error("creating " + path));
   return set_mode(path);
 }
 
@@ -179,7 +179,7 @@ Result<std::string> set_aside(const std::string& folder, const std::string& path
     if (auto synced = sync_folder(folder); !synced) return std::unexpected(synced.error());
     return aside;
   }
-  return std::unexpected(Error{.what = "setting " + path + " aside: no name is free"});
+  return std::unexpected(Error{.what = "renaming " + path + ": no free name"});
 }
 
 }  // namespace adit::ledger

@@ -163,7 +163,7 @@ class Ledger::Impl {
     bind_report(row, report, history);
     if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
     if (sqlite3_changes(database_.get()) != 1)
-      return std::unexpected(Error{.what = doing() + ": this number is another report's"});
+      return std::unexpected(Error{.what = doing() + ": another report has this number"});
     if (!report.report.robot) return {};
     Query robot(write_robot_);
     bind_robot(robot, report.number, *report.report.robot);
@@ -239,10 +239,10 @@ Result<Ledger> Ledger::open(const std::string& folder) {
 Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& scratch,
                                 const std::string& why) {
   Scratch made(scratch);
-  if (made.path().empty()) return std::unexpected(system_error("making a folder in " + scratch));
+  if (made.path().empty()) return std::unexpected(system_error("creating a directory in " + scratch));
   std::string unread;
   if (auto copied = copy_database(folder + kFile, made.path() + kFile); !copied) {
-    unread = "what is in it cannot be read: " + copied.error().what;
+    unread = "its content cannot be read: " + copied.error().what;
     remove_database(made.path() + kFile);
   }
   auto opened = open_unlocked(made.path());  // `made` has the lock

@@ -242,7 +242,7 @@ class Reader {
   }
 
   static std::string damage_of(std::size_t at) {
-    return "frame " + std::to_string((at - kLogHeader) / kFrame + 1) + " of it is damaged";
+    return "frame " + std::to_string((at - kLogHeader) / kFrame + 1) + " is damaged";
   }
 
   std::string& log_;

@@ -62,7 +62,7 @@ Result<void> check_pages(Database& database) {
 Result<void> check_rows(Database& database) {
   const auto unproven = database.text(kUnprovenRow.c_str());
   if (!unproven) return std::unexpected(database.error("reading all rows"));
-  if (!unproven->empty()) return std::unexpected(damaged(*unproven + " is not as it was written"));
+  if (!unproven->empty()) return std::unexpected(damaged(*unproven + " is damaged"));
   for (const std::string* sql :
        {&kWriteReport, &kWriteRun, &kWriteSighting, &kWriteRobot, &kReadReports, &kReadHistory, &kReadRuns}) {
     if (const auto known = Statement::prepare(database, *sql); !known) return std::unexpected(known.error());
@@ -103,10 +103,11 @@ Result<void> set_up(Database& database) {
   const auto tables = database.number("SELECT count(*) FROM sqlite_schema");
   if (!tables) return std::unexpected(tables.error());
   // A new one gets its name only when it is whole.
-  if (*tables == 0) return std::unexpected(damaged("it is empty"));
+  if (*tables == 0) return std::unexpected(damaged("the file is empty"));
   const auto mode = database.text("PRAGMA journal_mode = WAL");
   if (!mode) return std::unexpected(mode.error());
-  if (*mode != "wal") return std::unexpected(Error{.what = "the ledger's file system has no WAL: " + *mode});
+  if (*mode != "wal")
+    return std::unexpected(Error{.what = "the ledger's file system does not support WAL: " + *mode});
   if (auto pages = check_pages(database); !pages) return pages;
   if (auto made = make_tables(database); !made) return made;
   if (auto rows = check_rows(database); !rows) return rows;
@@ -141,7 +142,9 @@ class Opening {
   /// A ledger under its name: the one that was salvaged when the box died, or a new one.
   Result<void> have_file() {
     if (exists(salvaged_)) {
-      damage_ = "The ledger was damaged and set aside; what could be had was taken over from it.";
+      damage_ =
+          "The ledger was damaged. Its file was renamed, and all readable reports were copied to a new "
+          "ledger.";
       return put_salvaged_in_place();
     }
     if (exists(path_)) return {};
@@ -200,11 +203,11 @@ class Opening {
     const auto mark = mark_without_log(path_);
     if (mark && *mark && (*mark)->log_needed) {
       const bool cut = static_cast<std::int64_t>(log->size()) < (*mark)->log_size && !reading.ended;
-      if (lost.empty() && reading.empty) lost = "it is gone";
-      if (lost.empty() && cut) lost = "it was cut short";
+      if (lost.empty() && reading.empty) lost = "the file is missing";
+      if (lost.empty() && cut) lost = "the file was cut short";
     }
     if (lost.empty() && !mark && !reading.ended)
-      lost = "its end is not there, and the file's mark is damaged";
+      lost = "its end is missing, and the ledger's mark is damaged";
     if (!lost.empty()) {
       tail_lost_ = true;
       return std::unexpected(damaged("its log: " + lost));
@@ -224,8 +227,9 @@ class Opening {
     }
     if (::fdatasync(file.get()) != 0) return std::unexpected(system_error("repairing " + path));
     repaired_ = true;
-    damage_ = "The ledger's log was damaged; its checksums told what had been there, and it was put right: " +
-              std::to_string(repairs.size()) + " bytes. No report is missing.";
+    damage_ =
+        "The ledger's log was damaged and was repaired by its checksums: " + std::to_string(repairs.size()) +
+        " bytes. No report is missing.";
     return {};
   }
 
@@ -241,8 +245,7 @@ class Opening {
     if (auto named = rename_file(new_, salvaged_); !named) return named;
     if (auto synced = sync_folder(folder_); !synced) return synced;
     if (auto placed = put_salvaged_in_place(); !placed) return placed;
-    damage_ =
-        "The ledger was damaged (" + why + ") and was set aside as " + aside_ + "; " + taken_over_ + ".";
+    damage_ = "The ledger was damaged (" + why + "). Its file is now " + aside_ + "; " + taken_over_ + ".";
     return {};
   }
 

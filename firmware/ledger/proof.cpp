@@ -75,7 +75,7 @@ Result<void> teach_proof(Database& database) {
   constexpr int kHow = SQLITE_UTF8 | SQLITE_DETERMINISTIC | SQLITE_DIRECTONLY;
   const int result = sqlite3_create_function_v2(database.get(), "proof", -1, kHow, nullptr, prove, nullptr,
                                                 nullptr, nullptr);
-  if (result != SQLITE_OK) return std::unexpected(database.error("teaching SQLite to prove rows"));
+  if (result != SQLITE_OK) return std::unexpected(database.error("adding the checksum function to SQLite"));
   return {};
 }
 

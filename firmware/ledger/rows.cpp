@@ -309,7 +309,7 @@ const std::string kProveRows = prove("report", kKept) + prove("run", kRunNames) 
 
 const std::string kUnprovenRow =
     icd::sentence(unproven("report ", "report", kKept), unproven("run ", "run", kRunNames),
-                  unproven("what was seen of run ", "sighting", kSightingNames),
+                  unproven("the status of run ", "sighting", kSightingNames),
                   unproven("the robot of report ", "robot", kRobotNames), R"(
   SELECT 'the mark' FROM mark WHERE proof != proof(number, log_needed, log_size, highest)
   UNION ALL SELECT 'report ' || highest FROM mark
@@ -357,7 +357,7 @@ Report report_of(const Query& row) {
   from.take(robot);
   report.report.robot = icd::RobotName::parse(robot);
   if (!from.unknown_state().empty()) {  // only the operator can judge it: without `before` nobody else does
-    report.note = "its state '" + from.unknown_state() + "' is none that this version knows; " + report.note;
+    report.note = "its state '" + from.unknown_state() + "' is unknown to this version; " + report.note;
     report.before.reset();
   }
   return report;

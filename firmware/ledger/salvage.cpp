@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kSender = 5;               // the column
 constexpr std::int64_t kNumbersKeptFree = 1000;  // the most that can have waited, at least
-constexpr const char* kDamaged = "the ledger was damaged: what was counted before is not known for certain";
+constexpr const char* kDamaged = "the ledger was damaged: the Command Post's earlier counts are not certain";
 
 constexpr const char* kHold = R"(
   UPDATE report SET state = 'in doubt', changed = ?1, note = ?2, before_score = NULL, before_run_clock = NULL,
@@ -97,7 +97,7 @@ class Salvage {
     }
     if (auto proven = database_.execute(kProveRows.c_str()); !proven) return std::unexpected(proven.error());
     if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
-    return icd::sentence(carved_.reports.size(), " reports were taken over from it",
+    return icd::sentence(carved_.reports.size(), " reports were copied to a new ledger",
                          missing.empty() ? "" : "; " + missing);
   }
 
@@ -111,7 +111,7 @@ class Salvage {
     for (const auto& [number, row] : rows) {
       Query query(*statement);
       for (const Value& value : row) bind(query, value);
-      if (query.step() != SQLITE_DONE) return std::unexpected(database_.error("taking over " + table));
+      if (query.step() != SQLITE_DONE) return std::unexpected(database_.error("copying " + table));
     }
     return {};
   }
@@ -122,7 +122,7 @@ class Salvage {
     if (!statement) return std::unexpected(statement.error());
     Query query(*statement);
     (query.bind(values), ...);
-    if (query.step() != SQLITE_DONE) return std::unexpected(database_.error("salvaging the ledger"));
+    if (query.step() != SQLITE_DONE) return std::unexpected(database_.error("recovering the ledger"));
     return {};
   }
 

@@ -138,12 +138,12 @@ Result<void> check_version(Database& database) {
     return {};
   }
   const std::string version = "version " + std::to_string(kind->version);
-  if (kind->version < 1) return no_ledger("it has " + version + ", which there never was");
+  if (kind->version < 1) return no_ledger("it has " + version + ", which does not exist");
   if (kind->oldest > kind->version)
-    return no_ledger("it has " + version + ", which only a later one can read");
+    return no_ledger("it has " + version + ", which only a later version can read");
   if (kind->oldest > kVersion) {
-    std::string sentence = "a later Adit wrote this ledger (" + version + ", and this one reads up to ";
-    sentence += std::to_string(kVersion) + "): run that Adit, or move the ledger out of its folder";
+    std::string sentence = "a later Adit wrote this ledger (" + version + ", this Adit reads up to ";
+    sentence += std::to_string(kVersion) + "); run that Adit, or move the ledger out of its directory";
     return std::unexpected(Error{.what = std::move(sentence)});
   }
   return {};

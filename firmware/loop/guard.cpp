@@ -17,7 +17,7 @@ void caught(const char* where, const char* what) noexcept {
     if (auto* const told = tell.load()) return told(where, what);
   } catch (...) {  // no memory for the log either: stderr needs none
   }
-  std::fprintf(stderr, "%s ended by an exception: %s\n", where, what);
+  std::fprintf(stderr, "%s: unhandled exception: %s\n", where, what);
 }
 
 std::uint64_t caught_so_far() noexcept {

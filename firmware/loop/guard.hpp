@@ -26,7 +26,7 @@ bool guarded(const char* where, Work&& work) noexcept {
   } catch (const std::exception& error) {
     caught(where, error.what());
   } catch (...) {
-    caught(where, "an exception of no known kind");
+    caught(where, "unknown exception");
   }
   return false;
 }

@@ -8,7 +8,7 @@ namespace adit::network {
 
 void Change::interrupted() {
   status_.ended = Ended::TakenBack;
-  status_.why = "it was not confirmed before adit-network ended";
+  status_.why = "the change was not confirmed before adit-network ended";
 }
 
 void Change::want(const Wanted& wanted, Instant now) {
@@ -16,21 +16,21 @@ void Change::want(const Wanted& wanted, Instant now) {
   if (status_.kept == wanted.numbers) {
     status_.ended_nonce = wanted.nonce;
     status_.ended = Ended::Confirmed;
-    status_.why = "these are the numbers already";
+    status_.why = "the box already has these addresses";
     return;
   }
   status_.pending = Pending{wanted.nonce, wanted.numbers, now + wanted.confirm_within, wanted.confirm_within};
   if (const auto applied = hands_.apply(wanted.numbers); !applied) {
-    take_back("it could not be applied: " + applied.error(), now);
+    take_back("the change could not be applied: " + applied.error(), now);
   }
 }
 
 void Change::hear(const Word& word, Instant now) {
   if (!status_.pending || word.nonce != status_.pending->nonce || try_at_) return;
-  if (word.what == Word::What::Back) return take_back("somebody said so", now);
+  if (word.what == Word::What::Back) return take_back("a user took the change back", now);
   const Numbers numbers = status_.pending->wanted;
   if (const auto kept = hands_.keep(numbers); !kept) {
-    return take_back("it was confirmed, but could not be kept: " + kept.error(), now);
+    return take_back("the change was confirmed, but could not be stored: " + kept.error(), now);
   }
   status_.kept = numbers;
   end(Ended::Confirmed, "");
@@ -39,12 +39,12 @@ void Change::hear(const Word& word, Instant now) {
 std::expected<void, std::string> Change::forget(Instant now) {
   auto kept = hands_.forget();
   if (!kept) {
-    if (status_.pending && !try_at_) take_back("all addresses are to be forgotten", now);
+    if (status_.pending && !try_at_) take_back("a factory reset forgets all addresses", now);
     return std::unexpected(std::move(kept.error()));
   }
   status_.kept = *kept;
   status_.endpoints = {};
-  if (status_.pending) end(Ended::TakenBack, "all addresses were forgotten");
+  if (status_.pending) end(Ended::TakenBack, "a factory reset forgot all addresses");
   return {};
 }
 
@@ -53,7 +53,7 @@ void Change::tick(Instant now) {
     if (now >= *try_at_) try_to_take_back(now);
   } else if (status_.pending && now >= status_.pending->until) {
     take_back(
-        icd::sentence("nobody confirmed it within ",
+        icd::sentence("the change was not confirmed within ",
                       std::chrono::ceil<std::chrono::seconds>(status_.pending->confirm_within).count(), " s"),
         now);
   }
@@ -79,7 +79,8 @@ void Change::try_to_take_back(Instant now) {
   const auto taken = hands_.take_back();
   if (taken) return end(Ended::TakenBack, why_);
   if (++tries_ == kTries) {
-    return end(Ended::TakenBack, why_ + "; it is not in effect yet, and is tried again: " + taken.error());
+    return end(Ended::TakenBack,
+               why_ + "; the old addresses are not in effect yet: retrying: " + taken.error());
   }
   try_at_ = now + kTryAgain;
 }

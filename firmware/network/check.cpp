@@ -62,10 +62,10 @@ void warn_the_asker(const Numbers& wanted, const std::optional<Numbers>& present
   if (present && present->mode == wanted.mode && present->team == wanted.team) return;
   const std::string within =
       icd::sentence("within ", std::chrono::ceil<std::chrono::seconds>(around.confirm_within).count(),
-                    " s, or it is taken back");
+                    " s, or the box returns to the old addresses");
   const std::string page = page_at(wanted, around.listen, around.name);
   if (wanted.mode != Mode::Static) {
-    warnings.push_back(icd::sentence("the page moves to an address that is not known yet: open ", page,
+    warnings.push_back(icd::sentence("the page moves to an address that is not yet known: open ", page,
                                      " and confirm ", within));
   } else if (asker && (wanted.team.contains(*asker) || asker.value() >> 24 == 127)) {
     warnings.push_back(icd::sentence("the page moves: open ", page, " and confirm ", within));
@@ -85,10 +85,10 @@ void check_listening(const Numbers& wanted, const Circumstances& around,
   });
   if (reached || around.listen.empty()) return;
   errors.push_back({fixed ? "team.address" : "team.mode",
-                    icd::sentence("nothing would be served ",
-                                  fixed ? "at " + address : "at an address that is not known yet",
+                    icd::sentence("Adit would not be reachable ",
+                                  fixed ? "at " + address : "at an address that is not yet known",
                                   ": the settings' team.listen has only ", around.listen.front().address,
-                                  "; set it to 0.0.0.0, which is every address of team.interface")});
+                                  "; set it to 0.0.0.0, for every address of team.interface")});
 }
 
 std::vector<Difference> differences(const Numbers& wanted, const std::optional<Numbers>& present) {

@@ -133,7 +133,7 @@ void read_addresses(const Field& list, void* addresses) {
     if (!address) {
       field.refuse("expected an IPv4 address");
     } else if (!all.empty() && all.back() >= *address) {
-      field.refuse("expected them in order, and none twice");
+      field.refuse("expected ascending addresses, each once");
     } else {
       all.push_back(*address);
     }

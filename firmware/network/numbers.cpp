@@ -101,7 +101,7 @@ class Members {
     if (object_ == nullptr) return;
     for (auto member = object_->begin(); member != object_->end(); ++member) {
       if (std::ranges::find(known_, member->first) == known_.end()) {
-        refuse(icd::in_quotes(member->first), "no such member here");
+        refuse(icd::in_quotes(member->first), "unknown member");
       } else if (std::ranges::find(object_->begin(), member, member->first, &Value::Member::first) !=
                  member) {
         refuse(member->first, "given twice");
@@ -127,8 +127,8 @@ constexpr std::uint32_t kLinkLocal = 169u << 8 | 254;  // the first two numbers 
 /// Why no host of the subnet can have the address; "" where one can.
 std::string unfit(std::uint32_t address, const Subnet& subnet) {
   const std::uint32_t first = address >> 24;
-  if (first == 0 || first == 127 || first >= 224) return "is no address that a host can have";
-  if (address >> 16 == kLinkLocal) return "is link-local: nobody sets such an address (RFC 3927)";
+  if (first == 0 || first == 127 || first >= 224) return "is not an address that a host can have";
+  if (address >> 16 == kLinkLocal) return "is link-local: a host chooses such an address itself (RFC 3927)";
   if (address == subnet.first()) return "is the address of the subnet " + written(subnet) + " itself";
   if (address == subnet.last()) return "is the broadcast address of " + written(subnet);
   return "";

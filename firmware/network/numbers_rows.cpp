@@ -38,11 +38,11 @@ constexpr Member kTeamMembers[] = {
     made_of<Numbers, StaticAddress>("address").if_any(),
     made_of<Numbers, StaticPrefix>("prefix").if_any(),
 };
-constexpr Row kTeam = {"TeamNumbers", kTeamMembers, "An address with static alone."};
+constexpr Row kTeam = {"TeamNumbers", kTeamMembers, "Has an address only if mode is static."};
 
 constexpr Member kCommandPostMembers[] = {
     member<&Numbers::command_post>("addresses").as(codec::kind_as<std::vector<Subnet>, Hosts>),
-    member<&Numbers::gateway>("gateway", "empty: none")
+    member<&Numbers::gateway>("gateway", "empty if there is no gateway")
         .as(codec::kind_as<std::optional<std::uint32_t>, AddressOrNone>),
 };
 constexpr Row kCommandPost = {"CommandPostNumbers", kCommandPostMembers};

@@ -32,7 +32,7 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> hold_button(const settin
 Held hold(const settings::Panel& settings, const std::string& consumer, const std::string& simulated,
           const std::function<void(const std::string&)>& complain) {
   auto button = hold_button(settings, consumer, simulated);
-  if (!button) complain("the button cannot be had: " + button.error());
+  if (!button) complain("cannot use the button: " + button.error());
   return {hold_lines(settings, consumer, simulated), button ? std::move(*button) : nullptr};
 }
 

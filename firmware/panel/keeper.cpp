@@ -77,7 +77,7 @@ void Keeper::take(std::string_view message) {
   const auto told = parse_message(message);
   if (told) return std::visit([this](const auto& each) { take(each); }, *told);
   if (!std::exchange(complained_, true)) {
-    world_.complain("what aditd tells is not understood, it is let go of: " + told.error());
+    world_.complain("unknown message from aditd, connection closed: " + told.error());
   }
   lose();
 }
@@ -125,14 +125,13 @@ void Keeper::look_at_button() {
   const bool is_first = !pressed_;
   pressed_ = level ? std::optional(*level) : std::nullopt;
   if (!pressed_) return;
-  if (is_first && *pressed_) world_.complain("the button is held already: let it go before it is used");
+  if (is_first && *pressed_) world_.complain("button is pressed at the start: release it before use");
   if (is_first || !*pressed_) is_for_him_ = !*pressed_;
 }
 
 void Keeper::log_button(const std::expected<bool, std::string>& level) {
   if (std::exchange(button_broken_, !level) == !level) return;
-  world_.complain(level ? "the button can be read again"
-                        : "the button cannot be read, and is looked for again: " + level.error());
+  world_.complain(level ? "button works again" : "cannot read the button, retrying: " + level.error());
 }
 
 /// One that is held since before he came is none to him until it was let go.
@@ -153,9 +152,8 @@ void Keeper::paint() {
   const Frame frame = watched_.frame(now);
   painter_.show(frame.lit, now);
   if (painter_.has_turned()) {
-    world_.complain(painter_.trouble().empty()
-                        ? "the lights can be set again"
-                        : "the lights cannot be set, and are tried again: " + painter_.trouble());
+    world_.complain(painter_.trouble().empty() ? "the lights work again"
+                                               : "cannot set the lights, retrying: " + painter_.trouble());
   }
   std::optional<Instant> next = painter_.next();
   // A millisecond more: what is left of one was cut off.

@@ -38,7 +38,7 @@ std::expected<Message, std::string> parse_lit(std::string_view bits) {
 std::expected<Message, std::string> parse_panel(std::string_view json) {
   auto board = settings::parse_board(json);
   if (!board) return std::unexpected("panel: " + settings::sentence_of(board.error()));
-  if (!board->panel) return std::unexpected("panel: none is named");
+  if (!board->panel) return std::unexpected("panel: missing");
   return ToUse{std::move(*board->panel)};
 }
 
@@ -67,9 +67,9 @@ std::string message_of(const ToUse& message) {
 std::expected<Message, std::string> parse_message(std::string_view text) {
   if (text == kEnd) return ToEnd{};
   if (text.starts_with(kLit)) return parse_lit(text.substr(kLit.size()));
-  if (text.size() > kLongestMessage) return std::unexpected("longer than any message");
+  if (text.size() > kLongestMessage) return std::unexpected("the message is too long");
   if (text.starts_with(kPanel)) return parse_panel(text.substr(kPanel.size()));
-  return std::unexpected("no message that is known");
+  return std::unexpected("unknown message");
 }
 
 std::string message_of(const ButtonIs& said) {

@@ -42,9 +42,9 @@ std::expected<loop::FileDescriptor, std::string> listening(const std::string& so
   if (given == 1) {
     loop::FileDescriptor fd(SD_LISTEN_FDS_START);
     if (sd_is_socket_unix(fd.get(), SOCK_SEQPACKET, 1, nullptr, 0) > 0) return fd;
-    return std::unexpected("what systemd gave is no listening socket of packets");
+    return std::unexpected("systemd's socket is not a listening SOCK_SEQPACKET socket");
   }
-  if (socket.empty()) return std::unexpected("--socket is missing, and systemd gave none");
+  if (socket.empty()) return std::unexpected("--socket is missing, and systemd gave no socket");
   auto made = panel::listening_at(socket);
   if (made) return std::move(*made);
   return std::unexpected(socket + ": " + std::system_category().message(made.error()));

@@ -6,21 +6,21 @@ command_line::Program panel_command_line_of(PanelOptions& options) {
   return {
       .name = "adit-panel",
       .usage = "",
-      .about =
-          "Holds the panel's lights and button for aditd, and shows the fault where aditd dies or hangs.",
+      .about = "Hold the panel's lights and button for aditd. If aditd dies or hangs, show the fault.",
       .rows = {{"--board", "FILE",
-                "what the board is (board.json); where it names a panel, that counts before what aditd says",
+                "the board's description (board.json); if it names a panel, that panel is used instead of "
+                "aditd's",
                 &options.board},
-               {"--socket", "SOCKET", "where aditd finds it (aditd --panel); not with a socket of systemd's",
+               {"--socket", "SOCKET", "socket for aditd (aditd --panel); not with a socket from systemd",
                 &options.socket},
                {"--simulated", "FILE",
-                "where the lights are shown while no line is named; the button is the FIFO FILE.button",
+                "show the lights in this file while no line is named; the button is the FIFO FILE.button",
                 &options.simulated},
-               {"--version", "", "prints the version", &options.version},
-               {"--help", "", "prints this", &options.help}},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
       .ending =
-          "Exits 0 after SIGTERM or SIGINT, with all lights dark, 1 where it cannot start (and says why), "
-          "2 on a wrong command line.",
+          "Exit code: 0 after SIGTERM or SIGINT, with all lights dark; 1 if it cannot start; 2 for a wrong "
+          "command line.",
       .empty = command_line::Empty::Taken,
   };
 }

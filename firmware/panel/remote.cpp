@@ -68,7 +68,8 @@ class Connection {
       if (const auto said = parse_said({bytes.data(), static_cast<std::size_t>(size)}))
         std::visit([this](const auto& each) { take(each); }, *said);
     }
-    if (std::exchange(was_lost_, false) || !pressed_) return std::unexpected("adit-panel cannot read it");
+    if (std::exchange(was_lost_, false) || !pressed_)
+      return std::unexpected("adit-panel cannot read the button");
     return *pressed_;
   }
 

@@ -53,7 +53,8 @@ void check_endpoint(const std::string& path, const Address& address, std::vector
   if (host.any || host.several) {
     errors.push_back({path, icd::sentence(address.address, " is no address of one machine")});
   } else if (host.mapped) {
-    errors.push_back({path, icd::sentence(address.address, " is an IPv4 address: write it as one")});
+    errors.push_back(
+        {path, icd::sentence(address.address, " is an IPv4 address: write it in the form 10.0.0.1")});
   }
 }
 
@@ -85,7 +86,8 @@ void check_listen(const Settings& settings, std::vector<Error>& errors) {
         errors.push_back({item(i), "the same as " + item(j)});
     }
     if (is_endpoint(listen[i], settings)) {
-      errors.push_back({item(i), "the same as an endpoint of the Command Post; Adit would post to itself"});
+      errors.push_back(
+          {item(i), "the same as an endpoint of the Command Post, so that Adit would post to itself"});
     }
   }
 }
@@ -121,8 +123,8 @@ void check_voxels(const std::vector<Robot>& robots, std::vector<Error>& errors) 
       errors.push_back({path, icd::sentence("expected 0, or 0.01 to 10, got ", edge)});
     } else if (edge > 0 && robots[i].clouds == lanes::Clouds::Whole) {
       errors.push_back({path, icd::sentence("robots[", i,
-                                            "].clouds is \"whole\", so that the newest counts "
-                                            "alone: nothing can be left out of it")});
+                                            "].clouds is \"whole\": points can be left out only of clouds "
+                                            "that the Command Post adds to the earlier clouds")});
     }
   }
 }
@@ -141,9 +143,9 @@ void check_courses(const Settings& settings, std::vector<Error>& errors) {
   if (course.empty() || std::ranges::find(courses, course, &Course::name) != courses.end()) return;
   std::string known;
   for (const Course& each : courses) known.append(known.empty() ? "" : ", ").append(each.name);
-  errors.push_back(
-      {"command_post.course", icd::sentence("no course is called ", course,
-                                            known.empty() ? "; there are none" : "; there are ", known)});
+  errors.push_back({"command_post.course",
+                    icd::sentence("no course is called ", course,
+                                  known.empty() ? "; no courses are set up" : "; the courses are ", known)});
 }
 
 }  // namespace

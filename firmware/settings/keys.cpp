@@ -25,16 +25,16 @@ const Key kKeys[] = {
      text<MEMBER(command_post.mapping.address)>(Form::Address), kRequired},
     {"command_post.mapping.port", "Its port.", whole<MEMBER(command_post.mapping.port)>(1, 65535), kRequired},
     {"command_post.interface",
-     "The network interface to the Command Post (darpa0). Nothing else is used to reach it; empty: whichever "
-     "the routes say.",
+     "The network interface to the Command Post (darpa0). Adit reaches the Command Post only by this "
+     "interface; empty: by the interface that the routes select.",
      text<MEMBER(command_post.interface)>(Form::Interface)},
     {"command_post.budget_mbit",
-     "Megabits a second for both endpoints together (ICD 3). Maps are paced within it, so that a report "
-     "never waits behind one.",
+     "Megabits a second for both endpoints together (ICD 3). Adit paces maps within this budget, so that a "
+     "report never waits behind a map.",
      real<MEMBER(command_post.budget_mbit)>(0.1, 100000)},
     {"command_post.rates.reports_hz", "Artifact reports sent a second, at most (ICD 4.1).",
      real<MEMBER(command_post.rates.reports_hz)>(0.001, 1000)},
-    {"command_post.rates.status_hz", "Times a second that the run's status is asked for, at most.",
+    {"command_post.rates.status_hz", "Requests for the run's status sent a second, at most.",
      real<MEMBER(command_post.rates.status_hz)>(0.001, 1000)},
     {"command_post.rates.map_hz", "Maps sent a second, at most.",
      real<MEMBER(command_post.rates.map_hz)>(0.001, 1000)},
@@ -45,20 +45,21 @@ const Key kKeys[] = {
     {"command_post.timeouts.connect_ms", "How long connecting may take.",
      whole<MEMBER(command_post.timeouts.connect)>(100, 60000)},
     {"command_post.timeouts.scoring_answer_ms",
-     "How long the scoring endpoint may be silent before a report counts as in doubt.",
+     "How long the scoring endpoint may be silent before a report is in doubt.",
      whole<MEMBER(command_post.timeouts.scoring_answer)>(100, 600000)},
     {"command_post.timeouts.mapping_answer_ms",
-     "How long the mapping endpoint may be silent before an update is sent again.",
+     "How long the mapping endpoint may be silent before Adit sends an update again.",
      whole<MEMBER(command_post.timeouts.mapping_answer)>(100, 600000)},
     {"command_post.arrange_clouds",
-     "Whether clouds lose the padding in and after their points, and have their points put in another order, "
-     "so that they are smaller; no value of a point changes.",
+     "Whether Adit removes the padding in and after the points of clouds, and sorts the points, to make "
+     "clouds smaller. No value of a point changes.",
      flag<MEMBER(command_post.arrange_clouds)>()},
     {"command_post.course",
-     "The course in use, one of courses[].name, whose endpoints then count; empty: those above.",
+     "The course in use, one of courses[].name. Adit uses the endpoints of this course; empty: the endpoints "
+     "above.",
      text<MEMBER(command_post.course)>(Form::CourseOrNone)},
 
-    {"courses[].name", "What a course is called: its endpoints are switched to by this name.",
+    {"courses[].name", "The course's name, by which you switch to its endpoints.",
      text<MEMBER(courses.back().name)>(Form::Course), kRequired},
     {"courses[].scoring.address", "Its scoring endpoint.",
      text<MEMBER(courses.back().scoring.address)>(Form::Address), kRequired},
@@ -68,141 +69,147 @@ const Key kKeys[] = {
     {"courses[].mapping.port", "Its port.", whole<MEMBER(courses.back().mapping.port)>(1, 65535), kRequired},
 
     {"team.listen[].address",
-     "Where the team's robots and stations reach Adit; 0.0.0.0: every address of team.interface.",
+     "The address at which robots and stations reach Adit; 0.0.0.0: every address of team.interface.",
      text<MEMBER(team.listen.back().address)>(Form::Address), kRequired},
-    {"team.listen[].port", "Its port; 0: any free one.", whole<MEMBER(team.listen.back().port)>(0, 65535),
+    {"team.listen[].port", "Its port; 0: any free port.", whole<MEMBER(team.listen.back().port)>(0, 65535),
      kRequired},
     {"team.interface",
-     "The network interface to the team (team0). Nothing that comes by another is answered; empty: any.",
+     "The network interface to the team (team0). Adit answers only requests that arrive by this interface; "
+     "empty: by any interface.",
      text<MEMBER(team.interface)>(Form::Interface)},
     {"team.require_token",
-     "Whether a client must present the team's token or one of the Command Post's; if not, any client of the "
-     "team's network is served, except a web page that is neither the box's own nor of team.origins.",
+     "Whether a client must present the team's token or one of the Command Post's tokens. If not, Adit "
+     "serves any client of the team's network, except web pages that are neither the box's own nor of "
+     "team.origins.",
      flag<MEMBER(team.require_token)>()},
     {"team.origins",
      "Origins of web pages, with spaces between them, that may read the run's status and post without a "
-     "token, reports included, if team.require_token is off: in any browser of the team's network, whoever "
-     "wrote the page. With a token a page of any origin is served.",
+     "token, reports included, if team.require_token is off. Such a page may do so in any browser of the "
+     "team's network. With a token, Adit serves a page of any origin.",
      text<MEMBER(team.origins)>(Form::Origins)},
     {"team.connections",
-     "Connections of the team at once, at most; a quarter of them, at most 32, is for who has shown no "
-     "token.",
+     "Connections of the team at once, at most. Unauthenticated clients get a quarter of them, at most 32.",
      whole<MEMBER(team.connections)>(1, 1024)},
     {"team.connections_per_address",
-     "Connections from one address at once, at most, that have shown a token or need none.",
+     "Connections from one address at once, at most, of clients that have shown a token or need no token.",
      whole<MEMBER(team.connections_per_address)>(1, 1024)},
 
     {"robots[].name",
-     "A robot's name as it was registered (ICD 2). Where any is given, others are taken too, but told of.",
+     "A robot's name as it was registered (ICD 2). If any robot is listed, Adit still accepts messages of "
+     "other robots, and reports their names.",
      text<MEMBER(robots.back().name)>(Form::Robot), kRequired},
-    {"robots[].alias", "What that robot calls itself in its maps and states: it goes on under its name.",
+    {"robots[].alias",
+     "The name that this robot uses in its maps and states. Adit forwards them under robots[].name.",
      text<MEMBER(robots.back().alias)>(Form::Alias)},
     {"robots[].clouds",
-     "What that robot's clouds are. whole: each says all that those before it said, so that the newest "
-     "replaces those that wait. parts: each arrives. auto: the newer one replaces the one before it where it "
-     "has each of its points.",
+     "How this robot posts its clouds. whole: each cloud contains the earlier clouds, so that the newest "
+     "replaces queued clouds. parts: every cloud is sent. auto: a newer cloud replaces the queued cloud "
+     "before it if it contains each point of that cloud.",
      choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
     {"robots[].precision",
-     "How far the coordinates of that robot's clouds may be rounded, so that these are smaller. exact: "
-     "not at all. 1mm, 8mm: to steps of that size; a point moves by 1.3 steps at most. auto: as far as what "
-     "waits forces it. Clouds stay exact where command_post.arrange_clouds is false.",
+     "How far Adit may round the coordinates of this robot's clouds, to make clouds smaller. exact: not at "
+     "all. 1mm, 8mm: to steps of that size; a point moves by 1.3 steps at most. auto: as far as the queued "
+     "clouds require. Clouds stay exact if command_post.arrange_clouds is false.",
      choice<MEMBER(robots.back().precision)>(lanes::kPrecisionWords)},
     {"robots[].voxel_metres",
-     "Of that robot's clouds one point of each voxel goes, a cube of so many metres (at least 0.01): the "
-     "others are left out, and all where the Command Post has taken one; 0: each is sent. Only for a "
-     "Command Post that adds each cloud to those before it. Not for clouds that are whole.",
+     "The edge of a voxel in metres (at least 0.01); 0: every point is sent. Adit sends one point of this "
+     "robot's clouds for each voxel, and no point if the Command Post has already accepted one there. Only "
+     "for a Command Post that adds each cloud to the earlier clouds. Not for clouds that are whole.",
      real<MEMBER(robots.back().voxel_metres)>(0, 10)},
 
     {"network.confirm_within_ms",
-     "How long a change of the network waits to be confirmed from the new address; then it takes itself "
-     "back.",
+     "How long you have to confirm a change of the box's addresses from the new address. After that, the box "
+     "returns to the old addresses.",
      whole<MEMBER(network.confirm_within)>(1000, 600000)},
     {"network.allow_overlap",
-     "Whether the team's subnet may overlap the Command Post's: Adit works even so, but a robot cannot reach "
-     "both.",
+     "Whether the team's subnet may overlap the Command Post's. Adit works with an overlap, but a robot "
+     "cannot reach both subnets.",
      flag<MEMBER(network.allow_overlap)>()},
 
     {"clock.ntp_server",
-     "An NTP server on the team's network that the box takes its time from; empty: none. Only where "
-     "adit-clock "
-     "sets the clock: not on a PC, which has a time service of its own.",
+     "An NTP server on the team's network from which the box sets its clock; empty: no server. Used only if "
+     "adit-clock sets the clock, so not on a PC, which has its own time service.",
      text<MEMBER(clock.ntp_server)>(Form::Ipv4OrNone)},
     {"clock.serve_ntp",
-     "Whether the box is the NTP server of the team's subnet, once its own time is set. Not on a PC, either.",
+     "Whether the box is the NTP server of the team's subnet, after its own clock is set. Not on a PC.",
      flag<MEMBER(clock.serve_ntp)>()},
 
     {"reports.answer_within_ms",
-     "How long a client waits for the answer to its report, at most; then it is told 503 and that the report "
-     "is kept.",
+     "How long a client waits for the answer to its report, at most. After that, Adit answers 503 or 504 "
+     "with the state of the report.",
      whole<MEMBER(reports.answer_within)>(100, 600000)},
     {"reports.doubt_for_ms",
-     "How late a Command Post may still record what it has read: a report whose answer was lost is sent "
-     "again only where the run's status says, this long after, that it was not recorded.",
+     "How late a Command Post may still record a report that it has read. Adit sends a report whose answer "
+     "was lost again only if the run's status shows, this long after, that the report was not recorded.",
      whole<MEMBER(reports.doubt_for)>(100, 600000)},
     {"reports.doubt_asks",
-     "How often in a row the run's status must say so before such a report is sent again.",
+     "How many statuses in a row must show that a report was not recorded before Adit sends it again.",
      whole<MEMBER(reports.doubt_asks)>(1, 100)},
     {"reports.review",
-     "What is held until the operator lets it go: nothing, near duplicates (see reports.near_metres), or "
-     "every report.",
+     "Reports that are held until the operator sends them. off: none. duplicates: near duplicates (see "
+     "reports.near_metres). all: every report.",
      choice<MEMBER(reports.review)>(kReviews)},
     {"reports.near_metres",
-     "A report of the same type within this distance of another of the run is its near duplicate.",
+     "Two reports of one run are near duplicates if they have the same type and are within this distance.",
      real<MEMBER(reports.near_metres)>(0, 1000)},
 
-    {"queues.map_bytes", "Maps that may wait, in bytes; above it a map is refused with 429.",
+    {"queues.map_bytes", "Bytes of queued maps, at most. Beyond that, Adit rejects a map with 429.",
      whole<MEMBER(queues.map_bytes)>(kMiB, 16384 * kMiB)},
-    {"queues.merge_bytes", "Points that waiting clouds are merged into, at most, in bytes; 0: never merged.",
+    {"queues.merge_bytes",
+     "Bytes of points that queued clouds are merged into, at most; 0: clouds are never merged.",
      whole<MEMBER(queues.merge_bytes)>(0, 256 * kMiB)},
     {"queues.marker_bytes",
-     "Markers that may wait, in bytes; above three quarters of it new ones are refused with 429, above it "
-     "also those that replace one that waits.",
+     "Bytes of queued markers, at most. Beyond three quarters of that, Adit rejects new markers with 429; "
+     "beyond all of it, also markers that replace queued markers.",
      whole<MEMBER(queues.marker_bytes)>(kMiB, 1024 * kMiB)},
     {"queues.markers_per_message", "Markers in one update, at most.",
      whole<MEMBER(queues.markers_per_message)>(1, 100000)},
     {"queues.marker_bytes_per_message",
-     "Bytes of markers in one update, at most, unless a single one is larger.",
+     "Bytes of markers in one update, at most, unless a single marker is larger.",
      whole<MEMBER(queues.marker_bytes_per_message)>(1024, 256 * kMiB)},
 
     {"runs.length_seconds",
-     "How long a run lasts: page, display and adit status count down from it. The Command Post does not "
-     "say.",
+     "How long a run lasts. The page, the display and adit status count down from this. The Command Post "
+     "does not send it.",
      whole<MEMBER(runs.length_seconds)>(60, 86400)},
     {"runs.run_bytes",
-     "Bytes of one run's map, tracks and plots on the disk, at most: beyond it its earliest pictures go.",
+     "Bytes of one run's map, tracks and plots on the disk, at most. Beyond that, Adit deletes the run's "
+     "earliest pictures.",
      whole<MEMBER(runs.run_bytes)>(2 * kMiB, 1024 * kMiB)},
     {"runs.all_bytes",
-     "The same of all runs, and never more than half of what the disk has for them: beyond it the oldest run "
-     "goes, but not the present one, and no report.",
+     "Bytes of the maps, tracks and plots of all runs, at most, and never more than half of the disk's room "
+     "for them. Beyond that, Adit deletes the oldest run, but not the present run, and no report.",
      whole<MEMBER(runs.all_bytes)>(4 * kMiB, 65536 * kMiB)},
 
-    {"alarms.silent_for_ms", "How long a robot may say nothing, at least, before it counts as silent.",
+    {"alarms.silent_for_ms", "The shortest time without a message after which a robot is silent.",
      whole<MEMBER(alarms.silent_for)>(1000, 3600000)},
     {"alarms.silent_times",
-     "How many times as long as it lets pass between two messages, as a rule, a robot may say nothing before "
-     "it counts as silent.",
+     "How many times its usual interval between two messages must pass without a message before a robot is "
+     "silent.",
      real<MEMBER(alarms.silent_times)>(1, 1000)},
 
-    {"rules.rewrite_frame_id", "Take any frame_id and send \"darpa\"; if not, others are refused with 422.",
+    {"rules.rewrite_frame_id",
+     "Accept any frame_id and send \"darpa\". If not, Adit rejects other frames with 422.",
      flag<MEMBER(rules.rewrite_frame_id)>()},
     {"rules.forward_unknown_types",
-     "Send artifact types that are none of the ICD's ten; if not, they are refused with 422.",
+     "Send artifact types other than the ICD's ten. If not, Adit rejects them with 422.",
      flag<MEMBER(rules.forward_unknown_types)>()},
-    {"rules.map_bytes", "The largest data of one map once inflated, in bytes; above it 413.",
+    {"rules.map_bytes",
+     "Bytes of one map's data after inflation, at most. Beyond that, Adit rejects the map with 413.",
      whole<MEMBER(rules.map_bytes)>(1024, icd::kMostMapBytes)},
 
     {"panel.chip",
-     "The GPIO chip of the lights and the button (gpiochip0), by name, label or path; empty: whichever has a "
-     "line of that name.",
+     "The GPIO chip of the lights and the button (gpiochip0), by name, label or path; empty: any chip that "
+     "has a line of that name.",
      text<MEMBER(panel.chip)>(Form::Chip)},
     {"panel.health",
-     "The line of the health light; empty: there is none. Without any line: a simulated panel.",
+     "The line of the health light; empty: no light. If no line is set, the panel is simulated.",
      text<MEMBER(panel.health)>(Form::Line)},
     {"panel.scoring", "The line of the scoring light.", text<MEMBER(panel.scoring)>(Form::Line)},
     {"panel.mapping", "The line of the mapping light.", text<MEMBER(panel.mapping)>(Form::Line)},
     {"panel.attention", "The line of the attention light.", text<MEMBER(panel.attention)>(Form::Line)},
     {"panel.active_low", "Whether a light is lit by driving its line low.", flag<MEMBER(panel.active_low)>()},
-    {"panel.button", "The line of the button; empty: there is none.", text<MEMBER(panel.button)>(Form::Line)},
+    {"panel.button", "The line of the button; empty: no button.", text<MEMBER(panel.button)>(Form::Line)},
     {"panel.button_active_low", "Whether the button pulls its line low when it is pressed.",
      flag<MEMBER(panel.button_active_low)>()},
 };

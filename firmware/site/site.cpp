@@ -20,6 +20,7 @@ const File* file_at(std::string_view path) {
   const auto files = embedded_files();
   if (path == "/") path = "/index.html";
   if (path == "/display") path = "/display.html";
+  if (path == "/help") path = "/help.html";
   if (path == "/runs") path = "/runs.html";
   if (path == "/system") path = "/system.html";
   if (path == "/setup") path = "/setup.html";

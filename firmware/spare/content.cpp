@@ -57,14 +57,14 @@ std::optional<Part> take_part(std::string_view& rest) {
 }
 
 std::unexpected<std::string> damaged(const std::string& why) {
-  return std::unexpected("the export cannot be read: " + why);
+  return std::unexpected("cannot read the export: " + why);
 }
 
 /// Each once.
 class Reading {
  public:
   std::optional<std::string> take(const Part& part) {
-    if (!seen_.emplace(std::string(part.name), true).second) return sentence(part, "is there twice");
+    if (!seen_.emplace(std::string(part.name), true).second) return sentence(part, "is given twice");
     if (part.name == kAbout) return take_about(part);
     if (part.name == kSettings) return keep(content_.settings, part);
     if (part.name == kLedger) return keep(content_.ledger, part);
@@ -94,8 +94,8 @@ class Reading {
   std::optional<std::string> take_token(const Part& part) {
     auto token = icd::BearerToken::parse(part.bytes);
     if (!part.name.starts_with(kToken) || content_.tokens.size() == kMostTokens)
-      return std::string("it has a part that this Adit does not know");
-    if (!token) return sentence(part, "is no token");
+      return std::string("it has a part that this version of Adit does not know");
+    if (!token) return sentence(part, "is not a token");
     content_.tokens.emplace(part.name.substr(kToken.size()), *std::move(token));
     return std::nullopt;
   }
@@ -121,7 +121,7 @@ std::expected<Content, std::string> read(std::string_view text) {
   Reading reading;
   while (!text.empty()) {
     const auto part = take_part(text);
-    if (!part) return damaged("a part of it is cut off");
+    if (!part) return damaged("the end of a part is missing");
     if (auto why = reading.take(*part)) return damaged(*why);
   }
   return reading.finish();

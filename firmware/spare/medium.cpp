@@ -9,7 +9,7 @@ namespace adit::spare {
 std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std::uint64_t size) {
   if (media.empty()) return std::unexpected("there is no stick in the box");
   if (std::ranges::any_of(media, [&media](const Medium& each) { return each.disk != media.front().disk; }))
-    return std::unexpected("more than one stick is in the box: leave the one that is to have the export");
+    return std::unexpected("there is more than one stick in the box: leave only the one for the export");
   const Medium* best = nullptr;
   for (const Medium& each : media) {
     if (each.is_mounted && (best == nullptr || each.room > best->room)) best = &each;
@@ -19,7 +19,7 @@ std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std
   if (best->is_write_protected) return std::unexpected("the stick is write-protected");
   if (best->room < size)
     return std::unexpected(
-        icd::sentence("the stick has room for ", best->room, " bytes, and the export has ", size));
+        icd::sentence("the stick has room for ", best->room, " bytes, but the export has ", size));
   return *best;
 }
 

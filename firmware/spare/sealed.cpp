@@ -32,7 +32,7 @@ std::expected<Key, std::string> key_of(std::string_view code, const std::uint8_t
   Key key;
   if (sodium_init() < 0 || crypto_pwhash(key.data(), key.size(), code.data(), code.size(), salt, kPasses,
                                          kMemory, crypto_pwhash_ALG_ARGON2ID13) != 0)
-    return std::unexpected("there is no memory for the key of the export");
+    return std::unexpected("there is not enough memory for the key of the export");
   return key;
 }
 
@@ -56,20 +56,20 @@ std::expected<std::string, std::string> seal(std::string_view content, std::stri
 }
 
 std::string not_an_export(std::string_view head) {
-  if (head.size() < kExportHead || !head.starts_with(kMagic)) return "it is no export of an Adit";
+  if (head.size() < kExportHead || !head.starts_with(kMagic)) return "the file is not an export from Adit";
   const auto version = static_cast<std::uint8_t>(head[kMagic.size()]);
   if (version > kVersion)
-    return icd::sentence("a later Adit made this export (version ", int{version}, ", and this one reads ",
+    return icd::sentence("a later Adit made this export (version ", int{version}, ", this box reads ",
                          int{kVersion}, "): update this box first");
-  if (version < 1 || head[kMagic.size() + 1] != '\0') return "it is no export of an Adit";
+  if (version < 1 || head[kMagic.size() + 1] != '\0') return "the file is not an export from Adit";
   return "";
 }
 
 std::expected<std::string, std::string> unseal(std::string_view file, std::string_view code) {
   if (std::string why = not_an_export(file.substr(0, kExportHead)); !why.empty())
     return std::unexpected(std::move(why));
-  if (file.size() > kLargestExport) return std::unexpected("it is too large for an export");
-  if (file.size() < kBefore + kTag) return std::unexpected("the export is not whole");
+  if (file.size() > kLargestExport) return std::unexpected("the file is larger than an export may be");
+  if (file.size() < kBefore + kTag) return std::unexpected("the export is incomplete");
   const auto* const data = bytes(file);
   auto key = key_of(code, data + kExportHead);
   if (!key) return std::unexpected(std::move(key.error()));
@@ -78,7 +78,7 @@ std::expected<std::string, std::string> unseal(std::string_view file, std::strin
       reinterpret_cast<std::uint8_t*>(content.data()), nullptr, nullptr, data + kBefore,
       file.size() - kBefore, data, kBefore, data + kExportHead + kSalt, key->data());
   sodium_memzero(key->data(), key->size());
-  if (opened != 0) return std::unexpected("the code is not that of this export, or the export is not whole");
+  if (opened != 0) return std::unexpected("the code is not that of this export, or the export is damaged");
   return content;
 }
 

@@ -61,7 +61,7 @@ int MapFile::finish(icd::MapUpdate& map, const std::string& path) {
 
 icd::Checked<icd::MapUpdate> MapFile::read(const std::string& path, const icd::Rules& rules) {
   const MappedFile file = map_file(path);
-  if (!file.owner) return icd::unprocessable("the file cannot be read, or is empty");
+  if (!file.owner) return icd::unprocessable("the file is unreadable or empty");
   if (file.bytes.size() < kBefore) return icd::unprocessable("the file is cut short");
   const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
   const std::string_view before = text.substr(0, kBefore);

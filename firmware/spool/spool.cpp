@@ -28,7 +28,7 @@ constexpr std::string_view kMap = "map-", kEnding = ".cbor";
 
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
   return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
-                                      "this map cannot be kept: " + why + "; send it again later"});
+                                      "Adit cannot store this map: " + why + "; send it again later"});
 }
 
 /// What is left in the folder's file system for this user and for maps; an error is its errno.
@@ -40,7 +40,7 @@ std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64
 }
 
 void set_aside(const std::string& path, const std::string& why) {
-  host::set_damaged_aside(path, "a kept message that could not be read", why);
+  host::set_damaged_aside(path, "a queued message", why);
 }
 
 /// The message in one file, which is set aside where it cannot be understood.
@@ -88,7 +88,7 @@ icd::Checked<icd::MapUpdate> Spool::keep(std::uint64_t number, icd::MapUpdate ma
   const auto room = room_in(folder_, left_to_others_);
   if (!room) return not_kept(folder_ + ": " + std::strerror(room.error()));
   if (*room < map.data.bytes.size() - begun->stored_bytes() + kBeside + spare) {
-    return not_kept(icd::sentence("the room for maps that wait is full (", *room >> 20, " MiB are left)"));
+    return not_kept(icd::sentence("the room for queued maps is full (", *room / 1000000, " MB left)"));
   }
   if (const int error = begun->finish(map, path); error != 0)
     return not_kept(path + ": " + std::strerror(error));
@@ -119,7 +119,7 @@ Spool::Kept Spool::read() {
   Kept kept;
   const auto numbers = host::numbers_in(folder_, kMap, kEnding);
   unread_ = numbers ? "" : numbers.error();
-  if (!numbers) host::log(host::Level::Error, "kept maps cannot be read", {{"why", unread_}});
+  if (!numbers) host::log(host::Level::Error, "cannot read queued maps", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
     if (auto map = message_in(file_of(number), read_map)) kept.maps.emplace_back(number, std::move(*map));
   }

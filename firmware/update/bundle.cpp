@@ -49,7 +49,7 @@ void for_each_line(std::string_view text, const std::function<void(std::string_v
 
 std::expected<Bundle, std::string> read_info(std::string_view json) {
   const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("RAUC says no JSON of the bundle: " + root.error());
+  if (!root) return std::unexpected("RAUC's description of the bundle is not JSON: " + root.error());
   codec::Reading reading;
   const Field field(*root, reading);
   const Field compatible = field.member("compatible"), version = field.member("version");
@@ -60,7 +60,7 @@ std::expected<Bundle, std::string> read_info(std::string_view json) {
 
 std::expected<Running, std::string> read_status(std::string_view json) {
   const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected("RAUC says no JSON of the box: " + root.error());
+  if (!root) return std::unexpected("RAUC's status is not JSON: " + root.error());
   codec::Reading reading;
   const Field field(*root, reading);
   const Field compatible = field.member("compatible"), booted = field.member("booted"),
@@ -73,7 +73,7 @@ std::expected<Running, std::string> read_status(std::string_view json) {
   for (const Value& slot : std::get<Value::Array>(slots.value()->is))
     take_slot(slot, running.slot, next, running);
   if (running.other.empty())
-    return std::unexpected("RAUC knows no slot beside " + icd::in_quotes(running.slot));
+    return std::unexpected("RAUC knows no other slot than " + icd::in_quotes(running.slot));
   return running;
 }
 
@@ -81,11 +81,11 @@ std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size)
   constexpr std::string_view kMagic = "hsqs";
   constexpr std::size_t kBytesUsed = 40;  // little-endian, of the squashfs
   const bool squashfs = head.size() >= kBundleHead && std::equal(kMagic.begin(), kMagic.end(), head.begin());
-  if (!squashfs) return "it is no update: expected a file adit-BOARD-VERSION.raucb";
+  if (!squashfs) return "the file is not an update: expected a file adit-BOARD-VERSION.raucb";
   std::uint64_t used = 0;
   for (std::size_t at = kBytesUsed + 8; at-- > kBytesUsed;) used = used << 8 | head[at];
   if (used < size) return "";
-  return icd::sentence("it is cut short: ", size, " bytes of an update of more than ", used);
+  return icd::sentence("the update is incomplete: expected more than ", used, " bytes, got ", size);
 }
 
 std::optional<int> percent_in(std::string_view line) {
@@ -111,17 +111,18 @@ Fault fault_in(std::string_view out, std::string_view err) {
 
 std::string hindrance(const Bundle& bundle, const Running& running, bool again) {
   if (bundle.compatible != running.compatible) {
-    return icd::sentence("it is for another board: ", icd::in_quotes(bundle.compatible), ", and this one is ",
-                         icd::in_quotes(running.compatible));
+    return icd::sentence("the update is for another board: ", icd::in_quotes(bundle.compatible),
+                         ", but this board is ", icd::in_quotes(running.compatible));
   }
   const auto offered = Version::parse(bundle.version), present = Version::parse(running.version);
-  if (!offered) return "its version cannot be read: " + icd::in_quotes(bundle.version);
-  if (!present) return "the version that runs cannot be read: " + icd::in_quotes(running.version);
+  if (!offered) return "cannot read the update's version: " + icd::in_quotes(bundle.version);
+  if (!present) return "cannot read the running version: " + icd::in_quotes(running.version);
   if (*offered < *present) {
-    return icd::sentence("it is older than what runs: ", bundle.version, ", and this is ", running.version);
+    return icd::sentence("the update is older (", bundle.version, ") than the running version (",
+                         running.version, ")");
   }
   if (*offered == *present && !again)
-    return bundle.version + " runs already: say so if it is to be installed again";
+    return bundle.version + " is already running: confirm to install it again";
   return "";
 }
 

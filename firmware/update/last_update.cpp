@@ -25,12 +25,12 @@ LastUpdate settled(LastUpdate last_update, const Running& running, const std::st
     last_update.why.clear();
   } else if (last_update.stage == Stage::Installing) {
     last_update.stage = Stage::Interrupted;
-    last_update.why = "it was interrupted: what runs was not touched, install it again";
+    last_update.why = "the update was interrupted: the running slot is unchanged, install the update again";
   } else if (last_update.stage == Stage::Installed && last_update.boot != boot &&
              last_update.slot != running.slot) {
     last_update.stage = Stage::Left;
-    last_update.why =
-        icd::sentence("it did not come up healthy in three starts, and ", running.version, " runs again");
+    last_update.why = icd::sentence("the update did not become healthy in three starts; ", running.version,
+                                    " is running again");
   }
   return last_update;
 }

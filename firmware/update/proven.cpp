@@ -12,12 +12,13 @@ Proven proven_now(Proven before, const Running& running, bool trial) {
 
 std::string stray(const Proven& proven, const Running& running, bool trial) {
   if (proven.slot.empty() || proven.slot == running.slot || trial) return "";
-  const char* why = running.other_good
-                        ? "though its starts are not used up: somebody chose this one, or the boot loader's "
-                          "counts were lost"
-                        : "whose starts were used up, by power cuts or because it does not come up";
-  return icd::sentence("slot ", running.slot, " runs, with ", running.version, ", not slot ", proven.slot,
-                       " with ", proven.version, ", ", why);
+  const char* why =
+      running.other_good
+          ? "although that slot has starts left: a user chose the running slot, or the boot loader lost its "
+            "counts"
+          : "because that slot has used up its starts, by power cuts or because it does not come up";
+  return icd::sentence("slot ", running.slot, " is running, with ", running.version, ", not slot ",
+                       proven.slot, " with ", proven.version, ", ", why);
 }
 
 }  // namespace adit::update

@@ -25,6 +25,6 @@ Proven proven_now(Proven before, const Running& running, bool trial);
 /// is the proven one, none is known, or what runs is on `trial`.
 std::string stray(const Proven& proven, const Running& running, bool trial);
 /// Why none is gone back to, nor stayed in, then.
-inline constexpr std::string_view kNoStray = "no other slot was good last";
+inline constexpr std::string_view kNoStray = "no unexpected slot is running";
 
 }  // namespace adit::update

@@ -115,7 +115,7 @@ struct AnswerParser::Impl {
 
   State malformed(boost::beast::error_code error) {
     if (error == http::error::body_limit || error == http::error::header_limit) return too_long(error);
-    return malformed("the answer is no HTTP: " + error.message());
+    return malformed("the answer is not HTTP: " + error.message());
   }
 
   /// Its status is known once its body has begun, or would have.

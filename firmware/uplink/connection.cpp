@@ -33,7 +33,7 @@ void Connection::Impl::guard(void (Impl::*part)()) {
 
 void Connection::Impl::send(Request request, std::function<void(Outcome)> done) {
   icd::require(!busy());
-  InDoubt undealt{.why = "what the peer sent could not be dealt with"};
+  InDoubt undealt{.why = "the peer's answer could not be processed"};
   auto exchange = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
   undealt_ = std::move(undealt);
   exchange_ = std::move(exchange);
@@ -96,7 +96,8 @@ void Connection::Impl::begin() {
   // The peer may have closed a kept connection meanwhile, or a new one at once. Nothing of this request has
   // been sent, so that it is still safe to say so, or to try once more.
   if (!is_quiet(fd_.get()))
-    return fresh_ ? never_sent("the peer closed the new connection, or spoke first") : begin_again();
+    return fresh_ ? never_sent("the peer closed the new connection, or sent bytes before the request")
+                  : begin_again();
   if (std::exchange(gives_up_after_, exchange_->longest_silence()) != exchange_->longest_silence()) {
     give_up_after(fd_.get(), exchange_->longest_silence());
   }

@@ -105,7 +105,7 @@ bool Exchange::has_arrived(int fd) const {
 
 Exchange::Answer Exchange::lost(const std::string& why) {
   fault_ = sentence(is_early_ ? "the peer answered " + std::to_string(status()) +
-                                    " before it had the whole request; then: " + why
+                                    " before the whole request had arrived; then: " + why
                               : why);
   return Answer::Lost;
 }
@@ -121,8 +121,8 @@ Exchange::Answer Exchange::read(int fd) {
     if (error != 0) return lost(std::strerror(error));
     // The failed write has taken the connection's error with it, so that this end may be a reset, and no
     // honest end of an answer without a length.
-    if (*got == 0 && write_broken_) return lost("the peer closed the connection while the request was sent");
-    if (is_early_) return lost(*got == 0 ? "it closed the connection" : "it sent more than an answer");
+    if (*got == 0 && write_broken_) return lost("the peer closed the connection during the request");
+    if (is_early_) return lost(*got == 0 ? "it closed the connection" : "it sent bytes after the answer");
     const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});
     if (state == AnswerParser::State::Malformed) return lost(parser_.fault());
     if (state == AnswerParser::State::Incomplete) continue;

@@ -98,7 +98,7 @@ std::unexpected<NoSocket> failure(const std::string& doing, int error) {
 
 std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endpoint) {
   const Addresses address = parse(endpoint);
-  if (!address) return std::unexpected(NoSocket{"\"" + endpoint.address + "\" is no IP address"});
+  if (!address) return std::unexpected(NoSocket{"\"" + endpoint.address + "\" is not an IP address"});
   loop::FileDescriptor fd(
       ::socket(address->ai_family, SOCK_STREAM | SOCK_NONBLOCK | SOCK_CLOEXEC, IPPROTO_TCP));
   if (!fd) return failure("making a socket: ", errno);

@@ -48,7 +48,7 @@ if test "${adit_slot}" = "a"; then
 elif test "${adit_slot}" = "b"; then
   setenv BOOT_B_LEFT ${adit_less}
 else
-  echo "Adit: no slot has come up; all are tried again"
+  echo "Adit: no slot has come up; retrying all slots"
   setenv BOOT_A_LEFT 3
   setenv BOOT_B_LEFT 3
 fi

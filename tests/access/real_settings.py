@@ -207,7 +207,7 @@ class SetUp(unittest.TestCase):
             self.assertEqual(self.box.port, port, "where it was before")
             self.assertIn(f"the last change was taken back: binding to 127.0.0.1 port {other}", self.attention())
             self.assertIn("Address already in use", self.attention())
-            self.assertIn("the last change of the settings is taken back", self.box.said())
+            self.assertIn("the last change of the settings was taken back", self.box.said())
             self.assertEqual((self.box.state / "settings.json").read_text(), good)
         self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
         self.assertEqual((self.box.port, self.attention()), (other, ""))
@@ -240,7 +240,7 @@ class SetUp(unittest.TestCase):
         status, said, _ = self.box.ask("POST /adit/settings", {"settings": mine["settings"], "base": mine["tag"]},
                                        **self.me)
         self.assertEqual(status, 409)
-        self.assertIn("somebody else", said)
+        self.assertIn("another user", said)
         self.assertEqual(self.settings()["settings"]["reports"]["near_metres"], 5)
 
     def test_an_alias_goes_on_as_the_robots_name_and_an_unknown_robot_is_taken_and_told_of(self):
@@ -257,7 +257,7 @@ class SetUp(unittest.TestCase):
         self.assertEqual(self.attention(), "")
         self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
         self.assertEqual(self.box.ask("POST /state/update", state("x"), **TEAM)[0], 200)
-        self.assertEqual(self.attention(), "robot x is unknown: it posts, and set-up has ugv1, ugv2")
+        self.assertEqual(self.attention(), "robot x is unknown: it sends messages, but set-up lists only ugv1, ugv2")
         self.assertEqual(self.box.said().count("unknown robot"), 1)
         self.assertEqual(self.box.ask("POST /state/update", state("husky-number-9"), **TEAM)[0], 422, "the ICD's rule")
 
@@ -286,15 +286,15 @@ class SetUp(unittest.TestCase):
         for name in real_aditd.TOKENS:
             (self.box.folder / "secrets" / f"{name}.token").unlink()
         self.box.start()
-        self.assertIn("no scoring token is set: reports wait until one is", self.attention())
-        self.assertIn("no mapping token is set", self.attention())
+        self.assertIn("the scoring token is missing: reports stay queued", self.attention())
+        self.assertIn("the mapping token is missing", self.attention())
         endpoints = self.box.ask("GET /adit/run", **self.me)[1]["endpoints"]
         self.assertEqual([row["trouble"] for row in endpoints], ["no scoring token is set", "no mapping token is set"])
         status, said, _ = self.box.ask("POST /state/update", state("ugv1"), **TEAM)
-        self.assertEqual((status, said), (401, "Authorization: no token is set up on this gateway yet"))
+        self.assertEqual((status, said), (401, "Authorization: no token is set on this box yet"))
         for name in ("scoring", "mapping", "team"):
             self.applied("POST /adit/tokens", {"name": name, "token": f"{name}-from-the-page"})
-        self.assertNotIn("token is set", self.attention())
+        self.assertNotIn("token is missing", self.attention())
         self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), Authorization="Bearer team-from-the-page")[0],
                          200)
 

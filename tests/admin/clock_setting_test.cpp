@@ -115,8 +115,8 @@ TEST_F(ClockSettingTest, BringsTheSystemToTheLastTimeKnown) {
 TEST_F(ClockSettingTest, TellsWhyItWasNotSet) {
   say({});
   ASSERT_TRUE(setting_.set_clock(1.8e9));
-  say({.nonce = asked()->nonce, .refusal = "the clock cannot be set: no", .source = Source::None});
-  EXPECT_THAT(setting_.clock().refusal, HasSubstr("cannot be set"));
+  say({.nonce = asked()->nonce, .refusal = "cannot set the clock: no", .source = Source::None});
+  EXPECT_THAT(setting_.clock().refusal, HasSubstr("cannot set the clock"));
   EXPECT_EQ(setting_.is_set(), false);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
   setting_.offered({Source::CommandPost, now() + 600});
@@ -134,7 +134,7 @@ TEST_F(ClockSettingTest, AsksAgainWhereABusyBoxDidNotTakeItUpInTime) {
   EXPECT_EQ(setting_.clock().refusal, "");
   time_.pass(1ms);
   setting_.every_second(ntp_);
-  EXPECT_THAT(setting_.clock().refusal, HasSubstr("did not take it up"));
+  EXPECT_THAT(setting_.clock().refusal, HasSubstr("did not read the request"));
   EXPECT_FALSE(asked()) << "it would be old";
   setting_.offered({Source::CommandPost, now() + 600});
   const auto second = asked();
@@ -153,7 +153,9 @@ TEST_F(ClockSettingTest, AsksAgainWhatWasRefused) {
   const auto first = asked();
   ASSERT_TRUE(first);
   ASSERT_TRUE(host::remove_file(state_ / clock::kRequestFile));
-  say({.nonce = first->nonce, .refusal = "at: not within the last minute", .source = Source::None});
+  say({.nonce = first->nonce,
+       .refusal = "at: expected a time within the last minute",
+       .source = Source::None});
   time_.pass(ClockSetting::kAskAgain - 1ms);
   setting_.offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
@@ -183,7 +185,7 @@ TEST_F(ClockSettingTest, SaysThatAMachineThatKeepsItsTimeItselfSpeaksNoNtpForAdi
   EXPECT_EQ(setting_.ntp_trouble(), "");
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   setting_.every_second(ntp_);
-  EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("keeps its time by itself"));
+  EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("does not set the clock of this machine"));
   EXPECT_EQ(setting_.clock().ntp, setting_.ntp_trouble());
   EXPECT_FALSE(asked_for_ntp());
 }
@@ -232,7 +234,7 @@ TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnc
   const auto refused = setting_.set_clock(1.8e9);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().status, icd::Status::Conflict);
-  EXPECT_THAT(refused.error().sentence, HasSubstr("10.0.0.5 keeps it"));
+  EXPECT_THAT(refused.error().sentence, HasSubstr("10.0.0.5 keeps the time"));
   setting_.offered({Source::CommandPost, now() + 600});
   EXPECT_FALSE(asked());
   ntp_ = {};
@@ -259,13 +261,13 @@ TEST_F(ClockSettingTest, HearsNobodyWhoWasHeardLongAgoOrIsAnother) {
 
 TEST_F(ClockSettingTest, TellsWhyChronydDoesNotRunAndWhatItDoes) {
   ntp_ = {.server = "", .clients = "10.0.0.0/24"};
-  say({.source = Source::None, .ntp = ntp_, .trouble = "chronyd cannot be started: no"});
-  EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("cannot be started"));
+  say({.source = Source::None, .ntp = ntp_, .trouble = "cannot start chronyd: no"});
+  EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("cannot start chronyd"));
   say({.source = Source::None, .ntp = ntp_});
   EXPECT_EQ(setting_.ntp_trouble(), "");
-  EXPECT_EQ(setting_.clock().ntp, "once it is set, given by NTP to 10.0.0.0/24");
+  EXPECT_EQ(setting_.clock().ntp, "once the time is set, NTP gives it to 10.0.0.0/24");
   say({.source = Source::Operator, .ntp = ntp_});
-  EXPECT_EQ(setting_.clock().ntp, "given by NTP to 10.0.0.0/24");
+  EXPECT_EQ(setting_.clock().ntp, "NTP gives the time to 10.0.0.0/24");
 }
 
 }  // namespace

@@ -110,7 +110,7 @@ TEST_F(NetworkChangeTest, KnowsWhoAnswersForTheCommandPost) {
   EXPECT_EQ(change.next_hop(endpoint), "10.100.3.1");
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24");
   tell();
-  EXPECT_EQ(change.next_hop(endpoint), "") << "there is no way to it";
+  EXPECT_EQ(change.next_hop(endpoint), "") << "there is no route to it";
 }
 
 TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet) {

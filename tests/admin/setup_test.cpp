@@ -63,7 +63,7 @@ TEST_F(SetupTest, WarnsOfPagesThatMayPostWithoutAToken) {
   EXPECT_THAT(setup_.warnings(next), testing::IsEmpty()) << "all need a token";
   next.team.require_token = false;
   EXPECT_THAT(setup_.warnings(next),
-              testing::ElementsAre(testing::HasSubstr("whoever is on the team's network"),
+              testing::ElementsAre(testing::HasSubstr("every machine on the team's network"),
                                    testing::HasSubstr("pages of http://10.0.0.20:3000 may post reports")));
 }
 
@@ -74,8 +74,8 @@ TEST_F(SetupTest, TellsOfATokenThatHasNotTheLengthOfTheCommandPosts) {  // ICD 4
   setup_.runs_with(store_.load().value(), "");
   for (const api::TokenRow& row : setup_.tokens()) {
     EXPECT_TRUE(row.set) << row.name;
-    EXPECT_EQ(row.warning, row.name == "mapping" ? "the token mapping has 15 characters, the Command Post's "
-                                                   "have 16 (ICD 4): is all of it there?"
+    EXPECT_EQ(row.warning, row.name == "mapping" ? "the token mapping has 15 characters; the Command Post's "
+                                                   "tokens have 16 (ICD 4); is it complete?"
                                                  : "");
   }
 }

@@ -71,7 +71,7 @@ TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
   EXPECT_EQ(asked()->what, spare::StickRequest::What::Write);
   EXPECT_EQ(asked()->name, kName);
   EXPECT_EQ(stick_.view()->doing, "writing");
-  EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is writing already"));
+  EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is already writing"));
   answer({.doing = "checking"});
   EXPECT_EQ(stick_.view()->doing, "checking");
   say({.nonce =
@@ -99,8 +99,8 @@ TEST_F(SpareStickTest, GivesWhatWasReadFromIt) {
 TEST_F(SpareStickTest, SaysWhyItCameToNothing) {
   say({.exports = {kName}});
   ASSERT_TRUE(stick_.take(kName));
-  answer({.refusal = "it is no export of an Adit"});
-  EXPECT_EQ(stick_.view()->refusal, "it is no export of an Adit");
+  answer({.refusal = "the file is not an export from Adit"});
+  EXPECT_EQ(stick_.view()->refusal, "the file is not an export from Adit");
   ASSERT_TRUE(stick_.take(kName));
   EXPECT_EQ(stick_.view()->refusal, "") << "while it is tried again";
   answer({});

@@ -102,12 +102,12 @@ std::string why(const icd::Checked<void>& done) {
 
 TEST(SpareBox, IsExportedOnlyOnceItRests) {
   Box box;
-  EXPECT_THAT(box.exported().error().sentence, HasSubstr("does not rest"));
+  EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().rest());
   EXPECT_EQ(box.turned().restarts, 1);
   EXPECT_EQ(box.spare().rests(), "") << "what is under way ends first";
   box.restart();
-  EXPECT_THAT(box.spare().rests(), HasSubstr("put to rest"));
+  EXPECT_THAT(box.spare().rests(), HasSubstr("its spare takes over"));
   EXPECT_EQ(box.spare().spare().code.size(), 19U);
   EXPECT_TRUE(box.exported());
 }
@@ -122,7 +122,7 @@ TEST(SpareBox, GoesOnRestingUntilItIsWokenUp) {
   ASSERT_TRUE(box.spare().wake());
   box.restart();
   EXPECT_EQ(box.spare().rests(), "");
-  EXPECT_EQ(why(box.spare().wake()), "this box does not rest");
+  EXPECT_EQ(why(box.spare().wake()), "this box is not on standby");
 }
 
 TEST(SpareBox, AnotherRestHasAnotherCode) {
@@ -143,13 +143,13 @@ TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
   first.restart();
   const auto file = first.exported();
   ASSERT_TRUE(file);
-  EXPECT_EQ(why(second.opened("1234567890123456")), "no export waits for its code: take one in first");
+  EXPECT_EQ(why(second.opened("1234567890123456")), "there is no export to open: import one first");
   ASSERT_TRUE(second.spare().take_in(*file));
   EXPECT_TRUE(second.spare().spare().asks_code);
   EXPECT_EQ(why(second.opened("12")), "code: expected 16 digits");
   EXPECT_THAT(why(second.opened("1234567890123456")), HasSubstr("not that of this export"));
   EXPECT_TRUE(second.spare().spare().asks_code) << "it may be typed again";
-  EXPECT_EQ(why(second.spare().take_over()), "nothing is taken in: take in the export first");
+  EXPECT_EQ(why(second.spare().take_over()), "no export is open: import and open one first");
   ASSERT_TRUE(second.opened(first.spare().spare().code));
   EXPECT_EQ(second.spare().spare().taken_in->name, "192.168.7.11");
   EXPECT_EQ(second.turned().restarts, 0) << "nothing has changed yet";
@@ -161,7 +161,7 @@ TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
 TEST(SpareBox, IsExportedToTheStickOnlyOnceItRests) {
   Box box;
   box.say({});
-  EXPECT_THAT(why(box.to_stick()), HasSubstr("does not rest"));
+  EXPECT_THAT(why(box.to_stick()), HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().rest());
   box.restart();
   ASSERT_TRUE(box.to_stick());
@@ -198,8 +198,8 @@ TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
   Box box;
   box.trouble = "no space left";
   box.restart();
-  EXPECT_EQ(box.spare().rests(), "it could not take over yet: no space left");
-  EXPECT_THAT(box.exported().error().sentence, HasSubstr("does not rest"))
+  EXPECT_EQ(box.spare().rests(), "the take-over is not finished: no space left");
+  EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"))
       << "it has nothing whole to hand on";
 }
 
@@ -253,11 +253,11 @@ TEST(SpareFile, NamesWhatWasTakenOverFromBefore) {
   };
   EXPECT_EQ(hindrance("other", 101), "");
   EXPECT_EQ(hindrance("third", 1), "");
-  EXPECT_THAT(hindrance("other", 100), HasSubstr("took over from this export already"));
-  EXPECT_THAT(hindrance("other", 99), HasSubstr("a later export of that box already"));
+  EXPECT_THAT(hindrance("other", 100), HasSubstr("already took over from this export"));
+  EXPECT_THAT(hindrance("other", 99), HasSubstr("a later export of the same box"));
   EXPECT_EQ(hindrance("counts", 50, 3), "") << "its clock was set back since";
-  EXPECT_THAT(hindrance("counts", 100, 2), HasSubstr("took over from this export already"));
-  EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of that box already"));
+  EXPECT_THAT(hindrance("counts", 100, 2), HasSubstr("already took over from this export"));
+  EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of the same box"));
 }
 
 TEST(SpareFile, IsReadAsAnEarlierAditWroteIt) {

@@ -89,7 +89,7 @@ TEST_F(StoreTest, PassesOverWhatALaterAditSavedBeside) {
   const auto loaded = store_.load().value();
   EXPECT_TRUE(loaded.saved);
   EXPECT_EQ(loaded.settings.team.connections, 30u);
-  EXPECT_EQ(loaded.trouble, "a later Adit saved the settings, and these are passed over: beacons team.mesh");
+  EXPECT_EQ(loaded.trouble, "a later Adit saved the settings; these settings are ignored: beacons team.mesh");
   EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "the later Adit finds it as it was";
 }
 
@@ -135,7 +135,7 @@ TEST_F(StoreTest, SetsSavedTokensAsideThatCannotBeRead) {
   std::filesystem::create_directory(state_ / "secrets/mapping.token");
   const auto loaded = store_.load();
   ASSERT_TRUE(loaded.has_value()) << loaded.error();
-  EXPECT_THAT(loaded->trouble, HasSubstr("the saved tokens are set aside"));
+  EXPECT_THAT(loaded->trouble, HasSubstr("the saved tokens were set aside"));
   EXPECT_THAT(loaded->trouble, Not(HasSubstr("saved-1")));
   EXPECT_TRUE(kept("secrets.damaged/scoring.token"));
 }

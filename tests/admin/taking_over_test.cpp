@@ -164,7 +164,7 @@ TEST_F(TakingOverTest, RefusesSettingsThatCannotBeUsedHere) {
   other.settings = R"({"version": 9})";
   const auto checked = taking_over_.check(other);
   ASSERT_FALSE(checked);
-  EXPECT_THAT(checked.error(), HasSubstr("its settings cannot be used here"));
+  EXPECT_THAT(checked.error(), HasSubstr("this box cannot use the export's settings"));
   EXPECT_TRUE(taking_over_.check(content()));
 }
 

@@ -70,7 +70,7 @@ TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
 
 TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
   say({.running = {"adit-board", "0.1.0", "A", "B"},
-       .refusal = "it is older",
+       .refusal = "the update is older",
        .doing = "installing",
        .progress = 40,
        .last = {update::Stage::Installing, "0.2.0", "B", "boot", ""}});
@@ -79,7 +79,7 @@ TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
   EXPECT_EQ(view.running.version, "0.1.0");
   EXPECT_EQ(view.doing, "installing");
   EXPECT_EQ(view.progress, 40);
-  EXPECT_EQ(view.refusal, "it is older");
+  EXPECT_EQ(view.refusal, "the update is older");
   EXPECT_TRUE(updates_.running());
 }
 
@@ -118,8 +118,7 @@ TEST_F(UpdatesTest, TakeOneAtATime) {
   const std::uint8_t piece[50] = {};
   EXPECT_TRUE((*first)->write(piece));
   EXPECT_EQ(updates_.update().progress, 50);
-  EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence,
-            "the box is receiving already: wait for its end");
+  EXPECT_EQ(updates_.receive(100, false, [] {}).error().sentence, "the box is already receiving: wait");
   EXPECT_EQ(updates_.restart(true).error().status, icd::Status::Conflict);
   first->reset();
   EXPECT_EQ(updates_.update().doing, "");
@@ -128,7 +127,7 @@ TEST_F(UpdatesTest, TakeOneAtATime) {
 }
 
 TEST_F(UpdatesTest, AskForNothingWhereABundleCameShort) {
-  EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("3 of 5 bytes came"));
+  EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("got 3 of 5 bytes"));
   EXPECT_FALSE(asked());
   EXPECT_TRUE(fs::is_empty(state_.path()));
   EXPECT_EQ(updates_.update().doing, "");
@@ -144,7 +143,7 @@ TEST_F(UpdatesTest, RefuseWhatTheDiskHasNoRoomFor) {
 
 TEST_F(UpdatesTest, SayThatABundleCannotBeWritten) {
   fs::create_directory(state_ / "update.raucb.part");
-  EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("the bundle cannot be written"));
+  EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("cannot write the bundle"));
   EXPECT_FALSE(asked());
 }
 
@@ -183,7 +182,7 @@ TEST_F(UpdatesTest, GiveTheRoomBackAtOnceWhereTheDiskIsFullBeforeTheEnd) {
   std::optional<icd::Checked<void>> ended;
   (*upload)->finish([&ended](icd::Checked<void> outcome) { ended = std::move(outcome); });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return ended.has_value(); }));
-  EXPECT_EQ(ended->error().sentence, "the bundle cannot be written: File too large");
+  EXPECT_EQ(ended->error().sentence, "cannot write the bundle: File too large");
   EXPECT_TRUE(fs::is_empty(state_.path()));
   EXPECT_FALSE(asked());
 }
@@ -194,10 +193,10 @@ TEST_F(UpdatesTest, AreOverOnceAditUpdateHasAnswered) {
   ASSERT_TRUE(request);
   EXPECT_EQ(request->what, update::Request::What::Stick);
   EXPECT_EQ(updates_.update().doing, "checking");
-  say({.nonce = request->nonce, .refusal = "there is no update on a stick"});
+  say({.nonce = request->nonce, .refusal = "no stick has an update"});
   wait();
   EXPECT_EQ(updates_.update().doing, "");
-  EXPECT_EQ(updates_.update().refusal, "there is no update on a stick");
+  EXPECT_EQ(updates_.update().refusal, "no stick has an update");
 }
 
 TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {

@@ -15,10 +15,11 @@ using testing::Field;
 using testing::IsEmpty;
 
 const Condition kSilent{
-    .id = "robot_silent:uav5", .side = Side::Robot, .since = 70, .what = "uav5 is silent"};
+    .id = "robot_silent:uav5", .side = Side::Robot, .since = 70, .headline = {"uav5", "silent"}};
 const Condition kHeld{
-    .id = "report_held:7", .severity = Severity::Ask, .since = 50, .what = "Report 7 is held"};
-const Condition kFew{.id = "reports_left", .severity = Severity::Wait, .what = "5 reports are left"};
+    .id = "report_held:7", .severity = Severity::Ask, .since = 50, .headline = {"Report 7", "held"}};
+const Condition kFew{
+    .id = "reports_left", .severity = Severity::Wait, .headline = {"5 reports", "left", true}};
 
 auto id_is(const char* id) {
   return Field(&Alarm::id, id);
@@ -136,7 +137,7 @@ TEST(Board, HidesNothingNewByWhatWasAcknowledgedBeforeARestart) {
   another.id = "report_held:8";
   for (const Condition& each : {worse, bad, otherwise, another}) {
     Board board = after_a_restart(few, 130);
-    EXPECT_FALSE(is_quiet(board, each, 131)) << each.id << each.what << each.why;
+    EXPECT_FALSE(is_quiet(board, each, 131)) << each.id << each.headline.now() << each.why;
   }
   Board late = after_a_restart(few, 130);
   EXPECT_FALSE(is_quiet(late, few, 131 + Acknowledged::kWaitsFor)) << "it comes a minute after the start";
@@ -154,9 +155,9 @@ TEST(Board, HidesNothingNewByWhatWasAcknowledgedBeforeARestart) {
 }
 
 TEST(Board, WaitsUntilAnAlarmThatGrowsIsWhatItWas) {
-  Condition both{.id = "command_post_unreachable", .what = "Command Post is unreachable", .degree = 2};
+  Condition both{.id = "command_post_unreachable", .headline = {"Command Post", "unreachable"}, .degree = 2};
   Condition one = both;
-  one.what = "Scoring is unreachable";
+  one.headline.subject = "Scoring";
   one.degree = 1;
   Board board = after_a_restart(both, 130);
   EXPECT_FALSE(is_quiet(board, one, 133));
@@ -167,7 +168,7 @@ TEST(Acknowledged, AreBoundedHoweverManyThereAre) {
   Board board;
   std::vector<Condition> many;
   for (int i = 0; i < 100; ++i)
-    many.push_back({.id = "report_held:" + std::to_string(i), .what = "It is held"});
+    many.push_back({.id = "report_held:" + std::to_string(i), .headline = {"It", "held"}});
   many[7].why = std::string(5000, 'x');
   board.take(many, 90);
   for (const Condition& each : many) ASSERT_TRUE(board.acknowledge(each.id, 100));
@@ -190,9 +191,9 @@ TEST(Words, SayAgesAndThePast) {
   EXPECT_EQ(age_text(720), "12 min");
   EXPECT_EQ(age_text(7500), "2:05 h");
   EXPECT_EQ(clock_text(94), "1:34");
-  EXPECT_EQ(past("uav5 is silent"), "uav5 was silent");
-  EXPECT_EQ(past("All 20 robots are silent"), "All 20 robots were silent");
-  EXPECT_EQ(past("What answers is no Command Post"), "What answers was no Command Post");
+  EXPECT_EQ((Headline{"uav5", "silent"}.now()), "uav5 is silent");
+  EXPECT_EQ((Headline{"What is lit", "wrong"}.past()), "What is lit was wrong") << "a subject may have verbs";
+  EXPECT_EQ((Headline{"All 20 robots", "silent", true}.past()), "All 20 robots were silent");
 }
 
 TEST(Board, ShowsWhatLastsAsLongAsItDidWhereTheTimeOfDayIsSet) {

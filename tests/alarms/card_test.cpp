@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <set>
+#include <sstream>
 
 #include "alarms/alike.hpp"
 
@@ -55,7 +56,7 @@ void robots_and_queue(std::vector<Facts>& days) {
 void reports(std::vector<Facts>& days) {
   days.push_back(named());
   days.back().reports = {
-      {.number = 7, .is = ReportFact::Is::Held, .note = "held: close to report 5"},
+      {.number = 7, .is = ReportFact::Is::Held, .note = "close to report 5"},
       {.number = 7, .is = ReportFact::Is::InDoubt, .note = "the status cannot tell"},
       {.number = 7, .is = ReportFact::Is::Lost, .of_run = false, .note = "a row is damaged"}};
   days.back().reports_left = 5;
@@ -70,17 +71,17 @@ void the_box(std::vector<Facts>& days) {
   days.push_back(named());
   Facts& facts = days.back();
   facts.ledger_refusal = facts.disk.map = facts.disk.state = facts.disk.run = "no space";
-  facts.ledger_damage = "a page was put aside";
+  facts.ledger_damage = "its reports were recovered";
   facts.disk.free = 500u << 10;
   facts.time_set = false;
   facts.ntp_trouble = "the NTP server ADDRESS does not answer";
-  facts.change_trouble = "the last change was taken back: port 8000 is in use";
+  facts.change_trouble = "port 8000 is in use";
   facts.settings_trouble = facts.board_trouble = "an error in it";
   facts.lights_trouble = "no such device";
   facts.notices = {{"card", "what happened"}};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
   days.push_back(named());
-  days.back().rests = "it was put to rest, for its spare to take over";
+  days.back().rests = "its spare takes over";
 }
 
 void the_network(std::vector<Facts>& days) {
@@ -115,7 +116,7 @@ std::vector<Condition> all() {
   std::vector<Condition> found;
   for (const Facts& day : days) {
     for (Condition& each : conditions_of(day)) {
-      if (std::ranges::find(found, each.what, &Condition::what) == found.end())
+      if (std::ranges::find(found, each.headline, &Condition::headline) == found.end())
         found.push_back(std::move(each));
     }
   }
@@ -127,7 +128,7 @@ std::string rows(Side side) {
   for (const Condition& each : all()) {
     if (each.side != side) continue;
     html.append("<li class=\"").append(kSeverityWords[static_cast<std::size_t>(each.severity)]);
-    html.append("\"><b>").append(each.what).append("</b>");
+    html.append("\"><b>").append(each.headline.now()).append("</b>");
     if (!each.why.empty()) html.append(": ").append(each.why);
     if (!each.action.word.empty()) html.append(" <i>").append(each.action.word).append("</i>");
     html.append("</li>\n");
@@ -163,6 +164,36 @@ TEST(AlarmsCard, HasEachConditionInItsWords) {
               std::string::npos)
         << "put this into board/card.html:\n<ul class=\"" << kSideWords[side] << "\">\n"
         << part << "</ul>";
+  }
+}
+
+/// The first cell of each kind's row in TROUBLE.md, by its first headline: the anchor is the kind.
+std::string troubles(Side side) {
+  constexpr std::string_view kSigns[] = {"■", "?", "○"};
+  std::string cells;
+  std::set<std::string> told;
+  for (const Condition& each : all()) {
+    if (each.side != side || !told.insert(kind_of(each.id)).second) continue;
+    cells.append("| <a id=\"").append(kind_of(each.id)).append("\"></a>");
+    cells.append(kSigns[static_cast<std::size_t>(each.severity)]);
+    cells.append(" **").append(each.headline.now()).append("** |\n");
+  }
+  return cells;
+}
+
+TEST(AlarmsTroubles, HaveARowForEachKindInItsWords) {
+  const std::string page = text_of("firmware/alarms/TROUBLE.md");
+  for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
+    const std::string title = std::string("\n<!-- ") + std::string(kSideWords[side]) + " -->\n";
+    const std::size_t from = page.find(title);
+    std::string cells;
+    std::istringstream lines(from == std::string::npos ? "" : page.substr(from + title.size()));
+    for (std::string line; std::getline(lines, line) && !line.starts_with("<!-- ");) {
+      if (!line.starts_with("| <a id=")) continue;
+      cells.append(line, 0, line.find(" | ")).append(" |\n");
+      EXPECT_EQ(std::ranges::count(line, '|'), 4) << "a row says what it means and what to do: " << line;
+    }
+    EXPECT_EQ(cells, troubles(static_cast<Side>(side))) << kSideWords[side];
   }
 }
 

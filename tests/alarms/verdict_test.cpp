@@ -40,7 +40,7 @@ TEST(Verdict, NamesThreeAtMost) {
   EXPECT_EQ(verdict_of(facts),
             (Verdict{Level::Wait, "1 of 6 arrive", "not uav1, uav2, uav3 and 2 more; the other 8 s"}));
   facts.robots["uav6"].silent = true;
-  EXPECT_EQ(verdict_of(facts).what, "Nothing arrives");
+  EXPECT_EQ(verdict_of(facts).what, "No map arrives");
   EXPECT_EQ(verdict_of(facts).level, Level::Bad);
 }
 
@@ -54,7 +54,7 @@ TEST(Verdict, IsThatNothingArrivesWhileTheEndpointIsDown) {
   Facts facts = well(20);
   facts.endpoints[1].trouble = PostTrouble::Silent;
   facts.endpoints[1].since = kNow - 72;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Bad, "Nothing arrives", "for 1:12; the box keeps all"}));
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Bad, "No map arrives", "for 1:12; the box keeps all maps"}));
   facts.endpoints[1].trouble = PostTrouble::Throttling;
   EXPECT_EQ(verdict_of(facts).level, Level::Good) << "it takes them all the same";
 }
@@ -63,7 +63,7 @@ TEST(Verdict, DoesNotSaySinceWhenThereHasBeenNoToken) {
   Facts facts = well(3);
   facts.endpoints[1].trouble = PostTrouble::NoToken;
   EXPECT_EQ(verdict_of(facts),
-            (Verdict{Level::Bad, "Nothing arrives", "no mapping token is set; the box keeps all"}));
+            (Verdict{Level::Bad, "No map arrives", "the mapping token is missing; the box keeps all maps"}));
 }
 
 TEST(Verdict, OfNoMapsIsNone) {

@@ -113,7 +113,7 @@ TEST_F(PageTest, LetsABrowserKeepForGoodOnlyWhatIsNamedByItsContent) {
     EXPECT_THAT(path, testing::ContainsRegex("^/index[.][0-9a-f]{12}[.](css|js)$"));
     EXPECT_EQ(header(get_file(path), "Cache-Control"), "public, max-age=31536000, immutable");
   }
-  for (const char* path : {"/", "/setup", "/icon.svg", "/login.html"})
+  for (const char* path : {"/", "/setup", "/help", "/icon.svg", "/login.html"})
     EXPECT_EQ(header(get_file(path), "Cache-Control"), "no-cache") << path;
 }
 
@@ -161,7 +161,7 @@ TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
     const auto answer = get_file(path);
     EXPECT_EQ(answer.status, icd::Status::NotFound) << path;
     EXPECT_EQ(answer.content_type, "application/json");
-    EXPECT_EQ(nlohmann::json::parse(answer.body), "there is nothing at \"" + std::string(path) + "\"");
+    EXPECT_EQ(nlohmann::json::parse(answer.body), "there is no resource at \"" + std::string(path) + "\"");
   }
 }
 

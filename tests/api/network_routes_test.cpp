@@ -70,7 +70,7 @@ TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
 TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
   network.view.pending = PendingNetwork{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
   network.view.last = "taken back";
-  network.view.last_why = "nobody confirmed it within 90 s";
+  network.view.last_why = "the change was not confirmed within 90 s";
   const json shown = json::parse(get("/adit/network").body);
   EXPECT_EQ(shown["pending"]["until"], 1234.5);
   EXPECT_EQ(shown["pending"]["team"]["address"], "192.168.8.11");
@@ -115,10 +115,10 @@ TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
   EXPECT_THAT(network.confirmed, ElementsAre("192.168.8.11"));
   post("/adit/network/back");
   EXPECT_EQ(network.taken_back, 1);
-  network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "no change waits to be confirmed"});
+  network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "there is no change to confirm"});
   const auto answer = post("/adit/network/confirm");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
-  EXPECT_EQ(json::parse(answer.body), "no change waits to be confirmed");
+  EXPECT_EQ(json::parse(answer.body), "there is no change to confirm");
 }
 
 TEST_F(NetworkRoutesTest, RunOneTestAtATime) {

@@ -45,7 +45,8 @@ class Played {
 
   std::expected<std::int64_t, std::string> report(const RunView& view, const icd::ArtifactReport& report,
                                                   bool resubmit) {
-    if (report.position.x == 666) return std::unexpected("1000 reports wait already; this one was not taken");
+    if (report.position.x == 666)
+      return std::unexpected("1000 reports are queued already; this report was not accepted");
     for (const ReportRow& row : view.reports) {
       if (row.type == report.type && row.position == report.position && !resubmit) return row.number;
     }

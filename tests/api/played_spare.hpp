@@ -26,7 +26,7 @@ struct PlayedSpare final : Spare {
   }
   icd::Checked<void> rest() override {
     view.rests = true;
-    view.why = "it was put to rest, for its spare to take over";
+    view.why = "its spare takes over";
     view.code = "1234 5678 9012 3456";
     return {};
   }
@@ -67,14 +67,14 @@ struct PlayedSpare final : Spare {
     StickRow& stick = *view.stick;
     if (stick.doing == "writing") {
       stick.doing = written_ == 1 ? "" : "checking";
-      if (written_ == 1) stick.refusal = "the stick has no room for it";
+      if (written_ == 1) stick.refusal = "the stick is full";
     } else if (stick.doing == "checking") {
       stick.doing.clear();
       stick.written = "adit-10.0.0.1-20250615T150640Z.adit-spare";
     } else if (stick.doing == "reading") {
       stick.doing.clear();
       view.asks_code = taken_ != "zip.adit-spare";
-      if (!view.asks_code) stick.refusal = "it is no export of an Adit";
+      if (!view.asks_code) stick.refusal = "the file is not an export from Adit";
     }
   }
 

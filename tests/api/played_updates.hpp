@@ -11,7 +11,7 @@ struct PlayedUpdates final : Updates {
   PlayedUpdates() {
     view.managed = true;
     view.running = {"adit-a-board", "0.1.0", "A", "B"};
-    view.last = {update::Stage::Left, "0.0.9", "B", "", "it did not come up healthy in three starts"};
+    view.last = {update::Stage::Left, "0.0.9", "B", "", "the update did not become healthy in three starts"};
     view.stick = update::Offer{"adit-a-board-0.3.0.raucb", "0.3.0"};
   }
   UpdateView update() const override { return view; }

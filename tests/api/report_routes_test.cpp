@@ -163,17 +163,17 @@ TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
 }
 
 TEST_F(ReportRoutesTest, SayWhyAComposedReportWasNotTaken) {
-  judge.outcome = std::unexpected("1000 reports wait already; this one was not taken");
+  judge.outcome = std::unexpected("1000 reports are queued already; this report was not accepted");
   const auto answer = compose(R"({"type":"Rope","x":0,"y":0,"z":0})");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
-  EXPECT_EQ(json::parse(answer.body), "1000 reports wait already; this one was not taken");
+  EXPECT_EQ(json::parse(answer.body), "1000 reports are queued already; this report was not accepted");
 }
 
 TEST_F(ReportRoutesTest, SayWhyAActionCannotBe) {
-  judge.outcome = std::unexpected("report 7 is answered: there is nothing to withdraw");
+  judge.outcome = std::unexpected("report 7 is answered: it is finished and cannot be withdrawn");
   const auto answer = post("/adit/reports/7/withdraw");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
-  EXPECT_EQ(json::parse(answer.body), "report 7 is answered: there is nothing to withdraw");
+  EXPECT_EQ(json::parse(answer.body), "report 7 is answered: it is finished and cannot be withdrawn");
 }
 
 TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherActions) {

@@ -69,7 +69,7 @@ TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
   EXPECT_THAT(csv({settled}), HasSubstr(",settled,no,yes,3,201,scored,0,"));
   settled.state = "in_doubt";
   settled.asking = true;
-  EXPECT_THAT(csv({settled}), HasSubstr(",in doubt,yes,yes,"));
+  EXPECT_THAT(csv({settled}), HasSubstr(",in_doubt,yes,yes,"));
 }
 
 TEST(ReportsCsv, QuotesWhatWouldEndACell) {

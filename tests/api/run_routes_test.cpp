@@ -23,7 +23,8 @@ TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsRejectedMessages) {
   EXPECT_EQ(sent.status, icd::Status::Ok);
   EXPECT_EQ(sent.body, R"({"rejected":7})");
   EXPECT_EQ(post("/adit/rejected/8/discard").status, icd::Status::Ok);
-  EXPECT_THAT(judge.judged_messages, ElementsAre(Pair(7, RejectedAction::Send), Pair(8, RejectedAction::Discard)));
+  EXPECT_THAT(judge.judged_messages,
+              ElementsAre(Pair(7, RejectedAction::Send), Pair(8, RejectedAction::Discard)));
 }
 
 TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsRejectedMessages) {

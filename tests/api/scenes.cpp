@@ -152,15 +152,15 @@ RunView trouble(Time now, double elapsed) {
   view.reports[2].note = "the connection was lost before an answer came";
   view.refusals.push_back(
       {began - 20, "/state/update", "10.0.0.8", 422,
-       R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id takes any))",
+       R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id accepts any frame))",
        0, "rules.rewrite_frame_id"});
   view.alarms = {
       alarm("command_post_unreachable", alarms::Severity::Bad, began - 130, "Mapping is unreachable",
-            "connecting to 10.100.1.201:8000: Connection refused; all is kept until it answers",
+            "connecting to 10.100.1.201:8000: Connection refused; the box tries again",
             {"Open test", "/setup#test"}),
       alarm("report_in_doubt:8", alarms::Severity::Ask, now - 42, "Report 8 is in doubt",
             "the connection was lost before an answer came", {"Decide", "/#report=8"}),
-      alarm("reports_left", alarms::Severity::Wait, began - 9, "5 reports are left", "of this run", {})};
+      alarm("reports_left", alarms::Severity::Wait, began - 9, "5 reports are left", "in this run", {})};
   view.alarms[0].hides = 3;
   return view;
 }
@@ -187,9 +187,9 @@ RunView reports(Time now, double elapsed) {
   view.reports[2].asking = true;
   view.reports[2].note = "the connection was lost before an answer came; the run's status is being asked";
   view.reports[3].note = "no answer came, and the run's status shows that another client reports, too";
-  view.reports[4].note = "held: the same type as report 25, 2 m from it";
+  view.reports[4].note = "the same type as report 25, 2 m from it";
   view.reports[5].reconciled = true;
-  view.reports[6].note = "the operator calls it done";
+  view.reports[6].note = "the operator called it done";
   view.reports[7].same_as = 17;
   view.alarms = {alarm("report_in_doubt:25", alarms::Severity::Ask, now - 60, "Report 25 is in doubt",
                        "no answer came", {"Decide", "/#report=25"}),

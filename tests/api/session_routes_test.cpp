@@ -132,8 +132,8 @@ TEST_F(GuessedAtTest, SayToAStrangerWhenItsTurnIs) {
   const auto answer = try_to("");
   EXPECT_EQ(answer.status, Status::TooManyRequests);
   EXPECT_EQ(json::parse(answer.body).get<std::string>(),
-            "others are trying passwords: your turn is in " + header(answer, "Retry-After") +
-                " s; or press the box's button, and try again at once");
+            "other clients are trying passwords: wait " + header(answer, "Retry-After") +
+                " s, or press the box's button and try again at once");
 }
 
 TEST_F(GuessedAtTest, LetInABrowserThatHasBeenInBefore) {

@@ -36,8 +36,8 @@ TEST_F(SettingsRoutesTest, ShowTheWholeSettingsWhatAFormNeedsAndNoToken) {
   };
   EXPECT_EQ(key("team.connections"), (json{{"path", "team.connections"},
                                            {"meaning",
-                                            "Connections of the team at once, at most; a quarter of them, at "
-                                            "most 32, is for who has shown no token."},
+                                            "Connections of the team at once, at most. Unauthenticated "
+                                            "clients get a quarter of them, at most 32."},
                                            {"kind", "whole"},
                                            {"required", false},
                                            {"default", 128},
@@ -175,7 +175,7 @@ TEST_F(SettingsRoutesTest, RefuseBodiesThatAreNotWhatIsAskedForAndNameTheField) 
        "name: expected one of scoring, course.A.mapping, got"},
       {"/adit/course", json::object(), "name: missing"},
       {"/adit/course", {{"name", nullptr}}, "name: expected a string"},
-      {"/adit/course", {{"name", "B"}}, "command_post.course: no course is called B; there are A"}};
+      {"/adit/course", {{"name", "B"}}, "command_post.course: no course is called B; the courses are A"}};
   for (const auto& row : rows) {
     const auto answer = post(row.path, row.body);
     EXPECT_EQ(answer.status, Status::UnprocessableEntity) << row.path << row.body;
@@ -230,7 +230,7 @@ TEST_F(SettingsRoutesTest, SlowDownWhoGuessesThePasswordByResetting) {
 }
 
 TEST_F(SettingsRoutesTest, PassOnWhyAChangeIsNotMade) {
-  setup.refusal = {Status::ServiceUnavailable, "the change cannot be kept: No space left on device"};
+  setup.refusal = {Status::ServiceUnavailable, "cannot store the change: No space left on device"};
   json said = shown();
   said["settings"]["team"]["connections"] = 65;
   for (const auto& answer :

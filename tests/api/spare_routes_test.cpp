@@ -78,7 +78,7 @@ TEST_F(SpareRoutesTest, TakesInAnExportAndRefusesWhatIsNoneByItsFirstBytes) {
   EXPECT_EQ(spare.file, whole);
   const auto none = take("PK\3\4 a zip file");
   EXPECT_EQ(none.status, Status::UnprocessableEntity);
-  EXPECT_THAT(none.body, HasSubstr("it is no export of an Adit"));
+  EXPECT_THAT(none.body, HasSubstr("the file is not an export from Adit"));
   EXPECT_EQ(take("").status, Status::UnprocessableEntity);
   EXPECT_EQ(spare.file, whole);
 }

@@ -36,7 +36,7 @@ TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
   updates.view.why = "RAUC does not run here";
   updates.view.doing = "installing";
   updates.view.progress = 40;
-  updates.view.refusal = "it is older";
+  updates.view.refusal = "the update is older";
   updates.view.trial = true;
   updates.view.last = {update::Stage::Left, "0.2.0", "B", "boot", "it did not"};
   updates.view.stick = update::Offer{"adit-x.raucb", "0.3.0"};
@@ -45,7 +45,7 @@ TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
   EXPECT_EQ(shown["why"], "RAUC does not run here");
   EXPECT_EQ(shown["doing"], "installing");
   EXPECT_EQ(shown["progress"], 40);
-  EXPECT_EQ(shown["refusal"], "it is older");
+  EXPECT_EQ(shown["refusal"], "the update is older");
   EXPECT_EQ(shown["trial"], true);
   EXPECT_EQ(shown["last"],
             json::parse(R"({"stage": "left", "version": "0.2.0", "slot": "B", "why": "it did not"})"));
@@ -85,8 +85,8 @@ TEST_F(UpdateRoutesTest, RefuseWhatIsNoBundleByItsFirstBytes) {
   std::vector<std::uint8_t> image = head(), cut = head(60);
   image[0] = 0xfd;
   for (const auto& [bytes, why] :
-       {std::pair(image, "it is no update: expected a file adit-BOARD-VERSION.raucb"),
-        std::pair(cut, "it is cut short: 60 bytes of an update of more than 60")}) {
+       {std::pair(image, "the file is not an update: expected a file adit-BOARD-VERSION.raucb"),
+        std::pair(cut, "the update is incomplete: expected more than 60 bytes, got 60")}) {
     const auto exchange = open("POST", "/adit/update", kBytes, 60);
     EXPECT_TRUE(exchange->on_body(bytes));
     ASSERT_TRUE(responder->answered) << "before the rest comes";

@@ -74,8 +74,8 @@ class ImportTest : public testing::Test {
     bring_all();
     bring(name, brought);
     import();
-    EXPECT_THAT(taken(),
-                AllOf(StartsWith("Adit took nothing."), HasSubstr("adit/" + name + ": "), HasSubstr(what)));
+    EXPECT_THAT(taken(), AllOf(StartsWith("Adit accepted no file."), HasSubstr("adit/" + name + ": "),
+                               HasSubstr(what)));
     EXPECT_FALSE(fs::exists(options.state)) << name << ' ' << brought;
     EXPECT_FALSE(fs::exists(options.network));
     for (const char* stays : {"settings.json", "network.json", "secrets/scoring.token"})
@@ -92,11 +92,11 @@ TEST_F(ImportTest, TakesAllThatWasBroughtAndSaysSo) {
   import();
   expect_all_taken();
   EXPECT_EQ(taken(),
-            "Adit took what was here:\n"
-            "adit/settings.json: taken\n"
-            "adit/network.json: taken\n"
-            "adit/secrets/course.A.mapping.token: taken, and removed from here\n"
-            "adit/secrets/scoring.token: taken, and removed from here\n");
+            "Adit accepted these files:\n"
+            "adit/settings.json: accepted\n"
+            "adit/network.json: accepted\n"
+            "adit/secrets/course.A.mapping.token: accepted, and removed from here\n"
+            "adit/secrets/scoring.token: accepted, and removed from here\n");
   EXPECT_TRUE(on_card("settings.json.taken"));
   EXPECT_TRUE(on_card("network.json.taken"));
 }
@@ -122,7 +122,7 @@ TEST_F(ImportTest, TakesAllAgainAtEachStartWhereItCannotBeKept) {
     EXPECT_EQ(network::read_kept(text(options.network + "/confirmed.json")), numbers);
     EXPECT_EQ(text(options.card + "/secrets/scoring.token"), "scoring-1\r\n");
     EXPECT_TRUE(on_card("settings.json") && on_card("network.json"));
-    EXPECT_THAT(taken(), AllOf(StartsWith("Adit cannot keep what it takes"), Not(HasSubstr("removed"))));
+    EXPECT_THAT(taken(), AllOf(StartsWith("Adit cannot store these files"), Not(HasSubstr("removed"))));
     for (const std::string& path : {options.state, options.network}) fs::remove_all(path);
   }
   fs::remove_all(folder / "notices");
@@ -204,9 +204,9 @@ TEST_F(ImportTest, RefusesTokensWithoutShowingThem) {
   expect_refused("secrets/mapping.token", std::string(257, 'x'), "1 to 256");
   EXPECT_THAT(taken(), Not(HasSubstr("xxx")));
   expect_refused("secrets/mapping.token", std::string(70000, 'x'), "large");
-  expect_refused("secrets/scorin.token", "token-1", "no token is called so; expected one of scoring.token, ");
+  expect_refused("secrets/scorin.token", "token-1", "unknown name; expected one of scoring.token, ");
   expect_refused("secrets/course.B.scoring.token", "token-1", "course.A.scoring.token");
-  expect_refused("secrets/scoring.token.txt", "token-1", "no token is called so");
+  expect_refused("secrets/scoring.token.txt", "token-1", "unknown name");
 }
 
 TEST_F(ImportTest, TellsAllThatIsWrongAtOnce) {
@@ -231,7 +231,7 @@ TEST_F(ImportTest, TakesPlainFilesAlone) {
   fs::remove_all(options.card + "/secrets");
   bring("secrets", "no folder");
   import();
-  EXPECT_THAT(taken(), HasSubstr("adit/secrets: expected a folder"));
+  EXPECT_THAT(taken(), HasSubstr("adit/secrets: expected a directory"));
 }
 
 TEST_F(ImportTest, IsNotKeptBusyByACardFullOfFiles) {
@@ -245,9 +245,8 @@ TEST_F(ImportTest, LeavesOtherFilesAloneAndSaysWhatItTakes) {
   bring("._settings.json", "");
   bring("secrets/._team.token", "");
   import();
-  EXPECT_EQ(
-      taken(),
-      "adit/settings.json.txt: left alone; Adit takes settings.json, network.json and secrets/*.token\n");
+  EXPECT_EQ(taken(),
+            "adit/settings.json.txt: ignored; Adit reads settings.json, network.json and secrets/*.token\n");
 }
 
 TEST_F(ImportTest, PutsSettingsOnTrial) {
@@ -264,7 +263,7 @@ TEST_F(ImportTest, PutsSettingsOnTrial) {
 TEST_F(ImportTest, KnowsTheCoursesOfTheSettingsThatAreInForce) {
   bring("secrets/course.A.scoring.token", "token-1");
   import();
-  EXPECT_THAT(taken(), HasSubstr("no token is called so"));
+  EXPECT_THAT(taken(), HasSubstr("unknown name"));
   fs::create_directories(options.state);
   std::ofstream(options.state + "/settings.json") << settings::sample("", "", kCourse);
   import();
@@ -309,7 +308,7 @@ TEST_F(ImportTest, IsLedNowhereByTheStateOfAnother) {
   bring("secrets/team.token", "team-1");
   EXPECT_FALSE(Import(options).run());
   EXPECT_TRUE(fs::is_empty(folder / "elsewhere"));
-  EXPECT_THAT(taken(), StartsWith("Adit could not take what is here: "));
+  EXPECT_THAT(taken(), StartsWith("Adit could not store these files: "));
   EXPECT_TRUE(on_card("secrets/team.token"));
 }
 
@@ -318,7 +317,7 @@ TEST_F(ImportTest, TakesNothingFromACardThatCannotBeWritten) {
   fs::create_directory(options.card + "/taken.txt");  // no file can take its place
   const auto done = Import(options).run();
   ASSERT_FALSE(done);
-  EXPECT_THAT(done.error(), HasSubstr("cannot be written"));
+  EXPECT_THAT(done.error(), HasSubstr("cannot write to the card"));
   EXPECT_FALSE(fs::exists(options.state));
 }
 

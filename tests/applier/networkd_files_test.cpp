@@ -120,7 +120,7 @@ TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
 
 TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
   NetworkdFiles watchful(options, &somebody);
-  EXPECT_EQ(watchful.apply(second).error(), "192.168.8.11 is in use already on team0, by 02:00:00:00:00:09");
+  EXPECT_EQ(watchful.apply(second).error(), "192.168.8.11 is already in use on team0, by 02:00:00:00:00:09");
   EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 0u);
   EXPECT_TRUE(watchful.apply(first));

@@ -68,7 +68,7 @@ class Card(unittest.TestCase):
         self.put("secrets/scoring.token", TOKEN)
         self.assertIn(TOKEN.encode(), self.image.read_bytes())
         self.assertEqual(self.start(), 0, self.said)
-        self.assertIn("adit/secrets/scoring.token: taken", self.read("taken.txt"))
+        self.assertIn("adit/secrets/scoring.token: accepted", self.read("taken.txt"))
         self.assertNotIn(TOKEN.encode(), self.image.read_bytes(), "it can still be read from the card")
         self.assertEqual(self.names(), {"::/adit/secrets/", "::/adit/settings.json.taken", "::/adit/taken.txt"})
         self.assertEqual((self.folder / "private/adit/secrets/scoring.token").read_text().strip(), TOKEN)

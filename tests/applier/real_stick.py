@@ -111,13 +111,13 @@ class Stick(Sticks):
         self.plug(size=3 << 20)
         self.put({"photo": bytes(1 << 20)})
         before = set(os.listdir(self.place()))
-        self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "and the export has")
+        self.expect_refused(self.write(EXPORT + bytes(4 << 20)), "the stick has room for", "but the export has")
         self.assertEqual((self.calls.read_text(), set(os.listdir(self.place()))), ("", before))
 
     def test_that_fills_up_meanwhile_is_left_as_it_was(self):
         self.plug(size=8 << 20)
         self.hook('[ "$1" != rw ] || dd if=/dev/zero of="$2/filler" bs=64k 2>/dev/null || true\n')
-        self.expect_refused(self.write(), "the stick has no room for it")
+        self.expect_refused(self.write(), "the stick is full")
         self.assertTrue(self.is_read_only())
         self.assertFalse({NAME, PART} & set(os.listdir(self.place())))
 
@@ -144,7 +144,7 @@ class Stick(Sticks):
 
     def test_that_is_not_in_is_missed(self):
         self.expect_refused(self.write(), "there is no stick in the box")
-        self.expect_refused(self.ask("take"), "there is no such export on a stick")
+        self.expect_refused(self.ask("take"), "no stick has this export")
 
     def test_beside_another_is_not_guessed(self):
         self.plug()
@@ -167,7 +167,7 @@ class Stick(Sticks):
             with self.subTest(moment):
                 self.plug()
                 self.hook(f'[ "$1" != {moment} ] || {{ {out} "$2"; }}\n')
-                self.expect_refused(self.write(), "the stick was pulled out before")
+                self.expect_refused(self.write(), "the stick was removed before")
                 self.assertEqual(self.run_it()["hindrance"], "there is no stick in the box")
                 (self.folder / "hook").unlink()
 
@@ -176,7 +176,7 @@ class Stick(Sticks):
         self.plug()
         lies = f'[ "$1" != ro ] || {{ umount "$2"; mount -o loop,rw {self.folder}/dev/sda1 "$2"; printf x >>"$2/{NAME}"; mount -o remount,ro "$2"; }}\n'
         self.hook(lies)
-        self.expect_refused(self.write(), "the stick has not kept the export as it was written")
+        self.expect_refused(self.write(), "the export on the stick differs from what was written")
 
     def test_that_fails_while_it_is_written_is_told_of(self):
         """Every write beyond what its medium takes comes to nothing, as with one that dies."""
@@ -202,7 +202,7 @@ class Stick(Sticks):
             self.run_it()
         self.assertFalse(self.is_read_only(), "it was killed there")
         status = self.run_it()
-        self.assertEqual((status["doing"], status["refusal"]), ("", "it was cut off: try again"))
+        self.assertEqual((status["doing"], status["refusal"]), ("", "the last action was interrupted: try again"))
         self.assertTrue(self.is_read_only())
         self.assertEqual(self.write()["written"], NAME)
 
@@ -234,8 +234,8 @@ class Stick(Sticks):
         self.mount_stick()
         self.assertEqual(len(self.run_it()["exports"]), 6, "they are names so far")
         for name, why in (("link", "link.adit-spare"), ("pipe", "expected a plain file"), ("folder", "expected a plain file"),
-                          ("none", "it is no export of an Adit"), ("empty", "it is no export of an Adit"),
-                          ("large", "too large for an export")):
+                          ("none", "the file is not an export from Adit"), ("empty", "the file is not an export from Adit"),
+                          ("large", "larger than an export may be")):
             with self.subTest(name):
                 self.expect_refused(self.ask("take", f"{name}.adit-spare"), why)
         self.assertFalse((self.folder / "status/export.adit-spare").exists())
@@ -247,7 +247,7 @@ class Stick(Sticks):
 
     def test_is_written_nothing_that_is_no_export(self):
         self.plug()
-        for export, why in ((b"#!/bin/sh", "it is no export of an Adit"), (EXPORT + bytes(9 << 20), "too large")):
+        for export, why in ((b"#!/bin/sh", "the file is not an export from Adit"), (EXPORT + bytes(9 << 20), "larger than an export may be")):
             self.expect_refused(self.write(export), why)
         target = self.folder / "secret"
         target.write_bytes(EXPORT)

@@ -39,7 +39,7 @@ TEST(RunReport, SaysScoreReportsMapCoverageRobotsAndWhatNeededTheOperator) {
   const std::string html = run_report(hostile_run(), hostile_reports());
   for (const char* part : {"<dt>Score</dt><dd>5</dd>", "Reports", "<td>robot1</td>", "answered", "+1",
                            "data:image/png;base64,iVBOR", "Coverage over time", "64 m", "Robots",
-                           "What needed the operator", "1970-01-01 00:16:40"})
+                           "Alarms that needed the operator", "1970-01-01 00:16:40"})
     EXPECT_THAT(html, HasSubstr(part));
 }
 
@@ -54,8 +54,8 @@ TEST(RunReport, IsNothingButWhatItSaysWhateverNamesAndNotesHold) {
 
 TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {
   const std::string html = run_report({{}, picture::Mosaic(), {}, {}, {}}, {});
-  EXPECT_THAT(html, HasSubstr("No report was made."));
-  EXPECT_THAT(html, HasSubstr("No map was kept."));
+  EXPECT_THAT(html, HasSubstr("No reports."));
+  EXPECT_THAT(html, HasSubstr("No map is stored."));
   EXPECT_THAT(html, testing::EndsWith("</html>\n"));
 }
 

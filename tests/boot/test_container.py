@@ -97,14 +97,14 @@ class Everyday(Contained):
 
     def says(self, why):
         said = self.box.attention()
-        self.assertIn("no report is taken: the ledger cannot be written: ", said)
+        self.assertIn("reports are not accepted: the box cannot write the ledger: ", said)
         self.assertIn(why, said)
 
     def takes_no(self, report):
         """And all else flows."""
         refused = submit(self.stage, report)
         self.assertEqual(refused.status_code, 503, refused.text)
-        self.assertIn("could not be written down and was not taken", refused.json())
+        self.assertIn("could not be stored and was not accepted", refused.json())
         self.assertEqual(self.stage.post.recorded(report), [])
         self.assertEqual([each["state"] for each in self.box.reports()], ["answered"], "what can be read is shown")
         self.flows("/state/update", {"poses": [POSE]})
@@ -320,7 +320,7 @@ class Everyday(Contained):
         self.wait_for_stick(lambda said: not said["hindrance"] and said["exports"], "the full stick to be found")
         self.asked("POST /adit/spare/to-stick")
         refusal = self.wait_for_stick(lambda said: said["refusal"] and not said["doing"], "a refusal")["refusal"]
-        self.assertRegex(refusal, "the stick has room for|the stick has no room")
+        self.assertRegex(refusal, "the stick has room for|the stick is full")
         self.assertEqual(stick.as_it_is(name), kept, "what was there before is there still")
         self.asked("POST /adit/spare/wake")
         programs.wait_until(self.box.knows_the_run, "it to go on", 60)

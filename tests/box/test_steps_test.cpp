@@ -26,14 +26,15 @@ TEST(TheLinkStep, LooksForACarrier) {
 
 TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
   network::Probed probed{.nonce = "", .address = "10.100.1.10"};
-  expect(address("darpa0", kOwn, probed, ""), "good", "darpa0 has 10.100.1.10/24, and nobody else has it");
+  expect(address("darpa0", kOwn, probed, ""), "good",
+         "darpa0 has 10.100.1.10/24, without an address conflict");
   probed.address = "10.100.1.11";
   probed.claimant = "02:00:00:00:00:09";
-  expect(address("darpa0", kOwn, probed, ""), "bad", "darpa0 has 10.100.1.11, and so has the machine");
+  expect(address("darpa0", kOwn, probed, ""), "bad", "darpa0 has 10.100.1.11, but the machine");
   probed.address = "10.100.1.10";
-  expect(address("darpa0", kOwn, probed, ""), "bad", "and so has the machine 02:00:00:00:00:09");
+  expect(address("darpa0", kOwn, probed, ""), "bad", "but the machine 02:00:00:00:00:09");
   probed.own = "team0";
-  expect(address("darpa0", kOwn, probed, ""), "bad", "the box's own team0 answers for it");
+  expect(address("darpa0", kOwn, probed, ""), "bad", "the box's own team0 also answers for this address");
   probed.trouble = "darpa0: Network is down";
   expect(address("darpa0", kOwn, probed, ""), "skipped", "Network is down");
   expect(address("darpa0", kOwn, std::nullopt, "adit-network does not run here"), "skipped",
@@ -49,17 +50,17 @@ TEST(TheCablesStep, LooksForTheCommandPostAtBothPorts) {
   expect(cables("darpa0", "team0", "10.100.1.200", probed), "bad",
          "10.100.1.200 is not at darpa0 but at team0");
   probed.found_on = "";
-  expect(cables("darpa0", "team0", "10.100.1.200", probed), "skipped", "nobody answers for 10.100.1.200");
-  expect(cables("darpa0", "team0", "", probed), "skipped", "nobody could be asked");
-  expect(cables("darpa0", "team0", "10.100.1.200", std::nullopt), "skipped", "nobody could be asked");
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "skipped", "no machine answers for 10.100.1.200");
+  expect(cables("darpa0", "team0", "", probed), "skipped", "could not check");
+  expect(cables("darpa0", "team0", "10.100.1.200", std::nullopt), "skipped", "could not check");
 }
 
 TEST(TheReachStep, TellsHowConnectingFails) {
   const std::string at = "10.100.1.200:8000";
-  expect(reach(at, 0, ""), "good", "10.100.1.200:8000 takes a connection");
+  expect(reach(at, 0, ""), "good", "10.100.1.200:8000 accepts a connection");
   expect(reach(at, 0, "\"x\" is no IP address"), "bad", "is no IP address");
   expect(reach(at, ECONNREFUSED, "Connection refused"), "bad", "no server at that port");
-  expect(reach(at, ENETUNREACH, "Network is unreachable"), "bad", "there is no way to");
+  expect(reach(at, ENETUNREACH, "Network is unreachable"), "bad", "there is no route to");
   expect(reach(at, EHOSTUNREACH, "No route to host"), "bad", "no machine answers");
   expect(reach(at, ETIMEDOUT, "Connection timed out"), "bad", "does not answer");
   expect(reach(at, ENODEV, "binding to interface darpa0: No such device"), "bad", "darpa0");
@@ -79,26 +80,26 @@ TestStep with_status(Asked asked, int status, const std::string& body = "\"a sen
 }
 
 TEST(TheTokenStep, OfScoringReadsTheAnswerToAStatus) {
-  expect(with_status(Asked::Scoring, 200), "good", "the scoring token is taken");
-  expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is refused");
-  expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is refused");
+  expect(with_status(Asked::Scoring, 200), "good", "the scoring token is accepted");
+  expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is rejected");
+  expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is rejected");
   expect(with_status(Asked::Scoring, 404, "<html>"), "bad", "404");
   expect(with_status(Asked::Scoring, 422), "bad", "422");
   expect(with_status(Asked::Scoring, 501, ""), "bad", "501");
-  expect(with_status(Asked::Scoring, 429), "skipped", "too often");
+  expect(with_status(Asked::Scoring, 429), "skipped", "too many requests");
   expect(with_status(Asked::Scoring, 500), "skipped", "failed");
   expect(no_token(Asked::Scoring), "bad", "there is no scoring token");
 }
 
 TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
   for (const int status : {200, 201, 400, 415, 422})
-    expect(with_status(Asked::Mapping, status), "good", "is taken");
+    expect(with_status(Asked::Mapping, status), "good", "is accepted");
   for (const int status : {401, 403})
-    expect(with_status(Asked::Mapping, status), "bad", "the mapping token is refused");
+    expect(with_status(Asked::Mapping, status), "bad", "the mapping token is rejected");
   for (const int status : {404, 405, 501})
     expect(with_status(Asked::Mapping, status, ""), "bad", std::to_string(status));
   EXPECT_THAT(with_status(Asked::Mapping, 404).advice, HasSubstr("no mapping endpoint"));
-  expect(with_status(Asked::Mapping, 429), "skipped", "too often");
+  expect(with_status(Asked::Mapping, 429), "skipped", "too many requests");
 }
 
 TEST(TheTokenStep, TellsOfTheSlashThatTheEndpointWants) {
@@ -119,7 +120,7 @@ TEST(TheClockStep, AllowsTwoSeconds) {
   expect(at(997.4), "bad", "3 s behind");
   expect(at(1003.6), "bad", "3 s ahead of");
   expect(at(1e9), "bad", "ahead of");
-  expect(clock(std::nullopt, 1000), "skipped", "tell no time");
+  expect(clock(std::nullopt, 1000), "skipped", "have no Date");
 }
 
 TEST(TheClockStep, FallsBackOnTheRunClock) {

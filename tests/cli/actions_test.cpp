@@ -44,14 +44,14 @@ TEST_F(Actions, AreAskedForByTheirNames) {
                        {"POST /adit/reports/7/done", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/resubmit", Server::ok("{\"report\":12}")},
                        {"POST /adit/runs", Server::ok("{\"run\":2}")}});
-  EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is sent when its turn comes\n");
-  EXPECT_EQ(say(server, {"reports", "hold", "7"}).out, "report 7 is held: it goes only when you send it\n");
+  EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is queued\n");
+  EXPECT_EQ(say(server, {"reports", "hold", "7"}).out, "report 7 is held until you send it\n");
   EXPECT_EQ(say(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
-  EXPECT_EQ(say(server, {"reports", "done", "7"}).out, "report 7 is called done\n");
-  EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent once more, as report 12\n");
+  EXPECT_EQ(say(server, {"reports", "done", "7"}).out, "report 7 is settled\n");
+  EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent again as report 12\n");
   EXPECT_EQ(say(server, {"reports", "resubmit", "7", "--json"}).out, "{\"report\":12}\n");
   EXPECT_EQ(say(server, {"run", "new"}).out,
-            "run 2 begins; what was not sent before is held: see adit reports\n");
+            "run 2 begins; unsent reports of earlier runs are held: see adit reports\n");
   const Outcome outcome = say(server, {"run", "new", "--json"});
   EXPECT_EQ(outcome.out, "{\"run\":2}\n");
   EXPECT_EQ(outcome.exit, Exit::Fine);
@@ -80,12 +80,12 @@ TEST_F(Actions, AreAskedForOfWhatIsRejectedMessages) {
        {"POST /adit/rejected/3/discard", Server::ok("{\"rejected\":3}")},
        {"POST /adit/rejected/4/send", Server::reply("409 Conflict", "\"something newer was sent\"")}});
   const Outcome listed = say(server, {"rejected"});
-  EXPECT_THAT(listed.out, HasSubstr("500: it failed"));
-  EXPECT_THAT(listed.out, HasSubstr("something newer was sent"));
+  EXPECT_THAT(listed.out, HasSubstr("error 500: it failed"));
+  EXPECT_THAT(listed.out, HasSubstr("replaced by a newer one"));
   EXPECT_EQ(listed.exit, Exit::Attention);
   EXPECT_THAT(say(server, {"rejected", "--json"}).out, HasSubstr("\"replaced\":true"));
-  EXPECT_EQ(say(server, {"rejected", "send", "3"}).out, "3 is sent again when its turn comes\n");
-  EXPECT_EQ(say(server, {"rejected", "discard", "3"}).out, "3 is discarded\n");
+  EXPECT_EQ(say(server, {"rejected", "send", "3"}).out, "message 3 is queued again\n");
+  EXPECT_EQ(say(server, {"rejected", "discard", "3"}).out, "message 3 is deleted\n");
   const Outcome refused = say(server, {"rejected", "send", "4"});
   EXPECT_THAT(refused.err, HasSubstr("something newer was sent"));
   EXPECT_EQ(refused.exit, Exit::Attention);
@@ -96,7 +96,7 @@ TEST_F(Actions, AreAskedForOfWhatIsRejectedMessages) {
 
 TEST_F(Actions, MakeTheLightsFlash) {
   const Server server({{"POST /adit/identify", Server::ok("{\"identify_until\":1005.5}")}});
-  EXPECT_EQ(say(server, {"identify", "5"}).out, "all lights flash twice a second, for 5 s\n");
+  EXPECT_EQ(say(server, {"identify", "5"}).out, "all lights flash for 5 s\n");
   EXPECT_THAT(server.request(), HasSubstr("Authorization: Bearer sesame-1\r\n"));
   EXPECT_THAT(server.request(), testing::EndsWith("Content-Length: 13\r\n\r\n{\"seconds\":5}"));
   EXPECT_EQ(say(server, {"identify", "--json"}).out, "{\"identify_until\":1005.5}\n");
@@ -117,12 +117,12 @@ TEST_F(Actions, GoOnAfterOneThatCannotBe) {
        {"GET /adit/reports/9", report("held")},
        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
        {"POST /adit/reports/8/send",
-        Server::reply("409 Conflict", "\"report 8 is answered: to send it once more, resubmit it\"")},
+        Server::reply("409 Conflict", "\"report 8 is answered: to send it again, resubmit it\"")},
        {"POST /adit/reports/9/send", Server::ok("{\"report\":9}")}});
   const Outcome outcome = say(server, {"reports", "send", "7", "8", "9"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_EQ(outcome.out, "report 7 is sent when its turn comes\nreport 9 is sent when its turn comes\n");
-  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it once more, resubmit it\n");
+  EXPECT_EQ(outcome.out, "report 7 is queued\nreport 9 is queued\n");
+  EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it again, resubmit it\n");
 }
 
 /// A console at which somebody gives that answer; `asked` gets the question.
@@ -138,15 +138,15 @@ TEST_F(Actions, OnAReportInDoubtAreAskedAboutFirst) {
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   std::string asked;
   const Outcome refused = say(server, {"reports", "send", "3"}, answering(false, asked));
-  EXPECT_EQ(asked,
-            "report 3 (Survivor) is in doubt: it may have been recorded, and then sending it again uses up a "
-            "second one of the allotment.\nSend it again?");
+  EXPECT_EQ(
+      asked,
+      "report 3 (Survivor) is in doubt: if the Command Post recorded it, sending it again uses up a second "
+      "report.\nSend it again?");
   EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
-  EXPECT_EQ(refused.err, "adit: report 3 is not sent\n");
+  EXPECT_EQ(refused.err, "adit: report 3 was not sent\n");
   EXPECT_EQ(refused.exit, Exit::Attention);
 
-  EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(true, asked)).out,
-            "report 3 is sent when its turn comes\n");
+  EXPECT_EQ(say(server, {"reports", "send", "3"}, answering(true, asked)).out, "report 3 is queued\n");
   EXPECT_THAT(server.request(), testing::StartsWith("POST "));
 }
 
@@ -155,10 +155,10 @@ TEST_F(Actions, OnAReportInDoubtAreRefusedWhereThereIsNobodyToAsk) {
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   const Outcome refused = say(server, {"reports", "send", "3"});
   EXPECT_THAT(server.request(), testing::StartsWith("GET ")) << "nothing was sent";
-  EXPECT_THAT(refused.err, HasSubstr("Adit asks the run's status and finds that out by itself"));
-  EXPECT_THAT(refused.err, testing::EndsWith("It is not sent; if that is meant: --yes\n"));
+  EXPECT_THAT(refused.err, HasSubstr("Adit is asking the run's status to find out."));
+  EXPECT_THAT(refused.err, testing::EndsWith("It was not sent; to send it, add --yes\n"));
   EXPECT_EQ(refused.exit, Exit::Attention);
-  EXPECT_EQ(say(server, {"reports", "send", "3", "--yes"}).out, "report 3 is sent when its turn comes\n");
+  EXPECT_EQ(say(server, {"reports", "send", "3", "--yes"}).out, "report 3 is queued\n");
 }
 
 TEST_F(Actions, OnOtherReportsAreNotAskedAbout) {
@@ -184,15 +184,15 @@ TEST_F(Actions, StopWhereTheTokenIsNotGood) {
       Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
   const Outcome outcome = say(server, {"reports", "send", "7", "8"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_EQ(outcome.err, "adit: Adit does not know the token in " + token_file_ + "\n");
+  EXPECT_EQ(outcome.err, "adit: Adit rejects the token in " + token_file_ + "\n");
 }
 
 TEST_F(Actions, WhoseAnswerIsLostMayHaveBeenDone) {
   const Server server("");
   const Outcome outcome = say(server, {"reports", "resubmit", "7"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, HasSubstr("whether it was done is not known, see: adit reports\n"));
-  EXPECT_THAT(say(server, {"reports", "send", "7", "--yes"}).err, HasSubstr("see: adit reports show 7\n"));
+  EXPECT_THAT(outcome.err, HasSubstr("the action may have been done: see adit reports\n"));
+  EXPECT_THAT(say(server, {"reports", "send", "7", "--yes"}).err, HasSubstr("see adit reports show 7\n"));
 }
 
 TEST_F(Actions, OfAnAditThatIsNotThereWereNotDone) {
@@ -203,7 +203,7 @@ TEST_F(Actions, OfAnAditThatIsNotThereWereNotDone) {
   const Outcome outcome =
       run(std::vector<std::string_view>{"run", "new", "--at", at, "--token-file", token_file_});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, Not(HasSubstr("not known")));
+  EXPECT_THAT(outcome.err, Not(HasSubstr("may have been done")));
 }
 
 TEST_F(Actions, AreNotAskedForWithATokenThatCannotBeRead) {

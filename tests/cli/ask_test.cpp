@@ -69,7 +69,7 @@ TEST(Ask, SaysThatTheAnswerIsNotAdits) {
     const Outcome outcome = asked(answer, {"status"});
     EXPECT_EQ(outcome.exit, Exit::Unable) << answer;
     EXPECT_EQ(outcome.out, "");
-    EXPECT_THAT(outcome.err, HasSubstr("cannot be understood")) << answer;
+    EXPECT_THAT(outcome.err, HasSubstr("cannot read the answer of Adit at 127.0.0.1:")) << answer;
   }
 }
 
@@ -80,11 +80,11 @@ TEST(Ask, PassesOnWhatAnErrorSays) {
     return run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}).err;
   };
   EXPECT_THAT(status_of(Server(Server::reply("404 Not Found", "{}"))),
-              HasSubstr("it answered 404 (is that Adit?)"));
+              HasSubstr("is not Adit, or is another version (HTTP status 404)"));
   EXPECT_EQ(status_of(Server(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\""))),
             "adit: the ledger is away\\x1b[2J\n");
   EXPECT_EQ(status_of(Server(Server::reply("401 Unauthorized", "\"log in\""))),
-            "adit: Adit does not know the token in " + token.path() + "\n");
+            "adit: Adit rejects the token in " + token.path() + "\n");
 }
 
 TEST(Ask, ShowsItsTokenToAditAlone) {
@@ -105,10 +105,9 @@ TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
   options.saved_secrets = "/nothing";
   const Outcome outcome = status(options, false);
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_EQ(
-      outcome.err,
-      "adit: Adit asks for the team's token, and there is none to be read in /nothing or /nowhere: run this "
-      "as root, or name a file that holds it by --token-file FILE\n");
+  EXPECT_EQ(outcome.err,
+            "adit: cannot read a token in /nothing or /nowhere: run adit as root, or name a token file by "
+            "--token-file FILE\n");
   EXPECT_EQ(server.request(), "");
 }
 
@@ -130,11 +129,43 @@ TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
   std::filesystem::remove(saved);
 }
 
+/// A variable of the environment, for the length of a test.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) { setenv(name, value.c_str(), 1); }
+  ~Variable() { unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+};
+
+TEST(Ask, TakesAddressAndTokenFromTheEnvironment) {
+  const Server server(Server::ok(codec::to_json(sample_view())));
+  const TokenFile token;
+  const std::string at = server.at(), file = token.path();
+  const auto exit_of = [](const std::vector<std::string_view>& words) { return run(words).exit; };
+  {
+    const Variable address("ADIT_AT", at), named("ADIT_TOKEN_FILE", file);
+    EXPECT_EQ(exit_of({"status"}), Exit::Fine);
+    EXPECT_THAT(run(std::vector<std::string_view>{"status", "--settings", "/none.json"}).err,
+                HasSubstr("/none.json"))
+        << "a file that is named counts instead";
+  }
+  const Variable address("ADIT_AT", "nowhere"), named("ADIT_TOKEN_FILE", "/none");
+  EXPECT_EQ(exit_of({"status", "--at", at, "--token-file", file}), Exit::Fine) << "options count instead";
+  EXPECT_THAT(run(std::vector<std::string_view>{"status"}).err,
+              HasSubstr("adit: ADIT_AT: expected an address"));
+  EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", at}).err,
+            "adit: /none: No such file or directory\n");
+}
+
 TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {
   const Outcome outcome = run(std::vector<std::string_view>{"status", "--settings", "/none.json"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err,
-            "adit: /none.json: No such file or directory (say where Adit listens by --at ADDR:PORT)\n");
+            "adit: /none.json: No such file or directory; give Adit's address by --at ADDR[:PORT]\n");
   EXPECT_EQ(run(std::vector<std::string_view>{"status", "--at", "nowhere"}).exit, Exit::Unable);
 }
 

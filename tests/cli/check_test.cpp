@@ -58,10 +58,10 @@ TEST_F(Check, SaysWhatGoodSettingsComeTo) {
       run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, ADIT_SOURCE_DIR
-            "/firmware/settings/example.json: good\n"
-            "  scoring  10.100.1.200:8000  by darpa0 alone\n"
-            "  mapping  10.100.1.201:8000  by darpa0 alone\n"
-            "  team     0.0.0.0:8000       by team0 alone\n"
+            "/firmware/settings/example.json: correct\n"
+            "  scoring  10.100.1.200:8000  on darpa0 only\n"
+            "  mapping  10.100.1.201:8000  on darpa0 only\n"
+            "  team     0.0.0.0:8000       on team0 only\n"
             "  link     100 Mbit/s\n"
             "  panel    gpiochip0          ADIT_HEALTH, ADIT_SCORING, ADIT_MAPPING, ADIT_ATTENTION, "
             "ADIT_BUTTON\n");
@@ -127,13 +127,12 @@ TEST_F(Check, WarnsOfATokenOfTheCommandPostsThatHasNot16Characters) {  // ICD 4
   options.json = true;
   const Outcome outcome = cli::check(options, false);
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_EQ(
-      outcome.out,
-      "{\"good\":true,\"errors\":[],\"warnings\":[\"the token mapping has 15 characters, the Command Post's "
-      "have 16 (ICD 4): is all of it there?\"]}\n");
+  EXPECT_EQ(outcome.out,
+            "{\"good\":true,\"errors\":[],\"warnings\":[\"the token mapping has 15 characters; the Command "
+            "Post's tokens have 16 (ICD 4); is it complete?\"]}\n");
   std::filesystem::permissions(secrets + "/mapping.token", std::filesystem::perms::all);
   EXPECT_THAT(cli::check(options, false).out,
-              HasSubstr("the tokens are not checked: " + secrets + "/mapping.token"));
+              HasSubstr("cannot check the tokens: " + secrets + "/mapping.token"));
 }
 
 TEST_F(Check, SaysThatItCannotReadTheFile) {

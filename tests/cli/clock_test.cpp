@@ -40,7 +40,8 @@ TEST_F(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here(), "command_post", true)}});
   const Outcome outcome = say(server, {"clock"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_THAT(outcome.out, HasSubstr("UTC, as here\nset by the Command Post's answers\n"));
+  EXPECT_THAT(outcome.out,
+              HasSubstr("UTC, the same as on this computer\nset by the Command Post's answers\n"));
   EXPECT_THAT(say(server, {"clock", "--json"}).out, HasSubstr("\"source\":\"command_post\""));
 }
 
@@ -48,14 +49,14 @@ TEST_F(ClockCommand, SaysHowToSetItWhereItIsNot) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here() - 7300, "last_known", false)}});
   const Outcome outcome = say(server, {"clock", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_THAT(outcome.out, HasSubstr("behind here"));
+  EXPECT_THAT(outcome.out, HasSubstr("behind this computer"));
   EXPECT_THAT(outcome.out, HasSubstr("adit clock set"));
 }
 
 TEST_F(ClockCommand, TellsWhyItWasNotSet) {
   const Server server(
-      {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "the clock cannot be set: no")}});
-  EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: the clock cannot be set: no"));
+      {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "cannot set the clock: no")}});
+  EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: cannot set the clock: no"));
 }
 
 TEST_F(ClockCommand, SetsItToThisComputersTime) {

@@ -76,7 +76,7 @@ TEST(HttpClient, SaysWhyThereIsNoBody) {
   EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{}"),
               HasSubstr("in the middle of its answer"));
   EXPECT_THAT(body_of(""), HasSubstr("did not answer"));
-  EXPECT_THAT(body_of("SSH-2.0-OpenSSH_9.2\r\n"), HasSubstr("no HTTP"));
+  EXPECT_THAT(body_of("SSH-2.0-OpenSSH_9.2\r\n"), HasSubstr("not HTTP"));
   EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 99999999999\r\n\r\n"), HasSubstr("too long"));
   EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 8388609\r\n\r\n"), HasSubstr("too long"));
 }
@@ -90,7 +90,7 @@ TEST(HttpClient, NamesTheAddressThatNobodyListensAt) {
   ASSERT_FALSE(reply.has_value());
   EXPECT_FALSE(reply.error().sent);
   EXPECT_EQ(reply.error().sentence,
-            "Adit at 127.0.0.1:" + std::to_string(address.port) + " cannot be asked: Connection refused");
+            "cannot reach Adit at 127.0.0.1:" + std::to_string(address.port) + ": Connection refused");
 }
 
 TEST(HttpClient, GivesUpOnAServerThatSaysNothing) {

@@ -68,7 +68,7 @@ TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
   const Server server({{"GET /adit/network", view(kPending, "null")}});
   const Outcome outcome = say(server, {"network", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_THAT(outcome.out, HasSubstr("A change waits to be confirmed"));
+  EXPECT_THAT(outcome.out, HasSubstr("A change is to be confirmed within "));
   EXPECT_THAT(outcome.out, HasSubstr("static  192.168.8.11/24"));
   EXPECT_THAT(outcome.out, HasSubstr("10.100.1.10/24, 10.100.2.10/24  gateway 10.100.1.1"));
   EXPECT_THAT(outcome.out, HasSubstr("Confirm it at http://192.168.8.11:8000"));
@@ -77,8 +77,8 @@ TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
 TEST_F(NetworkCommand, ShowsHowTheLastChangeEndedAndWhyNoneCanBeMade) {
   const Server server({{"GET /adit/network", view("null", "\"taken back\"", false)}});
   const Outcome outcome = say(server, {"network"});
-  EXPECT_THAT(outcome.out, HasSubstr("The last change: taken back, nobody confirmed it\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("Nothing can be changed here: it is set elsewhere\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("Last change: taken back, nobody confirmed it\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("Adit cannot change the addresses: it is set elsewhere\n"));
 }
 
 TEST_F(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
@@ -100,7 +100,7 @@ TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.err, "adit: no change waits to be confirmed\n");
   EXPECT_EQ(say(Server("nonsense"), {"network"}).exit, Exit::Unable);
-  EXPECT_THAT(say(Server(Server::ok("{}")), {"network"}).err, HasSubstr("not of this version of Adit"));
+  EXPECT_THAT(say(Server(Server::ok("{}")), {"network"}).err, HasSubstr("it is another version"));
 }
 
 TEST_F(NetworkCommand, TakesNoOtherWords) {
@@ -140,7 +140,7 @@ TEST_F(NetworkCommand, SaysThatATestWasCutShort) {
     const Outcome outcome =
         say(Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", left}}), {"test"});
     EXPECT_EQ(outcome.exit, Exit::Unable);
-    EXPECT_EQ(outcome.err, "adit: the test was cut short, as when Adit is restarted: begin it again\n");
+    EXPECT_EQ(outcome.err, "adit: the test was interrupted, perhaps by a restart of Adit: start it again\n");
   }
 }
 
@@ -150,7 +150,7 @@ TEST_F(NetworkCommand, JoinsATestThatRuns) {
   EXPECT_EQ(say(server, {"test"}).exit, Exit::Fine);
   EXPECT_THAT(printed_, HasSubstr("skipped"));
   EXPECT_EQ(say(Server(Server::reply("401 Unauthorized", "\"no\"")), {"test"}).exit, Exit::Unable);
-  EXPECT_EQ(say(Server(Server::reply("404 Not Found", "\"no\"")), {"test"}).exit, Exit::Unable);
+  EXPECT_EQ(say(Server(Server::reply("503 Service Unavailable", "\"no\"")), {"test"}).exit, Exit::Unable);
   EXPECT_THAT(printed_, Not(HasSubstr("good")));
 }
 
@@ -174,7 +174,7 @@ TEST_F(NetworkCommand, TriesWhatIsNamedBeforeItIsApplied) {
   const Outcome none = say(busy, {"test", "--mapping-token", "/no/such/file"});
   EXPECT_EQ(none.exit, Exit::Unable);
   EXPECT_THAT(none.err, HasSubstr("/no/such/file"));
-  EXPECT_EQ(say(busy, {"test", "--scoring", "10.100.2.200"}).exit, Exit::Unable);
+  EXPECT_EQ(say(busy, {"test", "--scoring", "10.100.2"}).exit, Exit::Unable);
   EXPECT_THAT(say(busy, {"status", "--scoring", "10.100.2.200:8000"}).err,
               HasSubstr("status does not take --scoring"));
 }

@@ -14,7 +14,7 @@ using Words = std::vector<std::string_view>;
 
 Options parsed(const Words& words) {
   const auto options = parse_options(words);
-  EXPECT_TRUE(options.has_value()) << options.error();
+  EXPECT_TRUE(options.has_value()) << options.error().sentence;
   return options.value_or(Options{});
 }
 
@@ -46,7 +46,8 @@ TEST(Options, TakeTheOperatorsWord) {
   EXPECT_EQ(parsed({"reports", "withdraw", "7"}).verb, Verb::Withdraw);
   EXPECT_EQ(parsed({"reports", "resubmit", "7"}).verb, Verb::Resubmit);
   EXPECT_EQ(parsed({"reports", "show", "7"}).verb, Verb::Show);
-  EXPECT_EQ(parsed({"run", "new"}).command, Command::Run);
+  EXPECT_EQ(parsed({"run", "new"}).verb, Verb::New);
+  EXPECT_EQ(parsed({"run"}).verb, Verb::Show);
   EXPECT_EQ(parsed({"identify"}).command, Command::Identify);
   EXPECT_EQ(parsed({"identify"}).seconds, 10);
   EXPECT_EQ(parsed({"identify", "60"}).seconds, 60);
@@ -57,6 +58,7 @@ TEST(Options, TakeWhichReportsAndHow) {
   EXPECT_FALSE(parsed({"reports"}).all_runs);
   EXPECT_EQ(parsed({"reports", "--run", "2"}).run, 2);
   EXPECT_TRUE(parsed({"reports", "--run", "all"}).all_runs);
+  EXPECT_EQ(parsed({"reports", "--last", "5"}).last, 5);
   EXPECT_TRUE(parsed({"reports", "export", "--csv"}).csv);
   EXPECT_TRUE(parsed({"reports", "export", "--json"}).json);
 }
@@ -72,6 +74,11 @@ TEST(Options, TakeWhatIsToBeDoneToTheSettings) {
   EXPECT_EQ(parsed({"settings", "check", "box.json"}).verb, Verb::Check);
   EXPECT_EQ(parsed({"course", "B"}).course, "B");
   EXPECT_EQ(parsed({"course", ""}).course, "");
+  EXPECT_EQ(parsed({"course"}).course, std::nullopt);
+  const Options set = parsed({"settings", "set", "reports.review", "all"});
+  EXPECT_EQ(set.verb, Verb::Set);
+  EXPECT_EQ(set.key, "reports.review");
+  EXPECT_EQ(set.value, "all");
 }
 
 TEST(Options, NameTheWordThatIsWrong) {
@@ -107,21 +114,24 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"reports", "resubmit", "7", "8"}, "one word too many: 8"},
       {{"reports", "export", "7"}, "one word too many: 7"},
       {{"reports", "--csv"}, "reports does not take --csv"},
-      {{"settings", "save"}, "expected show, check, apply or export, got save"},
+      {{"settings", "save"}, "expected show, set, check, apply or export, got save"},
       {{"settings", "apply"}, "a file is missing after apply"},
       {{"settings", "apply", "a", "b"}, "one word too many: b"},
       {{"settings", "export", "a"}, "one word too many: a"},
       {{"settings", "--csv"}, "settings does not take --csv"},
-      {{"course"}, "a course's name is missing"},
+      {{"settings", "set", "reports.review"}, "a settings key or its value is missing after set"},
+      {{"settings", "set", "a", "b", "c"}, "one word too many: c"},
       {{"course", "A", "B"}, "one word too many: B"},
       {{"check", "--token-file", "x"}, "check does not take --token-file"},
       {{"reports", "show", "7", "--run", "2"}, "reports show does not take --run"},
       {{"reports", "--run", "old"}, "--run: expected a run's number or all, got old"},
       {{"reports", "--run"}, "--run wants a value"},
-      {{"reports", "export", "--csv", "--json"}, "--csv and --json are two formats: which one?"},
+      {{"reports", "--last", "0"}, "--last: expected a number of reports, got 0"},
+      {{"reports", "export", "--last", "5"}, "reports export does not take --last"},
+      {{"reports", "export", "--csv", "--json"}, "give --csv or --json, not both"},
       {{"reports", "send", "7", "--token-file", ""}, "--token-file wants a value"},
-      {{"run"}, "a word is missing after run: new"},
-      {{"run", "old"}, "expected new, got old"},
+      {{"complete"}, "a subcommand is missing after complete: reports, rejected, courses, runs or keys"},
+      {{"run", "old"}, "expected show or new, got old"},
       {{"run", "new", "new"}, "one word too many: new"},
       {{"identify", "0"}, "expected seconds, a whole number from 1 to 60, got 0"},
       {{"identify", "61"}, "expected seconds, a whole number from 1 to 60, got 61"},
@@ -130,7 +140,7 @@ TEST(Options, NameTheWordThatIsWrong) {
   for (const auto& [words, sentence] : cases) {
     const auto options = parse_options(words);
     ASSERT_FALSE(options.has_value()) << sentence;
-    EXPECT_EQ(options.error(), sentence);
+    EXPECT_EQ(options.error().sentence, sentence);
   }
 }
 
@@ -139,9 +149,10 @@ TEST(Options, AreOfTheWordsThatTakeThem) {
   EXPECT_EQ(parsed({"settings", "show", "reports.review"}).key, "reports.review");
   EXPECT_EQ(parsed({"complete", "reports", "done"}).word, "done");
   EXPECT_EQ(parsed({"watch", "--json"}).command, Command::Watch);
-  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("without a word: whose reports to list"));
-  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with export: as CSV"));
-  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with send: sends a report in doubt"));
+  EXPECT_THAT(help_about(Command::Reports),
+              testing::HasSubstr("without a subcommand: list the reports of this run"));
+  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with export: print CSV"));
+  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with send: do not ask"));
 }
 
 TEST(Version, IsToldWhateverElseIsSaid) {
@@ -170,7 +181,10 @@ TEST(Command, OfAWrongLineSaysSoAndWhereHelpIs) {
   const Outcome outcome = run(Words{"st\x1b[2Jatus"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.out, "");
-  EXPECT_EQ(outcome.err, "adit: no such command: st\\x1b[2Jatus\nTry 'adit --help'.\n");
+  EXPECT_EQ(outcome.err, "adit: no such command: st\\x1b[2Jatus\nsee \"adit help\"\n");
+  EXPECT_EQ(run(Words{"reports", "--csv"}).err,
+            "adit: reports does not take --csv\nsee \"adit help reports\"\n");
+  EXPECT_THAT(run(Words{"reports", "--nosuch"}).err, testing::EndsWith("\nsee \"adit help reports\"\n"));
 }
 
 }  // namespace

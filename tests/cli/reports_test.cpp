@@ -53,17 +53,28 @@ TEST(Reports, ListThePresentRunAndWhatIsLeftOfEarlierOnes) {
   const auto rows = two_runs();
   const Outcome outcome = asked(rows, {"reports"});
   EXPECT_EQ(outcome.err, "");
-  EXPECT_EQ(outcome.out, reports_text({rows[3], rows[2], rows[1]}, 1, 1000, false));
+  EXPECT_EQ(outcome.out, reports_text({rows[3], rows[2], rows[1]}, {.of_other_runs = 1}, 1000, false));
 }
 
 TEST(Reports, ListAnotherRunOrAll) {
   const auto rows = two_runs();
-  EXPECT_EQ(asked(rows, {"reports", "--run", "1"}).out, reports_text({rows[1], rows[0]}, 2, 1000, false));
+  EXPECT_EQ(asked(rows, {"reports", "--run", "1"}).out,
+            reports_text({rows[1], rows[0]}, {.of_other_runs = 2}, 1000, false));
   EXPECT_EQ(
       asked(rows, {"reports", "--run", "3"}).out,
       "No reports in this run so far.\n4 reports of other runs are not listed: adit reports --run all\n");
   EXPECT_EQ(asked(rows, {"reports", "--run", "all"}).out,
-            reports_text({rows[3], rows[2], rows[1], rows[0]}, 0, 1000, false));
+            reports_text({rows[3], rows[2], rows[1], rows[0]}, {}, 1000, false));
+}
+
+TEST(Reports, ListTheNewest) {
+  const auto rows = two_runs();
+  EXPECT_EQ(asked(rows, {"reports", "--last", "2"}).out,
+            reports_text({rows[3], rows[2]}, {.older = 1, .of_other_runs = 1}, 1000, false));
+  EXPECT_EQ(asked(rows, {"reports", "--run", "all", "--last", "9"}).out,
+            asked(rows, {"reports", "--run", "all"}).out);
+  EXPECT_EQ(asked(rows, {"reports", "--last", "1", "--json"}).out,
+            codec::to_json(std::vector<api::ReportRow>{rows[3]}) + "\n");
 }
 
 TEST(Reports, AreAListForScripts) {
@@ -86,7 +97,7 @@ TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
 TEST(Reports, ShowOneOrSayThatThereIsNone) {
   const Outcome outcome = asked(two_runs(), {"reports", "show", "4"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("report    4\n"), HasSubstr("waiting  posted\n")));
+  EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("report    4\n"), HasSubstr("queued  posted\n")));
   EXPECT_THAT(asked(two_runs(), {"reports", "show", "4", "--json"}).out,
               testing::StartsWith("{\"number\":4,"));
   const Outcome none = asked(two_runs(), {"reports", "show", "5"});
@@ -110,7 +121,7 @@ TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
   const Outcome outcome =
       run(std::vector<std::string_view>{"reports", "--at", at, "--token-file", token.path()});
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_THAT(outcome.err, HasSubstr("is not of this version of Adit"));
+  EXPECT_THAT(outcome.err, HasSubstr("it is another version"));
 }
 
 }  // namespace

@@ -31,39 +31,39 @@ TEST(ReportsText, HasARowForEachReport) {
   doubtful.note = "no answer within 10 s";
   doubtful.received = 990;
   doubtful.robot = "spot1";
-  EXPECT_EQ(reports_text({doubtful, in_state("answered")}, 0, 1000, false),
-            "  no.  run  type            x   y    z  state     score  the Command Post said, or why  sender  "
-            "  robot  "
-            "received\n"
-            "   14    2  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s          "
-            "10.0.0.7  spot1  "
-            "10 s ago\n"
-            "    3    1  Survivor    12.12  -3  0.5  answered     +1  201, scored                    "
-            "10.0.0.7         "
-            "60 s ago\n");
+  EXPECT_EQ(
+      reports_text({doubtful, in_state("answered")}, {}, 1000, false),
+      "  no.  run  type            x   y    z  state     score  answer or reason       sender    robot  "
+      "received\n"
+      "   14    2  Cell Phone  12.12  -3  0.5  in doubt         no answer within 10 s  10.0.0.7  spot1  "
+      "10 s ago\n"
+      "    3    1  Survivor    12.12  -3  0.5  answered     +1  scored                 10.0.0.7         "
+      "60 s ago\n");
 }
 
 TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
   api::ReportRow lost = in_state("in_doubt");
   lost.position = {};
   lost.position.reset();
-  EXPECT_THAT(reports_text({lost}, 0, 1000, false), HasSubstr("lost  lost  lost"));
+  EXPECT_THAT(reports_text({lost}, {}, 1000, false), HasSubstr("lost  lost  lost"));
   EXPECT_THAT(report_text({.row = lost, .history = {}, .answer = ""}, false), HasSubstr("lost"));
 }
 
 TEST(ReportsText, SaysThatThereAreNone) {
-  EXPECT_EQ(reports_text({}, 0, 1000, false), "No reports so far.\n");
+  EXPECT_EQ(reports_text({}, {}, 1000, false), "No reports so far.\n");
   EXPECT_EQ(
-      reports_text({}, 12, 1000, false),
+      reports_text({}, {.of_other_runs = 12}, 1000, false),
       "No reports in this run so far.\n12 reports of other runs are not listed: adit reports --run all\n");
-  EXPECT_THAT(reports_text({in_state("answered")}, 1, 1000, false),
+  EXPECT_THAT(reports_text({in_state("answered")}, {.of_other_runs = 1}, 1000, false),
               testing::EndsWith("\n1 report of another run is not listed: adit reports --run all\n"));
+  EXPECT_THAT(reports_text({in_state("answered")}, {.older = 2}, 1000, false),
+              testing::EndsWith("\n2 older reports are not listed\n"));
 }
 
 TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
   api::ReportRow report = in_state("\x1b[2J");
   report.type = report.sender = report.note = "\x1b[2J\n";
-  EXPECT_EQ(reports_text({report}, 0, 1000, false).find('\x1b'), std::string::npos);
+  EXPECT_EQ(reports_text({report}, {}, 1000, false).find('\x1b'), std::string::npos);
   EXPECT_EQ(report_text({report, {{1000, "\x1b[2J", "\x1b[2J"}}, "\x1b[2J"}, false).find('\x1b'),
             std::string::npos);
 }
@@ -79,16 +79,22 @@ TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
   EXPECT_TRUE(needs_the_operator(in_state("held")));
 }
 
-TEST(LifeOf, TellsWhatBecameOfIt) {
-  api::ReportRow report = in_state("settled");
-  EXPECT_EQ(life_of(report), "called done");
+TEST(LifeOf, IsTheStatesWord) {
+  for (const std::string_view word : dispatch::kStateWords) {
+    if (word != "in_doubt") EXPECT_EQ(life_of(in_state(std::string(word))), word);
+  }
+  EXPECT_EQ(life_of(in_state("a later one")), "a later one");
+}
+
+TEST(SaidOf, IsTheAnswerInWords) {
+  api::ReportRow report = in_state("answered");
+  EXPECT_EQ(said_of(report), "scored");
   report.reconciled = true;
-  EXPECT_EQ(life_of(report), "settled");
   EXPECT_EQ(said_of(report), "found out, scored");
-  report = in_state("withdrawn");
-  EXPECT_EQ(life_of(report), "withdrawn");
-  report.same_as = 2;
-  EXPECT_EQ(life_of(report), "same as 2");
+  report = in_state("rejected");
+  report.status = 422;
+  report.report_status = "";
+  EXPECT_EQ(said_of(report), "error 422");
 }
 
 TEST(LifeOf, IsExplainedInTheHelp) {
@@ -115,19 +121,23 @@ TEST(ReportText, TellsAllOfOneReport) {
             "  type      Survivor\n"
             "  at        12.125, -3, 0.5 m\n"
             "  state     settled\n"
-            "  why       recorded: the count of reports fell by one\n"
-            "  said      found out, scored\n"
+            "  reason    recorded: the count of reports fell by one\n"
+            "  answer    found out, scored\n"
             "  score     +1\n"
             "  run       2\n"
             "  sender    10.0.0.7\n"
             "  robot     spot1\n"
             "  received  2019-08-20T14:03:05.125Z\n"
-            "  answer    {\"score_change\": 1}\n"
             "  actions   resubmit\n"
             "\n"
             "History\n"
-            "  2019-08-20T14:03:05.125Z  waiting\n"
+            "  2019-08-20T14:03:05.125Z  queued\n"
             "  2019-08-20T14:03:06.000Z  in doubt  no answer\n");
+}
+
+TEST(ReportText, HasTheSentenceOfARejection) {
+  const api::ReportDetail detail{in_state("rejected"), {}, "\"no such type\""};
+  EXPECT_THAT(report_text(detail, false), HasSubstr("  message   no such type\n"));
 }
 
 TEST(ReportText, OffersTheActionsThatCanBe) {

@@ -8,6 +8,7 @@
 #include "cli/command.hpp"
 #include "cli/server.hpp"
 #include "cli/token_file.hpp"
+#include "cli/view.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
 
@@ -37,6 +38,32 @@ api::RunList two_kept_runs() {
   return {.runs = {{.key = "2", .run = 2, .post = "10.100.1.200:8000", .is_present = true}, course_b()},
           .bytes = 3400000,
           .trouble = ""};
+}
+
+TEST(PresentRun, IsShown) {
+  api::RunView view = sample_view();
+  view.run_number = 2;
+  view.run_id = "beta";
+  const TokenFile file;
+  const auto shown = [&](bool json) {
+    const Server server({{"GET /adit/run", Server::ok(codec::to_json(view))}});
+    const std::string at = server.at();
+    std::vector<std::string_view> words{"run", "--at", at, "--token-file", file.path()};
+    if (json) words.emplace_back("--json");
+    return run(words).out;
+  };
+  EXPECT_EQ(shown(false),
+            "  run           2\n"
+            "  name          beta\n"
+            "  team          cave_club\n"
+            "  clock         12:34\n"
+            "  score         7\n"
+            "  reports left  18\n");
+  EXPECT_EQ(shown(true),
+            R"({"run":2,"name":"beta","team":"cave_club","run_clock":754.5,"score":7,"remaining_reports":18})"
+            "\n");
+  view.run.reset();
+  EXPECT_THAT(shown(false), testing::EndsWith("no status from the Command Post yet\n"));
 }
 
 class Runs : public testing::Test {
@@ -86,12 +113,12 @@ TEST_F(Runs, AreShownOneByOne) {
 TEST_F(Runs, HaveAReportThatIsPrintedOrWrittenToAFile) {
   EXPECT_EQ(say({"report", "1-2"}).out, "<!doctype html><title>Run 1</title>");
   const std::string to = folder_ / "run.html";
-  EXPECT_EQ(say({"report", "1-2", "--to", to}).out, "run 1-2: 35 B in " + to + "\n");
+  EXPECT_EQ(say({"report", "1-2", "--to", to}).out, "wrote the report of run 1-2 to " + to + "\n");
   EXPECT_EQ(host::read_file(to).value(), "<!doctype html><title>Run 1</title>");
   EXPECT_EQ(say({"report", "1-2", "--to", to, "--json"}).out,
             R"({"key":"1-2","file":")" + to + R"(","bytes":35})" + "\n");
   const Outcome nowhere = say({"report", "1-2", "--to", folder_ / "none/run.html"});
-  EXPECT_THAT(nowhere.err, HasSubstr("none/run.html: it cannot be written"));
+  EXPECT_THAT(nowhere.err, HasSubstr("none/run.html: cannot be written"));
   EXPECT_EQ(nowhere.exit, Exit::Unable);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
 }
@@ -107,17 +134,17 @@ TEST_F(Runs, AreDeletedOnlyWhereThatIsMeant) {
   const Outcome kept = say({"delete", "1-2"}, answering(false));
   EXPECT_EQ(
       asked,
-      "run 1-2 (began 2019-08-20T14:03:05.500Z, score 7, 3.4 MB): its map, tracks and plots are gone for "
-      "good then; its reports stay in the ledger.\nDelete it?");
-  EXPECT_EQ(kept.err, "adit: run 1-2 is not deleted\n");
+      "run 1-2 (began 2019-08-20T14:03:05.500Z, score 7, 3.4 MB): its map, tracks and plots will be deleted "
+      "for good; its reports stay in the ledger.\nDelete it?");
+  EXPECT_EQ(kept.err, "adit: run 1-2 was not deleted\n");
   EXPECT_EQ(kept.exit, Exit::Attention);
   EXPECT_THAT(server_.request(), StartsWith("GET ")) << "nothing was deleted";
 
   const Outcome nobody = say({"delete", "1-2"});
-  EXPECT_THAT(nobody.err, HasSubstr("It is not deleted; if that is meant: --yes"));
+  EXPECT_THAT(nobody.err, HasSubstr("It was not deleted; to delete it, add --yes"));
   EXPECT_THAT(server_.request(), StartsWith("GET "));
 
-  EXPECT_EQ(say({"delete", "1-2"}, answering(true)).out, "run 1-2 is deleted\n");
+  EXPECT_EQ(say({"delete", "1-2"}, answering(true)).out, "run 1-2 was deleted\n");
   EXPECT_EQ(say({"delete", "1-2", "--yes", "--json"}).out, "{\"key\":\"1-2\"}\n");
   const Outcome present = say({"delete", "2", "--yes"});
   EXPECT_EQ(present.err, "adit: run 2 is the present one\n");

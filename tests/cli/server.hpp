@@ -100,7 +100,8 @@ class Server {
   std::string answer_to(const std::string& asked) const {
     const auto all = answers_.find(""), one = answers_.find(asked);
     if (all != answers_.end()) return all->second;
-    return one == answers_.end() ? reply("404 Not Found", "\"there is nothing at this path\"") : one->second;
+    return one == answers_.end() ? reply("404 Not Found", "\"there is no resource at this path\"")
+                                 : one->second;
   }
 
   Answers answers_;

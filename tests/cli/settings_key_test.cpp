@@ -30,18 +30,16 @@ std::string text_of_key(const std::string& name) {
 }
 
 TEST(AKey, IsShownWithItsValueAndWhatItMayBe) {
-  EXPECT_EQ(
-      text_of_key("reports.review"),
-      "  reports.review  \"off\"\n  What is held.\n  may be \"off\" or \"all\"; if not given: \"off\"\n");
+  EXPECT_EQ(text_of_key("reports.review"),
+            "  reports.review  off\n  What is held.\n  allowed: \"off\" or \"all\"; default: off\n");
 }
 
 TEST(AKey, OfAListIsShownForEachItem) {
-  EXPECT_EQ(
-      text_of_key("robots[].alias"),
-      "  robots[0].alias  \"husky\"\n  robots[1].alias  \"\"\n  Its alias.\n  may be text; if not given: "
-      "\"\"\n");
+  EXPECT_EQ(text_of_key("robots[].alias"),
+            "  robots[0].alias  husky\n  robots[1].alias  (empty)\n  Its alias.\n  allowed: text; default: "
+            "(empty)\n");
   EXPECT_EQ(text_of_key("courses[].name"),
-            "  courses[].name  none\n  A course.\n  may be letters; has to be there\n");
+            "  courses[].name  (none)\n  A course.\n  allowed: letters; required\n");
 }
 
 TEST(AKey, MayBeTheBeginningOfSeveral) {
@@ -54,10 +52,9 @@ TEST(AKey, MayBeTheBeginningOfSeveral) {
 
 TEST(AKey, ThatIsNoneIsAskedAbout) {
   EXPECT_EQ(text_of_key("reports.reviw"),
-            "no such key of the settings: reports.reviw; did you mean reports.review?");
-  EXPECT_EQ(text_of_key("xyzzy"), "no such key of the settings: xyzzy");
-  EXPECT_EQ(keys_named(codec::Value{}, "reports").error(),
-            "Adit's answer cannot be understood: it names no keys");
+            "no such settings key: reports.reviw; did you mean reports.review?");
+  EXPECT_EQ(text_of_key("xyzzy"), "no such settings key: xyzzy");
+  EXPECT_EQ(keys_named(codec::Value{}, "reports").error(), "cannot read Adit's answer: it has no keys");
 }
 
 }  // namespace

@@ -53,11 +53,11 @@ TEST_F(SettingsCommand, ShowsWhatDiffersFromTheDefaultsAndWhichTokensAreSet) {
   const Server server({{"GET /adit/settings", Server::ok(shown())}});
   const Outcome outcome = say(server, {"settings"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
-  EXPECT_THAT(outcome.out, HasSubstr("saved on the box\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("command_post.scoring.address  \"10.100.1.200\"\n"));
-  EXPECT_THAT(outcome.out, HasSubstr("robots[ugv1].name             \"ugv1\"\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("saved on this box\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("command_post.scoring.address  10.100.1.200\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("robots[ugv1].name             ugv1\n"));
   EXPECT_THAT(outcome.out, Not(HasSubstr("budget_mbit")));
-  EXPECT_THAT(outcome.out, HasSubstr("tokens\n  scoring  set\n  team     none\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("tokens\n  scoring  set\n  team     not set\n"));
   EXPECT_EQ(say(server, {"settings", "show", "--json"}).out, shown() + "\n");
 }
 
@@ -70,7 +70,7 @@ TEST_F(SettingsCommand, ChecksAFileWithoutChangingAnything) {
   const Server server({{"POST /adit/settings/check", Server::ok(kChanges)}});
   const Outcome outcome = say(server, {"settings", "check", settings_});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
-  EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nmind: Adit and this page move\n");
+  EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nwarning: Adit and this page move\n");
   EXPECT_THAT(server.request(), HasSubstr(std::string(R"({"settings":)") + kFile + "}"));
 }
 
@@ -80,8 +80,31 @@ TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
                        {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
   const Outcome outcome = say(server, {"settings", "apply", settings_});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
-  EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nmind: Adit and this page move\n");
+  EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nwarning: Adit and this page move\n");
   EXPECT_THAT(server.request(), HasSubstr(R"("base":"0123456789abcdef"})"));
+}
+
+TEST_F(SettingsCommand, SetsOneKey) {
+  const Server server({{"GET /adit/settings", Server::ok(shown())},
+                       {"POST /adit/settings/check", Server::ok(kChanges)},
+                       {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
+  const auto sent = [&](std::string_view key, std::string_view value) {
+    const Outcome outcome = say(server, {"settings", "set", key, value});
+    EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
+    EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nwarning: Adit and this page move\n");
+    return server.request();
+  };
+  const std::string number = sent("team.listen[0].port", "8080");
+  EXPECT_THAT(number, HasSubstr(R"("listen":[{"address":"10.0.0.1","port":8080}])"));
+  EXPECT_THAT(number, HasSubstr(R"("base":"0123456789abcdef"})"));
+  EXPECT_THAT(sent("robots[ugv1].name", "17"), HasSubstr(R"("robots":[{"name":"17"}])")) << "a text";
+  EXPECT_THAT(sent("robots[0].name", "\"b\""), HasSubstr(R"("robots":[{"name":"b"}])"));
+  EXPECT_THAT(sent("team.listen", "[]"), HasSubstr(R"("listen":[])"));
+  for (const std::string_view key :
+       {"team.listne", "robots[ugv2].name", "robots[1].name", "[]", "version.x"}) {
+    EXPECT_EQ(say(server, {"settings", "set", key, "1"}).exit, Exit::Unable) << key;
+    EXPECT_THAT(server.request(), HasSubstr("GET ")) << "nothing was changed";
+  }
 }
 
 TEST_F(SettingsCommand, NamesEachErrorOfAFileAndAppliesNothing) {
@@ -119,14 +142,34 @@ TEST_F(SettingsCommand, SaysWhatIsWrongWithAFileThatIsNone) {
   EXPECT_EQ(server.request(), "");
 }
 
+TEST_F(SettingsCommand, ListsTheCourses) {
+  constexpr const char* kPost =
+      R"("command_post":{"scoring":{"address":"10.100.1.200","port":8000},"mapping":{"address":"10.100.1.201","port":8000},"course":"B"},)";
+  constexpr const char* kCourses =
+      R"([{"name":"B","scoring":{"address":"10.100.2.200","port":8000},"mapping":{"address":"10.100.2.201","port":8000}}])";
+  const std::string settings = std::string(R"({"settings":{"version":1,)") + kPost +
+                               R"("team":{"listen":[{"address":"10.0.0.1","port":8000}]},"courses":)" +
+                               kCourses + R"(},"keys":[]})";
+  const Server server({{"GET /adit/settings", Server::ok(settings)}});
+  const Outcome outcome = say(server, {"course"});
+  EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
+  EXPECT_EQ(outcome.out,
+            "  course  scoring            mapping\n"
+            "  B       10.100.2.200:8000  10.100.2.201:8000  in use\n"
+            "  \"\"      10.100.1.200:8000  10.100.1.201:8000\n");
+  EXPECT_EQ(say(server, {"course", "--json"}).out,
+            std::string(R"({"course":"B","courses":)") + kCourses + "}\n");
+}
+
 TEST_F(SettingsCommand, SwitchesTheCourse) {
   const Server server(
       {{"POST /adit/course",
         Server::ok(R"({"changes":[],"warnings":["reports go to b:1 from then on; 2 reports wait"]})")}});
   EXPECT_EQ(say(server, {"course", "B"}).out,
-            "course B is in use\nmind: reports go to b:1 from then on; 2 reports wait\n");
+            "course B is in use\nwarning: reports go to b:1 from then on; 2 reports wait\n");
   EXPECT_THAT(server.request(), HasSubstr(R"({"name":"B"})"));
   EXPECT_THAT(say(server, {"course", ""}).out, HasSubstr("no course is in use"));
+  EXPECT_THAT(server.request(), HasSubstr(R"({"name":""})"));
   const Server other(
       {{"POST /adit/course",
         Server::reply("422 Unprocessable", "\"command_post.course: no course is called C\"")}});

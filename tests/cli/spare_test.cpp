@@ -53,14 +53,15 @@ TEST_F(SpareCommand, TellsHowTheBoxStands) {
   const Server rests({{"GET /adit/spare", Server::ok(kRests)}});
   const Outcome outcome = say(rests, {"show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_EQ(outcome.out, "This box rests: it was put to rest\nThe code of its export: 1234 5678 9012 3456\n");
+  EXPECT_EQ(outcome.out,
+            "This box is on standby: it was put to rest\nCode of its export: 1234 5678 9012 3456\n");
 }
 
 TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {
   const Server server({{"GET /adit/spare", Server::ok(kAtWork)}});
   const Outcome outcome = say(server, {"export", export_});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_THAT(outcome.err, HasSubstr("It is not done; if that is meant: --yes"));
+  EXPECT_THAT(outcome.err, HasSubstr("It was not done; to do it, add --yes"));
 }
 
 TEST_F(SpareCommand, WritesTheExportAndTellsItsCode) {
@@ -69,7 +70,7 @@ TEST_F(SpareCommand, WritesTheExportAndTellsItsCode) {
                        {"GET /adit/spare", Server::ok(kRests)}});
   const Outcome outcome = say(server, {"export", export_, "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("Its code: 1234 5678 9012 3456\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("Code of its export: 1234 5678 9012 3456\n"));
   std::ifstream file(export_, std::ios::binary);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a sealed file");
 }
@@ -78,18 +79,18 @@ TEST_F(SpareCommand, RefusesWhatIsNoExportBeforeItIsSent) {
   const Server server(Server::Answers{});
   const std::string other = folder_.put("other", "PK a zip file of more bytes");
   EXPECT_THAT(say(server, {"take", other, "--code", "1234567890123456"}).err,
-              HasSubstr("it is no export of an Adit"));
-  EXPECT_THAT(say(server, {"take", folder_ / "none", "--code", "1"}).err, HasSubstr("it cannot be read"));
-  EXPECT_THAT(say(server, {"take", other}).err, HasSubstr("the code of the export is missing: --code"));
+              HasSubstr("the file is not an export from Adit"));
+  EXPECT_THAT(say(server, {"take", folder_ / "none", "--code", "1"}).err, HasSubstr("none: cannot be read"));
+  EXPECT_THAT(say(server, {"take", other}).err, HasSubstr("the code of the export is missing: give --code"));
 }
 
 TEST_F(SpareCommand, PutsNoBoxToRestWhoseStickCouldNotBeWritten) {
   const Server without({{"GET /adit/spare", Server::ok(kNoStick)}});
   const Outcome outcome = say(without, {"export", "--stick", "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
-  EXPECT_THAT(outcome.err, HasSubstr("the box is not put to rest: there is no stick in the box"));
+  EXPECT_THAT(outcome.err, HasSubstr("the box was not put on standby: there is no stick in the box"));
   const Server pc({{"GET /adit/spare", Server::ok(kAtWork)}});
-  EXPECT_THAT(say(pc, {"export", "--stick", "--yes"}).err, HasSubstr("writes and reads no stick"));
+  EXPECT_THAT(say(pc, {"export", "--stick", "--yes"}).err, HasSubstr("cannot use a stick"));
 }
 
 TEST_F(SpareCommand, TellsWhatIsOnTheStickAndTakesTheOneThatIsNamed) {
@@ -98,7 +99,7 @@ TEST_F(SpareCommand, TellsWhatIsOnTheStickAndTakesTheOneThatIsNamed) {
        {"GET /adit/spare", Server::ok(kStick)}});
   EXPECT_THAT(say(server, {"show"}).out, HasSubstr("On the stick: adit-a.adit-spare\nOn the stick: adit-b"));
   EXPECT_THAT(say(server, {"take", "--stick", "--code", "1234567890123456"}).err,
-              HasSubstr("several exports on the stick: name one of adit-a.adit-spare adit-b.adit-spare"));
+              HasSubstr("the stick has several exports: name one of adit-a.adit-spare adit-b.adit-spare"));
   EXPECT_THAT(say(server, {"take", "adit-b.adit-spare", "--stick", "--code", "1234567890123456"}).err,
               HasSubstr("it cannot be read"));
 }
@@ -107,7 +108,7 @@ TEST_F(SpareCommand, IsOfAFileOrOfTheStick) {
   const Server server(Server::Answers{});
   EXPECT_THAT(say(server, {"export"}).err, HasSubstr("a file or --stick is missing after export"));
   EXPECT_THAT(say(server, {"take"}).err, HasSubstr("a file or --stick is missing after take"));
-  EXPECT_THAT(say(server, {"export", "x", "--stick"}).err, HasSubstr("two things: which one?"));
+  EXPECT_THAT(say(server, {"export", "x", "--stick"}).err, HasSubstr("give FILE or --stick, not both"));
   EXPECT_THAT(say(server, {"wake", "--stick"}).err, HasSubstr("spare wake does not take --stick"));
 }
 
@@ -119,11 +120,11 @@ TEST_F(SpareCommand, ShowsWhatIsInItAndTakesOverOnlyWhereThatIsMeant) {
                        {"GET /adit/spare", Server::ok(kTakenIn)}});
   const Outcome unasked = say(server, {"take", file, "--code", "1234567890123456"});
   EXPECT_EQ(unasked.exit, Exit::Attention);
-  EXPECT_THAT(unasked.err, HasSubstr("a report may be sent twice"));
+  EXPECT_THAT(unasked.err, HasSubstr("reports may be sent twice"));
   const Outcome meant = say(server, {"take", file, "--code", "1234567890123456", "--yes"});
   EXPECT_EQ(meant.exit, Exit::Fine) << meant.err;
-  EXPECT_THAT(meant.out, HasSubstr("this box takes over"));
-  EXPECT_THAT(say(server, {"show"}).out, HasSubstr("4 reports, 1 of them not finished"));
+  EXPECT_THAT(meant.out, HasSubstr("this box is taking over"));
+  EXPECT_THAT(say(server, {"show"}).out, HasSubstr("4 reports, 1 of them unfinished"));
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cli/help.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -15,17 +16,16 @@ using testing::StartsWith;
 TEST(StatusText, TellsAGoodRunOnOneScreen) {
   EXPECT_EQ(status_text(sample_view(), false),
             "Run   12:34   47:25 to go   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
-            "Link  12.3 of 100 Mbit/s   3.4 MB of maps wait\n"
-            "Reports  answered 1\n"
+            "Link  12.3 of 100 Mbit/s   3.4 MB of maps queued\n"
+            "Reports  1 answered\n"
             "\n"
             "Command Post\n"
-            "  scoring  10.100.1.200:8000  connected  last answer 201 in 3.4 ms\n"
-            "  mapping  10.100.1.201:8000  connected  last answer 200 in 42 ms\n"
+            "  scoring  10.100.1.200:8000  connected  last answer: accepted in 3.4 ms\n"
+            "  mapping  10.100.1.201:8000  connected  last answer: accepted in 42 ms\n"
             "\n"
-            "Is my map arriving?\n"
-            "  robot  kind  arriving    accepted  sent  waiting  refused  last sent  size  the Command Post "
-            "said\n"
-            "  r1     grid  up to date        12    11        0           0.5 s ago  4 kB  200\n");
+            "Maps, states and markers\n"
+            "  robot  kind  arriving    accepted  sent  queued  no room  last sent  size  last answer\n"
+            "  r1     grid  up to date        12    11       0           0.5 s ago  4 kB  accepted\n");
 }
 
 TEST(StatusText, BeginsWithTheAlarmsInShapeAndWord) {
@@ -63,9 +63,9 @@ TEST(StatusText, SaysWhyAnEndpointIsNotConnected) {
 }
 
 TEST(StatusText, OfAnAditThatHasHeardNothingIsStillWhole) {
-  EXPECT_EQ(status_text({}, false),
-            "Run   no word from the Command Post yet\nLink  0 of 0 Mbit/s   0 B of maps wait\nReports  none "
-            "so far\n");
+  EXPECT_EQ(
+      status_text({}, false),
+      "Run   no status from the Command Post yet\nLink  0 of 0 Mbit/s   0 B of maps queued\nReports  0\n");
 }
 
 TEST(StatusText, ShowsTheLatestRefusals) {
@@ -77,7 +77,8 @@ TEST(StatusText, ShowsTheLatestRefusals) {
                     .sentence = "msg.info.width: expected 80 x 60 = 4800 bytes of data, got 4799"}};
   EXPECT_THAT(
       status_text(view, false),
-      HasSubstr("Refused to the team, the latest\n  2 s ago  10.0.0.7  /map/update  422  msg.info.width: "));
+      HasSubstr(
+          "Rejected from clients, newest first\n  2 s ago  10.0.0.7  /map/update  422  msg.info.width: "));
 }
 
 TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
@@ -86,7 +87,7 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
   view.activities[0].robot = "\x1b[2J";
   view.activities[0].last_sentence = "\x1b[2J\nRun   99:99";
   view.alarms = {{.what = "\x1b[2J", .why = "\x1b[2J"}};
-  view.verdict = {alarms::Level::Bad, "Nothing arrives", "\x1b[2J"};
+  view.verdict = {alarms::Level::Bad, "No map arrives", "\x1b[2J"};
   view.endpoints[0].trouble = "\x1b[2J";
   view.reports[0].state = "\x1b[2J";
   view.refusals = {{.at = 0, .uri = "\x1b[2J", .sender = "\x1b[2J", .status = 422, .sentence = "\x1b[2J"}};
@@ -100,7 +101,14 @@ TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
   view.activities[0].queued = 247;
   view.activities[0].no_room = 1110;
   EXPECT_THAT(status_text(view, false),
-              HasSubstr("  r1     grid  33 s behind        12    11      247     1110"));
+              HasSubstr("  r1     grid  33 s behind        12    11     247     1110"));
+}
+
+TEST(StatusText, IsExplainedInTheHelp) {
+  for (const std::string_view word : alarms::kArrivalWords) {
+    const std::string shown(word == "late" ? "behind" : word);
+    EXPECT_THAT(help_about(Command::Status), testing::ContainsRegex("  .*" + shown + ".*  "));
+  }
 }
 
 TEST(StatusText, SaysWhatBecomesOfARobotsClouds) {

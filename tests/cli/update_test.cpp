@@ -46,7 +46,7 @@ TEST_F(Update, SaysWhichSlotRuns) {
 TEST_F(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box(kWhy)))}});
   const Outcome told = say(server, {});
-  EXPECT_THAT(told.out, HasSubstr("Another slot runs than the one that was good last: " + std::string(kWhy)));
+  EXPECT_THAT(told.out, HasSubstr("An unexpected slot runs: " + std::string(kWhy)));
   EXPECT_THAT(told.out, HasSubstr("adit update --back "));
   EXPECT_THAT(told.out, HasSubstr("adit update --stay "));
   EXPECT_EQ(told.exit, Exit::Attention);
@@ -55,22 +55,22 @@ TEST_F(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
 TEST_F(Update, GoesBackOrStaysWhereItIsAskedTo) {
   const std::string after = Server::ok(codec::to_json(a_box("")));
   const Server server({{"POST /adit/update/back", after}, {"POST /adit/update/stay", after}});
-  EXPECT_EQ(say(server, {"--back"}).out, "the box restarts, into the slot that was good last\n");
+  EXPECT_EQ(say(server, {"--back"}).out, "the box restarts into the slot that was good last\n");
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{}"));
   say(server, {"--back", "--anyway"});
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{\"anyway\": true}"));
-  EXPECT_EQ(say(server, {"--stay"}).out, "the slot that runs is the one to keep\n");
+  EXPECT_EQ(say(server, {"--stay"}).out, "the box keeps the slot that runs\n");
   const Server none(
-      {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no other slot was good last\"")}});
+      {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no unexpected slot is running\"")}});
   const Outcome refused = say(none, {"--stay"});
-  EXPECT_EQ(refused.err, "adit: no other slot was good last\n");
+  EXPECT_EQ(refused.err, "adit: no unexpected slot is running\n");
   EXPECT_EQ(refused.exit, Exit::Attention);
 }
 
 TEST_F(Update, DoesOneThingAtATime) {
   const Server server(Server::Answers{});
   for (const char* other : {"--restart", "--stick", "--stay", "a.raucb"})
-    EXPECT_THAT(say(server, {"--back", other}).err, HasSubstr("are five things: which one?")) << other;
+    EXPECT_THAT(say(server, {"--back", other}).err, HasSubstr("give only one of FILE, --stick")) << other;
   EXPECT_THAT(say(server, {"--stay", "--anyway"}).err, HasSubstr("update does not take --anyway"));
 }
 

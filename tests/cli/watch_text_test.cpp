@@ -38,7 +38,7 @@ TEST(Watching, TellsWhatNeedsTheOperatorAndWhatNoLonger) {
   api::RunView now = later();
   now.alarms = {{.id = "report_in_doubt:7", .what = "Report 7 is in doubt", .why = "no answer came"}};
   EXPECT_EQ(changed(sample_view(), now), "ALARM  Report 7 is in doubt: no answer came\n");
-  EXPECT_EQ(changed(now, later()), "no longer: Report 7 is in doubt: no answer came\n");
+  EXPECT_EQ(changed(now, later()), "alarm over: Report 7 is in doubt: no answer came\n");
   EXPECT_THAT(changed(now, now), IsEmpty());
 }
 
@@ -49,7 +49,7 @@ TEST(Watching, TellsOfTheRun) {
   EXPECT_EQ(changed(sample_view(), now), "run 12:35: score 8, 17 reports left, team cave_club\n");
   now.run.reset();
   now.run_number = 2;
-  EXPECT_EQ(changed(sample_view(), now), "run 2 begins\nrun: no word from the Command Post yet\n");
+  EXPECT_EQ(changed(sample_view(), now), "run 2 begins\nrun: no status from the Command Post yet\n");
 }
 
 TEST(Watching, TellsOfReports) {
@@ -74,7 +74,7 @@ TEST(Watching, TellsOfEndpointsAndRobots) {
   now.activities[0].last_sentence = "it failed";
   now.activities[0].arrival = alarms::Arrival::Failing;
   EXPECT_EQ(changed(sample_view(), now),
-            "mapping endpoint: not connected, no route to host\nr1, grid: NO: it failed\n");
+            "mapping endpoint: not connected, no route to host\nr1, grid: NOT ARRIVING: it failed\n");
   EXPECT_EQ(changed(now, later()), "mapping endpoint: connected\nr1, grid: arrives\n");
 }
 

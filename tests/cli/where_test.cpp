@@ -19,12 +19,14 @@ settings::Team team(const Address& address, const std::string& interface) {
 TEST(ParseAddress, TakesBothFamilies) {
   EXPECT_EQ(parse_address("10.0.0.1:8000").value(), (Address{"10.0.0.1", 8000}));
   EXPECT_EQ(parse_address("[fd00::1]:65535").value(), (Address{"fd00::1", 65535}));
+  EXPECT_EQ(parse_address("10.0.0.1").value(), (Address{"10.0.0.1", 8000}));
+  EXPECT_EQ(parse_address("[fd00::1]").value(), (Address{"fd00::1", 8000}));
 }
 
 TEST(ParseAddress, RefusesWhatIsNone) {
   for (const std::string text :
-       {"", ":", "8000", "10.0.0.1", "10.0.0.1:", "10.0.0.1:0", "10.0.0.1:65536", "10.0.0.1:+1", "10.0.0:80",
-        "host:80", "fd00::1:80", "[10.0.0.1]:80", "[fd00::1]", "10.0.0.1:80 "}) {
+       {"", ":", "8000", "[", "]", "[]", "10.0.0.1:", "10.0.0.1:0", "10.0.0.1:65536", "10.0.0.1:+1",
+        "10.0.0:80", "host:80", "fd00::1:80", "[10.0.0.1]:80", "[10.0.0.1]", "fd00::1", "10.0.0.1:80 "}) {
     const auto address = parse_address(text);
     ASSERT_FALSE(address.has_value()) << text;
     EXPECT_THAT(address.error(), HasSubstr("got '" + text + "'"));

@@ -69,19 +69,19 @@ TEST(Base64, IsWrittenAsTheVectorsOfRfc4648) {
 
 TEST(Base64, RefusesWhatIsNoneAndSaysWhere) {
   const std::vector<std::pair<std::string, std::string>> bad = {
-      {"Zm9v YmFy", "character 4: a space is not of the base64 alphabet"},
-      {"Zm9\n", "character 3: byte 0x0a is not of the base64 alphabet"},
-      {"Zm-_", "character 2: '-' is not of the base64 alphabet"},
+      {"Zm9v YmFy", "character 4: a space is not in the base64 alphabet"},
+      {"Zm9\n", "character 3: byte 0x0a is not in the base64 alphabet"},
+      {"Zm-_", "character 2: '-' is not in the base64 alphabet"},
       {"Z", "the base64 text is cut short"},
       {"Zm9vY", "the base64 text is cut short"},
       {"Zg=", "the base64 padding is cut short"},
-      {"Zg==Zg==", "character 4: something after the padding"},
-      {"Zm8=A", "character 4: something after the padding"},
-      {"=", "character 0: '=' where none belongs"},
-      {"Z===", "character 1: '=' where none belongs"},
-      {"Zm9v=", "character 4: '=' where none belongs"},
-      {"Zm8==", "character 4: '=' where none belongs"},
-      {"Zg===", "character 4: '=' where none belongs"}};
+      {"Zg==Zg==", "character 4: unexpected character after the padding"},
+      {"Zm8=A", "character 4: unexpected character after the padding"},
+      {"=", "character 0: unexpected '='"},
+      {"Z===", "character 1: unexpected '='"},
+      {"Zm9v=", "character 4: unexpected '='"},
+      {"Zm8==", "character 4: unexpected '='"},
+      {"Zg===", "character 4: unexpected '='"}};
   for (const auto& [text, why] : bad) {
     for (const std::size_t run : {1, 2, 3, 5, 1000}) {
       const auto result = decoded(text, run);

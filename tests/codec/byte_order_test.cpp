@@ -111,7 +111,7 @@ TEST(BigEndianCloud, WhoseValuesLieAcrossEachOtherGoesUpAsItCame) {
   message["msg"]["origin"] = test::good_cloud()["msg"]["origin"];  // there is a server that turns it wrongly
   EXPECT_EQ(
       test::sentence_of(read(message)),
-      "msg.is_bigendian: expected false where there is an origin and fields lie across each other, got true");
+      "msg.is_bigendian: expected false for a cloud that has an origin and overlapping fields, got true");
 }
 
 TEST(BigEndianCloud, IsRefusedWhereItIsNoWholeNumberOfPoints) {

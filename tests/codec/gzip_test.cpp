@@ -126,8 +126,8 @@ TEST(Gunzip, RefusesAnythingElseAfterAMember) {
   damaged[damaged.size() - 5] ^= 1;
   for (const Bytes& more : {Bytes{0}, Bytes{1, 2, 3}, cut, damaged, Bytes(100'000, 0)}) {
     const Bytes both = joined({member, member, more});
-    const std::string sentence = "msg.data: expected nothing after a gzip member but others, got " +
-                                 std::to_string(more.size()) + " bytes more";
+    const std::string sentence = "msg.data: expected only gzip members after a gzip member, got " +
+                                 std::to_string(more.size()) + " other bytes";
     EXPECT_EQ(inflate_all(icd::ChunkedBytes(both)).sentence, sentence);
     EXPECT_EQ(inflate_all(in_pieces(both, 5)).sentence, sentence);
     icd::ChunkedBytes apart{joined({member, member})};

@@ -61,13 +61,13 @@ TEST(JsonData, MarksTheMemberThatHeldItWhenMsgIsGivenTwice) {
 }
 
 const std::vector<std::pair<std::string, std::string>> kBadJsonData = {
-    {R"("Zm9v YmFy")", ": character 4: a space is not of the base64 alphabet"},
-    {R"("Zm9v\nYmFy")", ": character 4: byte 0x0a is not of the base64 alphabet"},
-    {R"("Zm9-")", ": character 3: '-' is not of the base64 alphabet"},
-    {R"("Zm9vé")", ": character 4: byte 0xc3 is not of the base64 alphabet"},
+    {R"("Zm9v YmFy")", ": character 4: a space is not in the base64 alphabet"},
+    {R"("Zm9v\nYmFy")", ": character 4: byte 0x0a is not in the base64 alphabet"},
+    {R"("Zm9-")", ": character 3: '-' is not in the base64 alphabet"},
+    {R"("Zm9vé")", ": character 4: byte 0xc3 is not in the base64 alphabet"},
     {R"("Zg=")", ": the base64 padding is cut short"},
     {R"("Z")", ": the base64 text is cut short"},
-    {R"("Zg==Zg==")", ": character 4: something after the padding"},
+    {R"("Zg==Zg==")", ": character 4: unexpected character after the padding"},
     {"[1,256]", "[1]: expected an integer from -1 to 255, got 256"},
     {"[-2]", "[0]: expected an integer from -1 to 255, got -2"},
     {"[0,0,1.5]", "[2]: expected an integer from -1 to 255, got 1.5"},
@@ -150,7 +150,7 @@ TEST(JsonData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
     const auto document = decode(kJsonBody, Split::MapData, body(data), limits);
     ASSERT_FALSE(document);
     EXPECT_EQ(document.error(),
-              (icd::Refusal{icd::Status::ContentTooLarge, "msg.data: larger than the 6000 bytes taken"}));
+              (icd::Refusal{icd::Status::ContentTooLarge, "msg.data: larger than the limit of 6000 bytes"}));
   }
   const auto blanks = decode(kJsonBody, Split::MapData, body(std::string(30000, ' ') + "[]"), limits);
   ASSERT_FALSE(blanks);

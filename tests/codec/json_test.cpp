@@ -67,9 +67,7 @@ TEST(Value, SaysItsKindInASentence) {
       {{1.0}, "a number"},
       {{std::string()}, "a string"},
       {{Value::Bytes{}}, "a byte string"},
-      {{Value::UnderTag{4}},
-       "CBOR tag 4, which changes the meaning of what it "
-       "stands before"},
+      {{Value::UnderTag{4}}, "CBOR tag 4, which changes the meaning of its value"},
       {{Value::SplitOut{}}, "split-out bytes"},
       {{Value::Array{}}, "an array"},
       {{Value::Object{}}, "an object"}};

@@ -76,12 +76,12 @@ TEST(Lists, LeaveFewValuesOutsideThem) {
   const auto marker = decode(kJsonBody, Split::Lists, members(kMostOutsideLists, "{\"markers\":[{", "}]}"));
   ASSERT_TRUE(marker);
   EXPECT_EQ(test::sentence_of(read_markers_update(*marker, {})),
-            "markers[0]: more than the 20000 values taken outside lists");
+            "markers[0]: more than the limit of 20000 values outside lists");
   const std::string cbor =
       "\xb9\x4e\x20"s + std::string(2 * kMostOutsideLists, '\x60');  // 20,000 members, their names and values
   const auto map = decode(kCborBody, Split::Lists, cbor);
   ASSERT_FALSE(map);
-  EXPECT_EQ(map.error().sentence, "more than the 20000 values taken outside lists");
+  EXPECT_EQ(map.error().sentence, "more than the limit of 20000 values outside lists");
 }
 
 }  // namespace

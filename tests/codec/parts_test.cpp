@@ -49,7 +49,7 @@ TEST(StateParts, AreTheGoodPosesAndASentenceForEachOther) {
   EXPECT_EQ(refusal.status, icd::Status::UnprocessableEntity);
   EXPECT_EQ(refusal.sentence,
             "poses[1].name: missing; poses[2].position.x: expected a number, got a string (the other 2 were "
-            "taken)");
+            "accepted)");
 }
 
 TEST(StateParts, AreAllWhereAllAreGood) {
@@ -67,7 +67,7 @@ TEST(StateParts, TellOfTheFirstTenBadOnesAndCountTheOthers) {
   const std::string sentence = read(read_state_parts, message)->refused.refusal().sentence;
   EXPECT_NE(sentence.find("poses[10].name: "), std::string::npos);
   EXPECT_EQ(sentence.find("poses[11].name: "), std::string::npos);
-  EXPECT_TRUE(sentence.ends_with("; and 19 more like these (the other 1 was taken)")) << sentence;
+  EXPECT_TRUE(sentence.ends_with("; and 19 more like these (the other 1 was accepted)")) << sentence;
 }
 
 TEST(StateParts, AreRefusedAsAWholeWhereNoneIsGoodOrWhatIsAroundThemIsNot) {
@@ -100,7 +100,8 @@ TEST(MarkerParts, AreTheGoodMarkersInTheirOrderAndASentenceForEachOther) {
   EXPECT_EQ(read_parts->message.markers[1].id, 8);
   EXPECT_EQ(read_parts->refused.refusal().sentence,
             "markers[1].color.a: expected a number from 0 to 1, got 2; markers[3].header.frame_id: expected "
-            "\"darpa\", got \"map\" (the setting rules.rewrite_frame_id takes any) (the other 2 were taken)");
+            "\"darpa\", got \"map\" (the setting rules.rewrite_frame_id accepts any frame) (the other 2 were "
+            "accepted)");
   EXPECT_EQ(read_parts->refused.refusal().setting, "rules.rewrite_frame_id")
       << "the first one's that has one";
 }

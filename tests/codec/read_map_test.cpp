@@ -30,18 +30,19 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
       {"6.4", [](json& m) { m["msg"] = nullptr; }, "msg: expected an object, got null"},
       {"6.4", [](json& m) { m["msg"] = {1}; }, "msg: expected an object, got an array"},
       {"2, 6.4", [](json& m) { m["name"] = "ABCDEFGHIJK"; },
-       "name: expected 1 to 10 letters, digits and underscores, got \"ABCDEFGHIJK\" "
-       "(the setting robots[].alias gives a name to whoever calls itself so)"},
+       "name: expected 1 to 10 letters, digits and underscores, got \"ABCDEFGHIJK\" (the setting "
+       "robots[].alias can map this name to a valid one)"},
       {"2, 6.4", [](json& m) { m["name"] = "a-b"; },
-       "name: expected 1 to 10 letters, digits and underscores, got \"a-b\" "
-       "(the setting robots[].alias gives a name to whoever calls itself so)"},
+       "name: expected 1 to 10 letters, digits and underscores, got \"a-b\" (the setting robots[].alias can "
+       "map this name to a valid one)"},
       {"2, 6.4", [](json& m) { m["name"] = 7; }, "name: expected a string, got a whole number"},
       {"2, 6.4", [](json& m) { m["name"] = std::string("a\0b", 3); },
        "name: expected a string without NUL characters, got one with them"},
       {"6.3.1", [](json& m) { m["msg"]["header"] = 5; },
        "msg.header: expected an object, got a whole number"},
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; },
-       "msg.header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id takes any)"},
+       "msg.header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id accepts any "
+       "frame)"},
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = ""; }, "taken"},
       {"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = 1; },
        "msg.header.frame_id: expected a string, got a whole number"},

@@ -50,7 +50,8 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
       {"6.5", [](json& m) { m = nullptr; }, "the body: expected an object, got null"},
       {"6.5", [](json& m) { m["header"] = json::array(); }, "header: expected an object, got an array"},
       {"6.1", [](json& m) { m["header"]["frame_id"] = "odom"; },
-       "header.frame_id: expected \"darpa\", got \"odom\" (the setting rules.rewrite_frame_id takes any)"},
+       "header.frame_id: expected \"darpa\", got \"odom\" (the setting rules.rewrite_frame_id accepts any "
+       "frame)"},
       {"6.2", [](json& m) { m["header"]["stamp"] = -1; },
        "header.stamp: expected a number from 0 to 4294967295.9999995, got -1"},
       {"6.2", [](json& m) { m["header"]["stamp"] = kNan; },
@@ -64,8 +65,8 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
       {"2, 6.5", [](json& m) { m["poses"][1]["name"] = ""; },
        "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"\""},
       {"2, 6.5", [](json& m) { m["poses"][1]["name"] = "drone 2"; },
-       "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"drone 2\" "
-       "(the setting robots[].alias gives a name to whoever calls itself so)"},
+       "poses[1].name: expected 1 to 10 letters, digits and underscores, got \"drone 2\" (the setting "
+       "robots[].alias can map this name to a valid one)"},
       {"6.5", [](json& m) { m["poses"][0].erase("position"); }, "poses[0].position: missing"},
       {"6.5", [](json& m) { m["poses"][0]["position"]["y"] = "1"; },
        "poses[0].position.y: expected a number, got a string"},
@@ -139,15 +140,13 @@ TEST(ReadStateUpdate, NamesAMemberUnderACborTagThatChangesItsMeaning) {
   const IcdRow rows[] = {
       {"6.5", [&](json& m) { m["poses"][0]["covariance"] = {tagged, {{"x", tagged}}}; }, "taken"},
       {"6.5", [&](json& m) { m["poses"][0]["position"]["x"] = tagged; },
-       "poses[0].position.x: expected a number, got CBOR tag 30, which changes the meaning of what it stands "
-       "before"},
+       "poses[0].position.x: expected a number, got CBOR tag 30, which changes the meaning of its value"},
       {"6.5", [&](json& m) { m["poses"][0]["name"] = tagged; },
-       "poses[0].name: expected a string, got CBOR tag 30, which changes the meaning of what it stands "
-       "before"},
+       "poses[0].name: expected a string, got CBOR tag 30, which changes the meaning of its value"},
       {"6.5", [&](json& m) { m["header"] = tagged; },
-       "header: expected an object, got CBOR tag 30, which changes the meaning of what it stands before"},
+       "header: expected an object, got CBOR tag 30, which changes the meaning of its value"},
       {"6.5", [&](json& m) { m = tagged; },
-       "the body: expected an object, got CBOR tag 30, which changes the meaning of what it stands before"},
+       "the body: expected an object, got CBOR tag 30, which changes the meaning of its value"},
   };
   for (const IcdRow& row : rows) {
     json message = test::good_state();
@@ -220,7 +219,7 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
       {"6.6", [](json& m) { m["markers"][0] = nullptr; }, "markers[0]: expected an object, got null"},
       {"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; },
        "markers[0].header.frame_id: expected \"darpa\", got \"map\" (the setting rules.rewrite_frame_id "
-       "takes any)"},
+       "accepts any frame)"},
       {"6.2", [](json& m) { m["markers"][0]["header"]["stamp"] = -2; },
        "markers[0].header.stamp: expected a number from 0 to 4294967295.9999995, got -2"},
       {"6.6", [](json& m) { m["markers"][0].erase("ns"); }, "taken"},

@@ -57,7 +57,7 @@ TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
       {"5.2", [](json& m) { m["type"] = 1; }, "type: expected a string, got a whole number"},
       {"5.2", [](json& m) { m["type"] = "CELL pHone"; }, "taken"},
       {"5.2", [](json& m) { m["type"] = "test"; },
-       kTheTen + "\"test\" (the setting rules.forward_unknown_types takes others)"},
+       kTheTen + "\"test\" (the setting rules.forward_unknown_types accepts others)"},
       {"5.2", [](json& m) { m["type"] = ""; }, kTheTen + "\"\""},
       {"5.2", [](json& m) { m["type"] = "Rope\n"; }, kTheTen + "\"Rope?\""},
       {"5.2", [](json& m) { m["type"] = "Cellphone"; }, kTheTen + "\"Cellphone\"; did you mean Cell Phone?"},
@@ -116,7 +116,7 @@ TEST(ReadArtifactReport, HasTheRobotThatItNames) {
     return (read->report.robot ? read->report.robot->text() : "none") + "|" + read->left_out;
   };
   const std::string expected = "none|name: expected 1 to 10 letters, digits and underscores, got ";
-  const std::string cure = " (the setting robots[].alias gives a name to whoever calls itself so)";
+  const std::string cure = " (the setting robots[].alias can map this name to a valid one)";
   EXPECT_EQ(named(R"(,"name":"robot_1")"), "robot_1|");
   EXPECT_EQ(named(R"(,"name":"the dog")"), "spot1|");
   EXPECT_EQ(named(""), "none|");

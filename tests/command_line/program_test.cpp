@@ -29,8 +29,8 @@ Program program_of(Options& options) {
                    {"--more", "FILE", "another", &options.more},
                    {"--speed", "N", "how fast", number<0.5, 2.0>(options.speed)},
                    {"quick", "", "at once", &options.quick},
-                   {"--version", "", "prints the version", &options.version},
-                   {"--help", "", "prints this", &options.help}},
+                   {"--version", "", "print the version", &options.version},
+                   {"--help", "", "print this help", &options.help}},
           .ending = "Exits 0."};
 }
 
@@ -48,8 +48,8 @@ constexpr const char* kHelp =
     "  --more FILE   another\n"
     "  --speed N     how fast\n"
     "  quick         at once\n"
-    "  --version     prints the version\n"
-    "  --help        prints this\n"
+    "  --version     print the version\n"
+    "  --help        print this help\n"
     "\n"
     "Exits 0.\n";
 

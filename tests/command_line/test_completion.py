@@ -33,7 +33,7 @@ class Offers(unittest.TestCase):
         for said in self.offered("adit "):
             self.assertLessEqual(set(program("adit").commands) | {"help"}, set(said))
         self.offers("adit sta", "status")
-        self.offers("adit help re", "reports")
+        self.offers("adit help re", "rejected", "reports")
         self.offers("adit --json wa", "watch")
         self.offers("adit --at 10.0.0.1:8000 wa", "watch")
         self.offers("adit --settings status wa", "watch")
@@ -42,10 +42,12 @@ class Offers(unittest.TestCase):
         self.offers("adit reports s", "show", "send")
         self.offers("adit reports --json s", "show", "send")
         self.offers("adit run n", "new")
+        self.offers("adit settings se", "set")
 
     def test_options(self):
         self.offers("adit --ver", "--version")
         self.offers("adit reports --ru", "--run")
+        self.offers("adit reports --la", "--last")
         self.offers("adit reports send --y", "--yes")
         self.offers("adit update --st", "--stay", "--stick")
         self.offers("aditd --setti", "--settings")
@@ -61,6 +63,7 @@ class Offers(unittest.TestCase):
     def test_keys_of_the_settings(self):
         self.offers("adit settings show reports.n", "reports.near_metres")
         self.offers("adit settings show robots[].al", "robots[].alias")
+        self.offers("adit settings set reports.n", "reports.near_metres")
 
     def test_files_and_folders(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -92,7 +95,7 @@ class Offers(unittest.TestCase):
                 offered = {each for each in shells.by_bash(f"adit {command} {word} -".replace("  ", " ")) if each != "--help"}
                 hidden = {"--settings"} if command == "check" else set()  # SETTINGS says the same
                 for option in set(about) - {"--help", "--version"} - hidden:
-                    value = [{"--run": "all", "--scoring": "10.0.0.1:80", "--mapping": "10.0.0.1:80"}.get(option, "/none")] if about[option] else []
+                    value = [{"--run": "all", "--last": "5", "--scoring": "10.0.0.1:80", "--mapping": "10.0.0.1:80"}.get(option, "/none")] if about[option] else []
                     words = [each for each in (command, word) if each]
                     said = subprocess.run([BIN / "adit", *words, option, *value], capture_output=True, text=True).stderr
                     alone = command == "update" and option in ("--anyway", "--again")  # these want another beside them

@@ -47,21 +47,22 @@ class ManPages(unittest.TestCase):
         self.assertEqual(missing, [], where)
 
     def test_sentences_are_those_of_the_help(self):
-        self.assertIn("--settings FILE the settings (JSON, version 1) unless others were saved; adit check FILE explains",
+        self.assertIn("--settings FILE read the settings (JSON, version 1) from FILE, unless the state directory holds saved ones; adit",
                       shown(self.page_of("aditd")))
         adit = shown(self.page_of("adit"))
-        self.assertIn("--run N|all Without a word: whose reports to list; if not given, the present run's", adit)
+        self.assertIn("--run N|all Without a subcommand: list the reports of this run; if not given, of the present run", adit)
         self.assertIn("adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'", adit)
+        self.assertIn("ENVIRONMENT ADIT_AT used if", adit)
         self.assertIn("SEE ALSO aditd(8), adit-settings(5)", adit)
 
     def test_each_key_of_the_settings_is_in_their_page(self):
         text = shown(self.page_of("adit-settings"))
         keys = json.loads(subprocess.run([BIN / "adit", "complete", "keys", "--json"], check=True, capture_output=True, text=True).stdout)
         self.assertGreater(len(keys), 50)
-        missing = [key["path"] for key in keys if f" {key['path']} {key['meaning']} It may be {key['range']}" not in text]
+        missing = [key["path"] for key in keys if f" {key['path']} {key['meaning']} Allowed: {key['range']}" not in text]
         self.assertEqual(missing, [])
-        self.assertIn('reports.review What is held until the operator lets it go: nothing, near duplicates (see '
-                      'reports.near_metres), or every report. It may be "off", "duplicates" or "all". If not given: "off".', text)
+        review = next(key for key in keys if key["path"] == "reports.review")
+        self.assertIn(f'{review["meaning"]} Allowed: "off", "duplicates" or "all". Default: "off".', text)
 
     def test_groff_complains_of_nothing(self):
         for page in pages():

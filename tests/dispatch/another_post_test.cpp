@@ -20,7 +20,7 @@ TEST(AnotherPost, MeansNothingForReportsThatAreDone) {
   scene.post(1);
   scene.answer(recorded());
   EXPECT_EQ(meaning(scene),
-            "reports go to 10.100.2.200:8000 from then on; none waits, is in doubt or is held now");
+            "reports go to 10.100.2.200:8000 from then on; no report is queued, in doubt or held now");
 }
 
 TEST(AnotherPost, KeepsWhatIsNotDoneForTheOldOne) {
@@ -28,16 +28,15 @@ TEST(AnotherPost, KeepsWhatIsNotDoneForTheOldOne) {
   scene.post_to_wait(1);
   scene.post_to_wait(2);
   ASSERT_TRUE(scene.reports().hold(1, scene.time()));
-  EXPECT_EQ(
-      meaning(scene),
-      "reports go to 10.100.2.200:8000 from then on; 1 report waits, 1 is held: they are kept for the run "
-      "at 10.100.1.200:8000, and not sent to the new one unless you say so");
+  EXPECT_EQ(meaning(scene),
+            "reports go to 10.100.2.200:8000 from then on; 1 report is queued, 1 is held: Adit keeps them "
+            "for the run at 10.100.1.200:8000, and sends them to the new Command Post only on request");
   scene.send_next();
   EXPECT_THAT(meaning(scene), HasSubstr("; 1 report is in doubt, 1 is held: "));
   scene.lose();
   scene.post_to_wait(3);
   scene.post_to_wait(4);
-  EXPECT_THAT(meaning(scene), HasSubstr("; 2 reports wait, 1 is in doubt, 1 is held: "));
+  EXPECT_THAT(meaning(scene), HasSubstr("; 2 reports are queued, 1 is in doubt, 1 is held: "));
 }
 
 TEST(AnotherPost, IsGoneBackToWithItsReports) {
@@ -47,10 +46,9 @@ TEST(AnotherPost, IsGoneBackToWithItsReports) {
   scene.post_to_wait(2);
   scene.restart(kThere);
   scene.hear(20, 0);
-  EXPECT_EQ(
-      meaning(scene, kHere),
-      "reports go to 10.100.1.200:8000 from then on; run 1 there is taken up again, with 2 reports; none "
-      "waits, is in doubt or is held now");
+  EXPECT_EQ(meaning(scene, kHere),
+            "reports go to 10.100.1.200:8000 from then on; run 1 there continues, with 2 reports; no report "
+            "is queued, in doubt or held now");
 }
 
 TEST(AnotherPost, IsSentWhatWaitsWhereNothingWasHeardOfTheOldOne) {
@@ -58,8 +56,8 @@ TEST(AnotherPost, IsSentWhatWaitsWhereNothingWasHeardOfTheOldOne) {
   scene.restart(kThere);
   scene.post_to_wait(1);
   EXPECT_THAT(meaning(scene, kHere),
-              AllOf(HasSubstr("1 report waits: nothing was heard from 10.100.2.200:8000"),
-                    EndsWith("is sent to the first Command Post that answers")));
+              AllOf(HasSubstr("1 report is queued: the Command Post at 10.100.2.200:8000"),
+                    EndsWith("queued reports are sent to the first Command Post that answers")));
 }
 
 }  // namespace

@@ -68,7 +68,7 @@ TEST(Evidence, ShowsItsFigures) {
             "remaining_reports went from 20 to 19 and the score from 3 to 4, 1 of it by reports sent since, "
             "with 2 reports in doubt");
   EXPECT_THAT(weigh(status(20, 3), 1, {}, status(18, 3)).why,
-              testing::HasSubstr("does somebody else report"));
+              testing::HasSubstr("does another sender report"));
 }
 
 /// The law behind the table: what the same events give by themselves is never called a contradiction, and

@@ -24,7 +24,7 @@ TEST(A2xx, ThatWasNotScoredSaysSoToTheOperator) {
   Scene scene;
   scene.post();
   scene.answer(recorded(0, "admin stop"));
-  EXPECT_EQ(scene.report(1).note, "not scored (admin stop): post it again once the run goes on");
+  EXPECT_EQ(scene.report(1).note, "not scored (admin stop); post it again when the run continues");
 }
 
 TEST(A2xx, WithoutAReportInItsBodyIsADoubt) {
@@ -57,7 +57,7 @@ TEST(A2xx, ThatTellsOfAnotherReportIsADoubt) {
   const ClientId client = scene.post(11);
   scene.answer(tells_of(10));
   EXPECT_EQ(scene.state(2), InDoubt);
-  EXPECT_THAT(scene.report(2).note, HasSubstr("the answer tells of report 1, not of this one"));
+  EXPECT_THAT(scene.report(2).note, HasSubstr("the answer is for report 1, not for this report"));
   EXPECT_FALSE(scene.is_told(client));
   scene.keep_hearing(14, 19, 0);
   EXPECT_EQ(scene.state(2), Queued) << "it was not recorded";
@@ -81,7 +81,7 @@ TEST(A2xx, ThatTellsOfItInOtherWordsCountsAndIsNoted) {
   scene.post(10.4);
   scene.answer(tells_of(10));  // it rounds
   EXPECT_EQ(scene.state(1), Answered);
-  EXPECT_EQ(scene.report(1).note, R"(the answer tells of "Drill" at 10, 0, 0)");
+  EXPECT_EQ(scene.report(1).note, R"(the answer is for "Drill" at 10, 0, 0)");
   scene.post(20);
   scene.answer(tells_of(20.0000001, "drill"));
   EXPECT_EQ(scene.report(2).note, "");
@@ -122,7 +122,7 @@ TEST_P(Barring, LeavesTheReportWaitingTellsItsClientAndSendsNothingBeforeAStatus
   scene.answer(answer_of(GetParam()));
   EXPECT_EQ(scene.state(1), Queued);
   EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is kept and waiting (the Command Post's words)"));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is queued (the Command Post's words)"));
   EXPECT_FALSE(scene.is_told(other));
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.reports().wish(scene.time()).status, scene.time().now);
@@ -182,7 +182,7 @@ TEST(AReport, ThatKeepsKillingTheAnswerIsHeldForTheOperatorAtLast) {
     EXPECT_EQ(scene.send_next(), tries < Reports::kMostTries ? 1 : 0);
   }
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_EQ(scene.report(1).note, "held: sent 5 times without an answer, and never recorded");
+  EXPECT_EQ(scene.report(1).note, "sent 5 times without an answer, and not recorded");
   EXPECT_EQ(scene.told(client).status, 503);
   scene.post(2);
   EXPECT_EQ(scene.state(2), Sending) << "nothing else is blocked";

@@ -10,7 +10,8 @@ using enum ReportState;
 using std::chrono::seconds;
 using testing::HasSubstr;
 
-constexpr const char* kNeverTwice = "posting the same report again asks after it and never sends it twice";
+constexpr const char* kNeverTwice =
+    "post the same report again to ask for its state; Adit never sends it twice";
 
 TEST(AClient, IsToldHowItsReportStandsBeforeItsTimeIsUp) {
   Scene scene;
@@ -20,7 +21,7 @@ TEST(AClient, IsToldHowItsReportStandsBeforeItsTimeIsUp) {
   EXPECT_FALSE(scene.is_told(client));
   scene.wait(0.1);
   EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("report 1 is kept and waiting"));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("report 1 is queued"));
   EXPECT_EQ(scene.told(client).number, 1);
   EXPECT_EQ(scene.reports().next_deadline(), std::nullopt);
 }
@@ -45,8 +46,8 @@ void PrintTo(const Telling& telling, std::ostream* out) {
 }
 
 const Telling kTellings[] = {
-    {Queued, 503, "report 1 is kept and waiting (why)"},
-    {Held, 503, "report 1 is kept, and waits for the operator's word (why)"},
+    {Queued, 503, "report 1 is queued (why)"},
+    {Held, 503, "report 1 is held until the operator decides (why)"},
     {InDoubt, 504, "report 1 is in doubt: it may or may not have been recorded (why)"},
 };
 
@@ -75,7 +76,7 @@ TEST(AClient, OfAReportUnderWayIsToldThatItMayBeRecorded) {
   const ClientId client = scene.post();
   scene.wait(20);
   EXPECT_EQ(scene.told(client).status, 504);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is on its way, and may or may not have been recorded"));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is in flight, and may or may not have been recorded"));
 }
 
 TEST(AClient, IsNotPromisedThatAReportOfAnEarlierRunNeverGoesAgain) {
@@ -87,7 +88,7 @@ TEST(AClient, IsNotPromisedThatAReportOfAnEarlierRunNeverGoesAgain) {
   scene.wait(9);
   EXPECT_EQ(scene.told(client).status, 503);
   EXPECT_THAT(scene.told(client).sentence, Not(HasSubstr(kNeverTwice)));
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("posting it again sends it in the present one"));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("post it again to send it in the present run"));
   scene.hear(25, 0, 12);
   scene.post(1);
   EXPECT_EQ(scene.state(2), Sending) << "which is true";
@@ -123,8 +124,7 @@ TEST(AtAStop, ClientsAreToldButThoseWhoseReportIsUnderWay) {
   const ClientId waiting = scene.post(2);
   scene.reports().dismiss(false);
   EXPECT_EQ(scene.told(waiting).status, 503);
-  EXPECT_THAT(scene.told(waiting).sentence,
-              HasSubstr("the gateway is stopping; report 2 is kept and waiting"));
+  EXPECT_THAT(scene.told(waiting).sentence, HasSubstr("aditd is stopping; report 2 is queued"));
   EXPECT_FALSE(scene.is_told(under_way));
   scene.answer(recorded());
   EXPECT_EQ(scene.told(under_way).status, 201);

@@ -21,7 +21,7 @@ TEST_F(FullDisk, TakesNoReportAndSaysSo) {
   fill();
   const auto told = scene_.told(scene_.post());
   EXPECT_EQ(told.status, 503);
-  EXPECT_EQ(told.sentence, "the report could not be written down and was not taken; post it again");
+  EXPECT_EQ(told.sentence, "the report could not be stored and was not accepted; post it again");
   EXPECT_EQ(told.number, 0);
   EXPECT_EQ(scene_.reports().sending(), nullptr);
   EXPECT_EQ(scene_.count(), 0);
@@ -117,7 +117,7 @@ TEST_F(FullDisk, TakesNoWordOfTheOperators) {
   scene_.lose();
   scene_.post(2);
   fill();
-  EXPECT_THAT(scene_.reports().call_done(1, scene_.time()).error(), HasSubstr("could not be written down"));
+  EXPECT_THAT(scene_.reports().call_done(1, scene_.time()).error(), HasSubstr("could not be stored"));
   EXPECT_FALSE(scene_.reports().send(1, scene_.time()).has_value());
   EXPECT_FALSE(scene_.reports().withdraw(2, scene_.time()).has_value());
   EXPECT_EQ(scene_.state(1), InDoubt);

@@ -69,7 +69,7 @@ TEST_F(Doubt, IsLeftToTheOperatorWhereTheCountContradicts) {
   scene_.hear(18, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_FALSE(scene_.reports().is_asking(scene_.report(1)));
-  EXPECT_THAT(scene_.report(1).note, HasSubstr("does somebody else report with this token?; the operator"));
+  EXPECT_THAT(scene_.report(1).note, HasSubstr("does another sender report with this token?; the operator"));
   EXPECT_NE(scene_.reports().run().unreliable, "") << "the run is no more certain than the report";
   scene_.keep_hearing(60, 19, 0);
   EXPECT_EQ(scene_.state(1), InDoubt) << "no later count decides it";
@@ -105,7 +105,8 @@ TEST_F(Doubt, StaysWhileTheStatusIsSilent) {
     scene_.reports().status_failed(i % 2 == 0, scene_.time());
   }
   EXPECT_EQ(scene_.state(1), InDoubt);
-  EXPECT_THAT(scene_.report(1).note, HasSubstr("the run's status cannot be had; the operator decides"));
+  EXPECT_THAT(scene_.report(1).note,
+              HasSubstr("the Command Post does not answer with the run's status; the operator decides"));
   scene_.hear(20, 0);
   scene_.wait(1);
   scene_.hear(20, 0);
@@ -164,7 +165,7 @@ TEST_F(TwoDoubts, StayWhereOneWasCounted) {
   keep_hearing_after_stop(60, 19, 0);
   EXPECT_EQ(scene_.state(1), InDoubt);
   EXPECT_EQ(scene_.state(2), InDoubt);
-  EXPECT_THAT(scene_.report(2).note, HasSubstr("which of them was recorded does not show"));
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("the counts do not show which of them was recorded"));
 }
 
 TEST_F(TwoDoubts, AreDecidedInOneWriteOrNotAtAll) {
@@ -210,7 +211,7 @@ TEST(ADoubt, WithoutACountFromBeforeIsLeftToTheOperator) {
   EXPECT_FALSE(scene.reports().is_asking(scene.report(2)));
   scene.keep_hearing(20, 20, 0);
   EXPECT_EQ(scene.state(2), InDoubt);
-  EXPECT_THAT(scene.report(2).note, HasSubstr("is not known for certain; the operator decides"));
+  EXPECT_THAT(scene.report(2).note, HasSubstr("are not certain; the operator decides"));
   EXPECT_EQ(scene.told(client).status, 504);
 }
 
@@ -222,7 +223,7 @@ TEST(ADoubt, WithNothingLeftOfTheAllotmentIsLeftToTheOperator) {
   exhausted.lose();
   exhausted.keep_hearing(60, 0, 0);
   EXPECT_EQ(exhausted.state(1), InDoubt);
-  EXPECT_THAT(exhausted.report(1).note, HasSubstr("a record would not show"));
+  EXPECT_THAT(exhausted.report(1).note, HasSubstr("the counts do not show a recorded report"));
   EXPECT_THAT(exhausted.reports().run().unreliable, IsEmpty());
 }
 

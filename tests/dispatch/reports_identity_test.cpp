@@ -87,7 +87,7 @@ TEST_F(OnlyTheClock, MakesANewRunLikelyAndHoldsTheSameReport) {
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the run clock went back"));
   scene_.wait(21);
-  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("is held until the operator decides"));
   EXPECT_THAT(scene_.undecided(), testing::Contains(HasSubstr("the same as report 1")));
 }
 
@@ -182,7 +182,7 @@ TEST(OnlyTheClockInDoubt, DoesNotSendAgainWhatTheOperatorSentOnceMore) {
   scene.keep_hearing(30, 18, 0);
   EXPECT_EQ(scene.send_next(), 0);
   EXPECT_EQ(scene.state(2), Held);
-  EXPECT_THAT(scene.report(2).note, HasSubstr("report 3 is the same, and is answered in this run"));
+  EXPECT_THAT(scene.report(2).note, HasSubstr("report 3 is the same and is answered in this run"));
 }
 
 TEST_F(OnlyTheClock, TheRunThatIsBackIsSoAfterARestart) {
@@ -238,7 +238,7 @@ TEST_F(AnotherPlace, TheSameReportWaitsUntilItHasAnswered) {
   scene_.post(1);
   EXPECT_EQ(scene_.state(2), Queued);
   EXPECT_THAT(scene_.report(2).note, HasSubstr("the same as report 1"));
-  EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 has answered"));
+  EXPECT_THAT(scene_.report(2).note, HasSubstr("10.100.2.200:8000 answers"));
   scene_.reports().status_failed(true, scene_.time());
   EXPECT_EQ(scene_.send_next(), 0) << "who answered is not known";
   scene_.hear(20, 0);
@@ -296,7 +296,7 @@ TEST_F(AnotherPlace, WhatWaitsForTheFirstIsNotSentTwiceOnTheOperatorsWord) {
   come_back();
   const auto sent = scene_.reports().send(3, scene_.time());
   ASSERT_FALSE(sent);
-  EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same, and is waiting in this run"));
+  EXPECT_THAT(sent.error(), HasSubstr("report 2 is the same and is queued in this run"));
 }
 
 TEST_F(AnotherPlace, WhatWaitedForTheFirstIsKeptForIt) {

@@ -34,7 +34,7 @@ TEST_F(Lost, WhatIsPostedInItsRunIsHeldAsItMayBeTheSame) {
   EXPECT_EQ(scene_.state(3), Held);
   EXPECT_THAT(scene_.report(3).note, HasSubstr(kNote));
   scene_.wait(21);
-  EXPECT_THAT(scene_.output().told[client].at(0).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_THAT(scene_.output().told[client].at(0).sentence, HasSubstr("is held until the operator decides"));
   EXPECT_TRUE(scene_.reports().send(3, scene_.time()));
   scene_.keep_hearing(1, 19, 0);
   EXPECT_EQ(scene_.send_next(), 3);

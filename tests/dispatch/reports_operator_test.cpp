@@ -46,7 +46,7 @@ class OperatorsWord : public testing::TestWithParam<Words> {
     const auto outcome = say(scene.reports(), scene.time());
     if (!outcome) {
       EXPECT_EQ(scene.report(1), before);
-      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(name_of(GetParam().state))));
+      EXPECT_THAT(outcome.error(), HasSubstr("report 1 is " + std::string(shown_name_of(GetParam().state))));
     }
     return outcome.has_value();
   }
@@ -76,10 +76,10 @@ TEST(Holding, KeepsAReportBackUntilTheOperatorSendsIt) {
   const ClientId client = scene.post_to_wait();
   ASSERT_TRUE(scene.reports().hold(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_EQ(scene.report(1).note, "held: the operator holds it");
+  EXPECT_EQ(scene.report(1).note, "the operator held it");
   EXPECT_EQ(scene.told(client).status, 503);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("waits for the operator's word"));
-  EXPECT_THAT(scene.undecided(), ElementsAre("held: the operator holds it"));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("is held until the operator decides"));
+  EXPECT_THAT(scene.undecided(), ElementsAre("the operator held it"));
   scene.keep_hearing(60, 20, 0);
   EXPECT_EQ(scene.send_next(), 0);
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
@@ -119,10 +119,10 @@ TEST(Holding, SaysWhyItIsTooLate) {
   Scene scene;
   scene.post(1);
   EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
-              HasSubstr("is sending: it may have left already"));
+              HasSubstr("is sending: it may have been sent already"));
   scene.lose();
   EXPECT_THAT(scene.reports().hold(1, scene.time()).error(),
-              HasSubstr("is in doubt: it may have left already"));
+              HasSubstr("is in doubt: it may have been sent already"));
   EXPECT_EQ(scene.state(1), InDoubt);
 }
 
@@ -256,7 +256,7 @@ TEST(TheOperator, HasToDecideWhatIsInDoubtAndNotWhatIsRefused) {
   scene.lose();
   scene.hear(17, 0);
   EXPECT_THAT(scene.undecided(), ElementsAre(scene.report(2).note));
-  EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("does somebody else report"));
+  EXPECT_THAT(scene.reports().run().unreliable, HasSubstr("does another sender report"));
 }
 
 TEST(Resubmitting, PressedTwiceIsSentOnce) {
@@ -297,7 +297,7 @@ TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWasRecordedInThisRun) {
   scene.answer(recorded());
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);
-  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is answered in this run"));
+  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same and is answered in this run"));
   EXPECT_EQ(scene.state(2), Held);
 }
 
@@ -307,7 +307,7 @@ TEST_F(HeldSinceTheRunBefore, IsRefusedWhereTheSameWaitsToBeSentInThisRun) {
   ASSERT_EQ(scene.state(3), Queued);
   const auto sent = scene.reports().send(2, scene.time());
   ASSERT_FALSE(sent);
-  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same, and is waiting in this run"));
+  EXPECT_THAT(sent.error(), HasSubstr("report 3 is the same and is queued in this run"));
   EXPECT_EQ(scene.send_next(), 3);
 }
 

@@ -69,7 +69,7 @@ TEST(ANewRun, HoldsWhatWaitsFromTheRunBefore) {
   scene.wait(11);
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_THAT(scene.report(1).note, HasSubstr("held: a new run began (the reports left went up"));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began (the reports left went up"));
   EXPECT_EQ(scene.output().ledger.at(1).state, Held) << "written down with the run";
   ASSERT_TRUE(scene.reports().send(1, scene.time()).has_value());
   EXPECT_EQ(scene.send_next(), 1) << "the operator asks for it";
@@ -153,7 +153,7 @@ TEST(ADoubt, ThatIsOlderThanTheLastWordOfItsRunStaysThere) {
   }
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.report(1).run, 1);
-  EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began before it was clear"));
+  EXPECT_THAT(scene.report(1).note, HasSubstr("a new run began before the status showed"));
   scene.post(1);
   EXPECT_EQ(scene.state(2), Sending) << "the new run has nothing of it";
 }
@@ -164,7 +164,7 @@ TEST(ADeclaredRun, BeginsLikeOneThatIsNoticed) {
   scene.wait(11);
   EXPECT_EQ(scene.reports().declare_new_run(scene.time()), 2);
   EXPECT_EQ(scene.state(1), Held);
-  EXPECT_EQ(scene.output().run->why, "the operator says so");
+  EXPECT_EQ(scene.output().run->why, "the operator declared it");
   scene.hear(25, 0, 3);
   EXPECT_EQ(scene.reports().run().number, 2) << "the clock is no news";
 }

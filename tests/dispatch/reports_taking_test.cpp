@@ -58,7 +58,7 @@ TEST(Taking, DoesNotTakeMoreThanMayWait) {
   scene.post_to_wait(2);
   const auto told = scene.told(scene.post_to_wait(3));
   EXPECT_EQ(told.status, 429);
-  EXPECT_THAT(told.sentence, HasSubstr("not taken"));
+  EXPECT_THAT(told.sentence, HasSubstr("not accepted"));
   EXPECT_EQ(told.number, 0);
   EXPECT_EQ(scene.count(), 2);
   const ClientId joined = scene.post_to_wait(2);
@@ -191,10 +191,11 @@ TEST(ANearReport, IsHeldForTheOperatorWithTheReason) {
   scene.answer(recorded());
   const ClientId near = scene.post(4.26);
   EXPECT_EQ(scene.state(2), Held);
-  EXPECT_EQ(scene.report(2).note, "held: the same type as report 1, 3.3 m from it");
+  EXPECT_EQ(scene.report(2).note, "the same type as report 1, 3.3 m from it");
   scene.wait(20);
   EXPECT_EQ(scene.told(near).status, 503);
-  EXPECT_THAT(scene.told(near).sentence, HasSubstr("waits for the operator's word (held: the same type"));
+  EXPECT_THAT(scene.told(near).sentence,
+              HasSubstr("is held until the operator decides (the same type"));
   scene.hear(19, 0);
   scene.post(7, "Drill");
   EXPECT_EQ(scene.state(3), Held) << "near the one that is held";

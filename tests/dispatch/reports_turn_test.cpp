@@ -32,7 +32,7 @@ TEST_F(AnsweredAtTheTurn, IsHeldWhereItIsPostedAgain) {
   scene_.post(1);
   EXPECT_EQ(scene_.count(), 2u) << "it joins the one that is held";
   scene_.wait(21);
-  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("waits for the operator's word"));
+  EXPECT_THAT(scene_.told(again).sentence, HasSubstr("is held until the operator decides"));
 }
 
 TEST_F(AnsweredAtTheTurn, IsOneOfTheNewRunWhereItsNameIsThatRuns) {

@@ -97,7 +97,7 @@ TEST_F(RunAccountTest, DistrustsACountThatIsWrongTwiceInARow) {
   EXPECT_THAT(account_.run().unreliable, IsEmpty());
   hear(19, 3);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
-  EXPECT_THAT(account_.run().unreliable, HasSubstr("somebody else reports with this token"));
+  EXPECT_THAT(account_.run().unreliable, HasSubstr("another sender reports with this token"));
   EXPECT_EQ(output_.run->unreliable, account_.run().unreliable) << "and has that on disk";
 }
 
@@ -117,7 +117,7 @@ TEST_F(RunAccountTest, DistrustsCountsThatMoveNoMore) {
   answer("scored", 0);
   hear(19, 3);
   hear(19, 3);
-  EXPECT_THAT(account_.run().unreliable, HasSubstr("somebody else reports with this token"));
+  EXPECT_THAT(account_.run().unreliable, HasSubstr("another sender reports with this token"));
 }
 
 TEST_F(RunAccountTest, ForgivesACountThatLaggedBehind) {
@@ -140,7 +140,7 @@ TEST_F(RunAccountTest, LetsCountsBeSetAtTheStartOfTheRun) {
 TEST_F(RunAccountTest, TrustsTheCountAgainInTheNextRun) {
   hear(20, 3);
   account_.distrust("another sender", time().stamp);
-  account_.begin("the operator says so", 0, std::nullopt, {}, time());
+  account_.begin("the operator declared it", 0, std::nullopt, {}, time());
   EXPECT_EQ(account_.run().number, 2);
   EXPECT_EQ(account_.expected(time().now), std::nullopt);
   hear(25, 0);
@@ -193,7 +193,7 @@ TEST_F(RunAccountTest, MeasuresASilenceByTheClockThatCannotBeSet) {
   hear(20, 3);
   const Time set{at(105).now, at(105 + 3600).stamp};
   EXPECT_EQ(account_.another(icd::RunStatus{3, 105, 20, "adit"}, set), std::nullopt);
-  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("without word"));
+  EXPECT_THAT(account_.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("of silence"));
 }
 
 TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
@@ -203,7 +203,7 @@ TEST_F(RunAccountTest, MeasuresASilenceOverARestartByWhatIsOnDisk) {
   hear(20, 3);
   RunAccount again(book_);
   again.open({*output_.run}, 1, "");
-  EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("without word"));
+  EXPECT_THAT(again.another(icd::RunStatus{3, 105, 20, "adit"}, at(3700))->why, HasSubstr("of silence"));
   EXPECT_EQ(again.another(icd::RunStatus{3, 120, 20, "adit"}, at(120)), std::nullopt);
 }
 

@@ -101,7 +101,7 @@ TEST(AnotherRun, ShowsByMoreReportsLeft) {
 }
 
 TEST(AnotherRun, ShowsAfterALongSilenceByAClockThatDoesNotFitIt) {
-  EXPECT_THAT(another(600, 620, 3000), HasSubstr("after 3000 s without word"));
+  EXPECT_THAT(another(600, 620, 3000), HasSubstr("after 3000 s of silence"));
   EXPECT_THAT(another(600, 3590, 3000), IsEmpty());
   EXPECT_THAT(another(600, 610, 29), IsEmpty()) << "a silence too short for that";
 }

@@ -168,7 +168,7 @@ TEST_F(TakingOverTest, TheSameReportAtBothBoxesIsSentByNobodyUnasked) {
     take_over(box, other, box.reports().expected(box.time().now));
     other.keep_hearing(60, 19, 0);
     EXPECT_EQ(other.send_next(), 0);
-    EXPECT_THAT(other.undecided(), testing::ElementsAre(HasSubstr("held: the same as report")));
+    EXPECT_THAT(other.undecided(), testing::ElementsAre(HasSubstr("the same as report")));
   }
 }
 

@@ -52,7 +52,7 @@ TEST_F(DamagedMap, IsToldAndRejectedMessagesAndTheNextOneGoes) {
   EXPECT_TRUE(fs::exists(file(kOne) + ".damaged"));
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
   EXPECT_EQ(row().failed, 1U);
-  EXPECT_TRUE(row().last_sentence.starts_with("what was kept of it is damaged: ")) << row().last_sentence;
+  EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
 }
 
 TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
@@ -61,7 +61,7 @@ TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
   auto kept = spool_.read();
   maps_->send_again(std::move(kept.maps[0].second), [](bool) { return true; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
-  EXPECT_TRUE(row().last_sentence.starts_with("what was kept of it is damaged: ")) << row().last_sentence;
+  EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
 }
 

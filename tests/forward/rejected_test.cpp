@@ -127,7 +127,7 @@ TEST_F(RejectedStoreTest, ForgetsWhatIsSentAgainOrDiscarded) {
   rejected_->sent_again(1, true);
   EXPECT_FALSE(rejected_->to_be_sent(1));
   EXPECT_TRUE(rejected_->discard(2));
-  EXPECT_EQ(rejected_->discard(2).error(), "nothing of number 2 is rejected");
+  EXPECT_EQ(rejected_->discard(2).error(), "there is no rejected message 2");
   settle();
   EXPECT_TRUE(fs::is_empty(folder_.path()));
   restart();

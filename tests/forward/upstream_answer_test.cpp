@@ -43,13 +43,13 @@ struct NotJson {
 TEST(ClientAnswer, IsAJsonStringWhateverElseCame) {
   for (const NotJson& row : {
            NotJson{404, "<h1>Not Found</h1>", 404,
-                   "\"the Command Post answered 404 with something other than JSON\""},
+                   "\"the Command Post answered 404 with a body that is not JSON\""},
            NotJson{500, "<html>oops</html>", 500,
-                   "\"the Command Post answered 500 with something other than JSON\""},
+                   "\"the Command Post answered 500 with a body that is not JSON\""},
            NotJson{501, "", 501, "\"the Command Post answered 501 with an empty body\""},
-           NotJson{201, "recorded", 502, "\"the Command Post answered 201 with something other than JSON\""},
+           NotJson{201, "recorded", 502, "\"the Command Post answered 201 with a body that is not JSON\""},
            NotJson{200, "{\"a\":1} trailing", 502,
-                   "\"the Command Post answered 200 with something other than JSON\""},
+                   "\"the Command Post answered 200 with a body that is not JSON\""},
        }) {
     const intake::Answer answer = client_answer(answered(row.status, "text/html", row.body));
     EXPECT_EQ(static_cast<int>(answer.status), row.told) << row.body;

@@ -139,7 +139,8 @@ TEST(CloudRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
       {"6.3.2", [](auto& c) { c.point_step = 65536; }, "taken"},
       {"6.3.2", [](auto& c) { c.point_step = 65537; },
        "msg.point_step: expected a whole number from 1 to 65536, got 65537"},
-      {"6.3.2", [](auto& c) { c.fields.clear(); }, "msg.fields: expected at least x, y and z, got none"},
+      {"6.3.2", [](auto& c) { c.fields.clear(); },
+       "msg.fields: expected at least x, y and z, got an empty list"},
       {"6.3.2", [](auto& c) { c.fields.resize(257, field("intensity", 0)); },
        "msg.fields: expected at most 256 fields, got 257"},
       {"6.3.2", [](auto& c) { c.fields.resize(256, field("intensity", 0)); }, "taken"},
@@ -154,9 +155,8 @@ TEST(CloudRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
       {"6.3.2 in 64 bits", [](auto& c) { c.fields[3].offset = 0xffffffff; },
        "msg.fields[3].offset: expected the field to end within point_step 16, got 4294967295 + 4 x 1 = "
        "4294967299"},
-      {"6.3.2", [](auto& c) { c.fields[1] = field("Y", 4); }, "msg.fields: expected a field \"y\", got none"},
-      {"6.3.2", [](auto& c) { c.fields.erase(c.fields.begin()); },
-       "msg.fields: expected a field \"x\", got none"},
+      {"6.3.2", [](auto& c) { c.fields[1] = field("Y", 4); }, "msg.fields: missing field \"y\""},
+      {"6.3.2", [](auto& c) { c.fields.erase(c.fields.begin()); }, "msg.fields: missing field \"x\""},
       {"6.3.2", [](auto& c) { c.fields[3] = field("z", 12); }, "msg.fields: expected one field \"z\", got 2"},
       {"6.3.2", [](auto& c) { c.fields.insert(c.fields.end(), 2, field("rgba", 12)); }, "taken"},
       {"6.3.2", [](auto& c) { c.fields[0].datatype = Datatype::Int32; },
@@ -193,7 +193,7 @@ TEST(FrameId, IsDarpaUnlessTheSettingsRewriteIt) {  // ICD 6.1
   for (const std::string frame : {"map", "Darpa", "darpa ", "/darpa"}) {
     EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", {})),
               sentence("header.frame_id: expected \"darpa\", got \"", frame,
-                       "\" (the setting rules.rewrite_frame_id takes any)"));
+                       "\" (the setting rules.rewrite_frame_id accepts any frame)"));
     EXPECT_EQ(check_frame_id(frame, "header.frame_id", {}).error().setting, "rules.rewrite_frame_id");
     Rules rewriting;
     rewriting.rewrite_frame_id = true;

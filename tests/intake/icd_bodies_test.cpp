@@ -211,7 +211,7 @@ TEST(IcdBodies, OfGoodAndBadPartsAreTakenForTheGoodOnesAndAnsweredForTheBad) {
   const auto reply = team.ask(authorized("POST", "/state/update", kJsonType, kOneBadPose));
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 422);
-  EXPECT_EQ(reply->body, "\"poses[1].name: missing (the other 2 were taken)\"");
+  EXPECT_EQ(reply->body, "\"poses[1].name: missing (the other 2 were accepted)\"");
   auto markers = nlohmann::json::parse(kMarkersBody);
   markers["markers"].push_back(7);
   EXPECT_EQ(team.ask(authorized("POST", "/markers/update", kJsonType, markers.dump()))->status, 422);
@@ -222,7 +222,7 @@ TEST(IcdBodies, OfGoodAndBadPartsAreTakenForTheGoodOnesAndAnsweredForTheBad) {
     ASSERT_EQ(team.desk.markers.size(), 1u);
     EXPECT_EQ(team.desk.markers[0].markers.size(), markers["markers"].size() - 1);
     ASSERT_EQ(team.desk.refusals.size(), 2u);
-    EXPECT_EQ(team.desk.refusals[0].second.sentence, "poses[1].name: missing (the other 2 were taken)");
+    EXPECT_EQ(team.desk.refusals[0].second.sentence, "poses[1].name: missing (the other 2 were accepted)");
   });
 }
 

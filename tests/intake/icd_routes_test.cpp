@@ -68,7 +68,7 @@ TEST(IcdRoutes, LetNobodyInWhereATokenIsAskedForAndNoneIsSet) {
         team.ask(request("POST", "/state/update", header + std::string(kJsonType), kStateBody));
     ASSERT_TRUE(reply) << header;
     EXPECT_EQ(reply->status, 401) << header;
-    EXPECT_EQ(reply->body, "\"Authorization: no token is set up on this gateway yet\"");
+    EXPECT_EQ(reply->body, "\"Authorization: no token is set on this box yet\"");
   }
 }
 
@@ -110,7 +110,7 @@ TEST(IcdRoutes, AskAPageFromElsewhereForATokenWhereNoneIsWanted) {
     const auto [code, body] = status("10.0.0.1:8000", "Origin: " + origin + "\r\n");
     EXPECT_EQ(code, 403) << origin;
     EXPECT_EQ(body, R"("Origin: a page of \")" + origin +
-                        R"(\" needs the team's token, or to be in the setting team.origins")");
+                        R"(\" needs the team's token, or an entry in the setting team.origins")");
     EXPECT_EQ(status("10.0.0.1:8000", "Origin: " + origin + "\r\nAuthorization: Bearer wrong\r\n").first,
               403);
     EXPECT_EQ(status("10.0.0.1:8000", "Origin: " + origin + "\r\n" + token), taken) << origin;
@@ -261,7 +261,7 @@ TEST(IcdRoutes, NameAContentEncodingThatIsNotKnown) {
         authorized("POST", post.path, std::string(kJsonType) + "Content-Encoding: br\r\n", post.body));
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->status, 422);
-    EXPECT_EQ(reply->body, "\"Content-Encoding: expected gzip, deflate or none, got \\\"br\\\"\"");
+    EXPECT_EQ(reply->body, "\"Content-Encoding: expected gzip, deflate or no such header, got \\\"br\\\"\"");
   }
 }
 

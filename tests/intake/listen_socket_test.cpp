@@ -42,8 +42,8 @@ TEST(AListenSocket, MayComeBeforeItsAddress) {
 TEST(AListenSocket, IsNothingElse) {
   const loop::FileDescriptor idle(socket(AF_INET, SOCK_STREAM, 0)), datagrams(socket(AF_INET, SOCK_DGRAM, 0)),
       local(socket(AF_UNIX, SOCK_STREAM, 0)), file(open("/dev/null", O_RDONLY));
-  EXPECT_THAT(bound_at(idle.get()).error(), HasSubstr("one that does not"));
-  EXPECT_THAT(bound_at(datagrams.get()).error(), HasSubstr("no stream"));
+  EXPECT_THAT(bound_at(idle.get()).error(), HasSubstr("a socket that does not listen"));
+  EXPECT_THAT(bound_at(datagrams.get()).error(), HasSubstr("not a stream"));
   EXPECT_THAT(bound_at(local.get()).error(), HasSubstr("another family"));
   EXPECT_THAT(bound_at(file.get()).error(), HasSubstr("no socket"));
   EXPECT_THAT(bound_at(-1).error(), HasSubstr("no socket"));

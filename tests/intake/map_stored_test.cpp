@@ -118,7 +118,7 @@ TEST(MapUpload, IsRefusedWhereMoreOfItWouldBeHeldThanThereIsFor) {
     const auto reply = team.ask(map_head(sent, kGzip) + sent);
     ASSERT_TRUE(reply);
     EXPECT_EQ(reply->status, 503);
-    EXPECT_NE(reply->body.find("no room for this map"), std::string::npos) << reply->body;
+    EXPECT_NE(reply->body.find("the queue of maps is full"), std::string::npos) << reply->body;
   }
   EXPECT_TRUE(team.served.eventually([&] { return team.desk.arriving == 0; }));
   const std::string small = gzipped(cloud_body(500'000));

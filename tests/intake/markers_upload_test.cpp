@@ -145,7 +145,8 @@ TEST(MarkersUpload, OfALargeOneWithBadPartsTheGoodOnesAreTaken) {
   const auto reply = team.ask(authorized("POST", "/markers/update", kCborType, body));
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 422);
-  EXPECT_EQ(reply->body, "\"markers[1]: expected an object, got a whole number (the other 2 were taken)\"");
+  EXPECT_EQ(reply->body,
+            "\"markers[1]: expected an object, got a whole number (the other 2 were accepted)\"");
   EXPECT_EQ(team.served.on_loop([&] { return team.desk.markers.at(0).markers.size(); }), 2u);
 }
 

@@ -255,7 +255,7 @@ TEST(ADamagedNameOfARobot, ShowsByItsProofAndIsLeftOut) {
   const Folder folder;
   save(folder.file(), bytes);
   const auto ledger = open_or_fail(folder);
-  EXPECT_THAT(ledger.damage(), testing::HasSubstr("the robot of report 1 is not as it was written"));
+  EXPECT_THAT(ledger.damage(), testing::HasSubstr("the robot of report 1 is damaged"));
   EXPECT_EQ(find_or_fail(ledger, 1).report, backpack(1).report);
 }
 
@@ -279,7 +279,7 @@ TEST(ADamagedSighting, ShowsByItsProof) {
   const Folder folder;
   save(folder.file(), bytes);
   const auto ledger = open_or_fail(folder);
-  EXPECT_THAT(ledger.damage(), testing::HasSubstr("what was seen of run 1 is not as it was written"));
+  EXPECT_THAT(ledger.damage(), testing::HasSubstr("the status of run 1 is damaged"));
   EXPECT_EQ(ledger.runs()->at(0).status_clock, std::nullopt) << "what is not known proves nothing";
 }
 

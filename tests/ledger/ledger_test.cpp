@@ -187,7 +187,7 @@ TEST(Ledger, NeverPutsAReportInThePlaceOfAnother) {
   for (const auto& other : {drill, elsewhere, later}) {
     const auto written = write(ledger, other);
     ASSERT_FALSE(written);
-    EXPECT_THAT(written.error().what, HasSubstr("another report's"));
+    EXPECT_THAT(written.error().what, HasSubstr("another report has this number"));
   }
   EXPECT_THAT(*ledger.reports(), ElementsAre(backpack(1)));
   EXPECT_EQ(ledger.history(1)->size(), 1u);

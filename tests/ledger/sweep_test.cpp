@@ -323,7 +323,7 @@ TEST(SweptLedger, SaysThatItsLogIsGone) {
   const Folder folder(below());
   save(folder.file(), was.file);
   const auto ledger = open_or_fail(folder);
-  EXPECT_THAT(ledger.damage(), testing::HasSubstr("its log: it is gone"));
+  EXPECT_THAT(ledger.damage(), testing::HasSubstr("its log: the file is missing"));
 }
 
 /// SQLite has all pages from what is left of the log, and misses none.

@@ -296,7 +296,7 @@ TEST(LedgerOfThisVersion, KeepsWhatVersion3WroteWhenItIsSalvaged) {
   by_hand(folder, kWrittenByVersion3);
   by_hand(folder, "PRAGMA application_id = 7");
   const auto ledger = open_or_fail(folder);
-  EXPECT_THAT(ledger.damage(), HasSubstr("3 reports were taken over"));
+  EXPECT_THAT(ledger.damage(), HasSubstr("3 reports were copied to a new ledger"));
   EXPECT_THAT(ledger.damage(), HasSubstr("from 4 on may be lost"));
   EXPECT_EQ(find_or_fail(ledger, 1).state, ReportState::InDoubt);
   EXPECT_EQ(find_or_fail(ledger, 3).report, backpack(3).report);
@@ -357,7 +357,7 @@ TEST(LedgerOfALaterVersionThatOnlyAdds, IsRefusedWhereThatIsToAVersionLaterThanT
   by_hand(folder, "PRAGMA user_version = 393223");  // 6 << 16 | 7
   const auto refused = Ledger::open(folder.text());
   ASSERT_FALSE(refused);
-  EXPECT_THAT(refused.error().what, HasSubstr("version 7, and this one reads up to 5"));
+  EXPECT_THAT(refused.error().what, HasSubstr("version 7, this Adit reads up to 5"));
   EXPECT_THAT(by_hand(folder, "PRAGMA user_version"), ElementsAre("393223"));
 }
 

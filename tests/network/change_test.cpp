@@ -88,7 +88,7 @@ TEST_F(ChangeTest, TakesItselfBackInTime) {
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
-  EXPECT_EQ(change.status().why, "nobody confirmed it within 90 s");
+  EXPECT_EQ(change.status().why, "the change was not confirmed within 90 s");
   EXPECT_EQ(change.status().kept, numbers());
 }
 
@@ -138,7 +138,7 @@ TEST_F(ChangeTest, IsTakenBackOnceMoreWhereItsKeeperStopsMeanwhile) {
   change.tick(at(90));
   change.stop(at(91));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back", "take back"));
-  EXPECT_EQ(change.status().why, "nobody confirmed it within 90 s");
+  EXPECT_EQ(change.status().why, "the change was not confirmed within 90 s");
 }
 
 TEST_F(ChangeTest, IsTakenBackAtOnceWhereItCannotBeApplied) {
@@ -146,7 +146,7 @@ TEST_F(ChangeTest, IsTakenBackAtOnceWhereItCannotBeApplied) {
   want();
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
   EXPECT_FALSE(change.status().pending);
-  EXPECT_EQ(change.status().why, "it could not be applied: the disk is full");
+  EXPECT_EQ(change.status().why, "the change could not be applied: the disk is full");
 }
 
 TEST_F(ChangeTest, IsTakenBackWhereItCannotBeKept) {
@@ -156,7 +156,7 @@ TEST_F(ChangeTest, IsTakenBackWhereItCannotBeKept) {
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24", "take back"));
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
   EXPECT_EQ(change.status().kept, numbers());
-  EXPECT_THAT(change.status().why, HasSubstr("could not be kept: the disk is full"));
+  EXPECT_THAT(change.status().why, HasSubstr("could not be stored: the disk is full"));
 }
 
 TEST_F(ChangeTest, IsTakenBackAgainAndAgainUntilItSucceeds) {
@@ -180,7 +180,7 @@ TEST_F(ChangeTest, IsGivenUpWhereItCannotBeTakenBack) {
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
   EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
   EXPECT_FALSE(change.status().pending);
-  EXPECT_THAT(change.status().why, HasSubstr("is tried again: the disk is full"));
+  EXPECT_THAT(change.status().why, HasSubstr("retrying: the disk is full"));
 }
 
 TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {
@@ -227,7 +227,7 @@ TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.wake(), std::nullopt);
   EXPECT_EQ(change.status().ended, Ended::TakenBack);
-  EXPECT_EQ(change.status().why, "all addresses were forgotten");
+  EXPECT_EQ(change.status().why, "a factory reset forgot all addresses");
   EXPECT_EQ(change.status().kept, numbers("10.0.0.1/24"));
   EXPECT_EQ(change.status().endpoints, Endpoints{});
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "forget"));
@@ -237,7 +237,7 @@ TEST_F(ChangeTest, IsTakenBackWhereAllIsToBeForgottenAndCannotBe) {
   hands.fail_keep = true;
   want();
   EXPECT_EQ(change.forget(at(1)).error(), "the disk is full");
-  EXPECT_EQ(change.status().why, "all addresses are to be forgotten") << "nobody is to confirm it now";
+  EXPECT_EQ(change.status().why, "a factory reset forgets all addresses") << "nobody is to confirm it now";
   EXPECT_EQ(change.status().kept, numbers());
 }
 

@@ -143,7 +143,7 @@ TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
     const Findings findings = check(with_mode(mode), numbers(), usual());
     EXPECT_THAT(findings.errors, IsEmpty());
     EXPECT_THAT(findings.warnings,
-                ElementsAre(AllOf(HasSubstr("not known yet"), HasSubstr("http://pc-17.local:8000"))));
+                ElementsAre(AllOf(HasSubstr("not yet known"), HasSubstr("http://pc-17.local:8000"))));
     ASSERT_THAT(findings.changes, SizeIs(3));
     EXPECT_EQ(findings.changes[0].path, "team.mode");
     EXPECT_EQ(findings.changes[0].to, name_of(mode));
@@ -153,7 +153,7 @@ TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
   Circumstances around = usual();
   around.listen = {{"192.168.7.11", 80}};
   EXPECT_THAT(errors(with_mode(Mode::Dhcp), around),
-              ElementsAre(HasSubstr("team.mode: nothing would be served")));
+              ElementsAre(HasSubstr("team.mode: Adit would not be reachable")));
 }
 
 TEST(NetworkCheck, RefusesAnAddressAtWhichNothingListens) {
@@ -162,7 +162,7 @@ TEST(NetworkCheck, RefusesAnAddressAtWhichNothingListens) {
   EXPECT_THAT(
       errors(numbers("192.168.8.11/24"), around),
       ElementsAre(HasSubstr(
-          "nothing would be served at 192.168.8.11: the settings' team.listen has only 192.168.7.11")));
+          "Adit would not be reachable at 192.168.8.11: the settings' team.listen has only 192.168.7.11")));
   EXPECT_THAT(errors(numbers(), around), IsEmpty());
   EXPECT_EQ(page_at(numbers(), around.listen, around.name), "http://192.168.7.11");
 }

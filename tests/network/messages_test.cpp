@@ -50,7 +50,7 @@ TEST(NetworkMessages, TellTheWholeStatus) {
                            std::chrono::seconds(5)};
   status.ended = Ended::TakenBack;
   status.ended_nonce = kNonce;
-  status.why = "nobody confirmed it";
+  status.why = "the change was not confirmed";
   EXPECT_EQ(read<Status>(write(status)), status);
   EXPECT_EQ(json::parse(write(status))["pending"]["until_ms"], 123456);
 }
@@ -159,8 +159,8 @@ TEST(NetworkMessages, RefuseEndpointsThatAreNone) {
       {R"(["10.100.1"])", "endpoints[0]: expected an IPv4 address"},
       {R"(["10.100.1.200\nGateway=1.2.3.4"])", "endpoints[0]"},
       {R"([7])", "endpoints[0]"},
-      {R"(["10.100.1.201","10.100.1.200"])", "endpoints[1]: expected them in order"},
-      {R"(["10.100.1.201","10.100.1.201"])", "none twice"},
+      {R"(["10.100.1.201","10.100.1.200"])", "endpoints[1]: expected ascending addresses"},
+      {R"(["10.100.1.201","10.100.1.201"])", "each once"},
   };
   for (const auto& [list, what] : cases) {
     const auto result = read<Endpoints>(std::string(R"({"version":1,"endpoints":)") + list + "}");

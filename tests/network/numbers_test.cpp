@@ -101,12 +101,12 @@ TEST(Numbers, AreRefusedByTheirPaths) {
       {R"({"address":"192.168.7.255","prefix":24})", kPost,
        "team.address: 192.168.7.255 is the broadcast address of 192.168.7.0/24"},
       {R"({"address":"127.0.0.1","prefix":8})", kPost,
-       "team.address: 127.0.0.1 is no address that a host can have"},
+       "team.address: 127.0.0.1 is not an address that a host can have"},
       {R"({"address":"0.0.0.1","prefix":8})", kPost, "team.address: 0.0.0.1 is no"},
       {R"({"address":"224.0.0.9","prefix":24})", kPost, "team.address: 224.0.0.9 is no"},
       {R"({"address":"255.255.255.255","prefix":24})", kPost, "team.address: 255.255.255.255 is no"},
       {R"({"address":"192.168.7.11","prefix":24,"gateway":"192.168.7.1"})", kPost,
-       "team.\"gateway\": no such member here"},
+       "team.\"gateway\": unknown member"},
       {R"({"address":"192.168.7.11","prefix":24,"prefix":25})", kPost, "team.prefix: given twice"},
       {R"({"mode":"bootp","address":"192.168.7.11","prefix":24})", kPost,
        "team.mode: expected static, dhcp or link-local, got \"bootp\""},
@@ -139,10 +139,10 @@ TEST(Numbers, AreRefusedByTheirPaths) {
       {kTeam, R"({"addresses":[{"address":"169.254.1.1","prefix":16}]})",
        "command_post.addresses[0].address: 169.254.1.1 is link-local"},
       {kTeam, R"({"addresses":[{"address":"10.100.1.10","prefix":24,"name":"x"}]})",
-       "command_post.addresses[0].\"name\": no such member"},
-      {kTeam, R"({"addresses":[],"address":"10.100.1.10"})", "command_post.\"address\": no such member"},
+       "command_post.addresses[0].\"name\": unknown member"},
+      {kTeam, R"({"addresses":[],"address":"10.100.1.10"})", "command_post.\"address\": unknown member"},
       {kTeam, R"({"address":"10.100.1.10","prefix":24,"interface":"eth0"})",
-       "command_post.\"interface\": no such member"},
+       "command_post.\"interface\": unknown member"},
   };
   for (const auto& [team, post, sentence] : cases) {
     EXPECT_THAT(faults(with(team, post)), ElementsAre(StartsWith(sentence))) << team << post;
@@ -152,7 +152,7 @@ TEST(Numbers, AreRefusedByTheirPaths) {
 TEST(Numbers, AreRefusedAllAtOnce) {
   EXPECT_THAT(faults(R"({"team":{"address":"x","prefix":99},"command_post":3,"more":1})"),
               ElementsAre(StartsWith("team.address: "), StartsWith("team.prefix: "),
-                          "command_post: expected an object, got 3", "\"more\": no such member here"));
+                          "command_post: expected an object, got 3", "\"more\": unknown member"));
   EXPECT_THAT(faults("{}"), ElementsAre("team: missing", "command_post: missing"));
   EXPECT_THAT(faults("7"), ElementsAre("expected an object, got 7"));
 }

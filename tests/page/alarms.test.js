@@ -29,6 +29,21 @@ test("shows the two worst with what to do, in the strip, the title and the icon"
   await axeFindsNothing(page);
 });
 
+test("leads from each alarm in the list to what it means", async (t) => {
+  const { page } = await watch(t, "trouble", { bypassCSP: true });
+  await page.getByRole("button", { name: "All 3" }).click();
+  await page.locator("#all-alarms li", { hasText: "5 reports are left" }).getByRole("link", { name: "Help" }).click();
+  await page.waitForURL(/\/help#reports_left$/);
+  await page.locator("#reports_left").waitFor();
+  assert.ok(await page.$eval("#reports_left:target", (row) => row.getBoundingClientRect().top < innerHeight));
+  for (const width of [360, 1280]) {
+    await page.setViewportSize({ width, height: 740 });
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), `${width} px`);
+    await shoot(page, `help_${width}`);
+  }
+  await axeFindsNothing(page, "the page of all alarms");
+});
+
 test("keeps its place and height in every state", async (t) => {
   const { stage, page } = await watch(t, "calm");
   for (const [width, height] of SIZES) {
@@ -46,7 +61,7 @@ test("keeps its place and height in every state", async (t) => {
 });
 
 test("cuts no headline, of however many words, on any screen", async (t) => {
-  const WORDS = ["What answers is no Command Post", "Too many strangers are connected"];
+  const WORDS = ["The server is not a Command Post", "Too many clients are anonymous"];
   const prepare = (page) => retell(page, (words) => (view) => ({ ...view, alarms: view.alarms.slice(0, 2).map((alarm, i) => ({ ...alarm, what: words[i], acknowledged: false, action: { word: "Open set-up", link: "/setup" } })) }), WORDS);
   const { page } = await watch(t, "trouble", { prepare });
   await page.locator(".alarms .what", { hasText: WORDS[0] }).waitFor();

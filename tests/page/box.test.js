@@ -70,7 +70,7 @@ test("the support bundle holds all that helps, and no token, password, code or c
   assert.ok(JSON.parse(read("run.json")).endpoints.length === 2);
   assert.ok(JSON.parse(read("network.json")).interfaces.some(({ addresses }) => addresses.includes("127.0.0.1/8")));
   assert.ok(JSON.parse(read("about.json")).parts.length >= 9);
-  assert.match(read("log.txt"), /a log-in was refused: wrong password/);
+  assert.match(read("log.txt"), /login rejected: wrong password/);
   assert.match(read("metrics.txt"), /^adit_build_info/m);
   const all = gunzipSync(bytes).toString("latin1") + (await (await ask("GET", "/adit/log.txt")).text()) + (await (await ask("GET", "/adit/log")).text());
   const secrets = [...Object.values(TOKENS), OPERATOR, VIEWER, "an untrue password", "a-wrong-token", code, mine["Adit-CSRF"], mine.Cookie.split("=")[1], "$y$"];

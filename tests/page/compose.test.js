@@ -105,7 +105,7 @@ test("shows the box's sentence where it was not taken, and keeps what was typed"
   await compose(page);
   await fill(page, "Cube", "666", "0", "0");
   await send(page);
-  await page.waitForFunction(() => document.querySelector("#compose .trouble").textContent.includes("this one was not taken"));
+  await page.waitForFunction(() => document.querySelector("#compose .trouble").textContent.includes("this report was not accepted"));
   await page.getByRole("button", { name: "Place", exact: true }).click();
   assert.equal(await page.inputValue("#compose input[name=x]"), "666");
   await page.getByRole("button", { name: "Cancel" }).click();

@@ -40,6 +40,6 @@ test("offers a viewer nothing", async (t) => {
   const { page } = await watch(t, "trouble", { prepare });
   await said(page, "Only an operator can act");
   await openMore(page);
-  await said(page, "the setting rules.rewrite_frame_id takes any");
+  await said(page, "the setting rules.rewrite_frame_id accepts any frame");
   assert.equal(await cures(page).count(), 0);
 });

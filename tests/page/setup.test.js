@@ -97,7 +97,7 @@ test("switches to another course by one press, once it was said what that change
     ["Scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["Mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
     ["Scoring token", "common", "own"], ["Mapping token", "common", "common"],
   ]);
-  await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; none waits, is in doubt or is held now`).waitFor();
+  await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; no report is queued, in doubt or held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();
   await page.getByText("Course B is in use.").waitFor();
   await page.waitForFunction(() => document.activeElement.id === "courses-title"); // the button that had it is gone

@@ -112,7 +112,7 @@ test("takes a change back that nobody confirms, and says so", async (t) => {
   await hears(page, "Box lost");
   await until(() => box.address() === "192.168.7.11/24", "the address before", 120_000);
   await hears(page, "Live");
-  await page.getByText(/The last change was taken back: nobody confirmed it/).waitFor();
+  await page.getByText(/The last change was taken back: the change was not confirmed/).waitFor();
   await sign(page).waitFor({ state: "detached" });
 });
 

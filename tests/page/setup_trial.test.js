@@ -39,7 +39,7 @@ test("tries a token as it is typed, and neither keeps nor shows it", async (t) =
   await page.getByRole("link", { name: "Try these tokens before you set them" }).click();
   await tries(page).click();
   await tried(page, "typed", "1 of 12 steps failed");
-  assert.match(await page.locator("[data-tried=typed] .trial").first().innerText(), /scoring token is refused/);
+  assert.match(await page.locator("[data-tried=typed] .trial").first().innerText(), /scoring token is rejected/);
   assert.ok(!(await page.locator("#step-post").innerText()).includes("typed-and-wrong"));
   assert.ok(!JSON.stringify([(await ask("/adit/test")).said, (await ask("/adit/log")).said]).includes("typed-and-wrong"));
   assert.deepEqual((await ask("/adit/settings")).said.saved, false);

@@ -22,7 +22,7 @@ test("one press puts the box to rest and its export on the stick; what fails can
   assert.equal(asked(page, "/adit/spare/rest"), 0, "nothing is asked for on a no");
   await press("Start standby, export to the stick");
   await yes();
-  await said("The stick has no room for it.");
+  await said("The stick is full.");
   assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "true");
   assert.equal(await section.locator("dd").first().innerText(), "1234 5678 9012 3456");
   await press("Export to the stick");
@@ -50,7 +50,7 @@ test("what is on the stick is offered by the box and the time of its name, and a
   const when = await page.evaluate(() => new Date(1.75e12).toLocaleString());
   await section.getByRole("button", { name: `Take in from the stick: the box at 10.0.0.7, ${when}` }).waitFor();
   await press("Take in from the stick: zip.adit-spare");
-  await said("It is no export of an Adit.");
+  await said("The file is not an export from Adit.");
   await press("Take in from the stick: the box at 10.0.0.7");
   await said("An export was taken in.");
   await section.getByLabel("Code of the export").waitFor();
@@ -64,7 +64,7 @@ test("what is on the stick is offered by the box and the time of its name, and a
 test("presses are one until the page shows what came of the first", async (t) => {
   const { page, section, said } = await spareOf(t);
   const count = await pressThrice(page, /\/adit\/spare/, section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }));
-  await said("It is no export of an Adit.");
+  await said("The file is not an export from Adit.");
   assert.deepEqual(count, { presses: 3, posts: 1 });
   assert.deepEqual(page.complaints, []);
 });

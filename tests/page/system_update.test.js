@@ -9,7 +9,7 @@ const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffe
 
 test("tells which version runs and what became of the last update", async (t) => {
   const { page } = await come(t);
-  await updating(page).getByText("0.1.0, slot A. 0.0.9 was left: it did not come up healthy in three starts").waitFor();
+  await updating(page).getByText("0.1.0, slot A. 0.0.9 was left: the update did not become healthy in three starts").waitFor();
   assert.deepEqual(page.complaints, []);
 });
 
@@ -18,7 +18,7 @@ test("installs an update from a file, and says why one was refused", async (t) =
   const file = updating(page).getByLabel("Update file"), install = updating(page).getByRole("button", { name: "Install", exact: true });
   await file.setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
   await install.click();
-  await updating(page).getByText("it is no update").waitFor();
+  await updating(page).getByText("the file is not an update").waitFor();
   assert.match(page.complaints.splice(0).join(), /^[^,]*status of 422[^,]*$/); // the browser's own word of it
   await file.setInputFiles(aFile("xxx"));
   await install.click();
@@ -43,7 +43,7 @@ test("keeps the sentence of a refusal, whatever the box tells later of how the u
   await updating(page).getByRole("button", { name: "Install", exact: true }).click();
   await refused;
   for (let shown = 0; shown < 3; ++shown) await answered("GET"); // once the next is there, the one before it was shown
-  assert.ok(await updating(page).getByText("it is no update").isVisible());
+  assert.ok(await updating(page).getByText("the file is not an update").isVisible());
 });
 
 test("takes presses for one until it shows what came of the first", async (t) => {

@@ -13,7 +13,7 @@ import { HtmlValidate } from "html-validate";
 import { FILES, serve } from "./stage.js";
 import { visitor } from "./watch.js";
 
-const PAGES = ["", "display", "runs", "setup", "system", "login.html"];
+const PAGES = ["", "display", "runs", "setup", "system", "help", "login.html"];
 const MOST_REQUESTS = 5; // the page, its script, its style, its icon, and what loads it again
 const MOST = 60_000; // bytes of one page as they are sent
 const SITE = fileURLToPath(new URL("../../firmware/site/", import.meta.url));
@@ -74,7 +74,7 @@ test("what is named by its content is that, and may be kept; a page is asked for
     const page = await ask(stage.url + path);
     assert.equal(page.headers["cache-control"], "no-cache");
     const names = namedIn(`${page.body}`);
-    assert.deepEqual(names.map((name) => name.split(".").at(-1)).sort(), ["css", "js", "js", ...names.filter((name) => name.endsWith(".svg")).map(() => "svg")], path);
+    assert.deepEqual(names.map((name) => name.split(".").at(-1)).sort(), ["css", "js", ...(path === "help" ? [] : ["js"]), ...names.filter((name) => name.endsWith(".svg")).map(() => "svg")], path);
     for (const name of names) {
       const plain = await ask(stage.url + name), packed = await ask(stage.url + name, { "Accept-Encoding": "gzip" });
       assert.deepEqual([plain.status, plain.headers["content-encoding"], packed.headers["content-encoding"]], [200, undefined, "gzip"], name);

@@ -57,16 +57,16 @@ TEST(Messages, AreNoLongerThanTheySay) {
 
 TEST(Messages, ThatAreNoneAreRefusedWithAReason) {
   for (const std::string_view text : {"", "lit", "lit1001", "END", "end ", "fault", "\xff\xfe", "button 1"}) {
-    EXPECT_EQ(error_of(text), "no message that is known") << text;
+    EXPECT_EQ(error_of(text), "unknown message") << text;
   }
   EXPECT_EQ(error_of("lit 100"), "lit: expected a digit for each light");
   EXPECT_EQ(error_of("lit 10011"), "lit: expected a digit for each light");
   EXPECT_EQ(error_of("lit 10x1"), "lit: expected 0 or 1 for each light");
   EXPECT_EQ(error_of("panel {"), "panel: not JSON: " + error_of("panel {").substr(17));
-  EXPECT_EQ(error_of(R"(panel {"name":"b","title":"B"})"), "panel: none is named");
+  EXPECT_EQ(error_of(R"(panel {"name":"b","title":"B"})"), "panel: missing");
   EXPECT_NE(error_of(R"(panel {"name":"b","title":"B","panel":{"health":"a line"}})").find("panel.health"),
             std::string::npos);
-  EXPECT_EQ(error_of("panel " + std::string(kLongestMessage, ' ')), "longer than any message");
+  EXPECT_EQ(error_of("panel " + std::string(kLongestMessage, ' ')), "the message is too long");
 }
 
 TEST(Messages, OfTheOtherWayAreReadAsTheyAreWritten) {

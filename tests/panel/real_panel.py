@@ -71,7 +71,7 @@ class Watching(Running):
         self.connect("lit 0110")
         self.shows("0110")
         self.assertIsNone(self.panel.poll())
-        self.assertLessEqual(self.said().count("is not understood"), 9, "once for each that had told something before")
+        self.assertLessEqual(self.said().count("unknown message from aditd"), 9, "once for each that had told something before")
 
     def test_a_flood_keeps_neither_the_lights_nor_the_next_one(self):
         """Frames faster than they can be lit, and then silence."""
@@ -116,8 +116,8 @@ class Watching(Running):
         client = self.connect("lit 1110")
         self.shows("1110")
         client.send(b'panel {"name":"s","title":"S","panel":{"chip":"no-such-chip","health":"H","button":"B"}}')
-        self.wait_until(lambda: "the lights cannot be set, and are tried again: panel: chip no-such-chip: No such file" in self.said(), "to be told")
-        self.wait_until(lambda: "the button cannot be read, and is looked for again: panel: chip no-such-chip" in self.said(), "to be told of the button")
+        self.wait_until(lambda: "cannot set the lights, retrying: panel: chip no-such-chip: No such file" in self.said(), "to be told")
+        self.wait_until(lambda: "cannot read the button, retrying: panel: chip no-such-chip" in self.said(), "to be told of the button")
         client.send(b"lit 0110")
         self.shows("0110")
         self.assertFalse(self.button.exists(), "no other takes a real one's place")

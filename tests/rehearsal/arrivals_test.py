@@ -45,10 +45,10 @@ class Markers(unittest.TestCase):
                 return answer["markers"]["differences"]
 
             self.assertEqual(differences(("R1/path", 1, x)), [])
-            self.assertEqual(differences(("R1/path", 1, x), ("R1/path", 2, x)), ["marker 2 of R1/path is not here"])
+            self.assertEqual(differences(("R1/path", 1, x), ("R1/path", 2, x)), ["marker 2 of R1/path is missing"])
             self.assertEqual(differences(("R1/path", 1, x + 1)), [f"marker 1 of R1/path is at x {x:f}, not {x + 1:f}"])
             self.assertEqual(differences(("R1/path", 1, x), ("R2/path", 2, x)),
-                             ["marker 2 of R2/path is not here", "marker 1 of R2/path was deleted"])
+                             ["marker 2 of R2/path is missing", "marker 1 of R2/path was deleted"])
             answer = post.tell("posted", [{"robot": "R1", "kind": "markers", "standing": [{"ns": "a", "id": "b", "x": 1}]}])
             self.assertEqual(answer.status_code, 422)
             self.assertIn("[0].standing[0].id: expected an integer", answer.json())

@@ -53,7 +53,7 @@ class Telling(unittest.TestCase):
             ({"status": ["retry-after=1.5"]}, "retry-after: expected whole seconds"),
             ({"clock": ["standing"]}, "clock[0]: expected constant or running, got 'standing'"),
             ({"clock": "constant"}, "clock: expected an array"),
-            ({"reports": ["drop"] * 10_001}, "no more than 10000 faults can wait"),
+            ({"reports": ["drop"] * 10_001}, "at most 10000 faults can be queued"),
         ]
         with CommandPost() as post:
             for told, sentence in table:

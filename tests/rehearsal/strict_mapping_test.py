@@ -188,7 +188,7 @@ class Refused(unittest.TestCase):
             ("msg.fields[2]: ends at byte 13 of a point of 12", changed(cloud(), msg__fields__2__offset=9)),
             ("msg.row_step: expected width * point_step = 24, got 36", changed(cloud(), msg__width=2, msg__row_step=36)),
             ("msg.data: point 1 has no finite y (ICD 6.3.2)", cloud(data=struct.pack("<6f", 1, 2, 3, 4, math.nan, 6))),
-            ("msg.data: the padding between a robot's rows came as points", cloud(data=POINTS + b"PADDINGOFROW")),
+            ("msg.data: the padding between a robot's rows arrived as points", cloud(data=POINTS + b"PADDINGOFROW")),
             ("msg.origin.orientation: expected a quaternion of length 1, got one of length 2.000000",
              changed(cloud(), msg__origin__orientation__w=2)),
         ]
@@ -242,13 +242,13 @@ class Refused(unittest.TestCase):
         unseen = {"r": 1, "g": 0.5, "b": 0, "a": 0}
         red, point = {"r": 1, "g": 0, "b": 0, "a": 1}, {"x": 0, "y": 0, "z": 0}
         table = [
-            ("markers/update", marker(color=unseen), "markers[0].color.a: nobody sees a marker with 0 (ICD 6.6)"),
+            ("markers/update", marker(color=unseen), "markers[0].color.a: a marker with 0 is invisible (ICD 6.6)"),
             ("markers/update", marker(color=unseen, type=8, points=[point], colors=[unseen]),
-             "markers[0].color.a: nobody sees a marker with 0 (ICD 6.6)"),
+             "markers[0].color.a: a marker with 0 is invisible (ICD 6.6)"),
             ("markers/update", marker(color=unseen, type=8, points=[point], colors=[red]), None),
             ("markers/update", marker(color=unseen, type=10, mesh_use_embedded_materials=True), None),
             ("markers/update", marker(color=unseen, action=2), None),
-            ("state/update", state("X1", "X2", "X1"), "poses: 'X1' is there twice"),
+            ("state/update", state("X1", "X2", "X1"), "poses: 'X1' is given twice"),
             ("state/update", state("X1", "X3"), "name: 'X3' is not on the roster (ICD 2)"),
             ("map/update", grid(name="X3"), "name: 'X3' is not on the roster (ICD 2)"),
             ("map/update", grid(name="X1"), None),

@@ -131,12 +131,11 @@ const Case kNames[] = {
      "robots[0].voxel_metres: expected 0, or 0.01 to 10, got 0.005"},
     {sample("", "",
             R"(, "robots": [{"name": "ugv1"}, {"name": "uav1", "clouds": "whole", "voxel_metres": 0.1}])"),
-     "robots[1].voxel_metres: robots[1].clouds is \"whole\", so that the newest counts alone: nothing can be "
-     "left "
-     "out of it"},
-    {sample(R"(, "course": "A")"), "command_post.course: no course is called A; there are none"},
+     "robots[1].voxel_metres: robots[1].clouds is \"whole\": points can be left out only of clouds that the "
+     "Command Post adds to the earlier clouds"},
+    {sample(R"(, "course": "A")"), "command_post.course: no course is called A; no courses are set up"},
     {sample(R"(, "course": "B")", "", std::string(R"(, "courses": [)") + kCourse + "]"),
-     "command_post.course: no course is called B; there are A"},
+     "command_post.course: no course is called B; the courses are A"},
     {sample(R"(, "course": "a/b")"), "command_post.course: expected a course's name, or \"\", got \"a/b\""},
     {sample("", "", std::string(R"(, "courses": [)") + kCourse + "," + kCourse + "]"),
      "courses[1].name: the same as courses[0].name"},
@@ -147,11 +146,11 @@ const Case kNames[] = {
     {sample(
          "", "",
          R"(, "courses": [{"name": "A", "scoring": {"address": "0.0.0.0", "port": 8000}, "mapping": {"address": "::2", "port": 2}}])"),
-     "team.listen[0]: the same as an endpoint of the Command Post; Adit would post to itself"},
+     "team.listen[0]: the same as an endpoint of the Command Post, so that Adit would post to itself"},
     {sample(
          "", "",
          R"(, "courses": [{"name": "A", "scoring": {"address": "127.0.0.1", "port": 8000}, "mapping": {"address": "::2", "port": 2}}])"),
-     "team.listen[0]: the same as an endpoint of the Command Post; Adit would post to itself"},
+     "team.listen[0]: the same as an endpoint of the Command Post, so that Adit would post to itself"},
     {sample(
          "", "",
          R"(, "courses": [{"name": "A", "scoring": {"address": "224.0.0.1", "port": 1}, "mapping": {"address": "::2", "port": 2}}])"),
@@ -159,7 +158,7 @@ const Case kNames[] = {
     {sample(
          "", "",
          R"(, "courses": [{"name": "A", "scoring": {"address": "::1", "port": 1}, "mapping": {"address": "::ffff:10.0.0.1", "port": 2}}])"),
-     "courses[0].mapping.address: ::ffff:10.0.0.1 is an IPv4 address: write it as one"},
+     "courses[0].mapping.address: ::ffff:10.0.0.1 is an IPv4 address: write it in the form 10.0.0.1"},
     {sample("", "", R"(, "clock": {"ntp_server": "ntp.example.org"})"),
      R"(clock.ntp_server: expected an IPv4 address, or "", got "ntp.example.org")"},
     {sample("", "", R"(, "clock": {"ntp_server": "127.0.0.1"})"),

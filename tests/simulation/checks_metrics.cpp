@@ -23,9 +23,9 @@ std::optional<double> metric(const std::string& text, const std::string& name) {
 
 /// Of alarms that come and go by time alone, which is no event.
 bool goes_by_time(std::string_view id) {
-  constexpr std::string_view kByTime[] = {"robot_silent",  "robots_silent",   "map_behind",   "maps_behind",
-                                          "queue_",        "clients_refused", "wrong_tokens", "strangers",
-                                          "robot_unknown", kPostDown,         "disk_full",    "reports_left"};
+  constexpr std::string_view kByTime[] = {
+      "robot_silent", "robots_silent",   "map_behind",    "maps_behind", "queue_",    "clients_refused",
+      "wrong_tokens", "unauthenticated", "robot_unknown", kPostDown,     "disk_full", "reports_left"};
   return std::ranges::any_of(kByTime, [&](std::string_view begins) { return id.starts_with(begins); });
 }
 

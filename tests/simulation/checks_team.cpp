@@ -75,7 +75,7 @@ void has_room(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
     const bool is_sent_away =
         event.kind == Kind::Answered && event.status == 503 &&
-        (event.text.contains("gave way to another") || event.text.contains("under way at once"));
+        (event.text.contains("was closed for another") || event.text.contains("too many requests at once"));
     if (!is_sent_away || event.who == "flood") continue;
     broken.push_back(icd::sentence("HasRoom: ", event.what, " ", event.serial, " of ", event.who,
                                    " found no room at ", event.at));

@@ -17,7 +17,7 @@ constexpr double kShortly = 25;
 constexpr double kSwitching = 0.01;
 /// Seconds within which what a client asked may still count that heard nothing.
 constexpr double kUnknown = 12;
-constexpr const char* kStandsIn = "no report is taken, the ledger cannot be written";
+constexpr const char* kStandsIn = "rejecting reports: the ledger cannot be written";
 constexpr const char* kLedgerIsBack = "restarting with its ledger";
 
 }  // namespace

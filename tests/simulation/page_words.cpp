@@ -39,7 +39,7 @@ std::string status_line(const Json& view) {
                          : icd::sentence("score ", run.at("score").get<std::int64_t>(), ", ",
                                          run.at("remaining_reports").get<std::int64_t>(), " reports left");
   if (const auto waiting = reports_in(view, "queued"); waiting > 0)
-    line += icd::sentence(", ", waiting, " reports waiting");
+    line += icd::sentence(", ", waiting, " reports queued");
   const Json& alarms = view.at("alarms");
   if (!alarms.empty() && calls(alarms.front())) line += "; " + said(alarms.front());
   return line;

@@ -10,7 +10,7 @@ namespace {
 constexpr int kSeenToRun = 4;       // statuses that were heard
 constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it has been on for so long
 /// What is heard in between is forgotten.
-constexpr const char *kLedgerIsGone = "no report is taken, the ledger cannot be written",
+constexpr const char *kLedgerIsGone = "rejecting reports: the ledger cannot be written",
                      *kLedgerIsBack = "restarting with its ledger";
 
 std::string json_number(double value) {

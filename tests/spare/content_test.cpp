@@ -49,11 +49,11 @@ TEST(Content, IsRefusedWhereverItIsCutOff) {
 
 TEST(Content, HasEachPartOnceAndNoOther) {
   const std::string text = write(content());
-  EXPECT_EQ(why_unread(text + "settings 2\n{}"), "the export cannot be read: settings is there twice");
+  EXPECT_EQ(why_unread(text + "settings 2\n{}"), "cannot read the export: settings is given twice");
   EXPECT_EQ(why_unread(text + "maps 2\n{}"),
-            "the export cannot be read: it has a part that this Adit does not know");
-  EXPECT_EQ(why_unread(text + "token:x 3\na b"), "the export cannot be read: token:x is no token");
-  EXPECT_EQ(why_unread("settings 2\n{}ledger 1\nx"), "the export cannot be read: about is missing");
+            "cannot read the export: it has a part that this version of Adit does not know");
+  EXPECT_EQ(why_unread(text + "token:x 3\na b"), "cannot read the export: token:x is not a token");
+  EXPECT_EQ(why_unread("settings 2\n{}ledger 1\nx"), "cannot read the export: about is missing");
 }
 
 TEST(Content, IsNotAskedForMoreThanThereIs) {

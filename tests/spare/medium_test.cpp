@@ -41,7 +41,7 @@ TEST(Medium, IsNoneForAReasonThatIsSaid) {
   Medium locked = stick("sda1", "sda", 2000);
   locked.is_write_protected = true;
   EXPECT_EQ(chosen({locked}), "the stick is write-protected");
-  EXPECT_EQ(chosen({stick("sda1", "sda", 999)}), "the stick has room for 999 bytes, and the export has 1000");
+  EXPECT_EQ(chosen({stick("sda1", "sda", 999)}), "the stick has room for 999 bytes, but the export has 1000");
 }
 
 }  // namespace

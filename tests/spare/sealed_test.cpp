@@ -23,7 +23,7 @@ TEST(Sealed, IsOpenedByItsCodeAlone) {
   const std::string content("reports\0and tokens", 18), file = sealed(content);
   EXPECT_EQ(unseal(file, kCode), content);
   EXPECT_EQ(why_not(file, "1234567890123457"),
-            "the code is not that of this export, or the export is not whole");
+            "the code is not that of this export, or the export is damaged");
   EXPECT_EQ(file.find("tokens"), std::string::npos) << "it is not to be read without";
 }
 
@@ -48,7 +48,7 @@ TEST(Sealed, ALaterAditsExportIsRefusedByItsFirstBytes) {
   std::string file = sealed("a ledger");
   file[10] = 2;
   const char* const why =
-      "a later Adit made this export (version 2, and this one reads 1): update this box first";
+      "a later Adit made this export (version 2, this box reads 1): update this box first";
   EXPECT_EQ(not_an_export(file.substr(0, kExportHead)), why);
   EXPECT_EQ(why_not(file), why);
 }
@@ -56,7 +56,7 @@ TEST(Sealed, ALaterAditsExportIsRefusedByItsFirstBytes) {
 TEST(Sealed, WhatIsNoExportIsRefusedByItsFirstBytes) {
   EXPECT_EQ(not_an_export(sealed("a ledger").substr(0, kExportHead)), "");
   for (const std::string_view other : {"", "adit", "PK\3\4 a zip file", "adit-share\1", "SQLite format 3"})
-    EXPECT_EQ(not_an_export(other.substr(0, kExportHead)), "it is no export of an Adit") << other;
+    EXPECT_EQ(not_an_export(other.substr(0, kExportHead)), "the file is not an export from Adit") << other;
 }
 
 }  // namespace

@@ -86,7 +86,7 @@ TEST_F(SpoolTest, KeepsNothingWhereItCouldNotTellWhatALifeBeforeKept) {
   const auto kept = spool.keep(1, grid("r1", 1), 0);
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().sentence,
-            "this map cannot be kept: " + folder.string() + ": Not a directory; send it again later");
+            "Adit cannot store this map: " + folder.string() + ": Not a directory; send it again later");
   EXPECT_TRUE(spool.read().maps.empty());
   EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "it could be read";
 }

@@ -31,13 +31,13 @@ TEST(Bundle, IsToldFromWhatIsNoneByItsFirstBytes) {
   std::vector<std::uint8_t> head(kBundleHead);
   head[0] = 'h', head[1] = 's', head[2] = 'q', head[3] = 's', head[41] = 1;  // of 256 bytes
   EXPECT_EQ(not_a_bundle(head, 257), "");
-  EXPECT_EQ(not_a_bundle(head, 256), "it is cut short: 256 bytes of an update of more than 256");
+  EXPECT_EQ(not_a_bundle(head, 256), "the update is incomplete: expected more than 256 bytes, got 256");
   for (std::size_t at = 40; at < kBundleHead; ++at) head[at] = 0xff;
   EXPECT_NE(not_a_bundle(head, ~std::uint64_t{0}), "");
   EXPECT_NE(not_a_bundle(std::span(head).first(kBundleHead - 1), 257), "");
   EXPECT_NE(not_a_bundle({}, 257), "");
   head[3] = 'S';
-  EXPECT_EQ(not_a_bundle(head, 257), "it is no update: expected a file adit-BOARD-VERSION.raucb");
+  EXPECT_EQ(not_a_bundle(head, 257), "the file is not an update: expected a file adit-BOARD-VERSION.raucb");
 }
 
 TEST(Running, IsReadFromWhatRaucSaysOfTheBox) {
@@ -122,29 +122,30 @@ TEST(Hindrance, IsNoneToANewerVersionForThisBoard) {
 
 TEST(Hindrance, IsAnotherBoard) {
   EXPECT_EQ(hindrance({"adit-generic-x86_64", "0.3.0"}, kRunning, true),
-            R"(it is for another board: "adit-generic-x86_64", and this one is "adit-qemu-virt")");
+            R"(the update is for another board: "adit-generic-x86_64", but this board is "adit-qemu-virt")");
   EXPECT_THAT(hindrance({"", "0.3.0"}, kRunning, true), HasSubstr("another board"));
 }
 
 TEST(Hindrance, IsAnOlderVersionWhateverIsSaid) {
   for (const char* version : {"0.1.9", "0.2.0-rc.1", "0.0.1"}) {
     EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, true),
-              "it is older than what runs: " + std::string(version) + ", and this is 0.2.0");
+              "the update is older (" + std::string(version) + ") than the running version (0.2.0)");
   }
 }
 
 TEST(Hindrance, IsTheSameVersionUnlessItIsSaidAgain) {
   EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, false),
-            "0.2.0 runs already: say so if it is to be installed again");
+            "0.2.0 is already running: confirm to install it again");
   EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, true), "");
 }
 
 TEST(Hindrance, IsAVersionThatCannotBeCompared) {
   EXPECT_THAT(hindrance({"adit-qemu-virt", "newest"}, kRunning, true),
-              HasSubstr("its version cannot be read"));
+              HasSubstr("cannot read the update's version"));
   Running unknown = kRunning;
   unknown.version = "";
-  EXPECT_THAT(hindrance({"adit-qemu-virt", "9.0.0"}, unknown, true), HasSubstr("that runs cannot be read"));
+  EXPECT_THAT(hindrance({"adit-qemu-virt", "9.0.0"}, unknown, true),
+              HasSubstr("cannot read the running version"));
 }
 
 }  // namespace

@@ -25,7 +25,7 @@ TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
   const LastUpdate left = settled(last_update(Stage::Installed), kOld, "second");
   EXPECT_EQ(left.stage, Stage::Left);
   EXPECT_EQ(left.version, "0.2.0");
-  EXPECT_EQ(left.why, "it did not come up healthy in three starts, and 0.1.0 runs again");
+  EXPECT_EQ(left.why, "the update did not become healthy in three starts; 0.1.0 is running again");
   EXPECT_FALSE(on_trial(left, kOld, "second"));
 }
 
@@ -55,7 +55,8 @@ TEST(LastUpdate, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
   for (const char* boot : {"first", "second"}) {
     const LastUpdate broken = settled(last_update(Stage::Installing), kOld, boot);
     EXPECT_EQ(broken.stage, Stage::Interrupted) << boot;
-    EXPECT_EQ(broken.why, "it was interrupted: what runs was not touched, install it again");
+    EXPECT_EQ(broken.why,
+              "the update was interrupted: the running slot is unchanged, install the update again");
   }
 }
 

@@ -24,15 +24,16 @@ TEST(Proven, IsAnotherSlotOnceItHasPassedItsTrialAlone) {
 }
 
 TEST(Proven, AnotherSlotThatRunsIsToldWithBothVersionsAndWhy) {
-  EXPECT_EQ(stray(kA, kRunsB, false),
-            "slot B runs, with 0.1.0, not slot A with 0.2.0, whose starts were used up, by power cuts or "
-            "because it "
-            "does not come up");
+  EXPECT_EQ(
+      stray(kA, kRunsB, false),
+      "slot B is running, with 0.1.0, not slot A with 0.2.0, because that slot has used up its starts, by "
+      "power cuts or because it does not come up");
   Running chosen = kRunsB;
   chosen.other_good = true;
-  EXPECT_EQ(stray(kA, chosen, false),
-            "slot B runs, with 0.1.0, not slot A with 0.2.0, though its starts are not used up: somebody "
-            "chose this one, or the boot loader's counts were lost");
+  EXPECT_EQ(
+      stray(kA, chosen, false),
+      "slot B is running, with 0.1.0, not slot A with 0.2.0, although that slot has starts left: a user "
+      "chose the running slot, or the boot loader lost its counts");
 }
 
 TEST(Proven, NothingIsToldOfTheProvenSlotNorOfATrialNorWhereNoneIsKnown) {

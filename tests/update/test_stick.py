@@ -46,7 +46,7 @@ class AStick(OnABox):
         shutil.copy(self.newer, os.fsencode(self.box.folder / "sticks/sda1") + b"/adit-\xff.raucb")
         status = self.box.update()
         self.assertIsNone(status["stick"])
-        self.assertEqual(status["stick_trouble"], "adit-\\xff.raucb: call it by letters of ASCII alone")
+        self.assertEqual(status["stick_trouble"], "adit-\\xff.raucb: rename the file: only ASCII characters are allowed")
         self.put("adit-good.raucb", "0.3.0")
         self.assertEqual(self.box.update()["stick"]["version"], "0.3.0")
 
@@ -59,11 +59,11 @@ class AStick(OnABox):
         self.put("adit-old.raucb", "0.0.1")
         status = self.box.update()
         self.assertIsNone(status["stick"])
-        self.assertIn("adit-old.raucb: it is older", status["stick_trouble"])
+        self.assertIn("adit-old.raucb: the update is older", status["stick_trouble"])
         self.box.ask("stick")
-        self.expect_refused(self.box.update(), "it is older")
+        self.expect_refused(self.box.update(), "the update is older")
         self.expect_untouched()
 
     def test_that_is_gone_is_said(self):
         self.box.ask("stick")
-        self.expect_refused(self.box.update(), "there is no update on a stick")
+        self.expect_refused(self.box.update(), "no stick has an update")

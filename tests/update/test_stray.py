@@ -34,7 +34,8 @@ class Stray(OnB):
     def test_it_is_told_from_start_to_start_until_the_operator_decides(self):
         for _ in range(2):
             status = self.box.update()
-            self.assertRegex(status["stray"], r"^slot A runs, with 0\.1\.0, not slot B with 0\.2\.0, whose starts were used up")
+            self.assertRegex(status["stray"],
+                             r"^slot A is running, with 0\.1\.0, not slot B with 0\.2\.0, because that slot has used up its starts")
             self.assertEqual((status["trial"], status["last"]["stage"]), (False, "good"))
             self.good()  # this slot is healthy too, and its tries are counted from none again
 
@@ -55,13 +56,13 @@ class Stray(OnB):
         self.assertNotIn("reboot", self.box.calls.read_text())
         self.set("BOOT_B_LEFT", raucs.PROVEN)
         self.runs("B", "0.2.0")  # and now that one is the stray
-        self.assertRegex(self.box.update()["stray"], "^slot B runs, with 0.2.0, not slot A with 0.1.0, though")
+        self.assertRegex(self.box.update()["stray"], "^slot B is running, with 0.2.0, not slot A with 0.1.0, although")
 
     def test_where_the_proven_slot_runs_there_is_nowhere_to_go_back_to(self):
         self.runs("B", "0.2.0")
         for what in "back", "stay":
             self.box.ask(what)
-            self.assertIn("good last", self.box.update()["refusal"])
+            self.assertIn("no unexpected slot", self.box.update()["refusal"])
         self.assertNotIn("reboot", self.box.calls.read_text())
 
     def test_a_record_that_is_damaged_is_none(self):
@@ -82,7 +83,7 @@ class Overwritten(OnB):
     def expect_nowhere_to_go_back_to(self):
         self.assertEqual(self.box.status()["stray"], "")
         self.box.ask("back")
-        self.assertIn("good last", self.box.update()["refusal"])
+        self.assertIn("no unexpected slot", self.box.update()["refusal"])
         self.assertNotIn("reboot", self.box.calls.read_text())
         self.assertEqual(self.box.boot_loader()["BOOT_B_LEFT"], "0")
         self.good()
@@ -125,7 +126,7 @@ class NeverWritten(OnB):
         for _ in range(2):
             status = self.box.update()
             self.assertEqual((status["trial"], status["last"]["stage"]), (False, "failed"))
-            self.assertIn("slot A runs, with 0.1.0, not slot B with 0.2.0", status["stray"])
+            self.assertIn("slot A is running, with 0.1.0, not slot B with 0.2.0", status["stray"])
             self.good()
             self.assertEqual(self.proven(), "B")
 

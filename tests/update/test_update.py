@@ -34,7 +34,7 @@ class Installed(OnABox):
 
     def test_the_same_version_only_where_that_is_said(self):
         same = self.bundles.make("0.1.0")
-        self.expect_refused(self.box.install(same), "0.1.0 runs already")
+        self.expect_refused(self.box.install(same), "0.1.0 is already running")
         self.expect_untouched()
         self.assertEqual(self.box.install(same, again=True)["last"]["stage"], "installed")
 
@@ -69,7 +69,7 @@ class Refused(OnABox):
     def test_a_restart_that_systemd_refuses(self):
         raucs.script(self.box.folder / "bin/systemctl", "echo no bus >&2; exit 1\n")
         self.box.ask("restart")
-        self.expect_refused(self.box.update(), "it cannot be restarted: systemctl reboot: no bus (exit status 1)")
+        self.expect_refused(self.box.update(), "cannot restart the machine: systemctl reboot: no bus (exit status 1)")
 
     def test_another_board(self):
         self.expect_refused(self.box.install(self.bundles.make(board="adit-other"), again=True), "another board")
@@ -77,11 +77,11 @@ class Refused(OnABox):
 
     def test_an_older_version(self):
         for version in ("0.0.9", "0.1.0-rc.1"):
-            self.expect_refused(self.box.install(self.bundles.make(version), again=True), "older than what runs: " + version)
+            self.expect_refused(self.box.install(self.bundles.make(version), again=True), f"the update is older ({version})")
         self.expect_untouched()
 
     def test_a_version_that_is_none(self):
-        self.expect_refused(self.box.install(self.bundles.make("newest")), "cannot be read")
+        self.expect_refused(self.box.install(self.bundles.make("newest")), "cannot read the update's version")
         self.expect_untouched()
 
     def test_a_signature_of_another_key(self):
@@ -94,7 +94,7 @@ class Refused(OnABox):
         unsigned = self.scratch / "unsigned"
         subprocess.run(["mksquashfs", self.newer.parent / "in", unsigned, "-quiet", "-no-progress"], check=True,
                        stdout=subprocess.DEVNULL)
-        for name, content, sentence in (("empty", b"", "it is empty"),
+        for name, content, sentence in (("empty", b"", "got an empty file"),
                                         ("truncated", whole[:len(whole) // 2], "Invalid bundle format"),
                                         ("without its end", whole[:-1], "Invalid bundle format"),
                                         ("noise", os.urandom(100_000), "Invalid bundle format"),
@@ -137,7 +137,7 @@ class Refused(OnABox):
         path = self.box.folder / "wanted/update.raucb"
         for make, sentence in ((lambda: path.symlink_to(self.newer), "Too many levels"),
                                (lambda: os.mkfifo(path), "expected a plain file"), (path.mkdir, "expected a plain file"),
-                               (lambda: (path.touch(), os.truncate(path, (256 << 20) + 1)), "were expected"),
+                               (lambda: (path.touch(), os.truncate(path, (256 << 20) + 1)), "expected at most"),
                                (lambda: None, "No such file")):
             with self.subTest(sentence):
                 make()
@@ -151,7 +151,7 @@ class Refused(OnABox):
         shutil.copy(self.newer, path)
         with open(path, "ab"):
             self.box.ask("install")
-            self.expect_refused(self.box.update(), "somebody writes to it")
+            self.expect_refused(self.box.update(), "another program is writing to it")
         self.expect_untouched()
 
     def test_a_request_that_is_none(self):

@@ -60,7 +60,7 @@ const Doubt kDoubts[] = {
      "Connection reset"},
     {"garbage",
      [](Wire& wire) { wire.read_request(), wire.write("\x16\x03\x01 what?\r\n\r\n"), wire.wait_for_close(); },
-     "no HTTP"},
+     "not HTTP"},
     {"only_interim", [](Wire& wire) { wire.read_request(), wire.write("HTTP/1.1 100 Continue\r\n\r\n"); },
      "closed the connection"},
     {"too_long", answer_of_5_megabytes, "too long"},

@@ -175,7 +175,7 @@ TEST_F(UnsentRequests, AreThoseToWhatIsNoAddress) {
     Endpoint endpoint;
     endpoint.address = address;
     endpoint.port = 80;
-    EXPECT_THAT(never_sent(endpoint), HasSubstr("is no IP address")) << address;
+    EXPECT_THAT(never_sent(endpoint), HasSubstr("is not an IP address")) << address;
   }
 }
 

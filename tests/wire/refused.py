@@ -125,26 +125,26 @@ REQUESTS = [
 
 # What takes a crowd, a full disk or a stop to make, and has tests of its own: (what happened, status, the code's sentence).
 ELSEWHERE = [
-    ("a map, where the queue is full", 429, "N maps of N MiB wait already; this one was not taken, send it again later"),
+    ("a map, where the queue is full", 429, "the queue is full: N maps, N MB; this map was not accepted, send it again later"),
     ("markers, where as many wait as can", 429,
-     "not taken: more markers than can wait (queues.marker_bytes); send it again later"),
+     "not accepted: the queue of markers is full (queues.marker_bytes); send it again later"),
     ("markers, of which some change others that wait, and there is no room for new ones", 429,
-     "N of N markers were taken, for others of theirs wait already; for new ones there is no room (queues.marker_bytes);"
-     " send them again later"),
-    ("a state of more robots than any team has", 429, "not taken: more robots than can be kept apart; send it again later"),
-    ("a report, where 1,000 wait", 429, "N reports wait already; this one was not taken"),
-    ("a report, where the disk is full", 503, "the report could not be written down and was not taken; post it again"),
-    ("a map, where there is no room to keep it", 503, "this map cannot be kept; send it again later"),
-    ("too many requests at once", 503, "too many requests are under way at once, from this address or in all; try again"),
+     "N of N markers were accepted, because they replace queued markers; the queue has no room for new markers"
+     " (queues.marker_bytes); send them again later"),
+    ("a state of more robots than any team has", 429, "not accepted: too many robots; send it again later"),
+    ("a report, where 1,000 wait", 429, "N reports are queued already; this report was not accepted"),
+    ("a report, where the disk is full", 503, "the report could not be stored and was not accepted; post it again"),
+    ("a map, where there is no room to keep it", 503, "Adit cannot store this map; send it again later"),
+    ("too many requests at once", 503, "too many requests at once, from this address or in total; try again"),
     ("too many bytes of states and reports at once", 503,
-     "too much is being sent at once, by this address or by all; send this again later"),
-    ("too many bytes of maps at once", 429, "too many maps are being sent at once; send this one again later"),
-    ("too many bytes of markers at once", 429, "too much is being sent at once; send these markers again later"),
-    ("whatever comes while Adit stops", 503, "the gateway is stopping; this was not taken, send it again"),
+     "too many bytes at once, from this address or in total; send this message again later"),
+    ("too many bytes of maps at once", 429, "too many maps at once; send this map again later"),
+    ("too many bytes of markers at once", 429, "too many markers at once; send these markers again later"),
+    ("whatever comes while Adit stops", 503, "aditd is stopping; this message was not accepted, send it again"),
     ("a body that comes too slowly", 408, "the body of the request took too long"),
     ("one of many wrong tokens", 429,
-     "too many wrong tokens came from this address, and this one was not looked at: try again in a second"),
-    ("a fault of Adit's own", 500, "the gateway could not finish this request, which may have been taken: send it again"),
+     "too many wrong tokens from this address; this token was not checked; try again in a second"),
+    ("a fault of Adit's own", 500, "Adit could not finish this request and may have accepted it; send it again"),
 ]
 
 

@@ -41,7 +41,7 @@ class Alarms(WithAlarms):
     def test_a_cable_is_out_and_is_the_only_cause(self):
         stage = self.stage()
         stage.network.pull_cable()
-        self.sees(stage, "cable_out:command_post", "bad", "network", "The Command Post's cable is out", "darpa0")
+        self.sees(stage, "cable_out:command_post", "bad", "network", "Command Post cable is unplugged", "darpa0")
         wait_until(lambda: self.alarm(stage, "cable_out:command_post")["hides"] > 0, "the endpoints to be hidden")
         self.assertEqual(len(self.view(stage)["alarms"]), 1)
         stage.network.pull_cable(False)

@@ -136,15 +136,15 @@ class InDoubt(Case):
             number = self.in_doubt(stage)
             refused = adit(stage, "reports", "send", str(number))
             self.assertEqual((refused.returncode, refused.stdout), (1, ""))
-            self.assertIn("is in doubt: it may have been recorded", refused.stderr)
-            self.assertTrue(refused.stderr.endswith("It is not sent; if that is meant: --yes\n"), refused.stderr)
+            self.assertIn("is in doubt: ", refused.stderr)
+            self.assertTrue(refused.stderr.endswith(" --yes\n"), refused.stderr)
 
             for answer in ("n\n", "\n", "maybe\n", "\x04"):
                 terminal = self.at_a_terminal(stage, "reports", "send", str(number))
                 terminal.shows("Send it again? [y/N] ")
                 terminal.type(answer)
                 self.assertEqual(terminal.end(), 1, answer)
-                self.assertIn(f"report {number} is not sent", terminal.seen)
+                self.assertIn(f"report {number} was not sent", terminal.seen)
             self.assertEqual(sendings(stage), 1, "all that was asked and refused sent nothing")
 
             terminal = self.at_a_terminal(stage, "reports", "send", str(number))
@@ -191,7 +191,7 @@ class Watching(Case):
             is_taken(stage, REPORT)
             wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
             stage.box.stop()
-            wait_until(lambda: "cannot be asked" in said.read_text(), "the end of aditd to be told")
+            wait_until(lambda: "cannot reach Adit" in said.read_text(), "the end of aditd to be told")
             stage.restart_box()
             wait_until(lambda: "Adit answers again\n" in said.read_text(), "its return to be told")
             self.assertNotIn("\x1b", said.read_text())
@@ -216,7 +216,7 @@ class Watching(Case):
             wait_until(lambda: "reports left" in said.read_text(), "all of it once")
             is_taken(stage, REPORT)
             wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
-            self.assertNotIn("cannot be asked", said.read_text())
+            self.assertNotRegex(said.read_text(), "cannot reach Adit|lost the connection")
             self.assertEqual(line.targets(), ["/adit/events"])
 
 
@@ -228,7 +228,7 @@ class ForScripts(Case):
             for said in (["status"], ["reports"], ["reports", "show", "1"], ["reports", "export"], ["rejected"], ["settings"],
                          ["settings", "show", "reports"], ["settings", "check", file], ["settings", "export"], ["network"],
                          ["test"], ["update"], ["identify", "1"], ["complete", "reports"], ["complete", "keys"],
-                         ["complete", "rejected"], ["complete", "courses"], ["runs"], ["complete", "runs"],
+                         ["complete", "rejected"], ["complete", "courses"], ["course"], ["run"], ["runs"], ["complete", "runs"],
                          ["run", "new"]):
                 with self.subTest(said):
                     json.loads(adit(stage, *said, "--json").stdout)

@@ -237,7 +237,7 @@ class Fidelity(Delivered):
                                     (CBOR, cbor2.dumps(as_bytes(update)), "a byte string")):
             far = f"position.y: expected a number, got {got}"
             sentences = [f"poses[1].{far}", "poses[3].name: missing", *[f"poses[{n}].{far}" for n in range(4, 12)]]
-            refused = "; ".join([*sentences, "and 2 more like these (the other 3 were taken)"])
+            refused = "; ".join([*sentences, "and 2 more like these (the other 3 were accepted)"])
             with self.subTest(str(style)):
                 poses = self.deliver("/state/update", None, style, content, (422, f'"{refused}"'))["poses"]
                 self.assertNotIn("r9", [pose["name"] for pose in poses])
@@ -247,7 +247,7 @@ class Fidelity(Delivered):
     def test_the_good_parts_of_markers(self):
         good = [said(whole_marker(kind)) for kind in (4, 5)]
         bad = {**good[0], "points": [{"x": 1, "y": 2}]}
-        answered = (422, '"markers[1].points[0].z: missing (the other 2 were taken)"')
+        answered = (422, '"markers[1].points[0].z: missing (the other 2 were accepted)"')
         arrived = self.deliver("/markers/update", {"markers": [good[0], bad, good[1]]}, CBOR, answered=answered)
         for marker in arrived["markers"]:
             marker["header"] = self.without_stamp(marker["header"])

@@ -19,7 +19,7 @@ class InDoubt(unittest.TestCase):
             insist(stage, another(7), 10, until=lambda answer: answer.status_code == 201)
             time.sleep(patient(1.0))  # longer than it takes to find out what can be found out
             for word in (f"report {number} is in doubt", "remaining_reports went from 45 to 43",
-                         "does somebody else report with this token?", "the operator decides: send it, or call it done"):
+                         "does another sender report with this token?", "the operator decides: send it, or call it done"):
                 self.assertIn(word, stage.box.attention())
             self.assertEqual(sendings(stage), 1)
             self.assertEqual(stage.box.judge(number, "done"), (200, {"report": number}))

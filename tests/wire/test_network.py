@@ -28,7 +28,7 @@ class WithAStandIn(Change):
         self.has(OLD)
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "taken back"))
-        self.assertRegex(status["why"], r"^nobody confirmed it within \d+ s$")  # 15, or more on a slow machine
+        self.assertRegex(status["why"], r"^the change was not confirmed within \d+ s$")  # 15, or more on a slow machine
         self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
 
     def test_a_confirmed_change_stays(self):
@@ -89,7 +89,7 @@ class WithAStandIn(Change):
         self.assertEqual(self.box.run(), 0)
         (self.folder / "wanted" / "wanted.json" / "deeper").mkdir(parents=True)
         self.assertEqual(self.box.run(), 0)
-        self.assertEqual(self.box.said().count("refused what was asked for"), 12, self.box.said())
+        self.assertEqual(self.box.said().count("request rejected"), 12, self.box.said())
         self.assertEqual(self.box.files("wanted"), [])
         self.assertEqual(secret.read_text(), "of root")
         self.assertNotIn("of root", self.box.said())
@@ -101,7 +101,7 @@ class WithAStandIn(Change):
         self.ends()
         status = self.box.status()
         self.assertEqual(status["last"], "taken back")
-        self.assertIn("192.168.8.11 is in use already on team0", status["why"])
+        self.assertIn("192.168.8.11 is already in use on team0", status["why"])
         self.assertEqual(self.box.addresses("team0"), [OLD])
 
     def probe(self, sought=""):

@@ -86,7 +86,7 @@ class WithNetworkd(Change):
             if self.is_made(nonce):
                 self.box.ask("word.json", nonce=nonce, word="back")
             else:
-                self.assertIn("it could not be applied: ", self.box.status()["why"])
+                self.assertIn("the change could not be applied: ", self.box.status()["why"])
             self.ends()
             self.assertEqual((self.box.status()["pending"], self.box.status()["last"]), (None, "taken back"))
             # Where no udev is, a networkd that is started leaves an address alone that it did not set itself.

@@ -71,7 +71,7 @@ class Ends(unittest.TestCase):
             wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
             self.assertEqual(stage.box.stop(), 0)
             self.assertEqual(waiting.result().status_code, 503)
-            self.assertIn("is kept", waiting.result().json())
+            self.assertIn("is queued", waiting.result().json())
 
     def test_a_report_that_comes_while_the_service_stops_is_refused_and_never_sent(self):
         # A status that is in flight when the Command Post stops would keep the report waiting.
@@ -91,7 +91,7 @@ class Ends(unittest.TestCase):
             stage.post.process.send_signal(signal.SIGCONT)
             self.assertEqual((late.status_code, under_way.result().status_code, waiting.result().status_code),
                              (503, 201, 503))
-            self.assertIn("was not taken", late.json())
-            self.assertIn("is kept", waiting.result().json())
+            self.assertIn("was not accepted", late.json())
+            self.assertIn("is queued", waiting.result().json())
             self.assertEqual(stage.box.stop(), 0)
             self.assertEqual(stage.box.on_disk(), ["answered", "waiting"])

@@ -86,7 +86,7 @@ class Service(unittest.TestCase):
     def test_starts_without_a_token_and_says_which_is_missing(self):
         (self.folder / "secrets" / "scoring.token").unlink()
         self.start()
-        self.assertIn("No scoring token is set", self.heard("READY=1"))
+        self.assertIn("The scoring token is missing", self.heard("READY=1"))
 
     def test_sets_a_damaged_ledger_aside_and_shows_it(self):
         (self.folder / "state" / "ledger.sqlite").write_bytes(b"no ledger at all" * 100)

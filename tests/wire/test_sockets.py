@@ -179,7 +179,7 @@ class Sockets(unittest.TestCase):
         manager = self.manager()
         manager.store.append(("listen--127.0.0.1-0", socket.socket(socket.AF_INET, socket.SOCK_DGRAM)))
         manager.ready(manager.start(settings(("127.0.0.1", 0))))
-        self.assertIn("of no use", manager.log())
+        self.assertIn("unusable socket", manager.log())
         programs.wait_until(lambda: [s.type for _, s in manager.store] == [socket.SOCK_STREAM], "a better one")
 
     def test_other_settings_keep_the_sockets_open(self):

@@ -85,7 +85,7 @@ class Stick(unittest.TestCase):
         stage = self.by_stick()
         answers = [submit(stage, another(number)) for number in range(1, 4)]
         said = stage.adit("export", "--stick", "--yes", check=False)
-        self.assertIn("the box is not put to rest: there is no stick in the box", said)
+        self.assertIn("the box was not put on standby: there is no stick in the box", said)
         self.assertFalse(stage.box.ask("GET /adit/spare")[1]["rests"])
         stage.keepers[0].plug(stage.image)
         wait_until(lambda: not stage.stick()["hindrance"], "the stick to be found")

@@ -67,7 +67,7 @@ class WholeBox(Change):
         hosts.ip("-n", self.network.team, "address", "add", "192.168.8.12/24", "dev", "eth0")
         self.network.box_address = "192.168.8.11"
         wait_until(lambda: self.shown()["pending"], "the change to wait")
-        self.assertIn("network change is waiting: confirm within", self.stage.box.attention())
+        self.assertIn("network change is unconfirmed: confirm it within", self.stage.box.attention())
         self.assertEqual(self.post("/adit/network", wanted, "192.168.8.11")[0], 409)
         status, _ = self.post("/adit/network/confirm", at="192.168.8.11")
         self.assertEqual(status, 200)

@@ -2,8 +2,8 @@
 import re
 import subprocess
 
-ROW = re.compile(r"  (\S+(?: \S+)?)  +(.*)")
-TAKERS = re.compile(r"(without a word|with ([a-z, ]+)): (.*)")
+ROW = re.compile(r"  (\S+(?: \S+)*)  +(.*)")
+TAKERS = re.compile(r"(without a subcommand|with ([a-z, ]+)): (.*)")
 CHOICES = re.compile(r"((?:[a-z][a-z0-9-]*(?:, | or ))+[a-z][a-z0-9-]*)[:;]")
 FILES, FOLDERS = {"FILE", "CSV", "SETTINGS"}, {"DIR"}
 
@@ -105,6 +105,7 @@ class Program:
         return {
             ("reports", "NUMBER"): f"reports {word}", ("reports", "NUMBER..."): f"reports {word}", ("rejected", "NUMBER..."): "rejected",
             ("course", "NAME"): "courses", ("runs", "KEY"): "runs", ("settings", "[KEY]"): "keys",
+            ("settings", "KEY VALUE"): "keys",
         }.get((command, behind), "")
 
     def wants_file(self, command, word):

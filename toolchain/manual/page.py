@@ -46,7 +46,7 @@ def paragraphs(text):
 
 
 def sections(text):
-    """`Exit status:` and `Examples:`, each with the lines under it; "": the rest."""
+    """`Exit status:`, `Environment:` and the like, each with the lines under it; "": the rest."""
     found, name = {"": []}, ""
     for line in text.splitlines():
         if re.fullmatch(r"[A-Z][a-z ]+:", line):
@@ -66,7 +66,7 @@ def rows(all_rows):
         value = f" \\fI{roff(row.value)}\\fR" if row.value else ""
         takers = ""
         if row.takers is not None:
-            takers = "Without a word: " if row.takers == {""} else "With " + ", ".join(sorted(row.takers)) + ": "
+            takers = "Without a subcommand: " if row.takers == {""} else "With " + ", ".join(sorted(row.takers)) + ": "
         lines += [".TP", f"\\fB{roff(row.word)}\\fR{value}", roff(takers + row.sentence)]
     return lines
 
@@ -113,9 +113,10 @@ def page(program):
         lines += [".SH COMMANDS"]
         for each in program.commands.values():
             lines += command(each, common)
-        lines += [".SS " + roff(f"{program.name} help [COMMAND]"), "explains it"]
-    if texts.get("Exit status"):
-        lines += [".SH EXIT STATUS", *kept(texts["Exit status"].splitlines())]
+        lines += [".SS " + roff(f"{program.name} help [COMMAND]"), "explain a command"]
+    for title in ("Exit status", "Environment", "Files"):
+        if texts.get(title):
+            lines += [f".SH {title.upper()}", *kept(texts[title].splitlines())]
     if texts[""]:
         lines += [".SH NOTES", *paragraphs(texts[""])]
     lines += see_also(SEE_ALSO.get(program.name, ["aditd(8)"]))

@@ -138,7 +138,7 @@ OrderedJson Arrivals::json() const {
 std::string Arrivals::table() const {
   const OrderedJson rows = json();
   if (rows.empty()) return "";
-  std::string text = "how old maps were when they came, in seconds; how much of what was posted is here\n";
+  std::string text = "age of maps at their arrival, in seconds; share of the posted maps that arrived\n";
   text += "  robot      kind    maps      p50     p99    most  behind    here  places\n";
   for (const OrderedJson& row : rows) {
     const std::string robot = row["robot"];

@@ -53,9 +53,9 @@ Judgement judge_safely(Endpoint& endpoint, const Request& request) {
   try {
     return endpoint.judge(request);
   } catch (const std::exception& error) {
-    std::fprintf(stderr, "adit-rehearsal: a request could not be judged: %s\n", error.what());
+    std::fprintf(stderr, "adit-rehearsal: error while handling a request: %s\n", error.what());
     Judgement judgement;
-    judgement.outcome = refused(500, "The request could not be judged");
+    judgement.outcome = refused(500, "The request could not be handled");
     judgement.outcome.after = After::Close;
     return judgement;
   }
@@ -120,7 +120,7 @@ void CommandPost::note_names(Judgement& judgement) const {
       judgement.findings.tells("name: '" + part.robot + "' is not on the roster (ICD 2)");
     }
     if (part.kind == "pose" && !posed.insert(part.robot).second) {
-      judgement.findings.tells("poses: '" + part.robot + "' is there twice");
+      judgement.findings.tells("poses: '" + part.robot + "' is given twice");
     }
   }
 }

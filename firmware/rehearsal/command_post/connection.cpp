@@ -27,8 +27,8 @@ std::optional<std::string> field(const http::fields& fields, http::field name) {
 }
 
 HttpFault fault_of(const boost::system::error_code& error) {
-  if (error == http::error::body_limit) return {413, "The body is larger than this Command Post takes"};
-  if (error == http::error::header_limit) return {431, "The header is larger than this Command Post takes"};
+  if (error == http::error::body_limit) return {413, "The body is larger than this Command Post accepts"};
+  if (error == http::error::header_limit) return {431, "The header is larger than this Command Post accepts"};
   return {400, "Not an HTTP/1.1 request: " + error.message()};
 }
 
@@ -108,7 +108,7 @@ std::optional<Request> Connection::read_request() {
       take_header(parser, manner_, request);
       parser.eager(true);
       if (request.expects_continue && manner_.answers_expect && !write("HTTP/1.1 100 Continue\r\n\r\n")) {
-        request.fault = HttpFault{0, "The connection was closed before its body was asked for"};
+        request.fault = HttpFault{0, "The client closed the connection before 100 Continue"};
         return request;
       }
       continue;
@@ -119,8 +119,9 @@ std::optional<Request> Connection::read_request() {
     if (arrival == Arrival::Bytes) continue;
     if (!begun || arrival == Arrival::Stopped) return std::nullopt;
     if (!header_taken) request.at = Clock::now();
-    request.fault = arrival == Arrival::Late ? HttpFault{408, "The request did not come to its end"}
-                                             : HttpFault{0, "The connection was closed within a request"};
+    request.fault = arrival == Arrival::Late
+                        ? HttpFault{408, "The request was not complete in time"}
+                        : HttpFault{0, "The client closed the connection within a request"};
     return request;
   }
   if (!header_taken) {

@@ -14,7 +14,7 @@ namespace {
 std::expected<std::optional<Json>, std::string> body_of(const Request& request) {
   if (request.body.empty()) return std::nullopt;
   auto document = read_document(request.body, Format::JsonText);
-  if (!document) return std::unexpected("the body is no JSON: " + document.error());
+  if (!document) return std::unexpected("the body is not JSON: " + document.error());
   if (document->repeated) return std::unexpected("'" + *document->repeated + "' is given twice");
   return std::move(document->value);
 }

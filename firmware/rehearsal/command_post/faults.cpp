@@ -10,7 +10,7 @@ constexpr const char* kClock = "clock";
 constexpr std::string_view kClockAim = "clock:";
 constexpr const char* kConstant = "constant";
 constexpr const char* kRunning = "running";
-constexpr const char* kTooMany = "no more than 10000 faults can wait";
+constexpr const char* kTooMany = "at most 10000 faults can be queued";
 
 std::optional<Aim> aim_named(std::string_view name) {
   const auto* const found = std::ranges::find(kAims, name);

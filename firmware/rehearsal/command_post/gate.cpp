@@ -32,7 +32,7 @@ void check_content(const Request& request, bool cbor_too, Findings& findings) {
       request.content_type == "application/json" || (cbor_too && request.content_type == "application/cbor");
   if (!known) {
     findings.breaks(std::string("Content-Type: expected application/json") +
-                    (cbor_too ? " or application/cbor" : "") + ", nothing more");
+                    (cbor_too ? " or application/cbor" : "") + ", without parameters");
   }
 }
 

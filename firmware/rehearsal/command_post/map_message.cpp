@@ -145,7 +145,7 @@ double coordinate(const char* bytes, std::size_t size, bool bigendian) {
 /// ICD 6.3.2: clouds are dense.
 void check_points(const Cloud& cloud, const std::string& data, const Field& msg) {
   if (data.contains(kRowPadding)) {
-    msg.findings().breaks("msg.data: the padding between a robot's rows came as points", Measured::Takes);
+    msg.findings().breaks("msg.data: the padding between a robot's rows arrived as points", Measured::Takes);
   }
   for (std::size_t at = 0; at + cloud.point_step <= data.size(); at += cloud.point_step) {
     for (const CloudField& field : cloud.fields) {
@@ -183,7 +183,7 @@ std::optional<std::string> inflated(const Field& data, std::string_view bytes, s
   if (whole) return std::move(*whole);
   switch (whole.error()) {
     case InflateFault::Broken:
-      data.breaks("no whole gzip member (RFC 1952)");
+      data.breaks("expected a complete gzip member (RFC 1952)");
       break;
     case InflateFault::TooLarge:
       data.breaks("inflates to more than " + std::to_string(most) + " bytes");
@@ -270,7 +270,7 @@ std::optional<MapMessage> read_cloud_message(const Field& msg, Format format, Ma
   if (!data) return std::nullopt;
   if (data->size() % cloud->point_step != 0) {
     msg.findings().breaks("msg.data: " + std::to_string(data->size()) +
-                              " bytes are no multiple of point_step " + std::to_string(cloud->point_step),
+                              " bytes are not a multiple of point_step " + std::to_string(cloud->point_step),
                           Measured::Takes);
   }
   check_rows(msg, *cloud);

@@ -28,7 +28,7 @@ void MarkerDisplay::show(const std::vector<MarkerChange>& changes, Findings& fin
   for (std::size_t id = changes.size(); id < before_; ++id) {
     if (standing_.erase({"", static_cast<std::int64_t>(id)}) == 0) continue;
     findings.tells("markers: the organiser's display deletes id " + std::to_string(id) +
-                   " of an empty ns, for this message has fewer markers than the one before");
+                   " of an empty ns because this message has fewer markers than the previous one");
   }
   before_ = changes.size();
 }
@@ -73,7 +73,7 @@ std::vector<std::string> MarkerDisplay::differences() const {
   for (const auto& [key, x] : should) {
     const auto found = standing_.find(key);
     if (found == standing_.end()) {
-      all.push_back(text(key) + " is not here");
+      all.push_back(text(key) + " is missing");
     } else if (std::abs(found->second - x) > kSamePlace) {
       all.push_back(text(key) + " is at x " + std::to_string(found->second) + ", not " + std::to_string(x));
     }
@@ -98,7 +98,7 @@ OrderedJson MarkerDisplay::json() const {
 std::string MarkerDisplay::text() const {
   const OrderedJson all = json();
   if (all["posted"] == 0) return "";
-  std::string lines = "markers: " + all["here"].dump() + " are here, the robots have " +
+  std::string lines = "markers: " + all["here"].dump() + " displayed, the robots have " +
                       all["posted"].dump() + "; " + all["difference_count"].dump() + " differ\n";
   for (const OrderedJson& sentence : all["differences"]) lines += "  " + sentence.dump() + "\n";
   return lines;

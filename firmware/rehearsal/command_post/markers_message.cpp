@@ -101,7 +101,7 @@ void check_alpha(const Field& marker) {
   const bool by_mesh =
       all.contains("mesh_use_embedded_materials") && all["mesh_use_embedded_materials"] == true;
   if (by_color || by_points || by_mesh) return;
-  marker.findings().tells(marker.path() + ".color.a: nobody sees a marker with 0 (ICD 6.6)");
+  marker.findings().tells(marker.path() + ".color.a: a marker with 0 is invisible (ICD 6.6)");
 }
 
 bool read_marker(const Field& marker, MarkersMessage& message) {

@@ -32,7 +32,7 @@ Wrong take_address(Into& into, const std::string& text) {
 
 Wrong take_megabytes(std::uint64_t& bytes, const std::string& text) {
   auto wrong = command_line::read_number(text, 0, UINT32_MAX, bytes);
-  bytes <<= 20;
+  bytes *= 1'000'000;
   return wrong;
 }
 
@@ -95,7 +95,7 @@ command_line::Program command_line_of(Options& options) {
            {"--artifacts", "CSV", "true artifacts that reports are scored against: type,x,y,z",
             &options.artifacts},
            {"--transcript", "DIR", "record every request in this directory", &options.transcript},
-           {"--transcript-mb", "N", "save no more map pictures when the transcript has N MiB (2048)",
+           {"--transcript-mb", "N", "save no more map pictures when the transcript has N MB (2000)",
             take<take_megabytes>(options.transcript_bytes)},
            {"--as-measured", "", "behave like the public test servers instead of the ICD",
             take<take_as_measured>(options)},

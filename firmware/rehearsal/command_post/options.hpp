@@ -21,7 +21,7 @@ struct Options {
   std::string secrets;
   std::string artifacts;   // "": none
   std::string transcript;  // "": none
-  std::uint64_t transcript_bytes = std::uint64_t{2048} << 20;
+  std::uint64_t transcript_bytes = 2'000'000'000;
   Manner manner = Manner::Strict;
   bool slash = false;  // each path has to end with one
   RunPlan run;

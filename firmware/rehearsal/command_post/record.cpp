@@ -117,7 +117,7 @@ std::string Record::summary(const Run::Standing& standing) const {
     out << "  " << key.first << ": " << (key.second == 0 ? "not answered" : std::to_string(key.second))
         << " x " << count << "\n";
   }
-  out << "taken\n";
+  out << "accepted\n";
   for (const auto& [part, count] : accepted_) {
     const auto& [uri, kind, robot] = part;
     out << "  " << kind << " " << (robot.empty() ? "-" : printable(robot)) << ": " << count << "\n";
@@ -133,7 +133,7 @@ std::string Record::summary(const Run::Standing& standing) const {
         << report["report_status"].get<std::string>() << ", " << report["score_change"]
         << (report["by"] == kByOther ? ", by another sender\n" : "\n");
   }
-  if (!faults_.empty()) out << "faults that were asked for\n";
+  if (!faults_.empty()) out << "requested faults\n";
   for (const auto& [key, count] : faults_) {
     out << "  " << key.first << ": " << key.second << " (" << count << " times)\n";
   }

@@ -42,10 +42,11 @@ std::optional<Sent> read_report(const Json& document, Findings& findings) {
   const auto position = read_point(body);
   const auto type = body.member("type");
   const auto text = type ? type->text() : std::nullopt;
-  if (text && !is_artifact_type(*text)) type->breaks("no artifact type of the final event (ICD 5.2)");
+  if (text && !is_artifact_type(*text))
+    type->breaks("expected an artifact type of the final event (ICD 5.2)");
   const auto name = body.optional_member("name");
   const auto robot = name ? name->text() : std::nullopt;
-  if (robot && !is_robot_name(*robot)) name->breaks("no robot's name (ICD 2)", Measured::Takes);
+  if (robot && !is_robot_name(*robot)) name->breaks("expected a robot's name (ICD 2)", Measured::Takes);
   if (!position || !text) return std::nullopt;
   return Sent{*text, *position};
 }

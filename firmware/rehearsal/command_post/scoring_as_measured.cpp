@@ -114,7 +114,8 @@ void MeasuredScoring::judge_report(const Request& request, Judgement& judgement)
     judgement.findings.breaks("x, y, z: expected numbers", Measured::Takes);
   }
   if (!is_artifact_type(type)) {
-    judgement.findings.breaks("type: no artifact type of the final event (ICD 5.2)", Measured::Takes);
+    judgement.findings.breaks("type: expected an artifact type of the final event (ICD 5.2)",
+                              Measured::Takes);
   }
   Run::Ruling ruling = run_.submit(type, position, Clock::now());
   ruling.clock = kMeasuredReportClock;

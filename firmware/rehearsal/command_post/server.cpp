@@ -16,7 +16,7 @@ namespace adit::rehearsal {
 namespace {
 
 void given_up(const char* why) {
-  std::fprintf(stderr, "adit-rehearsal: a connection was given up: %s\n", why);
+  std::fprintf(stderr, "adit-rehearsal: connection aborted: %s\n", why);
 }
 
 }  // namespace

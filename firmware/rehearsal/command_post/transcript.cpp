@@ -67,8 +67,7 @@ void Transcript::append(std::ofstream& file, const OrderedJson& line) {
   if (file || complained_) return;
   complained_ = true;
   file.clear();
-  std::fprintf(stderr, "adit-rehearsal: %s: a line could not be written; is the disk full?\n",
-               folder_.c_str());
+  std::fprintf(stderr, "adit-rehearsal: %s: cannot write a line; the disk may be full\n", folder_.c_str());
 }
 
 }  // namespace adit::rehearsal

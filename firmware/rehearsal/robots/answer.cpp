@@ -17,7 +17,7 @@ Json parse(std::string_view body) {
 class Reader {
  public:
   explicit Reader(const Json& object) : object_(object) {
-    if (!object.is_object()) wrong_ = "the answer is no JSON object";
+    if (!object.is_object()) wrong_ = "the answer is not a JSON object";
   }
 
   double number(const char* name) {

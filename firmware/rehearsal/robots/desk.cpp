@@ -88,7 +88,7 @@ void OperatorDesk::report(const Finding& finding, const std::stop_token& finish,
       continue;
     }
     if (reply->status != 200 && reply->status != 201) {
-      tally_.report_came_to("refused with " + std::to_string(reply->status));
+      tally_.report_came_to("rejected with " + std::to_string(reply->status));
       return tell(finding, std::to_string(reply->status) + " " + sentence_of(reply->body));
     }
     const auto answer = parse_report_answer(reply->body);

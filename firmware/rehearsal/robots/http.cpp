@@ -37,12 +37,12 @@ std::expected<Endpoint, std::string> parse_url(std::string_view url) {
   Endpoint endpoint{.address = std::string(address), .port = 0};
   const auto [end, error] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
   if (error != std::errc{} || end != port.data() + port.size() || endpoint.port == 0) {
-    return wrong("the port is no number from 1 to 65535");
+    return wrong("the port is not a number from 1 to 65535");
   }
   error_code bad;
   if (endpoint.address == "localhost") endpoint.address = "127.0.0.1";
   (void)asio::ip::make_address(endpoint.address, bad);
-  if (bad) return wrong("the address is no IP address");
+  if (bad) return wrong("the address is not an IP address");
   return endpoint;
 }
 
@@ -93,7 +93,7 @@ struct Connection::Wire {
   }
 
   std::string reason(const error_code& error, std::chrono::milliseconds time) const {
-    if (stop.stop_requested()) return "stopped before the answer came";
+    if (stop.stop_requested()) return "stopped before the answer arrived";
     if (error == asio::error::timed_out) return "no answer within " + std::to_string(time.count()) + " ms";
     if (error == http::error::end_of_stream) return "connection closed without an answer";
     return error.message();

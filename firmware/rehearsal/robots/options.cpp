@@ -26,7 +26,7 @@ Wrong take_control(std::optional<Endpoint>& into, const std::string& text) {
 
 Wrong take_style(TeamStyle& into, const std::string& text) {
   const auto style = TeamStyle::parse(text);
-  if (!style) return "no style is named '" + text + "'";
+  if (!style) return "unknown style '" + text + "'";
   into = *style;
   return std::nullopt;
 }
@@ -53,8 +53,7 @@ std::expected<Options, std::string> complete(Options options) {
   }
   if (options.post.port == 0) return std::unexpected("--post http://ADDR:PORT: is needed");
   if (options.secrets.empty()) return std::unexpected("--secrets DIR: is needed");
-  if (options.robots == 0 && options.maps.empty())
-    return std::unexpected("--robots 0: has nothing to post without --maps");
+  if (options.robots == 0 && options.maps.empty()) return std::unexpected("--robots 0: needs --maps");
   if (options.scoring.port == 0) options.scoring = options.post;
   return options;
 }
@@ -116,7 +115,7 @@ command_line::Program command_line_of(Options& options) {
            {"--version", "", "print the version", &options.version},
            {"--help", "", "print this help", &options.help}},
       .ending =
-          "Exits with 0 if at least one message of every kind was accepted and no message was rejected, "
+          "Exit code: 0 if at least one message of every kind was accepted and no message was rejected, "
           "except with 429 (too many requests).",
   };
 }

@@ -45,7 +45,7 @@ std::string arrivals_of(const Posted& posted, const Endpoint& control) {
   const auto answer = nlohmann::json::parse(reply->body, nullptr, false);
   if (reply->status != 200 || !answer.is_object() || !answer.contains("table") ||
       !answer["table"].is_string())
-    return "--control: what answers is no rehearsal Command Post's control port\n";
+    return "--control: the server is not a control port of adit-rehearsal\n";
   return answer["table"];
 }
 

@@ -27,7 +27,7 @@ std::expected<std::string, std::string> replay_file(const std::filesystem::path&
       return "replay posts " + file.string() + ": " + std::to_string(reply->status);
     }
   }
-  return "replay did not get to post " + file.string();
+  return "replay did not post " + file.string();
 }
 
 }  // namespace adit::robots

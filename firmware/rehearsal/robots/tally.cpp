@@ -83,7 +83,7 @@ std::string Tally::line() const {
 
 std::string Tally::summary() const {
   const std::scoped_lock lock(mutex_);
-  std::string text = "kind         posted  accepted       429   refused  no answer\n";
+  std::string text = "kind         posted  accepted       429  rejected  no answer\n";
   for (std::size_t i = 0; i < kKinds; ++i) {
     const Row& row = rows_[i];
     if (row.posted == 0) continue;
@@ -95,7 +95,7 @@ std::string Tally::summary() const {
         static_cast<unsigned long long>(row.refused), static_cast<unsigned long long>(row.unanswered));
     text += line.data();
   }
-  list(text, "refused:", refusals_);
+  list(text, "rejected:", refusals_);
   list(text, "no answer:", silences_);
   list(text, "reports:", reports_);
   list(text, "failed:", failures_);

@@ -1,15 +1,19 @@
-// All alarms, and the last that went.
-import { alarmCard, fillCard, formerly } from "./alarm_card.js";
+// All alarms, each with a link to what it means, and the last that went.
+import { alarmCard, BOX_LOST, fillCard, formerly } from "./alarm_card.js";
 import { list, make, say } from "./dom.js";
 
 export function fillAlarmList(dialog, alarms, over, time) {
   dialog.querySelector(".none").hidden = alarms.length > 0;
   list(dialog.querySelector(".now"), alarms, (alarm) => alarm.id, () => {
-    const item = make("li");
-    item.append(alarmCard());
+    const item = make("li"), card = alarmCard(), help = make("a.help", "Help");
+    help.title = "What it means, and what to do";
+    card.querySelector(".acts").append(help);
+    item.append(card);
     return item;
   }, (item, alarm) => {
     item.firstChild.dataset.key = alarm.id;
+    item.querySelector("a.help").hidden = alarm.id === BOX_LOST;
+    item.querySelector("a.help").href = `/help#${alarm.id.split(":")[0]}`;
     fillCard(item.firstChild, alarm, time);
   });
   dialog.querySelector(".before").hidden = over.length === 0;

@@ -62,7 +62,7 @@ test("says that a robot is silent that says nothing since the service was killed
   await made.startAditd();
   const page = await look(t, made);
   await until(async () => (await made.run()).alarms.some(({ id }) => id === "robots_silent"), "their silence");
-  await page.waitForFunction(() => /^Nothing arrives/.test(document.querySelector("#arriving .text").textContent));
+  await page.waitForFunction(() => /^No map arrives/.test(document.querySelector("#arriving .text").textContent));
 });
 
 const CASES = [
@@ -89,7 +89,7 @@ for (const { is, word, fault } of CASES) {
     const blamesNobody = ({ alarms, activities }) => alarms.some(({ id }) => id === is) && activities.some(({ arrival }) => arrival === "not arriving") && !activities.some(({ level }) => level === "bad" || level === "wait");
     await until(async () => blamesNobody(await made.run()), "what waits to be nobody's fault");
     for (const page of pages) await page.waitForFunction(() => document.querySelector("#maps[data-away=true]") && !document.querySelector("#robots li:is([data-level=bad], [data-level=wait])"));
-    await until(async () => /^Maps +Nothing arrives: for \d+:\d\d; the box keeps all$/m.test(await status(made)), "the same of `adit status`");
+    await until(async () => /^Maps +No map arrives: for \d+:\d\d; the box keeps all maps$/m.test(await status(made)), "the same of `adit status`");
     if (!fault) return; // it is gone for good
     await made.behave();
     const blamed = [];

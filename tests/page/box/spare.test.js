@@ -46,7 +46,7 @@ test("one press puts the box to rest and downloads its export, and the other box
   const code = await here.section.locator("dd").first().innerText();
   assert.match(code, /^(\d{4} ){3}\d{4}$/);
   await axeFindsNothing(here.page, "a box that rests");
-  assert.equal((await first.run()).alarms[0].id, "rests");
+  assert.equal((await first.run()).alarms[0].id, "standby");
   await first.killAditd();
 
   const there = await spareOf(t, spare);

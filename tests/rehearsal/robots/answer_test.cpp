@@ -40,7 +40,7 @@ TEST(ReportAnswer, NamesTheMemberThatClientsMiss) {
   const auto answer = parse_report_answer(R"({"type": "rope", "x": 1, "y": 2, "z": "3"})");
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error(), "the answer's 'z' is not a number");
-  EXPECT_EQ(parse_report_answer("<html>").error(), "the answer is no JSON object");
+  EXPECT_EQ(parse_report_answer("<html>").error(), "the answer is not a JSON object");
 }
 
 TEST(StatusAnswer, TakesTheRunClockUnderBothOfItsNames) {

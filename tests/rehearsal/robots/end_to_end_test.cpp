@@ -62,7 +62,7 @@ TEST_F(Programs, ATeamThatNobodyAnswersStopsAtOnceAndSaysSo) {
     const std::string summary = program.rest();
     EXPECT_EQ(program.wait(), 1);
     took = Clock::now() - start;
-    EXPECT_NE(summary.find("stopped before the answer came"), std::string::npos) << summary;
+    EXPECT_NE(summary.find("stopped before the answer arrived"), std::string::npos) << summary;
     EXPECT_NE(summary.find("no grid was accepted"), std::string::npos) << summary;
   }
   EXPECT_LT(took, 3s);
@@ -95,7 +95,7 @@ TEST_F(Programs, ATeamGetsOnWithACommandPostAsMeasured) {
   const std::string said = team.rest();
   EXPECT_EQ(team.wait(), 0) << said;
   EXPECT_NE(said.find("reports: scored +1"), std::string::npos) << said;
-  EXPECT_EQ(said.find("refused:"), std::string::npos) << said;
+  EXPECT_EQ(said.find("rejected:"), std::string::npos) << said;
   post.signal(SIGTERM);
   EXPECT_EQ(post.wait(), 0);
 }

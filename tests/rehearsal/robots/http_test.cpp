@@ -109,7 +109,7 @@ TEST(Connection, StopsAtOnceWhenAsked) {
   const auto start = std::chrono::steady_clock::now();
   const auto reply = connection.exchange(kRequest, 60s);
   ASSERT_FALSE(reply);
-  EXPECT_EQ(reply.error(), "stopped before the answer came");
+  EXPECT_EQ(reply.error(), "stopped before the answer arrived");
   EXPECT_LT(std::chrono::steady_clock::now() - start, 30s);
 }
 

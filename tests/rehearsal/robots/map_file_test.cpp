@@ -171,12 +171,12 @@ TEST(Pcd, SaysWhatIsWrong) {
       {replaced(good, "COUNT 1 1 1 1", "COUNT 1 1 1 0"), "COUNT"},
       {replaced(good, "COUNT 1 1 1 1", "COUNT 2 1 1 1"), "single"},
       {replaced(good, "COUNT 1 1 1 1", "COUNT 1 1 1 4294967295"), "COUNT"},
-      {replaced(good, "FIELDS x y z", "FIELDS x y y"), "field 'y' is there twice"},
+      {replaced(good, "FIELDS x y z", "FIELDS x y y"), "field 'y' is given twice"},
       {replaced(good, "FIELDS x y z", "FIELDS a y z"), "no field 'x'"},
       {replaced(good, "VIEWPOINT 0", "VIEWPOINT inf"), "VIEWPOINT"},
       {kPcdHeader + "DATA ascii\n1 2 3 4\n", "expected 2 points, got 1"},
       {kPcdHeader + "DATA ascii\n1 2 3 4\n1 2 3\n", "line 13: expected 4 values, got 3"},
-      {kPcdHeader + "DATA ascii\n1 2 3 4\n1 2 3 four\n", "line 13: no value of intensity: 'four'"},
+      {kPcdHeader + "DATA ascii\n1 2 3 4\n1 2 3 four\n", "line 13: wrong value of intensity: 'four'"},
   };
   for (const auto& [bytes, sentence] : cases) {
     const auto cloud = parse_pcd(bytes);
@@ -202,7 +202,7 @@ TEST(Ply, ReadsAsciiAndLittleEndianVertices) {
 TEST(Ply, SaysWhatIsWrong) {
   const std::string good = kPlyHeader + "1 2 3 255\n4 5 6 0\n";
   const std::pair<std::string, const char*> cases[] = {
-      {"", "does not begin with 'ply'"},
+      {"", "the first line is not 'ply'"},
       {"ply\n", "no end_header"},
       {"ply\nformat ascii 1.0\nend_header\n", "no element vertex"},
       {replaced(good, "ascii", "binary_big_endian"), "got 'binary_big_endian'"},
@@ -211,7 +211,7 @@ TEST(Ply, SaysWhatIsWrong) {
       {replaced(good, "element vertex 2", "element vertex 3"), "expected 3 points, got 2"},
       {replaced(good, "property uchar red", "property list uchar int red"), "property red"},
       {replaced(good, "property float z", "property int z"), "all float32 or all float64"},
-      {replaced(good, "255", "256"), "no value of red: '256'"},
+      {replaced(good, "255", "256"), "wrong value of red: '256'"},
   };
   for (const auto& [bytes, sentence] : cases) {
     const auto cloud = parse_ply(bytes);
@@ -265,8 +265,8 @@ TEST_F(Folder, TakesTheYamlOfThePgmsNameOrTheOneThatNamesIt) {
 TEST_F(Folder, NamesTheFileThatCannotBeLoaded) {
   const fs::path broken = write("broken.pcd", "nothing"),
                  empty = write("empty.pcd", replaced(kPcdHeader, "POINTS 2", "POINTS 0") + "DATA ascii\n");
-  EXPECT_TRUE(load_map(broken).error().starts_with(broken.string() + ": no PCD"));
-  EXPECT_EQ(load_map(empty).error(), empty.string() + ": it has no points");
+  EXPECT_TRUE(load_map(broken).error().starts_with(broken.string() + ": not a PCD file"));
+  EXPECT_EQ(load_map(empty).error(), empty.string() + ": the file has no points");
   EXPECT_FALSE(load_map(path_ / "absent.ply"));
   write("bad.pgm", "P5 1 1 255\n\xfe");
   write("bad.yaml", "resolution: x\n");

@@ -10,7 +10,7 @@ std::expected<std::string, std::string> read_file(const std::filesystem::path& f
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) return std::unexpected(error.message());
-  if (size > kLargest) return std::unexpected("larger than 256 MiB");
+  if (size > kLargest) return std::unexpected("larger than 268 MB");
   std::ifstream stream(file, std::ios::binary);
   std::string text(size, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(size));

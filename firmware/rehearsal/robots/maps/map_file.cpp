@@ -59,7 +59,7 @@ std::expected<LoadedMap, std::string> load_map(const fs::path& file) {
   auto map = parse(file, *bytes);
   if (!map) return std::unexpected(file.string() + ": " + map.error());
   if (const Cloud* cloud = std::get_if<Cloud>(&*map); cloud != nullptr && cloud->data.empty()) {
-    return std::unexpected(file.string() + ": it has no points");
+    return std::unexpected(file.string() + ": the file has no points");
   }
   return map;
 }

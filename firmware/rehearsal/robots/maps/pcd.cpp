@@ -34,7 +34,7 @@ std::expected<PcdHeader, std::string> take_pcd_header(std::string_view& rest) {
     header.entries[name] = std::move(words);
     if (name == "DATA") return header;
   }
-  return std::unexpected("no PCD: its header has no DATA line");
+  return std::unexpected("not a PCD file: the header has no DATA line");
 }
 
 /// PCD's type letter and size as the ICD's datatype, or 0.

@@ -36,7 +36,7 @@ struct PlyHeader {
       if (vertices) return {};
       return std::unexpected("expected the first element to be vertex");
     }
-    if (vertices) return std::unexpected("element vertex is there twice");
+    if (vertices) return std::unexpected("element vertex is given twice");
     vertices = parse_number<std::uint32_t>(words[2]);
     if (!vertices)
       return std::unexpected("element vertex: expected a whole number, got '" + std::string(words[2]) + "'");
@@ -57,7 +57,8 @@ struct PlyHeader {
 
 std::expected<PlyHeader, std::string> take_ply_header(std::string_view& rest) {
   constexpr std::size_t kMostLines = 1000;
-  if (take_line(rest).value_or("") != "ply") return std::unexpected("no PLY: it does not begin with 'ply'");
+  if (take_line(rest).value_or("") != "ply")
+    return std::unexpected("not a PLY file: the first line is not 'ply'");
   PlyHeader header;
   while (const auto line = take_line(rest)) {
     if (++header.lines > kMostLines) break;
@@ -70,7 +71,7 @@ std::expected<PlyHeader, std::string> take_ply_header(std::string_view& rest) {
     if (words[0] == "property") taken = header.property(words);
     if (!taken) return std::unexpected(taken.error());
   }
-  return std::unexpected("no PLY: its header has no end_header");
+  return std::unexpected("not a PLY file: the header has no end_header");
 }
 
 }  // namespace

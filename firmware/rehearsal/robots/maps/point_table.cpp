@@ -50,7 +50,7 @@ std::expected<void, std::string> PointTable::check() const {
   std::set<std::string> names;
   for (const CloudField& field : fields_) {
     if (field.name != kPadding && !names.insert(field.name).second) {
-      return std::unexpected("field '" + field.name + "' is there twice");
+      return std::unexpected("field '" + field.name + "' is given twice");
     }
   }
   int datatype = 0;
@@ -130,7 +130,7 @@ std::expected<Cloud, std::string> PointTable::from_ascii(std::string_view text, 
                 point.data() + field.offset + std::size_t{i} * bytes_of(field.datatype)))
           continue;
         return std::unexpected(
-            in_line(line, "no value of " + field.name + ": '" + std::string(word->substr(0, 20)) + "'"));
+            in_line(line, "wrong value of " + field.name + ": '" + std::string(word->substr(0, 20)) + "'"));
       }
     }
     bytes.insert(bytes.end(), point.begin(), point.end());

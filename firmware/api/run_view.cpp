@@ -107,6 +107,8 @@ constexpr Member kRefusal[] = {
     member<&RefusalRow::parts>("parts",
                                "number of rejected parts of a state or of markers; the other parts were "
                                "accepted. 0 if the message has no parts"),
+    member<&RefusalRow::setting>("setting",
+                                 "the key of a setting that can prevent this refusal; empty: no setting can"),
 };
 
 constexpr Member kEndpoint[] = {

@@ -90,6 +90,7 @@ struct RefusalRow {
   int status = 0;
   std::string sentence;
   std::uint64_t parts = 0;
+  std::string setting = "";
 
   static const codec::Row kRow;
 };

@@ -100,6 +100,12 @@ class Field {
   void refuse(const Parts&... parts) const {
     if (!reading_.refused()) reading_.refuse(icd::unprocessable(path(), ": ", parts...).error());
   }
+  /// The same, if the setting `key` can prevent it: a literal, or "".
+  template <class... Parts>
+  void refuse_by_setting(std::string_view key, const Parts&... parts) const {
+    if (!reading_.refused())
+      reading_.refuse(icd::unprocessable_by_setting(key, path(), ": ", parts...).error());
+  }
   /// "expected ..., got a string", or "missing".
   void refuse_kind(std::string_view expected) const;
 

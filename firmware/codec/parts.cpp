@@ -40,9 +40,10 @@ std::optional<icd::RobotName> read_robot_name(const Field& field, const icd::Rul
   if (const auto alias = rules.aliases.find(text); alias != rules.aliases.end()) return alias->second;
   auto name = icd::RobotName::parse(text);
   if (!name) {
-    field.refuse("expected 1 to ", icd::RobotName::kLongest, " letters, digits and underscores, got ",
-                 icd::in_quotes(text),
-                 text.empty() ? "" : " (the setting robots[].alias can map this name to a valid one)");
+    field.refuse_by_setting(
+        text.empty() ? "" : "robots[].alias", "expected 1 to ", icd::RobotName::kLongest,
+        " letters, digits and underscores, got ", icd::in_quotes(text),
+        text.empty() ? "" : " (the setting robots[].alias can map this name to a valid one)");
   }
   return name;
 }

@@ -42,9 +42,12 @@ struct RefusedParts {
 
   std::size_t count = 0, others = 0;   // of the bad parts, and of the good ones
   std::vector<std::string> sentences;  // about the first bad ones
+  std::string_view setting;            // icd::Refusal's, of the first of those that has one
 
-  void add(std::string sentence) {
-    if (++count <= kMostToldOf) sentences.push_back(std::move(sentence));
+  void add(icd::Refusal part) {
+    if (++count > kMostToldOf) return;
+    sentences.push_back(std::move(part.sentence));
+    if (setting.empty()) setting = part.setting;
   }
   /// 422 with all its sentences, and what became of the others. Requires a bad part.
   icd::Refusal refusal() const;

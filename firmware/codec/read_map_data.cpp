@@ -162,9 +162,10 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const Clou
   }
   if (points.size() > rules.map_bytes) {
     return std::unexpected(
-        icd::Refusal{icd::Status::ContentTooLarge,
-                     icd::sentence(kPath, ": expected at most ", rules.map_bytes,
-                                   " bytes (the setting rules.map_bytes), got ", points.size())});
+        icd::Refusal{.status = icd::Status::ContentTooLarge,
+                     .sentence = icd::sentence(kPath, ": expected at most ", rules.map_bytes,
+                                               " bytes (the setting rules.map_bytes), got ", points.size()),
+                     .setting = "rules.map_bytes"});
   }
   if (auto checked = check_points(cloud, rows, points.size()); !checked)
     return std::unexpected(checked.error());

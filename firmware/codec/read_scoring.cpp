@@ -24,9 +24,10 @@ std::string_view read_type(const Field& field, const icd::Rules& rules, TypeHint
     std::string ten;
     for (const auto known : icd::kArtifactTypes) ten += icd::sentence(known, ", ");
     std::string cure = hint(type);  // or the setting, which would waste a report on one that is misspelt
-    if (cure.empty() && is_forwardable(type))
-      cure = " (the setting rules.forward_unknown_types accepts others)";
-    field.refuse("expected one of ", ten, "got ", icd::in_quotes(type), cure);
+    const bool is_curable = cure.empty() && is_forwardable(type);
+    if (is_curable) cure = " (the setting rules.forward_unknown_types accepts others)";
+    field.refuse_by_setting(is_curable ? "rules.forward_unknown_types" : "", "expected one of ", ten, "got ",
+                            icd::in_quotes(type), cure);
   } else if (!is_forwardable(type)) {
     field.refuse("expected 1 to ", kLongestUnknownType, " printable ASCII characters, got ",
                  icd::in_quotes(type));

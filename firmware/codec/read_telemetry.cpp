@@ -53,7 +53,7 @@ void read_each(const Field& list, RefusedParts& refused, Read read, Keep keep) {
       keep(*std::move(part));
       ++refused.others;
     } else {
-      refused.add(std::move(part.error().sentence));
+      refused.add(std::move(part.error()));
     }
   }
 }
@@ -86,7 +86,7 @@ icd::Refusal RefusedParts::refusal() const {
     sentence += icd::sentence("; and ", count - sentences.size(), " more like these");
   if (others > 0)
     sentence += icd::sentence(" (the other ", others, others == 1 ? " was accepted)" : " were accepted)");
-  return {icd::Status::UnprocessableEntity, std::move(sentence), count};
+  return {icd::Status::UnprocessableEntity, std::move(sentence), count, setting};
 }
 
 icd::Checked<InParts<icd::StateUpdate>> read_state_parts(const Document& document, const icd::Rules& rules) {

@@ -73,7 +73,8 @@ void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::strin
 
 /// Wrong tokens are logged together (gateway::Crowding).
 void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
-  const icd::Refusal refusal = {told.status, without_tokens(told.sentence)};
+  icd::Refusal refusal = told;
+  refusal.sentence = without_tokens(told.sentence);
   if (refusal.status != icd::Status::Unauthorized) {
     host::log(host::Level::Info, "message rejected",
               {{"uri", std::string(icd::path_of(uri))},

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,6 +18,8 @@ std::size_t bytes_of_all(const icd::MarkersUpdate& update) {
   for (const icd::Marker& marker : update.markers) bytes += icd::bytes_of(marker);
   return bytes;
 }
+
+constexpr std::string_view kMostThatWait = "queues.marker_bytes";  // the setting
 
 icd::Refusal no_memory() {
   return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
@@ -70,9 +73,11 @@ void MarkerArrivals::end() {
 
 bool MarkerArrivals::begin(Arrival& arrival) {
   if (!lane_.has_room_for(*arrival.update) && !takes_some(arrival)) {
-    return fail(arrival,
-                {icd::Status::TooManyRequests,
-                 "not accepted: the queue of markers is full (queues.marker_bytes); send it again later"});
+    return fail(
+        arrival,
+        {.status = icd::Status::TooManyRequests,
+         .sentence = "not accepted: the queue of markers is full (queues.marker_bytes); send it again later",
+         .setting = kMostThatWait});
   }
   if (bytes_of_all(*arrival.update) > kSmall) {
     make_record(arrival);
@@ -92,7 +97,7 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
                    icd::sentence(taken, " of ", all,
                                  " markers were accepted, because they replace queued markers; the queue has "
                                  "no room for new markers (queues.marker_bytes); send them again later"),
-                   all - taken});
+                   all - taken, kMostThatWait});
   *arrival.update = std::move(known);
   return true;
 }

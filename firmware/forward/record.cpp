@@ -111,7 +111,8 @@ void Record::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refu
                         .sender = sender.address,
                         .status = static_cast<int>(refusal.status),
                         .sentence = refusal.sentence,
-                        .parts = refusal.parts});
+                        .parts = refusal.parts,
+                        .setting = std::string(refusal.setting)});
   if (refusals_.size() > kMostRefusals) refusals_.pop_back();
   changed_();
 }

@@ -74,10 +74,13 @@ Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
   if (auto checked = check_side("msg.info.height", grid.height); !checked) return checked;
   const std::uint64_t cells = std::uint64_t{grid.width} * grid.height;
   if (cells <= rules.map_bytes) return {};
-  const char* const cure = cells <= kMostMapBytes ? " (the setting rules.map_bytes)" : "";
-  return std::unexpected(Refusal{
-      Status::ContentTooLarge, sentence("msg.info.width: expected at most ", rules.map_bytes, " cells", cure,
-                                        ", got ", grid.width, " x ", grid.height, " = ", cells)});
+  const bool is_curable = cells <= kMostMapBytes;
+  const char* const cure = is_curable ? " (the setting rules.map_bytes)" : "";
+  return std::unexpected(
+      Refusal{.status = Status::ContentTooLarge,
+              .sentence = sentence("msg.info.width: expected at most ", rules.map_bytes, " cells", cure,
+                                   ", got ", grid.width, " x ", grid.height, " = ", cells),
+              .setting = is_curable ? "rules.map_bytes" : ""});
 }
 
 Checked<void> check_size(const OccupancyGrid& grid, std::size_t bytes) {
@@ -113,8 +116,9 @@ Checked<void> check_size(const PointCloud2& cloud, std::size_t bytes) {
 
 Checked<void> check_frame_id(std::string_view frame_id, std::string_view path, const Rules& rules) {
   if (frame_id == kFrame || rules.rewrite_frame_id) return {};
-  return unprocessable(path, ": expected \"", kFrame, "\", got ", in_quotes(frame_id),
-                       " (the setting rules.rewrite_frame_id accepts any frame)");
+  return unprocessable_by_setting("rules.rewrite_frame_id", path, ": expected \"", kFrame, "\", got ",
+                                  in_quotes(frame_id),
+                                  " (the setting rules.rewrite_frame_id accepts any frame)");
 }
 
 }  // namespace adit::icd

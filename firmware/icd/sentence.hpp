@@ -41,5 +41,11 @@ template <class... Parts>
 std::unexpected<Refusal> unprocessable(const Parts&... parts) {
   return std::unexpected(Refusal{Status::UnprocessableEntity, sentence(parts...)});
 }
+/// The same, if the setting `key` can prevent it: a literal.
+template <class... Parts>
+std::unexpected<Refusal> unprocessable_by_setting(std::string_view key, const Parts&... parts) {
+  return std::unexpected(
+      Refusal{.status = Status::UnprocessableEntity, .sentence = sentence(parts...), .setting = key});
+}
 
 }  // namespace adit::icd

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <expected>
 #include <string>
+#include <string_view>
 
 namespace adit::icd {
 
@@ -35,6 +36,9 @@ struct Refusal {
   Status status = Status::UnprocessableEntity;
   std::string sentence;
   std::size_t parts = 0;  // of a state or of markers, that it is about; 0: it is about a message
+  /// The key of the setting that can prevent this refusal ("rules.map_bytes"); "": no setting can. Not owned:
+  /// a literal.
+  std::string_view setting = {};
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };
 

@@ -64,8 +64,9 @@ icd::Checked<bool> resubmits_of(const RequestHead& head) {
 /// name leads to the box (DNS rebinding) would be its own.
 icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::string>& origins) {
   const std::string_view origin = head.header("Origin"), host = head.header("Host");
-  const auto needs_token = [](std::string why) {
-    return std::unexpected(icd::Refusal{icd::Status::Forbidden, std::move(why)});
+  const auto needs_token = [](std::string why, std::string_view setting = "") {
+    return std::unexpected(
+        icd::Refusal{.status = icd::Status::Forbidden, .sentence = std::move(why), .setting = setting});
   };
   if (!access::names_this_box(host)) {
     return needs_token(
@@ -77,7 +78,8 @@ icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::
       origins, [origin](const std::string& each) { return icd::same_but_for_case(each, origin); });
   if (is_listed || access::is_same_origin(origin, host)) return {};
   return needs_token(icd::sentence("Origin: a page of ", icd::in_quotes(origin),
-                                   " needs the team's token, or an entry in the setting team.origins"));
+                                   " needs the team's token, or an entry in the setting team.origins"),
+                     "team.origins");
 }
 
 icd::Refusal stops() {

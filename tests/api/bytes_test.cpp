@@ -65,7 +65,8 @@ RunView view() {
   activity.invisible = 21;
   activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
   view.activities = {activity};
-  view.refusals = {{.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2}};
+  view.refusals = {
+      {.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2, .setting = "r.m"}};
   view.rejected = {{.number = 1,
                     .kind = "grid",
                     .robot = "r",
@@ -123,7 +124,7 @@ TEST(Bytes, OfARun) {
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
       R"("invisible":21,)"
       R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
-      R"("sentence":"no","parts":2}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
+      R"("sentence":"no","parts":2,"setting":"r.m"}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"replaced":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"
       R"({"side":"command_post","interface":"d","carrier":null}],"identify_until":1001.0,)"

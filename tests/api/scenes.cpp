@@ -152,7 +152,8 @@ RunView trouble(Time now, double elapsed) {
   view.reports[2].note = "the connection was lost before an answer came";
   view.refusals.push_back(
       {began - 20, "/state/update", "10.0.0.8", 422,
-       R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id accepts any frame))"});
+       R"(msg.header.frame_id: expected "darpa", got "map" (the setting rules.rewrite_frame_id accepts any frame))",
+       0, "rules.rewrite_frame_id"});
   view.alarms = {
       alarm("command_post_unreachable", alarms::Severity::Bad, began - 130, "Mapping is unreachable",
             "connecting to 10.100.1.201:8000: Connection refused; the box tries again",

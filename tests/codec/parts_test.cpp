@@ -102,6 +102,8 @@ TEST(MarkerParts, AreTheGoodMarkersInTheirOrderAndASentenceForEachOther) {
             "markers[1].color.a: expected a number from 0 to 1, got 2; markers[3].header.frame_id: expected "
             "\"darpa\", got \"map\" (the setting rules.rewrite_frame_id accepts any frame) (the other 2 were "
             "accepted)");
+  EXPECT_EQ(read_parts->refused.refusal().setting, "rules.rewrite_frame_id")
+      << "the first one's that has one";
 }
 
 /// Every text of it as a byte string, keys too, as `cbor.dumps` of Python 2 has it.

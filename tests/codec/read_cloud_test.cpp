@@ -104,6 +104,9 @@ TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
        "413: msg.data: expected at most 1600 bytes, got more"},
   };
   expect_map_answers(rows, test::good_cloud(), rules);
+  json large = test::good_cloud();
+  large["msg"]["data"] = json::binary(Bytes(1616, 0));
+  EXPECT_EQ(read_map(Format::Cbor, test::as_cbor(large), rules).error().setting, "rules.map_bytes");
 }
 
 TEST(ReadMapUpdate, KeepsThePointsOfAllGzipMembers) {  // RFC 1952 2.2

@@ -98,6 +98,15 @@ TEST(ReadArtifactReport, KeepsTheTypeAsItsSenderWroteIt) {
   EXPECT_EQ(*report, (icd::ArtifactReport{.type = "backpack", .position = {1011.242, -244.433, -10.011}}));
 }
 
+TEST(ReadArtifactReport, NamesTheSettingThatAcceptsItsTypeIfOneDoes) {
+  const auto setting = [](const std::string& type) {
+    return read_report(R"({"x":1,"y":2,"z":3,"type":")" + type + R"("})").error().setting;
+  };
+  EXPECT_EQ(setting("test"), "rules.forward_unknown_types");
+  EXPECT_EQ(setting("Cellphone"), "") << "misspelt";
+  EXPECT_EQ(setting(""), "");
+}
+
 TEST(ReadArtifactReport, HasTheRobotThatItNames) {
   icd::Rules rules;
   rules.aliases.emplace("the dog", *icd::RobotName::parse("spot1"));

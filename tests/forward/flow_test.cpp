@@ -154,6 +154,14 @@ TEST_F(FlowTest, QuotesNoToken) {
   EXPECT_THAT(flow_->record().refusals().front().sentence, testing::Not(testing::HasSubstr("a-secret")));
 }
 
+TEST_F(FlowTest, KeepsHowManyPartsARefusalIsAboutAndTheSettingThatCanPreventIt) {
+  flow_->refused(icd::Uri::StateUpdate, sender_,
+                 {icd::Status::UnprocessableEntity, "name: got x", 3, "robots[].alias"});
+  ASSERT_EQ(flow_->record().refusals().size(), 1);
+  EXPECT_EQ(flow_->record().refusals().front().parts, 3u);
+  EXPECT_EQ(flow_->record().refusals().front().setting, "robots[].alias");
+}
+
 TEST_F(FlowTest, EndsAndSendsNothingRejectedMessagesFromThenOn) {
   bool over = false;
   EXPECT_FALSE(flow_->is_ending());

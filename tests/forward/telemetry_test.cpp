@@ -263,10 +263,12 @@ TEST_F(NewsTest, OfAFullLaneTakesInWhatChangesTheMarkersThatWait) {
   ASSERT_FALSE(said);
   EXPECT_EQ(said.error().status, icd::Status::TooManyRequests);
   EXPECT_EQ(said.error().parts, 1u) << said.error().sentence;
+  EXPECT_EQ(said.error().setting, "queues.marker_bytes");
   EXPECT_EQ(left().markers().markers, std::vector{marker("a", "now")});
   const auto none = life->take(icd::MarkersUpdate{{marker("b", "new")}});
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().parts, 0u) << none.error().sentence;
+  EXPECT_EQ(none.error().setting, "queues.marker_bytes");
 }
 
 TEST_F(NewsTest, IsMissedByTheCommandPostUntilItIsTaken) {

@@ -94,6 +94,18 @@ TEST(GridRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
   }
 }
 
+TEST(GridRules, NameTheSettingThatAcceptsALargerGridIfOneDoes) {
+  Rules rules;
+  rules.map_bytes = 10'000;
+  OccupancyGrid grid = good_grid();
+  grid.width = 101, grid.height = 100;
+  EXPECT_EQ(check(grid, rules).error().setting, "rules.map_bytes");
+  grid.width = 0x40000000, grid.height = 8;
+  EXPECT_EQ(check(grid, rules).error().setting, "") << "larger than the setting can be";
+  grid.width = 0;
+  EXPECT_EQ(check(grid, rules).error().setting, "");
+}
+
 TEST(GridSize, IsWidthTimesHeight) {
   EXPECT_EQ(sentence_of(check_size(good_grid(), 4800)), "taken");
   EXPECT_EQ(sentence_of(check_size(good_grid(), 4799)),
@@ -182,6 +194,7 @@ TEST(FrameId, IsDarpaUnlessTheSettingsRewriteIt) {  // ICD 6.1
     EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", {})),
               sentence("header.frame_id: expected \"darpa\", got \"", frame,
                        "\" (the setting rules.rewrite_frame_id accepts any frame)"));
+    EXPECT_EQ(check_frame_id(frame, "header.frame_id", {}).error().setting, "rules.rewrite_frame_id");
     Rules rewriting;
     rewriting.rewrite_frame_id = true;
     EXPECT_EQ(sentence_of(check_frame_id(frame, "header.frame_id", rewriting)), "taken");

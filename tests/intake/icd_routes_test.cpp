@@ -122,6 +122,10 @@ TEST(IcdRoutes, AskAPageFromElsewhereForATokenWhereNoneIsWanted) {
     EXPECT_EQ(status("evil.example:8000", "Origin: " + origin + "\r\n" + token), taken);
   }
   EXPECT_EQ(status("adit.local:8000", "Origin: http://adit.local:8000\r\n"), taken);
+  team.served.on_loop([&] {
+    EXPECT_EQ(team.desk.refusals.front().second.setting, "team.origins") << "another origin";
+    EXPECT_EQ(team.desk.refusals.back().second.setting, "") << "another Host";
+  });
 }
 
 TEST(IcdRoutes, RefuseOtherMethodsAndSayWhichAreAllowed) {

@@ -17,8 +17,8 @@ test("offers at each report what its state allows, and nothing else", async (t) 
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "All runs" }).click();
   const expected = {
-    28: ["Hold", "Withdraw"], 27: [], 26: ["Send once more", "Call it done"], 25: ["Send once more", "Call it done"], 24: ["Send", "Withdraw"],
-    23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send once more"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],
+    28: ["Hold", "Withdraw"], 27: [], 26: ["Send again", "Settle"], 25: ["Send again", "Settle"], 24: ["Send", "Withdraw"],
+    23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send again"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],
   };
   for (const [number, actions] of Object.entries(expected)) {
     await opened(page, number);
@@ -42,8 +42,8 @@ test("does at once what costs nothing", async (t) => {
   await button(page, "Withdraw", 24).click();
   await becomes(page, 24, "withdrawn");
   await becomes(page, 24, "Withdrawn.");
-  await button(page, "Call it done", 25).click();
-  await becomes(page, 25, "called done");
+  await button(page, "Settle", 25).click();
+  await becomes(page, 25, "settled");
   await row(page, 20).locator(".open").click();
   await row(page, 28).locator(".open").click();
   await button(page, "Hold", 28).click();
@@ -53,18 +53,18 @@ test("does at once what costs nothing", async (t) => {
 
 test("asks before what costs a report, and does nothing where the answer is no", async (t) => {
   const { page } = await watch(t, "reports");
-  await button(page, "Send once more", 25).click();
+  await button(page, "Send again", 25).click();
   const question = page.getByRole("alertdialog");
   assert.match(await question.textContent(), /report 25, Gas.*recorded twice.*spends a report.*18 reports are left/s);
-  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Leave it");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Cancel");
   await page.keyboard.press("Escape");
   await question.waitFor({ state: "hidden" });
   assert.match(await row(page, 25).innerText(), /in doubt/);
-  await button(page, "Send once more", 25).click();
-  await question.getByRole("button", { name: "Leave it" }).click();
+  await button(page, "Send again", 25).click();
+  await question.getByRole("button", { name: "Cancel" }).click();
   assert.match(await row(page, 25).innerText(), /in doubt/);
-  await button(page, "Send once more", 25).click();
-  await question.getByRole("button", { name: "Send once more" }).click();
+  await button(page, "Send again", 25).click();
+  await question.getByRole("button", { name: "Send again" }).click();
   await becomes(page, 25, "queued");
 });
 
@@ -73,7 +73,7 @@ test("asks before it sends what another of its type is close to, and what was wi
   const question = page.getByRole("alertdialog");
   await button(page, "Send", 24).click();
   assert.match(await question.textContent(), /report 24, Gas.*close by.*spends a report.*18 reports are left/s);
-  await question.getByRole("button", { name: "Leave it" }).click();
+  await question.getByRole("button", { name: "Cancel" }).click();
   assert.match(await row(page, 24).innerText(), /held/);
   await row(page, 20).locator(".open").click();
   await button(page, "Send", 20).click();
@@ -112,7 +112,7 @@ test("offers nothing while the box is lost, and again once it is back", async (t
   const { stage, page } = await watch(t, "reports");
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
-  await said(page, "Nothing can be done while the box does not answer");
+  await said(page, "The box does not answer, so you cannot act");
   assert.ok(await button(page, "Send", 24).isDisabled());
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
@@ -133,7 +133,7 @@ test("has nothing to press that is smaller than a gloved finger", async (t) => {
 test("leaves the focus in the row whose buttons change by what was done", async (t) => {
   const { page } = await watch(t, "reports");
   await row(page, 28).locator(".open").click();
-  for (const [number, action, words] of [[24, "Withdraw", "Withdrawn."], [28, "Hold", "Held: "], [25, "Call it done", "Called done."]]) {
+  for (const [number, action, words] of [[24, "Withdraw", "Withdrawn."], [28, "Hold", "Held until"], [25, "Settle", "Settled."]]) {
     await button(page, action, number).focus();
     await page.waitForSelector("[data-given]", { state: "detached" });
     await page.keyboard.press("Enter");

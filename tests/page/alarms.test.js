@@ -10,7 +10,7 @@ const icon = (page) => page.$eval("link[rel=icon]", (link) => link.getAttribute(
 test("says that there is no alarm, and which was the last", async (t) => {
   const { page } = await watch(t, "calm");
   await shown(page).getByText("No alarm").waitFor();
-  assert.match(await shown(page).innerText(), /the last one: Scout was silent for 0:41, over since \d\d:\d\d/);
+  assert.match(await shown(page).innerText(), /last alarm: Scout was silent for 0:41, ended at \d\d:\d\d/);
   assert.equal(await page.title(), "Adit");
   assert.equal(await icon(page), "icon.svg");
 });

@@ -38,7 +38,7 @@ test("composes a report: what, where, a look at what is near, and away", async (
   assert.ok(await page.locator("#compose .again").isHidden());
   await send(page);
   await becomes(page, 29, "queued");
-  await becomes(page, 29, "Taken; it is sent in its turn.");
+  await becomes(page, 29, "Accepted and queued.");
   await page.waitForFunction(() => document.activeElement.closest("li")?.dataset.key === "29");
   assert.deepEqual(page.complaints, []);
 });
@@ -88,9 +88,9 @@ test("says that the very same was reported, and sends it again only when told to
   const { page } = await watch(t, "reports");
   await compose(page);
   await fill(page, "Helmet", "281.75", "−4.5", ".25");
-  assert.match(await text(page, "#compose .notes"), /Reported already, at the very same place: #23 Helmet, scored \+1/);
+  assert.match(await text(page, "#compose .notes"), /Already reported at the same place: #23 Helmet, scored \+1/);
   await send(page);
-  await becomes(page, 23, "The same was reported before: this is it.");
+  await becomes(page, 23, "The same report was sent before. This is it.");
   assert.equal(await page.locator("#reports li[data-key='29']").count(), 0);
 
   await page.locator("#reports .compose").click();
@@ -179,7 +179,7 @@ test("has nothing that axe finds wrong in its steps and dialogs, in any theme", 
   await page.waitForSelector("#help[open]");
   await isWell("help");
   await page.keyboard.press("Escape");
-  await page.getByRole("button", { name: "Send once more: report 25" }).click();
+  await page.getByRole("button", { name: "Send again: report 25" }).click();
   await page.waitForSelector("#confirm[open]");
   await isWell("confirm");
   await page.keyboard.press("Escape");

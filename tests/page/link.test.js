@@ -9,7 +9,7 @@ test("shades what was lost, and only that", async (t) => {
   const { page, stage } = await watch(t, "calm");
   await page.locator("#plots li").nth(4).waitFor();
   assert.deepEqual(await gaps(page), Array(5).fill(false));
-  assert.match(await page.innerText("#plots"), /Sent\s+[\d.]+ of 100 Mbit\/s\s+Waiting\s+1\.5 MB\s+Scoring answers in\s+3\.4 ms\s+Mapping answers in\s+41 ms\s+Asked to slow down\s+0 times/);
+  assert.match(await page.innerText("#plots"), /Sent\s+[\d.]+ of 100 Mbit\/s\s+Queued\s+1\.5 MB\s+Scoring answers in\s+3\.4 ms\s+Mapping answers in\s+41 ms\s+Asked to slow down\s+0 times/);
   stage.freeze();
   await page.waitForFunction(() => [...document.querySelectorAll("#plots .lost")].every((path) => path.getAttribute("d")));
   assert.match(await page.innerText("#plots li"), /Sent\s+–/);

@@ -28,7 +28,7 @@ const names = (page) => page.evaluate(() => [...globalThis.written].map((name) =
 test("says that it is lost, and draws it nowhere", async (t) => {
   const page = await withReport(t, null);
   assert.match(await text(page, '#reports [data-key="8"] .where'), /^#8 · lost from the ledger · /);
-  assert.deepEqual(await page.locator('#reports [data-key="8"] button:visible').allTextContents(), ["More of report 8", "Call it done"]);
+  assert.deepEqual(await page.locator('#reports [data-key="8"] button:visible').allTextContents(), ["Details of report 8", "Settle"]);
   await page.waitForFunction(() => [...globalThis.written].some((name) => name.startsWith("#10")));
   assert.deepEqual((await names(page)).filter((name) => name.startsWith("#8")), []);
 });

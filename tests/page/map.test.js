@@ -57,7 +57,7 @@ test("shows the robots where they were, and the tracks and markers as far as the
   const slider = await sliderOf(page);
   await hide(page, "Clouds", "Reports", "Tracks");
   await appears(page, MARKER, "the markers");
-  await page.locator("#map .leftout", { hasText: "Of the markers the newest 13 are shown; 3 older ones are not. Of the points of one marker only some are drawn." }).waitFor();
+  await page.locator("#map .leftout", { hasText: "The map shows the newest 13 markers and leaves out 3. Only some points of one marker are drawn." }).waitFor();
   await slider.press("Home");
   await slider.press("ArrowRight");
   await goes(page, MARKER, "the markers, none of which had come");

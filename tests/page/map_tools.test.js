@@ -73,9 +73,9 @@ test("measures between two points, by finger and by key, and says how far", asyn
   assert.equal(await told(page), "", "only once it is wanted");
   await measure(page).tap();
   assert.equal(await measure(page).getAttribute("aria-pressed"), "true");
-  assert.equal(await told(page), "Tap where to measure from.");
+  assert.equal(await told(page), "Tap the first point.");
   await tap(300, 200);
-  assert.match(await told(page), /^From −?[\d.]+, −?[\d.]+ m\. Tap where to\.$/);
+  assert.match(await told(page), /^From −?[\d.]+, −?[\d.]+ m\. Tap the second point\.$/);
   await tap(400, 200);
   const one = await metres();
   await tap(300, 200);

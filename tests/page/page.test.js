@@ -14,7 +14,7 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   assert.match(await text(page, "#arriving"), /Every map arrives.*3 robots and the merged map, oldest 7 s/);
   assert.equal(await page.locator("#robots li").filter({ hasText: "ANYmal2" }).count(), 1);
   await page.locator("#robots li[data-level=good]").filter({ hasText: /ANYmal2 grid 7 s · cloud 1 s\s*7 s/ }).waitFor(); // its age grows until the next event
-  await page.getByTitle(/^ANYmal1: up to date\n(.*\n)*cloud: .*96 merged, taken as parts, rounded to 8mm$/m).waitFor();
+  await page.getByTitle(/^ANYmal1: up to date\n(.*\n)*cloud: .*96 merged, treated as parts, rounded to 8mm$/m).waitFor();
   assert.match(await text(page, "#shared"), /Merged\s+3 s.*Markers\s+21 s/);
   assert.match(await text(page, "#reports .rows li:first-child"), /Survivor.*85\.8, −4\.5.*scored \+1/);
   assert.match(await text(page, "#refusals .rows"), /422.*got 4799/);
@@ -59,7 +59,7 @@ test("has what is done of other runs behind one press, and says how many there a
   const { page } = await watch(t, "reports");
   const others = page.getByRole("button", { name: "All runs" });
   const shown = () => page.locator("#reports .rows li").count();
-  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 waits$/);
+  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 queued$/);
   assert.equal(await shown(), 10);
   assert.equal(await others.getAttribute("aria-pressed"), "false");
   await others.click();
@@ -99,18 +99,18 @@ test("goes to the first report of another run where it shows them, however many 
 test("tells where each report is in its life, and what waits for the operator's word", async (t) => {
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "All runs" }).click();
-  const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/More of report \d+/, "").replace(/\s+/g, " ").trim()]));
+  const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/Details of report \d+/, "").replace(/\s+/g, " ").trim()]));
   const expected = [
-    ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send once more Call it done$/],
+    ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send again Settle$/],
     ["ask", /^Gas.*held.*2 m from it.* Send Withdraw$/],
     ["wait", /^Drill.*queued/],
     ["wait", /^Cube.*sending/],
     ["wait", /^Vent.*in doubt, asking.*is being asked$/],
     ["good", /^Helmet.*scored \+1$/],
-    ["quiet", /^Helmet.*called done$/],
+    ["quiet", /^Helmet.*settled$/],
     ["quiet", /^Backpack.*same as #17/],
     ["quiet", /^Backpack.*withdrawn/],
-    ["bad", /^Survivor.*refused.*status 422$/],
+    ["bad", /^Survivor.*rejected.*status 422$/],
     ["good", /^Survivor #18 · .* · run 1 · 15 min ago scored \+1$/],
   ];
   assert.equal(rows.length, expected.length);
@@ -118,7 +118,7 @@ test("tells where each report is in its life, and what waits for the operator's 
     assert.equal(rows[i][0], level, rows[i][1]);
     assert.match(rows[i][1], words);
   });
-  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 waits$/);
+  assert.match(await text(page, "#reports .count"), /^6 sent, 2 in doubt, 1 held, 1 queued$/);
   assert.deepEqual(page.complaints, []);
 });
 

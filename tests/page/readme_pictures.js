@@ -8,7 +8,7 @@ import { launch, visit } from "./stage.js";
 const PICTURES = [
   { name: "page", path: "" },
   { name: "display", path: "display" },
-  { name: "setup", path: "setup#test", act: (page) => page.getByRole("button", { name: /^(Test|Begin the test|Run the test)/ }).first().click() },
+  { name: "setup", path: "setup#test", act: (page) => page.getByRole("button", { name: /^Run the test/ }).first().click() },
   { name: "system", path: "system", width: 1600, height: 1000 },
 ];
 

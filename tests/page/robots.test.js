@@ -79,6 +79,16 @@ test("has a row for one that an alarm alone tells of: nothing was heard of it si
   assert.equal((await names(page))[0], "uav9");
 });
 
+for (const { maps, reason } of [{ maps: "no", reason: "no map came since the box restarted" }, { maps: "some", reason: "why" }]) {
+  test(`says why the verdict is quiet where a map is drawn and the box knows of ${maps} maps, in whichever words the box has`, async (t) => {
+    const prepare = (page) => retell(page, (maps) => (view) => ({ ...view, map_version: 7, verdict: { level: "quiet", what: "what", why: "why" },
+      activities: view.activities.filter(({ kind }) => maps === "some" || (kind !== "grid" && kind !== "cloud")) }), maps);
+    const { page } = await watch(t, "calm", { prepare });
+    await page.locator("#arriving .reason", { hasText: reason }).waitFor();
+    assert.equal(await page.innerText("#arriving .text"), "what");
+  });
+}
+
 test("is dim while the list of alarms says that the Command Post is away", async (t) => {
   const { page, stage } = await watchTwenty(t);
   await page.waitForSelector("#maps[data-away=false]");
@@ -132,7 +142,7 @@ test("opens the list in the place of the reports by a touch anywhere on it, and 
     await list.waitFor();
     await openMore(page);
     await list.waitFor({ state: "hidden" });
-    await page.getByRole("button", { name: /^All robots/ }).press("Enter");
+    await page.getByRole("button", { name: /^Show all robots/ }).press("Enter");
     await list.waitFor();
     assert.deepEqual(page.complaints, []);
   }

@@ -32,7 +32,7 @@ test("lists runs, shows an earlier one's map at its times, and deletes it once t
   const page = await come(t, at);
   const earlier = page.locator("#runs .rows li", { hasText: "Run 1" });
   assert.equal(await page.locator("#runs .rows li", { hasText: "(now)" }).getByRole("button", { name: /^Delete/ }).isVisible(), false);
-  await earlier.getByRole("button", { name: /^Look again/ }).click();
+  await earlier.getByRole("button", { name: /^View/ }).click();
   await until(() => page.requests.some((url) => /\/adit\/runs\/1\/map\/grid\/ugv1\/.*\.png/.test(url)), "the run's tiles");
   assert.deepEqual(await page.locator("#look .follow option").allTextContents(), ["Follow …", "ugv1"]);
   const slider = page.locator("#look input[type=range]");
@@ -56,7 +56,7 @@ test("lists runs, shows an earlier one's map at its times, and deletes it once t
   await slider.press("Shift+ArrowRight");
   await slider.press("Shift+ArrowLeft");
   await earlier.getByRole("button", { name: /^Delete/ }).click();
-  await page.locator("#confirm button", { hasText: "Leave it" }).click();
+  await page.locator("#confirm button", { hasText: "Cancel" }).click();
   assert.equal(await page.locator("#runs .rows li").count(), 2);
   await armed(page);
   await earlier.getByRole("button", { name: /^Delete/ }).click();
@@ -79,6 +79,6 @@ test("prints a run without script, black on white, on pages of A4", async (t) =>
 test("a viewer looks again and deletes nothing", async (t) => {
   const at = await withRuns(t);
   const page = await come(t, at, VIEWER);
-  assert.equal(await page.getByRole("button", { name: /^Look again/ }).count(), 2);
+  assert.equal(await page.getByRole("button", { name: /^View/ }).count(), 2);
   assert.equal(await page.getByRole("button", { name: /^Delete/ }).count(), 0);
 });

@@ -8,7 +8,7 @@ import { complaints, COURSES, field, fill, hears, ready, review, step, type } fr
 
 /** Runs the Test, and gives of each endpoint each step's state. */
 async function tried(page) {
-  await page.getByRole("button", { name: "Test it" }).click();
+  await page.getByRole("button", { name: "Run the test" }).click();
   await page.locator("#step-test .outcome", { hasText: "No report was spent." }).waitFor();
   return page.$$eval("#step-test .trial", (all) => all.map((each) => [...each.querySelectorAll("ol .badge")].map((badge) => badge.textContent.trim())));
 }
@@ -34,18 +34,18 @@ test("tries each endpoint step by step, and says what to do where one fails", as
   await hears(page, "Live");
   const [scoring, mapping] = await tried(page);
   assert.deepEqual([scoring[3], scoring[4], mapping[4]], ["good", "bad", "good"]);
-  assert.notEqual(await page.locator(".trial li", { hasText: "The token is taken" }).first().locator(".advice").innerText(), "");
+  assert.notEqual(await page.locator(".trial li", { hasText: "The token is accepted" }).first().locator(".advice").innerText(), "");
 });
 
 test("keeps tokens to itself, and says which are there", async (t) => {
   const { box, ask, page } = await ready(t, "setup#tokens");
-  const token = page.locator("form.token", { hasText: "The team’s own token" });
+  const token = page.locator("form.token", { hasText: "Team’s token" });
   await token.getByText("is set").waitFor();
-  const input = token.getByLabel("The team’s own token", { exact: true });
+  const input = token.getByLabel("Team’s token", { exact: true });
   assert.equal(await input.inputValue(), "");
   assert.equal(await input.getAttribute("type"), "password");
   await token.getByRole("button", { name: "Set" }).click();
-  await token.getByText("nothing is typed yet").waitFor();
+  await token.getByText("type a token first").waitFor();
   for (const wrong of ["two words", "grüße", "x".repeat(257)]) {
     await input.fill(wrong);
     await token.getByText("expected 1 to 256 visible ASCII characters").waitFor();
@@ -64,9 +64,9 @@ test("keeps tokens to itself, and says which are there", async (t) => {
   const asTeam = (bearer) => fetch(`${box.url}adit/run`, { headers: { Authorization: `Bearer ${bearer}` } }).then(({ status }) => status);
   assert.deepEqual([await asTeam("another-token"), await asTeam(TOKENS.team)], [200, 401]);
   await token.getByRole("button", { name: "Remove" }).click();
-  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Cancel" }).click();
   await token.getByRole("button", { name: "Remove" }).click();
-  await page.locator("#review").getByRole("button", { name: "Remove it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Remove" }).click();
   await token.getByText("Removed.").waitFor();
   assert.ok(!existsSync(join(box.state, "secrets/team.token")));
   assert.equal(await asTeam(TOKENS.team), 200, "the one that the box was given counts again");
@@ -87,15 +87,15 @@ test("switches to another course by one press, once it was said what that change
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
-  const own = page.locator("form.token", { hasText: "Course B: scoring token of its own" });
-  await own.getByLabel("Course B: scoring", { exact: false }).first().fill(TOKENS.scoring);
+  const own = page.locator("form.token", { hasText: "Course B: own scoring token" });
+  await own.getByLabel("Course B: own scoring", { exact: false }).first().fill(TOKENS.scoring);
   await own.getByRole("button", { name: "Set" }).click();
   await own.getByText("Set.", { exact: true }).waitFor();
   await page.getByRole("button", { name: "Switch to Course B" }).click();
   assert.deepEqual(await review(page), [
     ["Course", "No course", "Course B"],
     ["Scoring address", "127.0.0.1:1", `127.0.0.1:${box.scoring}`], ["Mapping address", "127.0.0.1:2", `127.0.0.1:${box.mapping}`],
-    ["Scoring token", "the common one", "its own"], ["Mapping token", "the common one", "the common one"],
+    ["Scoring token", "common", "own"], ["Mapping token", "common", "common"],
   ]);
   await page.locator("#review").getByText(`reports go to 127.0.0.1:${box.scoring} from then on; no report is queued, in doubt or held now`).waitFor();
   await page.getByRole("button", { name: "Switch", exact: true }).click();
@@ -103,10 +103,10 @@ test("switches to another course by one press, once it was said what that change
   await page.waitForFunction(() => document.activeElement.id === "courses-title"); // the button that had it is gone
   await until(async () => (await ask("/adit/run")).said.endpoints.every(({ last_status: status }) => status === 200 || status === 0) && (await ask("/adit/run")).said.endpoints[0].last_status === 200, "the scoring endpoint's answer");
   await step(page, "Command Post").click();
-  await page.getByText("Course B is in use: these count again without a course.").waitFor();
+  await page.getByText("Course B is in use and overrides these addresses.").waitFor();
   await step(page, "Courses").click();
   await page.getByRole("button", { name: "Switch to No course" }).click();
-  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Cancel" }).click();
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "B");
   await page.getByRole("button", { name: "Remove: Course 1" }).click();
   await page.getByRole("button", { name: "Apply changes" }).click();
@@ -124,22 +124,22 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   assert.deepEqual(settings, (await ask("/adit/settings")).said.settings);
   const give = (what) => page.getByLabel("Settings from a file").setInputFiles({ name: "mine.json", mimeType: "application/json", buffer: Buffer.from(what) });
   await give("no JSON");
-  await page.getByText("That is not JSON").waitFor();
+  await page.getByText("The file is not JSON").waitFor();
   await give(" ".repeat(300_000));
-  await page.getByText("That is too long").waitFor();
+  await page.getByText("The file is too long").waitFor();
   await give("[]");
   await page.getByText("settings: expected an object").waitFor();
   await give(JSON.stringify({ ...settings, robots: [{ name: "two words" }], bugdet: 1 }));
-  await page.getByText("Nothing was applied: the file has errors.").waitFor();
+  await page.getByText("The file was not applied, because it has errors.").waitFor();
   await page.getByText(/Robot 1: name: /).waitFor();
   await page.getByText(/bugdet: no such key/).waitFor();
   await give(JSON.stringify(settings));
-  await page.getByText("Nothing to apply").waitFor();
+  await page.getByText("The box already uses the settings in this file.").waitFor();
   const next = JSON.stringify({ ...settings, robots: [{ name: "ugv1" }] });
   await give(next);
   await review(page);
-  await page.getByRole("button", { name: "Leave it" }).click();
-  await page.getByText("Nothing was applied.").waitFor();
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await page.getByText("The file was not applied.").waitFor();
   assert.equal((await ask("/adit/settings")).said.settings.robots.length, 0);
   await give(next);
   assert.match(JSON.stringify(await review(page)), /Robot ugv1/);
@@ -151,7 +151,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
 
 test("finds a setting by its name or its meaning, and changes it", async (t) => {
   const { ask, page } = await ready(t, "setup#all");
-  const search = page.getByLabel("Look for");
+  const search = page.getByLabel("Search");
   await search.fill("near duplicates");
   await page.getByText("1 found.").waitFor();
   await page.getByLabel("reports.review").selectOption("all");
@@ -164,7 +164,7 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   await page.getByRole("button", { name: "Apply changes" }).click();
   assert.deepEqual(await review(page), [["Command Post: rates, map (a second)", "1", "0.5"], ["Team: require token", "true", "false"], ["Reports: review", "off", "all"]]);
   await page.locator("#review .warnings").getByText("without a token").waitFor();
-  await page.getByRole("button", { name: "Leave it" }).click();
+  await page.getByRole("button", { name: "Cancel" }).click();
   await hears(page, "3 changes not yet applied");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();

@@ -73,7 +73,7 @@ test("can be used by keyboard alone", async (t) => {
   await reach(() => document.activeElement.textContent === "Next");
   await page.keyboard.press("Enter");
   await page.locator("#review[open]").waitFor();
-  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Leave it");
+  assert.equal(await page.evaluate(() => document.activeElement.textContent), "Cancel");
   await page.keyboard.press("Tab");
   await page.keyboard.press("Enter");
   await page.getByRole("heading", { name: "Test" }).waitFor();

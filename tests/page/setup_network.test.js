@@ -92,10 +92,10 @@ test("says what is wrong with the addresses as they are typed, and what a change
   await post(page, "Addresses").fill("10.100.1.10/24, 10.100.2.10/16");
   await page.getByRole("button", { name: "Change the addresses" }).click();
   assert.deepEqual(await review(page), [["Command Post’s side: addresses", "10.100.1.10/24", "10.100.1.10/24, 10.100.2.10/16"]]);
-  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Cancel" }).click();
   await post(page, "Addresses").fill("10.100.1.10/24");
   await page.getByRole("button", { name: "Change the addresses" }).click();
-  await page.getByText("The box has these addresses already.").waitFor();
+  await page.getByText("The box already has these addresses.").waitFor();
 });
 
 test("takes a change back that nobody confirms, and says so", async (t) => {
@@ -104,7 +104,7 @@ test("takes a change back that nobody confirms, and says so", async (t) => {
   await page.getByRole("button", { name: "Change the addresses" }).click();
   assert.deepEqual(await review(page), [["Team’s side: address", "192.168.7.11", "192.168.8.11"]]);
   await page.locator("#review .warnings", { hasText: "this cuts you off: your address 192.168.7.2 is not in 192.168.8.0/24" }).waitFor();
-  await page.locator("#review").getByRole("button", { name: "Leave it" }).click();
+  await page.locator("#review").getByRole("button", { name: "Cancel" }).click();
   assert.equal(box.address(), "192.168.7.11/24");
   await change(page, "192.168.8.11");
   await sign(page).filter({ hasText: /\d+ s left/ }).waitFor();
@@ -124,7 +124,7 @@ test("keeps a change that is confirmed from the new address", async (t) => {
   await sign(there).filter({ hasText: /\d+ s left/ }).waitFor(); // on the run's page, too
   await there.goto(`${NEW}system`);
   await sign(there).click();
-  await there.getByText("You are at the new address: confirm, and it is kept.").waitFor();
+  await there.getByText("You are at the new address. Confirm to keep it.").waitFor();
   await there.getByRole("button", { name: "Confirm" }).click();
   await there.getByText("The last change was confirmed.").waitFor();
   await until(() => box.isAtRest(), "adit-network, which would take it back, to end");
@@ -145,7 +145,7 @@ test("shows both ports as the kernel has them, as a cable is pulled and put back
   await port("Command Post’s side: darpa0").getByText("cable in").waitFor();
   const team = (await port("Team’s side: team0").innerText()).replace(/\s+/g, " ");
   assert.match(team, /cable in, 10 Gbit\/s, full duplex Addresses 192\.168\.7\.11\/24.* Name \S+\.local MAC ([0-9a-f]{2}:){5}[0-9a-f]{2}/);
-  assert.match((await port("darpa0").innerText()).replace(/\s+/g, " "), /10\.100\.1\.10\/24.* none on this side/);
+  assert.match((await port("darpa0").innerText()).replace(/\s+/g, " "), /10\.100\.1\.10\/24.* none: the box does not listen on this side/);
   await page.goto(`${OLD}system`);
   await port("darpa0").getByText("cable in").waitFor();
   box.plug("wan0", false);

@@ -7,7 +7,7 @@ const PATH = "runs.length_seconds", LEAST = 60, MOST = 86400;
 
 test("takes the length of a run that it can have, and says what is wrong with another", async (t) => {
   const { ask, page } = await ready(t, "setup#all");
-  await page.getByLabel("Look for").fill("how long a run lasts");
+  await page.getByLabel("Search").fill("how long a run lasts");
   await page.getByText("1 found.").waitFor();
   for (const wrong of [String(LEAST - 1), String(MOST + 1), "1.5", "an hour", "-60", ""]) {
     await type(page, PATH, wrong);

@@ -18,12 +18,12 @@ test("tries addresses as they are typed, before they are applied, and says what 
   const { box, ask, page } = await ready(t, "setup#post");
   await page.getByLabel("Scoring port", { exact: true }).fill(String(box.scoring));
   await tries(page).click();
-  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. Nothing is applied yet, and no report was spent.");
+  const [scoring, mapping] = await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet. No report was spent.");
   assert.deepEqual([scoring[3], scoring[4], mapping[3]], ["good", "good", "bad"]);
   assert.match(await page.locator("[data-tried=typed] .trial").last().innerText(), /127\.0\.0\.1:2[\s\S]*no server at that port[\s\S]*Compare the port/);
   await page.getByLabel("Mapping port", { exact: true }).fill(String(box.mapping));
   await tries(page).click();
-  const all = await tried(page, "typed", "All is well. Nothing is applied yet");
+  const all = await tried(page, "typed", "All is well. These values are not applied yet");
   assert.deepEqual(all.map((each) => each.slice(3, 5)), [["good", "good"], ["good", "good"]]);
   const { settings } = (await ask("/adit/settings")).said;
   assert.deepEqual([settings.command_post.scoring.port, settings.command_post.mapping.port], [1, 2]);
@@ -36,7 +36,7 @@ test("tries a token as it is typed, and neither keeps nor shows it", async (t) =
   for (const [label, port] of [["Scoring port", box.scoring], ["Mapping port", box.mapping]]) await page.getByLabel(label, { exact: true }).fill(String(port));
   await step(page, "Tokens").click();
   await page.getByLabel("Scoring endpoint’s token", { exact: true }).fill("typed-and-wrong");
-  await page.getByRole("link", { name: "Try these before setting them" }).click();
+  await page.getByRole("link", { name: "Try these tokens before you set them" }).click();
   await tries(page).click();
   await tried(page, "typed", "1 of 12 steps failed");
   assert.match(await page.locator("[data-tried=typed] .trial").first().innerText(), /scoring token is rejected/);
@@ -96,10 +96,10 @@ test("tries a course before it is switched to, and tells it from the Test of wha
   const course = page.locator("#switch li", { hasText: "Course B" });
   await course.getByText(`127.0.0.1:${box.scoring}`).waitFor();
   await course.getByRole("button", { name: "Try Course B" }).click();
-  await tried(page, "course", "All is well. Nothing is applied yet");
+  await tried(page, "course", "All is well. These values are not applied yet");
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");
   await step(page, "Test").click();
-  await page.getByRole("button", { name: "Test it" }).click();
+  await page.getByRole("button", { name: "Run the test" }).click();
   await tried(page, "applied", "2 of 12 steps failed. No report was spent.");
   await step(page, "Test").getByText("failed").waitFor();
 });

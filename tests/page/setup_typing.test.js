@@ -77,7 +77,7 @@ test("says at every field what is wrong with it, and keeps what was typed", asyn
 test("lists the errors of other steps, each with a way to it", async (t) => {
   const { page } = await ready(t, "setup#post");
   await type(page, "command_post.scoring.port", "0");
-  await hears(page, "1 error to mend");
+  await hears(page, "1 error to correct");
   await step(page, "Command Post").getByText("1 error").waitFor();
   await step(page, "Robots").click();
   await page.locator("#typed").getByRole("button", { name: /^Scoring port: expected/ }).click();
@@ -104,9 +104,9 @@ test("shows two operators what each has done, and lets one go on from the newer"
     await hears(each, /Applied\./);
   }
   await page.getByRole("button", { name: "Apply changes" }).click();
-  await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
+  await page.getByRole("heading", { name: "Another operator has saved settings" }).waitFor();
   assert.deepEqual(await review(page), [["Scoring port", "1", "8002", "8001"], ["Mapping port", "2", "8003", "2"]]);
-  await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
+  await page.getByRole("button", { name: "Keep mine on top of theirs" }).click();
   await page.getByRole("heading", { name: "Apply these changes?" }).waitFor();
   assert.deepEqual(await review(page), [["Scoring port", "8002", "8001"]]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
@@ -128,8 +128,8 @@ test("shows two operators what each has done, and lets one go on from the newer"
   assert.equal((await ask("/adit/settings", { settings, base: tag })).status, 200);
   await until(async () => (await ask("/adit/settings").catch(() => ({}))).said?.tag !== tag, "the box to run with it");
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await page.getByRole("heading", { name: "Somebody else has saved settings meanwhile" }).waitFor();
-  await page.getByRole("button", { name: "Go on with mine over theirs" }).click();
+  await page.getByRole("heading", { name: "Another operator has saved settings" }).waitFor();
+  await page.getByRole("button", { name: "Keep mine on top of theirs" }).click();
   await page.getByRole("button", { name: "Apply changes" }).click();
   assert.deepEqual((await review(page)).map(([path]) => path.replace(/:.*/, "")), Array(5).fill("Robot ugv2"));
   await page.getByRole("button", { name: "Apply", exact: true }).click();
@@ -149,7 +149,7 @@ test("loses nothing that was typed when the box is lost in the middle of it", as
   await box.end("aditd", "SIGKILL");
   await page.keyboard.type("v1");
   await hears(page, "Box lost");
-  await hears(page, "What you typed is kept");
+  await hears(page, "Your changes are kept");
   await page.getByRole("button", { name: "Apply changes" }).click();
   assert.equal(await field(page, "robots[0].name").locator("input").inputValue(), "ugv1");
   await box.startAditd();

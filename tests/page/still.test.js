@@ -18,7 +18,7 @@ test("nothing moves under a mouse while another operator acts: what is new waits
   assert.equal((await elsewhere(stage, "/25/done")).status, 200);
   assert.equal((await elsewhere(stage, "", { type: "Rope", x: 1, y: 2, z: 3 })).status, 202);
   await page.getByRole("button", { name: "1 new" }).waitFor();
-  await row(page, 25).getByText("called done").waitFor();
+  await row(page, 25).getByText("settled").waitFor();
   assert.deepEqual((await boxes(page)).map(([key, , top]) => [key, top]), before);
   for (const button of await row(page, 25).locator(".actions button").all()) assert.ok(await button.isDisabled());
   await page.mouse.move(100, 300);

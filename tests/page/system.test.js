@@ -36,7 +36,7 @@ test("resets the box for whoever knows the operator's password, and asks first",
   });
   const open = page.locator("#reset").getByRole("button", { name: "Reset the box" }), dialog = page.locator("#wipe");
   await open.click();
-  await dialog.getByRole("button", { name: "Leave it" }).click();
+  await dialog.getByRole("button", { name: "Cancel" }).click();
   await open.click();
   await page.keyboard.press("Escape");
   assert.deepEqual(posted, []);

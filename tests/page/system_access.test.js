@@ -11,10 +11,10 @@ test("lists who is logged in, and ends a session, whose page goes to the login",
   assert.match(await row.innerText(), /127\.0\.0\.1, Chrome on Linux/);
   assert.match(await row.innerText(), /logged in (now|\d+ (s|min) ago), seen (now|\d+ (s|min) ago)/);
   await row.getByRole("button", { name: "End: viewer" }).click();
-  await page.getByRole("button", { name: "Leave it" }).click();
+  await page.getByRole("button", { name: "Cancel" }).click();
   assert.equal(await page.locator("#sessions li").count(), 2, "nothing is done on a no");
   await row.getByRole("button", { name: "End: viewer" }).click();
-  await page.getByRole("button", { name: "End it" }).click();
+  await page.getByRole("button", { name: "End", exact: true }).click();
   await row.waitFor({ state: "detached" });
   await page.waitForFunction(() => document.activeElement.matches("#sessions li button"));
   await other.waitForURL(/login\.html/);
@@ -24,7 +24,7 @@ test("lists who is logged in, and ends a session, whose page goes to the login",
 test("logs out by ending the own session", async (t) => {
   const { page } = await come(t);
   await page.locator("#sessions").getByRole("button", { name: /Log out: operator/ }).click();
-  await page.getByRole("button", { name: "End it" }).click();
+  await page.getByRole("button", { name: "End", exact: true }).click();
   await page.waitForURL(/login\.html/);
   const kept = (await page.context().cookies()).filter(({ value }) => value);
   assert.deepEqual(kept.map(({ name }) => name), ["adit-device"], "which lets nobody in");
@@ -42,7 +42,7 @@ test("says what is wrong with a new password", async (t) => {
   ];
   for (const [fields, sentence] of cases) {
     await fill(form, fields);
-    await form.getByRole("button", { name: "Change it" }).click();
+    await form.getByRole("button", { name: "Change" }).click();
     await outcome.filter({ hasText: sentence }).waitFor();
     assert.equal(await outcome.getAttribute("data-bad"), "true");
     assert.equal(await form.locator("[name=current]").inputValue(), fields.current, "and leaves what was typed");
@@ -69,21 +69,21 @@ test("sets and removes the viewers' password", async (t) => {
   const { stage, page } = await come(t);
   const { page: other } = await come(t, VIEWER, { stage });
   const form = page.locator("form[data-role=viewer]"), outcome = form.locator(".outcome");
-  await form.getByRole("button", { name: "Remove it" }).click();
+  await form.getByRole("button", { name: "Remove" }).click();
   await outcome.filter({ hasText: "present password is missing" }).waitFor();
   await fill(form, { current: "wrong horse" });
-  await form.getByRole("button", { name: "Remove it" }).click();
+  await form.getByRole("button", { name: "Remove" }).click();
   await outcome.filter({ hasText: "not the operator's present password" }).waitFor();
   await fill(form, { current: OPERATOR });
-  await form.getByRole("button", { name: "Remove it" }).click();
-  await outcome.filter({ hasText: "nobody can log in as viewer" }).waitFor();
+  await form.getByRole("button", { name: "Remove" }).click();
+  await outcome.filter({ hasText: "Viewers cannot log in" }).waitFor();
   await other.waitForURL(/login\.html/);
   await fill(form, { current: OPERATOR, password: "for the teammates", again: "for the team" });
-  await form.getByRole("button", { name: "Set it" }).click();
+  await form.getByRole("button", { name: "Set", exact: true }).click();
   await outcome.filter({ hasText: "differ" }).waitFor();
   await fill(form, { again: "for the teammates" });
-  await form.getByRole("button", { name: "Set it" }).click();
-  await outcome.filter({ hasText: "Set. Whoever" }).waitFor();
+  await form.getByRole("button", { name: "Set", exact: true }).click();
+  await outcome.filter({ hasText: "Set. All viewers" }).waitFor();
   await other.locator("#login").getByLabel("Password").fill("for the teammates");
   await other.keyboard.press("Enter");
   await other.waitForURL(/\/system$/);

@@ -20,18 +20,18 @@ test("shows the log as it grows, newest first", async (t) => {
 
 test("shows of the log what is asked for, and gives the same as a file", async (t) => {
   const { page } = await come(t);
-  await page.getByLabel("Shown").selectOption("Warnings and worse");
+  await page.getByLabel("Level").selectOption("Warnings and worse");
   await untilRows(page, 2);
-  await page.getByLabel("Holding the text").fill("LEDGER");
+  await page.getByLabel("Search the log").fill("LEDGER");
   await untilRows(page, 1);
   assert.match((await rows(page))[0], /the ledger/);
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "Download" }).click()]);
   assert.equal(download.suggestedFilename(), "adit-log.txt");
   assert.equal(await readFile(await download.path(), "utf8"), "error: the ledger cannot be written note=disk I/O error\n");
-  await page.getByLabel("Holding the text").fill("nobody said this & that");
+  await page.getByLabel("Search the log").fill("nobody said this & that");
   await page.getByText("No record matches.").waitFor();
-  await page.getByLabel("Holding the text").fill("");
-  await page.getByLabel("Shown").selectOption("Everything");
+  await page.getByLabel("Search the log").fill("");
+  await page.getByLabel("Level").selectOption("All records");
   await untilRows(page, 4);
 });
 

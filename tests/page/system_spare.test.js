@@ -9,7 +9,7 @@ const STAGED = "adit-10.0.0.1-20250615T150640Z.adit-spare";
 async function spareOf(t) {
   const { page } = await come(t, OPERATOR, { bypassCSP: true }); // for axe
   const section = page.locator("#spare"), said = (words) => section.getByText(words).waitFor();
-  await section.getByRole("button", { name: "Rest and export to the stick" }).waitFor();
+  await section.getByRole("button", { name: "Start standby, export to the stick" }).waitFor();
   return { page, section, said, press: (name) => section.getByRole("button", { name }).click(), yes: () => page.locator("#confirm button.main").click() };
 }
 
@@ -17,10 +17,10 @@ const asked = (page, path) => page.requests.filter((url) => url.endsWith(path)).
 
 test("one press puts the box to rest and its export on the stick; what fails can be tried again, and it says when the stick may go", async (t) => {
   const { page, section, said, press, yes } = await spareOf(t);
-  await press("Rest and export to the stick");
-  await page.locator("#confirm").getByRole("button", { name: "Leave it" }).click();
+  await press("Start standby, export to the stick");
+  await page.locator("#confirm").getByRole("button", { name: "Cancel" }).click();
   assert.equal(asked(page, "/adit/spare/rest"), 0, "nothing is asked for on a no");
-  await press("Rest and export to the stick");
+  await press("Start standby, export to the stick");
   await yes();
   await said("The stick is full.");
   assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "true");
@@ -28,7 +28,7 @@ test("one press puts the box to rest and its export on the stick; what fails can
   await press("Export to the stick");
   const onlyWrites = { hasText: "Leave the stick in.", hasNot: page.getByRole("button", { name: "Export to the stick" }) };
   await page.locator("#spare").filter(onlyWrites).waitFor();  // one at a time
-  await said(`The export is on the stick and was read back: ${STAGED}. The stick may be unplugged.`);
+  await said(`The export is on the stick and was read back: ${STAGED}. You can unplug the stick.`);
   assert.equal(await section.locator(".stick p").getAttribute("data-bad"), "false");
   await axeFindsNothing(page, "an export on a stick");
   assert.deepEqual(page.complaints, []);
@@ -40,8 +40,8 @@ test("a box is not put to rest whose stick could not be written to", async (t) =
     const answer = await route.fetch(), view = await answer.json();
     await route.fulfill({ response: answer, json: { ...view, stick: { ...view.stick, hindrance: "there is no stick in the box" } } });
   });
-  await press("Rest and export to the stick");
-  await said("The box is not put to rest: there is no stick in the box.");
+  await press("Start standby, export to the stick");
+  await said("The box does not start standby: there is no stick in the box.");
   assert.equal(asked(page, "/adit/spare/rest"), 0);
 });
 
@@ -56,7 +56,7 @@ test("what is on the stick is offered by the box and the time of its name, and a
   await section.getByLabel("Code of the export").waitFor();
   assert.equal(await section.getByRole("button", { name: /from the stick|to the stick/ }).count(), 0);
   await axeFindsNothing(page, "an export from a stick");
-  await press("Forget it");
+  await press("Forget the export");
   await section.getByRole("button", { name: "Take in from the stick: zip.adit-spare" }).waitFor();
   assert.deepEqual(page.complaints, []);
 });
@@ -75,9 +75,9 @@ test("where no stick is written or read, none is spoken of", async (t) => {
     const answer = await route.fetch();
     await route.fulfill({ response: answer, json: { ...(await answer.json()), stick: null } });
   });
-  await section.getByRole("button", { name: "Rest and export to the stick" }).waitFor({ state: "hidden" });
+  await section.getByRole("button", { name: "Start standby, export to the stick" }).waitFor({ state: "hidden" });
   assert.equal(await section.getByRole("button", { name: /stick/ }).count(), 0);
-  assert.equal(await section.getByRole("button", { name: "Rest and export", exact: true }).count(), 1);
+  assert.equal(await section.getByRole("button", { name: "Start standby and export", exact: true }).count(), 1);
 });
 
 test("a viewer is shown nothing of it", async (t) => {

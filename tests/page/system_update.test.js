@@ -9,13 +9,13 @@ const aFile = (text) => ({ name: "adit-a-board-0.2.0.raucb", mimeType: "", buffe
 
 test("tells which version runs and what became of the last update", async (t) => {
   const { page } = await come(t);
-  await updating(page).getByText("0.1.0, slot A. 0.0.9 left: the update did not become healthy in three starts").waitFor();
+  await updating(page).getByText("0.1.0, slot A. 0.0.9 was left: the update did not become healthy in three starts").waitFor();
   assert.deepEqual(page.complaints, []);
 });
 
 test("installs an update from a file, and says why one was refused", async (t) => {
   const { page } = await come(t);
-  const file = updating(page).getByLabel("The update"), install = updating(page).getByRole("button", { name: "Install it" });
+  const file = updating(page).getByLabel("Update file"), install = updating(page).getByRole("button", { name: "Install", exact: true });
   await file.setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
   await install.click();
   await updating(page).getByText("the file is not an update").waitFor();
@@ -25,14 +25,14 @@ test("installs an update from a file, and says why one was refused", async (t) =
   await updating(page).getByText("Invalid bundle format: Signature size is 0").waitFor();
   await file.setInputFiles(aFile("good"));
   await install.click();
-  await updating(page).getByText("0.1.0, slot A. 0.2.0 waits for a restart").waitFor();
+  await updating(page).getByText("0.1.0, slot A. 0.2.0 is used after a restart").waitFor();
   assert.deepEqual(page.complaints, []);
 });
 
 test("keeps the sentence of a refusal, whatever the box tells later of how the update stands", async (t) => {
   const { page } = await come(t);
   const answered = (method) => page.waitForResponse((answer) => answer.url().endsWith("/adit/update") && answer.request().method() === method);
-  await updating(page).getByLabel("The update").setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
+  await updating(page).getByLabel("Update file").setInputFiles({ ...aFile(""), buffer: Buffer.alloc(1 << 20, "no update") });
   const refused = answered("POST");
   await page.route("**/adit/update", async (route) => {
     if (route.request().method() === "POST") return route.continue();
@@ -40,7 +40,7 @@ test("keeps the sentence of a refusal, whatever the box tells later of how the u
     await refused; // what was asked for before is answered after it
     await route.fulfill({ response: answer });
   });
-  await updating(page).getByRole("button", { name: "Install it" }).click();
+  await updating(page).getByRole("button", { name: "Install", exact: true }).click();
   await refused;
   for (let shown = 0; shown < 3; ++shown) await answered("GET"); // once the next is there, the one before it was shown
   assert.ok(await updating(page).getByText("the file is not an update").isVisible());
@@ -48,9 +48,9 @@ test("keeps the sentence of a refusal, whatever the box tells later of how the u
 
 test("takes presses for one until it shows what came of the first", async (t) => {
   const { page } = await come(t);
-  await updating(page).getByLabel("The update").setInputFiles(aFile("good"));
-  const count = await pressThrice(page, /\/adit\/update$/, updating(page).getByRole("button", { name: "Install it" }));
-  await updating(page).getByText("0.2.0 waits for a restart").waitFor();
+  await updating(page).getByLabel("Update file").setInputFiles(aFile("good"));
+  const count = await pressThrice(page, /\/adit\/update$/, updating(page).getByRole("button", { name: "Install", exact: true }));
+  await updating(page).getByText("0.2.0 is used after a restart").waitFor();
   assert.deepEqual(count, { presses: 3, posts: 1 });
   assert.deepEqual(page.complaints, []);
 });
@@ -68,13 +68,13 @@ test("restarts the box only on the operator's word while a report waits", async 
   const restart = page.locator("#restart"), dialog = page.locator("#confirm");
   const press = (name) => dialog.getByRole("button", { name, exact: true }).click();
   await restart.getByRole("button", { name: "Restart the box" }).click();
-  await dialog.getByText("It takes about a minute.").waitFor();
-  await press("Leave it");
+  await dialog.getByText("The restart takes about a minute.").waitFor();
+  await press("Cancel");
   assert.ok(!page.requests.some((url) => url.endsWith("/adit/update/restart")), "nothing is asked for on a no");
   await restart.getByRole("button", { name: "Restart the box" }).click();
   await press("Restart");
   await dialog.getByText("1 report waits to be sent.").waitFor();
-  await press("Leave it");
+  await press("Cancel");
   await restart.getByText("The box was not restarted.").waitFor();
   await restart.getByRole("button", { name: "Restart the box" }).click();
   await press("Restart");
@@ -98,7 +98,7 @@ async function strayed(t, password) {
     stray = null;
     return route.continue();
   });
-  await updating(page).getByText(`Another slot is running: ${STRAY}.`).waitFor();
+  await updating(page).getByText(`An unexpected slot is running: ${STRAY}.`).waitFor();
   return page;
 }
 
@@ -106,7 +106,7 @@ test("goes back from a slot that nobody meant, once it is confirmed", async (t) 
   const page = await strayed(t), dialog = page.locator("#confirm");
   const press = (name) => dialog.getByRole("button", { name, exact: true }).click();
   await updating(page).getByRole("button", { name: "Go back" }).click();
-  await press("Leave it");
+  await press("Cancel");
   assert.ok(!page.requests.some((url) => url.endsWith("/adit/update/back")), "nothing is asked for on a no");
   await updating(page).getByRole("button", { name: "Go back" }).click();
   await press("Go back");
@@ -119,7 +119,7 @@ test("stays with the slot that runs, once it is confirmed", async (t) => {
   const page = await strayed(t), dialog = page.locator("#confirm");
   await updating(page).getByRole("button", { name: "Stay with slot A" }).click();
   await dialog.getByRole("button", { name: "Stay", exact: true }).click();
-  await updating(page).getByText("Another slot is running").waitFor({ state: "hidden" });
+  await updating(page).getByText("An unexpected slot is running").waitFor({ state: "hidden" });
   assert.ok(page.requests.some((url) => url.endsWith("/adit/update/stay")));
 });
 
@@ -130,8 +130,8 @@ test("says to a viewer that another slot is running, and offers him nothing", as
 
 test("says why it cannot restart the box, and what to do then", async (t) => {
   const { page } = await come(t);
-  await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "adit-update does not run here", doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null } }));
-  await page.locator("#restart").getByText("This page cannot restart the box (adit-update does not run here). Switch it off and on.").waitFor();
+  await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "adit-update does not run here: no status: see the log", doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null } }));
+  await page.locator("#restart").getByText("This page cannot restart the box: adit-update does not run here: no status: see the log. Switch the box off and on.").waitFor();
   assert.equal(await page.locator("#restart").getByRole("button").count(), 0);
 });
 

@@ -67,9 +67,9 @@ class FirstReport(unittest.TestCase):
         page.press("Next")
         page.has("h2", "Robots")
         page.press("Next")
-        page.press("Test it")
+        page.press("Run the test")
         page.has("#step-test .outcome", "All is well. No report was spent.")
-        page.press("To the run")
+        page.press("Go to the run")
 
         page.has("body[data-link=live]")
         page.press("New report")

@@ -1,8 +1,7 @@
 // What every test of the page needs: a browser for the file, and a page that looks at a scene.
 import assert from "node:assert/strict";
-import { basename, join } from "node:path";
 import { after, before } from "node:test";
-import { countAwaited, FILES, launch, leave, look, serve, visit } from "./stage.js";
+import { countAwaited, launch, leave, look, serve, visit } from "./stage.js";
 
 export { axeFindsNothing } from "./axe.js";
 export { openMore, toTab } from "./parts.js";
@@ -31,10 +30,6 @@ export async function visitor(t, url, options = {}, prepare = () => {}) {
   t.after(() => leave(page));
   return page;
 }
-
-/** Serves a page's modules as they are written, beside what is bundled of them: `import("/modules/words.js")`. */
-export const withModules = (page) =>
-  page.route("**/modules/*.js", (route) => route.fulfill({ path: join(FILES, basename(new URL(route.request().url()).pathname)) }));
 
 export const text = (page, selector) => page.textContent(selector);
 export const said = (page, words) => page.waitForFunction((words) => document.body.innerText.includes(words), words);

@@ -4,13 +4,13 @@ import { post, session } from "./session.js";
 
 const SEND = { name: "send", label: "Send" };
 const AGAIN = { name: "send", label: "Send again" };
-const COSTLY_SEND = { name: "send", label: "Send once more", costs: "It may be recorded already: then it is recorded twice" };
-const NEAR_SEND = { name: "send", label: "Send", costs: "Another of its type is close by: it may be the same artifact" };
-const LATE_SEND = { name: "send", label: "Send", costs: "It was withdrawn" };
+const COSTLY_SEND = { name: "send", label: "Send again", costs: "If the report is recorded already, it is recorded twice" };
+const NEAR_SEND = { name: "send", label: "Send", costs: "Another report of this type is close by and may be the same artifact" };
+const LATE_SEND = { name: "send", label: "Send", costs: "The report was withdrawn" };
 const HOLD = { name: "hold", label: "Hold" };
 const WITHDRAW = { name: "withdraw", label: "Withdraw" };
-const DONE = { name: "done", label: "Call it done" };
-const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "It is sent once more, as a new report" };
+const DONE = { name: "done", label: "Settle" };
+const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "The report is sent again as a new report" };
 
 /** By the state that a report is in: the actions that the box takes (README.md). */
 const DEEDS = {
@@ -37,7 +37,7 @@ let role = null, lost = false; // null: not learned yet
 
 /** Why nothing can be done now, or "". */
 export const barred = () =>
-  lost ? "Nothing can be done while the box does not answer." : role === null ? "Asking who you are." : role !== "operator" ? "Only an operator can act: log in as one." : "";
+  lost ? "The box does not answer, so you cannot act." : role === null ? "Checking your login." : role !== "operator" ? "Only an operator can act. Log in as operator." : "";
 
 export function linkIs(isLost) {
   if (lost && !isLost) learnRole();
@@ -57,11 +57,11 @@ export const outcomeOf = (number) => outcomes.get(number);
 export const isBusy = (number) => underWay.has(number);
 export const tell = (number, text, bad = false) => outcomes.set(number, { text, bad });
 
-const PAST = { send: "It will be sent.", hold: "Held: it goes only when you send it.", withdraw: "Withdrawn.", done: "Called done." };
+const PAST = { send: "The report will be sent.", hold: "Held until you send it.", withdraw: "Withdrawn.", done: "Settled." };
 
 function question(action, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;
-  return { title: `${action.label}: report ${report.number}, ${report.type}?`, text: `${action.costs}. It spends a report.${left}`, word: action.label };
+  return { title: `${action.label}: report ${report.number}, ${report.type}?`, text: `${action.costs}. This spends a report.${left}`, word: action.label };
 }
 
 /** Does it, asking first where it costs a report. `shown` is called whenever there is something new to show. */
@@ -74,7 +74,7 @@ export async function perform(action, report, remaining, shown) {
   shown();
   try {
     const answer = await post(`/adit/reports/${number}/${action.name}`);
-    tell(number, action.name === "resubmit" ? `Sent once more, as report ${answer.report}.` : PAST[action.name]);
+    tell(number, action.name === "resubmit" ? `Sent again as report ${answer.report}.` : PAST[action.name]);
   } catch (error) {
     tell(number, error.message, true);
   } finally {

@@ -13,8 +13,8 @@ function reasonOf(alarm) {
   return `${side}${why ? `: ${why}` : ""}${alarm.hides ? ` · hides ${alarm.hides}` : ""}`;
 }
 
-/** "uav3 was silent for 0:41, over since 12:31" */
-export const formerly = (over) => `${clip(over.was, 60)} for ${clock(over.until - over.since)}, over since ${timeOfDay(over.until).slice(0, 5)}`;
+/** "uav3 was silent for 0:41, ended at 12:31" */
+export const formerly = (over) => `${clip(over.was, 60)} for ${clock(over.until - over.since)}, ended at ${timeOfDay(over.until).slice(0, 5)}`;
 
 /** Only to the box's own pages, or where it says that its page will be. */
 const isWay = (link) => /^\/(?!\/)|^https?:\/\/[\w.:[\]-]+\/?$/.test(link);
@@ -27,7 +27,7 @@ async function acknowledge(id) {
 export function alarmCard() {
   const act = make("a.act"), seen = make("button.seen", "Acknowledge");
   seen.type = "button";
-  seen.title = "Acknowledge: quiet it until it gets worse";
+  seen.title = "Acknowledge: silence this alarm until it gets worse";
   const node = make("div.alarm", make("span.glyph"), make("p.tx", make("strong", make("span.what"), " ", make("span.for")), make("span.why")), make("p.acts", act, seen));
   node.querySelector(".glyph").setAttribute("aria-hidden", "true");
   seen.addEventListener("click", () => acknowledge(node.dataset.key));

@@ -23,7 +23,7 @@ function calm(over) {
   const node = cards.querySelector(".calm") ?? cards.appendChild(make("div.calm", make("span.glyph"), make("p.tx", make("strong", "No alarm"), make("span.why"))));
   node.dataset.key = "calm";
   mark(node.firstChild, "level", "good");
-  say(node.querySelector(".why"), over.length ? `the last one: ${formerly(over[0])}` : "none so far");
+  say(node.querySelector(".why"), over.length ? `last alarm: ${formerly(over[0])}` : "no earlier alarm");
 }
 
 const ICONS = { bad: "icon_bad.svg", ask: "icon_ask.svg", wait: "icon_wait.svg" };
@@ -41,7 +41,7 @@ export function showAlarms(view, time, lost) {
   const now = time ?? 0;
   const told = inOrder(view?.alarms ?? []), over = view?.alarms_over ?? [];
   const since = view ? view.now : now;
-  const shown = lost ? [{ ...LOST, since, why: view ? `all here is as it was at ${timeOfDay(view.now)}` : "looking for it" }, ...told] : told;
+  const shown = lost ? [{ ...LOST, since, why: view ? `last data at ${timeOfDay(view.now)}` : "connecting" }, ...told] : told;
   if (!shown.length && view) calm(over);
   else list(cards, shown.slice(0, SHOWN), (alarm) => alarm.id, alarmCard, (node, alarm) => fillCard(node, alarm, now));
   say(all, shown.length ? `All ${shown.length}` : "History");

@@ -42,7 +42,7 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
   dialog.querySelector(".scroll").hidden = !changes.length;
   dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", spoken(warning))));
   yes.textContent = word;
-  no.textContent = other || "Leave it";
+  no.textContent = other || "Cancel";
   return answered(dialog, [[no, other ? false : null], [yes, true]]);
 }
 
@@ -84,11 +84,11 @@ async function settle() {
   const isOther = (path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path);
   const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter(isOther);
   const answer = await reviewed({
-    title: "Somebody else has saved settings meanwhile",
-    text: "Theirs is in use now. Go on from it: your own changes are put over it, and you can still edit them.",
+    title: "Another operator has saved settings",
+    text: "Their settings are in use now. If you keep your changes, they are added to these settings, and you can still edit them.",
     columns: ["Before", "Theirs", "Yours"],
     changes: paths.map((path) => [path, was.get(path), theirs.get(path), own.get(path)]),
-    word: "Go on with mine over theirs",
+    word: "Keep mine on top of theirs",
     other: "Drop mine",
   });
   if (answer !== null) beginFrom(newer, answer ? merged(base, mine, newer.settings) : undefined);
@@ -99,7 +99,7 @@ export async function save(settings) {
   const { tag, base } = draft;
   isBusy = true;
   link = "";
-  report("It is being applied.");
+  report("The box applies the changes.");
   try {
     const { changes } = await insist(() => post("/adit/settings", { settings, base: tag }));
     link = newAddress(settings, base);
@@ -111,7 +111,7 @@ export async function save(settings) {
     if (said) await refresh();
     if (link) report("The page has moved to");
     else if (isDone) report("Applied.");
-    else report(said ? said.trouble || "It was taken back." : "The box does not answer.");
+    else report(said ? said.trouble || "The change was taken back." : "The box does not answer.");
     return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();
@@ -135,7 +135,7 @@ export async function apply() {
   await refresh().catch(() => {});
   if (draft.newer) await settle();
   const { errors, changes, warnings, trouble } = await check();
-  if (trouble) return report(`${trouble} What you typed is kept.`), false;
+  if (trouble) return report(`${trouble} Your changes are kept.`), false;
   if (errors.length) return goTo(errors[0]), false;
   const settings = structuredClone(draft.settings);
   const yes = await reviewed({ title: "Apply these changes?", changes: fromTo(changes), warnings, word: "Apply" });
@@ -160,8 +160,8 @@ function errorLink(error) {
 
 function described() {
   const { errors, changes, trouble } = findings;
-  if (trouble) return `${trouble} What you typed is kept, and checked once it does.`;
-  if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to mend before it can be applied.`;
+  if (trouble) return `${trouble} Your changes are kept, and checked when it answers.`;
+  if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to correct before you can apply.`;
   return `${changes.length === 1 ? "1 change" : `${changes.length} changes`} not yet applied.`;
 }
 
@@ -201,22 +201,22 @@ function reportFile(text, { isBad = true, errors = [] } = {}) {
 }
 
 async function readFile(file) {
-  if (file.size > MOST) throw new Error("That is too long for a settings file.");
+  if (file.size > MOST) throw new Error("The file is too long for a settings file.");
   try {
     return JSON.parse(await file.text());
   } catch {
-    throw new Error("That is not JSON, so no settings file.");
+    throw new Error("The file is not JSON, so it is not a settings file.");
   }
 }
 
 async function takeFile(file) {
   const settings = await readFile(file);
   const { errors, changes, warnings } = await post("/adit/settings/check", { settings });
-  if (errors.length) return reportFile("Nothing was applied: the file has errors.", { errors });
-  if (!changes.length) return reportFile("Nothing to apply: the box runs with the same settings.");
-  const text = differs() ? "What you typed and did not apply is dropped." : "";
+  if (errors.length) return reportFile("The file was not applied, because it has errors.", { errors });
+  if (!changes.length) return reportFile("The box already uses the settings in this file.");
+  const text = differs() ? "Your changes that are not applied are dropped." : "";
   const yes = await reviewed({ title: `Apply ${file.name}?`, text, changes: fromTo(changes), warnings, word: "Apply" });
-  if (!yes) return reportFile("Nothing was applied.");
+  if (!yes) return reportFile("The file was not applied.");
   reportFile("");
   if (await save(settings)) reportFile("Applied.", { isBad: false });
 }

@@ -13,9 +13,12 @@ export function arrival(row) {
   return { level: row.level, word };
 }
 
-/** Is every map arriving? The box's word; `isDrawn`: maps came before it restarted. */
-export function overall({ level, what, why }, isDrawn = false) {
-  return { level, word: what, reason: isDrawn && what === "No map yet" ? "none came since the box restarted" : why };
+const isMap = ({ kind }) => kind === "grid" || kind === "cloud";
+
+/** Is every map arriving? The box's word. If maps came only before it restarted, the map is drawn, but no activity tells of them. */
+export function overall({ verdict: { level, what, why }, activities, map_version: version }) {
+  const isOfBefore = level === "quiet" && version > 0 && !activities.some(isMap);
+  return { level, word: what, reason: isOfBefore ? "no map came since the box restarted" : why };
 }
 
 function gained({ score_change, report_status }) {
@@ -33,7 +36,7 @@ export function life(report) {
     case "in_doubt": return report.asking ? { level: "wait", word: "in doubt, asking" } : { level: "ask", word: "in doubt" };
     case "rejected": return { level: "bad", word: "rejected" };
     case "answered": return gained(report);
-    case "settled": return report.reconciled ? gained(report) : { level: "quiet", word: "called done" };
+    case "settled": return report.reconciled ? gained(report) : { level: "quiet", word: "settled" };
     case "withdrawn": return { level: "quiet", word: report.same_as ? `same as #${report.same_as}` : "withdrawn" };
     default: return { level: "quiet", word: report.state };
   }
@@ -56,7 +59,7 @@ export function endpoint(row, view) {
   const trouble = troubleOf(view, row.name);
   if (trouble) return trouble;
   if (!row.connected) return { level: "wait", word: "not connected" };
-  if (row.trouble) return { level: "wait", word: "trying again" };
+  if (row.trouble) return { level: "wait", word: "retrying" };
   return row.last_status >= 400 ? { level: "wait", word: "connected" } : { level: "good", word: "connected" };
 }
 

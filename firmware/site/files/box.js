@@ -19,7 +19,7 @@ export function offerBundle() {
   button.addEventListener("click", async () => {
     button.disabled = true;
     outcome.dataset.bad = false;
-    outcome.textContent = "It is being packed.";
+    outcome.textContent = "The box packs the bundle.";
     try {
       const file = await getFile("/adit/bundle");
       save(file);

@@ -19,10 +19,10 @@ function consequences({ reports, run_number }) {
   return [
     `Run ${run_number} ends, and a new one begins.`,
     waiting.length
-      ? `What waits is held, and goes only when you send it: ${named(waiting)}. Only what was posted in the last 10 s goes on into the new run.`
-      : "No report waits to be sent.",
-    doubts.length ? `What is under way or in doubt stays for you to judge: ${named(doubts)}.` : "",
-    "Map, tracks and markers begin blank. The box notices most new runs by itself: this is for those it cannot.",
+      ? `Queued reports are held until you send them: ${named(waiting)}. Reports posted in the last 10 s are sent in the new run.`
+      : "No report is queued.",
+    doubts.length ? `Reports in flight or in doubt stay for you to decide: ${named(doubts)}.` : "",
+    "Map, tracks and markers begin blank. The box notices most new runs by itself. Use this if it did not.",
   ].filter(Boolean).join(" ");
 }
 

@@ -7,9 +7,9 @@ const named = (report) => `#${report.number} ${clip(report.type, 40)}`;
 const stands = (report, now) => `${life(report).word}, ${ago(now - report.received)}`;
 
 function cost({ run }, isSame) {
-  if (isSame) return { key: "cost", level: "good", text: "Sending it again changes nothing and costs nothing." };
-  if (!run) return { key: "cost", level: "wait", text: "Spends a report; how many are left is not known." };
-  if (run.remaining_reports <= 0) return { key: "cost", level: "bad", text: "No report is left: it will score nothing." };
+  if (isSame) return { key: "cost", level: "good", text: "The box sends the same report only once. This spends no report." };
+  if (!run) return { key: "cost", level: "wait", text: "Spends a report. The number of reports left is not known." };
+  if (run.remaining_reports <= 0) return { key: "cost", level: "bad", text: "No report is left, so this report cannot score." };
   return { key: "cost", level: run.remaining_reports > 5 ? "good" : "wait", text: `Spends 1 of the ${run.remaining_reports} reports left.` };
 }
 
@@ -24,9 +24,9 @@ export function notesOn(view, report) {
   const same = sameAs(view, report);
   const near = nearTo(view, report).filter(({ other }) => other.number !== same?.number);
   return [
-    ...(same ? [{ key: "same", level: "wait", text: `Reported already, at the very same place: ${named(same)}, ${stands(same, view.now)}.` }] : []),
+    ...(same ? [{ key: "same", level: "wait", text: `Already reported at the same place: ${named(same)}, ${stands(same, view.now)}.` }] : []),
     ...near.map(({ other, metres }) => ({ key: other.number, level: "wait",
-      text: `${named(other)} is ${metres.toFixed(1)} m away (${stands(other, view.now)}): it may be the same one.` })),
+      text: `${named(other)} is ${metres.toFixed(1)} m away (${stands(other, view.now)}). It may be the same artifact.` })),
     ...(same || near.length ? [] : [none(view, report)]),
     cost(view, Boolean(same)),
   ];

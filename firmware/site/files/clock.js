@@ -16,9 +16,9 @@ async function compare() {
 }
 
 const SOURCES = {
-  none: "nobody set it since the box started",
-  last_known: "it went on from the last time known",
-  robots: "set by the robots’ stamps",
+  none: "not set since the box started",
+  last_known: "continued from the last known time",
+  robots: "set by the robots’ time stamps",
   command_post: "set by the Command Post’s answers",
   chip: "set by the box’s own clock",
   operator: "set by an operator",
@@ -39,8 +39,8 @@ export async function offerClock() {
   if (!box.managed || box.is_kept || Math.abs(ahead) <= MOST) return false;
   const sure = await confirmed({
     title: "Set the box’s clock?",
-    text: `The box has ${utc(box.now)} UTC, which is ${age(Math.abs(ahead))} ${ahead > 0 ? "ahead of" : "behind"} this device. Reports, stamps and who is logged in stay as they are.`,
-    word: "Set it",
+    text: `The box’s time is ${utc(box.now)} UTC, ${age(Math.abs(ahead))} ${ahead > 0 ? "ahead of" : "behind"} this device. Reports, time stamps and logins do not change.`,
+    word: "Set the clock",
   });
   if (!sure) {
     sessionStorage.setItem(SAID_NO, "1");

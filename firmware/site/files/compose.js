@@ -35,7 +35,7 @@ function go(next) {
   at("types").hidden = step !== "what";
   at("place").hidden = step !== "where";
   at("check").hidden = step !== "check";
-  say(panel.querySelector(".count"), { what: "what is it?", where: type, check: "check, then send" }[step]);
+  say(panel.querySelector(".count"), { what: "choose a type", where: type, check: "check, then send" }[step]);
   for (const { name, button } of types) button.setAttribute("aria-pressed", String(name === type));
   complain(null);
   // What is checked is what is sent: a tap on the map moves nothing then.
@@ -55,7 +55,7 @@ function typed() {
     const text = field(axis).value.trim().replace("−", "-");
     position[axis] = Number(text);
     if (!/^[-+]?(\d+\.?\d*|\.\d+)$/.test(text) || !Number.isFinite(position[axis])) {
-      throw Object.assign(new Error(`${axis}: expected metres, as in 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
+      throw Object.assign(new Error(`${axis}: expected metres, such as 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
     }
   }
   return position;
@@ -80,8 +80,8 @@ function put({ x, y }) {
     .sort((a, b) => a.apart - b.apart);
   const known = nearest && nearest.apart < ROBOT_NEAR;
   if (known) field("z").value = nearest.z.toFixed(2);
-  say(at("height"), known ? `z is ${clip(nearest.name, 40)}’s, ${nearest.apart.toFixed(0)} m from there: correct it where it differs.`
-    : field("z").value ? "" : "No robot is near: type how high it lies.");
+  say(at("height"), known ? `z is from ${clip(nearest.name, 40)}, ${nearest.apart.toFixed(0)} m away. Correct z if it differs.`
+    : field("z").value ? "" : "No robot is near. Type z, the height.");
   complain(null);
   if (step === "where" && isPlaced()) check();
 }
@@ -124,7 +124,7 @@ async function send() {
   busy = at("send").disabled = true;
   try {
     const answer = await post("/adit/reports", { type, x, y, z, resubmit });
-    tell(answer.report, before.has(answer.report) ? "The same was reported before: this is it." : "Taken; it is sent in its turn.");
+    tell(answer.report, before.has(answer.report) ? "The same report was sent before. This is it." : "Accepted and queued.");
     drop();
     revealSoon(answer.report);
   } catch (error) {

@@ -6,16 +6,16 @@ import { blame, labelled } from "./field.js";
 import { post } from "./session.js";
 import { tryCourse } from "./trial.js";
 
-const COMMON = { scoring: "Scoring endpoint’s token", mapping: "Mapping endpoint’s token", team: "The team’s own token" };
+const COMMON = { scoring: "Scoring endpoint’s token", mapping: "Mapping endpoint’s token", team: "Team’s token" };
 const HINTS = {
-  scoring: "Given by the Command Post’s staff; reports and the run’s status need it.",
-  mapping: "Given by the Command Post’s staff; maps, states and markers need it.",
-  team: "For scripts and stations of the team, if these are to have one of their own.",
+  scoring: "From the Command Post’s staff, for reports and the run’s status.",
+  mapping: "From the Command Post’s staff, for maps, states and markers.",
+  team: "For the team’s scripts and stations, if they use their own token.",
 };
 const WRONG = "expected 1 to 256 visible ASCII characters";
 const ofCourse = (name) => name.startsWith("course.");
-const labelOf = (name) => COMMON[name] ?? name.replace(/^course\.(.+)\.(\w+)$/, "Course $1: $2 token of its own");
-const hintOf = (name) => HINTS[name] ?? "Without one, the common token counts.";
+const labelOf = (name) => COMMON[name] ?? name.replace(/^course\.(.+)\.(\w+)$/, "Course $1: own $2 token");
+const hintOf = (name) => HINTS[name] ?? "Without it, the box uses the common token.";
 
 let readOnly = false;
 
@@ -38,8 +38,9 @@ async function send(node, name, token) {
 }
 
 async function removeIt(node, name) {
-  const text = "The one that the box was given, if any, counts then; without one the Command Post lets nothing in.";
-  if (await reviewed({ title: `Remove “${labelOf(name)}”?`, text, word: "Remove it" })) await send(node, name, null);
+  const rejects = ENDPOINTS.includes(name) ? " Without a token the Command Post rejects its messages." : "";
+  const text = `The box then uses the token that it came with${ofCourse(name) ? " or the common token" : ", if any"}.${rejects}`;
+  if (await reviewed({ title: `Remove “${labelOf(name)}”?`, text, word: "Remove" })) await send(node, name, null);
 }
 
 function create(name) {
@@ -65,7 +66,7 @@ function create(name) {
     event.preventDefault();
     const token = input.value.trim();
     if (token) send(node, name, token);
-    else blame(field, "nothing is typed yet");
+    else blame(field, "type a token first");
   };
   input.addEventListener("input", () => blame(field, /^[!-~]{0,256}$/.test(input.value.trim()) ? "" : WRONG));
   return node;
@@ -77,7 +78,7 @@ function update(node, name) {
   const level = set ? (odd ? "wait" : "good") : needed ? "bad" : "quiet";
   node.state.dataset.level = level;
   if (!node.state.firstChild) node.state.append(make("span.badge"), make("span.odd"));
-  badge(node.state.firstChild, level, set ? "is set" : needed ? "is missing" : "none");
+  badge(node.state.firstChild, level, set ? "is set" : needed ? "is missing" : "not set");
   say(node.state.lastChild, odd && ` ${odd}`);
   const [show, remove, setIt] = node.buttons;
   show.hidden = setIt.hidden = readOnly;
@@ -109,7 +110,7 @@ const nameOf = (course) => (course ? `Course ${course}` : "No course");
 const at = ({ address, port }) => `${address.includes(":") ? `[${address}]` : address}:${port}`;
 const postOf = (settings, name) => (name ? settings.courses.find((course) => course.name === name) : settings.command_post);
 const tokenOf = (name, endpoint) =>
-  draft.tokens[`course.${name}.${endpoint}`] ? "its own" : draft.tokens[endpoint] ? "the common one" : "missing";
+  draft.tokens[`course.${name}.${endpoint}`] ? "own" : draft.tokens[endpoint] ? "common" : "missing";
 
 async function switchTo(name) {
   const outcome = document.querySelector("#step-courses > .outcome");
@@ -120,7 +121,7 @@ async function switchTo(name) {
   const settings = { ...base, command_post: { ...base.command_post, course: name } };
   const { warnings } = await insist(() => post("/adit/settings/check", { settings })).catch((error) => ({ warnings: [error.message] }));
   if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch" }))) return;
-  say(outcome, "It is being applied.");
+  say(outcome, "The box switches the course.");
   outcome.dataset.bad = false;
   try {
     await insist(() => post("/adit/course", { name }));
@@ -128,7 +129,7 @@ async function switchTo(name) {
     await insist(refresh);
     const isDone = draft.base.command_post.course === name;
     outcome.dataset.bad = !isDone;
-    say(outcome, isDone ? `${nameOf(name)} is in use.` : "The box does not run with it: it may have been taken back.");
+    say(outcome, isDone ? `${nameOf(name)} is in use.` : `${nameOf(name)} is not in use. The switch may have been taken back.`);
   } catch (error) {
     outcome.dataset.bad = true;
     say(outcome, error.message);
@@ -153,7 +154,7 @@ function updateCourse(node, name) {
   button.hidden = inUse || document.body.dataset.role !== "operator";
   button.disabled = differs();
   button.onclick = () => switchTo(name);
-  tries.setAttribute("aria-label", `Try ${nameOf(name)} before it is switched to`);
+  tries.setAttribute("aria-label", `Try ${nameOf(name)} before you switch to it`);
   tries.hidden = button.hidden;
   tries.onclick = () => tryCourse(name);
 }
@@ -165,7 +166,7 @@ export function showCourses() {
     list(document.getElementById("switch"), ["", ...courses.map(({ name }) => name)], (name) => name, createCourse, updateCourse);
     overruled.hidden = !course;
     overruled.dataset.level = "wait";
-    badge(overruled.firstElementChild, "wait", `Course ${course} is in use: these count again without a course.`);
+    badge(overruled.firstElementChild, "wait", `Course ${course} is in use and overrides these addresses.`);
   };
   onDraft(show);
   show();

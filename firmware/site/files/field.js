@@ -46,7 +46,7 @@ function valueOf(control, { kind }) {
   return (kind === "whole" || kind === "real") && text && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
-const written = (value) => (value === "" ? "nothing" : String(value));
+const written = (value) => (value === "" ? "empty" : String(value));
 const hintOf = ({ meaning, kind, range, required, default: usual }) =>
   `${meaning} ${kind === "flag" ? "" : `Allowed: ${range}. `}${required ? "" : `By default ${written(usual)}.`}`;
 

@@ -17,6 +17,6 @@ export async function showHistory(node, { number, changed }) {
     if (said) node.append(make("p", `Answer: ${clip(said)}`));
   } catch {
     node.dataset.of = ""; // asked for again with the next event
-    node.replaceChildren(make("p", "The box does not give its history."));
+    node.replaceChildren(make("p", "The box does not send the history."));
   }
 }

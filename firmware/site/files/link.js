@@ -19,7 +19,7 @@ function quantities(view, lost) {
   const known = (value) => (lost ? undefined : value);
   return [
     { key: "rate", label: "Sent", value: known(view.sent_mbit), text: mbit(view.sent_mbit), of: `of ${mbit(view.budget_mbit)} Mbit/s`, least: 1, unit: (n) => `${mbit(n)} Mbit/s` },
-    { key: "queue", label: "Waiting", value: known(view.queued_bytes), text: view.queued_bytes ? bytes(view.queued_bytes) : "empty", least: 1e5, unit: bytes },
+    { key: "queue", label: "Queued", value: known(view.queued_bytes), text: view.queued_bytes ? bytes(view.queued_bytes) : "empty", least: 1e5, unit: bytes },
     ...view.endpoints.map((row) => ({
       key: `delay ${row.name}`, label: `${row.name === "scoring" ? "Scoring" : "Mapping"} answers in`, least: 1, unit: ms,
       value: known(row.connected ? row.answer_ms : null), text: ms(row.connected ? row.answer_ms : null),
@@ -78,6 +78,6 @@ export function sampleLink(view, time, lost) {
     const [now, unit] = node.children[1].children;
     say(now, quantity.value == null ? "–" : quantity.text);
     say(unit, quantity.of ? ` ${quantity.of}` : "");
-    say(node.children[3], `most ${quantity.unit(plot.most())}`);
+    say(node.children[3], `peak ${quantity.unit(plot.most())}`);
   });
 }

@@ -38,7 +38,7 @@ async function ask() {
   rows.prepend(...answer.records.map(row).reverse());
   while (rows.children.length > MOST) rows.lastElementChild.remove();
   empty.hidden = rows.children.length > 0;
-  empty.textContent = text.value || level.value !== "debug" ? "No record matches." : "Nothing yet.";
+  empty.textContent = text.value || level.value !== "debug" ? "No record matches." : "No record yet.";
 }
 
 function startOver() {

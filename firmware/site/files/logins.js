@@ -39,8 +39,8 @@ async function show() {
 }
 
 async function end(each) {
-  const text = each.own ? "You have to log in again after that." : "Whoever it is has to log in again.";
-  if (!(await confirmed({ title: `End session ${each.number}, ${each.role}?`, text, word: "End it" }))) return;
+  const text = each.own ? "You must log in again." : "That user must log in again.";
+  if (!(await confirmed({ title: `End session ${each.number}, ${each.role}?`, text, word: "End" }))) return;
   trouble.textContent = "";
   try {
     await post(each.own ? "/adit/logout" : `/adit/sessions/${each.number}/end`);

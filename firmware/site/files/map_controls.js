@@ -67,8 +67,8 @@ export function showMap(view, now) {
   showTools(view);
   const { count, leftOut, thinned } = map.markers();
   const words = [
-    leftOut ? `Of the markers the newest ${count} are shown; ${leftOut} older ones are not.` : "",
-    thinned ? `Of the points of ${thinned === 1 ? "one marker" : `${thinned} markers`} only some are drawn.` : "",
+    leftOut ? `The map shows the newest ${count} markers and leaves out ${leftOut}.` : "",
+    thinned ? `Only some points of ${thinned === 1 ? "one marker" : `${thinned} markers`} are drawn.` : "",
   ];
   say(section.querySelector(".leftout"), words.filter(Boolean).join(" "));
 }

@@ -21,8 +21,8 @@ export class Ruler {
   get words() {
     if (!this.isOn) return "";
     const [from, to] = this.#points;
-    if (!from) return "Tap where to measure from.";
-    if (!to) return `From ${metres(from.x)}, ${metres(from.y)} m. Tap where to.`;
+    if (!from) return "Tap the first point.";
+    if (!to) return `From ${metres(from.x)}, ${metres(from.y)} m. Tap the second point.`;
     const along = to.x - from.x, up = to.y - from.y;
     return `${Math.hypot(along, up).toFixed(2)} m (x ${metres(along)}, y ${metres(up)})`;
   }

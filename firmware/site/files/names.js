@@ -1,7 +1,7 @@
 // What a setting is called: by the label of its field, or in the words of its key.
 
 const labels = new Map();
-const LISTS = { "team.listen": "Served at", robots: "Robot", courses: "Course" };
+const LISTS = { "team.listen": "Listen address", robots: "Robot", courses: "Course" };
 const UNITS = { ms: "ms", mbit: "Mbit/s", hz: "a second", bytes: "bytes", metres: "m", seconds: "s" };
 
 const KNOWN = new Set(["command_post", "team", "robots", "courses", "network", "reports", "queues", "runs", "alarms", "rules", "panel"]);

@@ -12,10 +12,10 @@ const state = form.querySelector(".state"), outcome = form.querySelector(".outco
 const pendingPlace = document.getElementById("pending"), change = form.querySelector(".try");
 const MODE = "team.mode";
 const FIELDS = [
-  [MODE, "Mode", "By DHCP, or with a link-local address alone, the box is found by its name: adit.local on the appliance."],
-  ["team.address", "Address", "Robots and stations post here: 10.0.0.1/24."],
-  ["command_post.addresses", "Addresses", "The box’s own there, not an endpoint’s: 10.100.1.10/24; several with commas."],
-  ["command_post.gateway", "Gateway", "The way to endpoints outside of these subnets; empty: none."],
+  [MODE, "Mode", "With dhcp or link-local, find the box by its name: adit.local on the appliance."],
+  ["team.address", "Address", "Robots and stations post to this address, such as 10.0.0.1/24."],
+  ["command_post.addresses", "Addresses", "The box’s own addresses, not an endpoint’s, such as 10.100.1.10/24. Commas separate them."],
+  ["command_post.gateway", "Gateway", "The router to endpoints outside these subnets. Empty: no gateway."],
 ];
 const fields = new Map();
 let isTyped = false, asked = 0, timer = 0;
@@ -56,7 +56,7 @@ function typed() {
   showMode();
   report("");
   clearTimeout(timer);
-  timer = setTimeout(() => check().catch((error) => report(`${error.message} What you typed is kept.`, true)), PAUSE);
+  timer = setTimeout(() => check().catch((error) => report(`${error.message} Your changes are kept.`, true)), PAUSE);
 }
 
 async function tryIt() {
@@ -66,10 +66,10 @@ async function tryIt() {
   if (findings.errors.length) {
     return fieldAt(findings.errors[0].path)?.control.focus();
   }
-  if (!findings.changes.length) return report("The box has these addresses already.");
+  if (!findings.changes.length) return report("The box already has these addresses.");
   const yes = await reviewed({
     title: "Change the addresses for now?",
-    text: "It takes itself back unless it is confirmed in time, from the new address.",
+    text: "The box returns to the old addresses unless you confirm in time from the new address.",
     changes: fromTo(findings.changes),
     warnings: findings.warnings,
     word: "Change for now",
@@ -97,7 +97,7 @@ function showPending(network) {
   if (!pending) return;
   say(pendingPlace.querySelector(".left"), left(network));
   const url = `${pending.page}/setup#network`, where = pendingPlace.querySelector(".where"), isHere = new URL(url).host === location.host;
-  const words = isHere ? "You are at the new address: confirm, and it is kept." : "Open the page at its new address and confirm it there: ";
+  const words = isHere ? "You are at the new address. Confirm to keep it." : "Open the page at the new address and confirm there: ";
   if (where.dataset.url === url) return;
   where.dataset.url = url;
   where.replaceChildren(words, ...(isHere ? [] : [Object.assign(make("a", url), { href: url })]));
@@ -112,7 +112,7 @@ function lastOf({ last, last_why: why }) {
 /** Shows what the box says of its network. */
 export function showNetwork(network) {
   const isOperator = document.body.dataset.role === "operator";
-  say(state, network.managed ? lastOf(network) : `The addresses are not set by this page: ${spoken(network.why)}`);
+  say(state, network.managed ? lastOf(network) : `This page cannot change the addresses: ${spoken(network.why)}`);
   showPending(network);
   const barred = !network.managed || !isOperator || network.pending !== null;
   change.hidden = !network.managed || !isOperator;

@@ -65,16 +65,16 @@ function focus(tab, selector) {
 }
 listenToKeys(
   [
-    { key: "n", text: "a new report", act: compose },
-    { key: "r", text: "to the reports", act: () => focus("reports", "#reports .open") },
-    { key: "m", text: "to the map", act: () => focus("map", "#map .frame canvas") },
-    { key: "l", text: "the map as it is now", act: () => shownTime.goLive() },
-    { key: ",", text: "the map 10 s earlier", act: () => shownTime.step(-10) },
-    { key: ".", text: "10 s later", act: () => shownTime.step(10) },
-    { key: "<", text: "1 min earlier", act: () => shownTime.step(-60) },
-    { key: ">", text: "1 min later", act: () => shownTime.step(60) },
-    { key: "p", text: "play the run from there, or pause", act: () => shownTime.play(!shownTime.isPlaying()) },
-    { key: "0", text: "all of the map", act: () => map.fit() },
+    { key: "n", text: "new report", act: compose },
+    { key: "r", text: "go to the reports", act: () => focus("reports", "#reports .open") },
+    { key: "m", text: "go to the map", act: () => focus("map", "#map .frame canvas") },
+    { key: "l", text: "show the map now", act: () => shownTime.goLive() },
+    { key: ",", text: "show the map 10 s earlier", act: () => shownTime.step(-10) },
+    { key: ".", text: "show the map 10 s later", act: () => shownTime.step(10) },
+    { key: "<", text: "show the map 1 min earlier", act: () => shownTime.step(-60) },
+    { key: ">", text: "show the map 1 min later", act: () => shownTime.step(60) },
+    { key: "p", text: "play the run, or pause", act: () => shownTime.play(!shownTime.isPlaying()) },
+    { key: "0", text: "show the whole map", act: () => map.fit() },
   ],
-  [["← ↑ ↓ →", "on the map: move it"], ["+ −", "on the map: zoom"], ["F", "on the map: all of it"], ["Esc", "close"]],
+  [["← ↑ ↓ →", "on the map: move"], ["+ −", "on the map: zoom"], ["F", "on the map: show the whole map"], ["Esc", "close"]],
 );

@@ -2,9 +2,9 @@
 import { post } from "./session.js";
 
 const DONE = {
-  operator: "Changed. Whoever else was logged in has to log in again.",
-  viewer: "Set. Whoever was logged in as viewer has to log in again.",
-  removed: "Removed: nobody can log in as viewer.",
+  operator: "Changed. All other operators must log in again.",
+  viewer: "Set. All viewers must log in again.",
+  removed: "Removed. Viewers cannot log in.",
 };
 
 /** Does one action of a form, and says what came of it. */

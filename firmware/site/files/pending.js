@@ -10,7 +10,7 @@ let sign = null, last = null, hear = () => {};
 /** Until the box takes it back: "73 s left". */
 export function left({ pending }) {
   const seconds = Math.ceil(pending.until - boxNow());
-  return seconds > 0 ? `${seconds} s left` : "it is being taken back";
+  return seconds > 0 ? `${seconds} s left` : "taking it back";
 }
 
 function show() {

@@ -4,7 +4,7 @@ import { badge, list, make, mark, say } from "./dom.js";
 const SIDES = { team: "Team’s side", command_post: "Command Post’s side" };
 const FACTS = [
   ["Addresses", ({ addresses }) => addresses.join(", ") || "none"],
-  ["Name", ({ side, name }) => name || (side === "team" ? "none" : "none on this side: nothing listens there")],
+  ["Name", ({ side, name }) => name || (side === "team" ? "none" : "none: the box does not listen on this side")],
   ["MAC", ({ mac }) => mac || "none"],
 ];
 

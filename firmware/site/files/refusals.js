@@ -1,12 +1,14 @@
 // What this box refused to its senders, newest first, with the sentence that they got.
-import { cureOf, wayTo } from "./cure.js";
 import { barred } from "./actions.js";
 import { list, make, say } from "./dom.js";
 import { ago, clip } from "./words.js";
 
-/** For who may change settings: the way to the one that would have had it taken. */
-function showCure(link, sentence) {
-  const key = barred() ? "" : cureOf(sentence);
+/** A list has a step of its own. */
+const wayTo = (key) => (key.includes("[") ? `/setup#${key.split("[")[0]}` : `/setup?setting=${key}#all`);
+
+/** For an operator: the way to the setting that can prevent this refusal, if the box names one. */
+function showCure(link, setting) {
+  const key = barred() ? "" : setting;
   link.hidden = !key;
   if (!key || link.dataset.of === key) return;
   link.dataset.of = key;
@@ -38,6 +40,6 @@ export function showRefusals(refusals, now) {
     say(sentence, clip(row.sentence, 1200)); // ten of them, where parts of a message were refused
     say(who, `${partsOf(row)}${clip(row.uri, 60)} from ${clip(row.sender, 60)}`);
     say(since, ago(now - row.at));
-    showCure(cure, row.sentence);
+    showCure(cure, row.setting);
   });
 }

@@ -20,7 +20,7 @@ async function judge(row, word) {
   underWay.add(row.number);
   try {
     await post(`/adit/rejected/${row.number}/${word}`);
-    tell(word === "send" ? `${row.number} is sent again when its turn comes.` : `${row.number} is discarded.`);
+    tell(word === "send" ? `${row.number} is queued again.` : `${row.number} is discarded.`);
   } catch (error) {
     tell(clip(error.message));
   } finally {
@@ -42,7 +42,7 @@ function update(node, row, now) {
   const kilobytes = Math.max(1, Math.round(row.bytes / 1000));
   say(what, `${row.number}: ${row.kind} of ${row.robot ? clip(row.robot, 40) : "all"}, ${kilobytes} kB`);
   say(since, ago(now - row.at));
-  say(why, row.replaced ? "Something newer that covers it was sent since." : `${row.status}: ${clip(row.why)}`);
+  say(why, row.replaced ? "A newer message that contains it was sent." : `${row.status}: ${clip(row.why)}`);
   if (row.replaced && send === document.activeElement) giveFocus(discard);
   // Not while it is under way: what is disabled loses the focus.
   discard.disabled = Boolean(barred());

@@ -87,7 +87,7 @@ const nearestOf = (report, view) => (report.position && report.run === view.run_
 /** What else there is to know: the Command Post's words, or why it is where it is. */
 function more(report, nearest) {
   const said = report.report_status && report.report_status !== "scored" ? report.report_status : "";
-  const found = report.reconciled ? "found out from the run’s status" : "";
+  const found = report.reconciled ? "found in the run’s status" : "";
   const near = nearest ? `${nearest.metres.toFixed(1)} m from #${nearest.other.number}, of the same type` : "";
   return [said, found, report.note, near, report.status >= 400 ? `status ${report.status}` : ""].filter(Boolean).join(" · ");
 }
@@ -146,7 +146,7 @@ function update(node, report, view, now) {
   node.dataset.told = "true";
   if (!still.isHeld || own.has(report.number) || !near.firstChild) showNear(near, report, isMore || level === "ask" ? nearest : undefined);
   open.setAttribute("aria-expanded", String(isMore));
-  say(open.lastChild, `More of report ${report.number}`);
+  say(open.lastChild, `Details of report ${report.number}`);
   showActions(actions, report, view, isMore || level === "ask");
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");
@@ -183,7 +183,7 @@ export function showReports(view, now) {
   newer.hidden = still.waiting === 0;
   say(newer, `${still.waiting} new`);
   const asking = mine.filter((report) => life(report).level === "ask").length;
-  showOnTab("reports", asking, "ask", `${asking} wait for your word`);
+  showOnTab("reports", asking, "ask", `${asking} need your decision`);
   rows.hidden = shown.length === 0;
   section.querySelector(".empty").hidden = shown.length > 0;
   say(section.querySelector(".barred"), barred());

@@ -13,13 +13,13 @@ function counts(row) {
   const parts = [`${row.accepted} accepted`, `${row.forwarded} forwarded`];
   if (row.queued && row.kind !== "state") parts.unshift(`${row.queued} queued`);
   for (const what of ["replaced", "merged", "throttled", "failed"]) if (row[what]) parts.push(`${row[what]} ${what}`);
-  if (row.clouds) parts.push(`taken as ${row.clouds}`);
+  if (row.clouds) parts.push(`treated as ${row.clouds}`);
   if (row.precision && row.precision !== "exact") parts.push(`rounded to ${row.precision}`);
   if (row.points_left_out) parts.push(`${row.points_left_out} points left out`);
   if (row.no_valid_point) parts.push(`${row.no_valid_point} without a valid point`);
   if (row.invisible) parts.push(`${row.invisible} invisible (alpha 0)`);
-  if (row.no_room) parts.push(`${row.no_room} refused: too much waits`);
-  if (row.refused_upstream) parts.push(`${row.refused_upstream} refused by the Command Post`);
+  if (row.no_room) parts.push(`${row.no_room} rejected: queue full`);
+  if (row.refused_upstream) parts.push(`${row.refused_upstream} rejected by the Command Post`);
   return parts.join(", ");
 }
 

@@ -49,8 +49,8 @@ export function showRun(view, now, lost) {
   const [label, level] = run ? left(run.remaining_reports) : ["reports left", ""];
   figure("remaining", run ? String(run.remaining_reports) : "–", label, { stale, level });
   const team = run?.current_team ? `${clip(run.current_team, 40)} · ` : "";
-  if (!run) say(at("run-note"), "No word from the Command Post yet");
-  else say(at("run-note"), isStale ? `${team}as the Command Post said ${ago(since)}` : `${team}heard ${ago(since)}`);
+  if (!run) say(at("run-note"), "No answer from the Command Post yet");
+  else say(at("run-note"), isStale ? `${team}last answer ${ago(since)}` : `${team}updated ${ago(since)}`);
 }
 
 /** `lost`: what to say of a box that does not answer, or "". */

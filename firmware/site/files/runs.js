@@ -21,7 +21,7 @@ const pathOf = (run) => `/adit/runs/${encodeURIComponent(run.key)}`;
 const nameOf = (run) => `Run ${run.key}`;
 
 function createRun() {
-  const look = make("button.look", "Look again"), remove = make("button.delete", "Delete");
+  const look = make("button.look", "View"), remove = make("button.delete", "Delete");
   look.type = remove.type = "button";
   const report = make("a.report", "Report");
   report.target = "_blank";
@@ -33,7 +33,7 @@ function updateRun(node, run) {
   const [name, score, times, what, does] = node.children;
   const [look, report, remove] = does.children;
   say(name, run.is_present ? `${nameOf(run)} (now)` : nameOf(run));
-  say(score, run.score === null ? "no score heard" : `score ${run.score}, ${run.remaining_reports} reports left`);
+  say(score, run.score === null ? "no score" : `score ${run.score}, ${run.remaining_reports} reports left`);
   const lasted = run.began > 0 ? `, ${clock(run.last - run.began)}` : "";
   say(times, `${when(run.began || run.last)}${lasted}`);
   say(what, clip([run.team, run.robots.join(", "), bytes(run.bytes)].filter(Boolean).join(" · "), 200));
@@ -60,7 +60,7 @@ async function show() {
   const items = [...byCourse].map(([name, runs]) => ({ name, runs }));
   list(courses, items, ({ name }) => name, createCourse, updateCourse);
   section.querySelector(".empty").hidden = items.length > 0;
-  say(section.querySelector(".kept"), all.trouble ? `Nothing is kept now: ${clip(all.trouble)}` : `All take ${bytes(all.bytes)}.`);
+  say(section.querySelector(".kept"), all.trouble ? `Runs are not kept now: ${clip(all.trouble)}` : `All runs take ${bytes(all.bytes)}.`);
   badge(link, "good", "Live");
 }
 
@@ -76,7 +76,7 @@ async function lookAt(run) {
 }
 
 async function forget(run) {
-  const text = "Its map, tracks and plots are gone for good. Its reports stay in the list of reports.";
+  const text = "This deletes its map, tracks and plots for good. Its reports stay.";
   if (!(await confirmed({ title: `Delete ${nameOf(run).toLowerCase()}?`, text, word: "Delete" }))) return;
   say(trouble, "");
   try {

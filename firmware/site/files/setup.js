@@ -56,7 +56,7 @@ function show() {
   list(place, sections, nameOf, create, (node, section) => update(node, section, errors));
   back.hidden = at === 0;
   next.hidden = at === sections.length - 1;
-  say(next, at === FIRST - 1 ? "To the run" : "Next");
+  say(next, at === FIRST - 1 ? "Go to the run" : "Next");
   showMissing();
 }
 
@@ -126,7 +126,7 @@ async function begin() {
   document.querySelector(".choose").hidden = isViewer;
   leadThrough();
   offerApply();
-  const wanted = new URLSearchParams(location.search).get("setting"); // a way from elsewhere: cure.js
+  const wanted = new URLSearchParams(location.search).get("setting"); // a way from elsewhere: refusals.js
   if (wanted) goTo({ path: wanted });
   followNetwork((network, error) => {
     if (network) showPorts(document.querySelector("#step-network .ports"), network);

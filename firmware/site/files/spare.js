@@ -16,13 +16,13 @@ function say(text, bad = false) {
   outcome.dataset.bad = bad;
 }
 
-const AT_WORK = "A second box can take over from this one, with all that is known of the reports: put this one to rest, carry its export to the spare, and unplug this one. A spare takes in the export here.";
+const AT_WORK = "A spare box can take over from this one with all reports. Start standby on this box, carry its export to the spare, and unplug this box. A spare takes in the export here.";
 
 function noteOf({ rests, why, asks_code: asksCode, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return "This box is taking over.";
-  if (taken) return "Unplug the box that made this export before this one takes over.";
-  if (asksCode) return "An export was taken in. The box that made it shows its code while it rests.";
-  if (rests) return `This box rests: ${why}. It takes nothing and sends nothing until it is woken up.`;
+  if (taken) return "Unplug the box that made this export before this box takes over.";
+  if (asksCode) return "An export was taken in. The box that made it shows the code during its standby.";
+  if (rests) return `This box is on standby: ${why}. It accepts and sends no messages until you wake it up.`;
   return AT_WORK;
 }
 
@@ -33,9 +33,9 @@ function factsOf({ rests, code, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return [];
   if (taken) {
     const { name, version, at, reports, open, post: where, run, left_out: leftOut } = taken;
-    return [["Box", name], ["Adit", version], ["Came to rest", `${whenOf(at)}, by its clock`], ["Reports", `${reports}, ${open} of them not finished`],
+    return [["Box", name], ["Adit", version], ["Standby since", `${whenOf(at)}, by its clock`], ["Reports", `${reports}, ${open} of them not finished`],
       ["Command Post", where], ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"],
-      ...(leftOut.length ? [["Left out", `settings that are not known here: ${leftOut.join(", ")}`]] : [])];
+      ...(leftOut.length ? [["Left out", `settings unknown to this box: ${leftOut.join(", ")}`]] : [])];
   }
   return rests && code ? [["Code", code]] : [];
 }
@@ -92,16 +92,16 @@ async function untilItRests() {
     if (view?.rests && view.code) return;
     await new Promise((resolve) => setTimeout(resolve, 300));
   }
-  throw new Error("The box does not rest yet.");
+  throw new Error("The box is not on standby yet.");
 }
 
 const sure = (title, text, word) => confirmed({ title, text, word });
 
 /** Whether the box was put to rest. */
 async function putToRest() {
-  const text = "From then on this box takes nothing and sends nothing, also after a power cut, until it is woken up. Reports that wait are in the export; maps, states and markers that wait stay here.";
-  if (!(await sure("Put this box to rest?", text, "Rest and export"))) return false;
-  say("The box goes to rest, once what is under way is answered.");
+  const text = "On standby this box accepts and sends no messages, even after a power cut, until you wake it up. The export contains queued reports. Queued maps, states and markers stay here.";
+  if (!(await sure("Start standby?", text, "Start and export"))) return false;
+  say("Standby begins when the messages in flight are answered.");
   await post("/adit/spare/rest");
   await untilItRests();
   return true;
@@ -124,16 +124,16 @@ const DOES = {
   /** Not where nothing could be written: it would rest for nothing. */
   async restToStick() {
     const { stick } = await get("/adit/spare");
-    if (stick.hindrance) return say(`The box is not put to rest: ${stick.hindrance}.`, true);
+    if (stick.hindrance) return say(`The box does not start standby: ${stick.hindrance}.`, true);
     if (await putToRest()) await toStick();
   },
   toStick,
   download,
   async wake() {
-    const text = "Only where no spare took over from it: else a report may be sent twice.";
+    const text = "Only do this if no spare took over from this box. Otherwise a report may be sent twice.";
     if (!(await sure("Wake this box up?", text, "Wake it up"))) return;
     await post("/adit/spare/wake");
-    say("The box goes on.");
+    say("The standby has ended.");
   },
   async take() {
     if (!file.files[0]) return say("Choose the export first.", true);
@@ -142,10 +142,10 @@ const DOES = {
     say("");
   },
   async over() {
-    const text = "If the box that made the export is plugged in still, or was woken up since, a report may be sent twice.";
+    const text = "If the box that made the export is still plugged in, or was woken up since, a report may be sent twice.";
     if (!(await sure("Is the first box unplugged?", text, "It is: take over"))) return;
     await post("/adit/spare/take-over", { unplugged: true });
-    say("This box takes over, with the settings of the first. Then give it that one's addresses and cables.");
+    say("This box takes over with the settings of the first box. Then give it the first box’s addresses and cables.");
   },
   async forget() {
     await post("/adit/spare/forget");

@@ -15,7 +15,7 @@ const DOING = {
 function wordOf({ doing, refusal, written, hindrance }, rests) {
   if (doing) return { text: DOING[doing] ?? sentence(doing) };
   if (refusal) return { text: sentence(refusal), bad: true };
-  if (rests && written) return { text: `The export is on the stick and was read back: ${written}. The stick may be unplugged. Note the code, and unplug this box before the spare takes over.` };
+  if (rests && written) return { text: `The export is on the stick and was read back: ${written}. You can unplug the stick. Note the code, and unplug this box before the spare takes over.` };
   return { text: rests && hindrance ? sentence(hindrance) : "" };
 }
 

@@ -7,10 +7,10 @@ import { get, post } from "./session.js";
 const EVERY = 500; // ms
 const NAMES = {
   link: "Cable and link",
-  address: "Nobody else has the box’s address",
+  address: "No other machine has the box’s address",
   cables: "Each cable is in its port",
   reach: "The endpoint answers",
-  token: "The token is taken",
+  token: "The token is accepted",
   clock: "The clocks agree",
 };
 const LEVELS = { waiting: "quiet", running: "ask", good: "good", bad: "bad", skipped: "quiet" };
@@ -47,11 +47,11 @@ function update(node, { name, address, steps }) {
 
 /** What came of it, in a sentence. */
 function verdictOf(states, { running, applied }) {
-  const how = applied ? "No report is spent." : "The run goes on, and no report is spent.";
-  if (running) return `${applied ? "It is running" : "It is being tried"}. ${how}`;
+  const how = applied ? "It spends no report." : "The run continues, and no report is spent.";
+  if (running) return `The test is running. ${how}`;
   const bad = states.filter((state) => state === "bad").length;
   const verdict = bad ? `${bad} of ${states.length} steps failed.` : states.includes("good") ? "All is well." : "";
-  return verdict && `${verdict} ${applied ? "No report was spent." : "Nothing is applied yet, and no report was spent."}`;
+  return verdict && `${verdict} ${applied ? "No report was spent." : "These values are not applied yet. No report was spent."}`;
 }
 
 function report(place, text, isBad) {
@@ -101,7 +101,7 @@ async function begin(where, body) {
   isRunning = true;
   begun = where;
   barTries();
-  report(places.get(where), "It begins.", false);
+  report(places.get(where), "The test begins.", false);
   places.get(where).scrollIntoView({ block: "start" }); // its steps come into sight above the bar of what was typed
   try {
     await post("/adit/test", body);

@@ -4,11 +4,11 @@ import { get, oneAtATime, post } from "./session.js";
 
 const restartPlace = document.getElementById("restart");
 const [restartNote, restarted] = restartPlace.querySelectorAll("p"), restart = restartPlace.querySelector("button");
-const MEANING = "It takes about a minute. Robots that post meanwhile have to post again; what the box has taken is kept.";
+const MEANING = "The restart takes about a minute. Robots must post again what they post meanwhile. Reports stay; queued maps, states and markers are lost.";
 
-/** Where the box cannot restart itself it says why, and what to do. */
+/** If the box cannot restart itself, it says why, and what to do. */
 function showRestart({ managed, why, doing }, operator) {
-  restartNote.textContent = managed ? MEANING : `This page cannot restart the box (${why.split(":")[0]}). Switch it off and on.`;
+  restartNote.textContent = managed ? MEANING : `This page cannot restart the box: ${why}. Switch the box off and on.`;
   restart.hidden = !operator || !managed;
   restart.disabled = Boolean(doing);
   if (doing === "restarting") restarted.textContent = "The box is restarting.";
@@ -40,7 +40,7 @@ const [goBack, stay] = strayed.querySelectorAll("button");
 /** Another slot runs than the one that was good last: why, and both ways on. */
 function showStray({ stray, slot, doing }, operator) {
   strayed.hidden = !stray;
-  whyStrayed.textContent = stray ? `Another slot is running: ${stray}.` : "";
+  whyStrayed.textContent = stray ? `An unexpected slot is running: ${stray}.` : "";
   for (const button of [goBack, stay]) button.hidden = !operator || Boolean(doing);
   stay.textContent = `Stay with slot ${slot}`;
 }
@@ -48,7 +48,7 @@ function showStray({ stray, slot, doing }, operator) {
 const goBackIt = () => restartBy("/adit/update/back", { title: "Go back to the slot that was good last?", text: MEANING, word: "Go back" }, leaving, "The box is restarting.");
 
 async function stayIt() {
-  const text = "The version that runs is then the one that the box starts, and goes back to after an update that fails.";
+  const text = "The box then starts the version that runs now, and returns to it if an update fails.";
   if (!(await confirmed({ title: `${stay.textContent}?`, text, word: "Stay" }))) return;
   await post("/adit/update/stay").then(() => (leaving.textContent = ""), (error) => {
     leaving.textContent = error.message;
@@ -56,7 +56,7 @@ async function stayIt() {
   });
 }
 
-const STAGES = { installed: "waits for a restart", good: "came up healthy" };
+const STAGES = { installing: "is being installed", interrupted: "was interrupted", installed: "is used after a restart", left: "was left", good: "came up healthy" };
 
 export async function offerUpdate(operator) {
   const section = document.getElementById("update"), bar = section.querySelector("progress");

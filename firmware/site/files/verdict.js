@@ -5,7 +5,7 @@ import { clip } from "./words.js";
 
 /** The answer in a few words, and why. */
 export function showVerdict(view, now, lost) {
-  const { level, word, reason } = lost ? { level: "bad", word: "Unknown", reason: "the box does not answer" } : overall(view.verdict, view.map_version > 0);
+  const { level, word, reason } = lost ? { level: "bad", word: "Unknown", reason: "the box does not answer" } : overall(view);
   const node = document.getElementById("arriving");
   mark(node, "level", level);
   badge(node, level, clip(word, 60));

@@ -65,7 +65,7 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await row(page, "robot_2").waitFor({ state: "detached" });
     await counted(page, 3);
     await focusIs(page, `#rejected li[data-key="${third}"] .send`);
-    await page.locator("#rejected .said", { hasText: "is sent again when its turn comes" }).waitFor();
+    await page.locator("#rejected .said", { hasText: "is queued again" }).waitFor();
 
     await press(button(page, "robot_3", "Discard"));
     await row(page, "robot_3").waitFor({ state: "detached" });
@@ -90,11 +90,12 @@ for (const [hand, { options, press }] of Object.entries(HANDS)) {
     await send(made, "robot_2", [100, 0, 100, 0]);
     await until(async () => (await rejectedOf(made)).some(({ robot, replaced }) => robot === "robot_2" && replaced), "it to be replaced");
     const number = await numberOf(page, "robot_2");
+    const refused = page.waitForResponse((answer) => answer.url().endsWith(`/adit/rejected/${number}/send`));
     await press(button(page, "robot_2", "Send again"));
-    await page.locator("#rejected .said", { hasText: "a newer message that contains it was delivered since" }).waitFor();
+    await page.locator("#rejected .said", { hasText: await (await refused).json() }).waitFor();
     await focusIs(page, `#rejected li[data-key="${number}"] .send`);
     await page.evaluate(() => (globalThis.deaf = false));
-    await row(page, "robot_2").getByText("Something newer that covers it was sent since.").waitFor();
+    await row(page, "robot_2").getByText("A newer message that contains it was sent.").waitFor();
     await counted(page, 3);
     await focusIs(page, `#rejected li[data-key="${number}"] .discard`);
     assert.ok(await button(page, "robot_2", "Send again").isDisabled());

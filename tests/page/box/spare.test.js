@@ -35,14 +35,14 @@ test("one press puts the box to rest and downloads its export, and the other box
   await first.becomes(number, "answered");
 
   const here = await spareOf(t, first);
-  await here.press("Rest and export");
+  await here.press("Start standby and export");
   await no(here.page);
   assert.equal((await first.ask("/adit/spare")).said.rests, false, "it was asked, and answered no");
   const downloads = here.page.waitForEvent("download", { timeout: 90_000 });
-  await here.press("Rest and export");
+  await here.press("Start standby and export");
   await yes(here.page);
   const file = await (await downloads).path();
-  await notes(here.section, "This box rests");
+  await notes(here.section, "This box is on standby");
   const code = await here.section.locator("dd").first().innerText();
   assert.match(code, /^(\d{4} ){3}\d{4}$/);
   await axeFindsNothing(here.page, "a box that rests");
@@ -55,10 +55,10 @@ test("one press puts the box to rest and downloads its export, and the other box
   await there.section.locator("input[type=file]").setInputFiles(file);
   await there.press("Take in the export");
   await there.section.locator("input[name=code]").fill("1111 2222 3333 4444");
-  await there.press("Open it");
+  await there.press("Open");
   await there.section.locator(".outcome", { hasText: "the code is not that of this export" }).waitFor();
   await there.section.locator("input[name=code]").fill(code);
-  await there.press("Open it");
+  await there.press("Open");
   await there.section.locator("dd", { hasText: "1, 0 of them not finished" }).waitFor();
   await axeFindsNothing(there.page, "an export that is opened");
   await there.press("Take over");
@@ -76,9 +76,9 @@ test("a box that rests is woken up where its spare did not take over", async (t)
   const made = await box(t);
   await made.ask("/adit/spare/rest", {});
   const { page, section, press } = await spareOf(t, made);
-  await notes(section, "This box rests");
-  await press("Wake it up");
+  await notes(section, "This box is on standby");
+  await press("Wake the box up");
   await yes(page);
-  await notes(section, "A second box can take over");
+  await notes(section, "A spare box can take over");
   await until(async () => (await made.run()).run_heard, "the run");
 });

@@ -9,7 +9,7 @@ using codec::Member;
 constexpr std::string_view kSeconds = "seconds since 1970";
 
 constexpr Member kAction[] = {
-    member<&Action::word>("word", "of its button; empty: there is nothing to press"),
+    member<&Action::word>("word", "label of the button; empty if the alarm has no button"),
     member<&Action::link>("link", "where on the box's pages it is done"),
 };
 
@@ -43,7 +43,7 @@ constexpr std::string_view kById[] = {"id"}, kByIdAndEnd[] = {"id", "until"};
 }  // namespace
 
 constexpr codec::Row Action::kRow = {"", kAction};
-constexpr codec::Row Alarm::kRow = {"Alarm", kAlarm, "What is not as it should be.", kById};
+constexpr codec::Row Alarm::kRow = {"Alarm", kAlarm, "A fault, a warning, or a decision to make.", kById};
 constexpr codec::Row Over::kRow = {"AlarmOver", kOver, "An alarm that went.", kByIdAndEnd};
 
 }  // namespace adit::alarms

@@ -108,7 +108,7 @@ Verdict verdict_of(const Facts& facts) {
   if (worst == Level::Bad) return partly(all, oldest);
   if (worst == Level::Wait) return {Level::Wait, "Maps are late", names_of(names_at(all, Level::Wait))};
   if (worst == Level::Quiet)
-    return {Level::Quiet, "Every map arrived", "nothing new for " + age_text(newest.value_or(0))};
+    return {Level::Quiet, "Every map arrived", "no new map for " + age_text(newest.value_or(0))};
   return {Level::Good, "Every map arrives", all_arrive(all, oldest.value_or(0))};
 }
 

@@ -111,7 +111,7 @@ std::string SpareKeeper::check(const spare::Medium& medium, const std::string& n
   const auto kept = read_export(sticks_.folder(medium.name), name);
   if (kept && *kept == bytes) return "";
   if (!sticks_.is_in(medium.name)) return "the stick was removed before the export was checked: export again";
-  return "the export on the stick differs from what was written: use another stick";
+  return "the export on the stick differs from the written bytes: use another stick";
 }
 
 std::string SpareKeeper::take(const std::string& name) {

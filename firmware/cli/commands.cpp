@@ -106,7 +106,7 @@ constexpr CommandRow kCommands[] = {
      "  ? ask    the operator must decide\n"
      "  ! wait   may end by itself\n"
      "Column `arriving`:\n"
-     "  waiting                  accepted, but none sent so far\n"
+     "  waiting                  accepted, but not sent so far\n"
      "  up to date, arriving     delivered, or queued for its turn\n"
      "  12 s behind              later than its turn explains\n"
      "  throttled, failing       the last attempt failed; the row says why\n"

@@ -17,7 +17,7 @@ command_line::Program command_line_of(Options& options) {
                 "their owner may have access (mode 0600)",
                 &options.secrets, Wanted::Always},
                {"--state", "DIR",
-                "keep the ledger of reports in DIR, and what is set up on the page: settings.json and "
+                "keep the ledger of reports in DIR, and the set-up from the page: settings.json and "
                 "secrets/, which replace the two above; create DIR if it is absent",
                 &options.state, Wanted::Always},
                {"--network", "DIR", "read the status of adit-network from DIR", &options.network},

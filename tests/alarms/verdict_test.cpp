@@ -73,7 +73,7 @@ TEST(Verdict, OfNoMapsIsNone) {
 TEST(Verdict, SaysSinceWhenNothingNewCame) {
   Facts facts = well(2);
   for (Stream& stream : facts.streams) stream.forwarded = *stream.forwarded + 600;
-  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Quiet, "Every map arrived", "nothing new for 10 min"}));
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min"}));
 }
 
 TEST(Verdict, OfOneRobotNeedsNoCount) {

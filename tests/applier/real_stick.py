@@ -176,7 +176,7 @@ class Stick(Sticks):
         self.plug()
         lies = f'[ "$1" != ro ] || {{ umount "$2"; mount -o loop,rw {self.folder}/dev/sda1 "$2"; printf x >>"$2/{NAME}"; mount -o remount,ro "$2"; }}\n'
         self.hook(lies)
-        self.expect_refused(self.write(), "the export on the stick differs from what was written")
+        self.expect_refused(self.write(), "the export on the stick differs from the written bytes")
 
     def test_that_fails_while_it_is_written_is_told_of(self):
         """Every write beyond what its medium takes comes to nothing, as with one that dies."""

@@ -127,7 +127,8 @@ constexpr Member kEndpoint[] = {
 constexpr Member kRejected[] = {
     member<&RejectedRow::number>("number").from(1),
     member<&RejectedRow::kind>("kind").one_of(kKinds),
-    member<&RejectedRow::robot>("robot", "the robot; empty if the message is of several robots or has no robot"),
+    member<&RejectedRow::robot>("robot",
+                                "the robot; empty if the message is of several robots or has no robot"),
     member<&RejectedRow::at>("at", "when the message was rejected"),
     member<&RejectedRow::status>("status", "status of the Command Post's answer"),
     member<&RejectedRow::why>("why"),

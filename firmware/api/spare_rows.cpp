@@ -17,7 +17,8 @@ constexpr codec::Member kExportMembers[] = {
 constexpr codec::Member kStickExportMembers[] = {
     codec::member<&StickExportRow::name>("name", "name of the file"),
     codec::member<&StickExportRow::box>(
-        "box", "address of the box that made the export, from the file's name; empty if the name has no address"),
+        "box",
+        "address of the box that made the export, from the file's name; empty if the name has no address"),
     codec::member<&StickExportRow::at>(
         "at", "start of that box's standby, from the file's name; null if the name has no time"),
 };

@@ -194,8 +194,7 @@ TEST(ANearReport, IsHeldForTheOperatorWithTheReason) {
   EXPECT_EQ(scene.report(2).note, "the same type as report 1, 3.3 m from it");
   scene.wait(20);
   EXPECT_EQ(scene.told(near).status, 503);
-  EXPECT_THAT(scene.told(near).sentence,
-              HasSubstr("is held until the operator decides (the same type"));
+  EXPECT_THAT(scene.told(near).sentence, HasSubstr("is held until the operator decides (the same type"));
   scene.hear(19, 0);
   scene.post(7, "Drill");
   EXPECT_EQ(scene.state(3), Held) << "near the one that is held";

@@ -152,7 +152,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
 test("finds a setting by its name or its meaning, and changes it", async (t) => {
   const { ask, page } = await ready(t, "setup#all");
   const search = page.getByLabel("Search");
-  await search.fill("near duplicates");
+  await search.fill("held until the operator");
   await page.getByText("1 found.").waitFor();
   await page.getByLabel("reports.review").selectOption("all");
   await search.fill("no such thing at all");

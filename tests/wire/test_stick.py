@@ -90,7 +90,7 @@ class Stick(unittest.TestCase):
         stage.keepers[0].plug(stage.image)
         wait_until(lambda: not stage.stick()["hindrance"], "the stick to be found")
         said = stage.adit("export", "--stick", "--yes")
-        self.assertIn("which may be unplugged", said)
+        self.assertIn("which you may now unplug", said)
         stage.keepers[0].pull()  # at the moment of the answer
         code = stage.box.ask("GET /adit/spare")[1]["code"]
         self.assertIn(code, said)

@@ -111,7 +111,7 @@ class TwoNetworks(Appliance):
         wait_until(lambda: self.post.requests("/state/update"), "the state")
         self.network.pull_cable()
         wait_until(lambda: self.links() == {"team": True, "command_post": False}, "the cable to be seen out")
-        self.assertIn("Command Post cable is unplugged", self.aditd.attention())
+        self.assertIn("command Post cable is unplugged", self.aditd.attention())
         time.sleep(2)
         self.network.pull_cable(False)
         wait_until(lambda: self.links()["command_post"], "the cable to be seen in")

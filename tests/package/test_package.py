@@ -124,7 +124,7 @@ class Packages(Story):
     def test_the_card_is_followed_to_its_end(self):
         """As somebody at the machine: the Test, robots of the team, an alarm and its end."""
         said = self.box.shell("adit test")
-        for words in "the scoring token is taken", "the mapping token is taken", "scoring 10.100.1.200:8000", "mapping 10.100.1.201:8000":
+        for words in "the scoring token is accepted", "the mapping token is accepted", "scoring 10.100.1.200:8000", "mapping 10.100.1.201:8000":
             self.assertIn(words, said)
         robots = self.stage.network.start(self.stage.network.team, programs.BIN / "adit-robots", "--post", self.box.url,
                                           "--secrets", self.stage.folder / "secrets", "--for", "5", "--quiet", stdout=subprocess.DEVNULL)

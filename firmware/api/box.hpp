@@ -58,7 +58,7 @@ struct Usage {
   std::vector<EndedCount> ended = {};  // connections
   std::uint64_t wrong_tokens = 0;      // requests
   std::uint64_t sent_bytes = 0;        // of bodies, to both endpoints
-  std::uint64_t rejected_dropped = 0;  // what was rejected and made place for newer ones
+  std::uint64_t rejected_dropped = 0;  // rejected messages, dropped for newer ones
   std::uint64_t exceptions = 0;        // that were caught at the program's edge: loop/guard.hpp
   std::vector<RefusedCount> refused;
 };

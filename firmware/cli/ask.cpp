@@ -110,6 +110,12 @@ std::string sentence_in(const std::string& body) {
   return sentence == nullptr ? "" : *sentence;
 }
 
+std::expected<api::RunView, std::string> run_view(const Adit& adit) {
+  const auto json = get(adit, "/adit/run");
+  if (!json) return std::unexpected(json.error());
+  return read<api::RunView>(adit, *json);
+}
+
 Outcome unable(const std::string& why) {
   return {Exit::Unable, "", "adit: " + host::escaped(why) + '\n'};
 }

@@ -4,6 +4,7 @@
 #include <expected>
 #include <string>
 
+#include "api/run_view.hpp"
 #include "cli/http_client.hpp"
 #include "cli/options.hpp"
 #include "cli/outcome.hpp"
@@ -24,6 +25,10 @@ std::expected<Adit, std::string> adit_of(const Options& options);
 
 /// The body of a 200, or a sentence.
 std::expected<std::string, std::string> get(const Adit& adit, const std::string& target);
+
+/// What the page shows of the run: GET /adit/run. A sentence if Adit does not answer or its answer cannot be
+/// read.
+std::expected<api::RunView, std::string> run_view(const Adit& adit);
 
 /// An action that was not done, or of which that is not known.
 struct Failure {

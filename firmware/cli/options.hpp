@@ -35,7 +35,7 @@ struct Options {
   Command about = Command::Help;  // of Help: the command to explain
   bool help = false, version = false;
   Verb verb = Verb::List;
-  std::vector<std::int64_t> numbers;  // of reports, or of what is rejected
+  std::vector<std::int64_t> numbers;  // of reports, or of rejected messages
   std::optional<std::int64_t> run;    // whose reports to list; nothing: the present one's
   bool all_runs = false;
   std::optional<std::int64_t> last;  // how many reports to list; nothing: all

@@ -35,10 +35,8 @@ std::string table_of(const api::RunView& view, bool colour) {
   return table.written(colour);
 }
 
-Outcome list_aside(const Adit& adit, const Options& options, bool colour) {
-  const auto json = get(adit, "/adit/run");
-  if (!json) return unable(json.error());
-  const auto view = read<api::RunView>(adit, *json);
+Outcome list_rejected(const Adit& adit, const Options& options, bool colour) {
+  const auto view = run_view(adit);
   if (!view) return unable(view.error());
   const bool waits =
       std::ranges::any_of(view->rejected, [](const api::RejectedRow& row) { return !row.replaced; });
@@ -52,7 +50,7 @@ Outcome list_aside(const Adit& adit, const Options& options, bool colour) {
 Outcome rejected(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  if (options.verb == Verb::Show) return list_aside(*adit, options, colour);
+  if (options.verb == Verb::Show) return list_rejected(*adit, options, colour);
   Outcome outcome;
   for (const std::int64_t number : options.numbers) {
     const std::string text = std::to_string(number);

@@ -179,9 +179,7 @@ std::string text_of(const api::RunView& view, bool colour) {
 Outcome present_run(const Options& options, bool colour) {
   const auto adit = adit_of(options);
   if (!adit) return unable(adit.error());
-  const auto json = get(*adit, "/adit/run");
-  if (!json) return unable(json.error());
-  const auto view = read<api::RunView>(*adit, *json);
+  const auto view = run_view(*adit);
   if (!view) return unable(view.error());
   return {Exit::Fine, options.json ? json_of(*view) : text_of(*view, colour), ""};
 }

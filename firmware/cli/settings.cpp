@@ -171,7 +171,9 @@ Outcome apply(const Adit& adit, const Options& options, bool colour) {
   const auto checked = ask_check(adit, *std::move(settings));
   if (!checked) return unable(checked.error());
   if (!checked->good()) return {Exit::Attention, "", errors_text(checked->answer)};
-  const Value::Object changed{{"settings", checked->settings}, {"base", member(*now, "tag")}};
+  const Value tag = member(*now, "tag");
+  if (!std::holds_alternative<std::string>(tag.is)) return not_understood("tag: expected a text");
+  const Value::Object changed{{"settings", checked->settings}, {"base", tag}};
   const auto done = post(adit, "/adit/settings", codec::write_json({changed}), kSee);
   if (!done) return unable(done.error());
   if (options.json) return {Exit::Fine, *done + '\n', ""};

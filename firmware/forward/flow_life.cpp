@@ -10,7 +10,7 @@ namespace adit::forward {
 namespace {
 
 /// What is in the runtime folder beside maps: of the journal, which is made smaller beside itself, four times
-/// what waits, what is rejected, and what others keep there.
+/// queued messages, rejected messages, and the files of other rooms.
 std::uint64_t beside_maps(const settings::Settings& settings) {
   constexpr std::uint64_t kOthers = 8u << 20;
   return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::RejectedMessages::kMostBytes + kOthers;

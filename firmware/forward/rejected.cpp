@@ -63,7 +63,7 @@ void remove(const std::string& reason, const std::string& message) {
   fs::remove(message, error);
 }
 
-/// Where there is no room to write that it was replaced, it goes: nothing is lost by that.
+/// If the disk has no room for the mark, deletes the message: a newer message contains it.
 void write_replaced(const Files& files) {
   if (!spool::write_whole(files.reason, text_bytes(files.text))) remove(files.reason, files.message);
 }

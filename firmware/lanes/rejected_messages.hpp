@@ -18,7 +18,7 @@ using Message = std::variant<icd::MapUpdate, icd::StateUpdate, icd::MarkersUpdat
 
 /// Whether `newer` says all that `older` said (promise 2): a grid of the same name that covers it, poses of
 /// all its robots, changes of all its markers. Nothing covers a cloud; nor does an older map cover a newer
-/// one: what is sent again by hand may be older than others that were rejected.
+/// one: a message that is sent again by hand may be older than other rejected messages.
 bool replaces(const Message& newer, const Message& older);
 
 /// A message that the Command Post would not take, and why.

@@ -1,4 +1,4 @@
-// What is rejected, as a phone shows it and a screen reader reads it.
+// Rejected messages, as a phone shows them and a screen reader reads them.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";

@@ -14,7 +14,7 @@ constexpr std::uint64_t kMiB = 1u << 20;
 constexpr std::uint64_t kLedger = 6 * kMiB;
 /// The journal that is written, and the one that is made smaller beside its snapshot.
 constexpr std::uint64_t kJournal = 5 * kMiB / 2;
-/// Who is logged in, and what is rejected in a run.
+/// The sessions, and the rejected messages of a run.
 constexpr std::uint64_t kBeside = kMiB;
 
 struct Most {

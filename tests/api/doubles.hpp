@@ -69,7 +69,7 @@ struct FakeOperator final : Operator {
   }
   std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) override {
     judged_messages.emplace_back(number, action);
-    if (!aside_trouble.empty()) return std::unexpected(aside_trouble);
+    if (!rejected_trouble.empty()) return std::unexpected(rejected_trouble);
     return {};
   }
   std::expected<void, std::string> acknowledge(const std::string& id) override {
@@ -88,7 +88,7 @@ struct FakeOperator final : Operator {
   std::optional<std::expected<std::int64_t, std::string>>
       outcome;  // of judge() and report(), where it is not the same number or 41
   std::vector<std::pair<std::uint64_t, RejectedAction>> judged_messages;
-  std::string aside_trouble;  // of rejected(), where there is any
+  std::string rejected_trouble;  // of rejected(), where there is any
   std::vector<std::string> acknowledged;
   std::string alarm_trouble;  // of acknowledge(), where there is any
   std::int64_t run = 1;

@@ -28,7 +28,7 @@ TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsRejectedMessages) {
 }
 
 TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsRejectedMessages) {
-  judge.aside_trouble = "something newer was sent since";
+  judge.rejected_trouble = "something newer was sent since";
   const auto answer = post("/adit/rejected/7/send");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(answer.body, R"("something newer was sent since")");

@@ -124,7 +124,7 @@ api::NetworkView NetworkChange::network() const {
   }
   if (view.pending) return view;  // how the one before ended says nothing of this one
   if (!not_taken_up_.empty()) {
-    view.last = name_of(network::Ended::TakenBack);
+    view.last = name_of(network::Ended::Reverted);
     view.last_why = not_taken_up_;
   } else if (status_) {
     view.last = name_of(status_->ended);
@@ -146,7 +146,7 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 }
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
-  if (pending()) return refuse_now("another change is not yet confirmed or taken back");
+  if (pending()) return refuse_now("another change is not yet confirmed or reverted");
   if (const std::string why = hindrance(); !why.empty()) return refuse_now(why);
   network::Wanted request{draw_nonce(), settings_.network.confirm_within, wanted};
   if (const auto asked = requests_.ask(request); !asked)
@@ -211,10 +211,10 @@ std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
   return hop ? settings::ipv4_text(*hop) : "";
 }
 
-icd::Checked<void> NetworkChange::take_back() {
+icd::Checked<void> NetworkChange::revert() {
   const auto waits = pending();
-  if (!waits) return refuse_now("there is no change to take back");
-  return say(network::Word::What::Back, *waits);
+  if (!waits) return refuse_now("there is no change to revert");
+  return say(network::Word::What::Revert, *waits);
 }
 
 icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {

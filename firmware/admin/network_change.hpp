@@ -30,7 +30,7 @@ class NetworkChange final : public api::Network {
   network::Findings check(const network::Numbers& wanted, const std::string& asker) const override;
   icd::Checked<void> change(const network::Numbers& wanted) override;
   icd::Checked<void> confirm(const std::string& local) override;
-  icd::Checked<void> take_back() override;
+  icd::Checked<void> revert() override;
 
   /// Called each second. Takes note of what became of the last change, and sees to it that there are ways to
   /// the endpoints of the settings, and of all courses.

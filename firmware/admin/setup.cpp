@@ -115,7 +115,7 @@ icd::Checked<void> Setup::save(const Settings& next) {
     host::log(host::Level::Notice, "setting changed", {{"setting", change.path}});
   }
   const auto written = store_.save(next);
-  is_kept_ = written || store_.take_back();
+  is_kept_ = written || store_.revert();
   return applied(written, "settings", apply_);
 }
 

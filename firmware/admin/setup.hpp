@@ -23,7 +23,7 @@ class Setup final : public api::Setup {
   Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
         Meaning for_reports, std::function<void()> apply, std::function<void()> restart);
 
-  /// A change was applied, or taken back: the gateway runs with these. `trouble`: see api::Setup.
+  /// A change was applied, or reverted: the gateway runs with these. `trouble`: see api::Setup.
   void runs_with(const Store::Loaded& loaded, std::string trouble);
 
   const settings::Settings& settings() const override { return settings_; }

@@ -51,17 +51,17 @@ Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, 
   const std::string unread = file ? "" : file.error();
   if (file) file_ = *std::move(file);
   if (!trouble_.empty()) {
-    rests_ = "the take-over is not finished: " + trouble_;
+    standby_ = "the take-over is not finished: " + trouble_;
   } else if (!unread.empty()) {
-    rests_ = "it is not known whether a spare took over: " + unread;
+    standby_ = "it is not known whether a spare took over: " + unread;
   } else if (file_.rest) {
-    rests_ = "its spare takes over";
+    standby_ = "its spare takes over";
   }
-  if (!rests_.empty()) host::log(host::Level::Warning, "this box is on standby", {{"why", rests_}});
+  if (!standby_.empty()) host::log(host::Level::Warning, "this box is on standby", {{"why", standby_}});
 }
 
 void Spare::ends(const std::optional<icd::RunStatus>& expected) {
-  if (!goes_to_rest_ || !expected) return;
+  if (!goes_on_standby_ || !expected) return;
   SpareFile next = file_;
   next.rest->expected = expected;
   if (const auto kept = keep(next); !kept)
@@ -82,15 +82,15 @@ icd::Checked<void> Spare::keep(const SpareFile& next) {
 
 api::SpareView Spare::spare() const {
   api::SpareView view;
-  view.rests = !rests_.empty();
-  view.why = rests_;
+  view.standby = !standby_.empty();
+  view.why = standby_;
   view.asks_code = sealed_ != nullptr;
   view.takes_over = takes_over_;
   view.stick = stick_.view();
   // What an earlier rest wrote is no export of this one.
   if (view.stick && !is_of_this_rest(view.stick->written)) view.stick->written.clear();
   if (file_.rest) view.since = file_.rest->since;
-  if (view.rests && file_.rest) view.code = spare::spoken(file_.rest->code);
+  if (view.standby && file_.rest) view.code = spare::spoken(file_.rest->code);
   if (!taken_in_) return view;
   const spare::About& about = taken_in_->about;
   view.taken_in = {.name = about.name,
@@ -104,8 +104,8 @@ api::SpareView Spare::spare() const {
   return view;
 }
 
-icd::Checked<void> Spare::rest() {
-  if (!rests_.empty() || goes_to_rest_) return {};
+icd::Checked<void> Spare::stand_by() {
+  if (!standby_.empty() || goes_on_standby_) return {};
   if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
   SpareFile next = file_;
   if (next.box.empty()) next.box = draw_box();
@@ -116,14 +116,14 @@ icd::Checked<void> Spare::rest() {
                .told = asked_.is_time_set() ? std::optional(now) : std::nullopt};
   next.rest_count = next.rest_count.value_or(0) + 1;
   if (auto kept = keep(next); !kept) return kept;
-  goes_to_rest_ = true;
+  goes_on_standby_ = true;
   host::log(host::Level::Notice, "this box goes on standby, so that a spare takes over");
   restart_.call_at(loop_.now());
   return {};
 }
 
-icd::Checked<void> Spare::wake() {
-  if (rests_.empty()) return refuse(Status::Conflict, "this box is not on standby");
+icd::Checked<void> Spare::resume() {
+  if (standby_.empty()) return refuse(Status::Conflict, "this box is not on standby");
   if (!is_stuck()) {
     SpareFile next = file_;
     next.rest.reset();
@@ -149,7 +149,7 @@ void Spare::export_to_stick(Done done) {
 
 void Spare::seal(const Named& done) {
   const auto refused = [&done](Status status, std::string why) { done(refuse(status, std::move(why)), ""); };
-  if (!file_.rest || rests_.empty() || is_stuck())
+  if (!file_.rest || standby_.empty() || is_stuck())
     return refused(Status::Conflict, "this box is not on standby: only a box on standby can be exported");
   auto content = asked_.content();
   if (!content) return refused(Status::ServiceUnavailable, std::move(content.error()));

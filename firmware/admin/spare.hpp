@@ -34,15 +34,15 @@ class Spare final : public api::Spare {
         std::string status_folder, const std::string& trouble, Asked asked);
 
   /// Why the box takes nothing and sends nothing; "": it does.
-  const std::string& rests() const { return rests_; }
+  const std::string& standby() const { return standby_; }
   /// A take-over is not finished.
   bool is_stuck() const { return !trouble_.empty(); }
   /// Nothing is under way any more as this gateway ends: what /api/status would answer now.
   void ends(const std::optional<icd::RunStatus>& expected);
 
   api::SpareView spare() const override;
-  icd::Checked<void> rest() override;
-  icd::Checked<void> wake() override;
+  icd::Checked<void> stand_by() override;
+  icd::Checked<void> resume() override;
   void export_to(Sealed done) override;
   void export_to_stick(Done done) override;
   icd::Checked<void> take_from_stick(const std::string& name) override;
@@ -69,8 +69,8 @@ class Spare final : public api::Spare {
   Asked asked_;
   loop::Source restart_;  // once who asked is answered
   SpareFile file_;
-  std::string rests_;
-  bool goes_to_rest_ = false;  // with the end of this gateway
+  std::string standby_;
+  bool goes_on_standby_ = false;  // with the end of this gateway
   bool takes_over_ = false;
   std::shared_ptr<const std::string> sealed_;  // taken in, and not opened yet; null: nothing is
   std::optional<spare::Content> taken_in_;

@@ -44,7 +44,7 @@ std::expected<void, std::string> SpareFile::write(const std::string& state_folde
 }
 
 std::string SpareFile::hindrance(const spare::About& about) const {
-  if (about.box == box) return "this box made the export itself: wake the box up if no spare took over";
+  if (about.box == box) return "this box made the export itself: end the standby if no spare took over";
   const auto before = std::ranges::find(taken, about.box, &TakenFrom::box);
   if (before == taken.end()) return "";
   // That box's clock may have been set back in between: its count goes before.

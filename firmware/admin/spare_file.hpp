@@ -12,7 +12,7 @@
 
 namespace adit::admin {
 
-/// That the box rests.
+/// The standby of the box.
 struct Rest {
   std::string code = "";                       // of its export
   double since = 0;                            // seconds since 1970

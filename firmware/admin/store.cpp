@@ -25,7 +25,7 @@ std::expected<settings::Settings, std::string> read_settings(const std::string& 
   return std::unexpected(file + ": " + settings::sentence_of(settings.error()));
 }
 
-/// Those that were saved here. What a later Adit knew beside is left out: an update that was taken back must
+/// Those that were saved here. What a later Adit knew beside is left out: an update that was reverted must
 /// not cost the rest of them.
 std::expected<settings::Settings, std::string> read_saved(const std::string& file, std::string& trouble) {
   const auto text = host::read_file(file);
@@ -119,7 +119,7 @@ void Store::settle(const settings::Settings& settings) {
   }
 }
 
-bool Store::take_back() {
+bool Store::revert() {
   const auto before = host::read_file(file_before());
   if (!before) return false;
   if (before->empty()) {

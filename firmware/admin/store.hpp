@@ -18,7 +18,7 @@ using settings::token_names;
 /// Where settings and tokens are kept, and which of them count: those that were saved in the state folder, or
 /// else those that the box was given.
 ///
-/// What is saved is on trial until settle(): take_back() makes those before it count again, also after a
+/// What is saved is on trial until settle(): revert() makes those before it count again, also after a
 /// crash or a power cut in between.
 class Store {
  public:
@@ -42,7 +42,7 @@ class Store {
   /// What counts works. Tokens of courses that there are no more are removed: nobody could see them.
   void settle(const settings::Settings& settings);
   /// False: nothing is on trial.
-  bool take_back();
+  bool revert();
   /// Forgets all that was saved.
   std::expected<void, std::string> forget();
 

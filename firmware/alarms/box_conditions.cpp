@@ -156,7 +156,7 @@ void find_network_troubles(const Facts& facts, Found& found) {
 }
 
 void find_box_troubles(const Facts& facts, Found& found) {
-  add(found, facts.rests,
+  add(found, facts.standby,
       {.id = "standby",
        .headline = {"This box", "on standby"},
        .why = "it accepts and sends no data: ",

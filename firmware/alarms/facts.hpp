@@ -128,7 +128,7 @@ struct Facts {
   std::string lights_trouble = {};                  // why the panel may show something else; or ""
   std::map<std::string, std::string> notices = {};  // of root's programs, by their names
   UpdateFact update = {};
-  std::string rests = {};  // why the box takes nothing and sends nothing; or ""
+  std::string standby = {};  // why the box takes nothing and sends nothing; or ""
 };
 
 }  // namespace adit::alarms

@@ -54,7 +54,7 @@ struct Usage {
   double cpu_seconds = 0;
   std::uint64_t resident_bytes = 0, open_files = 0, most_files = 0, threads = 0;
   std::uint64_t connections = 0;       // of the team's side, now
-  std::uint64_t strangers = 0;         // those of them that have shown no token
+  std::uint64_t unauthenticated = 0;   // those of them that have shown no token
   std::vector<EndedCount> ended = {};  // connections
   std::uint64_t wrong_tokens = 0;      // requests
   std::uint64_t sent_bytes = 0;        // of bodies, to both endpoints

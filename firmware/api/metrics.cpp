@@ -33,9 +33,9 @@ void write_box(Exposition& out, const Measured& measured) {
   out.sample(number(usage.threads));
   out.gauge("adit_connections", "Connections on the team's side.");
   out.sample(number(usage.connections));
-  out.gauge("adit_connections_strangers",
-            "Unauthenticated connections on the team's side: without a token or session.");
-  out.sample(number(usage.strangers));
+  out.gauge("adit_connections_unauthenticated",
+            "Connections on the team's side that have shown no token or session.");
+  out.sample(number(usage.unauthenticated));
   out.counter("adit_connections_ended_total",
               "Connections that Adit closed: no_room (answered 503), gave_way and idle (closed for another "
               "connection), slow.");

@@ -46,7 +46,7 @@ struct NetworkView {
 
   std::optional<PendingNetwork> pending;
   std::vector<PortRow> ports;  // those that the settings name
-  std::string last;            // "confirmed" or "taken back"; "" where none was made since the box started
+  std::string last;            // "confirmed" or "reverted"; "" where none was made since the box started
   std::string last_why;        // of it
   static const codec::Row kRow;
 };
@@ -64,7 +64,7 @@ class Network {
   /// `local`: the box's address by which the confirmation came. It must be the new one: nobody can confirm an
   /// address that he cannot reach.
   virtual icd::Checked<void> confirm(const std::string& local) = 0;
-  virtual icd::Checked<void> take_back() = 0;
+  virtual icd::Checked<void> revert() = 0;
 };
 
 }  // namespace adit::api

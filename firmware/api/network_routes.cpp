@@ -58,8 +58,8 @@ intake::Answer NetworkRoutes::confirm(const Call& call) {
   return after(network_.confirm(call.head.local()));
 }
 
-intake::Answer NetworkRoutes::take_back() {
-  return after(network_.take_back());
+intake::Answer NetworkRoutes::revert() {
+  return after(network_.revert());
 }
 
 intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) {

@@ -20,7 +20,7 @@ class NetworkRoutes {
   intake::Answer change(const Call& call);
   /// By the address that was asked.
   intake::Answer confirm(const Call& call);
-  intake::Answer take_back();
+  intake::Answer revert();
   intake::Answer tested() const;
   intake::Answer begin_test(const std::string& body);
 

@@ -84,7 +84,7 @@ constexpr Member kSetup[] = {
     member<&SetupView::saved>("saved",
                               "whether the settings were saved here; false for the initial settings"),
     member<&SetupView::applying>("applying", "whether a change is being applied, within a second"),
-    member<&SetupView::trouble>("trouble", "why the last change was taken back, or empty"),
+    member<&SetupView::trouble>("trouble", "why the last change was reverted, or empty"),
     member<&SetupView::tokens>("tokens", "all possible tokens, and whether each is set"),
     member<&SetupView::odd_tokens>("odd_tokens", "warnings about tokens that are set, by name"),
     member<&SetupView::keys>("keys"),

@@ -31,7 +31,7 @@ class Setup {
   virtual bool saved() const = 0;
   /// Whether a change was taken and is about to be applied; the other functions still give what was before.
   virtual bool applying() const = 0;
-  /// Why the last change is not in use (it was taken back, it is half done): a sentence, or "".
+  /// Why the last change is not in use (it was reverted, it is half done): a sentence, or "".
   virtual const std::string& trouble() const = 0;
   /// All tokens that there can be with these courses.
   virtual std::vector<TokenRow> tokens() const = 0;

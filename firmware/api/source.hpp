@@ -33,7 +33,7 @@ class Source {
 };
 
 /// An operator's action on a report: see dispatch::Reports.
-enum class Action : std::uint8_t { Send, Hold, Withdraw, CallDone, Resubmit };
+enum class Action : std::uint8_t { Send, Hold, Withdraw, Settle, Resubmit };
 
 /// An operator's action on a message that was rejected.
 enum class RejectedAction : std::uint8_t { Send, Discard };

@@ -42,9 +42,9 @@ struct StickRow {
 
 /// How the box stands to its spare, or to the box that it is the spare of.
 struct SpareView {
-  bool rests = false;
-  std::string why;              // it rests; "" where it does not
-  std::optional<double> since;  // it rests; seconds since 1970
+  bool standby = false;
+  std::string why;              // it is on standby; "" if it is not
+  std::optional<double> since;  // when standby began; seconds since 1970
   std::string code;             // of its export, in groups; "": there is none
   bool asks_code = false;       // an export was taken in, and waits for its code
   std::optional<ExportRow> taken_in;
@@ -61,12 +61,12 @@ class Spare {
 
   virtual ~Spare() = default;
   virtual SpareView spare() const = 0;
-  /// From now on the box takes nothing and sends nothing, until wake(), also after a power cut.
-  virtual icd::Checked<void> rest() = 0;
-  virtual icd::Checked<void> wake() = 0;
-  /// The export's file, later. Only while it rests.
+  /// From now on the box takes nothing and sends nothing, until resume(), also after a power cut.
+  virtual icd::Checked<void> stand_by() = 0;
+  virtual icd::Checked<void> resume() = 0;
+  /// The export's file, later. Only on standby.
   virtual void export_to(Sealed done) = 0;
-  /// Writes it to the stick in the box: `done` once that is asked for. Only while it rests.
+  /// Writes it to the stick in the box: `done` once that is asked for. Only on standby.
   virtual void export_to_stick(Done done) = 0;
   /// Takes in the export of that name on the stick, soon.
   virtual icd::Checked<void> take_from_stick(const std::string& name) = 0;

@@ -52,12 +52,12 @@ intake::Answer SpareRoutes::after(const icd::Checked<void>& done) {
   return done ? shown() : refused(done.error());
 }
 
-intake::Answer SpareRoutes::rest() {
-  return after(spare_.rest());
+intake::Answer SpareRoutes::stand_by() {
+  return after(spare_.stand_by());
 }
 
-intake::Answer SpareRoutes::wake() {
-  return after(spare_.wake());
+intake::Answer SpareRoutes::resume() {
+  return after(spare_.resume());
 }
 
 std::unique_ptr<intake::BodySink> SpareRoutes::exported(const Call& call) {

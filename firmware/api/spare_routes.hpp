@@ -17,8 +17,8 @@ class SpareRoutes {
   SpareRoutes(Spare& spare, std::function<void()> changed) : spare_(spare), changed_(std::move(changed)) {}
 
   intake::Answer shown() const;
-  intake::Answer rest();
-  intake::Answer wake();
+  intake::Answer stand_by();
+  intake::Answer resume();
   std::unique_ptr<intake::BodySink> exported(const Call& call);
   void to_stick(const Call& call);
   intake::Answer from_stick(const std::string& body);

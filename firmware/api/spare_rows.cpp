@@ -33,8 +33,8 @@ constexpr codec::Member kStickMembers[] = {
 };
 
 constexpr codec::Member kSpareMembers[] = {
-    codec::member<&SpareView::rests>("rests",
-                                     "whether the box is on standby: it accepts and sends no messages"),
+    codec::member<&SpareView::standby>("standby",
+                                       "whether the box is on standby: it accepts and sends no messages"),
     codec::member<&SpareView::why>("why", "why the box is on standby, or empty"),
     codec::member<&SpareView::since>(
         "since", "start of standby in seconds since 1970; null if the box is not on standby"),

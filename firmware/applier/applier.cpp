@@ -39,7 +39,7 @@ std::expected<void, std::string> Applier::start() {
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
   if (found_a_change()) {
-    host::log(Level::Warning, "a change that was not confirmed was taken back");
+    host::log(Level::Warning, "a change that was not confirmed was reverted");
     change_->interrupted();
   }
   auto folder = host::UntrustedFolder::open(options_.wanted);

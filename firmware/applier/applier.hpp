@@ -23,7 +23,7 @@ class Applier {
   /// An error: its own folders are not as they should be. Requests of an earlier start of the machine are
   /// dropped: whoever asked has seen that it came to nothing.
   std::expected<void, std::string> start();
-  /// A pending change is taken back, and the loop ends.
+  /// A pending change is reverted, and the loop ends.
   void stop();
 
   /// Nothing is left to be tried again by another start, but not at once: a request that could not be taken

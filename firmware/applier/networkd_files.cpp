@@ -171,7 +171,7 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
   return {};
 }
 
-std::expected<void, std::string> NetworkdFiles::take_back() {
+std::expected<void, std::string> NetworkdFiles::revert() {
   if (const auto removed = remove_tried(Then::Reload); !removed) return std::unexpected(removed.error());
   tried_.reset();
   return reload_.run();

@@ -37,7 +37,7 @@ class NetworkdFiles final : public network::Hands {
 
   std::expected<void, std::string> apply(const network::Numbers& numbers) override;
   std::expected<void, std::string> keep(const network::Numbers& numbers) override;
-  std::expected<void, std::string> take_back() override;
+  std::expected<void, std::string> revert() override;
   std::expected<std::optional<network::Numbers>, std::string> forget() override;
   /// Leads to these from now on, with whatever addresses are in use.
   std::expected<void, std::string> lead_to(const network::Endpoints& endpoints);

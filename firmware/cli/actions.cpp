@@ -30,8 +30,8 @@ std::string path_of(Verb verb) {
       return "hold";
     case Verb::Withdraw:
       return "withdraw";
-    case Verb::Done:
-      return "done";
+    case Verb::Settle:
+      return "settle";
     default:
       return "resubmit";
   }
@@ -47,7 +47,7 @@ std::string done(Verb verb, std::int64_t number, std::int64_t moved) {
       return report + " is held until you send it";
     case Verb::Withdraw:
       return report + " is withdrawn";
-    case Verb::Done:
+    case Verb::Settle:
       return report + " is settled";
     default:
       return report + " is sent again as report " + std::to_string(moved);

@@ -31,7 +31,7 @@ constexpr Form kReportForms[] = {
      "--yes"},
     {"hold", Verb::Hold, kReports, "hold a queued report until you send it"},
     {"withdraw", Verb::Withdraw, kReports, "withdraw a held or queued report. You can still send it later"},
-    {"done", Verb::Done, kReports, "settle a report in doubt without sending it again"},
+    {"settle", Verb::Settle, kReports, "settle a report in doubt without sending it again"},
     {"resubmit", Verb::Resubmit, kReport,
      "send a finished report again, as a new report with its own number"},
     {"export", Verb::Export, kNothing, "print all reports of all runs as CSV, or with --json as JSON",
@@ -67,7 +67,7 @@ constexpr Form kNetworkForms[] = {
     {"confirm", Verb::Confirm, kNothing,
      "keep the change. The box accepts this at its new address only; adit finds that address by "
      "team.interface or --at"},
-    {"back", Verb::Back, kNothing, "return to the old addresses now"}};
+    {"revert", Verb::Revert, kNothing, "return to the old addresses now"}};
 constexpr Form kClockForms[] = {
     {"show", Verb::Show, kNothing,
      "show the box's time of day, its source, and the difference to this computer (default)", "", true},
@@ -84,7 +84,7 @@ constexpr Form kSpareForms[] = {
      "on the spare: import FILE, show its content, and take over once you confirm. With --stick, FILE may be "
      "left out if the stick holds one export",
      "--stick --code --yes"},
-    {"wake", Verb::Wake, kNothing,
+    {"resume", Verb::Resume, kNothing,
      "end the standby. If a spare has taken over from this box, reports may be sent twice", "--yes"}};
 constexpr Form kTestForms[] = {
     {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};

@@ -34,7 +34,7 @@ enum class Verb : std::uint8_t {
   Send,
   Hold,
   Withdraw,
-  Done,
+  Settle,
   Resubmit,
   Export,
   Discard,
@@ -43,7 +43,7 @@ enum class Verb : std::uint8_t {
   Apply,
   Confirm,
   Set,
-  Back,
+  Revert,
   Reports,
   Rejected,
   Courses,
@@ -52,7 +52,7 @@ enum class Verb : std::uint8_t {
   Report,
   Delete,
   Take,
-  Wake
+  Resume
 };
 
 /// What an argument may be, for the completion of shells: `adit complete` lists all but files.

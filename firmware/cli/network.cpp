@@ -123,12 +123,12 @@ Outcome show_network(const Adit& adit, const Options& options) {
   return {exit, options.json ? *json + '\n' : text_of(*view, time_now()), ""};
 }
 
-/// The word is said, and then what became of it is waited for. After `back` the address that was asked may be
-/// gone.
+/// The word is said, and then what became of it is waited for. After `revert` the address that was asked may
+/// be gone.
 Outcome say(const Adit& adit, const Options& options, bool confirms) {
   const auto reply = http_ask(adit.address,
                               {.method = HttpRequest::Method::Post,
-                               .target = confirms ? "/adit/network/confirm" : "/adit/network/back",
+                               .target = confirms ? "/adit/network/confirm" : "/adit/network/revert",
                                .token = adit.token.token},
                               kConfirmPatience);
   if (!reply) return unable(reply.error().sentence);
@@ -140,7 +140,7 @@ Outcome say(const Adit& adit, const Options& options, bool confirms) {
     const auto view = understood(adit, *json);
     if (!view) return unable(view.error());
     if (!view->pending) {
-      const bool done = view->last == (confirms ? "confirmed" : "taken back");
+      const bool done = view->last == (confirms ? "confirmed" : "reverted");
       std::string line =
           "the change is " + view->last + (done || view->last_why.empty() ? "" : ": " + view->last_why);
       return {done ? Exit::Fine : Exit::Attention, options.json ? *json + '\n' : host::escaped(line) + '\n',

@@ -5,7 +5,7 @@
 
 namespace adit::cli {
 
-/// `adit network show`, `confirm` and `back`.
+/// `adit network show`, `confirm` and `revert`.
 Outcome network(const Options& options);
 
 }  // namespace adit::cli

@@ -15,7 +15,7 @@ std::vector<std::string_view> verbs_for(const api::ReportRow& report) {
   offer(dispatch::transition(*state, ReportEvent::Released) != nullptr, "send");
   offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr, "hold");
   offer(dispatch::transition(*state, ReportEvent::Withdrawn) != nullptr, "withdraw");
-  offer(dispatch::transition(*state, ReportEvent::CalledDone) != nullptr, "done");
+  offer(dispatch::transition(*state, ReportEvent::Settled) != nullptr, "settle");
   offer(dispatch::is_final(*state), "resubmit");
   return verbs;
 }

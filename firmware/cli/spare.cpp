@@ -22,7 +22,7 @@ namespace {
 using api::SpareView;
 
 /// Until what is under way is answered, and the box is up again.
-constexpr std::chrono::seconds kRests{60}, kFile{60};
+constexpr std::chrono::seconds kStandby{60}, kFile{60};
 /// For a slow stick, and where it is another's turn before.
 constexpr std::chrono::seconds kStick{330};
 constexpr std::chrono::milliseconds kAskEvery{300};
@@ -42,15 +42,15 @@ std::string text_of(const api::ExportRow& row) {
   return out;
 }
 
-std::string text_of(const api::StickRow& stick, bool rests) {
+std::string text_of(const api::StickRow& stick, bool standby) {
   std::string out;
   if (!stick.doing.empty()) out += icd::sentence("The stick: ", host::escaped(stick.doing), "\n");
   if (!stick.refusal.empty()) out += icd::sentence("The stick: ", host::escaped(stick.refusal), "\n");
-  if (rests && !stick.written.empty())
+  if (standby && !stick.written.empty())
     out += icd::sentence(
         "Its export is on the stick, which you may now unplug: ", host::escaped(stick.written), "\n");
   for (const api::StickExportRow& each : stick.exports) {
-    if (!rests || each.name != stick.written)
+    if (!standby || each.name != stick.written)
       out += icd::sentence("On the stick: ", host::escaped(each.name), "\n");
   }
   return out;
@@ -58,17 +58,17 @@ std::string text_of(const api::StickRow& stick, bool rests) {
 
 std::string text_of(const SpareView& view) {
   std::string out;
-  if (view.rests) out += icd::sentence("This box is on standby: ", host::escaped(view.why), "\n");
+  if (view.standby) out += icd::sentence("This box is on standby: ", host::escaped(view.why), "\n");
   if (!view.code.empty()) out += icd::sentence("Code of its export: ", view.code, "\n");
   if (view.takes_over) out += "This box is taking over\n";
   if (view.asks_code) out += "An export was imported, and needs its code\n";
   if (view.taken_in) out += text_of(*view.taken_in);
-  if (view.stick) out += text_of(*view.stick, view.rests);
+  if (view.stick) out += text_of(*view.stick, view.standby);
   return out.empty() ? "This box is in service\n" : out;
 }
 
 Outcome shown(const Options& options, const std::string& json, const SpareView& view) {
-  const bool is_plain = !view.rests && !view.asks_code && !view.taken_in && !view.takes_over;
+  const bool is_plain = !view.standby && !view.asks_code && !view.taken_in && !view.takes_over;
   return {is_plain ? Exit::Fine : Exit::Attention, options.json ? json + '\n' : text_of(view), ""};
 }
 
@@ -102,16 +102,16 @@ std::expected<SpareView, Failure> wait_until(const Adit& adit, bool (*is_so)(con
   }
 }
 
-std::expected<SpareView, Failure> put_to_rest(const Adit& adit, const Options& options,
-                                              const Console& console) {
+std::expected<SpareView, Failure> put_on_standby(const Adit& adit, const Options& options,
+                                                 const Console& console) {
   if (auto why = doubt(options, console,
                        "On standby, this box accepts and sends no messages. Queued reports are part of the "
                        "export; queued maps, states and markers stay here.",
                        "Put it on standby?"))
     return std::unexpected(*std::move(why));
-  if (auto done = post(adit, "/adit/spare/rest", "", "adit spare"); !done)
+  if (auto done = post(adit, "/adit/spare/standby", "", "adit spare"); !done)
     return std::unexpected(std::move(done.error()));
-  return wait_until(adit, [](const SpareView& seen) { return seen.rests && !seen.code.empty(); }, kRests);
+  return wait_until(adit, [](const SpareView& seen) { return seen.standby && !seen.code.empty(); }, kStandby);
 }
 
 /// What became of what the stick was asked for.
@@ -140,8 +140,8 @@ Outcome write_to_stick(const Adit& adit, const Options& options, const Console& 
   if (!stick->hindrance.empty())
     return unable(
         Failure{Exit::Attention, "the box was not put on standby: " + host::escaped(stick->hindrance)});
-  const auto rests = put_to_rest(adit, options, console);
-  if (!rests) return unable(rests.error());
+  const auto is_done = put_on_standby(adit, options, console);
+  if (!is_done) return unable(is_done.error());
   const auto view = ask_stick(adit, "/adit/spare/to-stick", "");
   if (!view)
     return unable(Failure{view.error().exit, "the box is on standby, but its export is not on the stick: " +
@@ -156,7 +156,7 @@ Outcome write_to_stick(const Adit& adit, const Options& options, const Console& 
 
 Outcome write_export(const Adit& adit, const Options& options, const Console& console) {
   if (options.stick) return write_to_stick(adit, options, console);
-  const auto view = put_to_rest(adit, options, console);
+  const auto view = put_on_standby(adit, options, console);
   if (!view) return unable(view.error());
   const auto file = find(adit, "/adit/spare/export", kFile);
   if (!file) return unable(file.error());
@@ -243,12 +243,12 @@ Outcome take(const Adit& adit, const Options& options, const Console& console) {
   return {Exit::Fine, options.json ? *opened + '\n' : "this box is taking over\n", ""};
 }
 
-Outcome wake(const Adit& adit, const Options& options, const Console& console) {
+Outcome resume(const Adit& adit, const Options& options, const Console& console) {
   if (const auto why =
           doubt(options, console, "If a spare has taken over from this box, reports may be sent twice.",
                 "End the standby?"))
     return unable(*why);
-  const auto done = post(adit, "/adit/spare/wake", "", "adit spare");
+  const auto done = post(adit, "/adit/spare/resume", "", "adit spare");
   if (!done) return unable(done.error());
   return {Exit::Fine, options.json ? *done + '\n' : "this box is in service\n", ""};
 }
@@ -260,7 +260,7 @@ Outcome spare(const Options& options, const Console& console) {
   if (!adit) return unable(adit.error());
   if (options.verb == Verb::Export) return write_export(*adit, options, console);
   if (options.verb == Verb::Take) return take(*adit, options, console);
-  if (options.verb == Verb::Wake) return wake(*adit, options, console);
+  if (options.verb == Verb::Resume) return resume(*adit, options, console);
   const auto json = get(*adit, "/adit/spare");
   if (!json) return unable(json.error());
   const auto view = read<SpareView>(*adit, *json);

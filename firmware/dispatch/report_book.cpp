@@ -8,7 +8,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// What the Command Post, or the way there, has done cannot be taken back; and what a restart finds is what
+/// What the Command Post, or the way there, has done cannot be undone; and what a restart finds is what
 /// the ledger has already.
 bool has_happened(ReportEvent event) {
   switch (event) {

@@ -39,7 +39,7 @@ constexpr std::array kLife = {
     ReportTransition{InDoubt, Event::Missing, Queued, Action::Nothing},
     ReportTransition{InDoubt, Event::Held, Held, Action::TellClients},
     ReportTransition{InDoubt, Event::Released, Queued, Action::Nothing},
-    ReportTransition{InDoubt, Event::CalledDone, Settled, Action::TellClients},
+    ReportTransition{InDoubt, Event::Settled, Settled, Action::TellClients},
     ReportTransition{InDoubt, Event::Restarted, InDoubt, Action::Ask},
 
     ReportTransition{Rejected, Event::Released, Queued, Action::Nothing},

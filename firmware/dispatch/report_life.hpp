@@ -39,15 +39,15 @@ enum class ReportEvent : std::uint8_t {
   Rejected,   // answered 4xx: the Command Post will not have it
   Throttled,  // answered 429: not recorded, may be sent again
   Barred,  // answered 401, 403, 404, 405 or 407: nothing is wrong with it, but with the token or the address
-  NeverLeft,   // no byte of it was given to the kernel
-  Lost,        // bytes may have left, and no answer came that tells anything
-  Found,       // the run's status shows that it was recorded
-  Missing,     // the run's status shows that it was not recorded
-  CalledDone,  // the operator says that nothing is left to do
-  Withdrawn,   // the operator takes it back
-  Joined,      // it is the same as an earlier one, whose answer it gets
-  Cleared,     // it is no repeat of an earlier run's report; it was held until that was known
-  Restarted,   // this program restarted and found it so
+  NeverLeft,  // no byte of it was given to the kernel
+  Lost,       // bytes may have left, and no answer came that tells anything
+  Found,      // the run's status shows that it was recorded
+  Missing,    // the run's status shows that it was not recorded
+  Settled,    // the operator says that nothing is left to do
+  Withdrawn,  // the operator takes it back
+  Joined,     // it is the same as an earlier one, whose answer it gets
+  Cleared,    // it is no repeat of an earlier run's report; it was held until that was known
+  Restarted,  // this program restarted and found it so
 };
 
 /// What to do once the step is on disk.

@@ -218,7 +218,7 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
     case ReportState::Settled:
       if (report.reconciled) break;
       answer.status = icd::Status::Conflict;
-      answer.sentence = name + " was called done by the operator; its answer is not known" + why +
+      answer.sentence = name + " was settled by the operator; its answer is not known" + why +
                         "; to send it again, post it with the header Adit-Resubmit: yes";
       break;
     case ReportState::Withdrawn:

@@ -23,7 +23,7 @@ std::string undecidable(const Report& report, const Run& run, const Run* its) {
   return "";
 }
 
-constexpr const char* kOperator = "; the operator decides: send it, or call it done";
+constexpr const char* kOperator = "; the operator decides: send it, or settle it";
 
 }  // namespace
 

@@ -5,7 +5,7 @@
 namespace adit::dispatch {
 namespace {
 
-constexpr const char* kLost = "its content is lost from the ledger; post it again, or call it done";
+constexpr const char* kLost = "its content is lost from the ledger; post it again, or settle it";
 constexpr const char* kDisk = "the change could not be stored and was not made; try again";
 
 std::unexpected<std::string> no_such(std::int64_t number) {
@@ -65,7 +65,7 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::Withdrawn) == nullptr) {
     return cannot(*report, is_final(report->state) ? "it is finished and cannot be withdrawn"
-                                                   : "it may have been recorded; send it, or call it done");
+                                                   : "it may have been recorded; send it, or settle it");
   }
   if (!step(number, ReportEvent::Withdrawn, "", time)) return std::unexpected(kDisk);
   unchecked_.erase(number);
@@ -75,11 +75,11 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
 Reports::Outcome Reports::call_done(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
-  if (transition(report->state, ReportEvent::CalledDone) == nullptr) {
-    return cannot(*report, "only a report in doubt can be called done");
+  if (transition(report->state, ReportEvent::Settled) == nullptr) {
+    return cannot(*report, "only a report in doubt can be settled");
   }
   const bool done =
-      blur_doubts(number, time) && step(number, ReportEvent::CalledDone, "the operator called it done", time);
+      blur_doubts(number, time) && step(number, ReportEvent::Settled, "the operator settled it", time);
   if (!done) return std::unexpected(kDisk);
   ask_for_others(time);
   return number;

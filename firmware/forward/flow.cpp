@@ -21,7 +21,7 @@ std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
   return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
                               std::shared_ptr<spool::MapFile> file,
                               std::function<void(icd::Checked<void>)> done) {
-    if (!rests_.empty()) return done(unavailable(rests_));
+    if (!standby_.empty()) return done(unavailable(standby_));
     take(std::move(update), sender, std::move(file), std::move(done));
   });
 }
@@ -34,28 +34,28 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
 }
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
-  if (!rests_.empty()) return unavailable(rests_);
+  if (!standby_.empty()) return unavailable(standby_);
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
   if (auto room = telemetry_.has_room_for(update); !room) return room;
   return telemetry_.take(clocks_.stamped(update, sender), sender.bytes);
 }
 
 void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
-  if (!rests_.empty()) return done(unavailable(rests_));
+  if (!standby_.empty()) return done(unavailable(standby_));
   clocks_.stamp(update, sender);
   telemetry_.take(std::move(update), sender.bytes, std::move(done));
 }
 
 void Flow::take(const icd::ArtifactReport& report, const intake::Sender& sender,
                 std::shared_ptr<intake::Responder> responder) {
-  if (!rests_.empty())
-    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, rests_));
+  if (!standby_.empty())
+    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, standby_));
   scoring_.take(report, sender, std::move(responder));
 }
 
 void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> responder) {
-  if (!rests_.empty())
-    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, rests_));
+  if (!standby_.empty())
+    return responder->answer(intake::error_answer(icd::Status::ServiceUnavailable, standby_));
   scoring_.status(std::move(responder));
 }
 
@@ -87,7 +87,7 @@ void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusa
 
 std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::RejectedAction action) {
   if (is_ending()) return std::unexpected("aditd is stopping and sends no more messages");
-  if (!rests_.empty()) return std::unexpected(rests_);
+  if (!standby_.empty()) return std::unexpected(standby_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
   auto message = rejected_.to_be_sent(number);
   if (!message) return std::unexpected(message.error());

@@ -75,7 +75,7 @@ class Flow final : public intake::Desk {
   std::expected<void, std::string> start();
   /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who
   /// asks.
-  void rest(const std::string& why);
+  void stand_by(const std::string& why);
   /// The settings have changed; `restarts` names the endpoints that have another address, way or token.
   /// Clients that wait go on waiting.
   void settings_changed(const settings::Restarts& restarts, Tokens tokens);
@@ -110,11 +110,11 @@ class Flow final : public intake::Desk {
 
   /// The operator's actions: api::Operator.
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
-    if (!rests_.empty()) return std::unexpected(rests_);
+    if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.judge(number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
-    if (!rests_.empty()) return std::unexpected(rests_);
+    if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.report(report, resubmit);
   }
   std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action);
@@ -187,7 +187,7 @@ class Flow final : public intake::Desk {
   Meter meter_;
   std::int64_t pictured_run_;  // Legacy's
   double clock_shown_ = 0;     // by the last status of it
-  std::string rests_;          // why nothing is taken and sent; "": it is
+  std::string standby_;        // why nothing is taken and sent; "": it is
   bool has_started_ = false;   // until then the ledger has not said which run it is
   std::unique_ptr<archive::Archive> archive_;
   Ending ending_;

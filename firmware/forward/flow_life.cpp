@@ -69,11 +69,11 @@ std::expected<void, std::string> Flow::start() {
   return {};
 }
 
-void Flow::rest(const std::string& why) {
-  rests_ = why;
-  scoring_.rest();
-  maps_.rest();
-  telemetry_.rest();
+void Flow::stand_by(const std::string& why) {
+  standby_ = why;
+  scoring_.stand_by();
+  maps_.stand_by();
+  telemetry_.stand_by();
 }
 
 Legacy Flow::hand_over() {

@@ -86,7 +86,7 @@ class Maps {
   /// Sends nothing more. False while an answer is awaited.
   bool stop();
   /// Sends nothing from the beginning.
-  void rest() { stopping_ = true; }
+  void stand_by() { stopping_ = true; }
   /// Whether nothing that was to be taken has still to be kept.
   bool all_kept() const { return being_kept_ == 0; }
   /// Why the last map could not be kept, or "".

@@ -60,7 +60,7 @@ class Scoring {
   /// this.
   void go_by(Clocks& clocks) { clocks_ = &clocks; }
   /// Before start(): connects to nobody, and sends nothing.
-  void rest() { stopping_ = true; }
+  void stand_by() { stopping_ = true; }
   /// Begins with what the ledger holds, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
 

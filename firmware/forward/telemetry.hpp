@@ -54,7 +54,7 @@ class Telemetry {
   /// sent again to this one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
   /// Before start(): connects to nobody, and sends nothing.
-  void rest() { stopping_ = true; }
+  void stand_by() { stopping_ = true; }
   void start() {
     if (stopping_) return;
     channel_.keep_warm();

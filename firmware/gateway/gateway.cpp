@@ -136,8 +136,8 @@ void Gateway::ledger_is_back() {
 
 std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
-  if (!spare_.rests().empty())
-    flow_.rest("this box is in standby, for its spare to take over; it accepts and sends no messages");
+  if (!spare_.standby().empty())
+    flow_.stand_by("this box is on standby, for its spare to take over; it accepts and sends no messages");
   if (auto started = flow_.start(); !started) return started;
   if (auto listening = listen(settings_.team); !listening) return listening;
   board_.remember(acknowledged_.read(), loop_.wall_now());
@@ -264,7 +264,7 @@ void Gateway::keep_sessions() {
 
 void Gateway::add_to(api::Usage& usage) const {
   usage.connections += listeners_.connections();
-  usage.strangers = listeners_.strangers();
+  usage.unauthenticated = listeners_.strangers();
   usage.ended = {{"no_room", crowding_.count(intake::Ended::NoRoom)},
                  {"gave_way", crowding_.count(intake::Ended::GaveWay)},
                  {"idle", crowding_.count(intake::Ended::Idle)},

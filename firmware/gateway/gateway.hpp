@@ -132,7 +132,7 @@ class Gateway final : public api::Source, public api::Operator {
   void tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens);
   void reopen_panel();
   clock::Ntp wanted_ntp() const;
-  void take_back(const std::string& why);
+  void revert(const std::string& why);
   intake::IcdOptions icd_options() const;
   forward::Tokens tokens() const;
   icd::Redaction redaction() const;

@@ -90,7 +90,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.update.on_trial = update.trial;
   facts.update.version = update.last.version;
   facts.update.stray = update.stray;
-  facts.rests = spare_.rests();
+  facts.standby = spare_.standby();
 }
 
 }  // namespace adit::gateway

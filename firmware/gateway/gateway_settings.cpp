@@ -9,14 +9,14 @@
 
 namespace adit::gateway {
 
-/// What the disk holds by now is run with, or taken back. Where that ends halfway (no memory), another
+/// What the disk holds by now is run with, or reverted. Where that ends halfway (no memory), another
 /// gateway reads it.
 void Gateway::apply_change() {
   if (flow_.is_ending()) return;
   try {
     auto loaded = parts_.store.load();
     const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
-    if (!done) take_back(done.error());
+    if (!done) revert(done.error());
   } catch (...) {
     make_way();
     throw;
@@ -70,11 +70,11 @@ void Gateway::reopen_panel() {
 }
 
 /// The settings before are in use still. Where they cannot be served either, another gateway may.
-void Gateway::take_back(const std::string& why) {
-  const bool is_back = parts_.store.take_back();
-  parts_.trouble = (is_back ? "the last change was taken back: " : "the last change cannot be used: ") + why;
+void Gateway::revert(const std::string& why) {
+  const bool is_back = parts_.store.revert();
+  parts_.trouble = (is_back ? "the last change was reverted: " : "the last change cannot be used: ") + why;
   host::log(host::Level::Error,
-            is_back ? "the last change of the settings was taken back" : "the last change cannot be used",
+            is_back ? "the last change of the settings was reverted" : "the last change cannot be used",
             {{"why", why}});
   setup_.runs_with(parts_.loaded, parts_.trouble);
   if (auto listening = listen(settings_.team); !listening) return make_way();

@@ -121,9 +121,9 @@ int Service::run() {
     if (again && !*again) break;
     trouble_.clear();
     if (again) continue;
-    if (!store_.take_back()) return fail(again.error());
-    trouble_ = "the last change was taken back: " + again.error();
-    host::log(host::Level::Error, "the last change of the settings was taken back", {{"why", again.error()}});
+    if (!store_.revert()) return fail(again.error());
+    trouble_ = "the last change was reverted: " + again.error();
+    host::log(host::Level::Error, "the last change of the settings was reverted", {{"why", again.error()}});
   }
   host::log(host::Level::Notice, "stopped");
   return 0;

@@ -7,7 +7,7 @@
 namespace adit::network {
 
 void Change::interrupted() {
-  status_.ended = Ended::TakenBack;
+  status_.ended = Ended::Reverted;
   status_.why = "the change was not confirmed before adit-network ended";
 }
 
@@ -21,16 +21,16 @@ void Change::want(const Wanted& wanted, Instant now) {
   }
   status_.pending = Pending{wanted.nonce, wanted.numbers, now + wanted.confirm_within, wanted.confirm_within};
   if (const auto applied = hands_.apply(wanted.numbers); !applied) {
-    take_back("the change could not be applied: " + applied.error(), now);
+    revert("the change could not be applied: " + applied.error(), now);
   }
 }
 
 void Change::hear(const Word& word, Instant now) {
   if (!status_.pending || word.nonce != status_.pending->nonce || try_at_) return;
-  if (word.what == Word::What::Back) return take_back("a user took the change back", now);
+  if (word.what == Word::What::Revert) return revert("a user reverted the change", now);
   const Numbers numbers = status_.pending->wanted;
   if (const auto kept = hands_.keep(numbers); !kept) {
-    return take_back("the change was confirmed, but could not be stored: " + kept.error(), now);
+    return revert("the change was confirmed, but could not be stored: " + kept.error(), now);
   }
   status_.kept = numbers;
   end(Ended::Confirmed, "");
@@ -39,20 +39,20 @@ void Change::hear(const Word& word, Instant now) {
 std::expected<void, std::string> Change::forget(Instant now) {
   auto kept = hands_.forget();
   if (!kept) {
-    if (status_.pending && !try_at_) take_back("a factory reset forgets all addresses", now);
+    if (status_.pending && !try_at_) revert("a factory reset forgets all addresses", now);
     return std::unexpected(std::move(kept.error()));
   }
   status_.kept = *kept;
   status_.endpoints = {};
-  if (status_.pending) end(Ended::TakenBack, "a factory reset forgot all addresses");
+  if (status_.pending) end(Ended::Reverted, "a factory reset forgot all addresses");
   return {};
 }
 
 void Change::tick(Instant now) {
   if (try_at_) {
-    if (now >= *try_at_) try_to_take_back(now);
+    if (now >= *try_at_) try_to_revert(now);
   } else if (status_.pending && now >= status_.pending->until) {
-    take_back(
+    revert(
         icd::sentence("the change was not confirmed within ",
                       std::chrono::ceil<std::chrono::seconds>(status_.pending->confirm_within).count(), " s"),
         now);
@@ -60,8 +60,8 @@ void Change::tick(Instant now) {
 }
 
 void Change::stop(Instant now) {
-  if (try_at_) return try_to_take_back(now);
-  if (status_.pending) take_back("adit-network was stopped", now);
+  if (try_at_) return try_to_revert(now);
+  if (status_.pending) revert("adit-network was stopped", now);
 }
 
 std::optional<Instant> Change::wake() const {
@@ -69,17 +69,17 @@ std::optional<Instant> Change::wake() const {
   return status_.pending ? std::optional(status_.pending->until) : std::nullopt;
 }
 
-void Change::take_back(std::string why, Instant now) {
+void Change::revert(std::string why, Instant now) {
   why_ = std::move(why);
   tries_ = 0;
-  try_to_take_back(now);
+  try_to_revert(now);
 }
 
-void Change::try_to_take_back(Instant now) {
-  const auto taken = hands_.take_back();
-  if (taken) return end(Ended::TakenBack, why_);
+void Change::try_to_revert(Instant now) {
+  const auto taken = hands_.revert();
+  if (taken) return end(Ended::Reverted, why_);
   if (++tries_ == kTries) {
-    return end(Ended::TakenBack,
+    return end(Ended::Reverted,
                why_ + "; the old addresses are not in effect yet: retrying: " + taken.error());
   }
   try_at_ = now + kTryAgain;

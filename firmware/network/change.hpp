@@ -15,17 +15,17 @@ namespace adit::network {
 class Hands {
  public:
   virtual ~Hands() = default;
-  /// Uses the numbers until the machine is restarted, or until they are taken back.
+  /// Uses the numbers until the machine is restarted, or until they are reverted.
   virtual std::expected<void, std::string> apply(const Numbers& numbers) = 0;
   /// Uses them from now on.
   virtual std::expected<void, std::string> keep(const Numbers& numbers) = 0;
   /// Goes back to what was kept last.
-  virtual std::expected<void, std::string> take_back() = 0;
+  virtual std::expected<void, std::string> revert() = 0;
   /// Goes back to what the box came with, and keeps that; gives it, where it came with any.
   virtual std::expected<std::optional<Numbers>, std::string> forget() = 0;
 };
 
-/// A change of the network's numbers, which takes itself back unless it is confirmed in time: what is wanted
+/// A change of the network's numbers, which is reverted unless it is confirmed in time: what is wanted
 /// is applied at once and for now, and only kept once somebody has said so. One at a time.
 class Change {
  public:
@@ -41,7 +41,7 @@ class Change {
     status_.command_post_interface = std::move(command_post);
   }
 
-  /// A change was under way when this last ended: it has been taken back.
+  /// A change was under way when this last ended: it has been reverted.
   void interrupted();
 
   void want(const Wanted& wanted, Instant now);
@@ -51,7 +51,7 @@ class Change {
   /// Ends what is pending, too. An error: it is not done, or not in use yet.
   std::expected<void, std::string> forget(Instant now);
   void tick(Instant now);
-  /// There is no more time: what is pending is taken back, once more where that has failed.
+  /// There is no more time: what is pending is reverted, once more where that has failed.
   void stop(Instant now);
 
   /// When tick() is to be called; nothing: no change is under way.
@@ -60,13 +60,13 @@ class Change {
   const Status& status() const { return status_; }
 
  private:
-  void take_back(std::string why, Instant now);
-  void try_to_take_back(Instant now);
+  void revert(std::string why, Instant now);
+  void try_to_revert(Instant now);
   void end(Ended how, std::string why);
 
   Hands& hands_;
   Status status_;
-  std::string why_;  // it is being taken back
+  std::string why_;  // it is being reverted
   int tries_ = 0;
   std::optional<Instant> try_at_;
 };

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::size_t kNonceDigits = 2 * kNonceBytes;
 
-constexpr std::string_view kWordWords[] = {"confirm", "back"};  // in the order of Word::What
+constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Word::What
 
 }  // namespace
 
@@ -44,7 +44,7 @@ struct KindOf<network::Ended> {
   }
   static void read(const Field& field, network::Ended& ended) {
     if (field.is_absent()) return;
-    for (const auto each : {network::Ended::Confirmed, network::Ended::TakenBack}) {
+    for (const auto each : {network::Ended::Confirmed, network::Ended::Reverted}) {
       if (field.text() == name_of(each)) ended = each;
     }
     if (ended == network::Ended::NotYet) field.refuse("expected ", in_turn(network::kEndedWords));
@@ -144,7 +144,7 @@ constexpr codec::Schema kAddressesSchema = {.type = "array"};
 constexpr codec::Kind kAddresses = {
     .write = write_addresses, .read = read_addresses, .schema = &kAddressesSchema};
 
-/// When a change is taken back unless it is confirmed.
+/// When a change is reverted unless it is confirmed.
 template <auto within>
 constexpr Member confirm_within() {
   return member<within>("confirm_within_ms").from(kLeastWithin.count()).to(kMostWithin.count());

@@ -51,9 +51,9 @@ struct Wanted {
 
 /// About a pending change.
 struct Word {
-  enum class What : std::uint8_t { Confirm, Back };
+  enum class What : std::uint8_t { Confirm, Revert };
   std::string nonce;  // of the change
-  What what = What::Back;
+  What what = What::Revert;
   static const codec::Row kRow;
 };
 
@@ -88,9 +88,9 @@ struct Pending {
   friend bool operator==(const Pending&, const Pending&) = default;
 };
 
-enum class Ended : std::uint8_t { NotYet, Confirmed, TakenBack };
+enum class Ended : std::uint8_t { NotYet, Confirmed, Reverted };
 /// In their order, from Confirmed.
-inline constexpr std::string_view kEndedWords[] = {"confirmed", "taken back"};
+inline constexpr std::string_view kEndedWords[] = {"confirmed", "reverted"};
 /// "" for NotYet
 std::string_view name_of(Ended ended);
 

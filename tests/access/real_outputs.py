@@ -178,8 +178,8 @@ class Outputs(unittest.TestCase):
         values = {"number": 1, "session": 1, "kind": layer["kind"], "robot": TEAM, "level": 0, "x": 0, "y": 0,
                   "key": self.box.ask("GET /adit/runs", **self.script)[1]["runs"][0]["key"]}
         for path, methods in described["paths"].items():
-            if path == "/adit/spare/rest":
-                continue  # a box that rests has started again, and refuses most of what is asked here
+            if path == "/adit/spare/standby":
+                continue  # a box on standby has restarted and rejects most of what is asked here
             filled = re.sub(r"{(\w+)}", lambda it: str(values[it.group(1)]), path)
             for method, said in methods.items():
                 queries = [each["name"] for each in said.get("parameters", []) if each["in"] == "query"]

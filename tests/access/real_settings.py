@@ -197,7 +197,7 @@ class SetUp(unittest.TestCase):
         self.applied("POST /adit/course", {"name": "A"})
         wait_until(lambda: self.box.ask("GET /adit/reports", **self.me)[1][0]["state"] == "answered", "its answer")
 
-    def test_settings_that_nobody_can_listen_by_are_taken_back_and_said_why(self):
+    def test_settings_that_nobody_can_listen_by_are_reverted_and_said_why(self):
         port = free_port()
         self.change(lambda settings: settings["team"]["listen"][0].update(port=port))
         good = (self.box.state / "settings.json").read_text()
@@ -205,14 +205,14 @@ class SetUp(unittest.TestCase):
             other = taken.getsockname()[1]
             self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
             self.assertEqual(self.box.port, port, "where it was before")
-            self.assertIn(f"the last change was taken back: binding to 127.0.0.1 port {other}", self.attention())
+            self.assertIn(f"the last change was reverted: binding to 127.0.0.1 port {other}", self.attention())
             self.assertIn("Address already in use", self.attention())
-            self.assertIn("the last change of the settings was taken back", self.box.said())
+            self.assertIn("the last change of the settings was reverted", self.box.said())
             self.assertEqual((self.box.state / "settings.json").read_text(), good)
         self.change(lambda settings: settings["team"]["listen"][0].update(port=other))
         self.assertEqual((self.box.port, self.attention()), (other, ""))
 
-    def test_the_first_change_is_taken_back_to_what_the_box_was_given_also_over_a_power_cut(self):
+    def test_the_first_change_is_reverted_to_what_the_box_was_given_also_over_a_power_cut(self):
         self.box.stop()
         given = json.loads((self.box.folder / "settings.json").read_text())
         with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
@@ -220,7 +220,7 @@ class SetUp(unittest.TestCase):
             (self.box.state / "settings.json").write_text(json.dumps(given))
             (self.box.state / "settings.json.before").write_text("")
             self.box.start()
-        self.assertIn("the last change was taken back", self.attention())
+        self.assertIn("the last change was reverted", self.attention())
         self.assertFalse(self.settings()["saved"])
         self.assertFalse((self.box.state / "settings.json").exists())
 

@@ -51,8 +51,8 @@ TEST_F(SetupTest, RefusesAnythingWhileAChangeIsBeingApplied) {
 
 TEST_F(SetupTest, TellsWhyTheLastChangeIsNotInUseUntilOneIs) {
   EXPECT_EQ(setup_.trouble(), "");
-  setup_.runs_with(store_.load().value(), "the last change was taken back: no room");
-  EXPECT_EQ(setup_.trouble(), "the last change was taken back: no room");
+  setup_.runs_with(store_.load().value(), "the last change was reverted: no room");
+  EXPECT_EQ(setup_.trouble(), "the last change was reverted: no room");
   setup_.runs_with(store_.load().value(), "");
   EXPECT_EQ(setup_.trouble(), "");
 }

@@ -103,43 +103,43 @@ std::string why(const icd::Checked<void>& done) {
 TEST(SpareBox, IsExportedOnlyOnceItRests) {
   Box box;
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"));
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   EXPECT_EQ(box.turned().restarts, 1);
-  EXPECT_EQ(box.spare().rests(), "") << "what is under way ends first";
+  EXPECT_EQ(box.spare().standby(), "") << "what is under way ends first";
   box.restart();
-  EXPECT_THAT(box.spare().rests(), HasSubstr("its spare takes over"));
+  EXPECT_THAT(box.spare().standby(), HasSubstr("its spare takes over"));
   EXPECT_EQ(box.spare().spare().code.size(), 19U);
   EXPECT_TRUE(box.exported());
 }
 
 TEST(SpareBox, GoesOnRestingUntilItIsWokenUp) {
   Box box;
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   for (int life = 0; life < 3; ++life) {
     box.restart();
-    EXPECT_NE(box.spare().rests(), "");
+    EXPECT_NE(box.spare().standby(), "");
   }
-  ASSERT_TRUE(box.spare().wake());
+  ASSERT_TRUE(box.spare().resume());
   box.restart();
-  EXPECT_EQ(box.spare().rests(), "");
-  EXPECT_EQ(why(box.spare().wake()), "this box is not on standby");
+  EXPECT_EQ(box.spare().standby(), "");
+  EXPECT_EQ(why(box.spare().resume()), "this box is not on standby");
 }
 
 TEST(SpareBox, AnotherRestHasAnotherCode) {
   Box box;
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   const std::string first = box.spare().spare().code;
-  ASSERT_TRUE(box.spare().wake());
+  ASSERT_TRUE(box.spare().resume());
   box.restart();
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   EXPECT_NE(box.spare().spare().code, first);
 }
 
 TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
   Box first, second;
-  ASSERT_TRUE(first.spare().rest());
+  ASSERT_TRUE(first.spare().stand_by());
   first.restart();
   const auto file = first.exported();
   ASSERT_TRUE(file);
@@ -155,14 +155,14 @@ TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
   EXPECT_EQ(second.turned().restarts, 0) << "nothing has changed yet";
   ASSERT_TRUE(second.spare().take_over());
   EXPECT_EQ(second.turned().restarts, 1);
-  EXPECT_EQ(why(second.spare().rest()), "this box is taking over just now");
+  EXPECT_EQ(why(second.spare().stand_by()), "this box is taking over just now");
 }
 
 TEST(SpareBox, IsExportedToTheStickOnlyOnceItRests) {
   Box box;
   box.say({});
   EXPECT_THAT(why(box.to_stick()), HasSubstr("not on standby"));
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.to_stick());
   EXPECT_THAT(box.for_stick().first,
@@ -174,7 +174,7 @@ TEST(SpareBox, IsExportedToTheStickOnlyOnceItRests) {
 
 TEST(SpareBox, TakesInWhatIsReadFromTheStickLikeWhatIsUploaded) {
   Box first, second;
-  ASSERT_TRUE(first.spare().rest());
+  ASSERT_TRUE(first.spare().stand_by());
   first.restart();
   second.say({.exports = {"a.adit-spare"}});
   ASSERT_TRUE(second.spare().take_from_stick("a.adit-spare"));
@@ -188,7 +188,7 @@ TEST(SpareBox, TakesInWhatIsReadFromTheStickLikeWhatIsUploaded) {
 
 TEST(SpareBox, DoesNotTakeOverFromItself) {
   Box box;
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.spare().take_in(*box.exported()));
   EXPECT_THAT(why(box.opened(box.spare().spare().code)), HasSubstr("this box made the export itself"));
@@ -198,7 +198,7 @@ TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
   Box box;
   box.trouble = "no space left";
   box.restart();
-  EXPECT_EQ(box.spare().rests(), "the take-over is not finished: no space left");
+  EXPECT_EQ(box.spare().standby(), "the take-over is not finished: no space left");
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"))
       << "it has nothing whole to hand on";
 }
@@ -206,7 +206,7 @@ TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
 TEST(SpareBox, SaysNothingOfWhatAnEarlierRestWroteToTheStick) {
   Box box;
   box.say({});
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   box.restart();
   ASSERT_TRUE(box.to_stick());
   const std::string file = box.for_stick().first;
@@ -228,18 +228,18 @@ spare::About about_of(Box& box) {
 TEST(SpareBox, CountsItsRestsAndKeepsWhenTheyWere) {
   Box box;
   for (const std::int64_t count : {1, 2}) {
-    ASSERT_TRUE(box.spare().rest());
+    ASSERT_TRUE(box.spare().stand_by());
     const double stamp = box.stamp();
     box.restart();
     const spare::About about = about_of(box);
     EXPECT_EQ(about.rest_count, count);
     EXPECT_NEAR(about.stamp, stamp, 1) << "not that of the export";
     EXPECT_EQ(about.told_at, std::nullopt) << "nobody set its time of day";
-    ASSERT_TRUE(box.spare().wake());
+    ASSERT_TRUE(box.spare().resume());
     box.restart();
   }
   box.is_time_set = true;
-  ASSERT_TRUE(box.spare().rest());
+  ASSERT_TRUE(box.spare().stand_by());
   box.is_time_set = false;  // since then
   box.restart();
   EXPECT_EQ(about_of(box).told_at, about_of(box).at);

@@ -50,20 +50,20 @@ TEST_F(StoreTest, GivesWhatTheBoxWasGivenUntilSomethingIsSaved) {
 }
 
 TEST_F(StoreTest, TakesBackWhatWasSavedUntilItIsSettled) {
-  EXPECT_FALSE(store_.take_back()) << "nothing is on trial";
+  EXPECT_FALSE(store_.revert()) << "nothing is on trial";
   (void)store_.save(with_connections(30));
   store_.settle(with_connections(30));
-  EXPECT_FALSE(store_.take_back());
+  EXPECT_FALSE(store_.revert());
   (void)store_.save(with_connections(40));
   (void)store_.save(with_connections(50));
-  EXPECT_TRUE(store_.take_back());
+  EXPECT_TRUE(store_.revert());
   EXPECT_EQ(connections(), 30u) << "the last that had proven itself";
-  EXPECT_FALSE(store_.take_back());
+  EXPECT_FALSE(store_.revert());
 }
 
 TEST_F(StoreTest, TakesTheFirstBackToWhatTheBoxWasGiven) {
   (void)store_.save(with_connections(30));
-  EXPECT_TRUE(store_.take_back());
+  EXPECT_TRUE(store_.revert());
   EXPECT_FALSE(store_.load().value().saved);
   EXPECT_EQ(connections(), 20u);
 }
@@ -124,7 +124,7 @@ TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
   (void)store_.save_token("course.B.mapping", icd::BearerToken::parse("of-b"));
   (void)store_.save_token("team", icd::BearerToken::parse("team-1"));
   (void)store_.save(with_connections(30));
-  EXPECT_TRUE(kept("secrets/course.B.mapping.token")) << "it may be taken back yet";
+  EXPECT_TRUE(kept("secrets/course.B.mapping.token")) << "it may be reverted yet";
   store_.settle(with_connections(30));
   EXPECT_FALSE(kept("secrets/course.B.mapping.token"));
   EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));

@@ -81,7 +81,7 @@ void the_box(std::vector<Facts>& days) {
   facts.notices = {{"card", "what happened"}};
   facts.update = {.on_trial = true, .version = "1.2.0", .stray = "the last one did not come up"};
   days.push_back(named());
-  days.back().rests = "its spare takes over";
+  days.back().standby = "its spare takes over";
 }
 
 void the_network(std::vector<Facts>& days) {

@@ -24,8 +24,8 @@ struct FakeNetwork final : Network {
     confirmed.push_back(local);
     return outcome;
   }
-  icd::Checked<void> take_back() override {
-    ++taken_back;
+  icd::Checked<void> revert() override {
+    ++reverted;
     return outcome;
   }
 
@@ -35,7 +35,7 @@ struct FakeNetwork final : Network {
   mutable std::vector<std::string> askers;
   std::vector<network::Numbers> wanted;
   std::vector<std::string> confirmed;
-  int taken_back = 0;
+  int reverted = 0;
 };
 
 struct FakeTest final : SelfTest {

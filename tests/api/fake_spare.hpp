@@ -11,8 +11,8 @@ namespace adit::api {
 /// Is what it is told to be, and remembers what it was asked.
 struct FakeSpare final : Spare {
   SpareView spare() const override { return view; }
-  icd::Checked<void> rest() override { return said("rest"); }
-  icd::Checked<void> wake() override { return said("wake"); }
+  icd::Checked<void> stand_by() override { return said("standby"); }
+  icd::Checked<void> resume() override { return said("resume"); }
   void export_to(Sealed done) override {
     const auto may = said("export");
     if (!may) return done(std::unexpected(may.error()));

@@ -69,7 +69,7 @@ TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
 
 TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
   network.view.pending = PendingNetwork{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
-  network.view.last = "taken back";
+  network.view.last = "reverted";
   network.view.last_why = "the change was not confirmed within 90 s";
   const json shown = json::parse(get("/adit/network").body);
   EXPECT_EQ(shown["pending"]["until"], 1234.5);
@@ -77,7 +77,7 @@ TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
   EXPECT_EQ(shown["pending"]["command_post"]["gateway"], "10.100.1.1");
   EXPECT_TRUE(shown["pending"]["previous"].is_null());
   EXPECT_EQ(shown["pending"]["page"], "http://192.168.8.11:8000");
-  EXPECT_EQ(shown["last"], "taken back");
+  EXPECT_EQ(shown["last"], "reverted");
   network.view.pending->previous = kRead;
   EXPECT_EQ(json::parse(get("/adit/network").body)["pending"]["previous"]["team"]["prefix"], 24);
 }
@@ -113,8 +113,8 @@ TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
   local = "192.168.8.11";
   post("/adit/network/confirm");
   EXPECT_THAT(network.confirmed, ElementsAre("192.168.8.11"));
-  post("/adit/network/back");
-  EXPECT_EQ(network.taken_back, 1);
+  post("/adit/network/revert");
+  EXPECT_EQ(network.reverted, 1);
   network.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "there is no change to confirm"});
   const auto answer = post("/adit/network/confirm");
   EXPECT_EQ(answer.status, icd::Status::Conflict);

@@ -24,14 +24,14 @@ struct PlayedSpare final : Spare {
     step();
     return shown;
   }
-  icd::Checked<void> rest() override {
-    view.rests = true;
+  icd::Checked<void> stand_by() override {
+    view.standby = true;
     view.why = "its spare takes over";
     view.code = "1234 5678 9012 3456";
     return {};
   }
-  icd::Checked<void> wake() override {
-    view.rests = false;
+  icd::Checked<void> resume() override {
+    view.standby = false;
     view.code.clear();
     return {};
   }

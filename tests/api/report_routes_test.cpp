@@ -117,9 +117,9 @@ TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
   EXPECT_EQ(post("/adit/reports/7/send").body, "{\"report\":7}");
   post("/adit/reports/12/withdraw");
   post("/adit/reports/12/hold");
-  post("/adit/reports/7/done");
+  post("/adit/reports/7/settle");
   EXPECT_THAT(judge.judged, ElementsAre(Pair(7, Action::Send), Pair(12, Action::Withdraw),
-                                        Pair(12, Action::Hold), Pair(7, Action::CallDone)));
+                                        Pair(12, Action::Hold), Pair(7, Action::Settle)));
   judge.outcome = 13;
   const auto answer = post("/adit/reports/7/resubmit");
   EXPECT_EQ(answer.status, icd::Status::Ok);

@@ -128,7 +128,7 @@ TEST(Routes, DoNothingForWhomTheyDoNotLetIn) {
                   page.judge.judged_messages.empty());
       EXPECT_EQ(page.judge.run, 1);
       EXPECT_EQ(page.judge.identified, 0);
-      EXPECT_EQ(page.setup.saves + page.setup.resets + page.network.taken_back, 0);
+      EXPECT_EQ(page.setup.saves + page.setup.resets + page.network.reverted, 0);
       EXPECT_TRUE(page.network.wanted.empty() && page.network.confirmed.empty());
       EXPECT_FALSE(page.test.view.running);
       EXPECT_TRUE(page.updates.sticks.empty() && page.updates.restarts.empty() &&

@@ -189,7 +189,7 @@ RunView reports(Time now, double elapsed) {
   view.reports[3].note = "no answer came, and the run's status shows that another client reports, too";
   view.reports[4].note = "the same type as report 25, 2 m from it";
   view.reports[5].reconciled = true;
-  view.reports[6].note = "the operator called it done";
+  view.reports[6].note = "the operator settled it";
   view.reports[7].same_as = 17;
   view.alarms = {alarm("report_in_doubt:25", alarms::Severity::Ask, now - 60, "Report 25 is in doubt",
                        "no answer came", {"Decide", "/#report=25"}),

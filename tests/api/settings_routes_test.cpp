@@ -63,7 +63,7 @@ TEST_F(SettingsRoutesTest, TellThatAChangeIsBeingApplied) {
 
 TEST_F(SettingsRoutesTest, TellWhyTheLastChangeIsNotInUse) {
   EXPECT_EQ(shown()["trouble"], "");
-  setup.why = "the last change was taken back: no such interface";
+  setup.why = "the last change was reverted: no such interface";
   EXPECT_EQ(shown()["trouble"], setup.why);
 }
 

@@ -20,19 +20,19 @@ class SpareRoutesTest : public OnPage {
 };
 
 TEST_F(SpareRoutesTest, ShowsHowTheBoxStands) {
-  spare.view.rests = true;
+  spare.view.standby = true;
   spare.view.code = "1234 5678 9012 3456";
-  EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("rests":true)"));
+  EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("standby":true)"));
   EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("code":"1234 5678 9012 3456")"));
 }
 
 TEST_F(SpareRoutesTest, PassesTheOperatorsWordOn) {
-  for (const char* const path : {"rest", "wake", "forget"})
+  for (const char* const path : {"standby", "resume", "forget"})
     EXPECT_EQ(post(std::string("/adit/spare/") + path).status, Status::Ok) << path;
   EXPECT_EQ(post("/adit/spare/open", R"({"code":"1234"})").status, Status::Ok);
-  EXPECT_THAT(spare.asked, ElementsAre("rest", "wake", "forget", "open 1234"));
+  EXPECT_THAT(spare.asked, ElementsAre("standby", "resume", "forget", "open 1234"));
   spare.outcome = std::unexpected(icd::Refusal{Status::Conflict, "it does not rest"});
-  const auto refused = post("/adit/spare/wake");
+  const auto refused = post("/adit/spare/resume");
   EXPECT_EQ(refused.status, Status::Conflict);
   EXPECT_EQ(refused.body, "\"it does not rest\"");
 }

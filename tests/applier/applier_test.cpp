@@ -159,7 +159,7 @@ class NetworkdFailsTest : public ApplierTest {
   std::size_t before = 0;
 };
 
-TEST_F(NetworkdFailsTest, AsAChangeIsTakenBackAfterAKill) {
+TEST_F(NetworkdFailsTest, AsAChangeIsRevertedAfterAKill) {
   want();
   EXPECT_TRUE(Life(options).started);
   break_networkd();
@@ -168,16 +168,16 @@ TEST_F(NetworkdFailsTest, AsAChangeIsTakenBackAfterAKill) {
   mend_networkd();
   EXPECT_TRUE(runs_well());
   EXPECT_EQ(reloads(), before + 2);
-  EXPECT_EQ(status().ended, network::Ended::TakenBack);
+  EXPECT_EQ(status().ended, network::Ended::Reverted);
   EXPECT_FALSE(status().pending);
 }
 
-TEST_F(NetworkdFailsTest, AsAChangeIsTakenBackAndTheServiceIsStopped) {
+TEST_F(NetworkdFailsTest, AsAChangeIsRevertedAndTheServiceIsStopped) {
   want();
   {
     Life life(options);
     break_networkd();
-    ask(network::kWordFile, network::Word{kNonce, network::Word::What::Back});
+    ask(network::kWordFile, network::Word{kNonce, network::Word::What::Revert});
     life.loop.turn(std::chrono::seconds(5));
     EXPECT_TRUE(status().pending);
     life.applier.stop();

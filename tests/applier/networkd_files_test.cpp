@@ -91,7 +91,7 @@ TEST_F(NetworkdFilesTest, TryBesideWhatIsKept) {
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothTried));
   EXPECT_EQ(text_of("04-adit-team.network"), network::team_file("team0", first));
   EXPECT_EQ(reloads(), 1u);
-  ASSERT_TRUE(files->take_back());
+  ASSERT_TRUE(files->revert());
   EXPECT_THAT(in(options.networkd), IsEmpty());
   EXPECT_EQ(reloads(), 2u);
 }
@@ -102,8 +102,8 @@ TEST_F(NetworkdFilesTest, KeepWithoutDisturbingAnything) {
   EXPECT_EQ(in(options.networkd).size(), 4u);
   EXPECT_EQ(text_of("05-adit-command-post.network"), network::command_post_file("darpa0", first, {}));
   EXPECT_EQ(reloads(), 1u) << "networkd has it all already";
-  ASSERT_TRUE(files->take_back());
-  EXPECT_EQ(reloads(), 1u) << "there is nothing to take back";
+  ASSERT_TRUE(files->revert());
+  EXPECT_EQ(reloads(), 1u) << "there is nothing to revert";
 }
 
 TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
@@ -113,7 +113,7 @@ TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
   ASSERT_TRUE(files->apply(second));
   EXPECT_EQ(in(options.networkd).size(), 3u);
   EXPECT_EQ(text_of("04-adit-team.network"), network::team_file("team0", second));
-  ASSERT_TRUE(files->take_back());
+  ASSERT_TRUE(files->revert());
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
@@ -130,7 +130,7 @@ TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
   ASSERT_TRUE(files->apply(second));
-  ASSERT_TRUE(files->take_back());
+  ASSERT_TRUE(files->revert());
   EXPECT_EQ(in(options.networkd).size(), 3u) << "of what was tried, what is confirmed may stay";
   EXPECT_EQ(text_of("04-adit-team.network"), "");
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
@@ -227,17 +227,17 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWhileAChangeIsTried) {
   EXPECT_EQ(text_of("04-adit-command-post.network"),
             network::command_post_file("darpa0", routed, {0x0a6402c8}));
   EXPECT_EQ(text_of("04-adit-team.network"), "") << "that side stays as it is";
-  ASSERT_TRUE(files->take_back());
+  ASSERT_TRUE(files->revert());
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
 }
 
 TEST_F(NetworkdFilesTest, SayWhatDidNotWorkAndTryItAgain) {
   folder.put("broken", "");
   EXPECT_THAT(files->apply(first).error(), HasSubstr("networkctl reload: exit status 1"));
-  EXPECT_FALSE(files->take_back());
+  EXPECT_FALSE(files->revert());
   fs::remove(folder / "broken");
   const std::size_t before = reloads();
-  EXPECT_TRUE(files->take_back());
+  EXPECT_TRUE(files->revert());
   EXPECT_EQ(reloads(), before + 1) << "though the files are gone already";
   EXPECT_THAT(in(options.status), IsEmpty());
   fs::remove_all(options.networkd);

@@ -61,13 +61,13 @@ class Everyday(Contained):
         programs.wait_until(lambda: self.networkd() not in ("0", before), "another networkd", 60)
         self.shell("networkctl reload")  # so it serves
         self.assertEqual(self.addresses(), ["10.100.1.77"])
-        programs.wait_until(self.taken_back, "the change to be taken back", 60)
+        programs.wait_until(self.reverted, "the change to be reverted", 60)
         programs.wait_until(lambda: self.addresses() == [hosts.BOX_DARPA], "the address from before", 60)
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
 
-    def taken_back(self):
+    def reverted(self):
         session = {**self.session, "Content-Type": "application/json"}
-        return self.box.ask("POST /adit/network/back", session, None, token=None)[0] == 200
+        return self.box.ask("POST /adit/network/revert", session, None, token=None)[0] == 200
 
     def test_a_report_is_recorded(self):
         self.assertEqual(submit(self.stage).status_code, 201)
@@ -292,7 +292,7 @@ class Everyday(Contained):
         stick = sticks.Stick(self.box, self.stage.folder, "stick")
         self.addCleanup(stick.pull)
         self.assertEqual(self.stick()["hindrance"], "there is no stick in the box")
-        self.asked("POST /adit/spare/rest")
+        self.asked("POST /adit/spare/standby")
         programs.wait_until(lambda: self.spare()["code"], "it to rest", 60)
         self.asked("POST /adit/spare/to-stick", status=409)
         stick.plug()
@@ -322,7 +322,7 @@ class Everyday(Contained):
         refusal = self.wait_for_stick(lambda said: said["refusal"] and not said["doing"], "a refusal")["refusal"]
         self.assertRegex(refusal, "the stick has room for|the stick is full")
         self.assertEqual(stick.as_it_is(name), kept, "what was there before is there still")
-        self.asked("POST /adit/spare/wake")
+        self.asked("POST /adit/spare/resume")
         programs.wait_until(self.box.knows_the_run, "it to go on", 60)
 
     def test_settings_reports_and_journal_are_kept_over_a_start(self):

@@ -41,13 +41,13 @@ TEST_F(Actions, AreAskedForByTheirNames) {
                        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/withdraw", Server::ok("{\"report\":7}")},
-                       {"POST /adit/reports/7/done", Server::ok("{\"report\":7}")},
+                       {"POST /adit/reports/7/settle", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/resubmit", Server::ok("{\"report\":12}")},
                        {"POST /adit/runs", Server::ok("{\"run\":2}")}});
   EXPECT_EQ(say(server, {"reports", "send", "7"}).out, "report 7 is queued\n");
   EXPECT_EQ(say(server, {"reports", "hold", "7"}).out, "report 7 is held until you send it\n");
   EXPECT_EQ(say(server, {"reports", "withdraw", "7"}).out, "report 7 is withdrawn\n");
-  EXPECT_EQ(say(server, {"reports", "done", "7"}).out, "report 7 is settled\n");
+  EXPECT_EQ(say(server, {"reports", "settle", "7"}).out, "report 7 is settled\n");
   EXPECT_EQ(say(server, {"reports", "resubmit", "7"}).out, "report 7 is sent again as report 12\n");
   EXPECT_EQ(say(server, {"reports", "resubmit", "7", "--json"}).out, "{\"report\":12}\n");
   EXPECT_EQ(say(server, {"run", "new"}).out,
@@ -173,8 +173,8 @@ TEST_F(Actions, OnOtherReportsAreNotAskedAbout) {
 
 TEST_F(Actions, OfAReportThatIsNotThereAreRefused) {
   const Server server(
-      {{"POST /adit/reports/8/done", Server::reply("404 Not Found", "\"there is no report 8\"")}});
-  const Outcome outcome = say(server, {"reports", "done", "8"});
+      {{"POST /adit/reports/8/settle", Server::reply("404 Not Found", "\"there is no report 8\"")}});
+  const Outcome outcome = say(server, {"reports", "settle", "8"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.err, "adit: there is no report 8\n");
 }

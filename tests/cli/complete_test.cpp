@@ -54,10 +54,10 @@ TEST_F(Completion, ListsReportsThatAWordCanBeSaidOf) {
   EXPECT_EQ(listed({"reports"}).out,
             "3\tSurvivor, answered\n4\tSurvivor, in doubt\n5\tCell\\x0aPhone, held\n");
   EXPECT_EQ(listed({"reports", "show"}).out, listed({"reports"}).out);
-  EXPECT_EQ(listed({"reports", "done"}).out, "4\tSurvivor, in doubt\n");
+  EXPECT_EQ(listed({"reports", "settle"}).out, "4\tSurvivor, in doubt\n");
   EXPECT_EQ(listed({"reports", "resubmit"}).out, "3\tSurvivor, answered\n");
   EXPECT_EQ(listed({"reports", "send"}).out, "4\tSurvivor, in doubt\n5\tCell\\x0aPhone, held\n");
-  EXPECT_EQ(listed({"reports", "done", "--json"}).out,
+  EXPECT_EQ(listed({"reports", "settle", "--json"}).out,
             "[{\"word\":\"4\",\"what\":\"Survivor, in doubt\"}]\n");
 }
 

@@ -75,22 +75,22 @@ TEST_F(NetworkCommand, ShowsAChangeThatWaits) {
 }
 
 TEST_F(NetworkCommand, ShowsHowTheLastChangeEndedAndWhyNoneCanBeMade) {
-  const Server server({{"GET /adit/network", view("null", "\"taken back\"", false)}});
+  const Server server({{"GET /adit/network", view("null", "\"reverted\"", false)}});
   const Outcome outcome = say(server, {"network"});
-  EXPECT_THAT(outcome.out, HasSubstr("Last change: taken back, nobody confirmed it\n"));
+  EXPECT_THAT(outcome.out, HasSubstr("Last change: reverted, nobody confirmed it\n"));
   EXPECT_THAT(outcome.out, HasSubstr("Adit cannot change the addresses: it is set elsewhere\n"));
 }
 
 TEST_F(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
   const Server server({{"POST /adit/network/confirm", view(kPending, "null")},
-                       {"POST /adit/network/back", view(kPending, "null")},
+                       {"POST /adit/network/revert", view(kPending, "null")},
                        {"GET /adit/network", view("null", "\"confirmed\"")}});
   const Outcome confirmed = say(server, {"network", "confirm"});
   EXPECT_EQ(confirmed.exit, Exit::Fine) << confirmed.err;
   EXPECT_EQ(confirmed.out, "the change is confirmed\n");
-  const Outcome back = say(server, {"network", "back"});
-  EXPECT_EQ(back.exit, Exit::Attention) << "it was confirmed meanwhile";
-  EXPECT_EQ(back.out, "the change is confirmed: nobody confirmed it\n");
+  const Outcome reverted = say(server, {"network", "revert"});
+  EXPECT_EQ(reverted.exit, Exit::Attention) << "it was confirmed meanwhile";
+  EXPECT_EQ(reverted.out, "the change is confirmed: nobody confirmed it\n");
 }
 
 TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {
@@ -105,7 +105,7 @@ TEST_F(NetworkCommand, SaysWhyAWordCannotBe) {
 
 TEST_F(NetworkCommand, TakesNoOtherWords) {
   EXPECT_THAT(run(std::vector<std::string_view>{"network", "apply"}).err,
-              HasSubstr("expected show, confirm or back, got apply"));
+              HasSubstr("expected show, confirm or revert, got apply"));
   EXPECT_THAT(run(std::vector<std::string_view>{"network", "show", "all"}).err,
               HasSubstr("one word too many: all"));
   EXPECT_THAT(run(std::vector<std::string_view>{"test", "all"}).err, HasSubstr("one word too many: all"));

@@ -36,9 +36,9 @@ TEST(Options, TakeTheFileToCheckAsAWord) {
 }
 
 TEST(Options, TakeTheOperatorsWord) {
-  const Options options = parsed({"reports", "done", "7", "--token-file", "t", "12"});
+  const Options options = parsed({"reports", "settle", "7", "--token-file", "t", "12"});
   EXPECT_EQ(options.command, Command::Reports);
-  EXPECT_EQ(options.verb, Verb::Done);
+  EXPECT_EQ(options.verb, Verb::Settle);
   EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
   EXPECT_EQ(options.token_file, "t");
   EXPECT_EQ(parsed({"reports", "send", "7"}).verb, Verb::Send);
@@ -102,11 +102,11 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
       {{"status", "--csv"}, "status does not take --csv"},
       {{"reports", "snd"},
-       "expected show, send, hold, withdraw, done, resubmit or export, got snd; did you mean send?"},
+       "expected show, send, hold, withdraw, settle, resubmit or export, got snd; did you mean send?"},
       {{"reports", "--yes"}, "reports does not take --yes"},
-      {{"reports", "done", "7", "--yes"}, "reports done does not take --yes"},
+      {{"reports", "settle", "7", "--yes"}, "reports settle does not take --yes"},
       {{"watch", "7"}, "one word too many: 7"},
-      {{"reports", "7"}, "expected show, send, hold, withdraw, done, resubmit or export, got 7"},
+      {{"reports", "7"}, "expected show, send, hold, withdraw, settle, resubmit or export, got 7"},
       {{"reports", "send"}, "a report's number is missing after send"},
       {{"reports", "send", "0"}, "expected a report's number, got 0"},
       {{"reports", "send", "7x"}, "expected a report's number, got 7x"},
@@ -147,7 +147,7 @@ TEST(Options, NameTheWordThatIsWrong) {
 TEST(Options, AreOfTheWordsThatTakeThem) {
   EXPECT_TRUE(parsed({"reports", "send", "7", "--yes"}).yes);
   EXPECT_EQ(parsed({"settings", "show", "reports.review"}).key, "reports.review");
-  EXPECT_EQ(parsed({"complete", "reports", "done"}).word, "done");
+  EXPECT_EQ(parsed({"complete", "reports", "settle"}).word, "settle");
   EXPECT_EQ(parsed({"watch", "--json"}).command, Command::Watch);
   EXPECT_THAT(help_about(Command::Reports),
               testing::HasSubstr("without a subcommand: list the reports of this run"));

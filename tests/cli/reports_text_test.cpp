@@ -149,7 +149,7 @@ TEST(ReportText, OffersTheActionsThatCanBe) {
   EXPECT_EQ(actions("held"), "send, withdraw");
   EXPECT_EQ(actions("queued"), "send, hold, withdraw");
   EXPECT_EQ(actions("sending"), "");
-  EXPECT_EQ(actions("in_doubt"), "send, done");
+  EXPECT_EQ(actions("in_doubt"), "send, settle");
   EXPECT_EQ(actions("answered"), "resubmit");
   EXPECT_EQ(actions("rejected"), "send, resubmit");
   EXPECT_EQ(actions("withdrawn"), "send, resubmit");

@@ -16,21 +16,21 @@ namespace {
 using testing::HasSubstr;
 
 constexpr const char* kAtWork =
-    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false})";
-constexpr const char* kRests =
-    R"({"rests":true,"why":"it was put to rest","since":1.75e9,"code":"1234 5678 9012 3456","asks_code":false,)"
+    R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false})";
+constexpr const char* kStandby =
+    R"({"standby":true,"why":"its spare takes over","since":1.75e9,"code":"1234 5678 9012 3456","asks_code":false,)"
     R"("taken_in":null,"takes_over":false})";
 constexpr const char* kTakenIn =
-    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":{"name":"10.0.0.1",)"
+    R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":{"name":"10.0.0.1",)"
     R"("version":"1.2.3","at":1.75e9,"reports":4,"open":1,"post":"10.100.1.200:8000","run":{"score":3,)"
     R"("run_clock":100,"remaining_reports":20,"current_team":"adit"},"left_out":["later"]},"takes_over":false})";
 
 constexpr const char* kStick =
-    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
+    R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
     R"("stick":{"hindrance":"","doing":"","refusal":"","written":"","exports":[)"
     R"({"name":"adit-a.adit-spare","box":"","at":null},{"name":"adit-b.adit-spare","box":"","at":null}]}})";
 constexpr const char* kNoStick =
-    R"({"rests":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
+    R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
     R"("stick":{"hindrance":"there is no stick in the box","doing":"","refusal":"","written":"","exports":[]}})";
 
 class SpareCommand : public testing::Test {
@@ -50,11 +50,11 @@ class SpareCommand : public testing::Test {
 TEST_F(SpareCommand, TellsHowTheBoxStands) {
   const Server at_work({{"GET /adit/spare", Server::ok(kAtWork)}});
   EXPECT_EQ(say(at_work, {}).exit, Exit::Fine);
-  const Server rests({{"GET /adit/spare", Server::ok(kRests)}});
-  const Outcome outcome = say(rests, {"show"});
+  const Server standby({{"GET /adit/spare", Server::ok(kStandby)}});
+  const Outcome outcome = say(standby, {"show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out,
-            "This box is on standby: it was put to rest\nCode of its export: 1234 5678 9012 3456\n");
+            "This box is on standby: its spare takes over\nCode of its export: 1234 5678 9012 3456\n");
 }
 
 TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {
@@ -65,9 +65,9 @@ TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {
 }
 
 TEST_F(SpareCommand, WritesTheExportAndTellsItsCode) {
-  const Server server({{"POST /adit/spare/rest", Server::ok(kAtWork)},
+  const Server server({{"POST /adit/spare/standby", Server::ok(kAtWork)},
                        {"GET /adit/spare/export", Server::ok("a sealed file")},
-                       {"GET /adit/spare", Server::ok(kRests)}});
+                       {"GET /adit/spare", Server::ok(kStandby)}});
   const Outcome outcome = say(server, {"export", export_, "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("Code of its export: 1234 5678 9012 3456\n"));
@@ -109,7 +109,7 @@ TEST_F(SpareCommand, IsOfAFileOrOfTheStick) {
   EXPECT_THAT(say(server, {"export"}).err, HasSubstr("a file or --stick is missing after export"));
   EXPECT_THAT(say(server, {"take"}).err, HasSubstr("a file or --stick is missing after take"));
   EXPECT_THAT(say(server, {"export", "x", "--stick"}).err, HasSubstr("give FILE or --stick, not both"));
-  EXPECT_THAT(say(server, {"wake", "--stick"}).err, HasSubstr("spare wake does not take --stick"));
+  EXPECT_THAT(say(server, {"resume", "--stick"}).err, HasSubstr("spare resume does not take --stick"));
 }
 
 TEST_F(SpareCommand, ShowsWhatIsInItAndTakesOverOnlyWhereThatIsMeant) {

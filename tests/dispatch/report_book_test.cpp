@@ -72,7 +72,7 @@ const OnAFullDisk kFullDisk[] = {
     {ReportEvent::NeverLeft, Sending, true},   {ReportEvent::Lost, Sending, true},
     {ReportEvent::Restarted, Sending, true},   {ReportEvent::Found, InDoubt, false},
     {ReportEvent::Missing, InDoubt, false},    {ReportEvent::Held, InDoubt, false},
-    {ReportEvent::CalledDone, InDoubt, false}, {ReportEvent::Released, InDoubt, false},
+    {ReportEvent::Settled, InDoubt, false},    {ReportEvent::Released, InDoubt, false},
     {ReportEvent::Released, Held, false},      {ReportEvent::Released, Rejected, false},
     {ReportEvent::Released, Withdrawn, false},
 };

@@ -40,7 +40,7 @@ TEST(ReportLife, LeavesDoubtOnlyByEvidenceOrTheOperator) {
   for (const ReportTransition& row : report_life()) {
     if (row.from == InDoubt && row.to != InDoubt) out.insert(row.event);
   }
-  EXPECT_EQ(out, (std::set{Event::Found, Event::Missing, Event::Held, Event::Released, Event::CalledDone}));
+  EXPECT_EQ(out, (std::set{Event::Found, Event::Missing, Event::Held, Event::Released, Event::Settled}));
 }
 
 TEST(ReportLife, IsInDoubtAfterACrashWhileSending) {
@@ -100,7 +100,7 @@ std::string_view words(ReportEvent event) {
       return "status: recorded";
     case Event::Missing:
       return "status: not recorded";
-    case Event::CalledDone:
+    case Event::Settled:
       return "operator: done";
     case Event::Withdrawn:
       return "operator: withdraw";

@@ -100,7 +100,7 @@ TEST(Effect, OfAReconciledReportIsThatItWasScored) {
 }
 
 TEST(Effect, IsNoneWhereNothingIsKnownToBeRecorded) {
-  EXPECT_FALSE(effect_of(with_answer(ReportState::Settled, kReply)).scored) << "called done by the operator";
+  EXPECT_FALSE(effect_of(with_answer(ReportState::Settled, kReply)).scored) << "settled by the operator";
   for (const ReportState state : {ReportState::Rejected, ReportState::InDoubt, ReportState::Queued,
                                   ReportState::Sending, ReportState::Held, ReportState::Withdrawn}) {
     EXPECT_FALSE(effect_of(with_answer(state, kReply)).scored) << name_of(state);

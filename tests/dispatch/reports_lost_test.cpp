@@ -53,7 +53,7 @@ TEST_F(Lost, HoldsWhatCameBeforeTheRunWasKnown) {
   EXPECT_EQ(scene_.state(3), Held);
 }
 
-TEST_F(Lost, NothingIsHeldOnceItIsCalledDone) {
+TEST_F(Lost, NothingIsHeldOnceItIsSettled) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
   ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
   EXPECT_THAT(scene_.undecided(), ElementsAre());

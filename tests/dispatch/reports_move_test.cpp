@@ -81,7 +81,7 @@ TEST_F(AMoveToCome, MeansWhatWaitsAndIsPostedAgainForBoth) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
-TEST_F(AMoveToCome, IsTakenBackWithWhatWasPostedMeanwhile) {
+TEST_F(AMoveToCome, IsRevertedWithWhatWasPostedMeanwhile) {
   scene_.post(3);
   say(kHere);
   EXPECT_EQ(post_of(3), kHere) << "of the other nothing was heard";

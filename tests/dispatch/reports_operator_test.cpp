@@ -174,7 +174,7 @@ TEST(CallingDone, SettlesADoubtAndTellsTheClientsThatItsAnswerIsNotKnown) {
   EXPECT_EQ(scene.state(1), Settled);
   EXPECT_FALSE(scene.report(1).reconciled);
   EXPECT_EQ(scene.told(client).status, 409);
-  EXPECT_THAT(scene.told(client).sentence, HasSubstr("called done by the operator; its answer is not known"));
+  EXPECT_THAT(scene.told(client).sentence, HasSubstr("settled by the operator; its answer is not known"));
   scene.hear(19, 0);
   EXPECT_EQ(scene.told(scene.post()).status, 409) << "the same again";
 }

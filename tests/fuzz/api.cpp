@@ -23,10 +23,10 @@ struct Played : api::Page {
   }
   /// What an answer may have changed.
   auto state() {
-    return std::tuple(judge.judged, judge.reported.size(), judge.judged_messages.size(), judge.run, judge.identified,
-                      setup.saves, setup.set, setup.resets, keys.operator_, keys.viewer,
+    return std::tuple(judge.judged, judge.reported.size(), judge.judged_messages.size(), judge.run,
+                      judge.identified, setup.saves, setup.set, setup.resets, keys.operator_, keys.viewer,
                       keys.sessions().all(loop.now()).size(), network.wanted.size(), network.confirmed,
-                      network.taken_back, test.view.running, updates.sticks, updates.restarts);
+                      network.reverted, test.view.running, updates.sticks, updates.restarts);
   }
 };
 

@@ -263,7 +263,7 @@ constexpr const char* kWrittenByVersion3 = R"(
       history = history || excluded.history;
     UPDATE run SET heard = 12)";
 
-/// An update that was taken back, and made again: what wrote in between knew no proofs.
+/// An update that was reverted, and made again: what wrote in between knew no proofs.
 TEST(LedgerOfThisVersion, IsWorkedWithByVersion3) {
   const Folder folder;
   {

@@ -23,10 +23,10 @@ struct FakeHands final : Hands {
     if (!fail_keep) kept = host_text(all.team);
     return did("keep " + host_text(all.team), fail_keep);
   }
-  std::expected<void, std::string> take_back() override {
-    const bool fails = fail_take_back > 0 && fail_take_back-- > 0;
+  std::expected<void, std::string> revert() override {
+    const bool fails = fail_revert > 0 && fail_revert-- > 0;
     if (!fails) in_use = kept;
-    return did("take back", fails);
+    return did("revert", fails);
   }
   std::expected<std::optional<Numbers>, std::string> forget() override {
     const auto done_so = did("forget", fail_keep);
@@ -42,7 +42,7 @@ struct FakeHands final : Hands {
   std::vector<std::string> done;
   std::string in_use = "192.168.7.11/24", kept = in_use;
   bool fail_apply = false, fail_keep = false;
-  int fail_take_back = 0;
+  int fail_revert = 0;
 };
 
 class ChangeTest : public testing::Test {
@@ -85,9 +85,9 @@ TEST_F(ChangeTest, TakesItselfBackInTime) {
   change.tick(at(89.999));
   EXPECT_TRUE(change.status().pending);
   change.tick(at(90));
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
   EXPECT_FALSE(change.status().pending);
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
   EXPECT_EQ(change.status().why, "the change was not confirmed within 90 s");
   EXPECT_EQ(change.status().kept, numbers());
 }
@@ -96,8 +96,8 @@ TEST_F(ChangeTest, IsNotConfirmedTooLate) {
   want();
   change.tick(at(90));
   confirm(90);
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
 }
 
 TEST_F(ChangeTest, IsConfirmedByAWordThatCameWhileNobodyLooked) {
@@ -110,57 +110,57 @@ TEST_F(ChangeTest, IsConfirmedByAWordThatCameWhileNobodyLooked) {
 TEST_F(ChangeTest, IsConfirmedByItsOwnNonceAlone) {
   want();
   change.hear({other, Word::What::Confirm}, at(1));
-  change.hear({other, Word::What::Back}, at(1));
+  change.hear({other, Word::What::Revert}, at(1));
   EXPECT_TRUE(change.status().pending);
   EXPECT_EQ(hands.done.size(), 1u);
 }
 
-TEST_F(ChangeTest, IsTakenBackOnAWord) {
+TEST_F(ChangeTest, IsRevertedOnAWord) {
   want();
-  change.hear({nonce, Word::What::Back}, at(1));
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  change.hear({nonce, Word::What::Revert}, at(1));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
   EXPECT_EQ(change.status().ended_nonce, nonce);
 }
 
-TEST_F(ChangeTest, IsTakenBackWhereItsKeeperStops) {
+TEST_F(ChangeTest, IsRevertedWhereItsKeeperStops) {
   change.stop(at(0));
   EXPECT_THAT(hands.done, IsEmpty());
   want();
   change.stop(at(1));
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
 }
 
-TEST_F(ChangeTest, IsTakenBackOnceMoreWhereItsKeeperStopsMeanwhile) {
-  hands.fail_take_back = 1;
+TEST_F(ChangeTest, IsRevertedOnceMoreWhereItsKeeperStopsMeanwhile) {
+  hands.fail_revert = 1;
   want();
   change.tick(at(90));
   change.stop(at(91));
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back", "take back"));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert", "revert"));
   EXPECT_EQ(change.status().why, "the change was not confirmed within 90 s");
 }
 
-TEST_F(ChangeTest, IsTakenBackAtOnceWhereItCannotBeApplied) {
+TEST_F(ChangeTest, IsRevertedAtOnceWhereItCannotBeApplied) {
   hands.fail_apply = true;
   want();
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back"));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.status().why, "the change could not be applied: the disk is full");
 }
 
-TEST_F(ChangeTest, IsTakenBackWhereItCannotBeKept) {
+TEST_F(ChangeTest, IsRevertedWhereItCannotBeKept) {
   hands.fail_keep = true;
   want();
   confirm(1);
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24", "take back"));
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24", "revert"));
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
   EXPECT_EQ(change.status().kept, numbers());
   EXPECT_THAT(change.status().why, HasSubstr("could not be stored: the disk is full"));
 }
 
-TEST_F(ChangeTest, IsTakenBackAgainAndAgainUntilItSucceeds) {
-  hands.fail_take_back = 2;
+TEST_F(ChangeTest, IsRevertedAgainAndAgainUntilItSucceeds) {
+  hands.fail_revert = 2;
   want();
   change.tick(at(90));
   EXPECT_TRUE(change.status().pending) << "it is still in use";
@@ -169,13 +169,13 @@ TEST_F(ChangeTest, IsTakenBackAgainAndAgainUntilItSucceeds) {
   EXPECT_TRUE(change.status().pending) << "too late";
   change.tick(at(92));
   change.tick(at(94));
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "take back", "take back", "take back"));
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert", "revert", "revert"));
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
   EXPECT_EQ(change.wake(), std::nullopt);
 }
 
-TEST_F(ChangeTest, IsGivenUpWhereItCannotBeTakenBack) {
-  hands.fail_take_back = 99;
+TEST_F(ChangeTest, IsGivenUpWhereItCannotBeReverted) {
+  hands.fail_revert = 99;
   want();
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
   EXPECT_EQ(hands.done.size(), 1u + Change::kTries);
@@ -204,20 +204,20 @@ TEST_F(ChangeTest, FollowsAnother) {
   change.want({other, seconds(10), numbers("192.168.9.11/24")}, at(5));
   change.tick(at(15));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24",
-                                      "apply 192.168.9.11/24", "take back"));
+                                      "apply 192.168.9.11/24", "revert"));
   EXPECT_EQ(change.status().kept, numbers(kNew)) << "the one that was confirmed";
 }
 
-TEST(AFirstChange, IsTakenBackToNothing) {
+TEST(AFirstChange, IsRevertedToNothing) {
   FakeHands hands;
   Change change(hands, std::nullopt);
   change.interrupted();
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
   const Instant now{};
   change.want({std::string(32, 'c'), seconds(1), numbers()}, now);
   EXPECT_EQ(change.status().kept, std::nullopt);
   change.tick(now + seconds(1));
-  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.7.11/24", "take back"));
+  EXPECT_THAT(hands.done, ElementsAre("apply 192.168.7.11/24", "revert"));
 }
 
 TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
@@ -226,14 +226,14 @@ TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
   EXPECT_TRUE(change.forget(at(1)));
   EXPECT_FALSE(change.status().pending);
   EXPECT_EQ(change.wake(), std::nullopt);
-  EXPECT_EQ(change.status().ended, Ended::TakenBack);
+  EXPECT_EQ(change.status().ended, Ended::Reverted);
   EXPECT_EQ(change.status().why, "a factory reset forgot all addresses");
   EXPECT_EQ(change.status().kept, numbers("10.0.0.1/24"));
   EXPECT_EQ(change.status().endpoints, Endpoints{});
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "forget"));
 }
 
-TEST_F(ChangeTest, IsTakenBackWhereAllIsToBeForgottenAndCannotBe) {
+TEST_F(ChangeTest, IsRevertedWhereAllIsToBeForgottenAndCannotBe) {
   hands.fail_keep = true;
   want();
   EXPECT_EQ(change.forget(at(1)).error(), "the disk is full");
@@ -260,7 +260,7 @@ TEST(Changes, NeverLeaveInUseWhatNobodyConfirmed) {
       const std::string nonce(32, static_cast<char>('0' + draw(3)));
       const std::string team = "192.168." + std::to_string(20 + draw(3)) + ".11/24";
       const auto before = change.status().pending;
-      const bool is_open = before && change.wake() == before->until;  // and not being taken back
+      const bool is_open = before && change.wake() == before->until;  // and not being reverted
       switch (draw(4)) {
         case 0:
           change.want({nonce, seconds(1), numbers(team)}, now);
@@ -272,7 +272,7 @@ TEST(Changes, NeverLeaveInUseWhatNobodyConfirmed) {
           }
           break;
         case 2:
-          change.hear({nonce, Word::What::Back}, now);
+          change.hear({nonce, Word::What::Revert}, now);
           break;
         default:
           change.tick(now);

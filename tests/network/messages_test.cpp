@@ -20,7 +20,7 @@ TEST(NetworkMessages, SurviveTheirWriting) {
   EXPECT_EQ(wanted->nonce, kNonce);
   EXPECT_EQ(wanted->confirm_within.count(), 90000);
   EXPECT_EQ(wanted->numbers, numbers());
-  for (const auto what : {Word::What::Confirm, Word::What::Back}) {
+  for (const auto what : {Word::What::Confirm, Word::What::Revert}) {
     const auto word = read<Word>(write(Word{kNonce, what}));
     ASSERT_TRUE(word);
     EXPECT_EQ(word->what, what);
@@ -48,7 +48,7 @@ TEST(NetworkMessages, TellTheWholeStatus) {
   status.endpoints = {{0x0a6401c8}};
   status.pending = Pending{kNonce, numbers("10.0.0.1/8"), Instant(std::chrono::milliseconds(123456)),
                            std::chrono::seconds(5)};
-  status.ended = Ended::TakenBack;
+  status.ended = Ended::Reverted;
   status.ended_nonce = kNonce;
   status.why = "the change was not confirmed";
   EXPECT_EQ(read<Status>(write(status)), status);
@@ -148,7 +148,7 @@ TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
     EXPECT_FALSE(read_kept(text)) << text;
   }
   EXPECT_FALSE(read<Word>(R"({"version":1,"nonce":")" + kNonce + R"(","word":"maybe"})"));
-  EXPECT_FALSE(read<Word>(R"({"version":1,"nonce":"x","word":"back"})"));
+  EXPECT_FALSE(read<Word>(R"({"version":1,"nonce":"x","word":"revert"})"));
   EXPECT_FALSE(read<Forget>(R"({"version":1,"nonce":"x"})"));
   EXPECT_FALSE(read<Probe>(R"({"version":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
 }

@@ -127,17 +127,17 @@ test("every path and method does as it is described to an operator", async (t) =
   const current = async () => (await ask("GET", "/adit/settings")).json();
   const bodies = { "POST /adit/settings": async () => (({ settings, tag }) => ({ settings, base: tag }))(await current()) };
   const never = ["POST /adit/alarms/acknowledge", // nothing is to be acknowledged
-    "POST /adit/reports/{number}/done", // no report is in doubt: 409
+    "POST /adit/reports/{number}/settle", // no report is in doubt: 409
     "POST /adit/rejected/{number}/send", "POST /adit/rejected/{number}/discard", // and nothing is rejected
-    "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/back", // no change can be made here
+    "POST /adit/network", "POST /adit/network/confirm", "POST /adit/network/revert", // no change can be made here
     "POST /adit/update", "POST /adit/update/stick", "POST /adit/update/restart", "POST /adit/update/back", "POST /adit/update/stay", // nor an update
-    "POST /adit/spare/wake", "GET /adit/spare/export", "POST /adit/spare/to-stick", // it does not rest
+    "POST /adit/spare/resume", "GET /adit/spare/export", "POST /adit/spare/to-stick", // it does not rest
     "POST /adit/spare/from-stick", // nor is a stick in it
     "POST /adit/spare/take", "POST /adit/spare/open", "POST /adit/spare/take-over", // and no other box does
     "POST /adit/clock"]; // and nobody sets the clock here
   for (const each of operations) {
     const name = `${each.method} ${each.path}`;
-    if (name === "POST /adit/spare/rest") continue; // it would refuse what comes next: box/spare.test.js
+    if (name === "POST /adit/spare/standby") continue; // it would refuse what comes next: box/spare.test.js
     const answer = await ask(each.method, pathOf(each, await known[name]?.()), { body: (await bodies[name]?.()) ?? bodyOf(each) });
     assert.equal(answer.ok, !never.includes(name), `${name}: ${answer.status}`);
     await isAsDescribed(each, answer);

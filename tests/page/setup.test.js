@@ -173,18 +173,18 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   assert.deepEqual([settings.reports.review, settings.command_post.rates.map_hz, settings.team.require_token], ["all", 0.5, false]);
 });
 
-test("says where the page goes when it moves, and takes back what the box cannot use", async (t) => {
+test("says where the page goes when it moves, and reverts what the box cannot use", async (t) => {
   const { page } = await ready(t, "setup#network");
   await type(page, "team.listen[0].address", "203.0.113.7");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await page.locator("#review .warnings").getByText("this page move").waitFor();
-  const movesTo = page.evaluate(() => new Promise((found, missed) => { // shown until it is taken back, which may be soon
+  const movesTo = page.evaluate(() => new Promise((found, missed) => { // shown until it is reverted, which may be soon
     const says = () => [...document.querySelectorAll("#typed a")].some((link) => link.textContent.includes("http://203.0.113.7:"));
     new MutationObserver(() => says() && found()).observe(document.body, { subtree: true, childList: true, characterData: true });
     setTimeout(missed, 30000, new Error("the page did not say where it goes"));
   }));
   await Promise.all([movesTo, page.getByRole("button", { name: "Apply", exact: true }).click()]);
-  await page.locator("#typed").getByText("the last change was taken back").waitFor();
+  await page.locator("#typed").getByText("the last change was reverted").waitFor();
   const port = await freePort();
   await type(page, "team.listen[0].address", "127.0.0.1");
   await type(page, "team.listen[0].port", String(port));

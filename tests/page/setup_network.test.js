@@ -112,7 +112,7 @@ test("takes a change back that nobody confirms, and says so", async (t) => {
   await hears(page, "Box lost");
   await until(() => box.address() === "192.168.7.11/24", "the address before", 120_000);
   await hears(page, "Live");
-  await page.getByText(/The last change was taken back: the change was not confirmed/).waitFor();
+  await page.getByText(/The last change was reverted: the change was not confirmed/).waitFor();
   await sign(page).waitFor({ state: "detached" });
 });
 
@@ -133,10 +133,10 @@ test("keeps a change that is confirmed from the new address", async (t) => {
 
   await change(there, "192.168.7.11");
   const back = await come(t, OLD);
-  await back.getByRole("button", { name: "Take it back" }).click();
+  await back.getByRole("button", { name: "Revert" }).click();
   await until(() => box.address() === "192.168.8.11/24", "the address before");
   await hears(there, "Live");
-  await there.getByText(/The last change was taken back/).waitFor();
+  await there.getByText(/The last change was reverted/).waitFor();
 });
 
 test("shows both ports as the kernel has them, as a cable is pulled and put back", async (t) => {

@@ -15,7 +15,7 @@ test("nothing moves under a mouse while another operator acts: what is new waits
   const { stage, page } = await watch(t, "reports");
   await row(page, 25).locator(".title").hover();
   const before = (await boxes(page)).map(([key, , top]) => [key, top]);
-  assert.equal((await elsewhere(stage, "/25/done")).status, 200);
+  assert.equal((await elsewhere(stage, "/25/settle")).status, 200);
   assert.equal((await elsewhere(stage, "", { type: "Rope", x: 1, y: 2, z: 3 })).status, 202);
   await page.getByRole("button", { name: "1 new" }).waitFor();
   await row(page, 25).getByText("settled").waitFor();

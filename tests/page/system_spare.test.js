@@ -19,7 +19,7 @@ test("one press puts the box to rest and its export on the stick; what fails can
   const { page, section, said, press, yes } = await spareOf(t);
   await press("Start standby, export to the stick");
   await page.locator("#confirm").getByRole("button", { name: "Cancel" }).click();
-  assert.equal(asked(page, "/adit/spare/rest"), 0, "nothing is asked for on a no");
+  assert.equal(asked(page, "/adit/spare/standby"), 0, "nothing is asked for on a no");
   await press("Start standby, export to the stick");
   await yes();
   await said("The stick is full.");
@@ -34,7 +34,7 @@ test("one press puts the box to rest and its export on the stick; what fails can
   assert.deepEqual(page.complaints, []);
 });
 
-test("a box is not put to rest whose stick could not be written to", async (t) => {
+test("a box is not put on standby if its stick could not be written", async (t) => {
   const { page, said, press } = await spareOf(t);
   await page.route("**/adit/spare", async (route) => {
     const answer = await route.fetch(), view = await answer.json();
@@ -42,7 +42,7 @@ test("a box is not put to rest whose stick could not be written to", async (t) =
   });
   await press("Start standby, export to the stick");
   await said("The box does not start standby: there is no stick in the box.");
-  assert.equal(asked(page, "/adit/spare/rest"), 0);
+  assert.equal(asked(page, "/adit/spare/standby"), 0);
 });
 
 test("what is on the stick is offered by the box and the time of its name, and asks for its code like what is uploaded", async (t) => {

@@ -45,7 +45,7 @@ void OpenReports::add(const Event& event) {
     if (is_whole && known_.insert(posted->second).second) open_.insert(posted->second);
   }
   // If one report is in doubt and the same report waits, the one that waits is withdrawn.
-  const bool is_over = event.what == kDone || (event.what == kWithdraw && !in_doubt());
+  const bool is_over = event.what == kSettle || (event.what == kWithdraw && !in_doubt());
   if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
   if (event.kind == Kind::Dies) {
     for (const auto& [serial, at] : told_) {

@@ -75,7 +75,7 @@ void Judge::judge_report(const nlohmann::json& row, double now) {
   const double age = now - row.at("changed").get<double>();
   if (!is_over() && random_.chance(0.4)) return;
   if (state == "in_doubt" && !row.at("asking") && age > kSure)
-    say(id, is_recorded(serial) ? kDone : kSend, serial);
+    say(id, is_recorded(serial) ? kSettle : kSend, serial);
   if (state == "held") judge_held(id, serial);
   if (state == "queued" && !is_over() && random_.chance(0.2)) say(id, kHold, serial);
 }

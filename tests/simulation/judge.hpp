@@ -13,7 +13,7 @@ namespace adit::simulation {
 class World;
 
 /// The operator's words, as the history calls them by Event::what.
-inline constexpr const char *kSend = "send", *kHold = "hold", *kWithdraw = "withdraw", *kDone = "done",
+inline constexpr const char *kSend = "send", *kHold = "hold", *kWithdraw = "withdraw", *kSettle = "settle",
                             *kCompose = "compose", *kSendRejected = "send rejected";
 /// As Event::who.
 inline constexpr const char* kOperator = "operator";

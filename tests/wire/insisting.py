@@ -62,7 +62,7 @@ class Client(threading.Thread):
             answer = submit(self.stage, posted.report, self.patience)
         except requests.RequestException:
             return False  # the box is away, or too late
-        if answer.status_code == 201 or "called done by the operator" in answer.text:
+        if answer.status_code == 201 or "settled by the operator" in answer.text:
             posted.answer, posted.life = answer, life
         elif answer.status_code in (503, 504):
             posted.kept = posted.kept or "Adit-Report" in answer.headers
@@ -90,7 +90,7 @@ class Operator:
         recorded = {(made["x"], made["y"]) for made in self.stage.post.recorded()}
         for number, row in waiting.items():
             done = row["state"] == "in_doubt" and at_of(row) in recorded
-            self.judges(row, "done" if done else "send")
+            self.judges(row, "settle" if done else "send")
 
     def judges(self, row, action):
         """What he saw is a moment old: a report of which the box found something out since is not his to judge."""
@@ -144,7 +144,7 @@ def judge(test, stage, operator, all_posted, cuts=False):
         with test.subTest(report=posted.report):
             test.assertLessEqual(recorded[posted.at], 1, "recorded twice")
             if posted.answer is not None:
-                test.assertEqual(recorded[posted.at], 1, "answered, or called done")
+                test.assertEqual(recorded[posted.at], 1, "answered, or settled")
                 again = submit(stage, posted.report)
                 if posted.at not in found_out or again.headers.get("Adit-Reconciled") != "yes":
                     test.assertEqual(again.content, posted.answer.content)

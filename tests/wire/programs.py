@@ -157,7 +157,7 @@ class Page:
             return answer.status, json.loads(answer.read()), answer.getheader("Retry-After")
 
     def apply(self, request, body):
-        """Asks for a change of what it runs with, as ask() does, and waits until it is applied, or taken back."""
+        """Asks for a change of what it runs with, as ask() does, and waits until it is applied, or reverted."""
         status, said = self.ask(request, body=body)
         if status != 200:
             raise AssertionError(f"{request}: {status} {said}")

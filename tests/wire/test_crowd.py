@@ -92,7 +92,7 @@ class Crowd(unittest.TestCase):
     def test_an_address_with_as_many_requests_under_way_as_it_may_have_is_told_so(self):
         stage = self.stage(team__connections_per_address=4)
         busy = [self.enterContext(begun(stage.box, ADDRESSES[0], "/map/update", 100_000, TOKEN)) for _ in range(4)]
-        wait_until(lambda: self.metric(stage, "adit_connections") - self.metric(stage, "adit_connections_strangers") > 4,
+        wait_until(lambda: self.metric(stage, "adit_connections") - self.metric(stage, "adit_connections_unauthenticated") > 4,
                    "those and who asks")
         with begun(stage.box, ADDRESSES[0], "/state/update", 1000, TOKEN) as more:
             told = more.makefile("rb").read().decode()

@@ -19,13 +19,13 @@ class InDoubt(unittest.TestCase):
             insist(stage, another(7), 10, until=lambda answer: answer.status_code == 201)
             time.sleep(patient(1.0))  # longer than it takes to find out what can be found out
             for word in (f"report {number} is in doubt", "remaining_reports went from 45 to 43",
-                         "does another sender report with this token?", "the operator decides: send it, or call it done"):
+                         "does another sender report with this token?", "the operator decides: send it, or settle it"):
                 self.assertIn(word, stage.box.attention())
             self.assertEqual(sendings(stage), 1)
-            self.assertEqual(stage.box.judge(number, "done"), (200, {"report": number}))
+            self.assertEqual(stage.box.judge(number, "settle"), (200, {"report": number}))
             self.assertNotIn("in doubt", stage.box.attention())
             told = submit(stage)
             self.assertEqual(told.status_code, 409)
-            self.assertIn("called done by the operator", told.json())
-            self.assertEqual(stage.box.judge(number, "send")[0], 409, "what is done is not sent")
+            self.assertIn("settled by the operator", told.json())
+            self.assertEqual(stage.box.judge(number, "send")[0], 409, "a settled report is not sent")
             self.assertEqual(len(stage.post.recorded(REPORT)), 1)

@@ -157,7 +157,7 @@ class InPlace(unittest.TestCase):
         self.assertEqual(len(stage.post.recorded()), 2)
         self.assertEqual(stage.post.violations() + other.violations(), [])
 
-    def test_what_cannot_be_listened_at_is_taken_back_and_cuts_nobody(self):
+    def test_what_cannot_be_listened_at_is_reverted_and_cuts_nobody(self):
         stage = self.stage(**SLOW)
         page, report, uploads = Page(stage), self.report_that_waits(stage), self.at_work(stage)
 
@@ -166,7 +166,7 @@ class InPlace(unittest.TestCase):
             settings["reports"]["near_metres"] = 9
 
         stage.box.save(nowhere)
-        self.assertIn("the last change was taken back: ", stage.box.attention())
+        self.assertIn("the last change was reverted: ", stage.box.attention())
         held = stage.box.ask("GET /adit/settings")[1]["settings"]
         self.assertEqual((len(held["team"]["listen"]), held["reports"]["near_metres"]), (1, 5))
         self.assertTrue(page.hears())
@@ -176,7 +176,7 @@ class InPlace(unittest.TestCase):
             settings["command_post"]["rates"]["reports_hz"] = 200
 
         stage.box.save(quicker)
-        self.assertNotIn("taken back", stage.box.attention())
+        self.assertNotIn("reverted", stage.box.attention())
         report.join()
         self.assertEqual(report.status, 201)
 

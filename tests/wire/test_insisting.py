@@ -5,7 +5,7 @@ import unittest
 
 from insisting import Operator, Posted, last_answers
 
-FOUND_OUT = "report 1 is settled: only a report in doubt can be called done"
+FOUND_OUT = "report 1 is settled: only a report in doubt can be settled"
 
 
 class Box:
@@ -45,7 +45,7 @@ class TheOperator(unittest.TestCase):
     def test_is_obeyed(self):
         operator = self.operator({"state": "settled"}, (200, {"report": 1}))
         operator.looks()
-        self.assertEqual(operator.judged, {1: "done"})
+        self.assertEqual(operator.judged, {1: "settle"})
 
 
 class TheLastAnswers(unittest.TestCase):

@@ -27,7 +27,7 @@ class WithAStandIn(Change):
         self.ends()
         self.has(OLD)
         status = self.box.status()
-        self.assertEqual((status["pending"], status["last"]), (None, "taken back"))
+        self.assertEqual((status["pending"], status["last"]), (None, "reverted"))
         self.assertRegex(status["why"], r"^the change was not confirmed within \d+ s$")  # 15, or more on a slow machine
         self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
 
@@ -53,18 +53,18 @@ class WithAStandIn(Change):
         hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0")
         subprocess.run(["ip", "netns", "exec", self.network.box, self.box.networkctl, "reload"], check=True)
 
-    def test_a_change_is_taken_back_after_a_kill(self):
+    def test_a_change_is_reverted_after_a_kill(self):
         self.box.want(team="192.168.8.11")
         self.has(NEW)
         self.box.stop()
         self.assertEqual(self.box.run(), 0)
         self.has(OLD)
-        self.assertEqual(self.box.status()["last"], "taken back")
+        self.assertEqual(self.box.status()["last"], "reverted")
 
-    def test_a_change_is_taken_back_by_one_word(self):
+    def test_a_change_is_reverted_by_one_word(self):
         nonce = self.box.want(team="192.168.8.11")
         self.has(NEW)
-        self.box.ask("word.json", nonce=nonce, word="back")
+        self.box.ask("word.json", nonce=nonce, word="revert")
         self.ends()
         self.has(OLD)
 
@@ -100,7 +100,7 @@ class WithAStandIn(Change):
         self.box.want(team="192.168.8.11")
         self.ends()
         status = self.box.status()
-        self.assertEqual(status["last"], "taken back")
+        self.assertEqual(status["last"], "reverted")
         self.assertIn("192.168.8.11 is already in use on team0", status["why"])
         self.assertEqual(self.box.addresses("team0"), [OLD])
 

@@ -45,7 +45,7 @@ class WithNetworkd(Change):
         self.has("192.168.7.77/24")
         self.assertEqual(set(self.box.routes("main")) - {"169.254.0.0/16"}, {"192.168.7.0/24"})
         self.assertEqual(self.box.pending()["wanted"]["team"], {"mode": "dhcp"})
-        self.box.ask("word.json", nonce=self.box.pending()["nonce"], word="back")
+        self.box.ask("word.json", nonce=self.box.pending()["nonce"], word="revert")
         self.ends()
         self.has(OLD)
 
@@ -67,14 +67,14 @@ class WithNetworkd(Change):
         self.has(NEW)
         self.networkd.restart()
         self.assertEqual(self.box.addresses("team0"), [NEW])
-        self.box.ask("word.json", nonce=nonce, word="back")
+        self.box.ask("word.json", nonce=nonce, word="revert")
         self.ends()
         self.has(OLD)
         self.networkd.restart()
         self.has(OLD)
 
     def test_networkd_may_die_as_it_is_asked(self):
-        """Then the change is made by the next one, or taken back, and what is told is so."""
+        """Then the change is made by the next one, or reverted, and what is told is so."""
         self.confirm_first()
         for _ in range(3):
             self.networkd.hang()
@@ -84,11 +84,11 @@ class WithNetworkd(Change):
             self.networkd.restart()
             wait_until(lambda: self.is_made(nonce) or self.box.process.poll() is not None, "the change to be made, or not")
             if self.is_made(nonce):
-                self.box.ask("word.json", nonce=nonce, word="back")
+                self.box.ask("word.json", nonce=nonce, word="revert")
             else:
                 self.assertIn("the change could not be applied: ", self.box.status()["why"])
             self.ends()
-            self.assertEqual((self.box.status()["pending"], self.box.status()["last"]), (None, "taken back"))
+            self.assertEqual((self.box.status()["pending"], self.box.status()["last"]), (None, "reverted"))
             # Where no udev is, a networkd that is started leaves an address alone that it did not set itself.
             wait_until(lambda: OLD in self.box.addresses("team0"), f"team0 to have {OLD}")
             hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0", "to", NEW)

@@ -41,7 +41,7 @@ class Swap(Stage):
         return done.stdout + done.stderr if not check else done.stdout
 
     def exported(self):
-        """The box rests; the code of its export."""
+        """Puts the box on standby; the code of its export."""
         self.adit("export", self.export, "--yes")
         return self.box.ask("GET /adit/spare")[1]["code"]
 
@@ -58,7 +58,7 @@ class Swap(Stage):
     def settled(self):
         try:
             view = self.box.ask("GET /adit/spare")[1]
-            return not view["takes_over"] and not view["taken_in"] and not view["rests"]
+            return not view["takes_over"] and not view["taken_in"] and not view["standby"]
         except OSError:
             return False
 
@@ -116,7 +116,7 @@ class Spare(WithAlarms):
         self.sees(stage, "standby", "bad", "box", "This box is on standby", "its spare takes over")
         refused = submit(stage, another(1))
         self.assertEqual((refused.status_code, refused.json()),
-                         (503, "this box is in standby, for its spare to take over; it accepts and sends no messages"))
+                         (503, "this box is on standby, for its spare to take over; it accepts and sends no messages"))
         self.assertEqual(self.send_map(stage, "r1").status_code, 503)
         self.assertEqual(stage.box.judge(1, "resubmit")[0], 409)
         stage.unplug()
@@ -124,7 +124,7 @@ class Spare(WithAlarms):
         wait_until(lambda: self.alarm(stage, "standby"), "it to rest after a power cut, too")
         self.assertEqual(len(stage.post.requests()), asked, "nothing was asked of the Command Post")
         self.assertEqual(len(stage.box.reports()), 1, "nothing was kept")
-        stage.adit("wake", "--yes")
+        stage.adit("resume", "--yes")
         wait_until(lambda: self.view(stage)["lights"] and not self.alarm(stage, "standby"), "it to go on")
         began(stage)
         self.assertEqual(submit(stage, another(1)).status_code, 201)

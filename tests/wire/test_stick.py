@@ -86,7 +86,7 @@ class Stick(unittest.TestCase):
         answers = [submit(stage, another(number)) for number in range(1, 4)]
         said = stage.adit("export", "--stick", "--yes", check=False)
         self.assertIn("the box was not put on standby: there is no stick in the box", said)
-        self.assertFalse(stage.box.ask("GET /adit/spare")[1]["rests"])
+        self.assertFalse(stage.box.ask("GET /adit/spare")[1]["standby"])
         stage.keepers[0].plug(stage.image)
         wait_until(lambda: not stage.stick()["hindrance"], "the stick to be found")
         said = stage.adit("export", "--stick", "--yes")

@@ -9,7 +9,7 @@ const NEAR_SEND = { name: "send", label: "Send", costs: "Another report of this 
 const LATE_SEND = { name: "send", label: "Send", costs: "The report was withdrawn" };
 const HOLD = { name: "hold", label: "Hold" };
 const WITHDRAW = { name: "withdraw", label: "Withdraw" };
-const DONE = { name: "done", label: "Settle" };
+const SETTLE = { name: "settle", label: "Settle" };
 const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "The report is sent again as a new report" };
 
 /** By the state that a report is in: the actions that the box takes (README.md). */
@@ -17,7 +17,7 @@ const DEEDS = {
   held: [SEND, WITHDRAW],
   queued: [HOLD, WITHDRAW],
   sending: [],
-  in_doubt: [COSTLY_SEND, DONE],
+  in_doubt: [COSTLY_SEND, SETTLE],
   rejected: [AGAIN],
   withdrawn: [LATE_SEND],
   answered: [RESUBMIT],
@@ -26,7 +26,7 @@ const DEEDS = {
 
 /** `isNear`: another of its type was reported close by. */
 export function actionsOf(report, isNear = false) {
-  if (!report.position) return report.state === "in_doubt" ? [DONE] : []; // it is lost
+  if (!report.position) return report.state === "in_doubt" ? [SETTLE] : []; // it is lost
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
   if (report.state === "held" && report.same_as) return [COSTLY_SEND, WITHDRAW];
   if (report.state === "held" && isNear) return [NEAR_SEND, WITHDRAW];
@@ -57,7 +57,7 @@ export const outcomeOf = (number) => outcomes.get(number);
 export const isBusy = (number) => underWay.has(number);
 export const tell = (number, text, bad = false) => outcomes.set(number, { text, bad });
 
-const PAST = { send: "The report will be sent.", hold: "Held until you send it.", withdraw: "Withdrawn.", done: "Settled." };
+const PAST = { send: "The report will be sent.", hold: "Held until you send it.", withdraw: "Withdrawn.", settle: "Settled." };
 
 function question(action, report, remaining) {
   const left = remaining === undefined ? "" : ` ${remaining} reports are left.`;

@@ -60,7 +60,7 @@ export async function insist(action) {
   }
 }
 
-/** What the box runs with once a change is applied or taken back; null: it does not answer. */
+/** What the box runs with once a change is applied or reverted; null: it does not answer. */
 export async function applied() {
   for (const end = performance.now() + PATIENCE; performance.now() < end; await sleep(PAUSE)) {
     const said = await get("/adit/settings").catch(() => null);
@@ -111,7 +111,7 @@ export async function save(settings) {
     if (said) await refresh();
     if (link) report("The page has moved to");
     else if (isDone) report("Applied.");
-    else report(said ? said.trouble || "The change was taken back." : "The box does not answer.");
+    else report(said ? said.trouble || "The change was reverted." : "The box does not answer.");
     return isDone;
   } catch (error) {
     if (error.status === 409) await refresh();

@@ -129,7 +129,7 @@ async function switchTo(name) {
     await insist(refresh);
     const isDone = draft.base.command_post.course === name;
     outcome.dataset.bad = !isDone;
-    say(outcome, isDone ? `${nameOf(name)} is in use.` : `${nameOf(name)} is not in use. The switch may have been taken back.`);
+    say(outcome, isDone ? `${nameOf(name)} is in use.` : `${nameOf(name)} is not in use. The switch may have been reverted.`);
   } catch (error) {
     outcome.dataset.bad = true;
     say(outcome, error.message);

@@ -26,7 +26,7 @@ export function answered(dialog, answers) {
   });
 }
 
-/** Asks before something that cannot be taken back; gives whether the answer was yes. */
+/** Asks before something that cannot be undone; gives whether the answer was yes. */
 export async function confirmed({ title, text, word }) {
   const dialog = document.getElementById("confirm");
   const [no, yes] = dialog.querySelectorAll("button");

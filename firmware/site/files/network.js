@@ -106,7 +106,7 @@ function showPending(network) {
 /** How the last change ended. */
 function lastOf({ last, last_why: why }) {
   if (!last) return "";
-  return last === "confirmed" ? "The last change was confirmed." : `The last change was taken back${why ? `: ${why}` : ""}.`;
+  return last === "confirmed" ? "The last change was confirmed." : `The last change was reverted${why ? `: ${why}` : ""}.`;
 }
 
 /** Shows what the box says of its network. */
@@ -142,5 +142,5 @@ export function offerNetwork() {
   form.addEventListener("submit", (event) => event.preventDefault());
   on(change, tryIt);
   on(pendingPlace.querySelector(".confirm"), async () => told(await post("/adit/network/confirm")));
-  on(pendingPlace.querySelector(".back"), async () => told(await post("/adit/network/back")));
+  on(pendingPlace.querySelector(".back"), async () => told(await post("/adit/network/revert")));
 }

@@ -1,4 +1,4 @@
-// The spare box: this one rests and is exported, or takes over from another by its export.
+// The spare box: this one standby and is exported, or takes over from another by its export.
 import { confirmed } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, oneAtATime, post } from "./session.js";
@@ -18,18 +18,18 @@ function say(text, bad = false) {
 
 const AT_WORK = "A spare box can take over from this one with all reports. Start standby on this box, carry its export to the spare, and unplug this box. A spare takes in the export here.";
 
-function noteOf({ rests, why, asks_code: asksCode, taken_in: taken, takes_over: takesOver }) {
+function noteOf({ standby, why, asks_code: asksCode, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return "This box is taking over.";
   if (taken) return "Unplug the box that made this export before this box takes over.";
   if (asksCode) return "An export was taken in. The box that made it shows the code during its standby.";
-  if (rests) return `This box is on standby: ${why}. It accepts and sends no messages until you wake it up.`;
+  if (standby) return `This box is on standby: ${why}. It accepts and sends no messages until you end the standby.`;
   return AT_WORK;
 }
 
 const whenOf = (seconds) => new Date(seconds * 1000).toLocaleString();
 
 /** What is in an export, or the code of this box's own. */
-function factsOf({ rests, code, taken_in: taken, takes_over: takesOver }) {
+function factsOf({ standby, code, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return [];
   if (taken) {
     const { name, version, at, reports, open, post: where, run, left_out: leftOut } = taken;
@@ -37,7 +37,7 @@ function factsOf({ rests, code, taken_in: taken, takes_over: takesOver }) {
       ["Command Post", where], ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"],
       ...(leftOut.length ? [["Left out", `settings unknown to this box: ${leftOut.join(", ")}`]] : [])];
   }
-  return rests && code ? [["Code", code]] : [];
+  return standby && code ? [["Code", code]] : [];
 }
 
 /** Nothing moves under a finger: what is there stays as it is, where it says the same. */
@@ -54,7 +54,7 @@ function showFacts(rows) {
 }
 
 function show(view) {
-  const { rests, code, asks_code: asksCode, taken_in: taken, takes_over: takesOver, stick } = view;
+  const { standby, code, asks_code: asksCode, taken_in: taken, takes_over: takesOver, stick } = view;
   section.hidden = false;
   note.textContent = noteOf(view);
   showFacts(factsOf(view));
@@ -63,7 +63,7 @@ function show(view) {
   file.hidden = takes || takesOver;
   showStick(view, takes, (name) => act(() => takeFromStick(name)));
   const free = stick && !stick.doing;
-  const shown = { rest: !rests && !takes, restToStick: free && !rests && !takes, toStick: free && rests && code && !takes, download: rests && code && !takes, wake: rests && !takes, take: !takes, over: taken, forget: takes };
+  const shown = { standby: !standby && !takes, standbyToStick: free && !standby && !takes, toStick: free && standby && code && !takes, download: standby && code && !takes, resume: standby && !takes, take: !takes, over: taken, forget: takes };
   for (const [does, button] of Object.entries(buttons)) button.hidden = takesOver || !shown[does];
 }
 
@@ -86,10 +86,10 @@ async function download() {
 }
 
 /** The box ends what is under way, and is there again. */
-async function untilItRests() {
+async function untilOnStandby() {
   for (const end = performance.now() + 60_000; performance.now() < end; ) {
     const view = await look();
-    if (view?.rests && view.code) return;
+    if (view?.standby && view.code) return;
     await new Promise((resolve) => setTimeout(resolve, 300));
   }
   throw new Error("The box is not on standby yet.");
@@ -97,13 +97,13 @@ async function untilItRests() {
 
 const sure = (title, text, word) => confirmed({ title, text, word });
 
-/** Whether the box was put to rest. */
-async function putToRest() {
-  const text = "On standby this box accepts and sends no messages, even after a power cut, until you wake it up. The export contains queued reports. Queued maps, states and markers stay here.";
+/** Whether the box is on standby. */
+async function startStandby() {
+  const text = "On standby this box accepts and sends no messages, even after a power cut, until you end the standby. The export contains queued reports. Queued maps, states and markers stay here.";
   if (!(await sure("Start standby?", text, "Start and export"))) return false;
   say("Standby begins when the messages in flight are answered.");
-  await post("/adit/spare/rest");
-  await untilItRests();
+  await post("/adit/spare/standby");
+  await untilOnStandby();
   return true;
 }
 
@@ -118,21 +118,21 @@ async function takeFromStick(name) {
 }
 
 const DOES = {
-  async rest() {
-    if (await putToRest()) await download();
+  async standby() {
+    if (await startStandby()) await download();
   },
   /** Not where nothing could be written: it would rest for nothing. */
-  async restToStick() {
+  async standbyToStick() {
     const { stick } = await get("/adit/spare");
     if (stick.hindrance) return say(`The box does not start standby: ${stick.hindrance}.`, true);
-    if (await putToRest()) await toStick();
+    if (await startStandby()) await toStick();
   },
   toStick,
   download,
-  async wake() {
+  async resume() {
     const text = "Only do this if no spare took over from this box. Otherwise a report may be sent twice.";
-    if (!(await sure("Wake this box up?", text, "Wake it up"))) return;
-    await post("/adit/spare/wake");
+    if (!(await sure("End the standby?", text, "End standby"))) return;
+    await post("/adit/spare/resume");
     say("The standby has ended.");
   },
   async take() {

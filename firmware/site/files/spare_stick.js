@@ -11,12 +11,12 @@ const DOING = {
   reading: "The box is reading the export from the stick.",
 };
 
-/** {text, bad} of the stick; `rests`: this box has an export to write. */
-function wordOf({ doing, refusal, written, hindrance }, rests) {
+/** {text, bad} of the stick; `standby`: this box has an export to write. */
+function wordOf({ doing, refusal, written, hindrance }, standby) {
   if (doing) return { text: DOING[doing] ?? sentence(doing) };
   if (refusal) return { text: sentence(refusal), bad: true };
-  if (rests && written) return { text: `The export is on the stick and was read back: ${written}. You can unplug the stick. Note the code, and unplug this box before the spare takes over.` };
-  return { text: rests && hindrance ? sentence(hindrance) : "" };
+  if (standby && written) return { text: `The export is on the stick and was read back: ${written}. You can unplug the stick. Note the code, and unplug this box before the spare takes over.` };
+  return { text: standby && hindrance ? sentence(hindrance) : "" };
 }
 
 function nameOf({ name, box, at }) {
@@ -38,11 +38,11 @@ function offer(exports, take) {
 }
 
 /** `takes`: an export was taken in already. */
-export function showStick({ stick, rests, code, takes_over: takesOver }, takes, take) {
+export function showStick({ stick, standby, code, takes_over: takesOver }, takes, take) {
   place.hidden = !stick || takesOver;
   if (place.hidden) return;
-  const { text, bad } = wordOf(stick, rests && Boolean(code));
+  const { text, bad } = wordOf(stick, standby && Boolean(code));
   if (told.textContent !== text) told.textContent = text;
   told.dataset.bad = Boolean(bad);
-  offer(takes || stick.doing ? [] : stick.exports.filter(({ name }) => !(rests && name === stick.written)), take);
+  offer(takes || stick.doing ? [] : stick.exports.filter(({ name }) => !(standby && name === stick.written)), take);
 }

@@ -1,4 +1,4 @@
-// The spare box on the system page: the first one rests and is exported, the second one takes over, in a browser as a user does it.
+// The spare box on the system page: the first one is put on standby and exported, the second one takes over, in a browser as a user does it.
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
 import { axeFindsNothing } from "../axe.js";
@@ -37,7 +37,7 @@ test("one press puts the box to rest and downloads its export, and the other box
   const here = await spareOf(t, first);
   await here.press("Start standby and export");
   await no(here.page);
-  assert.equal((await first.ask("/adit/spare")).said.rests, false, "it was asked, and answered no");
+  assert.equal((await first.ask("/adit/spare")).said.standby, false, "it was asked, and answered no");
   const downloads = here.page.waitForEvent("download", { timeout: 90_000 });
   await here.press("Start standby and export");
   await yes(here.page);
@@ -45,7 +45,7 @@ test("one press puts the box to rest and downloads its export, and the other box
   await notes(here.section, "This box is on standby");
   const code = await here.section.locator("dd").first().innerText();
   assert.match(code, /^(\d{4} ){3}\d{4}$/);
-  await axeFindsNothing(here.page, "a box that rests");
+  await axeFindsNothing(here.page, "a box on standby");
   assert.equal((await first.run()).alarms[0].id, "standby");
   await first.killAditd();
 
@@ -72,12 +72,12 @@ test("one press puts the box to rest and downloads its export, and the other box
   assert.deepEqual(reports.map(({ number, type, state }) => [number, type, state]), [[number, "Drill", "answered"]]);
 });
 
-test("a box that rests is woken up where its spare did not take over", async (t) => {
+test("standby is ended if the spare did not take over", async (t) => {
   const made = await box(t);
-  await made.ask("/adit/spare/rest", {});
+  await made.ask("/adit/spare/standby", {});
   const { page, section, press } = await spareOf(t, made);
   await notes(section, "This box is on standby");
-  await press("Wake the box up");
+  await press("End standby");
   await yes(page);
   await notes(section, "A spare box can take over");
   await until(async () => (await made.run()).run_heard, "the run");

@@ -25,16 +25,13 @@ const Key kKeys[] = {
      text<MEMBER(command_post.mapping.address)>(Form::Address), kRequired},
     {"command_post.mapping.port", "Its port.", whole<MEMBER(command_post.mapping.port)>(1, 65535), kRequired},
     {"command_post.interface",
-     "The network interface to the Command Post (darpa0). Adit reaches the Command Post only by this "
-     "interface; empty: by the interface that the routes select.",
+     "The only interface to the Command Post (darpa0); empty: the routes select one.",
      text<MEMBER(command_post.interface)>(Form::Interface)},
-    {"command_post.budget_mbit",
-     "Megabits a second for both endpoints together (ICD 3). Adit paces maps within this budget, so that a "
-     "report never waits behind a map.",
+    {"command_post.budget_mbit", "Megabits a second for both endpoints together, at most (ICD 3).",
      real<MEMBER(command_post.budget_mbit)>(0.1, 100000)},
     {"command_post.rates.reports_hz", "Artifact reports sent a second, at most (ICD 4.1).",
      real<MEMBER(command_post.rates.reports_hz)>(0.001, 1000)},
-    {"command_post.rates.status_hz", "Requests for the run's status sent a second, at most.",
+    {"command_post.rates.status_hz", "Requests for the run's status a second, at most.",
      real<MEMBER(command_post.rates.status_hz)>(0.001, 1000)},
     {"command_post.rates.map_hz", "Maps sent a second, at most.",
      real<MEMBER(command_post.rates.map_hz)>(0.001, 1000)},
@@ -45,21 +42,18 @@ const Key kKeys[] = {
     {"command_post.timeouts.connect_ms", "How long connecting may take.",
      whole<MEMBER(command_post.timeouts.connect)>(100, 60000)},
     {"command_post.timeouts.scoring_answer_ms",
-     "How long the scoring endpoint may be silent before a report is in doubt.",
+     "How long the scoring endpoint may be silent. Then a report is in doubt.",
      whole<MEMBER(command_post.timeouts.scoring_answer)>(100, 600000)},
     {"command_post.timeouts.mapping_answer_ms",
-     "How long the mapping endpoint may be silent before Adit sends an update again.",
+     "How long the mapping endpoint may be silent. Then Adit retries.",
      whole<MEMBER(command_post.timeouts.mapping_answer)>(100, 600000)},
     {"command_post.arrange_clouds",
-     "Whether Adit removes the padding in and after the points of clouds, and sorts the points, to make "
-     "clouds smaller. No value of a point changes.",
+     "Whether Adit removes padding and sorts points, to make clouds smaller. Points keep their values.",
      flag<MEMBER(command_post.arrange_clouds)>()},
-    {"command_post.course",
-     "The course in use, one of courses[].name. Adit uses the endpoints of this course; empty: the endpoints "
-     "above.",
+    {"command_post.course", "The course in use, one of courses[].name; empty: the endpoints above.",
      text<MEMBER(command_post.course)>(Form::CourseOrNone)},
 
-    {"courses[].name", "The course's name, by which you switch to its endpoints.",
+    {"courses[].name", "The course's name, for command_post.course.",
      text<MEMBER(courses.back().name)>(Form::Course), kRequired},
     {"courses[].scoring.address", "Its scoring endpoint.",
      text<MEMBER(courses.back().scoring.address)>(Form::Address), kRequired},
@@ -69,98 +63,85 @@ const Key kKeys[] = {
     {"courses[].mapping.port", "Its port.", whole<MEMBER(courses.back().mapping.port)>(1, 65535), kRequired},
 
     {"team.listen[].address",
-     "The address at which robots and stations reach Adit; 0.0.0.0: every address of team.interface.",
+     "An address at which clients reach Adit; 0.0.0.0: every address of team.interface.",
      text<MEMBER(team.listen.back().address)>(Form::Address), kRequired},
     {"team.listen[].port", "Its port; 0: any free port.", whole<MEMBER(team.listen.back().port)>(0, 65535),
      kRequired},
-    {"team.interface",
-     "The network interface to the team (team0). Adit answers only requests that arrive by this interface; "
-     "empty: by any interface.",
+    {"team.interface", "The only interface to the team (team0); empty: any interface.",
      text<MEMBER(team.interface)>(Form::Interface)},
     {"team.require_token",
-     "Whether a client must present the team's token or one of the Command Post's tokens. If not, Adit "
-     "serves any client of the team's network, except web pages that are neither the box's own nor of "
-     "team.origins.",
+     "Whether clients need the team's token or one of the Command Post's. If not, Adit serves all clients of "
+     "the team's network, but web pages only of the box and of team.origins.",
      flag<MEMBER(team.require_token)>()},
     {"team.origins",
-     "Origins of web pages, with spaces between them, that may read the run's status and post without a "
-     "token, reports included, if team.require_token is off. Such a page may do so in any browser of the "
-     "team's network. With a token, Adit serves a page of any origin.",
+     "Origins whose web pages may post, reports included, and read the run's status without a token if "
+     "team.require_token is off, in every browser of the team's network. With a token, pages of any origin "
+     "may.",
      text<MEMBER(team.origins)>(Form::Origins)},
     {"team.connections",
      "Connections of the team at once, at most. Unauthenticated clients get a quarter of them, at most 32.",
      whole<MEMBER(team.connections)>(1, 1024)},
     {"team.connections_per_address",
-     "Connections from one address at once, at most, of clients that have shown a token or need no token.",
+     "Connections from one address at once, at most, if authenticated or without team.require_token.",
      whole<MEMBER(team.connections_per_address)>(1, 1024)},
 
     {"robots[].name",
-     "A robot's name as it was registered (ICD 2). If any robot is listed, Adit still accepts messages of "
-     "other robots, and reports their names.",
+     "The registered name (ICD 2). If any robot is listed, the page reports others; Adit still accepts their "
+     "messages.",
      text<MEMBER(robots.back().name)>(Form::Robot), kRequired},
     {"robots[].alias",
-     "The name that this robot uses in its maps and states. Adit forwards them under robots[].name.",
+     "The name that this robot uses. Adit forwards its maps and states under robots[].name.",
      text<MEMBER(robots.back().alias)>(Form::Alias)},
     {"robots[].clouds",
-     "How this robot posts its clouds. whole: each cloud contains the earlier clouds, so that the newest "
-     "replaces queued clouds. parts: every cloud is sent. auto: a newer cloud replaces the queued cloud "
-     "before it if it contains each point of that cloud.",
+     "How this robot posts clouds. auto: a newer cloud replaces a queued cloud whose points it contains. "
+     "whole: each cloud contains the earlier ones and replaces them. parts: every cloud is sent.",
      choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
     {"robots[].precision",
-     "How far Adit may round the coordinates of this robot's clouds, to make clouds smaller. exact: not at "
-     "all. 1mm, 8mm: to steps of that size; a point moves by 1.3 steps at most. auto: as far as the queued "
-     "clouds require. Clouds stay exact if command_post.arrange_clouds is false.",
+     "How far Adit may round coordinates of this robot's clouds. exact: not at all. 1mm, 8mm: to such steps. "
+     "auto: as far as the queued clouds require. Needs command_post.arrange_clouds.",
      choice<MEMBER(robots.back().precision)>(lanes::kPrecisionWords)},
     {"robots[].voxel_metres",
-     "The edge of a voxel in metres (at least 0.01); 0: every point is sent. Adit sends one point of this "
-     "robot's clouds for each voxel, and no point if the Command Post has already accepted one there. Only "
-     "for a Command Post that adds each cloud to the earlier clouds. Not for clouds that are whole.",
+     "The edge of a voxel in metres (at least 0.01); 0: every point is sent. Adit sends one point of each "
+     "voxel. Only for a Command Post that adds each cloud to the earlier ones, and not for whole clouds.",
      real<MEMBER(robots.back().voxel_metres)>(0, 10)},
 
     {"network.confirm_within_ms",
-     "How long you have to confirm a change of the box's addresses from the new address. After that, the box "
-     "returns to the old addresses.",
+     "How long you have to confirm new addresses of the box. Then it returns to the old ones.",
      whole<MEMBER(network.confirm_within)>(1000, 600000)},
     {"network.allow_overlap",
-     "Whether the team's subnet may overlap the Command Post's. Adit works with an overlap, but a robot "
-     "cannot reach both subnets.",
+     "Whether the team's subnet may overlap the Command Post's. A robot cannot reach both subnets then.",
      flag<MEMBER(network.allow_overlap)>()},
 
     {"clock.ntp_server",
-     "An NTP server on the team's network from which the box sets its clock; empty: no server. Used only if "
-     "adit-clock sets the clock, so not on a PC, which has its own time service.",
+     "An NTP server on the team's network that sets the box's clock; empty: no server. Not on a PC.",
      text<MEMBER(clock.ntp_server)>(Form::Ipv4OrNone)},
-    {"clock.serve_ntp",
-     "Whether the box is the NTP server of the team's subnet, after its own clock is set. Not on a PC.",
+    {"clock.serve_ntp", "Whether the box, once its own clock is set, is the team's NTP server. Not on a PC.",
      flag<MEMBER(clock.serve_ntp)>()},
 
     {"reports.answer_within_ms",
-     "How long a client waits for the answer to its report, at most. After that, Adit answers 503 or 504 "
-     "with the state of the report.",
+     "How long a client waits for its report's answer. Then Adit answers 503 or 504 with the report's state.",
      whole<MEMBER(reports.answer_within)>(100, 600000)},
     {"reports.doubt_for_ms",
-     "How late a Command Post may still record a report that it has read. Adit sends a report whose answer "
-     "was lost again only if the run's status shows, this long after, that the report was not recorded.",
+     "How late a Command Post may still record a report that it has read. Only after this time can the run's "
+     "status show that a report in doubt was not recorded.",
      whole<MEMBER(reports.doubt_for)>(100, 600000)},
     {"reports.doubt_asks",
      "How many statuses in a row must show that a report was not recorded before Adit sends it again.",
      whole<MEMBER(reports.doubt_asks)>(1, 100)},
     {"reports.review",
-     "Reports that are held until the operator sends them. off: none. duplicates: near duplicates (see "
-     "reports.near_metres). all: every report.",
+     "Reports that are held until the operator sends them. off: no report. duplicates: near duplicates. all: "
+     "every report.",
      choice<MEMBER(reports.review)>(kReviews)},
-    {"reports.near_metres",
-     "Two reports of one run are near duplicates if they have the same type and are within this distance.",
+    {"reports.near_metres", "Two reports of one run and type are near duplicates within this distance.",
      real<MEMBER(reports.near_metres)>(0, 1000)},
 
     {"queues.map_bytes", "Bytes of queued maps, at most. Beyond that, Adit rejects a map with 429.",
      whole<MEMBER(queues.map_bytes)>(kMiB, 16384 * kMiB)},
-    {"queues.merge_bytes",
-     "Bytes of points that queued clouds are merged into, at most; 0: clouds are never merged.",
+    {"queues.merge_bytes", "Bytes of points in one merged cloud, at most; 0: clouds are never merged.",
      whole<MEMBER(queues.merge_bytes)>(0, 256 * kMiB)},
     {"queues.marker_bytes",
-     "Bytes of queued markers, at most. Beyond three quarters of that, Adit rejects new markers with 429; "
-     "beyond all of it, also markers that replace queued markers.",
+     "Bytes of queued markers, at most; three quarters for new ones. Beyond that, Adit rejects markers with "
+     "429.",
      whole<MEMBER(queues.marker_bytes)>(kMiB, 1024 * kMiB)},
     {"queues.markers_per_message", "Markers in one update, at most.",
      whole<MEMBER(queues.markers_per_message)>(1, 100000)},
@@ -168,24 +149,19 @@ const Key kKeys[] = {
      "Bytes of markers in one update, at most, unless a single marker is larger.",
      whole<MEMBER(queues.marker_bytes_per_message)>(1024, 256 * kMiB)},
 
-    {"runs.length_seconds",
-     "How long a run lasts. The page, the display and adit status count down from this. The Command Post "
-     "does not send it.",
+    {"runs.length_seconds", "How long a run lasts, for the countdown.",
      whole<MEMBER(runs.length_seconds)>(60, 86400)},
     {"runs.run_bytes",
-     "Bytes of one run's map, tracks and plots on the disk, at most. Beyond that, Adit deletes the run's "
-     "earliest pictures.",
+     "Bytes of one run's map, tracks and plots, at most. Beyond that, Adit deletes its earliest pictures.",
      whole<MEMBER(runs.run_bytes)>(2 * kMiB, 1024 * kMiB)},
     {"runs.all_bytes",
-     "Bytes of the maps, tracks and plots of all runs, at most, and never more than half of the disk's room "
-     "for them. Beyond that, Adit deletes the oldest run, but not the present run, and no report.",
+     "Bytes of all runs' maps, tracks and plots, at most, and at most half of the disk's room. Beyond that, "
+     "Adit deletes the oldest earlier run, but no report.",
      whole<MEMBER(runs.all_bytes)>(4 * kMiB, 65536 * kMiB)},
 
     {"alarms.silent_for_ms", "The shortest time without a message after which a robot is silent.",
      whole<MEMBER(alarms.silent_for)>(1000, 3600000)},
-    {"alarms.silent_times",
-     "How many times its usual interval between two messages must pass without a message before a robot is "
-     "silent.",
+    {"alarms.silent_times", "How many of its usual intervals must also pass before a robot is silent.",
      real<MEMBER(alarms.silent_times)>(1, 1000)},
 
     {"rules.rewrite_frame_id",
@@ -195,22 +171,20 @@ const Key kKeys[] = {
      "Send artifact types other than the ICD's ten. If not, Adit rejects them with 422.",
      flag<MEMBER(rules.forward_unknown_types)>()},
     {"rules.map_bytes",
-     "Bytes of one map's data after inflation, at most. Beyond that, Adit rejects the map with 413.",
+     "Bytes of one map's inflated data, at most. Beyond that, Adit rejects the map with 413.",
      whole<MEMBER(rules.map_bytes)>(1024, icd::kMostMapBytes)},
 
-    {"panel.chip",
-     "The GPIO chip of the lights and the button (gpiochip0), by name, label or path; empty: any chip that "
-     "has a line of that name.",
+    {"panel.chip", "The GPIO chip (gpiochip0), by name, label or path; empty: any chip with the line.",
      text<MEMBER(panel.chip)>(Form::Chip)},
     {"panel.health",
-     "The line of the health light; empty: no light. If no line is set, the panel is simulated.",
+     "The line of the health light; empty: no light. Without any line, the panel is simulated.",
      text<MEMBER(panel.health)>(Form::Line)},
     {"panel.scoring", "The line of the scoring light.", text<MEMBER(panel.scoring)>(Form::Line)},
     {"panel.mapping", "The line of the mapping light.", text<MEMBER(panel.mapping)>(Form::Line)},
     {"panel.attention", "The line of the attention light.", text<MEMBER(panel.attention)>(Form::Line)},
-    {"panel.active_low", "Whether a light is lit by driving its line low.", flag<MEMBER(panel.active_low)>()},
+    {"panel.active_low", "Whether lights are lit by a low line.", flag<MEMBER(panel.active_low)>()},
     {"panel.button", "The line of the button; empty: no button.", text<MEMBER(panel.button)>(Form::Line)},
-    {"panel.button_active_low", "Whether the button pulls its line low when it is pressed.",
+    {"panel.button_active_low", "Whether the pressed button pulls its line low.",
      flag<MEMBER(panel.button_active_low)>()},
 };
 

@@ -123,7 +123,7 @@ struct Clock {
 
 /// How the box's own addresses are changed. They are not here: room network.
 struct Network {
-  std::chrono::milliseconds confirm_within{90000};  // then a change of them is taken back
+  std::chrono::milliseconds confirm_within{90000};  // then a change of them is reverted
   bool allow_overlap = false;                       // of the team's subnet with the Command Post's
 };
 
@@ -154,7 +154,7 @@ struct Error {
 std::expected<Settings, std::vector<Error>> parse(std::string_view json);
 std::expected<Settings, std::vector<Error>> parse(const codec::Value& root);
 
-/// Of a file that Adit itself wrote, and perhaps a later one, of an update that was taken back: keys that
+/// Of a file that Adit itself wrote, and perhaps a later one, of an update that was reverted: keys that
 /// this version does not know are passed over.
 struct Saved {
   Settings settings;

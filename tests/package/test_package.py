@@ -79,10 +79,10 @@ class Packages(Story):
 
     def test_what_a_newcomer_reads_is_there(self):
         self.box.shell("""cd /usr/share/doc/adit; grep -q '<title>Adit: the card' card.html
-            grep -q 'class Client' examples/client.py; test -s examples/README.md -a -s examples/client.hpp
+            grep -q 'class Client' examples/client.py; test -s examples/README.md -a -s examples/refusals.md -a -s examples/client.hpp
             zgrep -q 'adit-rehearsal demo' README.Debian*
             zgrep -qF '/usr/share/doc/adit/NEWS.md.gz' changelog.gz; zgrep -q '^## ' NEWS.md.gz""")
-        self.assertEqual(self.box.shell("cd /usr/share/doc/adit; zgrep -hE '\\]\\([^()]*/' NEWS.md.gz examples/README.md || true"), "", "leads nowhere")
+        self.assertEqual(self.box.shell("cd /usr/share/doc/adit; zgrep -hE '\\]\\([^()]*/' NEWS.md.gz examples/*.md || true"), "", "leads nowhere")
 
     def test_named_its_two_ports_it_serves_the_page_on_the_teams_alone(self):
         self.box.shell(f"""echo 'adit adit/team string {pc.PORTS["team"]}' | debconf-set-selections

@@ -4,6 +4,7 @@
 #include <iterator>
 #include <regex>
 #include <string>
+#include <string_view>
 
 #include "codec/json.hpp"
 #include "settings/keys.hpp"
@@ -18,15 +19,19 @@ std::string text_of(const std::string& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// The table of all keys in Markdown, as README.md has it: key, meaning, default, range.
+/// The table of all keys in Markdown, as README.md has it: key, meaning, range and default. A default of ""
+/// says by itself that the text may be empty.
 std::string reference() {
+  constexpr std::string_view kOrEmpty = ", or \"\"";
   const Settings defaults = with_an_item_of_each();
-  std::string table = "| key | meaning | default | allowed |\n| --- | --- | --- | --- |\n";
+  std::string table = "| key | meaning | allowed (default) |\n| --- | --- | --- |\n";
   for (const Key& key : keys()) {
     const std::string value =
         key.required ? "required" : "`" + codec::write_json(value_of(key.kind, defaults)) + "`";
-    table.append("| `").append(key.path).append("` | ").append(key.meaning).append(" | ").append(value);
-    table.append(" | ").append(range_of(key.kind)).append(" |\n");
+    std::string range = range_of(key.kind);
+    if (range.ends_with(kOrEmpty)) range.resize(range.size() - kOrEmpty.size());
+    table.append("| `").append(key.path).append("` | ").append(key.meaning).append(" | ").append(range);
+    table.append(" (").append(value).append(") |\n");
   }
   return table;
 }

@@ -1,4 +1,4 @@
-"""The table of refusals in firmware/intake/clients/README.md: what is sent, and what Adit says to it."""
+"""The tables of firmware/intake/clients/refusals.md: requests, and the status and sentence with which Adit rejects each."""
 
 import copy
 import json
@@ -100,51 +100,51 @@ UTF_16 = STATE_BODY.encode("utf-16")
 POSE = STATE["poses"][0]
 TWO_BAD = json.dumps({"poses": [{**POSE, "name": 1}, POSE, {**POSE, "position": {}}]})
 
-# (what is sent, method, URI, body, headers in addition)
+# (row title, method, URI, body, headers in addition)
 REQUESTS = [
-    ("another token, or none", "POST", "/state/update", STATE_BODY, {"Authorization": "Bearer wrong"}),
+    ("a wrong or missing token", "POST", "/state/update", STATE_BODY, {"Authorization": "Bearer wrong"}),
     ("a URI that the ICD does not have", "POST", "/map/updates", "{}", {}),
     ("`GET /map/update`", "GET", "/map/update", None, {}),
     ("`Content-Type: text/plain`", "POST", "/state/update", STATE_BODY, {"Content-Type": "text/plain"}),
     ("a report as CBOR", "POST", "/api/artifact_reports", b"\xa0", {"Content-Type": "application/cbor"}),
     ("`Content-Encoding: br`", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "br"}),
-    ("`Content-Encoding: gzip`, and it is not", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "gzip"}),
+    ("`Content-Encoding: gzip` without gzip", "POST", "/state/update", STATE_BODY, {"Content-Encoding": "gzip"}),
     ("half a JSON document", "POST", "/state/update", '{"poses": [', {}),
     ("half a CBOR document", "POST", "/state/update", b"\xa1", {"Content-Type": "application/cbor"}),
-    ("`NaN`, which JSON does not have", "POST", "/api/artifact_reports", '{"x": NaN}', {}),
+    ("`NaN` in JSON", "POST", "/api/artifact_reports", '{"x": NaN}', {}),
     ("UTF-16", "POST", "/state/update", UTF_16, {}),
     ("CBOR as JSON", "POST", "/state/update", cbor2.dumps(STATE), {}),
     ("JSON as CBOR", "POST", "/state/update", STATE_BODY, {"Content-Type": "application/cbor"}),
     ("a list around the message", "POST", "/state/update", "[]", {}),
     ("a state of 2 MB", "POST", "/state/update", b" " * 2_000_000, {}),
-    ("a CBOR tag that changes a meaning", "POST", "/state/update", TAGGED, {"Content-Type": "application/cbor"}),
+    ("a CBOR tag that changes the value", "POST", "/state/update", TAGGED, {"Content-Type": "application/cbor"}),
     ("three poses, two of them wrong", "POST", "/state/update", TWO_BAD, {}),
     ("a member twice", "POST", "/api/artifact_reports", '{"x": 1, "y": 2, "z": 3, "type": "Rope", "x": 4}', {}),
     ("`Adit-Resubmit: maybe`", "POST", "/api/artifact_reports", json.dumps(REPORT), {"Adit-Resubmit": "maybe"}),
 ]
 
-# What takes a crowd, a full disk or a stop to make, and has tests of its own: (what happened, status, the code's sentence).
+# Refusals that need a crowd, a full disk or a stop, and have tests of their own: (row title, status, the code's sentence).
 ELSEWHERE = [
-    ("a map, where the queue is full", 429, "the queue is full: N maps, N MB; this map was not accepted, send it again later"),
-    ("markers, where as many wait as can", 429,
+    ("a map, if the queue is full", 429, "the queue is full: N maps, N MB; this map was not accepted, send it again later"),
+    ("markers, if the queue is full", 429,
      "not accepted: the queue of markers is full (queues.marker_bytes); send it again later"),
-    ("markers, of which some change others that wait, and there is no room for new ones", 429,
+    ("markers that partly replace queued markers, if the queue is full", 429,
      "N of N markers were accepted, because they replace queued markers; the queue has no room for new markers"
      " (queues.marker_bytes); send them again later"),
-    ("a state of more robots than any team has", 429, "not accepted: too many robots; send it again later"),
-    ("a report, where 1,000 wait", 429, "N reports are queued already; this report was not accepted"),
-    ("a report, where the disk is full", 503, "the report could not be stored and was not accepted; post it again"),
-    ("a map, where there is no room to keep it", 503, "Adit cannot store this map; send it again later"),
-    ("too many requests at once", 503, "too many requests at once, from this address or in total; try again"),
-    ("too many bytes of states and reports at once", 503,
+    ("a state with new robots, if 1,000 are queued", 429, "not accepted: too many robots; send it again later"),
+    ("a report, if 1,000 are queued", 429, "N reports are queued already; this report was not accepted"),
+    ("a report, if the disk is full", 503, "the report could not be stored and was not accepted; post it again"),
+    ("a map, if Adit has no memory to store it", 503, "Adit cannot store this map; send it again later"),
+    ("a request, if too many arrive at once", 503, "too many requests at once, from this address or in total; try again"),
+    ("a state or report, if too many bytes arrive at once", 503,
      "too many bytes at once, from this address or in total; send this message again later"),
-    ("too many bytes of maps at once", 429, "too many maps at once; send this map again later"),
-    ("too many bytes of markers at once", 429, "too many markers at once; send these markers again later"),
-    ("whatever comes while Adit stops", 503, "aditd is stopping; this message was not accepted, send it again"),
-    ("a body that comes too slowly", 408, "the body of the request took too long"),
-    ("one of many wrong tokens", 429,
+    ("a map, if too many bytes arrive at once", 429, "too many maps at once; send this map again later"),
+    ("markers, if too many bytes arrive at once", 429, "too many markers at once; send these markers again later"),
+    ("any message while aditd stops", 503, "aditd is stopping; this message was not accepted, send it again"),
+    ("a body that arrives too slowly", 408, "the body of the request took too long"),
+    ("a token after many wrong ones", 429,
      "too many wrong tokens from this address; this token was not checked; try again in a second"),
-    ("a fault of Adit's own", 500, "Adit could not finish this request and may have accepted it; send it again"),
+    ("any message, after a fault inside Adit", 500, "Adit could not finish this request and may have accepted it; send it again"),
 ]
 
 
@@ -161,7 +161,7 @@ def ask(stage, method, uri, body=None, headers=()):
 
 
 def of_requests():
-    """Groups of what is sent and what was answered, by the URI."""
+    """For each URI: the row titles with the answers."""
     with Stage() as stage:
         began(stage)
         yield "any", [(what, ask(stage, method, uri, body, headers)) for what, method, uri, body, headers in REQUESTS]
@@ -172,22 +172,22 @@ def of_requests():
 
 
 def of_reports():
-    """What is told of a report that is not done yet, or is not to be."""
+    """Row titles with the answers to a report or a status that the Command Post has not answered."""
     with Stage(post_options=None, **SHORT) as stage:
-        yield "the Command Post cannot be reached", submit(stage)
-        yield "and the run's status is asked for", ask(stage, "GET", "/api/status")
+        yield "a report, if the Command Post cannot be reached", submit(stage)
+        yield "a status, if the Command Post cannot be reached", ask(stage, "GET", "/api/status")
     with Stage(**{**SHORT, "reports__doubt_for_ms": 20000}) as stage:
         began(stage).post.will("drop")
-        yield "its answer is lost, and Adit still asks", submit(stage)
+        yield "a report whose answer is lost, while Adit asks for the status", submit(stage)
     with Stage(**SHORT, reports__review="all") as stage:
         began(stage)
-        yield "it is held for the operator", submit(stage)
+        yield "a report that is held for the operator", submit(stage)
         stage.box.judge(1, "withdraw")
-        yield "the operator withdrew it", submit(stage)
+        yield "a report that the operator has withdrawn", submit(stage)
 
 
 def sentence(answer):
-    """Where it says why in brackets, that is left out: it depends on the day."""
+    """The sentence, with "(why)" for a reason in brackets, which differs each time."""
     return re.sub(r"\((?!the setting)[^)]*\)", "(why)", answer.json()).partition(": no route")[0]
 
 
@@ -201,12 +201,12 @@ def table():
         row(title, "status", "sentence")
         row("---", "---", "---")
         for what, status, said in rows:
-            row(what, status, said)
+            row(what, status, f"`{said}`")
         lines.append("")
 
     for uri, answers in of_requests():
-        title = "any of the URIs" if uri == "any" else f"`{uri}`"
+        title = "any URI" if uri == "any" else f"`{uri}`"
         group(title, [(what, answer.status_code, answer.json()) for what, answer in answers])
-    group("a report that waits", [(what, answer.status_code, sentence(answer)) for what, answer in of_reports()])
-    group("what is nobody's mistake", ELSEWHERE)
+    group("no answer from the Command Post", [(what, answer.status_code, sentence(answer)) for what, answer in of_reports()])
+    group("no mistake of the client", ELSEWHERE)
     return "\n".join(lines)

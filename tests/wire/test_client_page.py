@@ -1,5 +1,5 @@
-"""What is told to who writes a client (firmware/intake/clients/README.md) is so: its commands and its Python are run, its C++ is
-in the example, which test_clients.py runs, and each refusal is made. ADIT_WRITE=1 writes the refusals into the page."""
+"""The pages for client authors (firmware/intake/clients) are true: the commands and the Python of README.md are run, its C++ is in
+the example, which test_clients.py runs, and each refusal of refusals.md is made. ADIT_WRITE=1 writes the refusals into that page."""
 
 import doctest
 import os
@@ -16,9 +16,8 @@ from reporting import QUICK, began
 
 SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
 SHOWN = SOURCE / "firmware/intake/clients"
-PAGE = SHOWN / "README.md"
+PAGE, REFUSALS = SHOWN / "README.md", SHOWN / "refusals.md"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.S | re.M)
-REFUSALS = "These are what Adit said when the test asked it.\n\n"
 # What differs each time: when, how long, where.
 VARIES = [(r"Date: [^\n]*", "Date:"), (r"Age: \d+", "Age:"), (r"Content-Length: \d+", "Content-Length:"),
           (r'"run_clock":[\d.]+', '"run_clock":'), (r'"submitted_datetime":"[^"]*"', '"submitted_datetime":')]
@@ -76,11 +75,12 @@ class ClientPage(unittest.TestCase):
         self.assertEqual([line for line in lines if line not in example], [])
 
     def test_each_refusal_is_made(self):
-        told, table = self.text.partition(REFUSALS)[::2], refused.table()
+        text, tables = REFUSALS.read_text(), refused.table()
+        start = text.index("\n| ") + 1  # the tables end the page
         if os.environ.get("ADIT_WRITE"):
-            PAGE.write_text(told[0] + REFUSALS + table)
+            REFUSALS.write_text(text[:start] + tables)
         else:
-            self.assertEqual(told[1], table)
+            self.assertEqual(text[start:], tables)
 
     def test_what_is_not_made_here_is_in_the_code(self):
         code = "".join(path.read_text() for path in (SOURCE / "firmware").rglob("*.cpp"))

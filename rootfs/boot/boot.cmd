@@ -3,7 +3,7 @@
 # come up healthy. RAUC reads counts as hexadecimal: ten is a.
 #
 # This must also run in factory boot loaders of 2017 (board/espressobin/README.md): they have no setexpr, and their env import takes no
-# names of variables.
+# names of variables (Marvell's cmd/nvedit.c, commit 6dd70774).
 setenv BOOT_ORDER "A B"
 setenv BOOT_A_LEFT a
 setenv BOOT_B_LEFT a

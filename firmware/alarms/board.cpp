@@ -37,9 +37,11 @@ void Board::take(const std::vector<Condition>& conditions, double now) {
     here.insert(condition.id);
     const auto [place, came] = known_.try_emplace(condition.id);
     Known& known = place->second;
-    if (came) known.since = condition.since > 0 ? condition.since : now;
+    if (came || condition.severity != known.condition.severity)
+      known.since = condition.since > 0 ? condition.since : now;
     if (known.acknowledged && is_worse(condition, known)) known.acknowledged = false;
     known.condition = condition;
+    if (known.acknowledged && condition.degree < known.seen.degree) see(known, known.seen.at);
   }
   for (auto each = known_.begin(); each != known_.end();) {
     if (here.contains(each->first)) {

@@ -23,7 +23,8 @@ class Board {
   void take(const std::vector<Condition>& conditions, double now);
   /// The time of day was set ahead by so many seconds: each lasts as long as it did.
   void move(double seconds);
-  /// Quiets it until it gets worse or comes again. An error: there is none of that name.
+  /// Quiets the alarm until it gets worse or comes again. If its degree falls meanwhile, a rise from there is
+  /// worse. Error: there is no alarm of that id.
   std::expected<void, std::string> acknowledge(const std::string& id, double now);
 
   /// What was acknowledged before this start, at `now`. Each holds once its alarm is back as it was, in every

@@ -115,8 +115,9 @@ struct Facts {
   std::vector<ReportFact> reports = {};
   std::map<std::string, std::size_t> reports_elsewhere = {};  // by the Command Post that they wait for
   std::optional<std::int64_t> reports_left = {};
-  std::string run_unreliable = {};  // why its count of reports proves nothing; or ""
-  std::size_t messages_rejected = 0;
+  std::string run_unreliable = {};    // why its count of reports proves nothing; or ""
+  std::size_t messages_rejected = 0;  // kept, and not replaced
+  std::uint64_t newest_rejected = 0;  // number of the newest of them; later ones have larger numbers
 
   std::string ledger_refusal = {}, ledger_damage = {};
   Disk disk = {};

@@ -106,7 +106,7 @@ void find_report_troubles(const Facts& facts, Found& found) {
          .headline = {sentence(facts.messages_rejected, one ? " message" : " messages"), "rejected", !one},
          .why = sentence("the Command Post did not accept ", one ? "it" : "them"),
          .action = {"Show", "/#rejected"},
-         .degree = facts.messages_rejected});
+         .degree = facts.newest_rejected});  // also if an older one went for it
   }
 }
 

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cmath>
 
+#include "codec/read.hpp"
 #include "dispatch/mapping_verdict.hpp"
 #include "icd/sentence.hpp"
 
@@ -26,6 +27,12 @@ bool took_the_token(Asked asked, int status, dispatch::Body body) {
   if (body == dispatch::Body::Other) return false;  // a page is no answer of a Command Post
   if (status >= 200 && status < 300) return true;
   return asked == Asked::Mapping && (status == 400 || status == 415 || status == 422);
+}
+
+std::string no_endpoint(Asked asked) {
+  return icd::sentence("This is no ", name_of(asked),
+                       " endpoint: compare its address and port with those posted; scoring and mapping may "
+                       "be exchanged.");
 }
 
 }  // namespace
@@ -147,7 +154,15 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
   }
   const int status = answer->status;
   const dispatch::Body body = dispatch::body_of(answer->body);
-  if (took_the_token(asked, status, body))
+  const bool is_taken = took_the_token(asked, status, body);
+  if (is_taken && asked == Asked::Scoring) {
+    if (const auto run = codec::read_run_status(answer->body); !run)
+      return bad(
+          "token",
+          icd::sentence("the answer to GET /api/status is not the status of a run (ICD 5.1): ", run.error()),
+          no_endpoint(asked));
+  }
+  if (is_taken)
     return good("token", icd::sentence("the ", name_of(asked), " token is accepted",
                                        slash ? "; paths end with a slash there" : ""));
   if ((status == 401 || status == 403) && body != dispatch::Body::Other) {
@@ -162,10 +177,7 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
     return skipped("token", icd::sentence("the endpoint failed before it checked the token; ",
                                           answered(status, answer->body)));
   }
-  return bad("token", answered(status, answer->body),
-             icd::sentence("This is no ", name_of(asked),
-                           " endpoint: compare its address and port with those posted; scoring and mapping "
-                           "may be exchanged."));
+  return bad("token", answered(status, answer->body), no_endpoint(asked));
 }
 
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "codec/read.hpp"
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/said.hpp"
 #include "host/log.hpp"
@@ -26,9 +27,17 @@ dispatch::Body body_of(const uplink::Outcome& outcome) {
   return answered != nullptr ? dispatch::body_of(answered->body) : dispatch::Body::Other;
 }
 
-bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
-  if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
-    return !answered->wants_slash && !dispatch::may_be_the_command_post(answered->status, body);
+/// A 2xx to GET /api/status has a status of the run as its body (ICD 5.1).
+bool is_no_status(icd::Uri uri, const uplink::Answered& answered) {
+  return uri == icd::Uri::Status && answered.status >= 200 && answered.status < 300 &&
+         !codec::read_run_status(answered.body);
+}
+
+bool comes_from_another(icd::Uri uri, const uplink::Outcome& outcome, dispatch::Body body) {
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
+    return !answered->wants_slash &&
+           (!dispatch::may_be_the_command_post(answered->status, body) || is_no_status(uri, *answered));
+  }
   const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
   return doubt != nullptr && doubt->too_long_status != 0 &&
          !dispatch::may_be_the_command_post(doubt->too_long_status, body);
@@ -126,7 +135,7 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   ++ended_;
   last_status_ = 0;
   const dispatch::Body body = body_of(outcome);
-  foreign_now_ = comes_from_another(outcome, body);
+  foreign_now_ = comes_from_another(request.uri, outcome, body);
   if (foreign_now_) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr) {
@@ -134,7 +143,7 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
     learn_path(request, *answered);
     if (last_status_ == 429) ++throttled_;
     // Nobody else's clock is to be taken for the Command Post's.
-    if (answered->date && dispatch::is_the_command_post(answered->status, body)) {
+    if (answered->date && !foreign_now_ && dispatch::is_the_command_post(answered->status, body)) {
       constexpr double kHalf = 0.5;  // it says whole seconds
       date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
       dated_ = heard_;
@@ -143,6 +152,8 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   }
   const bool is_well = answered != nullptr && !answered->wants_slash && !foreign_now_ && last_status_ < 400;
   trouble_ = is_well ? "" : forward::sentence_of(outcome);
+  if (answered != nullptr && foreign_now_ && is_no_status(request.uri, *answered))
+    trouble_ = "the server that answered without the status of a run is not the Command Post";
 }
 
 void Channel::learn_path(const UnderWay& request, const uplink::Answered& answered) {

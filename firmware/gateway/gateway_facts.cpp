@@ -67,8 +67,11 @@ void Gateway::add_reports(alarms::Facts& facts) const {
   if (flow_.scoring().run()) facts.reports_left = flow_.scoring().run()->remaining_reports;
   const std::string& unreliable = reports.run().unreliable;
   if (unreliable != dispatch::Run::kCountsStand) facts.run_unreliable = unreliable;
-  facts.messages_rejected = static_cast<std::size_t>(
-      std::ranges::count(flow_.rejected().rows(), false, &api::RejectedRow::replaced));
+  for (const api::RejectedRow& row : flow_.rejected().rows()) {
+    if (row.replaced) continue;
+    ++facts.messages_rejected;
+    facts.newest_rejected = std::max(facts.newest_rejected, row.number);
+  }
 }
 
 void Gateway::add_box(alarms::Facts& facts) const {

@@ -42,6 +42,16 @@ TEST(Board, KnowsSinceWhenItIsSo) {
   EXPECT_EQ(shown[1].since, 100) << "as it was found";
 }
 
+TEST(Board, BeginsAnAlarmAnewThatIsOfAnotherSeverity) {
+  Board board;
+  board.take({kFew}, 100);
+  Condition none = kFew;
+  none.severity = Severity::Bad;
+  none.headline = {"No reports", "left", true};
+  board.take({none}, 160);
+  EXPECT_EQ(board.shown({none}, 164)[0].since, 160) << "few were left since 100, none since 160";
+}
+
 TEST(Board, RemembersTheLastThatWent) {
   Board board;
   board.take({kSilent}, 100);
@@ -89,6 +99,19 @@ TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
   ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
   board.take({}, 105);
   EXPECT_FALSE(board.shown({kSilent}, 106)[0].acknowledged) << "it came again";
+}
+
+TEST(Board, CountsFromTheLowestDegreeSinceItWasAcknowledged) {
+  Board board;
+  Condition few = kFew;
+  few.degree = 5;
+  board.take({few}, 100);
+  ASSERT_TRUE(board.acknowledge(few.id, 100));
+  few.degree = 1;
+  board.take({few}, 101);
+  EXPECT_TRUE(board.shown({few}, 101)[0].acknowledged) << "better is no news";
+  few.degree = 5;
+  EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "four of them were not seen";
 }
 
 TEST(Board, AcknowledgesNothingThatIsNotThere) {

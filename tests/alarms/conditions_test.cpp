@@ -362,6 +362,15 @@ TEST(ReportsToDecide, WaitForAditWhileItAsks) {
   EXPECT_EQ(conditions_of(facts)[0].severity, Severity::Wait);
 }
 
+TEST(RejectedMessages, GetWorseByEachNewOneAlsoWhenNoMoreAreKept) {
+  Facts facts = well();
+  facts.messages_rejected = 100;
+  facts.newest_rejected = 100;
+  const auto before = conditions_of(facts);
+  facts.newest_rejected = 101;
+  EXPECT_GT(conditions_of(facts)[0].degree, before[0].degree);
+}
+
 TEST(FewReports, GetWorseAsTheyGetFewer) {
   Facts facts = well();
   facts.reports_left = 3;

@@ -79,8 +79,13 @@ TestStep with_status(Asked asked, int status, const std::string& body = "\"a sen
   return token(asked, answered);
 }
 
+constexpr const char* kRun =
+    R"({"score": 1, "run_clock": 2.5, "remaining_reports": 44, "current_team": "subt"})";
+
 TEST(TheTokenStep, OfScoringReadsTheAnswerToAStatus) {
-  expect(with_status(Asked::Scoring, 200), "good", "the scoring token is accepted");
+  expect(with_status(Asked::Scoring, 200, kRun), "good", "the scoring token is accepted");
+  for (const char* body : {R"({"hello": "world"})", "null", "[]", R"("a sentence")", ""})
+    expect(with_status(Asked::Scoring, 200, body), "bad", "not the status of a run");
   expect(with_status(Asked::Scoring, 401), "bad", "the scoring token is rejected");
   expect(with_status(Asked::Scoring, 403), "bad", "the scoring token is rejected");
   expect(with_status(Asked::Scoring, 404, "<html>"), "bad", "404");
@@ -103,7 +108,7 @@ TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
 }
 
 TEST(TheTokenStep, TellsOfTheSlashThatTheEndpointWants) {
-  const uplink::Answered taken{.status = 200, .content_type = "", .body = "{}", .retry_after = std::nullopt};
+  const uplink::Answered taken{.status = 200, .content_type = "", .body = kRun, .retry_after = std::nullopt};
   EXPECT_THAT(token(Asked::Scoring, taken, true).said, HasSubstr("slash"));
   EXPECT_THAT(token(Asked::Scoring, taken).said, testing::Not(HasSubstr("slash")));
 }

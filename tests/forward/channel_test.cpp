@@ -14,6 +14,9 @@
 namespace adit::forward {
 namespace {
 
+constexpr const char* kRun =
+    R"({"score": 1, "run_clock": 2.5, "remaining_reports": 44, "current_team": "subt"})";
+
 class ChannelTest : public testing::Test {
  protected:
   /// The channel after one request that was answered so.
@@ -46,6 +49,17 @@ TEST_F(ChannelTest, KnowsAPageForNoCommandPostsHoweverLongItIs) {
   }
 }
 
+/// ICD 5.1 says what a status has.
+TEST_F(ChannelTest, KnowsAServerWithoutARunsStatusForNoCommandPost) {
+  for (const char* body : {R"({"hello": "world"})", "null", "[]", "", R"({"score": 1, "run_clock": 2.5})"}) {
+    const auto channel = asked(icd::Uri::Status, uplink::answer("200 OK", body));
+    EXPECT_TRUE(channel->is_foreign()) << body;
+    EXPECT_THAT(channel->trouble(), testing::HasSubstr("status of a run")) << body;
+    EXPECT_FALSE(asked(icd::Uri::MapUpdate, uplink::answer("200 OK", body))->is_foreign()) << body;
+  }
+  EXPECT_FALSE(asked(icd::Uri::Status, uplink::answer("200 OK", kRun))->is_foreign());
+}
+
 TEST_F(ChannelTest, TakesTheServersOwnPageForTheCommandPosts) {
   for (const std::size_t size : {100u, 70u << 10}) {
     const auto channel =
@@ -60,8 +74,9 @@ TEST_F(ChannelTest, TakesTheTimeOfNoAnswerThatMayBeSomebodyElses) {
     const char *status, *body;
     bool is_its_own;
   };
-  for (const Case& each : {Case{"200 OK", R"({"score": 1})", true},
-                           {"201 Created", "null", true},
+  for (const Case& each : {Case{"200 OK", kRun, true},
+                           {"200 OK", R"({"score": 1})", false},
+                           {"201 Created", "null", false},
                            {"200 OK", "", false},
                            {"200 OK", "<html>", false},
                            {"302 Found", "null", false},

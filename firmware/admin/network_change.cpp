@@ -102,6 +102,7 @@ std::optional<network::Numbers> NetworkChange::present() const {
 api::NetworkView NetworkChange::network() const {
   refresh();
   api::NetworkView view;
+  view.now = loop_.wall_now();
   view.why = hindrance();
   view.managed = view.why.empty();
   view.team_interface = settings_.team.interface;
@@ -117,7 +118,7 @@ api::NetworkView NetworkChange::network() const {
   }
   if (const auto waits = pending()) {
     const double left = std::chrono::duration<double>(waits->until - loop_.now()).count();
-    view.pending = {.until = loop_.wall_now() + left,
+    view.pending = {.until = view.now + left,
                     .wanted = waits->wanted,
                     .previous = status_ ? status_->kept : std::nullopt,
                     .page = page_at(waits->wanted)};

@@ -34,6 +34,7 @@ struct PortRow {
 
 /// The box's own addresses, and a change of them that waits to be confirmed.
 struct NetworkView {
+  double now = 0;        // the box's time of day; seconds since 1970
   bool managed = false;  // they can be changed here
   std::string why;       // why not; "" where they can
   std::string team_interface, command_post_interface;

@@ -59,6 +59,7 @@ constexpr Member kPortMembers[] = {
 };
 
 constexpr Member kNetworkMembers[] = {
+    member<&NetworkView::now>("now", "the box's time of day in seconds since 1970"),
     member<&NetworkView::managed>("managed"),
     member<&NetworkView::why>("why", "why the addresses cannot be changed here"),
     group<NetworkView, kTeamSide>("team"),

@@ -59,7 +59,7 @@ std::string text_of(const ToldClock& view, double here) {
                       : icd::sentence("Adit cannot set it: ", host::escaped(view.why), "\n");
   if (!view.refusal.empty()) out += icd::sentence("Not set: ", host::escaped(view.refusal), "\n");
   if (!view.ntp.empty()) out += host::escaped(view.ntp) + '\n';
-  if (!view.is_set) out += "To set it to this computer's time: adit clock set\n";
+  if (!view.is_set && view.managed) out += "To set it to this computer's time: adit clock set\n";
   return out;
 }
 

@@ -18,6 +18,12 @@ bool is_terminal(int fd) {
   return isatty(fd) == 1;
 }
 
+/// Whether the terminal knows escape sequences, by TERM.
+bool has_escapes() {
+  const char* const term = std::getenv("TERM");
+  return term != nullptr && std::string_view(term) != "" && std::string_view(term) != "dumb";
+}
+
 /// Elsewhere the bytes of a character could steer it.
 bool is_utf8_terminal() {
   return std::setlocale(LC_CTYPE, "") != nullptr && nl_langinfo(CODESET) == std::string_view("UTF-8");
@@ -41,7 +47,7 @@ int main(int count, char** arguments) {
   adit::loop::tell_of_caught(
       [](const char*, const char* what) { std::fprintf(stderr, "adit: stopped: %s\n", what); });
   const std::vector<std::string_view> words(arguments + 1, arguments + count);
-  const bool screen = is_terminal(STDOUT_FILENO);
+  const bool screen = is_terminal(STDOUT_FILENO) && has_escapes();
   const bool utf8 = is_utf8_terminal();
   bool printed = true;
   const auto write_to = [utf8](std::FILE* file, const std::string& text) {

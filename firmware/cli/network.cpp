@@ -30,7 +30,7 @@ struct View {
   std::string why;
   Side team, post;
   bool pending = false;
-  double until = 0;
+  double left = 0;  // seconds, by the box's clock
   std::string page;
   Side wanted_team, wanted_post;
   std::string last, last_why;
@@ -75,7 +75,7 @@ View read_view(const codec::Field& root) {
   view.pending = !pending.is_absent();
   if (!view.pending) return view;
   const codec::Field wanted_team = pending.member("team"), wanted_post = pending.member("command_post");
-  view.until = number(pending, "until");
+  view.left = number(pending, "until") - number(root, "now");
   view.page = text(pending, "page");
   view.wanted_team = read_team(wanted_team, false);
   view.wanted_post = read_post(wanted_post, false);
@@ -88,11 +88,10 @@ std::string side_line(const char* name, const Side& side) {
   return host::escaped(icd::sentence("  ", name, interface, "  ", side.addresses, gateway)) + '\n';
 }
 
-std::string text_of(const View& view, double now) {
+std::string text_of(const View& view) {
   std::string out = side_line("team        ", view.team) + side_line("command post", view.post);
   if (view.pending) {
-    out += icd::sentence("\nA change is to be confirmed within ", duration(std::max(0.0, view.until - now)),
-                         ":\n");
+    out += icd::sentence("\nA change is to be confirmed within ", duration(std::max(0.0, view.left)), ":\n");
     out += side_line("team        ", view.wanted_team) + side_line("command post", view.wanted_post);
     out += icd::sentence("Confirm it at ", host::escaped(view.page),
                          " (adit network confirm); otherwise the box returns to the old addresses.\n");
@@ -105,11 +104,6 @@ std::string text_of(const View& view, double now) {
   return out;
 }
 
-/// Seconds since 1970.
-double time_now() {
-  return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
-}
-
 std::expected<View, std::string> understood(const Adit& adit, const std::string& json) {
   return read<View>(adit, json, read_view);
 }
@@ -120,7 +114,7 @@ Outcome show_network(const Adit& adit, const Options& options) {
   const auto view = understood(adit, *json);
   if (!view) return unable(view.error());
   const Exit exit = view->pending ? Exit::Attention : Exit::Fine;
-  return {exit, options.json ? *json + '\n' : text_of(*view, time_now()), ""};
+  return {exit, options.json ? *json + '\n' : text_of(*view), ""};
 }
 
 /// The word is said, and then what became of it is waited for. After `revert` the address that was asked may

@@ -1,5 +1,8 @@
 #include "cli/settings.hpp"
 
+#include <chrono>
+#include <thread>
+
 #include "cli/ask.hpp"
 #include "cli/reading.hpp"
 #include "cli/settings_key.hpp"
@@ -15,6 +18,8 @@ namespace {
 using codec::Value;
 
 constexpr const char* kSee = "adit settings";
+constexpr std::chrono::seconds kApplied{5};
+constexpr std::chrono::milliseconds kLookAgain{100};
 
 /// A member of an answer that has been read; null where it is not there.
 Value member(const Value& object, std::string_view name) {
@@ -141,6 +146,26 @@ Outcome check(const Adit& adit, const Options& options, bool colour) {
   return {exit, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
 
+/// Waits until the box runs with a change that it accepted. Error: why it does not, or that this is not
+/// known.
+std::expected<void, Failure> until_applied(const Adit& adit) {
+  for (const auto end = std::chrono::steady_clock::now() + kApplied;;) {
+    const auto body = get(adit, "/adit/settings");
+    const auto answer = body ? codec::parse_json(*body) : std::unexpected(body.error());
+    if (answer && !truth_of(member(*answer, "applying"))) {
+      const std::string trouble = text_of(member(*answer, "trouble"));
+      if (trouble.empty()) return {};
+      return std::unexpected(Failure{Exit::Attention, host::escaped(trouble)});
+    }
+    if (std::chrono::steady_clock::now() >= end) {
+      return std::unexpected(
+          Failure{Exit::Unable, "the change was accepted, but is not seen in use" +
+                                    (answer ? "" : "; at its new address? " + answer.error())});
+    }
+    std::this_thread::sleep_for(kLookAgain);
+  }
+}
+
 /// VALUE of the command line: JSON, or a text without quotes. `before`: the value that it replaces.
 Value value_in(const std::string& text, const Value& before) {
   auto value = codec::parse_json(text);
@@ -176,6 +201,7 @@ Outcome apply(const Adit& adit, const Options& options, bool colour) {
   const Value::Object changed{{"settings", checked->settings}, {"base", tag}};
   const auto done = post(adit, "/adit/settings", codec::write_json({changed}), kSee);
   if (!done) return unable(done.error());
+  if (const auto applied = until_applied(adit); !applied) return unable(applied.error());
   if (options.json) return {Exit::Fine, *done + '\n', ""};
   return {Exit::Fine, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
@@ -227,6 +253,7 @@ Outcome course(const Options& options, bool colour) {
   const auto body = post(*adit, "/adit/course",
                          codec::write_json({Value::Object{{"name", {*options.course}}}}), "adit course");
   if (!body) return unable(body.error());
+  if (const auto applied = until_applied(*adit); !applied) return unable(applied.error());
   if (options.json) return {Exit::Fine, *body + '\n', ""};
   const auto answer = codec::parse_json(*body);
   if (!answer) return not_understood(answer.error());

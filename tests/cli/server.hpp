@@ -38,6 +38,8 @@ class Server {
   std::string at() const { return "127.0.0.1:" + std::to_string(port_); }
   /// What the last client sent. After the server has ended, or the client has its answer.
   const std::string& request() const { return request_; }
+  /// The last POST of them.
+  const std::string& posted() const { return posted_; }
 
   static std::string reply(const std::string& status, const std::string& body) {
     return "HTTP/1.1 " + status +
@@ -72,6 +74,7 @@ class Server {
 
   void answer(int client) {
     request_ = received(client);
+    if (request_.starts_with("POST ")) posted_ = request_;
     const std::string answer = answer_to(request_.substr(0, request_.find(" HTTP/")));
     send(client, answer.data(), answer.size(), MSG_NOSIGNAL);
     while (silent_ && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -108,7 +111,7 @@ class Server {
   bool silent_;
   int fd_ = -1;
   std::uint16_t port_ = 0;
-  std::string request_;
+  std::string request_, posted_;
   std::atomic<bool> ended_ = false;
   std::thread thread_;
 };

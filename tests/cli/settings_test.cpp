@@ -81,7 +81,22 @@ TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
   const Outcome outcome = say(server, {"settings", "apply", settings_});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nwarning: Adit and this page move\n");
-  EXPECT_THAT(server.request(), HasSubstr(R"("base":"0123456789abcdef"})"));
+  EXPECT_THAT(server.posted(), HasSubstr(R"("base":"0123456789abcdef"})"));
+}
+
+TEST_F(SettingsCommand, SaysWhyAnAcceptedChangeIsNotInUse) {
+  const std::string reverted = shown().substr(0, shown().size() - 1) +
+                               R"(,"applying":false,"trouble":"the last change was reverted: x"})";
+  const Server server({{"GET /adit/settings", Server::ok(reverted)},
+                       {"POST /adit/settings/check", Server::ok(kChanges)},
+                       {"POST /adit/settings", Server::ok(R"({"changes":[]})")},
+                       {"POST /adit/course", Server::ok(R"({"changes":[],"warnings":[]})")}});
+  for (const auto& words : {std::vector<std::string_view>{"settings", "apply", settings_}, {"course", "B"}}) {
+    const Outcome outcome = say(server, words);
+    EXPECT_EQ(outcome.exit, Exit::Attention) << words[0];
+    EXPECT_EQ(outcome.err, "adit: the last change was reverted: x\n") << words[0];
+    EXPECT_EQ(outcome.out, "") << words[0];
+  }
 }
 
 TEST_F(SettingsCommand, SetsOneKey) {
@@ -92,7 +107,7 @@ TEST_F(SettingsCommand, SetsOneKey) {
     const Outcome outcome = say(server, {"settings", "set", key, value});
     EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
     EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nwarning: Adit and this page move\n");
-    return server.request();
+    return server.posted();
   };
   const std::string number = sent("team.listen[0].port", "8080");
   EXPECT_THAT(number, HasSubstr(R"("listen":[{"address":"10.0.0.1","port":8080}])"));
@@ -163,13 +178,14 @@ TEST_F(SettingsCommand, ListsTheCourses) {
 
 TEST_F(SettingsCommand, SwitchesTheCourse) {
   const Server server(
-      {{"POST /adit/course",
+      {{"GET /adit/settings", Server::ok(shown())},
+       {"POST /adit/course",
         Server::ok(R"({"changes":[],"warnings":["reports go to b:1 from then on; 2 reports wait"]})")}});
   EXPECT_EQ(say(server, {"course", "B"}).out,
             "course B is in use\nwarning: reports go to b:1 from then on; 2 reports wait\n");
-  EXPECT_THAT(server.request(), HasSubstr(R"({"name":"B"})"));
+  EXPECT_THAT(server.posted(), HasSubstr(R"({"name":"B"})"));
   EXPECT_THAT(say(server, {"course", ""}).out, HasSubstr("no course is in use"));
-  EXPECT_THAT(server.request(), HasSubstr(R"({"name":""})"));
+  EXPECT_THAT(server.posted(), HasSubstr(R"({"name":""})"));
   const Server other(
       {{"POST /adit/course",
         Server::reply("422 Unprocessable", "\"command_post.course: no course is called C\"")}});

@@ -74,7 +74,7 @@ test("names the field that is wrong, and goes there", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
   await choose(page, "Rope");
-  for (const [axis, wrong] of [["x", ""], ["x", "12,5"], ["y", "left"], ["z", "1e3"], ["z", "."]]) {
+  for (const [axis, wrong] of [["x", ""], ["x", "1,2,5"], ["y", "left"], ["z", "1e3"], ["z", "."]]) {
     await place(page, "1", "2", "3");
     await page.fill(`#compose input[name=${axis}]`, wrong);
     await check(page);
@@ -87,7 +87,7 @@ test("names the field that is wrong, and goes there", async (t) => {
 test("says that the very same was reported, and sends it again only when told to", async (t) => {
   const { page } = await watch(t, "reports");
   await compose(page);
-  await fill(page, "Helmet", "281.75", "−4.5", ".25");
+  await fill(page, "Helmet", "281,75", "−4.5", ".25");
   assert.match(await text(page, "#compose .notes"), /Already reported at the same place: #23 Helmet, scored \+1/);
   await send(page);
   await becomes(page, 23, "The same report was sent before. This is it.");

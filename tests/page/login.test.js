@@ -72,7 +72,7 @@ test("sets the first password with the code of the box", async (t) => {
   await page.getByLabel("Code").fill("11111111");
   await page.keyboard.press("Enter");
   await page.getByRole("alert").getByText("that is not the code").waitFor();
-  await page.getByLabel("Code").fill("12345678");
+  await page.getByLabel("Code").fill("1234 5678");
   await page.keyboard.press("Enter");
   await live(page);
   await isLoggedInAs(page, "operator");

@@ -21,6 +21,20 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
+test("shows the same in a browser of 2022", async (t) => {
+  const prepare = (page) => page.addInitScript(() => {
+    delete Map.groupBy;
+    delete Element.prototype.checkVisibility;
+  });
+  const rowsOf = async (scene, options) => {
+    const { page } = await watch(t, scene, options);
+    await page.locator("#reports .rows > li, #robots li").first().waitFor();
+    assert.deepEqual(page.complaints, []);
+    return page.$$eval("#reports .rows > li, #robots li", (rows) => rows.map((row) => row.dataset.key));
+  };
+  for (const scene of ["reports", "trouble"]) assert.deepEqual(await rowsOf(scene, { prepare }), await rowsOf(scene), scene);
+});
+
 test("follows what changes, and says so to those who only listen", async (t) => {
   const { stage, page } = await watch(t, "calm");
   const alert = page.locator("#attention");

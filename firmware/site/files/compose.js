@@ -9,7 +9,7 @@ import { sameAs } from "./near.js";
 import { reveal } from "./reports.js";
 import { post } from "./session.js";
 import { closeSide, openSide, side, whenSide } from "./side.js";
-import { clip, metres } from "./words.js";
+import { clip, metres, numberIn } from "./words.js";
 
 // ICD 5.2; embed.cmake puts the words of that file here.
 const TYPES = ["artifact_types.inc"];
@@ -52,9 +52,9 @@ function complain(error) {
 function typed() {
   const position = {};
   for (const axis of AXES) {
-    const text = field(axis).value.trim().replace("−", "-");
-    position[axis] = Number(text);
-    if (!/^[-+]?(\d+\.?\d*|\.\d+)$/.test(text) || !Number.isFinite(position[axis])) {
+    const text = field(axis).value.trim();
+    position[axis] = numberIn(text);
+    if (!Number.isFinite(position[axis])) {
       throw Object.assign(new Error(`${axis}: expected metres, such as 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
     }
   }
@@ -158,7 +158,7 @@ export function compose() {
 whenSide("compose", (isOpen) => {
   go(step === "check" ? "where" : step);
   const place = isOpen && field("x").value && field("y").value;
-  map.setCross(place ? { x: Number(field("x").value), y: Number(field("y").value) } : null);
+  map.setCross(place ? { x: numberIn(field("x").value), y: numberIn(field("y").value) } : null);
 });
 
 /** Follows the run: what is near may change, and whether anything can be sent. */

@@ -54,7 +54,10 @@ export function list(parent, items, key, create, update) {
   });
 }
 
-const usable = (node) => [...node.querySelectorAll("button:enabled")].filter((button) => button.checkVisibility());
+/** Whether the node has a place on the screen (checkVisibility() is younger than browsers in use). */
+export const isShown = (node) => node.getClientRects().length > 0;
+
+const usable = (node) => [...node.querySelectorAll("button:enabled")].filter(isShown);
 
 /** What has the focus once an item went with it: the same control of the next item, or of the one before; else the title. */
 function heirOf(node, focused, going) {

@@ -1,7 +1,9 @@
 // One setting as a field: what it means, what is allowed, what is wrong with it.
-import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
 import { make, say } from "./dom.js";
+import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
+import { grouped } from "./grouped.js";
 import { label as call, nameOf, spoken } from "./names.js";
+import { numberIn } from "./words.js";
 
 const known = new Set();
 let readOnly = false;
@@ -43,6 +45,7 @@ function controlOf({ kind, words }) {
 function valueOf(control, { kind }) {
   if (kind === "flag") return control.checked;
   const text = control.value.trim();
+  if (kind === "real" && Number.isFinite(numberIn(text))) return numberIn(text);
   return (kind === "whole" || kind === "real") && text && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 
@@ -150,7 +153,7 @@ const ELSEWHERE = /\[\]|^version$|^command_post\.(course|scoring|mapping)|^netwo
 export function showAll() {
   const section = document.getElementById("step-all");
   const place = section.querySelector(".all"), search = section.querySelector("input"), empty = section.querySelector(".empty");
-  const groups = Map.groupBy([...draft.keys.keys()].filter((path) => !ELSEWHERE.test(path)), (path) => path.split(".")[0]);
+  const groups = grouped([...draft.keys.keys()].filter((path) => !ELSEWHERE.test(path)), (path) => path.split(".")[0]);
   for (const [name, paths] of groups) {
     place.append(make("fieldset", make("legend", name.replace("_", " ")), make("div.fields", ...paths.map((path) => setting(path, nameOf(path), path)))));
   }

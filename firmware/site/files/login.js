@@ -47,7 +47,7 @@ const logIn = ({ password }) => post("/adit/login", { password });
 
 async function setFirst({ code, password, again }) {
   if (password !== again) throw new Error("The two new passwords differ.");
-  await post("/adit/password", { role: "operator", code, password });
+  await post("/adit/password", { role: "operator", code: code?.replaceAll(" ", ""), password });
   await logIn({ password });
 }
 

@@ -1,5 +1,7 @@
 // Which reports may be of one artifact, and which are the same: dispatch/same_report.hpp has the rules.
 
+import { grouped } from "./grouped.js";
+
 const sameType = (a, b) => a.type.toLowerCase() === b.type.toLowerCase();
 
 export const distance = ({ position: a }, { position: b }) => Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
@@ -23,7 +25,7 @@ export const nearestOf = (view, report) => ofType(view, report)[0];
 
 /** Every two that are near duplicates, once: [{one, other, metres}]. */
 export function nearPairs(view) {
-  const ofTypes = Map.groupBy(counted(view), ({ type }) => type.toLowerCase());
+  const ofTypes = grouped(counted(view), ({ type }) => type.toLowerCase());
   return [...ofTypes.values()].flatMap((reports) => {
     const byX = reports.sort((a, b) => a.position.x - b.position.x); // so that only those close by are compared
     return byX.flatMap((report, i) => {

@@ -1,5 +1,6 @@
 // How each robot stands: from what the box tells of each kind of data that it sends.
 import { arrival, kindOf, robotOf } from "./arriving.js";
+import { grouped } from "./grouped.js";
 import { age, bytes, clock } from "./words.js";
 
 const KINDS = ["grid", "cloud", "state"];
@@ -54,7 +55,7 @@ function robotState(name, rows, since, lost) {
 /** {robots: each with {name, level, word, isSilent, age, hasMap, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
 export function robotsOf(activities, since, lost) {
   const rows = activities.filter(({ kind }) => KINDS.includes(kind));
-  const byName = Map.groupBy(rows.filter(({ robot }) => robot), robotOf);
+  const byName = grouped(rows.filter(({ robot }) => robot), robotOf);
   const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, since, lost) }));
   for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, since, lost) });
   return { robots: [...byName].map(([name, its]) => robotState(name, its, since, lost)), shared };

@@ -1,4 +1,5 @@
 // All robots as rows that a finger can follow, in the place of the reports: a touch anywhere on their panel opens it.
+import { isShown } from "./dom.js";
 import { RobotRows } from "./robot_rows.js";
 import { goTab, openSide, side } from "./side.js";
 
@@ -17,7 +18,7 @@ export function showRobotsList(state, now) {
 /** Where there are tabs, the robots have one of their own. */
 export function offerRobotsList() {
   document.getElementById("maps").addEventListener("click", () => {
-    if (document.querySelector(".tabs").checkVisibility()) return goTab("robots");
+    if (isShown(document.querySelector(".tabs"))) return goTab("robots");
     openSide(ID);
     last?.();
   });

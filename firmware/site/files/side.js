@@ -2,7 +2,7 @@
 // tab is shown. The map stays where it is.
 
 import { drawn } from "./icons.js";
-import { mark, say } from "./dom.js";
+import { isShown, mark, say } from "./dom.js";
 
 const sides = [...document.querySelectorAll("main > .side")];
 const tabs = [...document.querySelectorAll(".tabs button")];
@@ -33,7 +33,7 @@ export function openSide(id, focused) {
 export function closeSide() {
   const hadFocus = document.activeElement.closest?.(".side") || document.activeElement === document.body;
   openSide("reports");
-  if (hadFocus && back?.checkVisibility()) back.focus({ preventScroll: true });
+  if (hadFocus && back && isShown(back)) back.focus({ preventScroll: true });
 }
 
 /** On a phone; elsewhere all is there. */

@@ -26,6 +26,12 @@ export function bytes(n) {
 
 export const mbit = (n) => (n >= 1e5 ? n.toExponential(0) : n.toFixed(n >= 10 ? 0 : 1));
 
+/** A number as people type it, or copy it from this page: with a decimal comma or a true minus sign. NaN: it is none. */
+export function numberIn(text) {
+  const plain = text.trim().replace("−", "-").replace(",", ".");
+  return /^[-+]?(\d+\.?\d*|\.\d+)$/.test(plain) ? Number(plain) : NaN;
+}
+
 /** A true minus sign is as wide as a plus; past any cave a number keeps to its size. */
 export const metres = (n) => (Math.abs(n) < 1e6 ? n.toFixed(1) : n.toExponential(1)).replace("-", "−");
 

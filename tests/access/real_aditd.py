@@ -200,7 +200,6 @@ class Login(unittest.TestCase):
             address = f"127.0.1.{number}"
             status, said, headers = box.ask("POST /adit/login", {"password": "an untrue password"}, whence=address)
             if status == 429 and (wait := int(headers["Retry-After"])) > 3:
-                self.assertIn(f"wait {wait} s", said)
                 return address, wait
         self.fail(f"all may guess: {status} {said}")
 

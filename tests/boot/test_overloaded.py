@@ -60,7 +60,7 @@ class Looks(threading.Thread):
         view = self.box.ask("GET /adit/run")[1]
         self.told |= {f"{light['name']} {light['pattern']}" for light in view["lights"]}
         for alarm in view["alarms"]:
-            self.alarms[alarm["id"].partition(":")[0]] = programs.in_a_line(alarm)
+            self.alarms[alarm["id"].partition(":")[0]] = f"{alarm['what']}: {alarm['why']}"
         self.slowest = max(self.slowest, time.monotonic() - began)
 
     def stop(self):

@@ -69,7 +69,6 @@ class TimeOfDay(Dials, Story):
         self.assert_close(self.system_now(), 100 * 86400.0)
         status, said = self.box.ask("POST /adit/clock", body={"time": time.time()})
         self.assertEqual(status, 409, said)
-        self.assertIn("keeps the time", said)
 
     def test_and_the_team_has_its_time_from_the_box(self):
         # As soon as chronyd itself has heard the server again: until then it goes by what was set (10).

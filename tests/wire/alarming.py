@@ -80,14 +80,14 @@ class WithAlarms(unittest.TestCase):
         for word in ("off", "on"):
             wait_until(lambda word=word: panel.exists() and f"{name} {word}\n" in panel.read_text(), f"the {name} light to be {word}")
 
-    def sees(self, stage, name, severity, side, what, why="", light=None, within=60, panel=True):
-        """The alarm, everywhere alike. `light`: one that blinks beside attention. `panel`: its file can be written."""
-        wanted = {"severity": severity, "side": side, "what": what}
+    def sees(self, stage, name, severity, side, why="", light=None, within=60, panel=True):
+        """The alarm, in the same words everywhere. `light`: one that blinks beside attention. `panel`: its file can be written."""
+        wanted = {"severity": severity, "side": side}
         alarm = wait_until(lambda: (found := self.alarm(stage, name)) and {**found, **wanted} == found and found, name, within)
         self.assertIn(why, alarm["why"])
         self.assertIn(f'adit_alarm{{id="{name}",severity="{severity}",side="{side}"}} 1\n', self.metrics(stage))
         text, status = self.status(stage)
-        self.assertIn(what, text)
+        self.assertIn(alarm["what"], text)
         self.assertGreaterEqual(status, EXIT[severity], text)
         wait_until(lambda: self.view(stage)["now"] - self.alarm(stage, name)["since"] > 1.5, "it to last")
         if severity != "wait":

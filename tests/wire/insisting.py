@@ -62,7 +62,7 @@ class Client(threading.Thread):
             answer = submit(self.stage, posted.report, self.patience)
         except requests.RequestException:
             return False  # the box is away, or too late
-        if answer.status_code == 201 or "settled by the operator" in answer.text:
+        if answer.status_code in (201, 409):
             posted.answer, posted.life = answer, life
         elif answer.status_code in (503, 504):
             posted.kept = posted.kept or "Adit-Report" in answer.headers
@@ -136,9 +136,9 @@ def judge(test, stage, operator, all_posted, cuts=False):
     recorded = collections.Counter((made["x"], made["y"]) for made in all_recorded)
     found_out = last_answers(all_posted, all_recorded) if cuts else []
     waiting = operator.waiting()
-    said = stage.box.attention()
-    for number in waiting:
-        test.assertTrue(f"report {number} is " in said or " more reports are " in said, "the operator sees it")
+    alarms = stage.box.alarms()
+    for number, row in waiting.items():
+        test.assertTrue(alarms & {f"report_{row['state']}:{each}" for each in (number, "more")}, "the operator sees it")
     places = {at_of(row) for row in waiting.values()}
     for posted in all_posted:
         with test.subTest(report=posted.report):

@@ -121,10 +121,6 @@ class CommandPost(Program):
         return [(request["uri"], request["violations"]) for request in self.requests() if request["violations"]]
 
 
-def in_a_line(alarm):
-    return f"{alarm['what'][0].lower()}{alarm['what'][1:]}: {alarm['why']}"
-
-
 class Page:
     """What is asked of a box as its page asks it. Who is one has `network` and `port`."""
 
@@ -180,10 +176,9 @@ class Page:
         """All reports as the page shows them, oldest first."""
         return self.ask("GET /adit/reports")[1]
 
-    def attention(self):
-        """What the operator is to know or to decide, a line each: the alarms that do not pass by themselves."""
-        alarms = self.ask("GET /adit/run")[1]["alarms"]
-        return "\n".join(in_a_line(alarm) for alarm in alarms if alarm["severity"] != "wait")
+    def alarms(self):
+        """The ids of the alarms that call the operator, which are those that do not pass by themselves."""
+        return {alarm["id"] for alarm in self.ask("GET /adit/run")[1]["alarms"] if alarm["severity"] != "wait"}
 
     def judge(self, number, action):
         """The operator's word on a report: send, done, withdraw or resubmit. Its status, and what its JSON says."""

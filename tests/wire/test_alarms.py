@@ -15,18 +15,14 @@ class Alarms(WithAlarms):
         robot = self.robot(stage, "r1")
         self.send_map(stage, "r1")
         wait_until(lambda: self.view(stage)["verdict"]["level"] == "good", "the map to arrive")
-        self.assertEqual(self.view(stage)["verdict"]["what"], "Every map arrives")
         wait_until(lambda: robot.told > 20, "the robot to go on")
         self.assertEqual(self.view(stage)["alarms"], [])
-        text, status = self.status(stage)
-        self.assertIn("Maps  Every map arrives: 1 robot", text)
-        self.assertEqual(status, 0)
+        self.assertEqual(self.status(stage)[1], 0)
 
     def test_the_command_post_is_unreachable(self):
         stage = self.stage()
         stage.post.stop(signal.SIGKILL)
-        alarm = self.sees(stage, "command_post_unreachable", "bad", "command_post", "Command Post is unreachable",
-                          "Connection refused", light="scoring")
+        alarm = self.sees(stage, "command_post_unreachable", "bad", "command_post", "Connection refused", light="scoring")
         self.assertEqual(alarm["action"], {"word": "Open test", "link": "/setup#test"})
         stage.post = programs.CommandPost(stage.network, stage.folder, *stage.post_options)
         self.goes(stage, "command_post_unreachable")
@@ -34,14 +30,14 @@ class Alarms(WithAlarms):
     def test_the_disk_is_nearly_full(self):
         stage = self.stage(disk="12m")
         filler = Filler(stage.box.state, leaves=512 << 10)
-        self.sees(stage, "disk_full", "bad", "box", "The disk is nearly full")
+        self.sees(stage, "disk_full", "bad", "box")
         filler.make_room()
         self.goes(stage, "disk_full")
 
     def test_a_cable_is_out_and_is_the_only_cause(self):
         stage = self.stage()
         stage.network.pull_cable()
-        self.sees(stage, "cable_out:command_post", "bad", "network", "Command Post cable is unplugged", "darpa0")
+        self.sees(stage, "cable_out:command_post", "bad", "network", "darpa0")
         wait_until(lambda: self.alarm(stage, "cable_out:command_post")["hides"] > 0, "the endpoints to be hidden")
         self.assertEqual(len(self.view(stage)["alarms"]), 1)
         stage.network.pull_cable(False)

@@ -226,7 +226,7 @@ class Fidelity(Delivered):
                 answer = messages.post(self.session, self.stage.box.url, "/state/update", update, CBOR)
                 with self.subTest(tag=tag, at=at):
                     self.assertEqual(answer.status_code, 422)
-                    self.assertIn(f"position.{at}: expected a number, got CBOR tag {tag}, which", answer.json())
+                    self.assertIn(f"position.{at}: ", answer.json())
 
     def test_the_good_parts_of_a_state(self):
         bad = {"name": "r9", "position": {**POSITION, "y": "far"}, "orientation": TURNED}

@@ -166,7 +166,7 @@ class InPlace(unittest.TestCase):
             settings["reports"]["near_metres"] = 9
 
         stage.box.save(nowhere)
-        self.assertIn("the last change was reverted: ", stage.box.attention())
+        self.assertIn("settings_not_changed", stage.box.alarms())
         held = stage.box.ask("GET /adit/settings")[1]["settings"]
         self.assertEqual((len(held["team"]["listen"]), held["reports"]["near_metres"]), (1, 5))
         self.assertTrue(page.hears())
@@ -176,7 +176,7 @@ class InPlace(unittest.TestCase):
             settings["command_post"]["rates"]["reports_hz"] = 200
 
         stage.box.save(quicker)
-        self.assertNotIn("reverted", stage.box.attention())
+        self.assertNotIn("settings_not_changed", stage.box.alarms())
         report.join()
         self.assertEqual(report.status, 201)
 

@@ -5,8 +5,6 @@ import unittest
 
 from insisting import Operator, Posted, last_answers
 
-FOUND_OUT = "report 1 is settled: only a report in doubt can be settled"
-
 
 class Box:
     """Has one report, in doubt when it is looked at first and `then` from his word on, which it answers so."""
@@ -30,13 +28,13 @@ class TheOperator(unittest.TestCase):
 
     def test_takes_it_that_the_box_found_out_first(self):
         for then in ({"state": "settled", "changed": 12.0}, {"changed": 12.0}):  # and in doubt again
-            operator = self.operator(then, (409, FOUND_OUT))
+            operator = self.operator(then, (409, "no"))
             operator.looks()
             self.assertEqual(operator.judged, {}, "that was not his word")
 
     def test_does_not_take_a_refusal_of_what_he_saw(self):
-        with self.assertRaisesRegex(AssertionError, "only a report in doubt"):
-            self.operator({}, (409, FOUND_OUT)).looks()
+        with self.assertRaisesRegex(AssertionError, "409"):
+            self.operator({}, (409, "no")).looks()
 
     def test_does_not_take_another_failure(self):
         with self.assertRaisesRegex(AssertionError, "500"):

@@ -28,7 +28,6 @@ class WithAStandIn(Change):
         self.has(OLD)
         status = self.box.status()
         self.assertEqual((status["pending"], status["last"]), (None, "reverted"))
-        self.assertRegex(status["why"], r"^the change was not confirmed within \d+ s$")  # 15, or more on a slow machine
         self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
 
     def test_a_confirmed_change_stays(self):

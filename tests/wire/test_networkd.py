@@ -85,8 +85,6 @@ class WithNetworkd(Change):
             wait_until(lambda: self.is_made(nonce) or self.box.process.poll() is not None, "the change to be made, or not")
             if self.is_made(nonce):
                 self.box.ask("word.json", nonce=nonce, word="revert")
-            else:
-                self.assertIn("the change could not be applied: ", self.box.status()["why"])
             self.ends()
             self.assertEqual((self.box.status()["pending"], self.box.status()["last"]), (None, "reverted"))
             # Where no udev is, a networkd that is started leaves an address alone that it did not set itself.

@@ -138,7 +138,10 @@ void reports_go_first(const Evidence& evidence, Broken& broken) {
     }
     const bool is_refused = event.kind == Kind::Replied && event.what == kReports && event.status == 429;
     is_slowed = is_slowed || is_refused || (event.kind == Kind::Fault && event.who == kBeyondOneLimit);
-    if (event.kind == Kind::Replied && event.what == kStatus && !event.says.empty()) heard = event.at;
+    // A status that was asked for before the course was switched says nothing of this Command Post.
+    if (event.kind == Kind::Replied && event.what == kStatus && !event.says.empty() && status &&
+        status->connection == event.request)
+      heard = event.at;
     if (event.actor == Actor::Team && event.what == kReports) {
       if (event.kind == Kind::Invoke) posted[event.request] = event.serial;
       const auto serial = posted.find(event.request);

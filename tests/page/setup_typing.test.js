@@ -1,6 +1,7 @@
 // What is typed on the set-up's page: checked as it is typed, and never lost.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { merged } from "../../firmware/site/files/draft.js";
 import { come, PASSWORD, until } from "./fresh_box.js";
 import { complaints, COURSES, field, hears, ready, review, step, type } from "./setup_page.js";
 
@@ -39,6 +40,12 @@ test("checks the names of robots as they are typed", async (t) => {
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0 }, { name: "uav1", alias: "drone-1", clouds: "auto", precision: "exact", voxel_metres: 0 }]);
   await step(page, "Robots").getByText("2 named").waitFor();
   assert.deepEqual(complaints(page), []);
+});
+
+test("keeps every row that was added, named or not, when another operator saved meanwhile", () => {
+  const row = (name) => ({ name, alias: "" });
+  const both = merged([row("ugv1")], [row("ugv1"), row(""), row("")], [row("ugv1"), row("uav1")]);
+  assert.deepEqual(both.map(({ name }) => name), ["ugv1", "uav1", "", ""]);
 });
 
 /** What no setting of its kind can be. */

@@ -57,7 +57,15 @@ export async function refresh() {
 }
 
 const isObject = (value) => value !== null && typeof value === "object";
-const named = (items) => new Map(items.map((item) => [item.name ?? JSON.stringify(item), item]));
+/** A Map of the items of a list by their names; rows of one name (or without any yet) are told apart by their order. */
+function named(items) {
+  const counts = new Map();
+  return new Map(items.map((item) => {
+    const name = item.name ?? JSON.stringify(item), nth = counts.get(name) ?? 0;
+    counts.set(name, nth + 1);
+    return [`${nth} ${name}`, item];
+  }));
+}
 
 /** `theirs` with what was changed from `base` to `mine`; items of lists are known by their names. */
 export function merged(base, mine, theirs) {

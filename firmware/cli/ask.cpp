@@ -60,7 +60,8 @@ std::expected<Adit, std::string> adit_of(const Options& options) {
   if (!token) return std::unexpected(token.error());
   if (*token) return Adit{*address, std::move(**token)};
   return std::unexpected("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
-                         ": run adit as root, or name a token file by --token-file FILE");
+                         ": set the team's token on the page, run adit as root, or name a token file by "
+                         "--token-file FILE");
 }
 
 std::expected<std::string, std::string> get(const Adit& adit, const std::string& target) {

@@ -226,7 +226,8 @@ command_line::Program command_line_of(Options& options) {
                {"--at", "ADDR[:PORT]",
                 "Adit's address; without a port, port 8000 (default: $ADIT_AT, or the settings)",
                 &options.at},
-               {"--settings", "FILE", "read Adit's address from FILE instead of the saved settings or",
+               {"--settings", "FILE",
+                "read Adit's address from the settings in FILE; saved settings replace the default",
                 &options.settings},
                {"--token-file", "FILE",
                 "a file with the team's or the scoring token (default: $ADIT_TOKEN_FILE, or as root the "

@@ -105,9 +105,10 @@ TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
   options.saved_secrets = "/nothing";
   const Outcome outcome = status(options, false);
   EXPECT_EQ(outcome.exit, Exit::Unable);
-  EXPECT_EQ(outcome.err,
-            "adit: cannot read a token in /nothing or /nowhere: run adit as root, or name a token file by "
-            "--token-file FILE\n");
+  EXPECT_EQ(
+      outcome.err,
+      "adit: cannot read a token in /nothing or /nowhere: set the team's token on the page, run adit as "
+      "root, or name a token file by --token-file FILE\n");
   EXPECT_EQ(server.request(), "");
 }
 

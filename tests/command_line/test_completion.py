@@ -39,8 +39,8 @@ class Offers(unittest.TestCase):
         self.offers("adit --settings status wa", "watch")
 
     def test_words_of_a_command(self):
-        self.offers("adit reports s", "show", "send")
-        self.offers("adit reports --json s", "show", "send")
+        self.offers("adit reports s", "show", "send", "settle")
+        self.offers("adit reports --json s", "show", "send", "settle")
         self.offers("adit run n", "new")
         self.offers("adit settings se", "set")
 
@@ -118,7 +118,7 @@ class AtATerminal(unittest.TestCase):
         with tempfile.TemporaryDirectory(prefix="adit-shell-") as folder:
             terminal = shells.Terminal(shell, pathlib.Path(folder))
             self.addCleanup(terminal.close)
-            for line, words in (("adit sta", "adit status"), ("adit rep", "adit reports"), ("adit reports se", "adit reports send"),
+            for line, words in (("adit sta", "adit status"), ("adit rep", "adit reports"), ("adit reports sen", "adit reports send"),
                                 ("adit reports send --y", "adit reports send --yes"), ("adit help wa", "adit help watch"),
                                 ("adit settings show reports.n", "adit settings show reports.near_metres"),
                                 ("adit --at 10.0.0.1:8000 id", "adit --at 10.0.0.1:8000 identify"),

@@ -191,10 +191,10 @@ class Packages(Story):
 
     def test_the_rehearsal_is_shown_by_its_package(self):
         self.box.apt("install /packages/now/adit-rehearsal_*.deb")
-        said = self.box.shell("cd /tmp && setpriv --reuid 1000 --clear-groups adit-rehearsal demo --for 8 --folder /tmp/demo")
+        said = self.box.shell("cd /tmp && setpriv --reuid 1000 --clear-groups adit-rehearsal demo --for 8 --directory /tmp/demo")
         self.assertIn("The page:     http://127.0.0.1:", said)
-        self.assertIn("What the Command Post took:", said)
-        said = self.box.shell("mkdir /tmp/mine && adit-rehearsal demo --folder /tmp/mine", good=False)
+        self.assertIn("What the Command Post accepted:", said)
+        said = self.box.shell("mkdir /tmp/mine && adit-rehearsal demo --directory /tmp/mine", good=False)
         self.assertIn("/tmp/mine is there, and not a demo's", said)
         self.box.apt("purge adit-rehearsal")
 

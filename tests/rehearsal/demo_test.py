@@ -71,7 +71,7 @@ class Demo(unittest.TestCase):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-demo-")), "demo")
 
     def window(self, rows, columns, *words):
-        window = Window(rows, columns, "--folder", self.folder, *words)
+        window = Window(rows, columns, "--directory", self.folder, *words)
         self.addCleanup(self.end, window.process)
         return window
 
@@ -90,7 +90,7 @@ class Demo(unittest.TestCase):
         return True
 
     def refused(self, *words, folder=None):
-        done = subprocess.run([DEMO, "--folder", folder or self.folder, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
+        done = subprocess.run([DEMO, "--directory", folder or self.folder, *words], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                               timeout=patient(120), check=False)
         self.assertNotIn(done.returncode, (0, 130), done.stdout)
         return done.stderr
@@ -119,7 +119,7 @@ class Demo(unittest.TestCase):
         self.assertTrue(self.nothing_runs())
 
     def test_it_ends_with_its_pipe(self):
-        process = subprocess.Popen([DEMO, "--folder", self.folder], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen([DEMO, "--directory", self.folder], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, text=True)
         self.addCleanup(self.end, process)
         for line in process.stdout:
             self.assertNotIn("\x1b", line)
@@ -137,7 +137,7 @@ class Demo(unittest.TestCase):
         self.assertTrue(self.nothing_runs())
 
     def test_in_the_background_of_a_script_sigterm_ends_it(self):
-        command = f"{shlex.join([str(DEMO), '--folder', str(self.folder)])} & echo $!; wait"  # bash: it ignores SIGINT
+        command = f"{shlex.join([str(DEMO), '--directory', str(self.folder)])} & echo $!; wait"  # bash: it ignores SIGINT
         script = subprocess.Popen(["bash", "-c", command], stdout=subprocess.PIPE, text=True)
         self.addCleanup(script.stdout.close)
         self.addCleanup(self.end, script)
@@ -149,7 +149,7 @@ class Demo(unittest.TestCase):
         self.assertTrue(self.nothing_runs())
 
     def test_where_it_listens_is_where_the_page_is(self):
-        process = subprocess.Popen([DEMO, "--folder", self.folder, "--listen", "127.0.0.2"], stdin=subprocess.DEVNULL,
+        process = subprocess.Popen([DEMO, "--directory", self.folder, "--listen", "127.0.0.2"], stdin=subprocess.DEVNULL,
                                    stdout=subprocess.PIPE, text=True)
         self.addCleanup(process.stdout.close)
         self.addCleanup(self.end, process)
@@ -161,5 +161,5 @@ class Demo(unittest.TestCase):
                            (("--robots", "many"), "--robots"), (("--listen", "here"), "team.listen[0].address: expected an IPv4")):
             with self.subTest(words):
                 self.assertIn(why, self.refused(*words))
-        self.assertIn("/proc/demo cannot be written to: name another folder by --folder", self.refused(folder="/proc/demo"))
+        self.assertIn("/proc/demo cannot be written to: name another directory by --directory", self.refused(folder="/proc/demo"))
         self.assertIn("is there, and not a demo's", self.refused(folder=self.folder.parent))

@@ -12,12 +12,12 @@
 #include <thread>
 #include <utility>
 
-/// It was not taken, and the same again will not be either.
+/// The message was rejected; the same message would be rejected again.
 struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// It may have been recorded: a person decides what to do.
+/// The report may have been recorded; a person must decide what to do.
 struct Unknown : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

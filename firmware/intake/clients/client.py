@@ -10,11 +10,11 @@ NEVER_LEFT, LOST = -1, 0  # in a status's place
 
 
 class Refused(Exception):
-    """It was not taken, and the same again will not be either."""
+    """The message was rejected; the same message would be rejected again."""
 
 
 class Unknown(Exception):
-    """It may have been recorded: a person decides what to do."""
+    """The report may have been recorded; a person must decide what to do."""
 
 
 class Client:

@@ -58,6 +58,11 @@ int main(int count, char** given) {
   std::vector<std::string> words(given + 1, given + count);
   const bool bare = !words.empty() && words.back() == "--bare";
   const char* const token = std::getenv("ADIT_TOKEN");
+  if (words.size() < 2) {
+    std::cerr
+        << "usage: ADIT_TOKEN=... example URL report X Y Z TYPE (or: status, map, state, markers) [--bare]\n";
+    return 2;
+  }
   try {
     Client client(words.at(0), token == nullptr ? "" : token, bare);
     std::cout << asked(client, words) << "\n";

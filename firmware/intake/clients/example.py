@@ -47,6 +47,9 @@ def main(url, what, *words, bare=False):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) < 3:
+        print("usage: ADIT_TOKEN=... example.py URL report X Y Z TYPE (or: status, map, state, markers) [--bare]", file=sys.stderr)
+        sys.exit(2)
     try:
         print(json.dumps(main(*[word for word in sys.argv[1:] if word != "--bare"], bare="--bare" in sys.argv)))
     except Refused as why:

@@ -69,6 +69,13 @@ class ToPost : public testing::Test, protected AroundScoring {
     return comes([&] { return asker->heard.has_value(); }) ? asker->heard : std::nullopt;
   }
 
+  /// Ends both sides: to be declared behind all that the Command Post's scripts refer to, which the fixture
+  /// outlives.
+  struct Ends {
+    ToPost& test;
+    ~Ends() { test.scoring_.reset(), test.peer_.reset(); }
+  };
+
   std::optional<uplink::ListeningPeer> peer_;
   std::optional<Scoring> scoring_;
 };
@@ -108,6 +115,7 @@ TEST_F(ToPost, AReportDoesNotWaitForAStatusThatIsNotAnswered) {
       wire.write(is_report ? uplink::answer("201 CREATED", kRecorded) : uplink::answer("200 OK", kStatus));
     }
   };
+  const Ends ends{*this};
   lead_to({answers_once, records});
   ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
   scoring_->link_is_back();  // asks again
@@ -134,12 +142,13 @@ TEST_F(ToPost, AStatusThatDecidesAReportInDoubtIsWaitedFor) {
     const bool hold = !is_report && holds.exchange(false);
     if (hold) {
       is_held = true;
-      let.acquire();
+      EXPECT_TRUE(let.try_acquire_for(20s));
     }
     const bool is_open =
         wire.write(is_report ? uplink::answer("201 CREATED", kRecorded) : uplink::answer("500 Error", "{}"));
     if (hold) was_waited_for = is_open;
   };
+  const Ends ends{*this};
   lead_to({loses_a_report, says_nothing_of_it});
   ASSERT_TRUE(comes([&] { return scoring_->run().has_value(); }));
   const auto lost = report(1);

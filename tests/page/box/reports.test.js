@@ -132,7 +132,7 @@ test("names every field of a composed report that is wrong, and the box would to
   const trouble = page.locator("#compose .trouble"), check = page.getByRole("button", { name: "Check" });
   await page.locator("#compose .types").getByRole("button", { name: "Cell Phone" }).click();
   for (const axis of ["x", "y", "z"]) {
-    for (const wrong of ["", " ", "12,5", "1e3", ".", "-", "--1", "1 2", "0x10", "NaN", "Infinity", "12m", "9".repeat(400)]) {
+    for (const wrong of ["", " ", "1,2,5", "1e3", ".", "-", "--1", "1 2", "0x10", "NaN", "Infinity", "12m", "9".repeat(400)]) {
       for (const each of ["x", "y", "z"]) await page.fill(`#compose input[name=${each}]`, "1");
       await page.fill(`#compose input[name=${axis}]`, wrong);
       await check.click();

@@ -51,6 +51,15 @@ Cells cells_at(std::int64_t x, std::int64_t y, const icd::OccupancyGrid& grid) {
   return {x, y, grid.width, grid.height};
 }
 
+/// Whether the corner of `older` is certainly not in `newer`. Far cheaper than corner_of(): each new grid is
+/// compared with each queued one of its name.
+bool is_far(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
+  const icd::Point &a = newer.origin.position, &b = older.origin.position;
+  const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+  const double most = (1.0 + newer.width + newer.height) * newer.resolution;
+  return x * x + y * y + z * z > most * most;
+}
+
 }  // namespace
 
 std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::OccupancyGrid& grid) {
@@ -65,6 +74,7 @@ std::optional<Cells> cells_in(const icd::OccupancyGrid& of, const icd::Occupancy
 }
 
 bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
+  if (is_far(newer, older)) return false;
   const auto inner = cells_in(newer, older);
   return inner && cells_at(0, 0, newer).holds(*inner);
 }

@@ -18,8 +18,8 @@ using settings::token_names;
 /// Where settings and tokens are kept, and which of them count: those that were saved in the state folder, or
 /// else those that the box was given.
 ///
-/// What is saved is on trial until settle(): revert() makes those before it count again, also after a
-/// crash or a power cut in between.
+/// Saved settings and tokens are on trial until settle(). revert() restores the earlier ones, also after a
+/// crash or a power cut.
 class Store {
  public:
   Store(std::string given_settings, std::string given_secrets, std::string state_folder);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <thread>
 
 #include "alarms/board.hpp"
 #include "api/run_view.hpp"
@@ -109,6 +110,15 @@ std::string sentence_in(const std::string& body) {
   const auto value = codec::parse_json(body);
   const auto* sentence = value ? std::get_if<std::string>(&value->is) : nullptr;
   return sentence == nullptr ? "" : *sentence;
+}
+
+bool wait_for(std::chrono::milliseconds within, std::chrono::milliseconds every,
+              const std::function<bool()>& is_over) {
+  for (const auto end = std::chrono::steady_clock::now() + within; !is_over();) {
+    if (std::chrono::steady_clock::now() >= end) return false;
+    std::this_thread::sleep_for(every);
+  }
+  return true;
 }
 
 std::expected<api::RunView, std::string> run_view(const Adit& adit) {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <expected>
+#include <functional>
 #include <string>
 
 #include "api/run_view.hpp"
@@ -47,6 +48,10 @@ std::expected<std::string, Failure> find(const Adit& adit, const std::string& ta
 
 /// For an answer that is not 200.
 Failure failure(const Adit& adit, const HttpReply& reply);
+
+/// Whether `is_over` became true within so long. It is called at once, and then again after each `every`.
+bool wait_for(std::chrono::milliseconds within, std::chrono::milliseconds every,
+              const std::function<bool()>& is_over);
 
 /// The sentence that an error's body is (a JSON string); "" where it is none.
 std::string sentence_in(const std::string& body);

@@ -117,8 +117,8 @@ Outcome show_network(const Adit& adit, const Options& options) {
   return {exit, options.json ? *json + '\n' : text_of(*view), ""};
 }
 
-/// The word is said, and then what became of it is waited for. After `revert` the address that was asked may
-/// be gone.
+/// Confirms or reverts the change, and waits for the result. After a revert the box may no longer have the
+/// address that adit asked.
 Outcome say(const Adit& adit, const Options& options, bool confirms) {
   const auto reply = http_ask(adit.address,
                               {.method = HttpRequest::Method::Post,

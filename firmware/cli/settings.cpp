@@ -1,7 +1,6 @@
 #include "cli/settings.hpp"
 
 #include <chrono>
-#include <thread>
 
 #include "cli/ask.hpp"
 #include "cli/reading.hpp"
@@ -18,8 +17,7 @@ namespace {
 using codec::Value;
 
 constexpr const char* kSee = "adit settings";
-constexpr std::chrono::seconds kApplied{5};
-constexpr std::chrono::milliseconds kLookAgain{100};
+constexpr std::chrono::milliseconds kApplied{5000}, kLookAgain{100};
 
 /// A member of an answer that has been read; null where it is not there.
 Value member(const Value& object, std::string_view name) {
@@ -146,24 +144,25 @@ Outcome check(const Adit& adit, const Options& options, bool colour) {
   return {exit, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
 
-/// Waits until the box runs with a change that it accepted. Error: why it does not, or that this is not
-/// known.
-std::expected<void, Failure> until_applied(const Adit& adit) {
-  for (const auto end = std::chrono::steady_clock::now() + kApplied;;) {
+/// Waits until the box uses a change that it answered with `accepted`. Error: the box reverted the change, or
+/// does not say within kApplied that it uses it.
+std::expected<void, Failure> until_applied(const Adit& adit, const std::string& accepted) {
+  const auto changed = codec::parse_json(accepted);
+  if (changed && items(*changed, "changes").empty()) return {};  // `trouble` is of an earlier change
+  std::expected<Value, std::string> answer = std::unexpected(std::string());
+  const bool is_over = wait_for(kApplied, kLookAgain, [&] {
     const auto body = get(adit, "/adit/settings");
-    const auto answer = body ? codec::parse_json(*body) : std::unexpected(body.error());
-    if (answer && !truth_of(member(*answer, "applying"))) {
-      const std::string trouble = text_of(member(*answer, "trouble"));
-      if (trouble.empty()) return {};
-      return std::unexpected(Failure{Exit::Attention, host::escaped(trouble)});
-    }
-    if (std::chrono::steady_clock::now() >= end) {
-      return std::unexpected(
-          Failure{Exit::Unable, "the change was accepted, but is not seen in use" +
-                                    (answer ? "" : "; at its new address? " + answer.error())});
-    }
-    std::this_thread::sleep_for(kLookAgain);
+    answer = body ? codec::parse_json(*body) : std::unexpected(body.error());
+    return answer && !truth_of(member(*answer, "applying"));
+  });
+  if (!is_over) {
+    return std::unexpected(
+        Failure{Exit::Unable, "the change was accepted, but is not seen in use" +
+                                  (answer ? "" : "; at its new address? " + answer.error())});
   }
+  const std::string trouble = text_of(member(*answer, "trouble"));
+  if (trouble.empty()) return {};
+  return std::unexpected(Failure{Exit::Attention, host::escaped(trouble)});
 }
 
 /// VALUE of the command line: JSON, or a text without quotes. `before`: the value that it replaces.
@@ -201,7 +200,7 @@ Outcome apply(const Adit& adit, const Options& options, bool colour) {
   const Value::Object changed{{"settings", checked->settings}, {"base", tag}};
   const auto done = post(adit, "/adit/settings", codec::write_json({changed}), kSee);
   if (!done) return unable(done.error());
-  if (const auto applied = until_applied(adit); !applied) return unable(applied.error());
+  if (const auto applied = until_applied(adit, *done); !applied) return unable(applied.error());
   if (options.json) return {Exit::Fine, *done + '\n', ""};
   return {Exit::Fine, changed_text(checked->answer, colour) + warnings_text(checked->answer, colour), ""};
 }
@@ -253,7 +252,7 @@ Outcome course(const Options& options, bool colour) {
   const auto body = post(*adit, "/adit/course",
                          codec::write_json({Value::Object{{"name", {*options.course}}}}), "adit course");
   if (!body) return unable(body.error());
-  if (const auto applied = until_applied(*adit); !applied) return unable(applied.error());
+  if (const auto applied = until_applied(*adit, *body); !applied) return unable(applied.error());
   if (options.json) return {Exit::Fine, *body + '\n', ""};
   const auto answer = codec::parse_json(*body);
   if (!answer) return not_understood(answer.error());

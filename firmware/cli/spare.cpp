@@ -3,7 +3,6 @@
 #include <chrono>
 #include <fstream>
 #include <iterator>
-#include <thread>
 
 #include "api/reports_csv.hpp"
 #include "api/spare.hpp"
@@ -93,13 +92,10 @@ std::optional<Failure> doubt(const Options& options, const Console& console, con
 /// Each answer within that it is there or not, while the box ends what is under way and begins again.
 std::expected<SpareView, Failure> wait_until(const Adit& adit, bool (*is_so)(const SpareView&),
                                              std::chrono::seconds within) {
-  for (const auto until = std::chrono::steady_clock::now() + within;;) {
-    auto view = spare_of(adit);
-    if (view && is_so(*view)) return view;
-    if (std::chrono::steady_clock::now() >= until)
-      return view ? std::unexpected(Failure{Exit::Unable, "the box has not finished: see adit spare"}) : view;
-    std::this_thread::sleep_for(kAskEvery);
-  }
+  std::expected<SpareView, Failure> view;
+  const bool is_over = wait_for(within, kAskEvery, [&] { return (view = spare_of(adit)) && is_so(*view); });
+  if (is_over || !view) return view;
+  return std::unexpected(Failure{Exit::Unable, "the box has not finished: see adit spare"});
 }
 
 std::expected<SpareView, Failure> put_on_standby(const Adit& adit, const Options& options,

@@ -114,7 +114,7 @@ class Reports {
   Outcome send(std::int64_t number, Time time);
   Outcome hold(std::int64_t number, Time time);
   Outcome withdraw(std::int64_t number, Time time);
-  Outcome call_done(std::int64_t number, Time time);
+  Outcome settle(std::int64_t number, Time time);
   /// Sends the same as a new report.
   Outcome resubmit(std::int64_t number, Time time);
   /// The operator says that a new run begins. Gives its number.

@@ -72,7 +72,7 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   return number;
 }
 
-Reports::Outcome Reports::call_done(std::int64_t number, Time time) {
+Reports::Outcome Reports::settle(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::Settled) == nullptr) {

@@ -9,6 +9,7 @@
 #include "host/log.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
+#include "icd/success.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::forward {
@@ -27,17 +28,16 @@ dispatch::Body body_of(const uplink::Outcome& outcome) {
   return answered != nullptr ? dispatch::body_of(answered->body) : dispatch::Body::Other;
 }
 
-/// A 2xx to GET /api/status has a status of the run as its body (ICD 5.1).
-bool is_no_status(icd::Uri uri, const uplink::Answered& answered) {
-  return uri == icd::Uri::Status && answered.status >= 200 && answered.status < 300 &&
-         !codec::read_run_status(answered.body);
+/// A 2xx to GET /api/status has the status of a run as its body (ICD 5.1).
+bool lacks_status(icd::Uri uri, const uplink::Outcome& outcome) {
+  const auto* answered = std::get_if<uplink::Answered>(&outcome);
+  return uri == icd::Uri::Status && answered != nullptr && icd::is_success(answered->status) &&
+         !codec::read_run_status(answered->body);
 }
 
-bool comes_from_another(icd::Uri uri, const uplink::Outcome& outcome, dispatch::Body body) {
-  if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
-    return !answered->wants_slash &&
-           (!dispatch::may_be_the_command_post(answered->status, body) || is_no_status(uri, *answered));
-  }
+bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
+  if (const auto* answered = std::get_if<uplink::Answered>(&outcome))
+    return !answered->wants_slash && !dispatch::may_be_the_command_post(answered->status, body);
   const auto* doubt = std::get_if<uplink::InDoubt>(&outcome);
   return doubt != nullptr && doubt->too_long_status != 0 &&
          !dispatch::may_be_the_command_post(doubt->too_long_status, body);
@@ -135,7 +135,8 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
   ++ended_;
   last_status_ = 0;
   const dispatch::Body body = body_of(outcome);
-  foreign_now_ = comes_from_another(request.uri, outcome, body);
+  const bool no_status = lacks_status(request.uri, outcome);
+  foreign_now_ = no_status || comes_from_another(outcome, body);
   if (foreign_now_) ++foreign_;
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   if (answered != nullptr) {
@@ -151,9 +152,9 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
     answer_ms_ = std::chrono::duration<double, std::milli>(heard_ - request.sent_at).count();
   }
   const bool is_well = answered != nullptr && !answered->wants_slash && !foreign_now_ && last_status_ < 400;
-  trouble_ = is_well ? "" : forward::sentence_of(outcome);
-  if (answered != nullptr && foreign_now_ && is_no_status(request.uri, *answered))
-    trouble_ = "the server that answered without the status of a run is not the Command Post";
+  trouble_ = is_well     ? ""
+             : no_status ? "the server that answered without the status of a run is not the Command Post"
+                         : forward::sentence_of(outcome);
 }
 
 void Channel::learn_path(const UnderWay& request, const uplink::Answered& answered) {

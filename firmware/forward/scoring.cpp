@@ -373,7 +373,7 @@ dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action actio
     return action == api::Action::Send       ? reports_->send(number, time())
            : action == api::Action::Hold     ? reports_->hold(number, time())
            : action == api::Action::Withdraw ? reports_->withdraw(number, time())
-           : action == api::Action::Settle   ? reports_->call_done(number, time())
+           : action == api::Action::Settle   ? reports_->settle(number, time())
                                              : reports_->resubmit(number, time());
   });
   record_.changed();

@@ -76,11 +76,11 @@ void Change::revert(std::string why, Instant now) {
 }
 
 void Change::try_to_revert(Instant now) {
-  const auto taken = hands_.revert();
-  if (taken) return end(Ended::Reverted, why_);
+  const auto reverted = hands_.revert();
+  if (reverted) return end(Ended::Reverted, why_);
   if (++tries_ == kTries) {
     return end(Ended::Reverted,
-               why_ + "; the old addresses are not in effect yet: retrying: " + taken.error());
+               why_ + "; the old addresses are not in effect yet: retrying: " + reverted.error());
   }
   try_at_ = now + kTryAgain;
 }

@@ -25,11 +25,11 @@ class Hands {
   virtual std::expected<std::optional<Numbers>, std::string> forget() = 0;
 };
 
-/// A change of the network's numbers, which is reverted unless it is confirmed in time: what is wanted
-/// is applied at once and for now, and only kept once somebody has said so. One at a time.
+/// A change of the network's numbers. It is applied at once, stored when the operator confirms it, and
+/// reverted if the operator does not confirm it in time. One at a time.
 class Change {
  public:
-  /// Taking back is tried again this often, this long after the last time; then it is left to a later start.
+  /// A revert that fails is tried again this often, this long after the last time; then by a later start.
   static constexpr int kTries = 5;
   static constexpr std::chrono::seconds kTryAgain{2};
 
@@ -51,7 +51,7 @@ class Change {
   /// Ends what is pending, too. An error: it is not done, or not in use yet.
   std::expected<void, std::string> forget(Instant now);
   void tick(Instant now);
-  /// There is no more time: what is pending is reverted, once more where that has failed.
+  /// The program ends: reverts a pending change. If a revert has failed, tries it once more.
   void stop(Instant now);
 
   /// When tick() is to be called; nothing: no change is under way.

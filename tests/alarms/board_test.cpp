@@ -80,12 +80,18 @@ TEST(Board, KeepsWhatIsAcknowledgedQuietWhileItStaysAsItIs) {
   EXPECT_FALSE(shown[1].acknowledged) << "nobody has seen that one";
 }
 
-TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
+/// A board on which that was acknowledged at 100.
+Board acknowledged_on(const Condition& seen) {
   Board board;
+  board.take({seen}, 90);
+  EXPECT_TRUE(board.acknowledge(seen.id, 100));
+  return board;
+}
+
+TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
   Condition few = kFew;
   few.degree = 2;
-  board.take({few}, 100);
-  ASSERT_TRUE(board.acknowledge(few.id, 100));
+  Board board = acknowledged_on(few);
   few.degree = 3;
   EXPECT_FALSE(board.shown({few}, 101)[0].acknowledged);
   board.take({few}, 101);
@@ -102,11 +108,9 @@ TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
 }
 
 TEST(Board, CountsFromTheLowestDegreeSinceItWasAcknowledged) {
-  Board board;
   Condition few = kFew;
   few.degree = 5;
-  board.take({few}, 100);
-  ASSERT_TRUE(board.acknowledge(few.id, 100));
+  Board board = acknowledged_on(few);
   few.degree = 1;
   board.take({few}, 101);
   EXPECT_TRUE(board.shown({few}, 101)[0].acknowledged) << "better is no news";
@@ -121,9 +125,7 @@ TEST(Board, AcknowledgesNothingThatIsNotThere) {
 
 /// A board that starts at `now` after one on which that was acknowledged at 100.
 Board after_a_restart(const Condition& seen, double now) {
-  Board before;
-  before.take({seen}, 90);
-  EXPECT_TRUE(before.acknowledge(seen.id, 100));
+  const Board before = acknowledged_on(seen);
   Board after;
   const auto kept = read_acknowledged(write_acknowledged(before.acknowledged()));
   EXPECT_TRUE(kept) << kept.error();

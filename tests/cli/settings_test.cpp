@@ -89,14 +89,26 @@ TEST_F(SettingsCommand, SaysWhyAnAcceptedChangeIsNotInUse) {
                                R"(,"applying":false,"trouble":"the last change was reverted: x"})";
   const Server server({{"GET /adit/settings", Server::ok(reverted)},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
-                       {"POST /adit/settings", Server::ok(R"({"changes":[]})")},
-                       {"POST /adit/course", Server::ok(R"({"changes":[],"warnings":[]})")}});
+                       {"POST /adit/settings", Server::ok(kChanges)},
+                       {"POST /adit/course", Server::ok(kChanges)}});
   for (const auto& words : {std::vector<std::string_view>{"settings", "apply", settings_}, {"course", "B"}}) {
     const Outcome outcome = say(server, words);
     EXPECT_EQ(outcome.exit, Exit::Attention) << words[0];
     EXPECT_EQ(outcome.err, "adit: the last change was reverted: x\n") << words[0];
     EXPECT_EQ(outcome.out, "") << words[0];
   }
+}
+
+TEST_F(SettingsCommand, TellsNoTroubleOfAnEarlierChangeIfNothingChanges) {
+  const std::string earlier = shown().substr(0, shown().size() - 1) +
+                              R"(,"applying":false,"trouble":"the last change was reverted: x"})";
+  constexpr const char* kNone = R"({"errors":[],"changes":[],"warnings":[]})";
+  const Server server({{"GET /adit/settings", Server::ok(earlier)},
+                       {"POST /adit/settings/check", Server::ok(kNone)},
+                       {"POST /adit/settings", Server::ok(kNone)}});
+  const Outcome outcome = say(server, {"settings", "apply", settings_});
+  EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
+  EXPECT_EQ(outcome.out, "no changes\n");
 }
 
 TEST_F(SettingsCommand, SetsOneKey) {

@@ -117,7 +117,7 @@ TEST_F(FullDisk, TakesNoWordOfTheOperators) {
   scene_.lose();
   scene_.post(2);
   fill();
-  EXPECT_THAT(scene_.reports().call_done(1, scene_.time()).error(), HasSubstr("could not be stored"));
+  EXPECT_THAT(scene_.reports().settle(1, scene_.time()).error(), HasSubstr("could not be stored"));
   EXPECT_FALSE(scene_.reports().send(1, scene_.time()).has_value());
   EXPECT_FALSE(scene_.reports().withdraw(2, scene_.time()).has_value());
   EXPECT_EQ(scene_.state(1), InDoubt);

@@ -344,7 +344,7 @@ TEST_F(AnotherPlace, TheOperatorsWordOnADoubtThereBlursTheOthersThere) {
   scene_.post(5);
   scene_.lose();
   go();
-  ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
+  ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_EQ(scene_.report(3).before, std::nullopt);
 }
 

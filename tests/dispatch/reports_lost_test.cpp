@@ -55,7 +55,7 @@ TEST_F(Lost, HoldsWhatCameBeforeTheRunWasKnown) {
 
 TEST_F(Lost, NothingIsHeldOnceItIsSettled) {
   EXPECT_THAT(scene_.undecided(), ElementsAre(HasSubstr(kNote)));
-  ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
+  ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   EXPECT_THAT(scene_.undecided(), ElementsAre());
   scene_.keep_hearing(1, 19, 0);
   scene_.post(2);
@@ -76,7 +76,7 @@ TEST_F(Lost, ItCannotBeSent) {
     ASSERT_FALSE(said);
     EXPECT_THAT(said.error(), HasSubstr("report 2 is in doubt"));
   }
-  ASSERT_TRUE(scene_.reports().call_done(2, scene_.time()));
+  ASSERT_TRUE(scene_.reports().settle(2, scene_.time()));
   const auto again = scene_.reports().resubmit(2, scene_.time());
   ASSERT_FALSE(again);
   EXPECT_THAT(again.error(), HasSubstr("lost from the ledger"));

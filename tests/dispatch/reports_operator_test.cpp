@@ -56,7 +56,7 @@ TEST_P(OperatorsWord, IsTakenWhereTheTableHasIt) {
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.send(1, time); }), GetParam().send);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.hold(1, time); }), GetParam().hold);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.withdraw(1, time); }), GetParam().withdraw);
-  EXPECT_EQ(taken([](Reports& all, Time time) { return all.call_done(1, time); }), GetParam().done);
+  EXPECT_EQ(taken([](Reports& all, Time time) { return all.settle(1, time); }), GetParam().done);
   EXPECT_EQ(taken([](Reports& all, Time time) { return all.resubmit(1, time); }), GetParam().resubmit);
 }
 INSTANTIATE_TEST_SUITE_P(States, OperatorsWord, testing::ValuesIn(kWords));
@@ -67,7 +67,7 @@ TEST(TheOperator, IsToldWhereThereIsNoSuchReport) {
   EXPECT_EQ(scene.reports().send(7, scene.time()).error(), none);
   EXPECT_EQ(scene.reports().hold(7, scene.time()).error(), none);
   EXPECT_EQ(scene.reports().withdraw(7, scene.time()).error(), none);
-  EXPECT_EQ(scene.reports().call_done(7, scene.time()).error(), none);
+  EXPECT_EQ(scene.reports().settle(7, scene.time()).error(), none);
   EXPECT_EQ(scene.reports().resubmit(7, scene.time()).error(), none);
 }
 
@@ -170,7 +170,7 @@ TEST(CallingDone, SettlesADoubtAndTellsTheClientsThatItsAnswerIsNotKnown) {
   Scene scene;
   const ClientId client = scene.post();
   scene.lose();
-  ASSERT_TRUE(scene.reports().call_done(1, scene.time()).has_value());
+  ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
   EXPECT_EQ(scene.state(1), Settled);
   EXPECT_FALSE(scene.report(1).reconciled);
   EXPECT_EQ(scene.told(client).status, 409);
@@ -184,7 +184,7 @@ TEST(CallingDone, DoesNotMakeTheCountOfTheNextStatusAContradiction) {
     Scene scene;
     scene.post();
     scene.lose();
-    ASSERT_TRUE(scene.reports().call_done(1, scene.time()).has_value());
+    ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
     scene.keep_hearing(5, remaining, 0);
     EXPECT_EQ(scene.reports().run().unreliable, "");
   }
@@ -194,7 +194,7 @@ TEST(CallingDone, LeavesTheNextDoubtToTheOperatorWhileTheFirstMayStillBeRecorded
   Scene scene;
   scene.post(1);
   scene.lose();
-  ASSERT_TRUE(scene.reports().call_done(1, scene.time()).has_value());
+  ASSERT_TRUE(scene.reports().settle(1, scene.time()).has_value());
   scene.keep_hearing(3, 20, 0);
   scene.post(2);
   scene.lose();
@@ -213,7 +213,7 @@ TEST(CallingDone, NeverLeavesEvidenceThatMeansSomethingElse) {
     scene.post(2);
     scene.lose();
     scene.output().writes_until_full = writes;
-    (void)scene.reports().call_done(2, scene.time());
+    (void)scene.reports().settle(2, scene.time());
     scene.output().writes_until_full = -1;
     scene.restart();
     for (int i = 0; i < 15; ++i) {

@@ -1,4 +1,4 @@
-// A refusal that a setting can prevent leads there whoever may change it: to the setting that the box names, whatever its sentence says.
+// A refusal that a setting can prevent links to this setting, by its key and not by the sentence, if the user may change settings.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { retell } from "./retold.js";

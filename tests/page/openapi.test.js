@@ -137,7 +137,7 @@ test("every path and method does as it is described to an operator", async (t) =
     "POST /adit/clock"]; // and nobody sets the clock here
   for (const each of operations) {
     const name = `${each.method} ${each.path}`;
-    if (name === "POST /adit/spare/standby") continue; // it would refuse what comes next: box/spare.test.js
+    if (name === "POST /adit/spare/standby") continue; // on standby the box rejects the next requests: box/spare.test.js
     const answer = await ask(each.method, pathOf(each, await known[name]?.()), { body: (await bodies[name]?.()) ?? bodyOf(each) });
     assert.equal(answer.ok, !never.includes(name), `${name}: ${answer.status}`);
     await isAsDescribed(each, answer);

@@ -45,7 +45,8 @@ function controlOf({ kind, words }) {
 function valueOf(control, { kind }) {
   if (kind === "flag") return control.checked;
   const text = control.value.trim();
-  if (kind === "real" && Number.isFinite(numberIn(text))) return numberIn(text);
+  const typed = kind === "real" ? numberIn(text) : NaN;
+  if (Number.isFinite(typed)) return typed;
   return (kind === "whole" || kind === "real") && text && Number.isFinite(Number(text)) ? Number(text) : text;
 }
 

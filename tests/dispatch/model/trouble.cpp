@@ -78,7 +78,7 @@ void World::take_operators_word() {
     const bool sends = chance() < 0.5;
     tell_story(icd::sentence("the operator judges report ", report.number));
     (void)(sends                                  ? reports_->send(report.number, time())
-           : report.state == ReportState::InDoubt ? reports_->call_done(report.number, time())
+           : report.state == ReportState::InDoubt ? reports_->settle(report.number, time())
                                                   : reports_->withdraw(report.number, time()));
   }
 }

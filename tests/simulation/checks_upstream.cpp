@@ -202,7 +202,7 @@ void status_keeps_away(const Evidence& evidence, Broken& broken) {
 void learned(const Evidence& evidence, Broken& broken) {
   std::map<std::string, double> said, last;  // by URI: when it came too soon, unheard as yet, and heard
   std::set<std::string> single;              // URIs whose last answer was such a 429
-  std::map<std::string, int> times;          // by URI: such 429s that a 200 followed
+  std::map<std::string, int> times;          // by URI: such 429s that a 2xx followed
   DiskFaultsSeen disk;
   double forgotten_until = 0;
   for (const Event& event : evidence.events) {
@@ -210,8 +210,9 @@ void learned(const Evidence& evidence, Broken& broken) {
     const bool forgets = disk.forgets_at(event) || event.kind == Kind::Dies || event.kind == Kind::PowerCut;
     // At a death the answer may have been read and not yet understood.
     if (forgets) times.clear(), single.clear(), last.clear();
-    if (event.kind == Kind::Replied && event.status == 200 && single.erase(event.what) > 0)
-      ++times[event.what];
+    // Of a page of HTML, or of a body that is too long, Adit cannot know whether the message was accepted.
+    const bool is_accepted = event.kind == Kind::Replied && event.status / 100 == 2 && event.who.empty();
+    if (is_accepted && single.erase(event.what) > 0) ++times[event.what];
     if (event.kind == Kind::Replied && event.status == 429) single.erase(event.what);
     disk.add(event);
     const auto unheard = said.find(event.what);

@@ -14,7 +14,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr double kSure = 20;   // seconds after which nothing is recorded any more that was lost
+constexpr double kSure = 20;   // seconds after which the Command Post records no lost request any more
 constexpr double kAfter = 90;  // that he stays once the trouble is over
 constexpr const char* kHeaders =
     "Host: 10.0.0.1\r\nAuthorization: Bearer token-of-the-team\r\nContent-Type: application/json\r\n";
@@ -54,27 +54,25 @@ void Judge::look() {
 }
 
 void Judge::viewed(const nlohmann::json& view) {
-  const double now = view.at("now");
   place_ = place_at(view.at("endpoints").front().at("address"));
   if (looks_) {
     for (const nlohmann::json& row : view.at("reports")) {
       // What is in doubt elsewhere is found out there.
       const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in_doubt";
-      if (!elsewhere) judge_report(row, now);
+      if (!elsewhere) judge_report(row);
     }
     if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
   }
   for (const nlohmann::json& row : view.at("rejected")) judge_aside(row);
 }
 
-void Judge::judge_report(const nlohmann::json& row, double now) {
+void Judge::judge_report(const nlohmann::json& row) {
   if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
   const std::string state = row.at("state");
   const std::int64_t id = row.at("number"),
                      serial = std::llround(row.at("position").at("x").get<double>() / 100);
-  const double age = now - row.at("changed").get<double>();
   if (!is_over() && random_.chance(0.4)) return;
-  if (state == "in_doubt" && !row.at("asking") && age > kSure)
+  if (state == "in_doubt" && !row.at("asking") && world_.time() > left_at(serial) + kSure)
     say(id, is_recorded(serial) ? kSettle : kSend, serial);
   if (state == "held") judge_held(id, serial);
   if (state == "queued" && !is_over() && random_.chance(0.2)) say(id, kHold, serial);
@@ -124,6 +122,14 @@ bool Judge::is_recorded(std::int64_t serial) const {
     return is_record;
   }
   return false;
+}
+
+double Judge::left_at(std::int64_t serial) const {
+  const auto& events = world_.history().events();
+  const auto left = std::find_if(events.rbegin(), events.rend(), [&](const Event& event) {
+    return event.kind == Kind::Left && event.what == kReports && event.serial == serial;
+  });
+  return left == events.rend() ? 0 : left->at;
 }
 
 }  // namespace adit::simulation

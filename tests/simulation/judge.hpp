@@ -32,7 +32,7 @@ class Judge {
   };
   void look();
   void viewed(const nlohmann::json& view);
-  void judge_report(const nlohmann::json& row, double now);
+  void judge_report(const nlohmann::json& row);
   void judge_held(std::int64_t number, std::int64_t serial);
   void judge_aside(const nlohmann::json& row);
   void compose();
@@ -40,6 +40,8 @@ class Judge {
   void say_next();
   /// In the run that is on at the Command Post that the settings name.
   bool is_recorded(std::int64_t serial) const;
+  /// When Adit last sent that report, by the world's clock: the box's clock may have been set since.
+  double left_at(std::int64_t serial) const;
   bool is_over() const;
 
   World& world_;

@@ -114,31 +114,16 @@ void Flow::hold_back() {
   telemetry_.hold_back();
 }
 
-/// What is kept in files of its own. What a release before the journal left is stamped again, and waits: what
-/// that sent last, and when, is not known.
+/// Takes up the messages that have files of their own. If the journal tells nothing of the process before,
+/// when that sent last is not known: its maps get new stamps, and every request waits.
 void Flow::restore(bool is_first) {
   rejected_.restore();
   spool::Spool::Kept kept = spool_.read();
-  const double now = loop_.stamp_now();
-  const bool is_left = !kept.maps.empty() || !kept.state.poses.empty() || !kept.markers.markers.empty();
-  if (is_first && is_left) hold_back();
-  for (auto& [number, map] : kept.maps) {
-    if (is_first) map.header().stamp = now;
-    maps_.restore(number, std::move(map));
+  if (is_first && !kept.empty()) hold_back();
+  for (auto& [number, map] : kept) {
+    if (is_first) map.header().stamp = loop_.stamp_now();
   }
-  std::vector<lanes::PostedPose> poses;
-  poses.reserve(kept.state.poses.size());
-  for (const icd::NamedPose& named : kept.state.poses)
-    poses.push_back({.name = named.name, .pose = named.pose, .stamp = now});
-  for (icd::Marker& marker : kept.markers.markers) marker.header.stamp = now;
-  // The lanes are empty: there is room. What cannot be kept in the journal stays in its file; the other is
-  // not taken twice, for what came since is newer.
-  if (poses.empty() || telemetry_.take(poses, 0)) spool_.forget_state();
-  const auto forget_markers = [this](const icd::Checked<void>& taken) {
-    if (taken) spool_.forget_markers();
-  };
-  if (kept.markers.markers.empty()) return forget_markers({});
-  telemetry_.take(std::move(kept.markers), 0, forget_markers);
+  maps_.restore(std::move(kept));
 }
 
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {

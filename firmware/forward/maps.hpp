@@ -67,8 +67,8 @@ class Maps {
   void heard();
   /// Another run is on: what the Command Post took of the one before it may have no more.
   void change_run(dispatch::NextMap next);
-  /// A map that the spool kept under this number. Its data is looked at when it is packed.
-  void restore(std::uint64_t number, icd::MapUpdate update);
+  /// The maps that the spool kept. A map's data is looked at when it is packed.
+  void restore(spool::Spool::Kept kept);
 
   /// For a map that begins to arrive. What is stored of it goes to the writer until this ends.
   std::shared_ptr<intake::MapArrival> arrives(MapArrival::Take take);
@@ -121,6 +121,8 @@ class Maps {
   using Place = std::shared_ptr<Prepared>;
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
+  void restore(std::uint64_t number, icd::MapUpdate update);
+  void tell_clouds(const icd::MapUpdate& update);  // what the settings say of its sender's
   void take_settings();
   void leads_elsewhere();
   void pack_again();

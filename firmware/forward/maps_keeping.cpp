@@ -124,15 +124,24 @@ void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>&
   pump();
 }
 
+void Maps::restore(spool::Spool::Kept kept) {
+  trouble_ = spool_.trouble();
+  for (auto& [number, map] : kept) restore(number, std::move(map));
+}
+
 void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   will_be_forgotten();
   const bool again = number < kFirstNumber;
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
   record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.wall_now());
-  const icd::Stamp stamp = stamp_of(update);
-  forget(again ? lane_.put_back(waiting_again(number, std::move(update), stamp))
-               : add(number, std::move(update)));
+  if (again) {
+    const icd::Stamp stamp = stamp_of(update);
+    forget(lane_.put_back(waiting_again(number, std::move(update), stamp)));
+  } else {
+    tell_clouds(update);
+    lane_.restore(number, std::move(update), loop_.now());
+  }
   unread_.insert(number);
   compare();
   pump();
@@ -140,12 +149,16 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
 
 /// The numbers of the maps that this one replaced.
 std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
+  tell_clouds(update);
   const Traffic traffic = traffic_of(update);
-  const lanes::Clouds clouds = lane_.clouds_of(lanes::Sender::of(update));
   auto replaced = lane_.add(number, std::move(update), loop_.now());
   record_.replaced(traffic, replaced.size());
-  if (clouds != lanes::Clouds::Auto) record_.clouds_are(traffic, clouds);
   return replaced;
+}
+
+void Maps::tell_clouds(const icd::MapUpdate& update) {
+  const lanes::Clouds clouds = lane_.clouds_of(lanes::Sender::of(update));
+  if (clouds != lanes::Clouds::Auto) record_.clouds_are(traffic_of(update), clouds);
 }
 
 /// One number more: forgetting it will take no memory, for there may be none then.

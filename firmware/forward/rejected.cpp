@@ -69,23 +69,24 @@ void write_replaced(const Files& files) {
 }
 
 template <class Message>
-std::optional<lanes::Message> any(icd::Checked<Message> message) {
-  if (!message) return std::nullopt;
+icd::Checked<lanes::Message> any(icd::Checked<Message> message) {
+  if (!message) return std::unexpected(std::move(message.error()));
   return lanes::Message(std::move(*message));
 }
 
-std::optional<lanes::Message> read_message(const std::string& path, std::string_view kind) {
+icd::Checked<lanes::Message> read_message(const std::string& path, std::string_view kind) {
   if (kind == kKinds[0]) return any(spool::read_map(path));
   if (kind == kKinds[1]) return any(spool::read_state(path));
   if (kind == kKinds[2]) return any(spool::read_markers(path));
-  return std::nullopt;
+  return icd::unprocessable("kind: expected map, state or markers");
 }
 
-/// All but number and message.
-std::optional<std::pair<std::string, lanes::RejectedMessage>> read_reason(const std::string& path) {
-  const auto text = host::read_file(path);
-  const auto value = codec::parse_json(text.value_or(""));
-  if (!text || !value) return std::nullopt;
+/// All but number and message. Refused with 503 if the file cannot be read, else because it is damaged.
+icd::Checked<std::pair<std::string, lanes::RejectedMessage>> read_reason(const std::string& path) {
+  const auto file = spool::map_file(path);
+  if (!file) return std::unexpected(spool::unreadable(path, file.error()));
+  const auto value = codec::parse_json(spool::text_in(*file));
+  if (!value) return icd::unprocessable(value.error());
   codec::Reading reading;
   const codec::Field root(*value, reading);
   lanes::RejectedMessage item;
@@ -95,8 +96,7 @@ std::optional<std::pair<std::string, lanes::RejectedMessage>> read_reason(const 
   item.at = root.member("at").number();
   item.bytes = static_cast<std::size_t>(root.member("bytes").whole<std::int64_t>(0, std::int64_t{1} << 40));
   item.replaced = root.member("replaced").truth();
-  if (!reading.outcome(0)) return std::nullopt;
-  return std::pair(kind, std::move(item));
+  return reading.outcome(std::pair(kind, std::move(item)));
 }
 
 std::string who(const lanes::Message& message) {
@@ -129,24 +129,29 @@ void RejectedStore::restore() {
   spool::remove_parts(folder_);
   const auto numbers = host::numbers_in(folder_, "", kReason);
   unread_ = numbers ? "" : numbers.error();
-  if (!numbers) host::log(host::Level::Error, "rejected messages cannot be read", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
-    if (restore_one(number)) continue;
+    const auto restored = restore_one(number);
+    if (restored) continue;
+    if (restored.error().status == icd::Status::ServiceUnavailable) {
+      unread_ = restored.error().sentence;
+      continue;
+    }
     for (const char* const ending : {kMessage, kReason})
-      host::set_damaged_aside(path(number, ending), "a rejected message", "it could not be read");
+      host::set_damaged_aside(path(number, ending), "a rejected message", restored.error().sentence);
   }
+  if (!unread_.empty()) host::log(host::Level::Error, "rejected messages cannot be read", {{"why", unread_}});
 }
 
-bool RejectedStore::restore_one(std::uint64_t number) {
+icd::Checked<void> RejectedStore::restore_one(std::uint64_t number) {
   auto reason = read_reason(path(number, kReason));
-  if (!reason) return false;
+  if (!reason) return std::unexpected(std::move(reason.error()));
   auto message = read_message(path(number, kMessage), reason->first);
-  if (!message) return false;
+  if (!message) return std::unexpected(std::move(message.error()));
   lanes::RejectedMessage& item = reason->second;
   item.number = number;
   item.message = std::move(*message);
   items_.restore(std::move(item));
-  return true;
+  return {};
 }
 
 void RejectedStore::add(lanes::Message message, int status, const std::string& why, std::size_t bytes,

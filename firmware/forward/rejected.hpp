@@ -63,7 +63,7 @@ class RejectedStore {
   void kept(std::uint64_t number, bool well, const Origin& origin);
   void forget(std::uint64_t number);
   void let_origin_go(std::uint64_t number);
-  bool restore_one(std::uint64_t number);
+  icd::Checked<void> restore_one(std::uint64_t number);
 
   const loop::Loop& loop_;
   loop::Writer& writer_;

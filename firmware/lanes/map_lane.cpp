@@ -47,6 +47,15 @@ std::vector<std::uint64_t> MapLane::add(std::uint64_t number, icd::MapUpdate map
   return change(its.queue, [&](MapQueue& queue) { return queue.add(std::move(added)); });
 }
 
+void MapLane::restore(std::uint64_t number, icd::MapUpdate map, Instant now) {
+  WaitingMap restored = waiting(number, std::move(map), now);
+  Waiting& its = joins(Sender::of(restored.map));
+  change(its.queue, [&](MapQueue& queue) {
+    queue.append(std::move(restored));
+    return true;
+  });
+}
+
 /// Of those that have a map which may go, the one whose turn it is; where all rest, that of the map that
 /// rested longest.
 MapLane::Senders::iterator MapLane::next(Instant now) {

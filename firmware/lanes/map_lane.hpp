@@ -66,6 +66,10 @@ class MapLane {
   /// twice.
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
+  /// Adds a map that was queued before a restart, in the order of the numbers. It is compared with no other:
+  /// a comparison with each would cost time until Adit listens.
+  void restore(std::uint64_t number, icd::MapUpdate map, Instant now);
+
   static constexpr int kInPlace = MapQueue::kInPlace;
 
   /// The next to be sent, taken out of the lane. Without `now`, nothing rests.

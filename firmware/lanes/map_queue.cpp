@@ -36,9 +36,13 @@ std::vector<std::uint64_t> MapQueue::add(WaitingMap added) {
     take_over(added, std::move(*it));
   }
   waiting_.erase(gone, waiting_.end());
+  append(std::move(added));
+  return replaced;
+}
+
+void MapQueue::append(WaitingMap added) {
   bytes_ += bytes_held(added);
   waiting_.push_back(std::move(added));
-  return replaced;
 }
 
 /// A grid that was made before goes first: sent after, its old cells would overwrite newer ones. Clouds wait

@@ -21,6 +21,7 @@ class MapQueue {
   static constexpr int kInPlace = 3;
 
   std::vector<std::uint64_t> add(WaitingMap added);
+  void append(WaitingMap added);  // replaces none
   /// Whether one may go now: none does that rests, nor a grid behind one that rests.
   bool is_ready(Instant now) const;
   /// Since when one rests and how old it is, of the one that rested longest. Requires a map.

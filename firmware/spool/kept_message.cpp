@@ -1,9 +1,7 @@
 #include "spool/kept_message.hpp"
 
 #include <filesystem>
-#include <fstream>
 #include <system_error>
-#include <vector>
 
 #include "codec/body_decoder.hpp"
 #include "codec/read.hpp"
@@ -23,16 +21,9 @@ icd::Rules as_kept() {
 }
 
 icd::Checked<codec::Document> decode(const std::string& path, codec::Split split) {
-  codec::BodyDecoder decoder({codec::Format::Cbor, codec::ContentCoding::Identity}, split,
-                             {.text_bytes = kMostText, .data_bytes = icd::kMostMapBytes});
-  std::ifstream file(path, std::ios::binary);
-  std::vector<char> piece(icd::ChunkedBytes::kChunk);
-  while (file.read(piece.data(), static_cast<std::streamsize>(piece.size())) || file.gcount() > 0) {
-    const auto fed = decoder.feed(
-        {reinterpret_cast<const std::uint8_t*>(piece.data()), static_cast<std::size_t>(file.gcount())});
-    if (!fed) return std::unexpected(fed.error());
-  }
-  return decoder.finish();
+  const auto file = map_file(path);
+  if (!file) return std::unexpected(unreadable(path, file.error()));
+  return codec::decode({codec::Format::Cbor}, split, text_in(*file), {.text_bytes = kMostText});
 }
 
 }  // namespace
@@ -59,10 +50,7 @@ void remove_parts(const std::string& folder) {
 }
 
 icd::Checked<icd::MapUpdate> read_map(const std::string& path) {
-  if (auto map = MapFile::read(path, as_kept())) return map;
-  auto document = decode(path, codec::Split::MapData);
-  if (!document) return std::unexpected(std::move(document.error()));
-  return codec::read_map_update(std::move(*document), as_kept());
+  return MapFile::read(path, as_kept());
 }
 
 icd::Checked<icd::StateUpdate> read_state(const std::string& path) {

@@ -26,9 +26,8 @@ std::expected<void, std::string> write_whole(const std::string& path, icd::Chunk
 void remove_parts(const std::string& folder);
 
 /// The message in a file, checked by the ICD's own rules: a team's (aliases, frames, sizes) were applied when
-/// it came, and may be others by now. Of a map in a file of MapFile's the data is not read, however much it
-/// is: whoever takes it up finds out what it is worth when it is needed (codec::check_data). One whose data
-/// is last is of an earlier release.
+/// it came, and may be others by now. Refused with 503 if the file cannot be read, else because it is
+/// damaged. A map's data is not read (MapFile::read()).
 icd::Checked<icd::MapUpdate> read_map(const std::string& path);
 icd::Checked<icd::StateUpdate> read_state(const std::string& path);
 icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path);

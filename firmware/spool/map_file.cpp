@@ -32,7 +32,7 @@ std::size_t MapFile::stored_bytes() const {
 }
 
 icd::ChunkedBytes MapFile::stored() {
-  shown_ = file_.map();
+  shown_ = file_.map().value_or(MappedFile{});
   return data_in(shown_, stored_bytes());
 }
 
@@ -52,22 +52,23 @@ int MapFile::finish(icd::MapUpdate& map, const std::string& path) {
   int error = append(map.data.bytes);
   if (error == 0) error = file_.append(message.after);
   if (error == 0) error = file_.begin_with(message.before);
-  const MappedFile whole = error == 0 ? file_.map() : MappedFile{};
-  if (error == 0 && !whole.owner) error = errno;
-  if (error == 0) error = file_.name(path);
-  if (error == 0) map.data.bytes = data_in(whole, size);
+  if (error != 0) return error;
+  const auto whole = file_.map();
+  if (!whole) return whole.error();
+  error = file_.name(path);
+  if (error == 0) map.data.bytes = data_in(*whole, size);
   return error;
 }
 
 icd::Checked<icd::MapUpdate> MapFile::read(const std::string& path, const icd::Rules& rules) {
-  const MappedFile file = map_file(path);
-  if (!file.owner) return icd::unprocessable("the file is unreadable or empty");
-  if (file.bytes.size() < kBefore) return icd::unprocessable("the file is cut short");
-  const std::string_view text(reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size());
+  const auto file = map_file(path);
+  if (!file) return std::unexpected(unreadable(path, file.error()));
+  if (file->bytes.size() < kBefore) return icd::unprocessable("the file is cut short");
+  const std::string_view text = text_in(*file);
   const std::string_view before = text.substr(0, kBefore);
   const std::uint64_t size = codec::data_after(before);
   if (size > text.size() - kBefore) return icd::unprocessable("the file is cut short");
-  return codec::read_data_first(before, data_in(file, size), text.substr(kBefore + size), rules);
+  return codec::read_data_first(before, data_in(*file, size), text.substr(kBefore + size), rules);
 }
 
 }  // namespace adit::spool

@@ -30,8 +30,9 @@ class MapFile {
   /// Writes what is missing of `map`, whose data begins so, gives it its name, and shows its data in it.
   int finish(icd::MapUpdate& map, const std::string& path);
 
-  /// The map in a file that is as finish() makes it, with its data in the file, which is not read: what it is
-  /// worth is to be found out by codec::check_data().
+  /// The map in a file that finish() made, with its data in the file, which is not read: what it is worth is
+  /// to be found out by codec::check_data(). Refused with 503 if the file cannot be read, else because it is
+  /// damaged.
   static icd::Checked<icd::MapUpdate> read(const std::string& path, const icd::Rules& rules);
 
  private:

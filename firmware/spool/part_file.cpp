@@ -5,21 +5,32 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "icd/sentence.hpp"
 
 namespace adit::spool {
 namespace {
 
-MappedFile map_file(int fd) {
+std::expected<MappedFile, int> map_file(int fd) {
   struct stat status{};
-  if (::fstat(fd, &status) != 0 || status.st_size == 0) return {};
+  if (::fstat(fd, &status) != 0) return std::unexpected(errno);
+  if (status.st_size == 0) return MappedFile{};
   const auto size = static_cast<std::size_t>(status.st_size);
   void* const begin = ::mmap(nullptr, size, PROT_READ, MAP_SHARED, fd, 0);
-  if (begin == MAP_FAILED) return {};
+  if (begin == MAP_FAILED) return std::unexpected(errno);
   const auto unmap = [size](void* mapped) { ::munmap(mapped, size); };
-  return {std::shared_ptr<void>(begin, unmap), {static_cast<const std::uint8_t*>(begin), size}};
+  return MappedFile{std::shared_ptr<void>(begin, unmap), {static_cast<const std::uint8_t*>(begin), size}};
+}
+
+MappedFile copy_of(std::span<const std::uint8_t> bytes) {
+  const auto owner = std::make_shared<std::vector<std::uint8_t>>(bytes.begin(), bytes.end());
+  return {owner, *owner};
 }
 
 std::span<const std::uint8_t> as_bytes(std::string_view text) {
@@ -28,9 +39,23 @@ std::span<const std::uint8_t> as_bytes(std::string_view text) {
 
 }  // namespace
 
-MappedFile map_file(const std::string& path) {
+std::expected<MappedFile, int> map_file(const std::string& path) {
   const loop::FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  return fd ? map_file(fd.get()) : MappedFile{};
+  if (!fd) return std::unexpected(errno);
+  std::array<std::uint8_t, 4096> small;
+  const ssize_t count = ::read(fd.get(), small.data(), small.size());
+  if (count < 0) return std::unexpected(errno);
+  const auto size = static_cast<std::size_t>(count);
+  return size < small.size() ? copy_of(std::span(small).first(size)) : map_file(fd.get());
+}
+
+std::string_view text_in(const MappedFile& file) {
+  return {reinterpret_cast<const char*>(file.bytes.data()), file.bytes.size()};
+}
+
+icd::Refusal unreadable(const std::string& path, int error) {
+  const auto status = error == ENOENT ? icd::Status::UnprocessableEntity : icd::Status::ServiceUnavailable;
+  return {status, icd::sentence("cannot read ", path, ": ", std::strerror(error))};
 }
 
 PartFile::PartFile(const std::string& path)
@@ -74,7 +99,7 @@ int PartFile::begin_with(std::string_view bytes) {
   return write(as_bytes(bytes), 0);
 }
 
-MappedFile PartFile::map() const {
+std::expected<MappedFile, int> PartFile::map() const {
   return map_file(fd_.get());
 }
 

@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <optional>
 #include <string_view>
 
 #include "host/log.hpp"
@@ -21,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kState = "/state.cbor", kMarkers = "/markers.cbor";
 /// What a map's file takes beside the map's data, in whole pages.
 constexpr std::uint64_t kBeside = 8192;
 constexpr std::string_view kMap = "map-", kEnding = ".cbor";
@@ -39,21 +37,6 @@ std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64
   return left - std::min({left, left_to_others, std::uint64_t{room.f_blocks} * room.f_frsize / 4});
 }
 
-void set_aside(const std::string& path, const std::string& why) {
-  host::set_damaged_aside(path, "a queued message", why);
-}
-
-/// The message in one file, which is set aside where it cannot be understood.
-template <class Message>
-std::optional<Message> message_in(const std::string& path,
-                                  icd::Checked<Message> (*read)(const std::string&)) {
-  if (!host::may_exist(path)) return std::nullopt;
-  icd::Checked<Message> message = read(path);
-  if (message) return std::move(*message);
-  set_aside(path, message.error().sentence);
-  return std::nullopt;
-}
-
 }  // namespace
 
 Spool::Spool(std::string folder, std::uint64_t left_to_others)
@@ -62,6 +45,7 @@ Spool::Spool(std::string folder, std::uint64_t left_to_others)
 }
 
 std::string Spool::trouble() const {
+  if (!unread_.empty()) return unread_;
   if (::access(folder_.c_str(), W_OK | X_OK) == 0) return "";
   return folder_ + ": " + std::strerror(errno);
 }
@@ -101,17 +85,7 @@ void Spool::forget(std::uint64_t number) {
 }
 
 void Spool::set_aside(std::uint64_t number, const std::string& why) {
-  spool::set_aside(file_of(number), why);
-}
-
-void Spool::forget_state() {
-  std::error_code error;
-  fs::remove(folder_ + std::string(kState), error);
-}
-
-void Spool::forget_markers() {
-  std::error_code error;
-  fs::remove(folder_ + std::string(kMarkers), error);
+  host::set_damaged_aside(file_of(number), "a queued map", why);
 }
 
 Spool::Kept Spool::read() {
@@ -119,12 +93,17 @@ Spool::Kept Spool::read() {
   Kept kept;
   const auto numbers = host::numbers_in(folder_, kMap, kEnding);
   unread_ = numbers ? "" : numbers.error();
-  if (!numbers) host::log(host::Level::Error, "cannot read queued maps", {{"why", unread_}});
   for (const std::uint64_t number : numbers.value_or(std::vector<std::uint64_t>())) {
-    if (auto map = message_in(file_of(number), read_map)) kept.maps.emplace_back(number, std::move(*map));
+    auto map = read_map(file_of(number));
+    if (map) {
+      kept.emplace_back(number, std::move(*map));
+    } else if (map.error().status == icd::Status::ServiceUnavailable) {
+      unread_ = map.error().sentence;
+    } else {
+      set_aside(number, map.error().sentence);
+    }
   }
-  kept.state = message_in(folder_ + std::string(kState), read_state).value_or(icd::StateUpdate{});
-  kept.markers = message_in(folder_ + std::string(kMarkers), read_markers).value_or(icd::MarkersUpdate{});
+  if (!unread_.empty()) host::log(host::Level::Error, "cannot read queued maps", {{"why", unread_}});
   return kept;
 }
 

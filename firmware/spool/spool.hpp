@@ -8,8 +8,6 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
-#include "icd/markers_update.hpp"
-#include "icd/state_update.hpp"
 #include "spool/map_file.hpp"
 
 namespace adit::spool {
@@ -19,11 +17,7 @@ namespace adit::spool {
 /// whole or not at all. What cannot be written is logged, and waits in memory alone.
 class Spool {
  public:
-  struct Kept {
-    std::vector<std::pair<std::uint64_t, icd::MapUpdate>> maps;  // by number
-    icd::StateUpdate state;
-    icd::MarkersUpdate markers;
-  };
+  using Kept = std::vector<std::pair<std::uint64_t, icd::MapUpdate>>;  // by number
 
   /// Makes the folder, for this user alone. Of the room that its file system has, so much is left to others,
   /// but no more than a quarter of all: what is to be written there beside maps must not be refused for them.
@@ -49,12 +43,8 @@ class Spool {
   /// Why no map could be kept, or "".
   std::string trouble() const;
 
-  /// Forgets the state, or the markers, that a release before the journal kept.
-  void forget_state();
-  void forget_markers();
-
-  /// All that is kept. What cannot be understood is logged and set aside; of maps by whoever takes them up,
-  /// too (read_map()).
+  /// All maps that are kept. A damaged file is logged and set aside. If a file cannot be read, it stays, and
+  /// keep() refuses every map until the next start.
   Kept read();
   /// It is damaged: it is forgotten, and its file is there for whoever looks for it. For the writer.
   void set_aside(std::uint64_t number, const std::string& why);

@@ -30,9 +30,7 @@ class DamagedMap : public WithLettingPost {
     bytes.seekp(40);  // among the cells
     bytes << "damaged";
   }
-  void restore() {
-    for (auto& [number, map] : spool_.read().maps) maps_->restore(number, std::move(map));
-  }
+  void restore() { maps_->restore(spool_.read()); }
   api::ActivityRow row() const {
     const auto found = record_.rows().find({Kind::Grid, "first"});
     return found == record_.rows().end() ? api::ActivityRow{} : found->second;
@@ -59,7 +57,7 @@ TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
   keep(kOne, "first", 0);
   damage(kOne);
   auto kept = spool_.read();
-  maps_->send_again(std::move(kept.maps[0].second), [](bool) { return true; });
+  maps_->send_again(std::move(kept[0].second), [](bool) { return true; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);

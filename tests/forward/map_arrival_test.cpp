@@ -75,8 +75,8 @@ TEST_F(MapArrivalTest, StandsInItsFileWhenItIsTaken) {
   EXPECT_EQ(*taken_, whole);
   EXPECT_EQ(names(), std::vector<std::string>{"map-00000001.cbor"});
   const auto kept = spool_.read();
-  ASSERT_EQ(kept.maps.size(), 1u);
-  EXPECT_EQ(kept.maps[0].second, whole);
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].second, whole);
 }
 
 TEST_F(MapArrivalTest, WhoseDataWasTurnedIntoSomethingElseGetsAFileOfThat) {

@@ -108,7 +108,7 @@ TEST_F(PointsLeftOut, CanBeAllSoThatNothingIsSent) {
   EXPECT_EQ(row().replaced, 1);
   EXPECT_EQ(row().points_left_out, 1);
   ASSERT_TRUE(loop::turn_until_idle(loop_, writer_));
-  EXPECT_TRUE(spool_.read().maps.empty());
+  EXPECT_TRUE(spool_.read().empty());
 }
 
 TEST_F(PointsLeftOut, AreNotThoseOfAMessageThatFailed) {

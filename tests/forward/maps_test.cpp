@@ -155,7 +155,7 @@ TEST_F(MapsTest, ThatAreSentAgainByHandAreOlderThanWhatWaitsForALifeToComeAsWell
             journal_,
             [](const icd::MapUpdate&) {}};
   for (const std::uint64_t number : host::numbers_in(folder_.path(), "map-", ".cbor").value())
-    next.restore(number, number == 1 ? grid("r1", 20, 700) : grid("r1", 10, 500));
+    next.restore({{number, number == 1 ? grid("r1", 20, 700) : grid("r1", 10, 500)}});
   EXPECT_EQ(next.waiting({Kind::Grid, "r1"}), 2u) << "it says all of the newer one, but is not newer";
 }
 

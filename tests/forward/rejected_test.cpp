@@ -80,7 +80,7 @@ icd::MapUpdate grid(double x = 0, std::uint32_t side = 2) {
   grid.origin.position = {x, 0, 0};
   const std::vector<std::uint8_t> cells(std::size_t{side} * side, 7);
   return {
-      icd::RobotName::parse("r1"), grid, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
+      icd::RobotName::parse("r1"), grid, {icd::ChunkedBytes{cells}, icd::Compression::Gzip, cells.size()}};
 }
 
 TEST_F(RejectedStoreTest, OutlivesTheServiceWithItsReason) {

@@ -53,7 +53,7 @@ TEST_F(PartFileTest, SaysWhatIsLeftWhereThereIsNoMoreRoom) {
   EXPECT_EQ(pieces.to_string(), std::string(3000, 'b') + std::string(3000, 'c'));
   EXPECT_EQ(file.size(), 3000u);
   EXPECT_EQ(file.append("d"), 0) << "in the place of what was left";
-  const MappedFile map = file.map();
+  const MappedFile map = file.map().value();
   EXPECT_EQ(map.bytes[3000], 'd');
 }
 
@@ -67,13 +67,13 @@ TEST_F(PartFileTest, ShowsItsBytesForAsLongAsSomebodyHasThem) {
   MappedFile map;
   {
     PartFile file(path_);
-    EXPECT_FALSE(file.map().owner) << "it is empty";
+    EXPECT_TRUE(file.map().value().bytes.empty());
     EXPECT_EQ(file.append("abc"), 0);
-    map = file.map();
+    map = file.map().value();
   }
   EXPECT_TRUE(names().empty());
   EXPECT_EQ(std::string(map.bytes.begin(), map.bytes.end()), "abc");
-  EXPECT_FALSE(map_file(path_).owner);
+  EXPECT_EQ(map_file(path_).error(), ENOENT);
 }
 
 }  // namespace

@@ -47,47 +47,23 @@ TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
   spool.forget(10);
   spool.forget(11);
   const auto kept = Spool(folder_ / "waiting").read();
-  ASSERT_EQ(kept.maps.size(), 2u);
-  EXPECT_EQ(kept.maps[0].first, 9u);
-  EXPECT_EQ(kept.maps[0].second, grid("r1", 9));
-  EXPECT_EQ(kept.maps[1].first, 100'000'000u);
-}
-
-TEST_F(SpoolTest, ReadsTheStateAndMarkersOfAReleaseBeforeTheJournalUntilTheyAreForgotten) {
-  Spool spool(folder_);
-  std::ofstream(folder_ / "state.cbor", std::ios::binary) << codec::write_state_update(state()).to_string();
-  std::ofstream(folder_ / "markers.cbor", std::ios::binary)
-      << codec::write_markers_update(markers()).to_string();
-  EXPECT_EQ(spool.read().state, state());
-  EXPECT_EQ(spool.read().markers, markers());
-  spool.forget_state();
-  EXPECT_TRUE(spool.read().state.poses.empty());
-  EXPECT_EQ(spool.read().markers, markers()) << "each by itself";
-  spool.forget_markers();
-  EXPECT_TRUE(spool.read().markers.markers.empty());
-  EXPECT_TRUE(fs::is_empty(folder_));
-}
-
-TEST_F(SpoolTest, ReadsTheMapsOfAReleaseThatWroteTheirDataLast) {
-  Spool spool(folder_);
-  std::ofstream(folder_ / "map-00000004.cbor", std::ios::binary)
-      << codec::write_map_update(cloud(1000)).to_string();
-  const auto kept = spool.read();
-  ASSERT_EQ(kept.maps.size(), 1u);
-  EXPECT_EQ(kept.maps[0].second, cloud(1000));
+  ASSERT_EQ(kept.size(), 2u);
+  EXPECT_EQ(kept[0].first, 9u);
+  EXPECT_EQ(kept[0].second, grid("r1", 9));
+  EXPECT_EQ(kept[1].first, 100'000'000u);
 }
 
 TEST_F(SpoolTest, KeepsNothingWhereItCouldNotTellWhatALifeBeforeKept) {
   const fs::path folder = folder_ / "waiting";
   std::ofstream(folder) << "no folder";
   Spool spool(folder);
-  EXPECT_TRUE(spool.read().maps.empty());
+  EXPECT_TRUE(spool.read().empty());
   fs::remove(folder);
   const auto kept = spool.keep(1, grid("r1", 1), 0);
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().sentence,
             "Adit cannot store this map: " + folder.string() + ": Not a directory; send it again later");
-  EXPECT_TRUE(spool.read().maps.empty());
+  EXPECT_TRUE(spool.read().empty());
   EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "it could be read";
 }
 
@@ -104,10 +80,10 @@ TEST_F(SpoolTest, ReadsOfTheMapsThatItKeptNoData) {
   EXPECT_LT(after.by_calls - before.by_calls, 1'000'000U);
   EXPECT_GT(after.in_mappings, before.in_mappings) << "its two ends";
   EXPECT_LT(after.in_mappings - before.in_mappings, 1'000'000U);
-  ASSERT_EQ(kept.maps.size(), 4U);
-  EXPECT_EQ(kept.maps[0].second, cloud(1'000'000));
-  EXPECT_TRUE(codec::check_data(kept.maps[0].second));
-  EXPECT_FALSE(codec::check_data(kept.maps[3].second)) << "it is damaged, and is to be read for that";
+  ASSERT_EQ(kept.size(), 4U);
+  EXPECT_EQ(kept[0].second, cloud(1'000'000));
+  EXPECT_TRUE(codec::check_data(kept[0].second));
+  EXPECT_FALSE(codec::check_data(kept[3].second)) << "it is damaged, and is to be read for that";
 }
 
 TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
@@ -115,7 +91,7 @@ TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
   for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep(number, cloud(10), 0));
   fs::resize_file(folder_ / "map-00000001.cbor", 100);
   fs::resize_file(folder_ / "map-00000002.cbor", fs::file_size(folder_ / "map-00000002.cbor") + 1);
-  EXPECT_EQ(spool.read().maps.size(), 1U);
+  EXPECT_EQ(spool.read().size(), 1U);
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
   EXPECT_TRUE(fs::exists(folder_ / "map-00000002.cbor.damaged"));
 }
@@ -133,16 +109,30 @@ TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
   ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
   std::ofstream(folder_ / "map-00000001.cbor") << "not a map";
   const auto kept = spool.read();
-  ASSERT_EQ(kept.maps.size(), 1u);
-  EXPECT_EQ(kept.maps[0].second.name->text(), "r2");
+  ASSERT_EQ(kept.size(), 1u);
+  EXPECT_EQ(kept[0].second.name->text(), "r2");
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
+}
+
+TEST_F(SpoolTest, KeepsAFileThatItCannotReadAndRefusesMapsUntilTheNextStart) {
+  Spool spool(folder_);
+  ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
+  fs::create_directory(folder_ / "map-00000001.cbor");  // open succeeds, read fails
+  EXPECT_EQ(spool.read().size(), 1u) << "the other map is queued";
+  EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor"));
+  const std::string why = "cannot read " + (folder_ / "map-00000001.cbor").string() + ": Is a directory";
+  EXPECT_EQ(spool.trouble(), why);
+  const auto kept = spool.keep(1, grid("r1", 1), 0);
+  ASSERT_FALSE(kept);
+  EXPECT_EQ(kept.error().status, icd::Status::ServiceUnavailable);
+  EXPECT_EQ(kept.error().sentence, "Adit cannot store this map: " + why + "; send it again later");
 }
 
 TEST_F(SpoolTest, TakesNothingForAMapThatWasNotWrittenToItsEnd) {
   Spool spool(folder_);
   std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
   std::ofstream(folder_ / "map-x.cbor") << "no number";
-  EXPECT_TRUE(spool.read().maps.empty());
+  EXPECT_TRUE(spool.read().empty());
 }
 
 TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten) {
@@ -154,10 +144,9 @@ TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten
   EXPECT_NE(kept->data.bytes.chunks()[0]->data(), whole.data.bytes.chunks()[0]->data());
   EXPECT_EQ(kept->data.bytes.chunks()[0].owner(), kept->data.bytes.chunks()[1].owner()) << "one mapping";
   const auto again = Spool(folder_).read();
-  ASSERT_EQ(again.maps.size(), 1u);
-  EXPECT_EQ(again.maps[0].second, whole);
-  EXPECT_EQ(again.maps[0].second.data.bytes.chunks()[0].owner(),
-            again.maps[0].second.data.bytes.chunks()[1].owner())
+  ASSERT_EQ(again.size(), 1u);
+  EXPECT_EQ(again[0].second, whole);
+  EXPECT_EQ(again[0].second.data.bytes.chunks()[0].owner(), again[0].second.data.bytes.chunks()[1].owner())
       << "in the file again, and not beside it";
   spool.forget(7);
   EXPECT_TRUE(fs::is_empty(folder_));
@@ -208,7 +197,7 @@ TEST_F(SpoolTest, RefusesEveryMapWhereItsFolderCannotBeWritten) {
   const auto kept = spool.keep(1, grid("r1", 1), 0);
   ASSERT_FALSE(kept);
   EXPECT_EQ(kept.error().status, icd::Status::ServiceUnavailable);
-  EXPECT_TRUE(spool.read().maps.empty());
+  EXPECT_TRUE(spool.read().empty());
   EXPECT_EQ(Spool(folder_ / "waiting").trouble(), "");
 }
 

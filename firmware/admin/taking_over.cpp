@@ -170,11 +170,12 @@ std::expected<void, std::string> TakingOver::take_settings(const spare::Content&
 }
 
 std::expected<void, std::string> TakingOver::note(const spare::About& about) {
-  SpareFile file = SpareFile::read(state_).value_or(SpareFile{});
-  file.rest.reset();
-  std::erase_if(file.taken, [&about](const TakenFrom& each) { return each.box == about.box; });
-  file.taken.push_back({.box = about.box, .at = about.at, .rest_count = about.rest_count});
-  return file.write(state_);
+  auto file = SpareFile::read(state_);
+  if (!file) return std::unexpected(std::move(file.error()));
+  file->rest.reset();
+  std::erase_if(file->taken, [&about](const TakenFrom& each) { return each.box == about.box; });
+  file->taken.push_back({.box = about.box, .at = about.at, .rest_count = about.rest_count});
+  return file->write(state_);
 }
 
 }  // namespace adit::admin

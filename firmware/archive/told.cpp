@@ -45,10 +45,12 @@ void Told::tell(Kind kind, std::string_view said, std::uint64_t file) {
   }
 }
 
-/// The files of lines and those of tiles are read apart, so each tells it. What a write that failed had told
-/// is told again.
+/// The files of lines and those of tiles are read apart, so each tells it. After a write that failed, its
+/// steps are told again.
 void Told::tell(const Step& step, bool of_tiles) {
-  if (std::exchange(of_tiles ? tile_step_ : line_step_, step) == step) return;
+  std::vector<Step>& told = of_tiles ? tile_steps_ : line_steps_;
+  if (std::ranges::find(told, step) != told.end()) return;
+  told.push_back(step);
   if (of_tiles) return move_tiles(step.seconds);
   move_lines(step.seconds);
 }

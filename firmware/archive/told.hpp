@@ -64,7 +64,7 @@ class Told {
   std::uint64_t known_now_ = 0;
   std::vector<std::pair<double, std::uint64_t>> known_;
   double last_line_ = 0, last_tile_ = 0;
-  std::optional<Step> line_step_, tile_step_;  // the last one that was told
+  std::vector<Step> line_steps_, tile_steps_;  // that were told
 };
 
 }  // namespace adit::archive

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -203,7 +204,9 @@ template <std::unsigned_integral Count>
 struct KindOf<Count> : Equal {
   static Value write(Count number) { return {std::uint64_t{number}}; }
   static void read(const Field& field, Count& number) {
-    number = static_cast<Count>(field.whole<std::int64_t>(0));
+    constexpr std::uint64_t kMost =
+        std::min<std::uint64_t>(std::numeric_limits<Count>::max(), std::numeric_limits<std::int64_t>::max());
+    number = static_cast<Count>(field.whole<std::int64_t>(0, static_cast<std::int64_t>(kMost)));
   }
   static constexpr Schema schema = {.type = "integer", .least = 0};
 };

@@ -60,7 +60,7 @@ std::string trouble(const std::string& path, int error) {
   return path + ": " + std::system_category().message(error);
 }
 
-std::expected<File, int> slurp(const std::string& path) {
+std::expected<File, int> slurp(const std::string& path, std::size_t most) {
   // Not to wait for whoever might write into a pipe of that name.
   const FileDescriptor fd(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
   if (!fd) return std::unexpected(errno);
@@ -75,7 +75,7 @@ std::expected<File, int> slurp(const std::string& path) {
     if (count < 0) return std::unexpected(errno);
     if (count == 0) return file;
     file.text.append(buffer, static_cast<std::size_t>(count));
-    if (file.text.size() > kLargestFile) return std::unexpected(EFBIG);
+    if (file.text.size() > most) return std::unexpected(EFBIG);
   }
 }
 
@@ -142,11 +142,10 @@ std::expected<std::vector<std::string>, std::string> names_in(const std::string&
 }
 
 std::expected<void, std::string> remove_file(const std::string& path) {
-  if (unlink(path.c_str()) != 0) {
-    if (errno == ENOENT) return {};
+  if (unlink(path.c_str()) != 0 && errno != ENOENT)
     return std::unexpected(trouble(path + ": cannot be removed", errno));
-  }
-  if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
+  // Also if it was absent: the sync after its removal may have failed.
+  if (!sync_folder(path) && errno != ENOENT) return std::unexpected(trouble(folder_of(path), errno));
   return {};
 }
 

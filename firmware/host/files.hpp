@@ -15,8 +15,8 @@ struct File {
   struct stat status;  // of the very file that was read
 };
 
-/// The text, or the errno; EFBIG above kLargestFile.
-std::expected<File, int> slurp(const std::string& path);
+/// The text, or the errno; EFBIG above `most` bytes.
+std::expected<File, int> slurp(const std::string& path, std::size_t most = kLargestFile);
 
 /// "PATH: No such file or directory"
 std::string trouble(const std::string& path, int error);

@@ -74,10 +74,11 @@ std::expected<pid_t, int> spawn(const std::vector<std::string>& words, int outpu
   return process;
 }
 
-/// How it ended: "" where it exited 0, else "exit status 3" or "ended by signal 9".
+/// How it ended: "" if it exited 0, else "exit status 3" or "ended by signal 9".
 std::string await_end(pid_t process) {
   int status = 0;
-  while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+  while (waitpid(process, &status, 0) < 0) {
+    if (errno != EINTR) return std::string("the exit status is unknown: ") + std::strerror(errno);
   }
   if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
   return WIFEXITED(status) ? "exit status " + std::to_string(WEXITSTATUS(status))

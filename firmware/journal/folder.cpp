@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string_view>
 #include <system_error>
 
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
 
@@ -16,22 +18,14 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kJournal = "journal-", kSnapshot = "snapshot-", kPart = ".part";
 
-std::string bytes_of(const std::string& path) {
-  std::error_code error;
-  const std::uintmax_t size = fs::file_size(path, error);
-  if (error) return "";
-  std::string bytes(size, '\0');
-  std::ifstream file(path, std::ios::binary);
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
-}
-
-/// Whether the records end as those of a whole snapshot do.
-bool replay(const std::string& path, Carried& carried, const std::atomic<bool>& enough) {
+/// Whether the records end as those of a whole snapshot do; an error if the file cannot be read.
+std::expected<bool, std::string> replay(const std::string& path, Carried& carried,
+                                        const std::atomic<bool>& enough) {
+  const auto file = host::slurp(path, std::numeric_limits<std::size_t>::max());
+  if (!file) return std::unexpected(host::trouble(path, file.error()));
   bool whole = false;
   std::size_t unknown = 0;
-  for_each_record(bytes_of(path), [&](Kind kind, std::string_view said) {
+  for_each_record(file->text, [&](Kind kind, std::string_view said) {
     whole = kind == Kind::End;
     if (!carried.apply(kind, said)) ++unknown;
     return !enough;
@@ -55,7 +49,7 @@ std::string Folder::file(const char* kind, std::uint64_t number) const {
   return path_ + '/' + host::numbered_name(kind, number);
 }
 
-Folder::Files Folder::files() const {
+std::expected<Folder::Files, std::string> Folder::files() const {
   Files files;
   std::error_code error;
   for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
@@ -64,39 +58,48 @@ Folder::Files Folder::files() const {
     if (const auto number = host::number_in_name(name, kSnapshot)) files.snapshots.push_back(*number);
     if (name.ends_with(kPart)) files.parts.push_back(entry->path().string());
   }
+  const bool is_absent = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
+  if (error && !is_absent) return std::unexpected(path_ + ": " + error.message());
   std::ranges::sort(files.journals);
   std::ranges::sort(files.snapshots);
   return files;
 }
 
-std::uint64_t Folder::last() const {
-  const Files all = files();
-  return std::max(all.journals.empty() ? 0 : all.journals.back(),
-                  all.snapshots.empty() ? 0 : all.snapshots.back());
+std::expected<std::uint64_t, std::string> Folder::last() const {
+  const auto all = files();
+  if (!all) return std::unexpected(all.error());
+  return std::max(all->journals.empty() ? 0 : all->journals.back(),
+                  all->snapshots.empty() ? 0 : all->snapshots.back());
 }
 
-Carried Folder::read() const {
-  return read(last(), false);
+std::expected<Carried, std::string> Folder::read() const {
+  return read(std::numeric_limits<std::uint64_t>::max(), false);
 }
 
-Carried Folder::read(std::uint64_t last, const std::atomic<bool>& enough) const {
-  const Files all = files();
+std::expected<Carried, std::string> Folder::read(std::uint64_t last, const std::atomic<bool>& enough) const {
+  const auto all = files();
+  if (!all) return std::unexpected(all.error());
   Carried carried;
   std::uint64_t first = 0;
-  for (auto number = all.snapshots.rbegin(); number != all.snapshots.rend() && first == 0; ++number) {
+  for (auto number = all->snapshots.rbegin(); number != all->snapshots.rend() && first == 0; ++number) {
     Carried kept;
-    if (!replay(snapshot(*number), kept, enough)) continue;
+    const auto whole = replay(snapshot(*number), kept, enough);
+    if (!whole) return std::unexpected(whole.error());
+    if (!*whole) continue;
     carried = std::move(kept);
     first = *number;
   }
-  for (const std::uint64_t number : all.journals) {
-    if (number >= first && number <= last && !enough) replay(journal(number), carried, enough);
+  for (const std::uint64_t number : all->journals) {
+    if (number < first || number > last || enough) continue;
+    if (const auto read = replay(journal(number), carried, enough); !read)
+      return std::unexpected(read.error());
   }
   return carried;
 }
 
 std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last, const std::atomic<bool>& enough) {
-  const Carried carried = read(last, enough);
+  const auto carried = read(last, enough);
+  if (!carried) return std::unexpected(carried.error());
   const std::string path = snapshot(last + 1), part = path + std::string(kPart);
   std::ofstream file(part, std::ios::binary | std::ios::trunc);
   std::size_t size = 0;
@@ -105,7 +108,7 @@ std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last, cons
     file.write(record.data(), static_cast<std::streamsize>(record.size()));
     size += record.size();
   };
-  if (!enough) carried.write(write);
+  if (!enough) carried->write(write);
   write(Kind::End, {});
   file.close();
   std::error_code error;
@@ -119,7 +122,7 @@ std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last, cons
 }
 
 void Folder::remove_before(std::uint64_t number) {
-  const Files all = files();
+  const Files all = files().value_or(Files{});  // what stays is removed after the next snapshot
   std::error_code error;
   for (const std::string& part : all.parts) fs::remove(part, error);  // death came while it was written
   for (const std::uint64_t each : all.journals) {

@@ -21,13 +21,13 @@ class Folder {
   std::string journal(std::uint64_t number) const { return file("journal-", number); }
   std::string snapshot(std::uint64_t number) const { return file("snapshot-", number); }
 
-  /// What the files up to `journal-last` come to. What cannot be understood is logged. `enough`: to be left
-  /// half way, when the outcome is of no use any more.
-  Carried read(std::uint64_t last, const std::atomic<bool>& enough) const;
-  Carried read() const;
+  /// What the files up to `journal-last` come to. Unknown records are logged. An error if a file, or the
+  /// folder, cannot be read. `enough`: to be left half way, when the outcome is of no use any more.
+  std::expected<Carried, std::string> read(std::uint64_t last, const std::atomic<bool>& enough) const;
+  std::expected<Carried, std::string> read() const;
 
   /// The highest number of any file; 0: there is none.
-  std::uint64_t last() const;
+  std::expected<std::uint64_t, std::string> last() const;
 
   /// Writes a snapshot of all up to `journal-last`, and removes what it stands for. Its size in bytes, or a
   /// sentence why not.
@@ -39,7 +39,7 @@ class Folder {
     std::vector<std::string> parts;                  // of snapshots that are not whole
   };
   std::string file(const char* kind, std::uint64_t number) const;
-  Files files() const;
+  std::expected<Files, std::string> files() const;
   void remove_before(std::uint64_t number);
 
   std::string path_;

@@ -14,16 +14,26 @@
 
 namespace adit::journal {
 
-Journal::Journal(loop::Loop& loop, std::string folder)
-    : folder_(std::move(folder)), number_(folder_.last()), compactor_(loop, 1) {}
+Journal::Journal(loop::Loop& loop, std::string folder) : folder_(std::move(folder)), compactor_(loop, 1) {
+  const auto last = folder_.last();
+  number_ = last.value_or(0);
+  if (!last) unread_ = last.error();
+}
 
 Journal::~Journal() {
   ending_ = true;
 }
 
+Carried Journal::read() {
+  auto carried = folder_.read();
+  if (!carried) unread_ = carried.error();
+  if (!unread_.empty()) (void)failed(unread_);
+  return unread_.empty() ? std::move(*carried) : Carried();
+}
+
 void Journal::begin(const Clock& clock) {
   const std::uint64_t last = number_;
-  if (open_next() && last > 0) compact(last);
+  if (unread_.empty() && open_next() && last > 0) compact(last);
   note(Kind::LifeBegins, {});
   note(Kind::Clock, said(clock));
 }
@@ -110,6 +120,7 @@ std::string Journal::unsaid_and(const std::string& record) const {
 }
 
 Journal::Kept Journal::append(const std::string& record) {
+  if (!unread_.empty()) return std::unexpected(unread_);
   if (!file_ && !open_next()) return std::unexpected(trouble_);
   if (auto written = unsaid_.empty() ? write(record) : write(unsaid_and(record)); !written) return written;
   unsaid_.clear();

@@ -37,9 +37,10 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// What the lives before left.
-  Carried read() const { return folder_.read(); }
-  /// This life begins; nothing is told before.
+  /// What the processes before left. If a file cannot be read, it stays: nothing is told, and nothing is
+  /// kept, until the next start.
+  Carried read();
+  /// Call once, after read() and before any other member.
   void begin(const Clock& clock);
   /// More is known of it.
   void clock(const Clock& clock) { note(Kind::Clock, said(clock)); }
@@ -84,7 +85,8 @@ class Journal {
   Kept failed(const std::string& why);
 
   Folder folder_;
-  std::uint64_t number_;  // of the file that is written
+  std::string unread_;        // why a file of the processes before could not be read
+  std::uint64_t number_ = 0;  // of the file that is written
   loop::FileDescriptor file_;
   struct Unsaid {
     Kind kind;

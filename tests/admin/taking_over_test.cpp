@@ -113,6 +113,15 @@ TEST_F(TakingOverTest, IsNotFinishedWhereItsLedgerIsNoneAndSaysSo) {
 
 /// What the Command Post said last at the first box is as old here as it was there, however the two clocks
 /// stand to each other: silence that nobody saw makes no new run.
+TEST_F(TakingOverTest, IsNotFinishedWhileTheListOfUsedExportsCannotBeRead) {
+  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  fs::create_directory(fs::path(state_.path()) / SpareFile::kName);
+  EXPECT_FALSE(taking_over_.finish(loop_));
+  fs::remove(fs::path(state_.path()) / SpareFile::kName);
+  EXPECT_EQ(taking_over_.finish(loop_), true);
+  EXPECT_THAT(reports(), SizeIs(2));
+}
+
 TEST_F(TakingOverTest, CountsTheTimeOfTheSwapOnlyWhereBothTimesOfDayAreTold) {
   for (const bool are_told : {false, true}) {
     const host::Folder folder;

@@ -115,6 +115,8 @@ TEST_F(Damage, AStepOfTheClockThatWasWrittenTwiceIsOne) {
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1051);
   told.tell(framed(Kind::Head, said(run.head)) + step + later, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1101);
+  told.tell(framed(Kind::Head, said(run.head)) + step + later, kLines);
+  EXPECT_EQ(told.tracks()[0].poses[0].at, 1101) << "both were in the write that failed";
 }
 
 }  // namespace

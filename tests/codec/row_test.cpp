@@ -69,6 +69,14 @@ TEST(Row, IsWrittenInTheOrderOfItsMembers) {
                            R"("top":{"x":1.0,"y":2.0,"z":3.0},"done":true})");
 }
 
+TEST(Row, RejectsACountThatItsTypeCannotHold) {
+  Reading reading;
+  const Value root{std::int64_t{1} << 32};
+  std::uint32_t count = 0;
+  KindOf<std::uint32_t>::read(Field(root, reading), count);
+  EXPECT_TRUE(reading.refused());
+}
+
 TEST(Row, IsReadAsItWasWritten) {
   EXPECT_EQ(read_back(kJson), kJson);
 }

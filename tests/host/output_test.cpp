@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <csignal>
 #include <cstdlib>
 
 #include "host/folder.hpp"
@@ -41,6 +42,13 @@ TEST(Output, OfAProgramThatFailsSaysHow) {
   const Output slow = output_of({"/bin/sh", "-c", "echo begun; exec sleep 30"}, milliseconds(1000));
   EXPECT_EQ(slow.trouble, "took longer than 1000 ms");
   EXPECT_EQ(slow.out, "begun\n");
+}
+
+TEST(Output, OfAProgramWhoseExitStatusIsLostSaysSo) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);  // then the kernel keeps no exit status
+  const Output output = output_of({"/bin/true"}, milliseconds(20000));
+  std::signal(SIGCHLD, before);
+  EXPECT_EQ(output.trouble, "the exit status is unknown: No child processes");
 }
 
 TEST(Output, OfAProgramThatTalksWithoutEndKeepsTheLastOfIt) {

@@ -44,7 +44,7 @@ class JournalTest : public testing::Test {
     journal->begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
     return journal;
   }
-  Carried left() const { return Folder(folder_ / "journal").read(); }
+  Carried left() const { return Folder(folder_ / "journal").read().value(); }
   std::vector<std::string> files(const std::string& kind) const {
     std::vector<std::string> names;
     for (const auto& file : fs::directory_iterator(folder_ / "journal")) {
@@ -153,10 +153,30 @@ TEST_F(JournalTest, StaysSmallAndLosesNothingWhenItIsRestarted) {
   check();
 }
 
+TEST_F(JournalTest, KeepsNothingAndRemovesNothingIfAFileCannotBeRead) {
+  ASSERT_TRUE(life()->accepted(pose(1)));
+  const fs::path unreadable = folder_ / "journal" / "journal-00000002";
+  fs::create_directory(unreadable);
+  const std::string why = unreadable.string() + ": Is a directory";
+  {
+    Journal journal(loop_, folder_ / "journal");
+    EXPECT_TRUE(journal.read().robots().empty());
+    EXPECT_EQ(journal.trouble(), why);
+    journal.begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
+    const auto kept = journal.accepted(pose(2));
+    ASSERT_FALSE(kept);
+    EXPECT_EQ(kept.error(), why);
+    EXPECT_EQ(files("journal").size(), 2u) << "no new one";
+  }
+  EXPECT_FALSE(Folder(folder_ / "journal").compact(2, false));
+  fs::remove(unreadable);
+  EXPECT_EQ(left().robots().size(), 1u);
+}
+
 TEST_F(JournalTest, TakesASnapshotThatIsNotWholeForNone) {
   ASSERT_TRUE(life()->accepted(pose(1)));
   const Folder folder(folder_ / "journal");
-  std::ofstream(folder.snapshot(folder.last() + 1), std::ios::binary)
+  std::ofstream(folder.snapshot(folder.last().value() + 1), std::ios::binary)
       << framed(Kind::Markers, said(one_marker(1)));
   EXPECT_TRUE(left().markers().markers.empty());
   EXPECT_EQ(left().robots().size(), 1u);

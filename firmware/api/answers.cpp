@@ -12,7 +12,7 @@ namespace {
 /// Nothing but the page's own files may be loaded or called, and nothing may frame it.
 constexpr const char* kContentSecurityPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
-    "base-uri 'none'; frame-ancestors 'none'; form-action 'none'";
+    "worker-src 'self'; base-uri 'none'; frame-ancestors 'none'; form-action 'none'";
 
 }  // namespace
 

@@ -10,6 +10,7 @@ const patched = readFileSync(join(FILES, "patched.js"), "utf8").replace(/^export
 export const retell = (page, make, ...given) => page.addInitScript(`{
   ${patched}
   const change = (${make})(...${JSON.stringify(given)});
+  delete globalThis.SharedWorker; // which would hear it in the page's place
   const Heard = globalThis.EventSource;
   globalThis.EventSource = class extends Heard {
     #view = null;

@@ -36,12 +36,18 @@ function showTab(alarms, lost) {
   if (document.title !== title) document.title = title;
 }
 
-/** `view`: null where none came yet. */
-export function showAlarms(view, time, lost) {
+/** The box does not answer, or answers a page with `trouble`. */
+function lostAlarm(view, since, trouble) {
+  if (trouble) return { ...LOST, since, what: "The box sends no data to this page", why: trouble };
+  return { ...LOST, since, why: view ? `last data at ${timeOfDay(view.now)}` : "connecting" };
+}
+
+/** `view`: null where none came yet; `trouble`: the box's sentence where it answers with an error, or "". */
+export function showAlarms(view, time, lost, trouble) {
   const now = time ?? 0;
   const told = inOrder(view?.alarms ?? []), over = view?.alarms_over ?? [];
   const since = view ? view.now : now;
-  const shown = lost ? [{ ...LOST, since, why: view ? `last data at ${timeOfDay(view.now)}` : "connecting" }, ...told] : told;
+  const shown = lost ? [lostAlarm(view, since, trouble), ...told] : told;
   if (!shown.length && view) calm(over);
   else list(cards, shown.slice(0, SHOWN), (alarm) => alarm.id, alarmCard, (node, alarm) => fillCard(node, alarm, now));
   say(all, shown.length ? `All ${shown.length}` : "History");

@@ -1,66 +1,58 @@
-// The line to the box: server-sent events, and a watchdog that notices when they stop.
+// The line to the box: views of the run, by a stream that all tabs of the browser share.
 
 import { patched } from "./patched.js";
 import { checkSession } from "./session.js";
+import { follow as followStream } from "./stream.js";
 
-const SILENCE = 4500;  // ms; the box says something every 2 s
-const RETRY = 2000;
+const SILENCE = 10; // s; the worker says something every 4.5 s, also while the box is silent
 
-/** Follows the run: `show({view, time, lost})` for each view that comes (null: none came yet), as the line goes and
- *  comes back, and each second, for ages grow. `time` is the box's clock. Gives what shows it once more. */
+/** Follows the run: `show({view, time, lost, trouble})` for each view that comes (null: none came yet), as the line goes and
+ *  comes back, and each second, for ages grow. `time` is the box's clock; `trouble` the box's sentence, if it answers with an error.
+ *  Gives what shows it once more. */
 export function follow(url, show) {
-  let view = null, heardAt = 0, lost = false;
-  const again = () => show({ view, lost, time: view && view.now + (performance.now() - heardAt) / 1000 });
-  const heard = (next) => {
-    view = next;
-    heardAt = performance.now();
+  let view = null, heardAt = 0, lost = false, trouble = "";
+  const again = () => show({ view, lost, trouble, time: view && view.now + (performance.now() - heardAt) / 1000 });
+  const hear = (message) => {
+    lost = Boolean(message.lost);
+    trouble = message.trouble ?? "";
+    if (!lost) {
+      view = message.view ?? patched(view, message.patch);
+      heardAt = performance.now() - (message.age ?? 0);
+    }
     again();
+    if (message.status) checkSession(); // perhaps the session ended
   };
-  const lose = (isLost) => {
-    lost = isLost;
-    again();
-  };
-  listen(url, heard, lose);
+  if (globalThis.SharedWorker) share(url, hear);
+  else followShown(url, hear);
   setInterval(again, 1000);
   return again;
 }
 
-/** Calls `heard(view)` for each view that comes, and `lost(true or false)` as the line goes and comes back. The box tells
- *  a view whole, and then what it changes by. */
-function listen(url, heard, lost) {
-  let source = null, last = performance.now(), isLost = false;
-
-  const set = (value) => {
-    if (isLost !== value) lost((isLost = value));
+/** By the worker of all tabs. If its script does not come, as from a box that was updated since, or the worker ends: alone. */
+function share(url, hear) {
+  const worker = new SharedWorker("stream_worker.js", { name: url }), { port } = worker;
+  let silence = 0; // in turns of the watchdog: none passes while the tab is frozen or the computer sleeps
+  const part = () => {
+    clearInterval(watchdog);
+    port.close();
+    followShown(url, hear);
   };
-  const open = () => {
-    source?.close();
-    source = new EventSource(url);
-    let view = null; // nothing of an earlier connection
-    const take = (next) => {
-      last = performance.now();
-      set(false);
-      heard((view = next));
-    };
-    source.addEventListener("message", ({ data }) => take(JSON.parse(data)));
-    source.addEventListener("patch", ({ data }) => view && take(patched(view, JSON.parse(data))));
-    source.onerror = () => {
-      set(true);
-      if (source.readyState === EventSource.CLOSED) checkSession(); // an error answer: perhaps the session ended
-    };
+  const watchdog = setInterval(() => ++silence > SILENCE && part(), 1000);
+  worker.onerror = part;
+  port.onmessage = ({ data }) => {
+    silence = 0;
+    port.postMessage("heard");
+    hear(data);
   };
+}
 
-  // EventSource comes back by itself after a closed connection, but neither after an error answer nor from a
-  // connection that has gone silent.
-  let tried = last;
-  setInterval(() => {
-    const now = performance.now();
-    if (now - last > SILENCE) set(true);
-    const dead = source.readyState === EventSource.CLOSED || now - last > SILENCE;
-    if (dead && now - tried > RETRY) {
-      tried = now;
-      open();
-    }
-  }, 250);
-  open();
+/** A stream of this tab's own, while the tab is shown: browsers such as Chrome for Android have no shared workers. */
+function followShown(url, hear) {
+  let end = null;
+  const turn = () => {
+    end?.();
+    end = document.hidden ? null : followStream(url, hear);
+  };
+  document.addEventListener("visibilitychange", turn);
+  turn();
 }

@@ -27,11 +27,11 @@ import { followNetwork } from "./pending.js";
 import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
-function show({ view: told, time, lost }) {
+function show({ view: told, time, lost, trouble }) {
   const view = told && { ...told, reports: allReports(told, lost) };
   showLink(view, lost);
   linkIs(lost);
-  showAlarms(view, time, lost);
+  showAlarms(view, time, lost, trouble);
   if (!view) return;
   showRun(view, time, lost);
   showEnds(view, lost);

@@ -98,7 +98,8 @@ async function send(path, body, csrf) {
   return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error(SILENT))));
 }
 
-async function resultOf(answer) {
+/** The JSON of an answer; throws the Error of one that is none. */
+export async function resultOf(answer) {
   const said = await answer.json().catch(() => null);
   if (answer.ok) return said;
   const sentence = typeof said === "string" ? said : `The box answered ${answer.status}.`;

@@ -15,6 +15,7 @@ const patched = readFileSync(join(FILES, "patched.js"), "utf8").replace(/^export
 const listen = (page) => page.addInitScript(`{
   ${patched}
   globalThis.heard = [];
+  delete globalThis.SharedWorker; // which would hear it in the page's place
   const Heard = globalThis.EventSource;
   globalThis.EventSource = class extends Heard {
     constructor(...words) {

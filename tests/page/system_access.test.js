@@ -21,6 +21,28 @@ test("lists who is logged in, and ends a session, whose page goes to the login",
   assert.equal(await page.locator("#sessions li").count(), 1);
 });
 
+const AGENTS = [
+  ["Mozilla/5.0 (Linux; Android 13; Pixel 7) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/108.0.0.0 Mobile Safari/537.36", "Chrome on Android"],
+  ["Mozilla/5.0 (Android 13; Mobile; rv:115.0) Gecko/115.0 Firefox/115.0", "Firefox on Android"],
+  ["Mozilla/5.0 (Linux; Android 13; SM-X200) AppleWebKit/537.36 (KHTML, like Gecko) SamsungBrowser/20.0 Chrome/106.0.0.0 Safari/537.36", "Samsung Internet on Android"],
+  ["Mozilla/5.0 (X11; Linux x86_64; rv:115.0) Gecko/20100101 Firefox/115.0", "Firefox on Linux"],
+  ["Mozilla/5.0 (X11; CrOS x86_64 14541.0.0) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/108.0.0.0 Safari/537.36", "Chrome on ChromeOS"],
+  ["Mozilla/5.0 (iPad; CPU OS 16_0 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) CriOS/108.0.0.0 Mobile/15E148 Safari/604.1", "Chrome on iPad"],
+  ["Mozilla/5.0 (iPhone; CPU iPhone OS 16_0 like Mac OS X) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/16.0 Mobile/15E148 Safari/604.1", "Safari on iPhone"],
+  ["Mozilla/5.0 (Macintosh; Intel Mac OS X 10_15_7) AppleWebKit/605.1.15 (KHTML, like Gecko) Version/16.0 Safari/605.1.15", "Safari on Mac OS X"],
+  ["Mozilla/5.0 (Windows NT 10.0; Win64; x64) AppleWebKit/537.36 (KHTML, like Gecko) Chrome/108.0.0.0 Safari/537.36 Edg/108.0.1462.46", "Edge on Windows"],
+];
+
+test("names each session's browser and system", async (t) => {
+  const { stage, page } = await come(t);
+  const headers = { "Content-Type": "application/json" }, body = JSON.stringify({ password: VIEWER });
+  for (const [agent] of AGENTS) await fetch(`${stage.url}adit/login`, { method: "POST", headers: { ...headers, "User-Agent": agent }, body });
+  const rows = page.locator("#sessions li", { hasText: /viewer/i });
+  await rows.nth(AGENTS.length - 1).waitFor();
+  const shown = (await rows.locator(".from").allInnerTexts()).map((text) => text.replace(/^127\.0\.0\.1, /, ""));
+  assert.deepEqual(shown.sort(), AGENTS.map(([, name]) => name).sort());
+});
+
 test("logs out by ending the own session", async (t) => {
   const { page } = await come(t);
   await page.locator("#sessions").getByRole("button", { name: /Log out: operator/ }).click();

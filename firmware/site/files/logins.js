@@ -9,10 +9,14 @@ const EVERY = 5000; // ms
 const section = document.getElementById("sessions");
 const rows = section.querySelector(".who"), trouble = section.querySelector(".trouble");
 
+// The first word of a User-Agent counts: Android says Linux, and most browsers say Chrome and Safari.
+const BROWSERS = { Edg: "Edge", OPR: "Opera", SamsungBrowser: "Samsung Internet", Firefox: "Firefox", FxiOS: "Firefox", CriOS: "Chrome", Chrome: "Chrome", Safari: "Safari" };
+const SYSTEMS = { Android: "Android", iPhone: "iPhone", iPad: "iPad", Windows: "Windows", "Mac OS X": "Mac OS X", CrOS: "ChromeOS", Linux: "Linux" };
+const named = (agent, names) => names[Object.keys(names).find((word) => agent.includes(word))];
+
 /** "Chrome on Windows" of a User-Agent, or its beginning. */
 function browserOf(agent) {
-  const browser = /(Firefox|Edg|OPR|Chrome|Safari)\//.exec(agent)?.[1];
-  const system = /(Android|iPhone|iPad|Windows|Mac OS X|CrOS|Linux)/.exec(agent)?.[1];
+  const browser = named(agent, BROWSERS), system = named(agent, SYSTEMS);
   return browser && system ? `${browser} on ${system}` : clip(agent || "a program", 40);
 }
 

@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { patient } from "./patience.js";
 import { retell } from "./retold.js";
 import { axeFindsNothing, settled, shoot, text, watch } from "./watch.js";
 
@@ -114,6 +115,28 @@ test("sounds only where somebody wants it, and remembers that", async (t) => {
   await page.waitForFunction(() => globalThis.tones >= 2);
   await page.getByRole("button", { name: "Sound is on" }).click();
   await page.getByRole("button", { name: "Sound is off" }).waitFor();
+});
+
+test("sounds on after the box's clock stepped back", async (t) => {
+  const prepare = async (page) => {
+    await page.addInitScript(() => {
+      localStorage.setItem("adit-sound", "on");
+      globalThis.tones = 0;
+      const real = AudioContext.prototype.createOscillator;
+      AudioContext.prototype.createOscillator = function () {
+        ++globalThis.tones;
+        return real.call(this);
+      };
+    });
+    await retell(page, () => (view) => ({ ...view, now: view.now - (globalThis.step ?? 0) }));
+  };
+  const { page } = await watch(t, "trouble", { prepare });
+  await page.waitForFunction(() => globalThis.tones > 0);
+  const before = await page.evaluate(() => {
+    globalThis.step = 3600;
+    return globalThis.tones;
+  });
+  await page.waitForFunction((before) => globalThis.tones >= before + 4, before, { timeout: patient(40_000) }); // twice more, within 20 s
 });
 
 test("is one line to those who only listen", async (t) => {

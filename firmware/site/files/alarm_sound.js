@@ -1,7 +1,7 @@
 // A sound for alarms that nobody has acknowledged: off until somebody wants it, and then so in this browser.
 import { drawn } from "./icons.js";
 
-const KEY = "adit-sound", AGAIN = 10; // seconds
+const KEY = "adit-sound", AGAIN = 10_000; // ms
 const TONES = { bad: [880, 660], ask: [660, 880] }; // Hz: bad falls, ask rises
 
 const button = document.querySelector("button.sound");
@@ -43,11 +43,12 @@ addEventListener("pointerdown", () => wanted && wake());
 show();
 
 /** At once for what is new, and again each 10 s until it is acknowledged or has gone. */
-export function sounds(alarms, time) {
+export function sounds(alarms) {
+  const now = performance.now(); // the box's time of day can step
   const calling = alarms.filter(({ acknowledged, severity }) => !acknowledged && TONES[severity]);
   const isNew = calling.some(({ id }) => !known.has(id));
   known = new Set(calling.map(({ id }) => id));
-  if (!wanted || calling.length === 0 || (!isNew && time < at + AGAIN)) return;
-  at = time;
+  if (!wanted || calling.length === 0 || (!isNew && now < at + AGAIN)) return;
+  at = now;
   play(TONES[calling[0].severity]);
 }

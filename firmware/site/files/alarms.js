@@ -53,5 +53,5 @@ export function showAlarms(view, time, lost, trouble) {
   say(all, shown.length ? `All ${shown.length}` : "History");
   fillAlarmList(dialog, shown, over, now);
   showTab(shown, lost);
-  sounds(shown, now);
+  sounds(shown);
 }

@@ -27,3 +27,16 @@ test("has on a phone three of them, and none on another", async (t) => {
   }));
   assert.deepEqual(rows, [true, true, true]);
 });
+
+test("says that a report whose answer does not come may have been accepted", async (t) => {
+  const { stage, page } = await watch(t, "calm");
+  await page.locator("#reports .compose:enabled").click();
+  await page.locator("#compose .types").getByRole("button", { name: "Drill", exact: true }).click();
+  for (const [name, value] of [["x", "7"], ["y", "2"], ["z", "0.5"]]) await page.fill(`#compose input[name=${name}]`, value);
+  await page.getByRole("button", { name: "Check" }).click();
+  await page.locator("#compose .send:enabled").waitFor();
+  stage.freeze();
+  await page.locator("#compose .send").click();
+  await page.getByText("No answer came within 30 s. The report may have been accepted: look at the list.").waitFor();
+  stage.thaw();
+});

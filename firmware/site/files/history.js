@@ -1,12 +1,13 @@
 // A report's history and the answer that is kept, asked for when its row is opened and when it moved on.
 import { make } from "./dom.js";
+import { fetchSoon } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
 export async function showHistory(node, { number, changed }) {
   if (node.dataset.of === String(changed)) return;
   node.dataset.of = String(changed);
   try {
-    const answer = await fetch(`/adit/reports/${number}`);
+    const answer = await fetchSoon(`/adit/reports/${number}`);
     if (!answer.ok) throw new Error();
     const { history, answer: said, sender } = await answer.json();
     const steps = history.map((step) => {

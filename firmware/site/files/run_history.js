@@ -2,6 +2,7 @@
 // at once, and from then on what came since.
 import { fillAges } from "./robot_ages.js";
 import { fillLink } from "./link.js";
+import { fetchSoon } from "./session.js";
 import { Steps } from "./steps.js";
 
 const EVERY = 20; // s
@@ -28,7 +29,7 @@ export async function followHistory({ run_number, now }, time) {
   if (asked || time < due) return;
   asked = true;
   try {
-    const answer = await fetch(`/adit/history?since=${last}`);
+    const answer = await fetchSoon(`/adit/history?since=${last}`);
     if (!answer.ok) throw new Error();
     const history = await answer.json();
     if (run_number === run) take(history, time, last === 0);

@@ -1,11 +1,26 @@
 // Who looks at this page, and how it says something to the box.
 
+const GET_WITHIN = 15, POST_WITHIN = 30; // s; a box answers a report within 20 s
+const SILENT = "The box does not answer.";
+
+/** The signal that ends a request after so many seconds. */
+const after = (seconds) => AbortSignal.timeout(1000 * seconds);
+
+/** Throws what to show if no whole answer came; an Error that the box answered stays. */
+function unanswered(error) {
+  if (error.status) throw error;
+  throw new Error(error.name === "TimeoutError" ? "The box did not answer in time." : SILENT);
+}
+
+/** fetch() for a GET that ends in time. */
+export const fetchSoon = (path, options) => fetch(path, { signal: after(GET_WITHIN), ...options });
+
 let asked = null;
 
 /** {role: "operator", "viewer" or null (nobody is logged in), csrf, first_start}; asked for once, or `again`. */
 export function session(again = false) {
   if (again || !asked) {
-    asked = fetch("/adit/session", { cache: "no-store" }).then(resultOf);
+    asked = fetchSoon("/adit/session", { cache: "no-store" }).then(resultOf).catch(unanswered);
     asked.catch(() => (asked = null));
   }
   return asked;
@@ -69,39 +84,60 @@ let ahead = 0; // of this device's clock, in ms
 /** The box's clock, in seconds since 1970: a phone's own may be anything. */
 export const boxNow = () => (Date.now() + ahead) / 1000;
 
-const SILENT = "The box does not answer.";
-
-/** What a path gives, where it gives what is asked for; an Error's message is the sentence to show. */
-async function ask(path, signal) {
-  const answer = await fetch(path, { cache: "no-store", signal }).catch(() => Promise.reject(new Error(SILENT)));
+async function ask(path, signal = after(GET_WITHIN)) {
+  const answer = await fetch(path, { cache: "no-store", signal });
   if (answer.status === 401) toLogin();
   ahead = Date.parse(answer.headers.get("Date")) - Date.now() || 0;
   return answer;
 }
 
-/** Its JSON. */
-export const get = async (path, signal) => resultOf(await ask(path, signal));
+/** The JSON of a path; an Error's message is the sentence to show. */
+export const get = (path, signal) => ask(path, signal).then(resultOf).catch(unanswered);
 
-/** It as a file: its name and its bytes. */
+/** The file of a path: its name and its bytes. It may take any time, unless none of its bytes comes for 15 s. */
 export async function getFile(path) {
-  const answer = await ask(path);
-  if (!answer.ok) await resultOf(answer); // throws
-  const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition"))?.[1] ?? "adit";
-  return { name, blob: await answer.blob() };
+  const stalled = new AbortController(), late = new DOMException("", "TimeoutError"), pieces = [];
+  let timer;
+  const goOn = () => {
+    clearTimeout(timer);
+    timer = setTimeout(() => stalled.abort(late), 1000 * GET_WITHIN);
+  };
+  goOn();
+  try {
+    const answer = await ask(path, stalled.signal);
+    if (!answer.ok) await resultOf(answer); // throws
+    const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition"))?.[1] ?? "adit";
+    const reader = answer.body.getReader();
+    for (let piece; !(piece = await reader.read()).done; goOn()) pieces.push(piece.value);
+    return { name, blob: new Blob(pieces, { type: answer.headers.get("Content-Type") }) };
+  } catch (error) {
+    return unanswered(error);
+  } finally {
+    clearTimeout(timer);
+  }
 }
 
+/** Throws what to show if a POST has no answer: the box may have done what the POST asks for. */
+function unknown(path, error) {
+  if (error.status) throw error;
+  const what = error.name === "TimeoutError" ? `No answer came within ${POST_WITHIN} s.` : SILENT;
+  if (path === "/adit/reports") throw new Error(`${what} The report may have been accepted: look at the list.`);
+  throw new Error(what === SILENT ? what : `${what} The box may have done it.`);
+}
+
+/** A file may take any time, because the box closes a connection that stalls. */
 async function send(path, body, csrf) {
   const file = body instanceof Blob;
   const headers = { "Content-Type": file ? "application/octet-stream" : "application/json" };
   if (csrf) headers["Adit-CSRF"] = csrf;
-  const request = { method: "POST", headers, body: file ? body : JSON.stringify(body) };
-  return resultOf(await fetch(path, request).catch(() => Promise.reject(new Error(SILENT))));
+  const request = { method: "POST", headers, ...(file ? { body } : { body: JSON.stringify(body), signal: after(POST_WITHIN) }) };
+  return fetch(path, request).then(resultOf).catch((error) => unknown(path, error));
 }
 
 /** The JSON of an answer; throws the Error of one that is none. */
 export async function resultOf(answer) {
+  if (answer.ok) return answer.json();
   const said = await answer.json().catch(() => null);
-  if (answer.ok) return said;
   const sentence = typeof said === "string" ? said : `The box answered ${answer.status}.`;
   throw Object.assign(new Error(sentence), { status: answer.status, isBusy: answer.headers.has("Retry-After") });
 }

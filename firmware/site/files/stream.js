@@ -1,16 +1,15 @@
 // The stream of the box's events, with a watchdog that notices silence. It runs in a page, and in the worker that pages share.
 
-import { resultOf } from "./session.js";
+import { fetchSoon, resultOf } from "./session.js";
 
 const SILENCE = 4500; // ms; the box says something every 2 s
 const RETRY = 2000;
-const PATIENCE = 15_000; // ms until an error answer has come
 
 /** What the box says of an error that EventSource does not show: {trouble, status}. Both are missing if the box does not answer, or
  *  accepts a stream by now. */
 async function explanationOf(url) {
   try {
-    const answer = await fetch(url, { signal: AbortSignal.timeout(PATIENCE) });
+    const answer = await fetchSoon(url);
     if (!answer.ok) await resultOf(answer); // throws
     answer.body.cancel();
     return {};

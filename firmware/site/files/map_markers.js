@@ -1,6 +1,7 @@
 // The team's markers as the Command Post was last told of them, seen from above. Only what changed is fetched
 // (README.md: GET /adit/markers).
 import { css } from "./map_shapes.js";
+import { fetchSoon } from "./session.js";
 import { themeNow } from "./theme_now.js";
 import { clip } from "./words.js";
 
@@ -39,7 +40,7 @@ export class Markers {
     if (this.#asked || version === this.#version) return;
     this.#asked = true;
     try {
-      const answer = await fetch(`/adit/markers?since=${this.#version}`);
+      const answer = await fetchSoon(`/adit/markers?since=${this.#version}`);
       if (answer.ok) this.#take(await answer.json());
     } catch {
       // asked for again with the next event

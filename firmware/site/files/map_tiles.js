@@ -1,5 +1,6 @@
 // The picture of the maps, as the box has it: which layers and tiles there are, and their images, each fetched
 // when it is looked at and its version changed (README.md: GET /adit/map).
+import { fetchSoon } from "./session.js";
 
 const AT_ONCE = 4, FINER_AT_ONCE = 2, MOST_IMAGES = 500; // a finer tile may have to be drawn first
 const NONE = [204, 404]; // nothing is known there, of what may be asked for; of anything else
@@ -68,7 +69,7 @@ export class Tiles {
   }
 
   async #ask() {
-    const answer = await fetch(`${this.#base}/map?since=${this.#version}`);
+    const answer = await fetchSoon(`${this.#base}/map?since=${this.#version}`);
     if (!answer.ok) throw new Error(`the box answered ${answer.status}`);
     return answer.json();
   }
@@ -194,7 +195,7 @@ export class Tiles {
     ++this.#loading;
     this.#loadingFiner += Boolean(known.isFiner);
     try {
-      const answer = await fetch(name, known.etag ? { headers: { "If-None-Match": known.etag } } : {});
+      const answer = await fetchSoon(name, known.etag ? { headers: { "If-None-Match": known.etag } } : {});
       const image = answer.status === 200 ? await createImageBitmap(await answer.blob()) : null;
       if (known.isFiner && answer.status === 503) known.name = ""; // asked for again when it is next drawn
       if (known.name !== name || !(image || NONE.includes(answer.status))) return;

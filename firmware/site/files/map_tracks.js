@@ -1,6 +1,7 @@
 // Where each robot was. The box keeps about a pose a second (README.md: GET /adit/tracks); they are fetched once,
 // and what comes after is taken from the run's own events.
 import { robotColour } from "./robot_colour.js";
+import { fetchSoon } from "./session.js";
 
 const SPACING = 1; // s
 const SILENCE = 5; // s without an event: some were missed
@@ -58,7 +59,7 @@ export class Tracks {
     this.#asked = true;
     const run = this.#run;
     try {
-      const answer = await fetch(`${this.#base}/tracks`);
+      const answer = await fetchSoon(`${this.#base}/tracks`);
       if (!answer.ok || run !== this.#run) return;
       for (const { robot, poses } of (await answer.json()).tracks) {
         const last = poses.at(-1)[0];

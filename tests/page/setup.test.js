@@ -116,6 +116,35 @@ test("switches to another course by one press, once it was said what that change
   assert.deepEqual(complaints(page), []);
 });
 
+test("follows the other operator's switch, and takes no yes to a question that he changed", async (t) => {
+  const { ask, page } = await ready(t, "setup#courses", { courses: COURSES });
+  const other = async (name) => {
+    assert.equal((await ask("/adit/course", { name })).status, 200);
+    await until(async () => (await ask("/adit/settings").catch(() => ({}))).said?.settings.command_post.course === name, "the switch");
+  };
+  const inUse = (name) => page.locator("#switch li[data-level=good]", { hasText: name }).waitFor();
+  await other("A");
+  await inUse("Course A");
+  await page.getByRole("button", { name: "Switch to Course B" }).click();
+  await review(page);
+  await other("");
+  await page.locator("#review .text", { hasText: "Another operator has changed this meanwhile." }).waitFor();
+  assert.ok(await page.getByRole("button", { name: "Switch", exact: true }).isDisabled());
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await inUse("No course");
+
+  // He switches just before the press: the page has not heard of it.
+  await page.getByRole("button", { name: "Switch to Course B" }).click();
+  await review(page);
+  await page.route("**/adit/settings", (route) => route.abort());
+  await other("A");
+  await page.unrouteAll();
+  await page.getByRole("button", { name: "Switch", exact: true }).click();
+  await page.locator("#step-courses > .outcome", { hasText: "Another operator has changed this meanwhile. The box did not switch the course." }).waitFor();
+  assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "A");
+  await inUse("Course A");
+});
+
 test("gives all settings as a file, and takes one that is checked and shown first", async (t) => {
   const { ask, page } = await ready(t, "setup#file");
   const [download] = await Promise.all([page.waitForEvent("download"), page.getByRole("link", { name: "Download the settings" }).click()]);

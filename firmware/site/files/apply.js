@@ -21,6 +21,8 @@ const MOST = 250_000; // bytes of a file; the box takes a little more
 
 let outcome = "", link = "", isBusy = false;
 
+export const STALE = "Another operator has changed this meanwhile.";
+
 /** A value as people read it. */
 function shown(value) {
   if (value === "") return "(empty)";
@@ -33,8 +35,12 @@ function head(text, scope) {
   return cell;
 }
 
-/** Asks; gives true (`word`), false (`other`), or null where the dialog was left. `changes`: [path, value, ...]. */
-export function reviewed({ title, text = "", columns = ["From", "To"], changes = [], warnings = [], word, other = "" }) {
+let whenTold = () => {};
+onDraft(() => whenTold());
+
+/** Asks; gives true (`word`), false (`other`), or null where the dialog was left. `changes`: [path, value, ...]. If `isStale()` while it
+ *  is open, it says so and takes no yes. */
+export function reviewed({ title, text = "", columns = ["From", "To"], changes = [], warnings = [], word, other = "", isStale = () => false }) {
   dialog.querySelector("h2").textContent = title;
   dialog.querySelector(".text").textContent = text;
   heads.replaceChildren(...["Setting", ...columns].map((name) => head(name, "col")));
@@ -43,6 +49,12 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
   dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", spoken(warning))));
   yes.textContent = word;
   no.textContent = other || "Cancel";
+  yes.disabled = false;
+  whenTold = () => {
+    if (!isStale()) return;
+    yes.disabled = true;
+    dialog.querySelector(".text").textContent = `${STALE} Cancel, and look at it again.`;
+  };
   return answered(dialog, [[no, other ? false : null], [yes, true]]);
 }
 

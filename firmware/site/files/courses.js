@@ -1,7 +1,7 @@
 // What lets the box in at a Command Post: tokens, which are set and never shown again; and the switch between courses.
-import { applied, insist, reviewed } from "./apply.js";
+import { applied, insist, reviewed, STALE } from "./apply.js";
 import { badge, giveFocus, list, make, say } from "./dom.js";
-import { differs, draft, ENDPOINTS, onDraft, refresh } from "./draft.js";
+import { differs, draft, ENDPOINTS, onDraft, refresh, same } from "./draft.js";
 import { blame, labelled } from "./field.js";
 import { post } from "./session.js";
 import { tryCourse } from "./trial.js";
@@ -112,18 +112,28 @@ const postOf = (settings, name) => (name ? settings.courses.find((course) => cou
 const tokenOf = (name, endpoint) =>
   draft.tokens[`course.${name}.${endpoint}`] ? "own" : draft.tokens[endpoint] ? "common" : "missing";
 
-async function switchTo(name) {
-  const outcome = document.querySelector("#step-courses > .outcome");
+/** What a switch to the course changes, from what is in use. */
+function changesBy(name) {
   const { base } = draft, now = base.command_post.course;
   const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint[0].toUpperCase()}${endpoint.slice(1)} ${what}`, value(now, endpoint), value(name, endpoint)]);
-  const addressOf = (course, endpoint) => at(postOf(base, course)[endpoint]);
-  const changes = [["Course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
+  const addressOf = (course, endpoint) => {
+    const post = postOf(base, course);
+    return post ? at(post[endpoint]) : "removed";
+  };
+  return [["Course", nameOf(now), nameOf(name)], ...rows("address", addressOf), ...rows("token", tokenOf)];
+}
+
+async function switchTo(name) {
+  const outcome = document.querySelector("#step-courses > .outcome");
+  const { base } = draft, changes = changesBy(name), isStale = () => !same(changesBy(name), changes);
   const settings = { ...base, command_post: { ...base.command_post, course: name } };
   const { warnings } = await insist(() => post("/adit/settings/check", { settings })).catch((error) => ({ warnings: [error.message] }));
-  if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch" }))) return;
+  if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch", isStale }))) return;
   say(outcome, "The box switches the course.");
   outcome.dataset.bad = false;
   try {
+    await insist(refresh);
+    if (isStale()) throw new Error(`${STALE} The box did not switch the course.`);
     await insist(() => post("/adit/course", { name }));
     await applied();
     await insist(refresh);

@@ -3,7 +3,7 @@
 import { get, post } from "./session.js";
 
 const STORED = "adit.typed";
-const PAUSE = 300, RETRY = 2000; // ms without a key, ms until a silent box is asked again
+const PAUSE = 300, RETRY = 2000, EVERY = 4000; // ms without a key, ms until a silent box is asked again, ms between questions
 const hearers = [], judges = [];
 
 /** `base` and `tag`: what it began from; `newer`: what somebody else saved meanwhile; `keys`: by path. */
@@ -45,15 +45,27 @@ export function beginFrom(said, settings = structuredClone(said.settings)) {
 
 export const drop = () => beginFrom({ settings: draft.base, tag: draft.tag });
 
+/** What refresh() tells of, beside settings. */
+const aside = () => [draft.saved, draft.tokens, draft.oddTokens, draft.newer?.tag];
+
 /** Asks the box again; what is typed stays, and `newer` is set where it began from other settings. */
 export async function refresh() {
+  const { tag } = draft, before = aside();
   const said = await get("/adit/settings");
+  if (draft.tag !== tag) return; // what it began from meanwhile is newer
   Object.assign(draft, { saved: said.saved, tokens: said.tokens, oddTokens: said.odd_tokens, keys: new Map(said.keys.map((key) => [key.path, key])) });
   const fresh = !draft.tag;
   if (fresh) Object.assign(draft, JSON.parse(sessionStorage.getItem(STORED) ?? "{}"));
   if (!draft.tag || (said.tag !== draft.tag && !differs())) return beginFrom(said);
   draft.newer = said.tag === draft.tag ? null : said;
-  tell(fresh ? "begun" : "told");
+  if (fresh) tell("begun");
+  else if (!same(aside(), before)) tell("told");
+}
+
+/** Follows what other operators save, unless something is typed: then it is asked for when that is applied. */
+export async function followSettings() {
+  if (!document.hidden && !differs()) await refresh().catch(() => {}); // the page says elsewhere that the box is lost
+  setTimeout(followSettings, EVERY);
 }
 
 const isObject = (value) => value !== null && typeof value === "object";

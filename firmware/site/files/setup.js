@@ -4,7 +4,7 @@ import "./presses.js";
 import { apply, goTo, offerApply, offerImport } from "./apply.js";
 import { setTyped, showCourses, showTokens } from "./courses.js";
 import { badge, list, make, mark, say } from "./dom.js";
-import { checkAsTyped, draft, missingTokens, onDraft, onFindings, refresh, findings } from "./draft.js";
+import { checkAsTyped, draft, followSettings, missingTokens, onDraft, onFindings, refresh, findings } from "./draft.js";
 import { blameAll, fillIn, listOf, onlyShow, showAll } from "./field.js";
 import { offerNetwork, showNetwork } from "./network.js";
 import { followNetwork } from "./pending.js";
@@ -128,6 +128,7 @@ async function begin() {
   offerApply();
   const wanted = new URLSearchParams(location.search).get("setting"); // a way from elsewhere: refusals.js
   if (wanted) goTo({ path: wanted });
+  followSettings();
   followNetwork((network, error) => {
     if (network) showPorts(document.querySelector("#step-network .ports"), network);
     if (network) showNetwork(network);

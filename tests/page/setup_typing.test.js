@@ -149,6 +149,34 @@ test("shows two operators what each has done, and lets one go on from the newer"
   assert.equal(await field(other, "command_post.mapping.port").locator("input").inputValue(), "8003");
 });
 
+test("knows its own save, though the answer was lost, and after a reload", async (t) => {
+  const { ask, page } = await ready(t, "setup#post");
+  let answersLost = 1;
+  await page.route("**/adit/settings", async (route) => {
+    if (route.request().method() !== "POST" || answersLost-- <= 0) return route.continue();
+    await route.fetch();
+    return route.abort("connectionreset");
+  });
+  const apply = async (port) => {
+    await type(page, "command_post.scoring.port", port);
+    await page.getByRole("button", { name: "Apply changes" }).click();
+    await page.getByRole("button", { name: "Apply", exact: true }).click();
+    await until(async () => (await ask("/adit/settings").catch(() => ({}))).said?.settings.command_post.scoring.port === Number(port), "the box to save");
+  };
+  const isOwn = async () => {
+    await hears(page, "Saved. The box's answer was lost.");
+    assert.ok(await page.locator("#review").isHidden());
+    assert.ok(await page.getByRole("button", { name: "Apply changes" }).isHidden());
+  };
+  await apply("8001");
+  await isOwn();
+  answersLost = 100;
+  await apply("8002");
+  await page.reload();
+  await page.unrouteAll({ behavior: "ignoreErrors" });
+  await isOwn();
+});
+
 test("loses nothing that was typed when the box is lost in the middle of it", async (t) => {
   const { box, ask, page } = await ready(t, "setup#robots");
   await page.getByRole("button", { name: "Add a robot" }).click();

@@ -89,9 +89,20 @@ function newAddress({ team }, before) {
   return `http://${host.includes(":") ? `[${host}]` : host}:${listen.port}/setup${location.hash}`;
 }
 
-/** Two operators: theirs is in use, and one goes on from it. */
+const OWN = "Saved. The box's answer was lost.";
+
+/** Whether the box uses what was sent: then a save whose answer was lost is this page's own, not another operator's. */
+async function isSaved(settings) {
+  const { errors, changes } = await post("/adit/settings/check", { settings });
+  return !errors.length && !changes.length;
+}
+
+/** Two operators: theirs is in use, and one goes on from it. If the box does not answer, that is asked with the next save. */
 async function settle() {
   const { base, settings: mine, newer } = draft;
+  const isOwn = await isSaved(mine).catch(() => null);
+  if (isOwn) return beginFrom(newer), report(OWN);
+  if (isOwn === null) return;
   const [was, own, theirs] = [base, mine, newer.settings].map((each) => flat(each));
   const isOther = (path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path);
   const paths = [...new Set([...theirs.keys(), ...own.keys()])].filter(isOther);
@@ -126,14 +137,27 @@ export async function save(settings) {
     else report(said ? said.trouble || "The change was reverted." : "The box does not answer.");
     return isDone;
   } catch (error) {
-    if (error.status === 409) await refresh();
-    report(draft.newer ? "" : error.message);
-    if (draft.newer) await settle();
-    return false;
+    return notSaved(error, settings, base);
   } finally {
     isBusy = false;
     show();
   }
+}
+
+/** A save that failed, or whose answer was lost. */
+async function notSaved(error, settings, base) {
+  if (error.status && error.status !== 409) return report(error.message), false;
+  if (await isSaved(settings).catch(() => false)) {
+    const said = await applied();
+    if (said) beginFrom(said);
+    return report(OWN), true;
+  }
+  if (!error.status) link = newAddress(settings, base);
+  if (link) return report(`${error.message} The page may have moved to`), false;
+  if (error.status) await refresh().catch(() => {});
+  report(draft.newer ? "" : error.message);
+  if (draft.newer) await settle();
+  return false;
 }
 
 function report(text) {

@@ -54,7 +54,7 @@ export function list(parent, items, key, create, update) {
   });
 }
 
-/** Whether the node has a place on the screen (checkVisibility() is younger than browsers in use). */
+/** Whether the node has a place on the screen (the floor has no checkVisibility). */
 export const isShown = (node) => node.getClientRects().length > 0;
 
 const usable = (node) => [...node.querySelectorAll("button:enabled")].filter(isShown);

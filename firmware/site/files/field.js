@@ -108,7 +108,7 @@ export function listOf(place) {
     remove.type = "button";
     remove.setAttribute("aria-label", `Remove: ${item} ${i + 1}`);
     remove.addEventListener("click", () => {
-      write(path, read(path).toSpliced(i, 1));
+      write(path, read(path).filter((_, each) => each !== i));
       (rows.children[i]?.querySelector("input") ?? more).focus();
     });
     const fields = keys.map(([name]) => setting(`${path}[${i}].${name}`, capital(name.replace(".", " "))));

@@ -1,6 +1,6 @@
 // Lists by a key.
 
-/** A Map from keyOf(item) to the items of that key, in their order (Map.groupBy() is younger than browsers in use). */
+/** A Map from keyOf(item) to the items of that key, in their order (the floor has no Map.groupBy). */
 export function grouped(items, keyOf) {
   const groups = new Map();
   for (const item of items) {

@@ -16,6 +16,7 @@ function widthOf(paint, text) {
 }
 
 export class Labels {
+  paint; colours; size;
   #taken = [];
 
   /** `rim`: pixels around what is seen in which a name may not end. */

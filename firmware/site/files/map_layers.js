@@ -42,7 +42,7 @@ function finerPlacesIn(tiles, layer, level, seen) {
 function plan(tiles, layers, view, density, at, seen) {
   const level = levelOf(tiles, view, density);
   let room = MOST_FINER;
-  return layers.toReversed().map((layer) => {
+  return [...layers].reverse().map((layer) => {
     const finer = level === 0 && at === null ? finerLevelOf(tiles, view, density, layer) : 0;
     const count = finer < 0 ? finerPlacesIn(tiles, layer, finer, view.bounds()).length : 0;
     if (!count || count > room) return { layer, places: placesIn(layer, level, seen, tiles.metresOf(level)) };

@@ -89,7 +89,7 @@ export function drawReports(paint, colours, labels, view, run, reports, size) {
 export function nameReports(labels, view, reports, size, named) {
   const numbers = named.map(({ number }) => number);
   const rank = (report, i) => (life(report).level === "ask" ? 0 : i < NEWEST ? 1 : 2);
-  const ranked = reports.map((report, i) => ({ report, rank: rank(report, i) })).toSorted((a, b) => a.rank - b.rank);
+  const ranked = reports.map((report, i) => ({ report, rank: rank(report, i) })).sort((a, b) => a.rank - b.rank);
   for (const { report, rank: its } of ranked) {
     if (numbers.includes(report.number) || (its > 0 && view.scale < LABELS_FROM)) continue;
     labels.write(nameOf(report), ...view.toPixel(report.position), { away: size * 1.7 });

@@ -65,7 +65,7 @@ export function keepOffRobots(labels, view, robots, size) {
 /** `ill`: the names of those whose map does not come; theirs are written first. */
 export function nameRobots(labels, view, robots, size, ill) {
   const first = (robot) => (ill.has(robot.name) ? 0 : 1);
-  for (const robot of robots.toSorted((a, b) => first(a) - first(b))) {
+  for (const robot of [...robots].sort((a, b) => first(a) - first(b))) {
     const colour = ill.has(robot.name) ? labels.colours.bad : isStale(robot) ? labels.colours.soft : labels.colours.ink;
     labels.write(clip(robot.name, 20), ...view.toPixel(robot.position), { colour, away: size * 1.9 });
   }
@@ -78,6 +78,6 @@ export function robotAt(view, robots, place) {
     const [x, y] = view.toPixel(robot.position);
     return { robot, apart: Math.hypot(x - left, y - top) };
   });
-  const nearest = near.toSorted((a, b) => a.apart - b.apart)[0];
+  const nearest = near.sort((a, b) => a.apart - b.apart)[0];
   return nearest?.apart <= REACH ? nearest.robot : undefined;
 }

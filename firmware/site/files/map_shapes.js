@@ -23,6 +23,7 @@ const isSeen = (colour) => !/( 0\)|^#.{6}00)$/.test(colour);
 
 /** A view to draw on; `unit` is in pixels, by the size of the page's letters. */
 class Sheet {
+  paint; colours; view; unit;
   constructor(paint, colours, view, unit) {
     Object.assign(this, { paint, colours, view, unit });
   }
@@ -176,7 +177,7 @@ function thinned(markers, view, side) {
     const [x, y] = view.toPixel({ x: (left + right) / 2, y: (bottom + top) / 2 }), place = `${Math.floor(x / side)} ${Math.floor(y / side)}`;
     return !taken.has(place) && taken.add(place);
   };
-  return markers.toReversed().filter(isKept).reverse();
+  return [...markers].reverse().filter(isKept).reverse();
 }
 
 /** `unit`: pixels, by the size of the page's letters. */

@@ -22,7 +22,7 @@ function show() {
   if (!sign) {
     sign = Object.assign(make("a.sign", make("span", "Network change: "), make("span")), { href: "/setup#network" });
     mark(sign, "level", "wait");
-    if (strip) strip.insertBefore(sign, nav);
+    if (strip) strip.insertBefore(sign, strip.querySelector(".ends"));
     else nav.append(sign);
   }
   say(sign.lastChild, left(last));
@@ -39,6 +39,7 @@ export function told(network) {
 export function followNetwork(heard = hear) {
   hear = heard;
   const follow = async () => {
+    // @ts-ignore: each browser of the floor has timeout()
     if (!document.hidden) await get("/adit/network", AbortSignal.timeout(EVERY)).then(told, (error) => hear(null, error));
     setTimeout(follow, last?.pending ? PENDING : EVERY);
   };

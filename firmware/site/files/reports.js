@@ -148,6 +148,7 @@ function update(node, report, view, now) {
   open.setAttribute("aria-expanded", String(isMore));
   say(open.lastChild, `Details of report ${report.number}`);
   showActions(actions, report, view, isMore || level === "ask");
+  acts.hidden = !acts.querySelector("button");
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");
   mark(outcome, "bad", String(Boolean(came?.bad)));

@@ -6,6 +6,7 @@ import { themeNow, whenThemeChanges } from "./theme_now.js";
 // Degrees of OKLCH, from and to, and how many numbers these are spread over.
 const HUES = { ground: [195, 262, 8], legged: [308, 348, 6], flying: [108, 138, 6] };
 const LIGHTNESS = [0.84, 0.72, 0.78];
+/** @type {[string, RegExp][]} */
 const KINDS = [
   ["flying", /^(uav|uas|mav|drone|quad|copter|heli|fly|air|dji|x500|scout_?air|bee|hawk|falcon|blimp)/i],
   ["legged", /^(spot|anymal|legged|dog|ghost|vision60|mule|hexa|daisy|alien|go[12]|b1|cheetah|walk)/i],

@@ -67,9 +67,9 @@ export class RobotRows {
     const byWorst = (a, b) => rank(a) - rank(b) || Math.round(worse(b)) - Math.round(worse(a)) || byName(a, b);
     const ranks = robots.map((robot) => robot.name + rank(robot)).sort().join();
     const isDue = ranks !== this.#ranks || Math.abs(now - this.#ordered) >= PATIENCE;
-    if (this.#isHeld() || !isDue) return robots.toSorted((a, b) => asBefore(a, b) || byName(a, b));
+    if (this.#isHeld() || !isDue) return [...robots].sort((a, b) => asBefore(a, b) || byName(a, b));
     [this.#ranks, this.#ordered] = [ranks, now];
-    return robots.toSorted(byWorst);
+    return [...robots].sort(byWorst);
   }
 
   show(robots, now) {

@@ -26,7 +26,7 @@ export async function lookAgain(base, title, run) {
   say(section.querySelector("h2"), title);
   section.hidden = false;
   if (!map) offer();
-  map.lookAgain(base, { reports: reports.toReversed(), run_number: run, now: end });
+  map.lookAgain(base, { reports: [...reports].reverse(), run_number: run, now: end });
   showTools({ robots: tracks.map(({ robot }) => ({ name: robot })) });
   time.stretch(first, end);
   time.setTicks({ reports: reports.map((report) => ({ at: report.received, level: life(report).level })), alarms: attention.filter(({ came }) => came).map(({ at }) => ({ at, level: "bad" })) });

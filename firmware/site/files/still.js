@@ -36,7 +36,7 @@ export class Still {
   #look() {
     clearTimeout(this.#timer);
     if (this.#isTouched()) this.#timer = setTimeout(() => this.#look(), TOUCHED / 4);
-    const isOn = this.#over || this.#isTouched() || this.#list.matches(":has(:focus-visible)");
+    const isOn = this.#over || this.#isTouched() || this.#list.querySelector(":focus-visible") !== null;
     if (isOn && !this.isHeld) this.#hold();
     else if (!isOn && this.isHeld) this.release();
   }

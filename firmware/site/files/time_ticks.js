@@ -33,7 +33,7 @@ export function drawTicks(canvas, { reports, alarms }, first, last) {
   paint.lineWidth = 2;
   const row = (all, outer, inner) => {
     let before = -Infinity;
-    for (const { at, level } of all.toSorted((a, b) => a.at - b.at)) {
+    for (const { at, level } of [...all].sort((a, b) => a.at - b.at)) {
       const x = THUMB + ((at - first) / Math.max(1, last - first)) * (width - 2 * THUMB);
       if (at < first || at > last || (x - before < NEAR && level !== "ask")) continue;
       drawTick(paint, colours, x, outer, inner, level);

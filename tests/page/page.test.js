@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { serve } from "./stage.js";
 import { retell } from "./retold.js";
-import { axeFindsNothing, hears, said, settled, showsTheClock, text, toTab, watch } from "./watch.js";
+import { axeFindsNothing, hears, said, settled, showsTheClock, text, toTab, visitor, watch } from "./watch.js";
 
 const SIZES = [[390, 844], [768, 1024], [1280, 720], [1920, 1080], [3840, 2160]];
 
@@ -47,6 +47,24 @@ test("shows the same in the oldest browsers that it is for", async (t) => {
   };
   for (const scene of ["reports", "trouble"]) {
     for (const path of ["", "display"]) assert.deepEqual(await rowsOf(scene, { path, prepare: atTheFloor }), await rowsOf(scene, { path }), `${scene} /${path}`);
+  }
+});
+
+// Chromium meets the condition of page.css, so it gets another one, which no browser meets.
+const belowTheFloor = (page) => page.route("**/*.css", async (route) => {
+  const answer = await route.fetch(), style = await answer.text();
+  await route.fulfill({ response: answer, body: style.replace(/@supports \(container-type: ?inline-size\)/, "@supports (container-type: none-of-these)") });
+});
+
+test("says in a browser that is too old which ones it needs, on each page and without a script", async (t) => {
+  const stage = await serve("calm");
+  t.after(() => stage.end());
+  for (const path of ["", "display", "runs", "setup", "system", "login.html"]) {
+    const sentence = (page) => page.getByText("This browser is too old for Adit: the page needs Chrome 108, Firefox 115 or Safari 16.");
+    const old = await visitor(t, stage.url + path, { javaScriptEnabled: false }, belowTheFloor);
+    await sentence(old).waitFor();
+    const page = await visitor(t, stage.url + path, { javaScriptEnabled: false });
+    assert.deepEqual([await sentence(page).count(), await sentence(page).isVisible()], [1, false], path);
   }
 });
 

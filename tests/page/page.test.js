@@ -68,6 +68,22 @@ test("says in a browser that is too old which ones it needs, on each page and wi
   }
 });
 
+test("shows a script's error as an alarm, and no list as empty because of it", async (t) => {
+  const { stage, page } = await watch(t, "empty");
+  await page.locator("#reports").getByText("No report yet.").waitFor();
+  await page.evaluate(() => void Promise.reject(new Error("a promise was rejected.")));
+  const alarm = page.getByRole("alert").filter({ hasText: "This page failed: Error: a promise was rejected. Reload it." });
+  await alarm.getByRole("button", { name: "Close" }).click();
+  await alarm.waitFor({ state: "hidden" });
+
+  for (const path of ["", "display", "runs", "setup", "system", "login.html"]) {
+    const prepare = (page) => page.addInitScript(() => delete Element.prototype.querySelector);
+    const failing = await visitor(t, stage.url + path, { extraHTTPHeaders: { Authorization: "Bearer team-1" } }, prepare);
+    await failing.getByRole("alert").filter({ hasText: /This page failed: TypeError: .*querySelector is not a function. Reload it./ }).waitFor();
+    assert.equal(await failing.locator(".empty:visible").count(), 0, path);
+  }
+});
+
 test("follows what changes, and says so to those who only listen", async (t) => {
   const { stage, page } = await watch(t, "calm");
   const alert = page.locator("#attention");

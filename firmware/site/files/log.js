@@ -1,6 +1,6 @@
 // The log, newest first, as it grows.
 import { badge, make } from "./dom.js";
-import { get } from "./session.js";
+import { get, isFault } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
 const EVERY = 2000; // ms
@@ -50,7 +50,7 @@ function startOver() {
 
 /** Shows what comes; `lost(true or false)` is told whether the box answers. */
 export function followLog(lost) {
-  const turn = (action) => action().then(() => lost(false), () => lost(true));
+  const turn = (action) => action().then(() => lost(false), (error) => isFault(error) || lost(true));
   for (const filter of [level, text]) filter.addEventListener("input", () => turn(startOver));
   const follow = async () => {
     if (!document.hidden) await turn(ask);

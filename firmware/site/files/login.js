@@ -1,7 +1,7 @@
 // The door: a password, or a new one: at the first start with the code of the box, without while set-up is open.
 import "./presses.js";
 import { missingTokens } from "./draft.js";
-import { get, post, session } from "./session.js";
+import { get, isFault, post, session } from "./session.js";
 
 const trouble = document.getElementById("trouble");
 
@@ -60,7 +60,8 @@ async function begin() {
   if (!firstStart) show(document.getElementById("login"), logIn);
 }
 
-begin().catch(() => {
+begin().catch((error) => {
+  if (isFault(error)) return;
   trouble.textContent = "The box does not answer.";
   setTimeout(() => location.reload(), 2000);
 });

@@ -1,7 +1,7 @@
 // Who is logged in, and how to end it.
 import { confirmed } from "./dialog.js";
 import { list, make, say } from "./dom.js";
-import { get, post, toLogin } from "./session.js";
+import { get, isFault, post, toLogin } from "./session.js";
 import { ago, clip } from "./words.js";
 
 const EVERY = 5000; // ms
@@ -57,7 +57,7 @@ async function end(each) {
 
 export function watchSessions() {
   const follow = async () => {
-    if (!document.hidden) await show().catch(() => {}); // the log says that the box is lost
+    if (!document.hidden) await show().catch(isFault); // the log says that the box is lost
     setTimeout(follow, EVERY);
   };
   follow();

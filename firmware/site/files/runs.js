@@ -4,7 +4,7 @@ import { confirmed } from "./dialog.js";
 import { badge, list, make, say } from "./dom.js";
 import { lookAgain, leave } from "./run_map.js";
 import { followNetwork } from "./pending.js";
-import { get, post, session, showWho, toLogin } from "./session.js";
+import { get, isFault, post, session, showWho, toLogin } from "./session.js";
 import { bytes, clip, clock } from "./words.js";
 
 const EVERY = 5000; // ms
@@ -95,13 +95,14 @@ async function begin() {
   showWho(document.getElementById("who"));
   followNetwork();
   const follow = async () => {
-    if (!document.hidden) await show().catch(() => badge(link, "bad", "Box lost"));
+    if (!document.hidden) await show().catch((error) => isFault(error) || badge(link, "bad", "Box lost"));
     setTimeout(follow, EVERY);
   };
   follow();
 }
 
-begin().catch(() => {
+begin().catch((error) => {
+  if (isFault(error)) return;
   badge(link, "bad", "Box lost");
   setTimeout(() => location.reload(), 2000);
 });

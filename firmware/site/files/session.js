@@ -6,10 +6,18 @@ const SILENT = "The box does not answer.";
 /** The signal that ends a request after so many seconds. */
 const after = (seconds) => AbortSignal.timeout(1000 * seconds);
 
+/** The Error to show if no whole answer came; its `status` is 0. */
+const silence = (sentence) => Object.assign(new Error(sentence), { status: 0 });
+
 /** Throws what to show if no whole answer came; an Error that the box answered stays. */
 function unanswered(error) {
-  if (error.status) throw error;
-  throw new Error(error.name === "TimeoutError" ? "The box did not answer in time." : SILENT);
+  throw error.status ? error : silence(error.name === "TimeoutError" ? "The box did not answer in time." : SILENT);
+}
+
+/** For a catch: whether the error is the script's rather than the box's. failed.js shows it. */
+export function isFault(error) {
+  if (error.status === undefined) reportError(error);
+  return error.status === undefined;
 }
 
 /** fetch() for a GET that ends in time. */
@@ -121,8 +129,8 @@ export async function getFile(path) {
 function unknown(path, error) {
   if (error.status) throw error;
   const what = error.name === "TimeoutError" ? `No answer came within ${POST_WITHIN} s.` : SILENT;
-  if (path === "/adit/reports") throw new Error(`${what} The report may have been accepted: look at the list.`);
-  throw new Error(what === SILENT ? what : `${what} The box may have done it.`);
+  if (path === "/adit/reports") throw silence(`${what} The report may have been accepted: look at the list.`);
+  throw silence(what === SILENT ? what : `${what} The box may have done it.`);
 }
 
 /** A file may take any time, because the box closes a connection that stalls. */

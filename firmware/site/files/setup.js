@@ -9,7 +9,7 @@ import { blameAll, fillIn, listOf, onlyShow, showAll } from "./field.js";
 import { offerNetwork, showNetwork } from "./network.js";
 import { followNetwork } from "./pending.js";
 import { showPorts } from "./ports.js";
-import { session, showWho, toLogin } from "./session.js";
+import { isFault, session, showWho, toLogin } from "./session.js";
 import { offerTest, result } from "./trial.js";
 
 const RETRY = 2000; // ms
@@ -137,6 +137,7 @@ async function begin() {
 }
 
 begin().catch((error) => {
+  if (isFault(error)) return;
   linkIs(true);
   if (error.status) throw error;
   setTimeout(() => location.reload(), RETRY);

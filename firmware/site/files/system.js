@@ -8,7 +8,7 @@ import { watchSessions } from "./logins.js";
 import { offerPasswords } from "./passwords.js";
 import { followNetwork } from "./pending.js";
 import { showPorts } from "./ports.js";
-import { session, showWho, toLogin } from "./session.js";
+import { isFault, session, showWho, toLogin } from "./session.js";
 import { offerSpare } from "./spare.js";
 import { offerUpdate } from "./update.js";
 
@@ -39,7 +39,8 @@ async function begin() {
   offerReset();
 }
 
-begin().catch(() => {
+begin().catch((error) => {
+  if (isFault(error)) return;
   linkIs(true);
   setTimeout(() => location.reload(), RETRY);
 });

@@ -8,6 +8,6 @@ interface EventTarget {
   checked: any; clientHeight: any; closest: any; dataset: any; localName: any; scrollHeight: any; scrollTop: any; type: any;
 }
 interface ParentNode { scrollTop: any; title: any }
-interface Event { detail: any; key: any; x: any; y: any }
+interface Event { detail: any; key: any; ports: any; x: any; y: any }
 interface HTMLElement { noValidate: any }
 interface HTMLFormControlsCollection { code: any }

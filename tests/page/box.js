@@ -108,16 +108,16 @@ export async function box(t, rates = {}) {
 }
 
 /** A team at work: one of every kind of message, and one that is refused. */
-export async function play(ask) {
+export async function play(ask, name = "ugv1") {
   const header = { stamp: Date.now() / 1000, frame_id: "darpa" };
   const pose = { position: { x: 1, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
   const data = Buffer.from([0, 100, 0, 100]).toString("base64");
   const grid = { info: { resolution: 0.2, width: 2, height: 2, origin: pose }, data };
-  const map = { type: "OccupancyGrid", name: "ugv1", msg: { header, ...grid } };
+  const map = { type: "OccupancyGrid", name, msg: { header, ...grid } };
   const marker = { header, ns: "a", id: 1, type: 1, action: 0, pose, scale: { x: 1, y: 1, z: 1 }, color: { r: 1, g: 0, b: 0, a: 1 } };
   const posts = [
     ["/map/update", map],
-    ["/state/update", { header, poses: [{ name: "ugv1", ...pose }] }],
+    ["/state/update", { header, poses: [{ name, ...pose }] }],
     ["/markers/update", { markers: [marker] }],
   ];
   for (const [path, body] of posts) {

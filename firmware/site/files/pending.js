@@ -1,6 +1,6 @@
 // A change of the network that waits to be confirmed: told beside the ways to the pages, on each of them.
 import { make, mark, say } from "./dom.js";
-import { boxNow, get } from "./session.js";
+import { after, boxNow, get } from "./session.js";
 
 const EVERY = 4000, PENDING = 1000; // ms
 const nav = document.querySelector("header nav");
@@ -39,8 +39,7 @@ export function told(network) {
 export function followNetwork(heard = hear) {
   hear = heard;
   const follow = async () => {
-    // @ts-ignore: each browser of the floor has timeout()
-    if (!document.hidden) await get("/adit/network", AbortSignal.timeout(EVERY)).then(told, (error) => hear(null, error));
+    if (!document.hidden) await get("/adit/network", after(EVERY / 1000)).then(told, (error) => hear(null, error));
     setTimeout(follow, last?.pending ? PENDING : EVERY);
   };
   follow();

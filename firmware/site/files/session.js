@@ -4,12 +4,14 @@ const GET_WITHIN = 15, POST_WITHIN = 30; // s; a box answers a report within 20 
 const SILENT = "The box does not answer.";
 
 /** The signal that ends a request after so many seconds. */
-const after = (seconds) => AbortSignal.timeout(1000 * seconds);
+// @ts-ignore: each browser of the floor has timeout()
+export const after = (seconds) => AbortSignal.timeout(1000 * seconds);
 
 /** The Error to show if no whole answer came; its `status` is 0. */
 const silence = (sentence) => Object.assign(new Error(sentence), { status: 0 });
 
-/** Throws what to show if no whole answer came; an Error that the box answered stays. */
+/** Throws what to show if no whole answer came; an Error that the box answered stays.
+ *  @returns {never} */
 function unanswered(error) {
   throw error.status ? error : silence(error.name === "TimeoutError" ? "The box did not answer in time." : SILENT);
 }

@@ -134,7 +134,7 @@ std::vector<Track> scene_tracks(double now) {
   for (int i = 0; i < 600; ++i) {
     const double x = i / 600.0 * 100;
     tracks[0].poses.push_back({now - 600 + i, {x, 40 + 12 * std::sin(x / 23), 0}, 0.3});
-    tracks[1].poses.push_back({now - 600 + i, {x * 0.7, 38 + 12 * std::sin(x * 0.7 / 23), 1}, 0.3});
+    tracks[1].poses.push_back({now - 600 + i, {x * 0.7, 38 + 12 * std::sin(x * 0.7 / 23), 4}, 0.3});
   }
   return tracks;
 }

@@ -1,7 +1,7 @@
 // A report composed by hand: what, where, the check, and away.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { axeFindsNothing, text, toTab, watch } from "./watch.js";
+import { axeFindsNothing, settled, text, toTab, watch } from "./watch.js";
 
 const TYPES = ["Survivor", "Cell Phone", "Backpack", "Drill", "Fire Extinguisher", "Gas", "Vent", "Helmet", "Rope", "Cube"];
 const canvas = "#map .frame canvas";
@@ -115,16 +115,83 @@ test("shows the box's sentence where it was not taken, and keeps what was typed"
   assert.equal(await page.inputValue("#compose input[name=x]"), "", "what was cancelled is gone");
 });
 
-test("takes a place from the map, by finger and by keyboard, and a robot's height with it", async (t) => {
-  const { page } = await watch(t, "calm");
+/** Keeps ANYmal2, which stands at 52, -14 far from all tracks, in the middle of the map; gives `tap(x, y)` in metres. */
+async function aim(page) {
+  await page.selectOption("#map .follow select", "ANYmal2");
+  await settled(page);
+  const { width, height } = await page.locator(canvas).boundingBox();
+  const at = (right, down) => page.locator(canvas).tap({ position: { x: width / 2 + right, y: height / 2 + down } });
+  const y = async () => Number(await page.inputValue("#compose input[name=y]"));
+  await at(0, 40);
+  const scale = 40 / (-14 - (await y())); // pixels a metre
+  return (x, y) => at((x - 52) * scale, (-14 - y) * scale);
+}
+const z = (page) => page.inputValue("#compose input[name=z]");
+
+test("takes the height from the tracks at the place, by touch, and says how it was found", async (t) => {
+  const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, hasTouch: true, bypassCSP: true });
+  await toTab(page, "Reports");
+  await page.locator("#reports .compose").tap();
+  await choose(page, "Vent");
+  const tap = await aim(page);
+  assert.equal(await z(page), "");
+  assert.equal(await text(page, "#compose .height"), "No data within 5 m of this place: type z.");
+  await check(page);
+  assert.match(await text(page, "#compose .trouble"), /^z: expected metres/);
+  assert.equal(await page.evaluate(() => document.activeElement.name), "z");
+  await axeFindsNothing(page, "no height");
+
+  await tap(52, -14);
+  await page.locator("#compose .check").waitFor();
+  assert.match(await text(page, "#compose .notes li"), /^z 0\.3 m from ANYmal2’s track, [01]\.\d m away, (now|\d+ s ago)\.$/);
+  await page.getByRole("button", { name: "Place", exact: true }).tap();
+  await tap(52, -34);
+  assert.equal(await z(page), "", "that height was of another place");
+  await tap(52, -17.5);
+  await page.locator("#compose .notes li", { hasText: /^z 0\.3 m from ANYmal2’s track, [34]\.\d m away, .*: check it\.$/ }).waitFor();
+
+  await page.getByRole("button", { name: "Place", exact: true }).tap();
+  await page.fill("#compose input[name=x]", "60");
+  assert.equal(await z(page), "", "nor is it that of a place that is typed");
+  await page.fill("#compose input[name=z]", "2");
+  await check(page);
+  assert.equal(await text(page, "#compose .notes li"), "z typed.");
+  await axeFindsNothing(page, "check");
+});
+
+test("lets the operator choose where two levels cross", async (t) => {
+  const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, hasTouch: true, bypassCSP: true });
+  await toTab(page, "Reports");
+  await page.locator("#reports .compose").tap();
+  await choose(page, "Vent");
+  const tap = await aim(page);
+  await tap(52, 49);
+  await page.getByText("The heights within 5 m of this place differ: choose one, or type z.").waitFor();
+  assert.equal(await z(page), "");
+  const heights = page.getByRole("group", { name: "Heights at this place" }).getByRole("button");
+  assert.deepEqual((await heights.allTextContents()).map((words) => words.replace(/ track.*/, "")), ["z 0.0 m from ANYmal1’s", "z 4.0 m from Scout’s"]);
+  await axeFindsNothing(page, "two heights");
+  await heights.last().tap();
+  await page.locator("#compose .notes li", { hasText: /^z 4\.0 m from Scout’s track/ }).waitFor();
+  assert.match(await text(page, "#compose .summary"), /4\.0 m/);
+});
+
+test("takes a place by keyboard, and asks for z before the tracks have loaded", async (t) => {
+  let release;
+  const held = new Promise((resolve) => (release = resolve));
+  const { page } = await watch(t, "calm", { prepare: (page) => page.route("**/adit/tracks", (route) => held.then(() => route.continue())) });
   await compose(page);
   await choose(page, "Vent");
-  await page.locator(canvas).click({ position: { x: 200, y: 150 } });
-  const first = Number(await page.inputValue("#compose input[name=x]"));
-  assert.ok(Number.isFinite(first) && (await page.inputValue("#compose input[name=y]")) !== "");
+  await page.selectOption("#map .follow select", "ANYmal2");
+  await page.locator(canvas).press("Enter");
+  await page.getByText("The robots’ tracks have not loaded: type z, or tap again.").waitFor();
+  const first = await page.inputValue("#compose input[name=x]");
+  assert.notEqual(first, "");
+  release();
+  await settled(page);
   for (let i = 0; i < 3; ++i) await page.locator(canvas).press("ArrowRight");
   await page.keyboard.press("Enter");
-  assert.notEqual(Number(await page.inputValue("#compose input[name=x]")), first);
+  assert.notEqual(await page.inputValue("#compose input[name=x]"), first);
   await page.keyboard.press("Escape");
   await page.locator("#compose").waitFor({ state: "hidden" });
   await compose(page);
@@ -139,8 +206,8 @@ test("sends what was checked: a tap on the map moves nothing then", async (t) =>
   assert.match(await text(page, "#compose .summary"), /Gas.*at 306\.0, −3\.5, 0\.3 m/);
   await page.getByRole("button", { name: "Place", exact: true }).click();
   await page.locator(canvas).click({ position: { x: 200, y: 150 } });
-  await page.locator("#compose .check").waitFor();
-  assert.doesNotMatch(await text(page, "#compose .summary"), /306\.0/);
+  assert.notEqual(await page.inputValue("#compose input[name=x]"), "306");
+  assert.equal(await z(page), "", "the typed height was of another place");
 });
 
 test("shows map and fields at once on a phone, in every step", async (t) => {

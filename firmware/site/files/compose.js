@@ -4,6 +4,7 @@ import { barred, tell } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { notesOn } from "./check.js";
 import { list, make, mark, say } from "./dom.js";
+import { heightNote, heightsAt, heightWords, REACH } from "./height.js";
 import { map } from "./map_controls.js";
 import { sameAs } from "./near.js";
 import { reveal } from "./reports.js";
@@ -14,13 +15,13 @@ import { clip, metres, numberIn } from "./words.js";
 // ICD 5.2; embed.cmake puts the words of that file here.
 const TYPES = ["artifact_types.inc"];
 const AXES = ["x", "y", "z"];
-const ROBOT_NEAR = 20; // m: so far a robot's height is a fair guess
 
 const panel = document.getElementById("compose");
 const at = (name) => panel.querySelector(`.${name}`);
 const field = (axis) => panel.querySelector(`input[name=${axis}]`);
 const again = panel.querySelector(".again input");
 let view = null, type = "", step = "what", busy = false;
+let height = null; // where z is from, as of heightsAt(); null: typed
 
 const types = TYPES.map((name) => {
   const button = make("button.type", icon(name), make("span", name));
@@ -70,20 +71,49 @@ function choose(name) {
   panel.querySelector("h2").focus();
 }
 
-/** A tap on the map. */
+/** A tap on the map. The height is of this place: what was typed for another one is gone. */
 function put({ x, y }) {
   field("x").value = x.toFixed(2);
   field("y").value = y.toFixed(2);
   map.setCross({ x, y });
-  const [nearest] = view.robots
-    .map(({ name, position }) => ({ name, z: position.z, apart: Math.hypot(position.x - x, position.y - y) }))
-    .sort((a, b) => a.apart - b.apart);
-  const known = nearest && nearest.apart < ROBOT_NEAR;
-  if (known) field("z").value = nearest.z.toFixed(2);
-  say(at("height"), known ? `z is from ${clip(nearest.name, 40)}, ${nearest.apart.toFixed(0)} m away. Correct z if it differs.`
-    : field("z").value ? "" : "No robot is near. Type z, the height.");
+  const tracks = map.tracks(), heights = tracks ? heightsAt({ x, y }, tracks) : [];
+  if (heights.length === 1) setHeight(heights[0]);
+  else if (heights.length) setHeight(null, `The heights within ${REACH} m of this place differ: choose one, or type z.`, heights);
+  else setHeight(null, tracks ? `No data within ${REACH} m of this place: type z.` : "The robots’ tracks have not loaded: type z, or tap again.");
   complain(null);
   if (step === "where" && isPlaced()) check();
+}
+
+/** Sets z from a track, or leaves it empty, with the reason and the heights to choose from. */
+function setHeight(found, reason = "", choices = []) {
+  height = found;
+  field("z").value = found ? found.z.toFixed(2) : "";
+  say(at("height"), found ? heightNote(found, view.now).text : reason);
+  offerHeights(choices);
+}
+
+function offerHeights(choices) {
+  at("heights").hidden = !choices.length;
+  at("heights").replaceChildren(...choices.map((choice) => {
+    const button = make("button", heightWords(choice, view.now));
+    button.type = "button";
+    button.addEventListener("click", () => {
+      setHeight(choice);
+      check();
+    });
+    return button;
+  }));
+}
+
+/** A height belongs to its place: once another x or y is typed, z is typed, too. */
+function typedPlace() {
+  if (height || at("height").textContent) setHeight(null, "Type z of this place.");
+}
+
+function typedHeight() {
+  height = null;
+  say(at("height"), "");
+  offerHeights([]);
 }
 
 function check() {
@@ -109,7 +139,8 @@ function showCheck() {
   say(panel.querySelector(".summary .where"), `at ${metres(x)}, ${metres(y)}, ${metres(z)} m`);
   say(at("send"), `Send ${type}`);
   const create = () => make("li", make("span.glyph"), make("span"));
-  list(at("notes"), notesOn(view, { type, position }), ({ key }) => key, create, (node, { level, text }) => {
+  const notes = [heightNote(height, view.now), ...notesOn(view, { type, position })];
+  list(at("notes"), notes, ({ key }) => key, create, (node, { level, text }) => {
     mark(node.firstChild, "level", level);
     say(node.lastChild, text);
   });
@@ -143,7 +174,7 @@ function revealSoon(number, tries = 20) {
 /** It is sent, or given up. */
 function drop() {
   for (const axis of AXES) field(axis).value = "";
-  say(at("height"), "");
+  typedHeight();
   type = "";
   step = "what";
   closeSide();
@@ -169,6 +200,7 @@ export function showCompose(next) {
 }
 
 for (const button of document.querySelectorAll("button.compose")) button.addEventListener("click", compose);
+for (const [axis, typed] of [["x", typedPlace], ["y", typedPlace], ["z", typedHeight]]) field(axis).addEventListener("input", typed);
 at("go").addEventListener("click", check);
 at("elsewhere").addEventListener("click", () => go("where"));
 for (const button of panel.querySelectorAll(".change")) button.addEventListener("click", () => go("what"));

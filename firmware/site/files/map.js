@@ -166,6 +166,8 @@ export class MapOfRun {
   kinds = () => new Set([...this.#tiles.layers.values()].map((layer) => layer.kind));
   isLive = () => this.#at === null;
   markers = () => this.#markers;
+  /** [{name, poses: [[at, x, y, z, heading]]}] of this run until now; null: not loaded yet. */
+  tracks = () => (this.#tracks.isLoaded ? this.#tracks.until(Infinity) : null);
   centre = () => this.#view.centre;
   redraw = () => this.#picture.redraw();
 

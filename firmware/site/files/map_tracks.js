@@ -15,7 +15,7 @@ export class Tracks {
   #all = new Map(); // robot to [[at, x, y, z, heading]], oldest first
   #run = null;
   #heard = 0; // the box's time of the last event
-  #fetched = false;
+  isLoaded = false; // of this run, with no pose missed
   #asked = false;
   #changed;
   #base;
@@ -27,16 +27,16 @@ export class Tracks {
   }
 
   follow({ now, run_number, robots }) {
-    if (now - this.#heard > SILENCE) this.#fetched = false; // what came meanwhile was missed
+    if (now - this.#heard > SILENCE) this.isLoaded = false; // what came meanwhile was missed
     this.#heard = now;
     if (run_number !== this.#run) {
       this.forget();
       this.#run = run_number;
     }
-    if (!this.#fetched) this.#fetch();
+    if (!this.isLoaded) this.#fetch();
     for (const { name, at, position: { x, y, z }, heading } of robots) {
       const track = this.#of(name), last = track.at(-1);
-      if (!last || (at >= last[0] + SPACING && (x !== last[1] || y !== last[2] || heading !== last[4] || at > last[0] + 10))) {
+      if (!last || (at >= last[0] + SPACING && (x !== last[1] || y !== last[2] || z !== last[3] || heading !== last[4] || at > last[0] + 10))) {
         track.push([at, x, y, z, heading]);
       }
     }
@@ -45,7 +45,7 @@ export class Tracks {
   /** All are asked for again. */
   forget() {
     this.#all.clear();
-    this.#fetched = false;
+    this.isLoaded = false;
     ++this.changes;
   }
 
@@ -65,7 +65,7 @@ export class Tracks {
         const last = poses.at(-1)[0];
         this.#all.set(robot, [...poses, ...this.#of(robot).filter(([at]) => at > last + 0.01)]);
       }
-      this.#fetched = true;
+      this.isLoaded = true;
       ++this.changes;
       this.#changed();
     } catch {

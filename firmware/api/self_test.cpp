@@ -28,9 +28,11 @@ constexpr Member kTestedEndpoint[] = {
 };
 
 constexpr Member kTest[] = {
+    member<&TestView::number>("number", "counts the tests since aditd started; 0 before the first"),
     member<&TestView::running>("running"),
     member<&TestView::applied>("applied",
                                "whether the settings in use are tested; false for named endpoints"),
+    member<&TestView::outdated>("outdated", "whether settings or tokens have changed since the test began"),
     member<&TestView::course>(
         "course", "course whose addresses and tokens are used if none were named; empty for no course"),
     member<&TestView::endpoints>("endpoints"),

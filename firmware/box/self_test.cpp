@@ -54,7 +54,11 @@ icd::Checked<void> SelfTest::begin_test(const api::Candidate& candidate) {
   auto tried = tried_of_(candidate);
   if (!tried) return std::unexpected(std::move(tried.error()));
   tried_ = *std::move(tried);
-  view_ = {.running = true, .applied = candidate.is_applied(), .course = tried_.post.course, .endpoints = {}};
+  view_ = {.number = view_.number + 1,
+           .running = true,
+           .applied = candidate.is_applied(),
+           .course = tried_.post.course,
+           .endpoints = {}};
   asked_.clear();
   const bool all = !candidate.scoring && !candidate.mapping;
   if (all || candidate.scoring) list(steps::Asked::Scoring);

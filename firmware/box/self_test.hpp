@@ -48,6 +48,8 @@ class SelfTest final : public api::SelfTest {
 
   api::TestView test() const override { return view_; }
   icd::Checked<void> begin_test(const api::Candidate& candidate) override;
+  /// Call when settings or tokens are applied: the result, or that of the test that runs, is of those before.
+  void settings_changed() { view_.outdated = view_.number > 0; }
 
  private:
   enum class At : std::uint8_t { Link, Address, Cables, Reach, Token, Clock, End };

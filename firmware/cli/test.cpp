@@ -101,7 +101,7 @@ std::expected<std::string, std::string> body_of(const Trial& trial) {
   return codec::write_json({std::move(body)});
 }
 
-/// Begins it, or finds that one of what is in use runs already, which is joined.
+/// Begins the test, or finds that one runs already: test() joins it if it is of what is in use.
 std::expected<void, Outcome> begin(const Adit& adit, const Trial& trial) {
   auto body = body_of(trial);
   if (!body) return std::unexpected(unable(body.error()));
@@ -129,6 +129,9 @@ Outcome test(const Options& options, bool colour, const std::function<void(const
     if (!json) return unable(json.error());
     const auto view = read<api::TestView>(*adit, *json);
     if (!view) return unable(view.error());
+    if (view->applied != options.trial.is_of_what_is_in_use())
+      return unable("a test of other values is running: try again when it has ended");
+    if (view->outdated) return unable("the settings changed during the test: start it again");
     if (!options.json) progress.show(*view);
     if (!view->running) {
       if (options.json) print(*json + '\n');

@@ -57,6 +57,7 @@ void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward
   box_.runs_with(settings::file_of(parts_.loaded.settings));
   if (restarts.panel && !parts_.board.panel) reopen_panel();
   setup_.runs_with(parts_.loaded, parts_.trouble);
+  self_test_.settings_changed();
 }
 
 /// A line can be had once: the old ones are let go of first.

@@ -123,7 +123,8 @@ TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
 }
 
 TEST_F(NetworkRoutesTest, RunOneTestAtATime) {
-  EXPECT_EQ(get("/adit/test").body, R"({"running":false,"applied":true,"course":"","endpoints":[]})");
+  EXPECT_EQ(get("/adit/test").body,
+            R"({"number":0,"running":false,"applied":true,"outdated":false,"course":"","endpoints":[]})");
   test.view.endpoints = {{"scoring", "10.100.1.200:8000", {{"link", "bad", "no carrier", "plug it in"}}}};
   const json begun = json::parse(post("/adit/test").body);
   EXPECT_EQ(begun["running"], true);

@@ -113,13 +113,13 @@ TEST_F(NetworkCommand, TakesNoOtherWords) {
   EXPECT_THAT(run(std::vector<std::string_view>{"test", "--help"}).out, HasSubstr("adit test - "));
 }
 
-std::string tested(const std::string& clock, bool running = false) {
-  return Server::ok(
-      std::string(R"({"running":)") + (running ? "true" : "false") +
-      R"(,"applied":true,"course":"","endpoints":[{"name":"scoring","address":"10.100.1.200:8000","steps":[)"
-      R"({"name":"link","state":"good","said":"darpa0 has a carrier","advice":""},)"
-      R"({"name":"clock","state":")" +
-      clock + R"(","said":"7 s behind","advice":"Set it."}]}]})");
+std::string tested(const std::string& clock, bool running = false,
+                   const std::string& of = R"("applied":true,"outdated":false)") {
+  return Server::ok(std::string(R"({"number":1,"running":)") + (running ? "true" : "false") + "," + of +
+                    R"(,"course":"","endpoints":[{"name":"scoring","address":"10.100.1.200:8000","steps":[)"
+                    R"({"name":"link","state":"good","said":"darpa0 has a carrier","advice":""},)"
+                    R"({"name":"clock","state":")" +
+                    clock + R"(","said":"7 s behind","advice":"Set it."}]}]})");
 }
 
 TEST_F(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
@@ -135,7 +135,8 @@ TEST_F(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
 }
 
 TEST_F(NetworkCommand, SaysThatATestWasCutShort) {
-  constexpr const char* kKnowsOfNone = R"({"running":false,"applied":true,"course":"","endpoints":[]})";
+  constexpr const char* kKnowsOfNone =
+      R"({"number":0,"running":false,"applied":true,"outdated":false,"course":"","endpoints":[]})";
   for (const std::string& left : {Server::ok(kKnowsOfNone), tested("waiting")}) {
     const Outcome outcome =
         say(Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", left}}), {"test"});
@@ -152,6 +153,20 @@ TEST_F(NetworkCommand, JoinsATestThatRuns) {
   EXPECT_EQ(say(Server(Server::reply("401 Unauthorized", "\"no\"")), {"test"}).exit, Exit::Unable);
   EXPECT_EQ(say(Server(Server::reply("503 Service Unavailable", "\"no\"")), {"test"}).exit, Exit::Unable);
   EXPECT_THAT(printed_, Not(HasSubstr("good")));
+}
+
+TEST_F(NetworkCommand, ReportsNoResultOfOtherValues) {
+  const auto test = [this](const std::string& of) {
+    return say(
+        Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", tested("good", false, of)}}),
+        {"test"});
+  };
+  const Outcome outdated = test(R"("applied":true,"outdated":true)");
+  EXPECT_EQ(outdated.exit, Exit::Unable);
+  EXPECT_EQ(outdated.err, "adit: the settings changed during the test: start it again\n");
+  const Outcome tried = test(R"("applied":false,"outdated":false)");
+  EXPECT_EQ(tried.exit, Exit::Unable);
+  EXPECT_EQ(tried.err, "adit: a test of other values is running: try again when it has ended\n");
 }
 
 TEST_F(NetworkCommand, TriesWhatIsNamedBeforeItIsApplied) {

@@ -31,6 +31,47 @@ test("tries addresses as they are typed, before they are applied, and says what 
   assert.deepEqual(complaints(page), []);
 });
 
+test("drops a result once its values are others: typed, applied, or saved by another operator", async (t) => {
+  const { box, ask, page } = await ready(t, "setup#post");
+  const type = (label, port) => page.getByLabel(label, { exact: true }).fill(String(port));
+  const shows = async (where, words) => {
+    await page.waitForFunction(([where, words]) => document.querySelector(`[data-tried=${where}] > .outcome`).textContent === words, [where, words]);
+    return (await states(page, where)).length;
+  };
+  const changed = "The settings have changed since the last test.";
+  await type("Scoring port", box.scoring);
+  await tries(page).click();
+  await tried(page, "typed", "1 of 12 steps failed. These values are not applied yet.");
+  await type("Mapping port", box.mapping);
+  assert.equal(await shows("typed", ""), 0);
+  await type("Mapping port", 2);
+  assert.equal(await shows("typed", "1 of 12 steps failed. These values are not applied yet. No report was spent."), 2);
+  await page.reload(); // what was typed stays, and whether it was tested is not known
+  assert.equal(await shows("typed", "1 of 12 steps failed. This test began elsewhere, perhaps with other values. No report was spent."), 2);
+
+  await type("Mapping port", box.mapping);
+  await tries(page).click();
+  await tried(page, "typed", "All is well. These values are not applied yet.");
+  await page.getByRole("button", { name: "Apply changes" }).click();
+  await page.getByRole("button", { name: "Apply", exact: true }).click();
+  await page.locator("#typed", { hasText: "Applied." }).waitFor();
+  assert.ok(!(await outcome(page, "typed").innerText()).includes("not applied yet"));
+  assert.equal(await shows("typed", changed), 0);
+  await tries(page).click();
+  assert.equal(await shows("typed", "All is well. No report was spent."), 2);
+  await page.locator("#typed").waitFor({ state: "hidden" });
+
+  await step(page, "Test").click();
+  await page.getByRole("button", { name: "Run the test" }).click();
+  await tried(page, "applied", "All is well. No report was spent.");
+  await step(page, "Test").getByText("passed").waitFor();
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  settings.runs.length_seconds = 1800;
+  await ask("/adit/settings", { settings, base: tag });
+  assert.equal(await shows("applied", changed), 0);
+  await step(page, "Test").getByText("not run").waitFor();
+});
+
 test("tries a token as it is typed, and neither keeps nor shows it", async (t) => {
   const { box, ask, page } = await ready(t, "setup#post");
   for (const [label, port] of [["Scoring port", box.scoring], ["Mapping port", box.mapping]]) await page.getByLabel(label, { exact: true }).fill(String(port));
@@ -74,17 +115,20 @@ test("keeps what is wrong, whatever was asked for before is answered later", asy
 
 test("follows the test that runs already, where another is refused for it", async (t) => {
   const { ask, page } = await ready(t, "setup#post");
-  const refused = page.waitForResponse((answer) => answer.status() === 409);
+  let isShown;
+  const shown = new Promise((resolve) => (isShown = resolve));
   await page.route("**/adit/test", async (route) => {
     if (route.request().method() === "POST") return route.fulfill({ status: 409, json: "a test is running: see GET /adit/test" });
-    await refused;
+    await shown;
     await route.continue();
   });
   await page.reload();
   await ask("/adit/test", {});
   await tries(page).click();
   await tried(page, "typed", "a test is running");
+  isShown();
   await step(page, "Test").getByText("failed").waitFor();
+  assert.equal(await outcome(page, "typed").textContent(), "");
 });
 
 test("tries a course before it is switched to, and tells it from the Test of what is in use", async (t) => {

@@ -165,6 +165,11 @@ function report(text) {
   show();
 }
 
+/** What was applied says nothing of what is done next. */
+export function forgetOutcome() {
+  if (!isBusy && !link) report("");
+}
+
 /** Shows what is to change and applies it where that is wanted; whether nothing is left to apply. */
 export async function apply() {
   if (!differs()) return true;

@@ -1,10 +1,12 @@
-// The Test, and tries of what is not applied yet: each step to each endpoint, as it runs, and what to do where it fails.
+// The Test, and tries of what is not applied yet: each step to each endpoint, as it runs, and what to do where it fails. A result
+// belongs to the values that were tested: once they differ, it goes.
+import { forgetOutcome } from "./apply.js";
 import { badge, list, make, say } from "./dom.js";
-import { draft, ENDPOINTS } from "./draft.js";
+import { draft, ENDPOINTS, onDraft, same } from "./draft.js";
 import { named, spoken } from "./names.js";
 import { get, post } from "./session.js";
 
-const EVERY = 500; // ms
+const EVERY = 500, IDLE = 4000; // ms, while a test runs, and else: another operator may begin one, or save
 const NAMES = {
   link: "Cable and link",
   address: "No other machine has the box’s address",
@@ -20,12 +22,14 @@ const parts = (place) => [".outcome", ".endpoints"].map((part) => place.querySel
 /** What is typed for a token and not set yet; null: nothing. */
 const typedToken = (name) => document.querySelector(`form.token[data-key="${name}"]`)?.field.control.value.trim() || null;
 
-/** Of what is in use: "good", "bad", or "" where it was not run to its end. */
+/** Of what is in use: "good", "bad", or "" if it was not tested to its end. */
 export let result = "";
-/** Where what runs now was begun; "": it runs since before this page, or elsewhere. */
-let begun = "";
-let isRunning = false;
-let asked = 0;
+let view = null; // GET /adit/test, as last heard
+let own = null; // of the test that this page began last: {number, where, body, values}
+let note = null; // in the place of a result: {where, body, values, text, isBad, isBusy: until another test has ended}
+let lost = ""; // why the box does not tell of a test
+let isBeginning = false;
+let asked = 0, timer = 0;
 
 function updateStep(node, { name, state, said, advice }) {
   const [badged, title, sentence, help] = node.children;
@@ -45,85 +49,121 @@ function update(node, { name, address, steps }) {
   list(place, steps, (step) => step.name, createStep, updateStep);
 }
 
-/** What came of it, in a sentence. */
-function verdictOf(states, { running, applied }) {
-  const how = applied ? "It spends no report." : "The run continues, and no report is spent.";
-  if (running) return `The test is running. ${how}`;
+/** What body() gives now, in the settings that the page began from. */
+const valuesOf = (body) => ({ tag: draft.tag, ...body() });
+const isOfThese = ({ body, values }) => same(values, valuesOf(body));
+const isOwn = () => own !== null && own.number === view.number;
+
+function placeOf({ applied, course }) {
+  if (applied) return "applied";
+  return isOwn() ? own.where : course ? "course" : "typed";
+}
+
+/** Whether the result is of what the page shows; another's may be. */
+const isCurrent = ({ outdated }) => !outdated && (!isOwn() || isOfThese(own));
+
+/** Of a result that is not of the settings in use; "" if they are the same. */
+function ofWhat() {
+  if (!isOwn()) return "This test began elsewhere, perhaps with other values.";
+  const isInUse = !draft.base.command_post.course && same(own.values, { tag: draft.tag, ...typed(draft.base, () => null) });
+  return isInUse ? "" : "These values are not applied yet.";
+}
+
+/** What came of it, in sentences. */
+function verdictOf(states) {
+  const { running, applied, outdated } = view;
+  if (lost && running) return lost;
+  if (running) return `The test is running. ${applied ? "It spends no report." : "The run continues, and no report is spent."}`;
+  if (outdated) return "The settings have changed since the last test.";
   const bad = states.filter((state) => state === "bad").length;
   const verdict = bad ? `${bad} of ${states.length} steps failed.` : states.includes("good") ? "All is well." : "";
-  return verdict && `${verdict} ${applied ? "No report was spent." : "These values are not applied yet. No report was spent."}`;
+  if (!verdict || !isCurrent(view)) return "";
+  return [verdict, applied ? "" : ofWhat(), "No report was spent."].filter(Boolean).join(" ");
 }
 
-function report(place, text, isBad) {
-  const [outcome] = parts(place);
+function showAt(place, { text = "", isBad = false, endpoints = [] }) {
+  const [outcome, ends] = parts(place);
   outcome.dataset.bad = isBad;
   say(outcome, text);
+  list(ends, endpoints, ({ name }) => name, () => make("li.trial", make("h3"), make("span.address"), make("ol")), update);
 }
 
-/** The buttons that begin one, while none runs. */
-export function barTries() {
-  for (const button of document.querySelectorAll("button[data-tries]")) button.disabled = isRunning;
+/** The buttons that begin a test are disabled while one runs. */
+function barTries() {
+  const isBarred = isBeginning || Boolean(view?.running);
+  for (const button of document.querySelectorAll("button[data-tries]")) button.disabled = isBarred;
 }
 
-function show(view) {
-  const { running, applied, course, endpoints } = view;
-  const place = places.get(begun || (applied ? "applied" : course ? "course" : "typed"));
-  list(parts(place)[1], endpoints, ({ name }) => name, () => make("li.trial", make("h3"), make("span.address"), make("ol")), update);
-  const states = endpoints.flatMap(({ steps }) => steps.map(({ state }) => state));
-  const isDone = !running && states.some((state) => state === "good" || state === "bad");
-  isRunning = running;
-  if (applied) result = !isDone ? "" : states.includes("bad") ? "bad" : "good";
-  report(place, verdictOf(states, view), !running && states.includes("bad"));
-  if (!running) begun = "";
-  barTries();
-  document.dispatchEvent(new Event("tested"));
+function resultOf({ running, applied, outdated }, states) {
+  if (running || !applied || outdated) return "";
+  return states.includes("bad") ? "bad" : states.includes("good") ? "good" : "";
 }
 
-/** What was asked for before a press says nothing of what it began. */
-async function follow() {
-  const mine = ++asked;
-  try {
-    const said = await get("/adit/test");
-    if (mine !== asked) return;
-    show(said);
-    if (said.running) setTimeout(follow, EVERY);
-  } catch (error) {
-    if (mine !== asked) return;
-    report(places.get(begun || "applied"), error.message, true);
-    isRunning = !error.status;
-    barTries();
-    if (isRunning) setTimeout(follow, 4 * EVERY);
+/** Shows the last test in its place, and nothing in the others. */
+function show() {
+  if (note && !isOfThese(note)) note = null;
+  const states = (view?.endpoints ?? []).flatMap(({ steps }) => steps.map(({ state }) => state));
+  const where = view ? placeOf(view) : "applied";
+  for (const [name, place] of places) {
+    if (note?.where === name) showAt(place, note);
+    else if (name !== where) showAt(place, {});
+    else if (!view) showAt(place, { text: lost, isBad: true });
+    else showAt(place, { text: verdictOf(states), ...(isCurrent(view) && { isBad: !view.running && states.includes("bad"), endpoints: view.endpoints }) });
   }
+  barTries();
+  const before = result;
+  result = view ? resultOf(view, states) : "";
+  if (result !== before) document.dispatchEvent(new Event("tested"));
 }
 
+/** Asks how the last test stands, and again later. An answer that was asked for before a press says nothing of its test. */
+async function follow() {
+  clearTimeout(timer);
+  const mine = ++asked;
+  const said = await get("/adit/test").catch(({ message }) => ({ lost: message }));
+  if (mine !== asked) return;
+  lost = said.lost ?? "";
+  if (!lost) view = said;
+  if (note?.isBusy && !view?.running) note = null;
+  if (own && view && view.number < own.number) own = null; // aditd has restarted
+  show();
+  followLater();
+}
+
+function followLater() {
+  clearTimeout(timer);
+  timer = setTimeout(() => (document.hidden ? followLater() : follow()), view?.running ? EVERY : IDLE);
+}
+
+/** Begins a test of body(), whose result is shown at `where`. */
 async function begin(where, body) {
   ++asked;
-  isRunning = true;
-  begun = where;
-  barTries();
-  report(places.get(where), "The test begins.", false);
+  const begun = { where, body, values: valuesOf(body) };
+  note = { ...begun, text: "The test begins.", isBad: false };
+  isBeginning = true;
+  forgetOutcome();
+  show();
   places.get(where).scrollIntoView({ block: "start" }); // its steps come into sight above the bar of what was typed
   try {
-    await post("/adit/test", body);
+    view = await post("/adit/test", body());
+    own = { ...begun, number: view.number };
+    note = null;
   } catch (error) {
-    report(places.get(where), named(error.message, "command_post."), true);
-    begun = "";
-    isRunning = error.status === 409; // another's runs, which is followed instead
-    barTries();
-    if (!isRunning) return;
+    note = { ...begun, text: named(error.message, "command_post."), isBad: true, isBusy: error.status === 409 };
   }
+  isBeginning = false;
+  show();
   follow();
 }
 
-/** What stands in the form, with whatever tokens are typed: as it would be without a course. */
-function typed() {
-  const { command_post: post } = draft.settings;
-  return { course: "", ...Object.fromEntries(ENDPOINTS.map((name) => [name, { ...post[name], token: typedToken(name) }])) };
+/** The addresses of `settings` and the tokens that are typed, as they would be without a course. */
+function typed({ command_post: post } = draft.settings, tokenOf = typedToken) {
+  return { course: "", ...Object.fromEntries(ENDPOINTS.map((name) => [name, { ...post[name], token: tokenOf(name) }])) };
 }
 
 /** Tries a course's Command Post before it is switched to. */
 export const tryCourse = (name) =>
-  begin("course", { course: name, ...Object.fromEntries(ENDPOINTS.map((endpoint) => [endpoint, { token: typedToken(`course.${name}.${endpoint}`) }])) });
+  begin("course", () => ({ course: name, ...Object.fromEntries(ENDPOINTS.map((endpoint) => [endpoint, { token: typedToken(`course.${name}.${endpoint}`) }])) }));
 
 export function offerTest() {
   const isOperator = document.body.dataset.role === "operator";
@@ -131,7 +171,12 @@ export function offerTest() {
     const button = place.querySelector("button[data-tries]");
     if (!button) continue;
     button.hidden = !isOperator;
-    button.addEventListener("click", () => begin(where, where === "applied" ? {} : typed()));
+    button.addEventListener("click", () => begin(where, where === "applied" ? () => ({}) : () => typed()));
   }
+  document.addEventListener("input", show);
+  onDraft((what) => {
+    show();
+    if (what !== "typed") follow();
+  });
   follow();
 }

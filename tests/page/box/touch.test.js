@@ -25,10 +25,10 @@ async function compose(page, type, i) {
   await toTab(page, "Reports");
   await page.locator("#reports .compose:enabled").tap();
   await page.locator("#compose .types").getByRole("button", { name: type, exact: true }).tap();
-  await page.fill("#compose input[name=z]", "0.5");
-  await page.locator("#compose h2").focus();
   await still(page);
   await page.touchscreen.tap(...(await placeOn(page, i)));
+  await page.fill("#compose input[name=z]", "0.5"); // no robot was there
+  await page.locator("#compose .go").tap();
   await page.locator("#compose .check").waitFor();
   assert.equal(await page.textContent("#compose .summary .type"), type);
   await page.locator("#compose .send").tap();

@@ -45,7 +45,7 @@ struct Stream {
   std::string kind = {};                 // "grid", "cloud", "state", "markers"
   std::string robot = {};                // ""
   std::optional<double> behind = {};     // seconds that the oldest news has waited; nothing: none waits
-  std::optional<double> forwarded = {};  // seconds since the Command Post took the last one
+  std::optional<double> forwarded = {};  // age in seconds of the newest data that was delivered
   std::optional<double> no_room = {};    // seconds since the robot was refused, because too much waits
   int last_status = 0;
   bool failed = false;  // the last try has a sentence why it came to nothing

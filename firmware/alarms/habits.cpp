@@ -10,45 +10,62 @@ constexpr double kNew = 0.25;  // what the last gap says of the habit
 
 }  // namespace
 
+/// Robots that were switched off make room.
+bool Habits::has_room(double now) {
+  if (known_.size() < kMost) return true;
+  std::erase_if(known_, [now](const auto& each) { return now - each.second.habit.last > Rules{}.away; });
+  return known_.size() < kMost;
+}
+
 void Habits::expect(const std::string& robot, double now) {
-  if (known_.size() >= kMost && !known_.contains(robot)) return;
-  Known& known = known_.try_emplace(robot, Known{.last = now}).first->second;
-  if (known.messages > 1 || std::exchange(known.was_expected, true)) return;
-  known.messages = kMessages;
+  if (!known_.contains(robot) && !has_room(now)) return;
+  Known& known = known_.try_emplace(robot, Known{.habit = {.last = now}}).first->second;
+  if (known.habit.messages > 1 || std::exchange(known.was_expected, true)) return;
+  known.habit.messages = kMessages;
   known.is_expected = true;
+}
+
+void Habits::carry_on(const std::string& robot, const Habit& habit, std::uint64_t count) {
+  if (has_room(habit.last)) known_[robot] = {.count = count, .habit = habit, .was_expected = true};
 }
 
 void Habits::heard(const std::string& robot, std::uint64_t count, double now) {
   if (robot.empty()) return;
   auto place = known_.find(robot);
   if (place == known_.end()) {
-    if (known_.size() >= kMost) return;
-    known_.emplace(robot, Known{.count = count, .messages = 1, .last = now});
+    if (has_room(now)) known_.emplace(robot, Known{.count = count, .habit = {.messages = 1, .last = now}});
     return;
   }
   Known& known = place->second;
   if (count == known.count) return;
   if (known.is_expected) {
-    known = {.count = count, .messages = 1, .last = now, .was_expected = true};
+    known = {.count = count, .habit = {.messages = 1, .last = now}, .was_expected = true};
     return;
   }
-  const double gap = now - known.last;
+  auto& [messages, usual, last] = known.habit;
+  const double gap = now - last;
   // A robot that comes back begins from nothing, for a silence is no habit.
-  const bool was_away = known.messages >= kMessages && gap > std::max(60.0, 10 * known.gap);
-  known.messages = was_away ? 1 : known.messages + 1;
-  if (known.messages == 2) known.gap = gap;
-  if (known.messages > 2) known.gap = std::max(known.gap + kNew * (gap - known.gap), gap / 2);
+  const bool was_away = messages >= kMessages && gap > std::max(60.0, 10 * usual);
+  messages = was_away ? 1 : messages + 1;
+  if (messages == 2) usual = gap;
+  if (messages > 2) usual = std::max(usual + kNew * (gap - usual), gap / 2);
   known.count = count;
-  known.last = now;
+  last = now;
+}
+
+std::optional<Habit> Habits::of(const std::string& robot) const {
+  const auto known = known_.find(robot);
+  return known == known_.end() ? std::nullopt : std::optional(known->second.habit);
 }
 
 std::map<std::string, Robot> Habits::robots(const Rules& rules, double now) const {
   std::map<std::string, Robot> robots;
   for (const auto& [name, known] : known_) {
-    const double quiet = now - known.last;
-    if (known.messages < kMessages || quiet > rules.away) continue;
-    const bool silent = quiet > std::max(rules.least, rules.times * known.gap);
-    robots[name] = {.gap = known.gap, .quiet = quiet, .silent = silent};
+    const auto& [messages, gap, last] = known.habit;
+    const double quiet = now - last;
+    if (messages < kMessages || quiet > rules.away) continue;
+    const bool silent = quiet > std::max(rules.least, rules.times * gap);
+    robots[name] = {.gap = gap, .quiet = quiet, .silent = silent};
   }
   return robots;
 }

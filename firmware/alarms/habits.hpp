@@ -2,13 +2,22 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "alarms/facts.hpp"
 
 namespace adit::alarms {
 
-/// How often each robot says something as a rule, and so when its silence means anything.
+/// How often a robot says something; what outlives a restart of the service.
+struct Habit {
+  int messages = 0;  // at most kMessages count
+  double gap = 0;    // seconds, as a rule, between two messages
+  double last = 0;   // when it was heard last
+};
+
+/// How often each robot says something as a rule, and so when its silence means anything. A new run changes
+/// neither.
 class Habits {
  public:
   struct Rules {
@@ -20,13 +29,15 @@ class Habits {
   static constexpr std::size_t kMost = 64;
 
   /// `count`: of its messages of all kinds, since ever. To be told each second; `now`: seconds of
-  /// a clock that never steps. Messages that came between two calls count as one.
+  /// a clock that never steps, when the last of them came. Messages between two calls count as one.
   void heard(const std::string& robot, std::uint64_t count, double now);
-  /// It spoke in this run before the service began, and at most one message is told of since, which may be of
-  /// before, too: from now on its silence counts.
+  /// As it was before a restart of the service; `count`: heard()'s of this process, which is of before.
+  void carry_on(const std::string& robot, const Habit& habit, std::uint64_t count);
+  /// It spoke in this run before a start of the machine, and at most one message is told of since, which may
+  /// be of before, too: from now on its silence counts.
   void expect(const std::string& robot, double now);
-  /// Another run: whoever says nothing any more need not be here.
-  void forget() { known_.clear(); }
+  /// Nothing if nothing is known of it.
+  std::optional<Habit> of(const std::string& robot) const;
 
   /// Those that have a habit.
   std::map<std::string, Robot> robots(const Rules& rules, double now) const;
@@ -34,11 +45,12 @@ class Habits {
  private:
   struct Known {
     std::uint64_t count = 0;
-    int messages = 0;
-    double last = 0, gap = 0;
+    Habit habit = {};
     bool is_expected = false;   // and nothing was heard of it here
     bool was_expected = false;  // once is enough
   };
+  bool has_room(double now);
+
   std::map<std::string, Known> known_;
 };
 

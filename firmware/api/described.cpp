@@ -5,6 +5,7 @@
 
 // NOLINTBEGIN(bugprone-suspicious-include): where their descriptions stand.
 #include "alarms/alarm.cpp"
+#include "alarms/run_clock.cpp"
 #include "alarms/verdict.cpp"
 #include "api/box.cpp"
 #include "api/clock_rows.cpp"

@@ -11,6 +11,12 @@ double seconds_since(Time at, Time now) {
   return std::max(0.0, now - at);
 }
 
+/// A rejected update, or one that cannot be sent, was accepted and not delivered.
+std::optional<double> age_of(const ActivityRow& row, Time now) {
+  if (!row.last_forwarded) return std::nullopt;
+  return seconds_since(std::min(*row.last_forwarded, row.last_accepted.value_or(*row.last_forwarded)), now);
+}
+
 std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Time now) {
   const auto ago = [now](const std::optional<Time>& at) {
     return at ? std::optional(seconds_since(*at, now)) : std::nullopt;
@@ -21,7 +27,7 @@ std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Tim
     streams.push_back({.kind = row.kind,
                        .robot = row.robot,
                        .behind = ago(row.behind_since),
-                       .forwarded = ago(row.last_forwarded),
+                       .forwarded = age_of(row, now),
                        .no_room = ago(row.last_no_room),
                        .last_status = row.last_status,
                        .failed = !row.last_sentence.empty()});
@@ -39,7 +45,13 @@ void judge(RunView& view, const alarms::Facts& facts) {
     row.behind = facts.streams[i].behind;
     row.age = facts.streams[i].forwarded;
   }
-  for (RobotRow& robot : view.robots) robot.age = seconds_since(robot.at, facts.now);
+  for (RobotRow& robot : view.robots) {
+    const auto its = std::ranges::find_if(view.activities, [&robot](const ActivityRow& row) {
+      return row.kind == "state" && row.robot == robot.name;
+    });
+    if (its != view.activities.end() && its->age) robot.at = facts.now - *its->age;
+    if (robot.at) robot.age = seconds_since(*robot.at, facts.now);
+  }
   view.verdict = alarms::verdict_of(facts);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "alarms/facts.hpp"
@@ -7,8 +8,11 @@
 
 namespace adit::api {
 
-/// The age, at least 0, that page, command line, metrics and alarms show.
-double seconds_since(Time at, Time now);
+double seconds_since(Time at, Time now);  // at least 0
+
+/// The age that page, command line, metrics and alarms show: seconds since the robot posted the newest data
+/// that the Command Post can have. Nothing if none was delivered.
+std::optional<double> age_of(const ActivityRow& row, Time now);
 
 /// What the rules of alarms go by, of each row.
 std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Time now);

@@ -35,11 +35,14 @@ RunView Live::look() const {
   RunView view = source_.view();
   codec::change_numbers(RunView::kRow, &view, rounded);
   // Ages go on whatever happens: by whole seconds, so that an event is small.
-  for (ActivityRow& row : view.activities) {
-    for (std::optional<double>* const age : {&row.behind, &row.age})
-      if (*age) *age = std::floor(**age);
+  const auto whole_seconds = [](std::optional<double>& age) {
+    if (age) *age = std::floor(*age);
+  };
+  for (ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
+  for (RobotRow& robot : view.robots) whole_seconds(robot.age);
+  if (view.run_clock) {
+    for (double* const each : {&view.run_clock->seconds, &view.run_clock->age}) *each = std::floor(*each);
   }
-  for (RobotRow& robot : view.robots) robot.age = std::floor(robot.age);
   return view;
 }
 

@@ -77,15 +77,15 @@ void write_run(Exposition& out, const RunView& view) {
   if (!view.run) return;
   out.gauge("adit_run_info", "The Command Post's names of team and run; always 1.");
   out.sample({{"team", view.run->current_team}, {"run", view.run_id}}, 1);
-  out.gauge("adit_run_clock_seconds", "The run's clock, from the last status.");
-  out.sample(static_cast<double>(view.run->run_clock));
+  out.gauge("adit_run_clock_seconds", "The run's clock; an estimate if the last status is old.");
+  out.sample(view.run_clock ? view.run_clock->seconds : view.run->run_clock);
   out.gauge("adit_run_score", "The team's score, from the last status.");
   out.sample(static_cast<double>(view.run->score));
   out.gauge("adit_run_remaining_reports", "Reports left, from the last status.");
   out.sample(static_cast<double>(view.run->remaining_reports));
-  if (!view.run_heard) return;
+  if (!view.run_clock) return;
   out.gauge("adit_run_heard_age_seconds", "Age of the run's last status.");
-  out.sample(view.now - *view.run_heard);
+  out.sample(view.run_clock->age);
 }
 
 void write_reports(Exposition& out, const ReportCounts& reports) {

@@ -71,7 +71,8 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::behind>("behind", "seconds since behind_since; null if all are delivered"),
     member<&ActivityRow::last_accepted>("last_accepted", kWhen),
     member<&ActivityRow::last_forwarded>("last_forwarded", kWhen),
-    member<&ActivityRow::age>("age", "age of the last delivered update in seconds; null if there is none"),
+    member<&ActivityRow::age>(
+        "age", "seconds since the newest data that was delivered was posted; null if there is none"),
     member<&ActivityRow::last_no_room>("last_no_room", kWhen),
     member<&ActivityRow::bytes_received>("bytes_received", "size of the last accepted update"),
     member<&ActivityRow::bytes_sent>("bytes_sent", "size of the last delivered update"),
@@ -142,8 +143,8 @@ constexpr Member kRobot[] = {
     member<&RobotRow::name>("name"),
     member<&RobotRow::position>("position"),
     member<&RobotRow::heading>("heading", "radians about z"),
-    member<&RobotRow::at>("at", "when the last pose was first forwarded"),
-    member<&RobotRow::age>("age", "seconds since at"),
+    member<&RobotRow::at>("at", "when the robot posted its last pose; null: before a start of the box"),
+    member<&RobotRow::age>("age", "seconds since at; null if at is"),
 };
 
 constexpr Member kLight[] = {
@@ -162,6 +163,7 @@ constexpr Member kView[] = {
     member<&RunView::version>("version"),
     member<&RunView::run>("run"),
     member<&RunView::run_heard>("run_heard", kWhen),
+    member<&RunView::run_clock>("run_clock", "null if there is no status"),
     member<&RunView::run_number>("run_number"),
     member<&RunView::run_id>("run_id", "the Command Post's name of the run; empty if there is none"),
     member<&RunView::run_seconds>("run_seconds", "length of a run, from the settings"),

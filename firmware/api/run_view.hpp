@@ -9,6 +9,7 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/arrival.hpp"
+#include "alarms/run_clock.hpp"
 #include "alarms/verdict.hpp"
 #include "api/scene.hpp"
 #include "codec/row.hpp"
@@ -124,8 +125,8 @@ struct RobotRow {
   std::string name;
   icd::Point position;
   double heading = 0;
-  Time at = 0;
-  double age = 0;  // judge()'s
+  std::optional<Time> at = {};  // nothing: before a start of the machine, whose clock may have been set since
+  std::optional<double> age = {};  // judge()'s
 
   static const codec::Row kRow;
 };
@@ -150,6 +151,7 @@ struct RunView {
   std::string version;
   std::optional<icd::RunStatus> run;
   std::optional<Time> run_heard;
+  std::optional<alarms::ShownClock> run_clock;
   std::int64_t run_number = 1;
   std::string run_id;
   std::int64_t run_seconds = 3600;

@@ -1,5 +1,6 @@
 #include "cli/status_text.hpp"
 
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -55,23 +56,29 @@ std::string verdict_line(const RunView& view, bool colour) {
          host::escaped(view.verdict.why) + '\n';
 }
 
+/// "12:34", "about 12:34"
+std::string clock_text(const alarms::ShownClock& shown, double seconds) {
+  return (shown.old && shown.runs ? "about " : "") + clock(seconds);
+}
+
 /// What is left of the run, by the settings.
-std::string to_go(const RunView& view, double run_clock) {
-  const double left = static_cast<double>(view.run_seconds) - run_clock;
-  return left < 0 ? clock(-left) + " over time" : clock(left) + " to go";
+std::string to_go(const RunView& view, const alarms::ShownClock& shown) {
+  const double left = static_cast<double>(view.run_seconds) - shown.seconds;
+  return clock_text(shown, std::abs(left)) + (left < 0 ? " over time" : " to go");
 }
 
 std::string run_line(const RunView& view, bool colour) {
-  if (!view.run) return painted("Run   no status from the Command Post yet", Tone::Warning, colour) + '\n';
+  if (!view.run || !view.run_clock)
+    return painted("Run   no status from the Command Post yet", Tone::Warning, colour) + '\n';
   const icd::RunStatus& run = *view.run;
-  std::string text = "Run   " + painted(clock(run.run_clock), Tone::Strong, colour) + "   " +
-                     to_go(view, run.run_clock) + "   score " +
-                     painted(std::to_string(run.score), Tone::Strong, colour) + "   " +
-                     painted(std::to_string(run.remaining_reports), Tone::Strong, colour) + " reports left";
+  const alarms::ShownClock& shown = *view.run_clock;
+  const Tone tone = shown.old ? Tone::Faint : Tone::Strong;
+  std::string text = "Run   " + painted(clock_text(shown, shown.seconds), tone, colour) + "   " +
+                     to_go(view, shown) + "   score " + painted(std::to_string(run.score), tone, colour) +
+                     "   " + painted(std::to_string(run.remaining_reports), tone, colour) + " reports left";
   if (!run.current_team.empty()) text += "   team " + host::escaped(run.current_team);
-  if (view.run_heard) {
-    text += painted("   (heard " + duration(view.now - *view.run_heard) + " ago)", Tone::Faint, colour);
-  }
+  text +=
+      painted("   (heard " + duration(shown.age) + " ago)", shown.old ? Tone::Warning : Tone::Faint, colour);
   return text + '\n';
 }
 
@@ -152,7 +159,7 @@ std::string activities_table(const RunView& view, bool colour) {
                {"sent", Align::Right},
                {"queued", Align::Right},
                {"no room", Align::Right},
-               {"last sent", Align::Right},
+               {"age", Align::Right},
                {"size", Align::Right},
                {"last answer"}});
   for (const api::ActivityRow& row : view.activities) {
@@ -163,7 +170,7 @@ std::string activities_table(const RunView& view, bool colour) {
                {std::to_string(row.forwarded)},
                {std::to_string(row.queued)},
                {row.no_room == 0 ? "" : std::to_string(row.no_room), Tone::Warning},
-               {row.age ? ago(*row.age) : "never"},
+               {row.age ? duration(*row.age) : "never"},
                {sent_size(row)},
                {answer_of(row.last_status, row.last_sentence),
                 row.level == alarms::Level::Bad ? Tone::Bad : Tone::Plain}});

@@ -28,7 +28,9 @@ void AsForwarded::begin_run(api::Time now) {
 }
 
 void AsForwarded::move(double seconds) {
-  for (auto& [name, robot] : robots_) robot.at += seconds;
+  for (auto& [name, robot] : robots_) {
+    if (robot.at) *robot.at += seconds;
+  }
   for (auto& [name, at] : before_) at += seconds;
   tracks_.move(seconds);
   markers_.move(seconds);
@@ -42,8 +44,7 @@ void AsForwarded::go_on_from(std::vector<api::Track> earlier) {
     if (robots_.contains(track.robot)) return false;
     if (track.poses.empty() || robots_.size() >= kMostRobots) return true;
     const api::TrackPose& last = track.poses.back();
-    robots_[track.robot] = {
-        .name = track.robot, .position = last.position, .heading = last.heading, .at = last.at};
+    robots_[track.robot] = {.name = track.robot, .position = last.position, .heading = last.heading};
     return false;
   });
   tracks_.go_on_from(earlier);

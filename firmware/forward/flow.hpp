@@ -124,6 +124,10 @@ class Flow final : public intake::Desk {
   const dispatch::Reports& reports() const { return scoring_.reports(); }
   const Maps& maps() const { return maps_; }
   const Telemetry& telemetry() const { return telemetry_; }
+  /// When robots were heard, of before a restart of the service.
+  const std::map<std::string, journal::Heard>& heard_before() const { return heard_before_; }
+  /// For the next process start.
+  void keep(const journal::Heard& heard) { journal_.heard(heard); }
   const RejectedStore& rejected() const { return rejected_; }
   const Record& record() const { return record_; }
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
@@ -152,6 +156,7 @@ class Flow final : public intake::Desk {
   void carry_on();
   void hold_back();
   void restore(bool is_first);
+  void restore_record();
   void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
   void changed();
@@ -177,6 +182,7 @@ class Flow final : public intake::Desk {
   loop::Workers workers_;  // after the writer: what a job holds is the writer's to the end
   journal::Journal journal_;
   Clocks clocks_;
+  std::map<std::string, journal::Heard> heard_before_;
   RejectedStore rejected_;
   Record record_;
   Scoring scoring_;

@@ -34,10 +34,10 @@ archive::Sample Flow::sample() const {
   const double now = loop_.wall_now();
   std::map<std::string, double> ages;
   for (const auto& [traffic, row] : record_.rows()) {
-    if (!is_map(traffic.kind) || !row.last_forwarded) continue;
-    const double age = api::seconds_since(*row.last_forwarded, now);
-    const auto [its, is_new] = ages.emplace(traffic.robot, age);
-    its->second = std::min(its->second, age);
+    const auto age = api::age_of(row, now);
+    if (!is_map(traffic.kind) || !age) continue;
+    const auto [its, is_new] = ages.emplace(traffic.robot, *age);
+    its->second = std::min(its->second, *age);
   }
   const Channel& mapping =
       maps_.channel().heard() > telemetry_.channel().heard() ? maps_.channel() : telemetry_.channel();

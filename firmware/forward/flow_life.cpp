@@ -1,4 +1,5 @@
 // How the flow begins, goes on and ends.
+#include <cmath>
 #include <utility>
 
 #include "forward/flow.hpp"
@@ -104,6 +105,8 @@ void Flow::carry_on() {
     hold_back();  // after what was carried on: it is written down, and must not put an earlier time there
   }
   restore(is_first);
+  heard_before_ = carried.heard();
+  restore_record();
 }
 
 /// When the flow before sent last may not have been written down, and the Command Post sees too much of
@@ -124,6 +127,18 @@ void Flow::restore(bool is_first) {
     if (is_first) map.header().stamp = loop_.stamp_now();
   }
   maps_.restore(std::move(kept));
+}
+
+/// After restore(), which accepts anew what was accepted before.
+void Flow::restore_record() {
+  const double ahead = loop_.wall_now() - loop_.stamp_now();
+  for (const auto& [robot, heard] : heard_before_) {
+    for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
+      const auto [accepted, forwarded] = heard.kinds[kind];
+      if (!std::isnan(accepted))
+        record_.restore({static_cast<Kind>(kind), robot}, accepted + ahead, forwarded + ahead);
+    }
+  }
 }
 
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {

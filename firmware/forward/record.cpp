@@ -1,5 +1,7 @@
 #include "forward/record.hpp"
 
+#include <cmath>
+
 #include "icd/sentence.hpp"
 
 namespace adit::forward {
@@ -41,6 +43,12 @@ void Record::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) 
   activity.last_accepted = now;
   activity.bytes_received = bytes;
   changed_();
+}
+
+void Record::restore(const Traffic& traffic, api::Time accepted, api::Time forwarded) {
+  api::ActivityRow& activity = row(traffic);
+  activity.last_accepted = accepted;
+  if (!std::isnan(forwarded)) activity.last_forwarded = forwarded;
 }
 
 void Record::no_room(const Traffic& traffic, api::Time now) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,9 @@ enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 
 /// Why a message was not taken upstream: sent too often, failed (both are sent again), or refused for good.
 enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
+
+/// Of which it is told when a robot was heard, as the API names them: the first of Kind.
+inline constexpr std::string_view kHeardKinds[] = {"grid", "cloud", "state"};
 
 /// The robot and the kind of its messages: "" is a merged map, or markers.
 struct Traffic {
@@ -45,6 +49,8 @@ class Record {
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
+  /// When the last one was accepted, and forwarded (NaN: none was), before a restart of the service.
+  void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
   /// It was refused to the robot, because too much waits.
   void no_room(const Traffic& traffic, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);

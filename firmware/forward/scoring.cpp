@@ -88,6 +88,7 @@ void Scoring::endpoint_turned() {
   pace_.endpoint_turned();
   run_.reset();
   run_heard_.reset();
+  run_clock_ = {};
   known_status_ = {};
   poll_due_ = true;
   const auto opened = whole(restart_, [this] { return open_reports(); });
@@ -352,6 +353,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   if (run) {
     run_ = *run;
     run_heard_ = loop_.wall_now();
+    run_clock_.heard(run->run_clock, loop_.stamp_now());
     whole(restart_, [&] { reports_->status_heard(*run, asked, time()); });
   } else {
     const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);

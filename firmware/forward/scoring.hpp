@@ -7,6 +7,7 @@
 #include <random>
 #include <string>
 
+#include "alarms/run_clock.hpp"
 #include "api/source.hpp"
 #include "dispatch/reports.hpp"
 #include "forward/channel.hpp"
@@ -87,6 +88,7 @@ class Scoring {
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
   std::optional<api::Time> run_heard() const { return run_heard_; }
+  std::optional<alarms::ShownClock> run_clock() const { return run_clock_.at(loop_.stamp_now()); }
   /// The time of day was set ahead by so many seconds.
   void move(double seconds) {
     if (run_heard_) *run_heard_ += seconds;
@@ -153,6 +155,7 @@ class Scoring {
 
   std::optional<icd::RunStatus> run_;
   std::optional<api::Time> run_heard_;
+  alarms::RunClock run_clock_;
   KnownStatus known_status_;
   std::optional<AskedStatus> asked_status_;
   bool stopping_ = false;

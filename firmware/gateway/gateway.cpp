@@ -139,6 +139,7 @@ std::expected<void, std::string> Gateway::start() {
   if (!spare_.standby().empty())
     flow_.stand_by("this box is on standby, for its spare to take over; it accepts and sends no messages");
   if (auto started = flow_.start(); !started) return started;
+  lookout_.carry_on(flow_, loop_.stamp_now());
   if (auto listening = listen(settings_.team); !listening) return listening;
   board_.remember(acknowledged_.read(), loop_.wall_now());
   every_second();

@@ -70,6 +70,7 @@ api::RunView Gateway::view() const {
                     .version = box::kVersion,
                     .run = flow_.scoring().run(),
                     .run_heard = flow_.scoring().run_heard(),
+                    .run_clock = flow_.scoring().run_clock(),
                     .run_number = flow_.reports().run().number,
                     .run_id = flow_.reports().run().id,
                     .run_seconds = settings_.runs.length_seconds,

@@ -1,5 +1,6 @@
 #include "gateway/lookout.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -25,21 +26,62 @@ alarms::Endpoint named(const char* name, const settings::Address& address, const
   return endpoint;
 }
 
+/// What the activities say of one robot.
+struct OfRobot {
+  std::uint64_t accepted = 0, forwarded = 0;
+  journal::Heard heard;
+};
+
+/// `now`, `time`: the clock for stamps, and the time of day of the activities.
+std::map<std::string, OfRobot> of_robots(const std::vector<api::ActivityRow>& activities, double now,
+                                         api::Time time) {
+  std::map<std::string, OfRobot> all;
+  for (const api::ActivityRow& row : activities) {
+    const auto kind = std::ranges::find(forward::kHeardKinds, row.kind);
+    if (kind == std::end(forward::kHeardKinds)) continue;
+    OfRobot& its = all[row.robot];
+    its.accepted += row.accepted;
+    its.forwarded += row.forwarded;
+    its.heard.robot = row.robot;
+    auto& [accepted, forwarded] =
+        its.heard.kinds.at(static_cast<std::size_t>(kind - std::begin(forward::kHeardKinds)));
+    if (row.last_accepted)
+      its.heard.last = std::max(its.heard.last, accepted = now - (time - *row.last_accepted));
+    if (row.last_forwarded) forwarded = now - (time - *row.last_forwarded);
+  }
+  return all;
+}
+
 }  // namespace
 
-void Lookout::look(const forward::Flow& flow, const settings::Settings& settings,
+void Lookout::carry_on(const forward::Flow& flow, double now) {
+  const auto all = of_robots(flow.activities(), now, now);
+  for (const auto& [robot, heard] : flow.heard_before()) {
+    const auto its = all.find(robot);
+    if (robot.empty() || now - heard.last > alarms::Habits::Rules{}.away) continue;
+    habits_.carry_on(robot,
+                     {.messages = static_cast<int>(heard.messages), .gap = heard.gap, .last = heard.last},
+                     its == all.end() ? 0 : its->second.accepted);
+  }
+}
+
+void Lookout::look(forward::Flow& flow, const settings::Settings& settings,
                    const std::vector<api::ActivityRow>& activities, double now, api::Time time) {
   scoring_.look({seen(flow.scoring().channel())}, now);
   mapping_.look({seen(flow.maps().channel()), seen(flow.telemetry().channel())}, now);
-  const std::int64_t run = flow.reports().run().number;
-  const std::int64_t before = std::exchange(run_, run);
-  if (before != run) habits_.forget();
-  is_first_run_ = is_first_run_ && (before == 0 || before == run);
-  std::map<std::string, std::uint64_t> counts;
-  for (const api::ActivityRow& row : activities) counts[row.robot] += row.accepted;
-  for (const auto& [robot, count] : counts) habits_.heard(robot, count, now);
+  for (auto& [robot, its] : of_robots(activities, now, time)) {
+    habits_.heard(robot, its.accepted, its.heard.last);
+    const std::uint64_t told = its.accepted + its.forwarded;
+    if (std::exchange(told_[robot], told) == told) continue;
+    if (const auto habit = habits_.of(robot)) {
+      its.heard.messages = static_cast<std::uint64_t>(std::min(habit->messages, alarms::Habits::kMessages));
+      its.heard.gap = habit->gap;
+      its.heard.last = habit->last;
+    }
+    flow.keep(its.heard);
+  }
   for (const auto& [robot, at] : flow.as_forwarded().before()) {
-    if (is_first_run_ && time - at < alarms::Habits::Rules{}.away) habits_.expect(robot, now);
+    if (time - at < alarms::Habits::Rules{}.away) habits_.expect(robot, now);
   }
   growth_.look(flow.maps().queued_bytes(), settings.queues.map_bytes, now);
 }

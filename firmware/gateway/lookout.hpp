@@ -15,8 +15,10 @@ namespace adit::gateway {
 class Lookout {
  public:
   /// To be told each second, with the activities of the view. `time`: of the day.
-  void look(const forward::Flow& flow, const settings::Settings& settings,
+  void look(forward::Flow& flow, const settings::Settings& settings,
             const std::vector<api::ActivityRow>& activities, double now, api::Time time);
+  /// Once the flow has started, before anybody is answered: what it knows of the robots from before.
+  void carry_on(const forward::Flow& flow, double now);
   /// That endpoint is another place, or has another token.
   void forget_scoring() { scoring_.forget(); }
   void forget_mapping() { mapping_.forget(); }
@@ -31,8 +33,7 @@ class Lookout {
   alarms::PostWatch scoring_, mapping_;
   alarms::Habits habits_;
   alarms::Growth growth_;
-  std::int64_t run_ = 0;
-  bool is_first_run_ = true;  // the one that the service began in
+  std::map<std::string, std::uint64_t> told_;  // by robot: messages accepted and forwarded, as last kept
 };
 
 }  // namespace adit::gateway

@@ -96,6 +96,8 @@ bool Carried::apply(Kind kind, std::string_view said) {
       return read_grids(said);
     case Kind::Poses:
       return read_poses(said);
+    case Kind::Heard:
+      return read_heard(said);
     case Kind::End:
       return true;
   }
@@ -119,6 +121,7 @@ void Carried::machine_is(const std::string& boot) {
   clock_.reset();
   paces_.clear();
   senders_ = {};
+  heard_.clear();
 }
 
 bool Carried::read_sender(std::string_view said) {
@@ -220,6 +223,16 @@ bool Carried::read_grids(std::string_view said) {
   return reader.ok();
 }
 
+bool Carried::read_heard(std::string_view said) {
+  Reader reader(said);
+  Heard heard{.robot = std::string(reader.text()), .messages = reader.number()};
+  heard.gap = reader.real();
+  heard.last = reader.real();
+  for (auto& [accepted, forwarded] : heard.kinds) accepted = reader.real(), forwarded = reader.real();
+  if (reader.ok()) heard_[heard.robot] = heard;
+  return reader.ok();
+}
+
 void Carried::state_is_done() {
   for (auto& [name, robot] : robots_) robot.under_way = false;
   std::erase_if(robots_, [](const auto& robot) { return !robot.second.news; });
@@ -254,6 +267,7 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
     to(Kind::Grids, {});
     for (const auto& [key, extent] : *grids_) to(Kind::Grids, said(key, extent));
   }
+  for (const auto& [robot, heard] : heard_) to(Kind::Heard, said(heard));
   const auto write_robots = [&](bool Robot::* these) {
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
@@ -329,6 +343,13 @@ std::string said(std::span<const lanes::PostedPose> poses) {
     out.real(posted.stamp.value_or(std::numeric_limits<double>::quiet_NaN()));
     for (const double* const part : parts_of(posted.pose)) out.real(*part);
   }
+  return out.finish();
+}
+
+std::string said(const Heard& heard) {
+  Writer out;
+  out.text(heard.robot).number(heard.messages).real(heard.gap).real(heard.last);
+  for (const auto& [accepted, forwarded] : heard.kinds) out.real(accepted).real(forwarded);
   return out.finish();
 }
 

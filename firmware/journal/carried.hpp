@@ -1,6 +1,9 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -27,6 +30,19 @@ struct Clock {
   double stamp = 0;
   double leapt_to = 0, leapt_by = 0;  // dispatch::Leap: with which this start of the machine began
   double off = 0, off_since = 0;      // forward::Clocks::Off
+};
+
+/// When a robot was heard, by the clock for stamps, and how often it posts.
+struct Heard {
+  /// Of one kind of its data; NaN: never.
+  struct Times {
+    double accepted = std::numeric_limits<double>::quiet_NaN(),
+           forwarded = std::numeric_limits<double>::quiet_NaN();
+  };
+  std::string robot;             // "": merged maps
+  std::uint64_t messages = 0;    // alarms::Habit
+  double gap = 0, last = 0;      // this, too
+  std::array<Times, 3> kinds{};  // grid, cloud, state
 };
 
 /// What one life of the gateway hands on to the next: what the records of a journal come to.
@@ -57,6 +73,8 @@ class Carried {
   /// Those whose pose the Command Post has not taken as it is. One that it has taken is no business of a life
   /// to come, which may serve another Command Post.
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
+  /// By robot. Empty after a start of the machine.
+  const std::map<std::string, Heard>& heard() const { return heard_; }
   /// What it has not taken, in order.
   icd::MarkersUpdate markers() const;
 
@@ -70,6 +88,7 @@ class Carried {
   bool read_pace(std::string_view said);
   bool read_stamp(std::string_view said);
   bool read_grids(std::string_view said);
+  bool read_heard(std::string_view said);
   void state_is_done();
   void state_comes_back();
   void markers_come_back();
@@ -80,6 +99,7 @@ class Carried {
   std::map<icd::Uri, icd::Stamp> stamps_;
   std::optional<std::map<std::string, lanes::Extent>> grids_;
   std::map<icd::RobotName, Robot> robots_;
+  std::map<std::string, Heard> heard_;
   lanes::MarkerChanges markers_;
   std::vector<icd::Marker> markers_under_way_;
 };
@@ -91,6 +111,7 @@ std::string said(icd::Uri uri, const pace::Learned& learned);
 std::string said(icd::Uri uri, icd::Stamp stamp);
 std::string said(const std::string& name, const lanes::Extent& extent);
 std::string said(std::span<const lanes::PostedPose> poses);
+std::string said(const Heard& heard);
 std::string said(const icd::MarkersUpdate& update);
 /// The record of markers that were accepted: it may be made by any thread.
 std::string record_of(const icd::MarkersUpdate& update);

@@ -53,6 +53,8 @@ class Journal {
   Kept accepted_record(const std::string& record) { return append(record); }
 
   void senders(const lanes::StampShift::Clocks& clocks);
+  /// For the next process start. If there is no room for it, the next one says the same.
+  void heard(const Heard& heard) { (void)append(framed(Kind::Heard, said(heard))); }
 
   /// These poses, or these markers, are about to be sent.
   void state_sent(const icd::StateUpdate& update);

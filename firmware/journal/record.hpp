@@ -28,6 +28,7 @@ enum class Kind : std::uint8_t {
   End = 15,    // of a whole snapshot
   Grids = 16,  // where grids of a name were posted
   Poses = 19,  // of a /state/update that was accepted
+  Heard = 20,  // when a robot was heard, and how often it posts
 };
 
 /// Puts numbers and texts one after the other, little-endian.

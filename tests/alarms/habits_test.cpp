@@ -67,6 +67,19 @@ TEST_F(HabitsTest, BlameARobotThatSpokeBeforeTheServiceBeganAndSaysNothingSince)
   EXPECT_FALSE(is_silent_after("uav6", 100)) << "it was heard";
 }
 
+TEST_F(HabitsTest, OutliveARestartOfTheService) {
+  speaks("uav5", 1, 20);
+  Habits next;
+  next.carry_on("uav5", *habits_.of("uav5"), 1);  // one message that was queued before
+  next.heard("uav5", 1, now_ + 5);
+  EXPECT_FALSE(next.robots(rules_, now_ + 30).at("uav5").silent);
+  EXPECT_TRUE(next.robots(rules_, now_ + 31).at("uav5").silent) << "since its last message";
+  next.expect("uav5", now_ + 40);
+  EXPECT_EQ(next.robots(rules_, now_ + 60).at("uav5").quiet, 60);
+  next.heard("uav5", 2, now_ + 61);
+  EXPECT_FALSE(next.robots(rules_, now_ + 62).contains("uav5")) << "it comes back";
+}
+
 TEST_F(HabitsTest, SayNothingOfWhoHasNone) {
   speaks("uav5", 1, Habits::kMessages - 2);
   EXPECT_THAT(habits_.robots(rules_, now_ + 100), IsEmpty());
@@ -88,6 +101,15 @@ TEST_F(HabitsTest, ForgetWhoWasSwitchedOff) {
 TEST_F(HabitsTest, AreOfNoRobotWhereTheMapIsMerged) {
   speaks("", 1, 20);
   EXPECT_THAT(habits_.robots(rules_, now_), IsEmpty());
+}
+
+TEST_F(HabitsTest, GiveThePlaceOfRobotsThatWereSwitchedOffToOthers) {
+  for (std::size_t robot = 0; robot < Habits::kMost; ++robot) speaks("r" + std::to_string(robot), 1, 1);
+  speaks("uav5", 1, 20);
+  EXPECT_FALSE(habits_.of("uav5"));
+  now_ += rules_.away + 1;
+  speaks("uav5", 1, 20);
+  EXPECT_TRUE(habits_.robots(rules_, now_).contains("uav5"));
 }
 
 TEST_F(HabitsTest, AreOfSoManyRobotsAtMost) {

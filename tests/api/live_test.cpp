@@ -248,7 +248,7 @@ TEST_F(LiveTest, TellsNothingOfTimesThatDifferByLessThanIsTold) {
   const auto page = open();
   EXPECT_THAT(page->sent[0], HasSubstr("0.123456789")) << "what makes a report the same is told exactly";
   for (ReportRow& report : source.now.reports) report.changed += 2e-7;
-  for (RobotRow& robot : source.now.robots) robot.at += 2e-7;
+  for (RobotRow& robot : source.now.robots) *robot.at += 2e-7;
   live.changed();
   pass(milliseconds{300});
   EXPECT_THAT(page->sent, SizeIs(1));

@@ -32,7 +32,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
   Measured all = measured("calm");
   all.view.run =
       icd::RunStatus{.score = 7, .run_clock = 750, .remaining_reports = 18, .current_team = "adit"};
-  all.view.run_heard = all.view.now - 2;
+  all.view.run_clock = {.seconds = 756.5, .age = 2, .runs = true};
   all.view.endpoints = {{.name = "scoring",
                          .address = "",
                          .connected = true,
@@ -65,7 +65,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
   all.operators = 2;
   const std::string text = write_metrics(all);
   for (const char* sample : {"adit_run_score 7",
-                             "adit_run_clock_seconds 750",
+                             "adit_run_clock_seconds 756.5",
                              "adit_run_remaining_reports 18",
                              "adit_run_heard_age_seconds 2",
                              R"(adit_endpoint_up{endpoint="scoring"} 1)",

@@ -37,6 +37,23 @@ TEST(RunView, HasTheAgesThatTheAlarmsGoBy) {
   EXPECT_EQ(view.robots[0].age, 0) << "never negative";
 }
 
+TEST(RunView, SaysHowOldTheRobotsOwnDataIsAndNotWhenItWasForwarded) {
+  RunView view;
+  view.activities.resize(2);
+  for (ActivityRow& row : view.activities) row.robot = "r";
+  view.activities[0].kind = "state", view.activities[1].kind = "grid";
+  view.activities[0].last_accepted = 906, view.activities[0].last_forwarded = 999;
+  view.activities[1].last_accepted = 999, view.activities[1].last_forwarded = 980;
+  view.robots = {{.name = "r", .position = {}, .at = 999}, {.name = "before", .position = {}}};
+  alarms::Facts facts{.now = 1000};
+  facts.streams = streams_of(view.activities, facts.now);
+  judge(view, facts);
+  EXPECT_EQ(view.activities[0].age, 94) << "it was queued for long";
+  EXPECT_EQ(view.activities[1].age, 20) << "the newest one was not delivered";
+  EXPECT_EQ(view.robots[0].age, 94);
+  EXPECT_EQ(view.robots[1].age, std::nullopt) << "before a start of the machine";
+}
+
 TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   const RunView view = *scene("trouble", 1000.5, 3);
   const json parsed = json::parse(codec::to_json(view));
@@ -63,8 +80,8 @@ TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
   EXPECT_EQ(parsed["robots"][0], (json{{"name", "ANYmal1"},
                                        {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
                                        {"heading", 0.5},
-                                       {"at", 1000.0},
-                                       {"age", 0.5}}));
+                                       {"at", view.robots[0].at.value()},
+                                       {"age", view.robots[0].age.value()}}));
   EXPECT_EQ(parsed["identify_until"], nullptr);
   EXPECT_EQ(parsed["setup_open_until"], nullptr);
   EXPECT_EQ(parsed["run_number"], 1);

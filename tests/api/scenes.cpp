@@ -77,6 +77,7 @@ RunView calm(Time now, double elapsed) {
   const Time began = now - elapsed;
   view.run = icd::RunStatus{7, 754 + heard, 18, "Cerberus"};
   view.run_heard = now - (elapsed - heard);
+  view.run_clock = {.seconds = 754 + elapsed, .age = elapsed - heard, .runs = true};
   view.endpoints[0].connected = view.endpoints[1].connected = true;
   view.endpoints[0].last_status = view.endpoints[1].last_status = 200;
   view.endpoints[0].answer_ms = 3.4;
@@ -204,6 +205,7 @@ RunView hostile(Time now, double elapsed) {
   const std::string endless(3000, 'W');
   view.version = script;
   view.run = icd::RunStatus{-999'999'999, 1e12, -1, script + endless};
+  view.run_clock->seconds = 1e12;
   for (ActivityRow& row : view.activities) row.robot = row.kind == "markers" ? "" : script + row.robot;
   view.activities[0].last_sentence = endless;
   view.activities[1].last_sentence = "\xff\xfe \u202e" + script;

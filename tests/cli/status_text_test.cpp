@@ -24,8 +24,19 @@ TEST(StatusText, TellsAGoodRunOnOneScreen) {
             "  mapping  10.100.1.201:8000  connected  last answer: accepted in 42 ms\n"
             "\n"
             "Maps, states and markers\n"
-            "  robot  kind  arriving    accepted  sent  queued  no room  last sent  size  last answer\n"
-            "  r1     grid  up to date        12    11       0           0.5 s ago  4 kB  accepted\n");
+            "  robot  kind  arriving    accepted  sent  queued  no room    age  size  last answer\n"
+            "  r1     grid  up to date        12    11       0           0.5 s  4 kB  accepted\n");
+}
+
+TEST(StatusText, MarksAnEstimateOfTheRunClock) {
+  api::RunView view = sample_view();
+  view.run_clock = {.seconds = 790, .age = 35.4, .runs = true, .old = true};
+  EXPECT_THAT(
+      status_text(view, false),
+      StartsWith("Run   about 13:10   about 46:50 to go   score 7   18 reports left   team cave_club   "
+                 "(heard 35 s ago)\n"));
+  view.run_clock = {.seconds = 754, .age = 35.4, .old = true};
+  EXPECT_THAT(status_text(view, false), StartsWith("Run   12:34   47:26 to go ")) << "it stands";
 }
 
 TEST(StatusText, BeginsWithTheAlarmsInShapeAndWord) {

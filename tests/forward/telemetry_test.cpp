@@ -298,7 +298,7 @@ TEST_F(NewsTest, CountsNoPoseAsForwardedThatOnlyGoesAlongWithAnothersNews) {
   ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
   ASSERT_TRUE(comes(*life, [&] { return forwarded(silent) == 1; }));
   const auto last = life->record.rows().at(silent).last_forwarded;
-  const api::Time seen = life->as_forwarded.robots().at(0).at;
+  const api::Time seen = life->as_forwarded.robots().at(0).at.value();
   for (std::uint64_t i = 1; i <= 3; ++i) {
     ASSERT_TRUE(life->news.take(pose("r2", static_cast<double>(i)), 10));
     ASSERT_TRUE(comes(*life, [&] { return forwarded(other) == i; }));

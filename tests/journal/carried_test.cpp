@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
+#include <cmath>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "lanes/merged.hpp"
@@ -168,6 +170,26 @@ TEST(Carried, HasClocksPacesAndStamps) {
   EXPECT_THAT(carried.paces(), IsEmpty()) << "instants of another start of the machine";
   EXPECT_THAT(carried.senders().clocks(), IsEmpty());
   EXPECT_THAT(carried.stamps(), SizeIs(1));
+}
+
+TEST(Carried, KnowsWhenRobotsWereHeardUntilTheMachineStartsAgain) {
+  Carried carried;
+  tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
+  tell(carried, Kind::Heard, said(Heard{.robot = "r1", .messages = 1, .last = 10}));
+  Heard newest{.robot = "r1", .messages = 4, .gap = 1.5, .last = 20};
+  newest.kinds[2] = {.accepted = 20, .forwarded = 19};
+  tell(carried, Kind::Heard, said(newest));
+  EXPECT_FALSE(carried.apply(Kind::Heard, said(newest).substr(1)));
+  for (const Carried& each : {carried, again(carried)}) {
+    ASSERT_THAT(each.heard(), ElementsAre(Pair("r1", testing::_)));
+    const Heard& heard = each.heard().at("r1");
+    EXPECT_EQ(std::tuple(heard.messages, heard.gap, heard.last), std::tuple(4u, 1.5, 20.0));
+    EXPECT_TRUE(std::isnan(heard.kinds[0].accepted));
+    EXPECT_EQ(heard.kinds[2].accepted, 20);
+    EXPECT_EQ(heard.kinds[2].forwarded, 19);
+  }
+  carried.machine_is("b2");
+  EXPECT_THAT(carried.heard(), IsEmpty());
 }
 
 TEST(Carried, KnowsNoInstantsOfAnotherStartOfTheMachine) {

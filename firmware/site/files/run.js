@@ -3,54 +3,46 @@ import { badge, list, make, mark, say } from "./dom.js";
 import { ago, clip, clock } from "./words.js";
 
 const at = (id) => document.getElementById(id);
-const FRESH = 15; // s: what the Command Post said longer ago is told with its time
 const FEW = 5; // reports left
+const LABELS = { clock: "run clock", togo: "to go", score: "score", remaining: "reports left" };
 
-// A run clock that was heard to move goes on between two answers; one that stands still stays where it is.
-let heard = null, ticking = false;
-
-/** What the run's clock says at that time of the box. */
-function runClock(view, now) {
-  const { run_clock } = view.run;
-  if (!heard || heard.at !== view.run_heard) {
-    if (heard && run_clock !== heard.clock) ticking = run_clock > heard.clock;
-    else if (heard && view.run_heard - heard.at > 1.5) ticking = false;
-    heard = { at: view.run_heard, clock: run_clock };
-  }
-  return ticking ? run_clock + Math.max(0, now - view.run_heard) : run_clock;
+/** The run's clock at `now`, a time of the box. */
+function runClock({ run, run_heard, run_clock: { runs, old } }, now, lost) {
+  const age = Math.max(0, now - run_heard);
+  return { seconds: run.run_clock + (runs ? age : 0), age, runs, isStale: old || Boolean(lost) };
 }
 
-/** `stale`: since when, or "". */
-function figure(id, text, label, { stale = "", level = "" } = {}) {
+function figure(id, text, label, { isStale = false, level = "" } = {}) {
   const node = at(id);
   if (!node) return; // the display has not all
   say(node, text);
-  say(node.parentNode.querySelector("dt"), stale ? `${label} ${stale}` : label);
-  mark(node.parentNode, "stale", String(Boolean(stale)));
+  say(node.parentNode.querySelector("dt"), label);
+  mark(node.parentNode, "stale", String(isStale));
   mark(node.parentNode, "level", level);
 }
 
 /** None left must not look like many: filled, and in words. */
 function left(count) {
   if (count <= 0) return ["none left", "bad"];
-  return ["reports left", count <= FEW ? "wait" : ""];
+  return [LABELS.remaining, count <= FEW ? "wait" : ""];
 }
 
 export function showRun(view, now, lost) {
   const { run } = view;
-  const since = view.run_heard === null ? Infinity : now - view.run_heard;
-  const isStale = !run || since > FRESH || lost;
-  const stale = run && isStale ? clock(run.run_clock) : "";
-  mark(at("run"), "stale", String(isStale));
-  const seconds = run ? runClock(view, now) : 0, toGo = view.run_seconds - seconds;
-  figure("clock", run ? clock(seconds) : "–", "run clock");
-  figure("togo", run ? clock(Math.abs(toGo)) : "–", toGo < 0 ? "over time" : "to go");
-  figure("score", run ? String(run.score) : "–", "score", { stale });
-  const [label, level] = run ? left(run.remaining_reports) : ["reports left", ""];
-  figure("remaining", run ? String(run.remaining_reports) : "–", label, { stale, level });
-  const team = run?.current_team ? `${clip(run.current_team, 40)} · ` : "";
-  if (!run) say(at("run-note"), "No answer from the Command Post yet");
-  else say(at("run-note"), isStale ? `${team}last answer ${ago(since)}` : `${team}updated ${ago(since)}`);
+  if (!run) {
+    for (const [id, label] of Object.entries(LABELS)) figure(id, "–", label);
+    return say(at("run-note"), "No answer from the Command Post yet");
+  }
+  const { seconds, age, runs, isStale } = runClock(view, now, lost), toGo = view.run_seconds - seconds;
+  const told = (time) => (isStale && runs ? `≈${clock(time)}` : clock(time));
+  const stale = isStale ? clock(run.run_clock) : "";
+  figure("clock", told(seconds), LABELS.clock, { isStale });
+  figure("togo", told(Math.abs(toGo)), toGo < 0 ? "over time" : LABELS.togo, { isStale });
+  figure("score", String(run.score), stale ? `score ${stale}` : "score", { isStale });
+  const [label, level] = left(run.remaining_reports);
+  figure("remaining", String(run.remaining_reports), stale ? `${label} ${stale}` : label, { isStale, level });
+  const team = run.current_team ? `${clip(run.current_team, 40)} · ` : "";
+  say(at("run-note"), `${team}${isStale ? "last answer" : "updated"} ${ago(age)}`);
 }
 
 /** `lost`: what to say of a box that does not answer, or "". */

@@ -31,6 +31,22 @@ test("counts down from the length of a run that the settings say", async (t) => 
   assert.ok(Math.abs(seconds(gone) + seconds(left) - 1800) <= 1, `${gone} and ${left}`);
 });
 
+test("goes on with the run clock as an estimate, and says so, if the Command Post falls silent", async (t) => {
+  const made = await box(t);
+  await until(async () => (await made.run()).run_clock, "the run");
+  await made.misbehave({ status: ["answer-after=60,for=600"] });
+  const pages = [await look(t, made), await look(t, made, "display")]; // neither sees two answers
+  await until(async () => (await made.run()).run_clock.old, "an old answer", 60_000);
+  for (const page of pages) {
+    const shown = () => page.$eval("#clock", (node) => (node.parentNode.dataset.stale === "true" && node.textContent.startsWith("≈") ? node.textContent.slice(1) : ""));
+    const first = await until(shown, "an estimate");
+    await until(async () => seconds(await shown()) >= seconds(first) + 2, "an estimate that goes on");
+    const { seconds: now } = (await made.run()).run_clock;
+    assert.ok(Math.abs(seconds(await shown()) - now) <= 2, `${await shown()} and ${now}`);
+  }
+  assert.match(await status(made), /^Run +about \d+:\d\d +about \d+:\d\d to go .*\(heard \d+ s ago\)$/m);
+});
+
 test("says that a robot is silent, everywhere as the box judges it", async (t) => {
   const made = await box(t, { robots: 3, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
   await until(async () => {
@@ -48,21 +64,41 @@ test("says that a robot is silent, everywhere as the box judges it", async (t) =
   for (const page of pages) await until(async () => (await silent(page)) === 0, "none that is silent");
 });
 
-test("says that a robot is silent that says nothing since the service was killed", async (t) => {
+test("says that one of three robots is silent over a kill of the service and a new run, from the first answer", async (t) => {
   const made = await box(t, { robots: 2, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
-  const bytes = async () => (await made.ask("/adit/runs")).said.runs[0]?.bytes ?? 0;
-  await until(async () => (await made.run()).robots.length === 2, "their poses");
-  for (const write of ["first", "second"]) { // the one that was under way may not have had them
-    const before = await bytes();
-    await until(async () => (await bytes()) > before, `the ${write} write`);
+  for (let x = 0; x < 6; ++x) {
+    const header = { stamp: Date.now() / 1000, frame_id: "darpa" }, pose = { position: { x, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
+    const grid = { header, info: { resolution: 0.2, width: 2, height: 2, origin: pose }, data: Buffer.from([0, 100, 0, 100]).toString("base64") };
+    assert.equal((await made.ask("/map/update", { type: "OccupancyGrid", name: "r9", msg: grid })).status, 200);
+    assert.equal((await made.ask("/state/update", { header, poses: [{ name: "r9", ...pose }] })).status, 200);
+    await new Promise((done) => setTimeout(done, 1100));
   }
-  made.freezeRobots();
-  t.after(() => made.thawRobots());
+  const posted = Date.now() / 1000 - 1.1;
+  const isSilent = ({ alarms }) => alarms.some(({ id }) => id === "robot_silent:r9");
+  const rows = ({ activities }) => activities.filter(({ robot }) => robot === "r9");
+  const light = ({ lights }) => lights.find(({ name }) => name === "attention").pattern;
+  await until(async () => isSilent(await made.run()) && light(await made.run()) !== "off", "its silence");
+  const check = async (when) => {
+    const view = await made.run(); // the first answer
+    assert.ok(isSilent(view), `${when}: ${view.alarms.map(({ id }) => id)}`);
+    assert.deepEqual(rows(view).map(({ arrival }) => arrival), ["silent", "silent"], when);
+    const ages = [...rows(view).map(({ age }) => age), view.robots.find(({ name }) => name === "r9").age];
+    for (const age of ages) assert.ok(Math.abs(view.now - posted - age) < 2, `${when}: ${age} of ${view.now - posted} s`);
+    assert.equal(view.verdict.level, "wait", `${when}: ${view.verdict.what}`);
+    assert.notEqual(light(view), "off", when);
+    assert.match(await status(made), /^ +r9 +state +silent .* [\d.]+ s /m, when);
+    const metrics = await (await fetch(`${made.url}metrics`, { headers: { Authorization: `Bearer ${TOKENS.team}` } })).text();
+    assert.match(metrics, /^adit_alarm\{id="robot_silent:r9"/m, when);
+    const page = await look(t, made);
+    await page.waitForSelector('#robots [data-key="r9"]');
+    assert.match(await page.$eval('#robots [data-key="r9"]', (node) => `${node.dataset.level}: ${node.innerText}`), /^bad: .*silent/s, when);
+  };
+  await check("before");
   await made.killAditd();
   await made.startAditd();
-  const page = await look(t, made);
-  await until(async () => (await made.run()).alarms.some(({ id }) => id === "robots_silent"), "their silence");
-  await page.waitForFunction(() => /^No map arrives/.test(document.querySelector("#arriving .text").textContent));
+  await check("after a kill");
+  await made.ask("/adit/runs", "{}");
+  await check("in a new run");
 });
 
 const CASES = [

@@ -23,8 +23,8 @@ constexpr codec::Member kVerdict[] = {
 /// Of one robot's maps.
 struct Maps {
   Level level = Level::Quiet;
-  std::optional<double> oldest = {},
-                        newest = {};  // seconds since the Command Post took one that is not quiet; any
+  // Seconds since one that is not quiet was posted, or that its news has waited; and since any was posted.
+  std::optional<double> oldest = {}, newest = {};
 };
 
 std::map<std::string, Maps> maps_of(const Facts& facts) {
@@ -36,7 +36,9 @@ std::map<std::string, Maps> maps_of(const Facts& facts) {
     maps.level = std::max(maps.level, level);
     if (!stream.forwarded) continue;
     maps.newest = std::min(*stream.forwarded, maps.newest.value_or(*stream.forwarded));
-    if (level != Level::Quiet) maps.oldest = std::max(*stream.forwarded, maps.oldest.value_or(0));
+    if (level == Level::Quiet) continue;
+    const double age = std::min(*stream.forwarded, stream.behind.value_or(*stream.forwarded));
+    maps.oldest = std::max(age, maps.oldest.value_or(0));
   }
   // Of one that has said nothing since the service began nothing else is known.
   for (const auto& [name, robot] : facts.robots) {
@@ -96,7 +98,7 @@ Verdict verdict_of(const Facts& facts) {
                                 : "for " + clock_text(facts.now - endpoint->since);
     return {Level::Bad, "No map arrives", why + "; the box keeps all maps"};
   }
-  if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one"};
+  if (all.empty()) return {Level::Quiet, "No map yet", "no robot has sent one since the box started"};
   Level worst = Level::Quiet;
   std::optional<double> oldest, newest;
   for (const auto& [name, maps] : all) {

@@ -129,7 +129,7 @@ void Flow::restore(bool is_first) {
   maps_.restore(std::move(kept));
 }
 
-/// After restore(), which accepts anew what was accepted before.
+/// After restore(), which notes queued messages as accepted now.
 void Flow::restore_record() {
   const double ahead = loop_.wall_now() - loop_.stamp_now();
   for (const auto& [robot, heard] : heard_before_) {

@@ -44,6 +44,13 @@ TEST(Verdict, NamesThreeAtMost) {
   EXPECT_EQ(verdict_of(facts).level, Level::Bad);
 }
 
+TEST(Verdict, IsAsOldAsTheFigureThatItsLevelFollows) {
+  Facts facts = well(3);
+  facts.streams[0].forwarded = 540;  // it paused, and its newest map is on its way
+  facts.streams[0].behind = 2;
+  EXPECT_EQ(verdict_of(facts), (Verdict{Level::Good, "Every map arrives", "3 robots, oldest 5 s"}));
+}
+
 TEST(Verdict, IsThatMapsAreLateWhereNoneIsGivenUp) {
   Facts facts = well(3);
   facts.streams[0].behind = 11;
@@ -67,7 +74,8 @@ TEST(Verdict, DoesNotSaySinceWhenThereHasBeenNoToken) {
 }
 
 TEST(Verdict, OfNoMapsIsNone) {
-  EXPECT_EQ(verdict_of(well(0)), (Verdict{Level::Quiet, "No map yet", "no robot has sent one"}));
+  EXPECT_EQ(verdict_of(well(0)),
+            (Verdict{Level::Quiet, "No map yet", "no robot has sent one since the box started"}));
 }
 
 TEST(Verdict, SaysSinceWhenNothingNewCame) {

@@ -67,27 +67,17 @@ test("says of a robot that sends no map that it has none, and of one whose map n
   assert.deepEqual([await age("scout"), await age("carter")], ["no map", "never"]);
 });
 
-test("has a row for one that an alarm alone tells of: nothing was heard of it since the box started", async (t) => {
-  const prepare = (page) => retell(page, () => (view) => {
+for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+silent\s+unknown$/]]) test(`has a row for one that an alarm alone tells of, with its age if that is known: ${age}`, async (t) => {
+  const prepare = (page) => retell(page, (age) => (view) => {
     const alarm = { id: "robot_silent:uav9", subject: "uav9", severity: "bad", side: "robot", since: view.now - 40, what: "uav9 is silent", why: "", action: { word: "", link: "" }, hides: 0, acknowledged: false };
-    const robot = { name: "uav9", position: { x: 1, y: 2, z: 0 }, heading: 0, at: view.now - 94, age: 94 };
+    const robot = { name: "uav9", position: { x: 1, y: 2, z: 0 }, heading: 0, at: age && view.now - age, age };
     return { ...view, alarms: [alarm], robots: [...view.robots, robot] };
-  });
+  }, age);
   const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
   await page.waitForSelector('#robots li[data-key="uav9"][data-level=bad]');
-  assert.match(await page.innerText('#robots li[data-key="uav9"]'), /^uav9\s+silent\s+1:\d\d$/);
+  assert.match(await page.innerText('#robots li[data-key="uav9"]'), words);
   assert.equal((await names(page))[0], "uav9");
 });
-
-for (const { maps, reason } of [{ maps: "no", reason: "no map came since the box restarted" }, { maps: "some", reason: "why" }]) {
-  test(`says why the verdict is quiet where a map is drawn and the box knows of ${maps} maps, in whichever words the box has`, async (t) => {
-    const prepare = (page) => retell(page, (maps) => (view) => ({ ...view, map_version: 7, verdict: { level: "quiet", what: "what", why: "why" },
-      activities: view.activities.filter(({ kind }) => maps === "some" || (kind !== "grid" && kind !== "cloud")) }), maps);
-    const { page } = await watch(t, "calm", { prepare });
-    await page.locator("#arriving .reason", { hasText: reason }).waitFor();
-    assert.equal(await page.innerText("#arriving .text"), "what");
-  });
-}
 
 test("is dim while the list of alarms says that the Command Post is away", async (t) => {
   const { page, stage } = await watchTwenty(t);

@@ -18,11 +18,12 @@ all.addEventListener("click", () => open(dialog));
 /** What is not acknowledged comes first, so that nothing that is new is behind what is known. */
 const inOrder = (alarms) => [...alarms.filter((alarm) => !alarm.acknowledged), ...alarms.filter((alarm) => alarm.acknowledged)];
 
-function calm(over) {
+/** Beside maps that are late, it is not green. */
+function calm(over, verdict) {
   if (!cards.querySelector(".calm")) cards.replaceChildren();
   const node = cards.querySelector(".calm") ?? cards.appendChild(make("div.calm", make("span.glyph"), make("p.tx", make("strong", "No alarm"), make("span.why"))));
   node.dataset.key = "calm";
-  mark(node.firstChild, "level", "good");
+  mark(node.firstChild, "level", verdict.level === "good" ? "good" : "quiet");
   say(node.querySelector(".why"), over.length ? `last alarm: ${formerly(over[0])}` : "no earlier alarm");
 }
 
@@ -48,7 +49,7 @@ export function showAlarms(view, time, lost, trouble) {
   const told = inOrder(view?.alarms ?? []), over = view?.alarms_over ?? [];
   const since = view ? view.now : now;
   const shown = lost ? [lostAlarm(view, since, trouble), ...told] : told;
-  if (!shown.length && view) calm(over);
+  if (!shown.length && view) calm(over, view.verdict);
   else list(cards, shown.slice(0, SHOWN), (alarm) => alarm.id, alarmCard, (node, alarm) => fillCard(node, alarm, now));
   say(all, shown.length ? `All ${shown.length}` : "History");
   fillAlarmList(dialog, shown, over, now);

@@ -13,14 +13,6 @@ export function arrival(row) {
   return { level: row.level, word };
 }
 
-const isMap = ({ kind }) => kind === "grid" || kind === "cloud";
-
-/** Is every map arriving? The box's word. If maps came only before it restarted, the map is drawn, but no activity tells of them. */
-export function overall({ verdict: { level, what, why }, activities, map_version: version }) {
-  const isOfBefore = level === "quiet" && version > 0 && !activities.some(isMap);
-  return { level, word: what, reason: isOfBefore ? "no map came since the box restarted" : why };
-}
-
 function gained({ score_change, report_status }) {
   if (score_change === null) return { level: "quiet", word: report_status || "answered" };
   if (score_change > 0) return { level: "good", word: `scored ${signed(score_change)}` };

@@ -11,7 +11,7 @@ import { showRobots } from "./robots.js";
 import { showEnds } from "./strip.js";
 import { clip, placeOf, timeOfDay } from "./words.js";
 
-const CALM = { id: "calm", severity: "good", what: "No alarm" };
+const calm = ({ verdict }) => ({ id: "calm", severity: verdict.level === "good" ? "good" : "quiet", what: "No alarm" });
 const MOST_REPORTS = 20; // more than fit any screen
 
 const map = new MapOfRun(document.querySelector("#map canvas"));
@@ -38,7 +38,7 @@ function show({ view: told, time, lost, trouble }) {
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? `${away}.` : "");
   const calling = [...view.alarms].sort((a, b) => (a.severity === "wait") - (b.severity === "wait") || a.acknowledged - b.acknowledged); // what is new first
-  showAttention(calling.length || lost ? calling.slice(0, lost ? 1 : 2) : [CALM], lost ? `${away}: last data at ${timeOfDay(view.now)}.` : "");
+  showAttention(calling.length || lost ? calling.slice(0, lost ? 1 : 2) : [calm(view)], lost ? `${away}: last data at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showEnds(view, lost);
   showRobots(view, time, lost);

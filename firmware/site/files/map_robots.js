@@ -3,7 +3,7 @@ import { kindOf, robotColour } from "./robot_colour.js";
 import { clip } from "./words.js";
 
 const STALE = 10; // s without a newer pose
-export const isStale = ({ age }) => age > STALE;
+export const isStale = ({ age }) => age === null || age > STALE; // null: of before a start of the box
 const REACH = 22; // pixels, at least: as a finger needs
 
 const ARROW = [[1.5, 0], [-1, 0.95], [-0.5, 0], [-1, -0.95]];

@@ -32,10 +32,16 @@ function words({ isSilent, kinds }, isFull) {
   return [...(isSilent ? ["silent"] : []), ...texts].join(" · ");
 }
 
+/** Of its map, or if it is silent of its data; a silent robot that was not heard since a start of the box has none that is known. */
+function ageWords({ hasMap, isSilent, age }) {
+  if (isSilent && age === null) return "unknown";
+  return hasMap || isSilent ? mapAge(age) : "no map";
+}
+
 function updateRow(row, robot, isFull) {
   const [, , kinds, spark, age] = row.children;
   mark(row, "level", robot.level);
-  badge(age, robot.level, robot.hasMap ? mapAge(robot.age) : "no map");
+  badge(age, robot.level, ageWords(robot));
   say(kinds, words(robot, isFull));
   row.title = [`${robot.name}: ${robot.word}`, ...robot.kinds.map(({ title }) => title)].join("\n");
   const path = pathOf(robot.name);

@@ -49,7 +49,8 @@ function robotState(name, rows, since, lost) {
   const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, since, lost));
   const worst = WORST.map((level) => kinds.find((kind) => kind.level === level)).find(Boolean);
   const isSilent = !lost && rows.some((row) => row.arrival === "silent");
-  return { name, level: worst.level, word: worst.word, isSilent, age: oldest(kinds), hasMap: kinds.some(({ kind }) => kind !== "pose"), kinds };
+  const hasMap = kinds.some(({ kind }) => kind !== "pose");
+  return { name, level: worst.level, word: worst.word, isSilent, age: hasMap ? oldest(kinds) : kinds[0].age, hasMap, kinds };
 }
 
 /** {robots: each with {name, level, word, isSilent, age, hasMap, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */

@@ -40,7 +40,7 @@ function unheard({ alarms, robots }, known) {
   const silent = alarms.filter(({ id, subject }) => id === `robot_silent:${subject}` && !known.some(({ name }) => name === subject));
   return silent.map(({ subject: name }) => {
     const last = robots.find((robot) => robot.name === name);
-    return { name, level: "bad", word: "silent", isSilent: true, age: last ? last.age : null, hasMap: Boolean(last), kinds: [] };
+    return { name, level: "bad", word: "silent", isSilent: true, age: last?.age ?? null, hasMap: false, kinds: [] };
   });
 }
 

@@ -34,8 +34,7 @@ function updateRun(node, run) {
   const [look, report, remove] = does.children;
   say(name, run.is_present ? `${nameOf(run)} (now)` : nameOf(run));
   say(score, run.score === null ? "no score" : `score ${run.score}, ${run.remaining_reports} reports left`);
-  const lasted = run.began > 0 ? `, ${clock(run.last - run.began)}` : "";
-  say(times, `${when(run.began || run.last)}${lasted}`);
+  say(times, run.began > 0 ? `${when(run.began)}, ${clock(run.last - run.began)}` : `until ${when(run.last)}`);
   say(what, clip([run.team, run.robots.join(", "), bytes(run.bytes)].filter(Boolean).join(" · "), 200));
   report.href = `${pathOf(run)}/report.html`;
   remove.hidden = !operator || run.is_present;

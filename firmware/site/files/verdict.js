@@ -1,14 +1,13 @@
 // Is every map arriving? For the strip of the run and of the display.
 import { badge, mark, say } from "./dom.js";
-import { overall } from "./arriving.js";
 import { clip } from "./words.js";
 
 /** The answer in a few words, and why. */
 export function showVerdict(view, now, lost) {
-  const { level, word, reason } = lost ? { level: "bad", word: "Unknown", reason: "the box does not answer" } : overall(view);
+  const { level, what, why } = lost ? { level: "bad", what: "Unknown", why: "the box does not answer" } : view.verdict;
   const node = document.getElementById("arriving");
   mark(node, "level", level);
-  badge(node, level, clip(word, 60));
-  say(node.querySelector(".reason"), clip(reason, 120));
-  node.title = reason;
+  badge(node, level, clip(what, 60));
+  say(node.querySelector(".reason"), clip(why, 120));
+  node.title = why;
 }

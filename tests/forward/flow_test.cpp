@@ -52,7 +52,7 @@ class FlowTest : public testing::Test {
   icd::Checked<void> take_poses(std::vector<icd::NamedPose> poses, double stamp) {
     return flow_->take({.header = {stamp}, .poses = std::move(poses)}, sender_);
   }
-  journal::Carried kept() const { return journal::Folder(folder_.path() + "/journal").read(); }
+  journal::Carried kept() const { return journal::Folder(folder_.path() + "/journal").read().value(); }
   double kept_x(const char* robot) const {
     return kept().robots().at(*icd::RobotName::parse(robot)).posted.pose.position.x;
   }

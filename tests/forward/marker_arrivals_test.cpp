@@ -43,7 +43,7 @@ class MarkerArrivalsTest : public testing::Test {
   }
   bool turn_until(auto done) { return loop::turn_until(loop_, done); }
   std::vector<icd::Marker> left() const {
-    return journal::Folder(folder_.path() + "/journal").read().markers().markers;
+    return journal::Folder(folder_.path() + "/journal").read().value().markers().markers;
   }
 
   host::Folder folder_;

@@ -97,7 +97,7 @@ class NewsTest : public testing::Test {
       return false;
     });
   }
-  journal::Carried left() const { return journal::Folder(folder_.path() + "/journal").read(); }
+  journal::Carried left() const { return journal::Folder(folder_.path() + "/journal").read().value(); }
 
   host::Folder folder_;
   loop::Loop loop_;

@@ -200,7 +200,8 @@ export function showCompose(next) {
 }
 
 for (const button of document.querySelectorAll("button.compose")) button.addEventListener("click", compose);
-for (const [axis, typed] of [["x", typedPlace], ["y", typedPlace], ["z", typedHeight]]) field(axis).addEventListener("input", typed);
+for (const axis of ["x", "y"]) field(axis).addEventListener("input", typedPlace);
+field("z").addEventListener("input", typedHeight);
 at("go").addEventListener("click", check);
 at("elsewhere").addEventListener("click", () => go("where"));
 for (const button of panel.querySelectorAll(".change")) button.addEventListener("click", () => go("what"));

@@ -129,14 +129,13 @@ void Flow::restore(bool is_first) {
   maps_.restore(std::move(kept));
 }
 
-/// After restore(), which notes queued messages as accepted now.
+/// After restore(), which notes when queued messages were accepted.
 void Flow::restore_record() {
-  const double ahead = loop_.wall_now() - loop_.stamp_now();
   for (const auto& [robot, heard] : heard_before_) {
     for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
       const auto [accepted, forwarded] = heard.kinds[kind];
-      if (!std::isnan(accepted))
-        record_.restore({static_cast<Kind>(kind), robot}, accepted + ahead, forwarded + ahead);
+      if (std::isnan(accepted)) continue;
+      record_.restore({static_cast<Kind>(kind), robot}, time_of(loop_, accepted), time_of(loop_, forwarded));
     }
   }
 }

@@ -134,9 +134,9 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   const bool again = number < kFirstNumber;
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
-  record_.accepted(traffic_of(update), update.data.bytes.size(), loop_.wall_now());
+  const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
+  record_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
-    const icd::Stamp stamp = stamp_of(update);
     forget(lane_.put_back(waiting_again(number, std::move(update), stamp)));
   } else {
     tell_clouds(update);

@@ -47,7 +47,7 @@ void Record::accepted(const Traffic& traffic, std::size_t bytes, api::Time now) 
 
 void Record::restore(const Traffic& traffic, api::Time accepted, api::Time forwarded) {
   api::ActivityRow& activity = row(traffic);
-  activity.last_accepted = accepted;
+  activity.last_accepted = std::max(accepted, activity.last_accepted.value_or(accepted));
   if (!std::isnan(forwarded)) activity.last_forwarded = forwarded;
 }
 

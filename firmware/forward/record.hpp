@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -11,11 +12,13 @@
 
 #include "api/box.hpp"
 #include "api/run_view.hpp"
+#include "icd/header.hpp"
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
 #include "lanes/clouds.hpp"
 #include "lanes/precision.hpp"
+#include "loop/loop.hpp"
 
 namespace adit::forward {
 
@@ -26,6 +29,11 @@ enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
 
 /// Of which it is told when a robot was heard, as the API names them: the first of Kind.
 inline constexpr std::string_view kHeardKinds[] = {"grid", "cloud", "state"};
+
+/// The time of day of a stamp by the clock for stamps; now, if the stamp is ahead of that. NaN of NaN.
+inline api::Time time_of(const loop::Loop& loop, icd::Stamp stamp) {
+  return loop.wall_now() - std::max(loop.stamp_now() - stamp, 0.0);
+}
 
 /// The robot and the kind of its messages: "" is a merged map, or markers.
 struct Traffic {
@@ -49,7 +57,8 @@ class Record {
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
-  /// When the last one was accepted, and forwarded (NaN: none was), before a restart of the service.
+  /// When the last one was accepted, and forwarded (NaN: none was), before a restart of the service. A queued
+  /// message of which accepted() was told may be newer.
   void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
   /// It was refused to the robot, because too much waits.
   void no_room(const Traffic& traffic, api::Time now);

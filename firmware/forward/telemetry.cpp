@@ -62,7 +62,8 @@ void Telemetry::carry_on(const journal::Carried& carried) {
   }
   for (const auto& [name, robot] : carried.robots()) {
     state_.add({&robot.posted, 1}, loop_.now());
-    record_.accepted({Kind::State, name.text()}, 0, loop_.wall_now());
+    record_.accepted({Kind::State, name.text()}, 0,
+                     time_of(loop_, robot.posted.stamp.value_or(loop_.stamp_now())));
   }
   state_.begin_run();  // they may have been posted before this run: each goes once
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {

@@ -3,11 +3,18 @@
 #include <algorithm>
 
 #include "simulation/asked.hpp"
+#include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
 #include "simulation/messages.hpp"
 #include "simulation/upstream_view.hpp"
 
 namespace adit::simulation {
+namespace {
+
+constexpr double kRecorded = 2;  // seconds within which a process records when a robot was heard
+constexpr double kRestored = 3;  // seconds by which an age may be too high after a restart
+
+}  // namespace
 
 std::string endpoint_of(const std::string& path) {
   return path == kReports || path == kStatus ? "scoring" : "mapping";
@@ -18,13 +25,20 @@ Stream stream_of(const std::string& path, const std::string& who) {
 }
 
 PageAccount::PageAccount(const std::vector<Event>& events) : events_(events) {
+  double ended = 0;
+  DiskFaultsSeen disk;
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
+    if (event.kind == Kind::Ended || event.kind == Kind::Dies) ended = event.at;
+    if (disk.forgets_at(event) || event.kind == Kind::PowerCut || event.what == kCourse)
+      forgotten_.push_back(i);
+    disk.add(event);
     // A gateway that begins listens.
     const bool begins = event.kind == Kind::Begins ||
                         (event.kind == Kind::Said && event.text.starts_with("notice: listening"));
     if (begins || event.what == kCourse) {  // or asks another Command Post
       begun_.push_back(i);
+      recorded_until_.push_back(ended - kRecorded);
       for (auto& [stream, told] : told_) told.is_of_before = true;
     }
     end_forgotten(i, event);
@@ -38,7 +52,10 @@ void PageAccount::read_team(std::size_t place, const Event& event) {
   if (event.actor != Actor::Team || !is_of_a_kind) return;
   const Stream stream = stream_of(event.what, event.who);
   if (event.kind == Kind::Invoke) {
-    if (event.what == kState) ++poses_[{stream, event.serial}];
+    if (event.what == kState) {
+      ++poses_[{stream, event.serial}];
+      posted_at_.try_emplace({stream, event.serial}, event.at);
+    }
     auto& all = posted_[stream];
     auto& open = open_[event.request];
     // A message of several markers or clouds counts once, each pose of a state by itself.
@@ -90,6 +107,8 @@ void PageAccount::was_taken(std::size_t place, const Stream& stream, std::int64_
   Told& told = told_[stream];
   if (stream.path != kState || told.pose != pose) {
     told = {.pose = pose, .times = 1};
+    const auto posted = posted_at_.find({stream, pose});
+    age_from_[{stream, place}] = posted == posted_at_.end() ? events_[place].at : posted->second;
     return forwarded_[stream].push_back(place);
   }
   if (!told.is_of_before && told.times >= poses_[{stream, pose}]) return;
@@ -137,8 +156,24 @@ PageAccount::Age PageAccount::age(const Stream& stream, Moment at) const {
     const std::size_t any = last(*all, at.heard);
     if (any != kNever) age.least = std::min(age.least, std::max(0.0, events_[at.asked].at - events_[any].at));
   }
-  const std::size_t sure = last(forwarded_, at.asked);
-  if (sure != kNever && sure >= begun(at)) age.most = events_[at.heard - 1].at - events_[sure].at;
+  const auto since = [&](std::size_t sure) {
+    return events_[at.heard - 1].at - age_from_.at({stream, sure});
+  };
+  const std::size_t start = begun(at);
+  std::size_t sure = last(forwarded_, at.asked);
+  if (sure == kNever) return age;
+  if (sure >= start) {
+    age.most = since(sure);
+    if (age_from_.at({stream, sure}) < events_[start].at) age.most += kRestored;
+    return age;
+  }
+  // A restart forgets nothing that was recorded.
+  const double until =
+      recorded_until_[static_cast<std::size_t>(std::ranges::find(begun_, start) - begun_.begin())];
+  while (sure != kNever && events_[sure].at > until) sure = last(forwarded_, sure);
+  const auto forgotten = std::ranges::lower_bound(forgotten_, at.heard);
+  const bool is_forgotten = forgotten != forgotten_.begin() && sure < *std::prev(forgotten);
+  if (sure != kNever && !is_forgotten) age.most = since(sure) + kRestored;
   return age;
 }
 

@@ -39,7 +39,7 @@ class PageAccount {
   };
   Range accepted(const Stream& stream, Moment from, Moment to) const;
   Range forwarded(const Stream& stream, Moment from, Moment to) const;
-  /// Seconds since the last one was forwarded, at least and at most.
+  /// Of a robot's poses: seconds since the newest one that was delivered was posted, at least and at most.
   struct Age {
     double least = 0, most = std::numeric_limits<double>::infinity();
   };
@@ -79,8 +79,13 @@ class PageAccount {
   std::map<std::uint64_t, std::map<Stream, std::int64_t>> under_way_;  // by connection: with a pose's serial
   std::map<Stream, Told> told_;
   std::map<Stream, Places> forwarded_, may_be_forwarded_;
+  std::map<std::pair<Stream, std::int64_t>, double> posted_at_;  // each pose, for the first time
+  std::map<std::pair<Stream, std::size_t>, double> age_from_;    // by a place in forwarded_
   std::map<std::string, Places> throttled_, foreign_;
   Places begun_;
+  std::vector<double>
+      recorded_until_;  // of each in begun_: what came before that, the process before recorded
+  Places forgotten_;    // where what a process recorded was lost, or is of another course
 };
 
 /// "scoring" or "mapping".

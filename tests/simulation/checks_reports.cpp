@@ -49,7 +49,7 @@ std::int64_t serial_of(const dispatch::Report& report) {
 }
 
 void once(const Evidence& evidence, Broken& broken) {
-  std::set<std::pair<std::int64_t, std::string>> records;
+  std::map<std::pair<std::int64_t, std::string>, double> records;  // when each was recorded first
   Meant meant;
   double granted = -kLongestDoubt;
   for (const Event& event : evidence.events) {
@@ -57,8 +57,11 @@ void once(const Evidence& evidence, Broken& broken) {
     if (is_grant(event)) granted = event.at;
     if (!is_report(event, Kind::Taken)) continue;
     const bool costs = !event.who.ends_with(kInAStop);
-    const bool again = !records.insert({event.serial, event.who}).second;
-    const bool could_tell = event.at - granted > kLongestDoubt;
+    const auto [first, is_first] = records.try_emplace({event.serial, event.who}, event.at);
+    const bool again = !is_first;
+    // A course that was switched away and back makes a doubt longer than a grant beside its first record.
+    const bool could_tell =
+        event.at - granted > kLongestDoubt && std::abs(first->second - granted) > kLongestDoubt;
     if (costs && again && could_tell && !meant.is_sent_across(event.serial)) {
       broken.push_back(icd::sentence("Once: report ", event.serial, " was recorded again in ", event.who,
                                      " at ", event.at));

@@ -28,7 +28,7 @@ namespace adit::codec {
 /// meant for a worker.
 icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules& rules);
 /// The map in a message of write_data_first(), whose data is in `data` and is not read: call check_data()
-/// before the cells or points are used.
+/// before the cells or points are used. Refused if the checksum is wrong: the message is damaged.
 icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::ChunkedBytes data,
                                              std::string_view after, const icd::Rules& rules);
 /// How many bytes of data follow `before`, which is DataFirst::kBefore bytes.

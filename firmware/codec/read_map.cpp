@@ -1,9 +1,13 @@
 // POST /map/update (ICD 6.3, 6.4).
+#include <algorithm>
+
 #include "codec/byte_order.hpp"
+#include "codec/cbor_value.hpp"
 #include "codec/icd_members.hpp"
 #include "codec/parts.hpp"
 #include "codec/read.hpp"
 #include "codec/read_map_data.hpp"
+#include "codec/splitter.hpp"
 #include "codec/write.hpp"
 #include "icd/letter_case.hpp"
 #include "icd/require.hpp"
@@ -120,12 +124,17 @@ std::uint64_t data_after(std::string_view before) {
 
 icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::ChunkedBytes data,
                                              std::string_view after, const icd::Rules& rules) {
+  const std::string_view checksum = after.substr(after.size() - std::min(after.size(), DataFirst::kChecksum));
+  after.remove_suffix(checksum.size());
+  if (checksum != checksum_of(before, after)) return icd::unprocessable("the message is damaged");
   std::string without_data(before.substr(0, before.size() - sizeof(std::uint64_t)));
   without_data.append(sizeof(std::uint64_t), '\0').append(after);
-  const auto document = decode({Format::Cbor}, Split::MapData, without_data);
-  if (!document) return std::unexpected(document.error());
+  // Well-formed, for it is as it was written: what checks a client's message would take a third of the time.
+  Document document{
+      .root = cbor_value(without_data), .data = {}, .data_form = DataForm::ByteString, .pressed = {}};
+  mark_split_out(document.root);
   auto compression = icd::Compression::None;
-  auto map = read_structure(*document, rules, compression);
+  auto map = read_structure(document, rules, compression);
   if (!map) return map;
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->msg);
   const std::size_t raw_size = grid == nullptr ? data.size() : icd::cells_of(*grid);

@@ -24,12 +24,15 @@ inline constexpr std::string_view kCbor = "application/cbor";
 icd::ChunkedBytes write_map_update(const icd::MapUpdate& update);
 
 /// The same message in another order, its data first, so that the data can be written down before the rest is
-/// known: `before`, always so long, then the data as update.data has it, then `after`.
+/// known: `before`, always so long, then the data as update.data has it, then `after`, which ends with
+/// checksum_of() both.
 struct DataFirst {
-  static constexpr std::size_t kBefore = 20;
+  static constexpr std::size_t kBefore = 20, kChecksum = 4;
   std::string before, after;
 };
 DataFirst write_data_first(const icd::MapUpdate& update);
+/// The CRC-32 of all but the data, `after` without its checksum; big-endian.
+std::string checksum_of(std::string_view before, std::string_view after);
 
 icd::ChunkedBytes write_state_update(const icd::StateUpdate& update);
 icd::ChunkedBytes write_markers_update(const icd::MarkersUpdate& update);

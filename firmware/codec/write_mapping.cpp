@@ -1,4 +1,6 @@
 // The mapping endpoint's messages (ICD 6), members in the order of the ICD's listings.
+#include <zlib.h>
+
 #include <cassert>
 
 #include "codec/cbor_writer.hpp"
@@ -64,7 +66,17 @@ DataFirst write_data_first(const icd::MapUpdate& update) {
   DataFirst written{.before = write_up_to_data(members, update.data.bytes.size()),
                     .after = out.finish().to_string()};
   assert(written.before.size() == DataFirst::kBefore);
+  written.after += checksum_of(written.before, written.after);
   return written;
+}
+
+std::string checksum_of(std::string_view before, std::string_view after) {
+  uLong sum = 0;
+  for (const std::string_view part : {before, after})
+    sum = crc32_z(sum, reinterpret_cast<const Bytef*>(part.data()), part.size());
+  std::string bytes;
+  for (int shift = 24; shift >= 0; shift -= 8) bytes += static_cast<char>(sum >> shift & 0xFF);
+  return bytes;
 }
 
 icd::ChunkedBytes write_state_update(const icd::StateUpdate& update) {

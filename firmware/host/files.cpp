@@ -1,11 +1,13 @@
 #include "host/files.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
+#include <memory>
 #include <system_error>
 
 #include "host/log.hpp"
@@ -128,15 +130,30 @@ void remove_unwritten(const std::string& folder) {
   }
 }
 
-std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder, std::size_t most) {
-  std::error_code error;
-  std::vector<std::string> names;
-  for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    if (names.size() == most) return std::unexpected(icd::sentence("holds more than ", most, " files"));
-    names.push_back(entry->path().filename().string());
+std::expected<void, int> for_each_name(const std::string& folder,
+                                       const std::function<bool(std::string_view)>& each) {
+  const std::unique_ptr<DIR, decltype([](DIR* open) { closedir(open); })> entries(opendir(folder.c_str()));
+  if (!entries) return std::unexpected(errno);
+  while (true) {
+    errno = 0;
+    const dirent* const entry = readdir(entries.get());
+    if (entry == nullptr && errno != 0) return std::unexpected(errno);
+    if (entry == nullptr) return {};
+    const std::string_view name = entry->d_name;
+    if (name != "." && name != ".." && !each(name)) return {};
   }
-  if (error && error != std::errc::no_such_file_or_directory) return std::unexpected(error.message());
+}
+
+std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder, std::size_t most) {
+  std::vector<std::string> names;
+  bool is_over = false;
+  const auto read = for_each_name(folder, [&](std::string_view name) {
+    is_over = names.size() == most;
+    if (!is_over) names.emplace_back(name);
+    return !is_over;
+  });
+  if (is_over) return std::unexpected(icd::sentence("holds more than ", most, " files"));
+  if (!read && read.error() != ENOENT) return std::unexpected(std::system_category().message(read.error()));
   std::ranges::sort(names);
   return names;
 }

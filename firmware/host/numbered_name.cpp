@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cinttypes>
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
+
+#include "host/files.hpp"
+#include "host/service.hpp"
 
 namespace adit::host {
 
@@ -32,14 +34,11 @@ std::expected<std::vector<std::uint64_t>, std::string> numbers_in(const std::str
                                                                   std::string_view prefix,
                                                                   std::string_view ending) {
   std::vector<std::uint64_t> numbers;
-  std::error_code error;
-  for (std::filesystem::directory_iterator file(folder, error), end; !error && file != end;
-       file.increment(error)) {
-    const auto number = number_in_name(file->path().filename().string(), prefix, ending);
-    if (number) numbers.push_back(*number);
-  }
-  if (error && error != std::errc::no_such_file_or_directory)
-    return std::unexpected(folder + ": " + error.message());
+  const auto read = for_each_name(folder, [&](std::string_view name) {
+    if (const auto number = number_in_name(name, prefix, ending)) numbers.push_back(*number);
+    return true;
+  });
+  if (!read && read.error() != ENOENT) return std::unexpected(trouble(folder, read.error()));
   std::ranges::sort(numbers);
   return numbers;
 }

@@ -51,6 +51,11 @@ std::expected<void, std::string> write_over(const std::string& path, const std::
 /// write there.
 void remove_unwritten(const std::string& folder);
 
+/// Calls `each` with the name of each entry of a folder, in no order, until it gives false. An errno: the
+/// folder cannot be read to its end.
+std::expected<void, int> for_each_name(const std::string& folder,
+                                       const std::function<bool(std::string_view)>& each);
+
 /// The names of what is in a folder, in order; none where there is no such folder. An error, without the
 /// folder's name: it cannot be read to its end, or holds more than `most`.
 inline constexpr std::size_t kMostNames = 256;

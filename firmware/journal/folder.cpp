@@ -1,6 +1,7 @@
 #include "journal/folder.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <limits>
@@ -10,6 +11,7 @@
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
+#include "host/service.hpp"
 
 namespace adit::journal {
 namespace {
@@ -51,15 +53,14 @@ std::string Folder::file(const char* kind, std::uint64_t number) const {
 
 std::expected<Folder::Files, std::string> Folder::files() const {
   Files files;
-  std::error_code error;
-  for (fs::directory_iterator entry(path_, error), end; !error && entry != end; entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
+  const auto read = host::for_each_name(path_, [&](std::string_view name) {
     if (const auto number = host::number_in_name(name, kJournal)) files.journals.push_back(*number);
     if (const auto number = host::number_in_name(name, kSnapshot)) files.snapshots.push_back(*number);
-    if (name.ends_with(kPart)) files.parts.push_back(entry->path().string());
-  }
-  const bool is_absent = error == std::errc::no_such_file_or_directory || error == std::errc::not_a_directory;
-  if (error && !is_absent) return std::unexpected(path_ + ": " + error.message());
+    if (name.ends_with(kPart)) files.parts.push_back(path_ + '/' + std::string(name));
+    return true;
+  });
+  const bool is_absent = !read && (read.error() == ENOENT || read.error() == ENOTDIR);
+  if (!read && !is_absent) return std::unexpected(host::trouble(path_, read.error()));
   std::ranges::sort(files.journals);
   std::ranges::sort(files.snapshots);
   return files;

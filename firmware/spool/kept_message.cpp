@@ -1,10 +1,17 @@
 #include "spool/kept_message.hpp"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <filesystem>
 #include <system_error>
+#include <vector>
 
 #include "codec/body_decoder.hpp"
 #include "codec/read.hpp"
+#include "host/files.hpp"
+#include "host/log.hpp"
+#include "host/service.hpp"
 #include "spool/map_file.hpp"
 #include "spool/part_file.hpp"
 
@@ -43,10 +50,15 @@ std::expected<void, std::string> write_whole(const std::string& path, icd::Chunk
 }
 
 void remove_parts(const std::string& folder) {
-  std::error_code error;
-  for (const auto& file : fs::directory_iterator(folder, error)) {
-    if (file.path().extension() == PartFile::kEnding) fs::remove(file.path(), error);
-  }
+  std::vector<std::string> parts;
+  const auto read = host::for_each_name(folder, [&](std::string_view name) {
+    if (name.ends_with(PartFile::kEnding)) parts.push_back(folder + '/' + std::string(name));
+    return true;
+  });
+  if (!read && read.error() != ENOENT)
+    host::log(host::Level::Warning, "unfinished files may remain",
+              {{"why", host::trouble(folder, read.error())}});
+  for (const std::string& part : parts) ::unlink(part.c_str());
 }
 
 icd::Checked<icd::MapUpdate> read_map(const std::string& path) {

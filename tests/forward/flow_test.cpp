@@ -9,6 +9,7 @@
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
+#include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/bytes_read.hpp"
 #include "spool/messages.hpp"
@@ -52,7 +53,7 @@ class FlowTest : public testing::Test {
   icd::Checked<void> take_poses(std::vector<icd::NamedPose> poses, double stamp) {
     return flow_->take({.header = {stamp}, .poses = std::move(poses)}, sender_);
   }
-  journal::Carried kept() const { return journal::Folder(folder_.path() + "/journal").read().value(); }
+  journal::Carried kept() const { return journal::left_in(folder_.path() + "/journal"); }
   double kept_x(const char* robot) const {
     return kept().robots().at(*icd::RobotName::parse(robot)).posted.pose.position.x;
   }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "host/folder.hpp"
+#include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::forward {
@@ -43,7 +44,7 @@ class MarkerArrivalsTest : public testing::Test {
   }
   bool turn_until(auto done) { return loop::turn_until(loop_, done); }
   std::vector<icd::Marker> left() const {
-    return journal::Folder(folder_.path() + "/journal").read().value().markers().markers;
+    return journal::left_in(folder_.path() + "/journal").markers().markers;
   }
 
   host::Folder folder_;

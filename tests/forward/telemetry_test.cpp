@@ -11,6 +11,7 @@
 
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
+#include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
 #include "scarce_memory.hpp"
 
@@ -97,7 +98,7 @@ class NewsTest : public testing::Test {
       return false;
     });
   }
-  journal::Carried left() const { return journal::Folder(folder_.path() + "/journal").read().value(); }
+  journal::Carried left() const { return journal::left_in(folder_.path() + "/journal"); }
 
   host::Folder folder_;
   loop::Loop loop_;

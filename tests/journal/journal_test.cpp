@@ -10,6 +10,7 @@
 #include <iterator>
 #include <memory>
 
+#include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::journal {
@@ -44,7 +45,7 @@ class JournalTest : public testing::Test {
     journal->begin({.boot = "b", .at = loop_.now(), .stamp = 1e9});
     return journal;
   }
-  Carried left() const { return Folder(folder_ / "journal").read().value(); }
+  Carried left() const { return left_in(folder_ / "journal"); }
   std::vector<std::string> files(const std::string& kind) const {
     std::vector<std::string> names;
     for (const auto& file : fs::directory_iterator(folder_ / "journal")) {

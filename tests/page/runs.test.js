@@ -32,7 +32,12 @@ test("lists runs, shows an earlier one's map at its times, and deletes it once t
   const page = await come(t, at);
   const earlier = page.locator("#runs .rows li", { hasText: "Run 1" });
   assert.equal(await page.locator("#runs .rows li", { hasText: "(now)" }).getByRole("button", { name: /^Delete/ }).isVisible(), false);
+  let letGo;
+  const held = new Promise((resolve) => (letGo = resolve));
+  await page.route(/\/adit\/runs\/1\/history/, (route) => held.then(() => route.continue()));
   await earlier.getByRole("button", { name: /^View/ }).click();
+  await page.locator("#look h2", { hasText: "Opening Run 1 …" }).waitFor();
+  letGo();
   await until(() => page.requests.some((url) => /\/adit\/runs\/1\/map\/grid\/ugv1\/.*\.png/.test(url)), "the run's tiles");
   assert.deepEqual(await page.locator("#look .follow option").allTextContents(), ["Follow …", "ugv1"]);
   const slider = page.locator("#look input[type=range]");

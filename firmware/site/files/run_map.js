@@ -18,20 +18,22 @@ function offer() {
 
 /** Shows the run whose paths begin with `base`, and whose reports are numbered `run`; an Error's message is the sentence to show. */
 export async function lookAgain(base, title, run) {
+  const head = section.querySelector("h2");
+  say(head, `Opening ${title} …`); // a long run takes seconds
+  section.hidden = false;
+  head.focus();
   const [layers, { tracks }, { attention }, reports] = await Promise.all([get(`${base}/map`), get(`${base}/tracks`), get(`${base}/history`), get(`/adit/reports?run=${run}`)])
     .then(([all, ...others]) => [all.layers, ...others]);
   const times = [...layers.flatMap(({ first, last }) => [first, last]), ...tracks.flatMap(({ poses }) => [poses[0][0], poses.at(-1)[0]]), ...reports.map(({ received }) => received)];
   const first = times.length ? times.reduce((a, b) => Math.min(a, b)) : null;
   end = times.reduce((a, b) => Math.max(a, b), 0);
-  say(section.querySelector("h2"), title);
-  section.hidden = false;
+  say(head, title);
   if (!map) offer();
   map.lookAgain(base, { reports: [...reports].reverse(), run_number: run, now: end });
   showTools({ robots: tracks.map(({ robot }) => ({ name: robot })) });
   time.stretch(first, end);
   time.setTicks({ reports: reports.map((report) => ({ at: report.received, level: life(report).level })), alarms: attention.filter(({ came }) => came).map(({ at }) => ({ at, level: "bad" })) });
   time.goLive();
-  section.querySelector("h2").focus();
 }
 
 export function leave() {

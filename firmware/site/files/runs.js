@@ -2,6 +2,7 @@
 import "./presses.js";
 import { confirmed } from "./dialog.js";
 import { badge, list, make, say } from "./dom.js";
+import { grouped } from "./grouped.js";
 import { lookAgain, leave } from "./run_map.js";
 import { followNetwork } from "./pending.js";
 import { get, isFault, post, session, showWho, toLogin } from "./session.js";
@@ -55,7 +56,7 @@ function updateCourse(node, { name, runs }) {
 
 async function show() {
   const all = await get("/adit/runs");
-  const byCourse = grouped(all.runs);
+  const byCourse = grouped(all.runs, ({ course }) => course);
   const items = [...byCourse].map(([name, runs]) => ({ name, runs }));
   list(courses, items, ({ name }) => name, createCourse, updateCourse);
   section.querySelector(".empty").hidden = items.length > 0;
@@ -63,15 +64,14 @@ async function show() {
   badge(link, "good", "Live");
 }
 
-function grouped(runs) {
-  const groups = new Map();
-  for (const run of runs) groups.set(run.course, [...(groups.get(run.course) ?? []), run]);
-  return groups;
-}
-
 async function lookAt(run) {
   say(trouble, "");
-  await lookAgain(pathOf(run), run.course ? `${nameOf(run)}, course ${run.course}` : nameOf(run), run.run).catch((error) => say(trouble, error.message));
+  try {
+    await lookAgain(pathOf(run), run.course ? `${nameOf(run)}, course ${run.course}` : nameOf(run), run.run);
+  } catch (error) {
+    leave();
+    say(trouble, error.message);
+  }
 }
 
 async function forget(run) {

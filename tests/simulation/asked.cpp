@@ -55,8 +55,9 @@ void OpenReports::add(const Event& event) {
     }
   }
   // In the life before one may have been written down before its first byte left.
-  if (event.kind == Kind::Begins && any()) doubts_.insert(kBefore);
+  if (event.kind == Kind::Begins && any()) doubts_.insert(is_switched_ ? kElsewhere : kBefore);
   if (event.what == kCourse && !doubts_.empty()) doubts_.insert(kElsewhere);
+  is_switched_ = is_switched_ || event.what == kCourse;
   if (event.what != kReports) return;
   if (event.kind == Kind::Taken) taken_.insert(event.serial);
   if (event.kind == Kind::Fault) is_odd_ = is_odd_ || !kRightAnswers.contains(event.who);

@@ -44,6 +44,7 @@ class OpenReports {
   std::set<std::int64_t> known_, open_, taken_, doubts_;  // serials
   std::map<std::int64_t, double> told_;                   // serials that were answered, and when
   bool is_odd_ = false;                                   // the answer under way is not the report's own
+  bool is_switched_ = false;                              // the course was, so that a doubt may be elsewhere
 };
 
 /// Those of that path, but for bad messages, in the order in which they began.

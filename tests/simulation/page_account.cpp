@@ -168,9 +168,11 @@ PageAccount::Age PageAccount::age(const Stream& stream, Moment at) const {
     return age;
   }
   // A restart forgets nothing that was recorded.
-  const double until =
-      recorded_until_[static_cast<std::size_t>(std::ranges::find(begun_, start) - begun_.begin())];
-  while (sure != kNever && events_[sure].at > until) sure = last(forwarded_, sure);
+  const auto is_recorded = [&](std::size_t place) {
+    const auto next = std::ranges::upper_bound(begun_, place) - begun_.begin();
+    return events_[place].at <= recorded_until_[static_cast<std::size_t>(next)];
+  };
+  while (sure != kNever && !is_recorded(sure)) sure = last(forwarded_, sure);
   const auto forgotten = std::ranges::lower_bound(forgotten_, at.heard);
   const bool is_forgotten = forgotten != forgotten_.begin() && sure < *std::prev(forgotten);
   if (sure != kNever && !is_forgotten) age.most = since(sure) + kRestored;

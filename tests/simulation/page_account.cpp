@@ -30,8 +30,9 @@ PageAccount::PageAccount(const std::vector<Event>& events) : events_(events) {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     if (event.kind == Kind::Ended || event.kind == Kind::Dies) ended = event.at;
-    if (disk.forgets_at(event) || event.kind == Kind::PowerCut || event.what == kCourse)
-      forgotten_.push_back(i);
+    // A process that stands still for its disk records nothing meanwhile.
+    const bool forgets = disk.forgets_at(event) || event.kind == Kind::PowerCut || event.kind == Kind::Slow;
+    if (forgets || event.what == kCourse) forgotten_.push_back(i);
     disk.add(event);
     // A gateway that begins listens.
     const bool begins = event.kind == Kind::Begins ||

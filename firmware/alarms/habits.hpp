@@ -31,12 +31,13 @@ class Habits {
   /// `count`: of its messages of all kinds, since ever. To be told each second; `now`: seconds of
   /// a clock that never steps, when the last of them came. Messages between two calls count as one.
   void heard(const std::string& robot, std::uint64_t count, double now);
-  /// As it was before a restart of the service; `count`: heard()'s of this process, which is of before.
+  /// Restores the habit from before a restart. `count`: messages that this process counted before its first
+  /// heard().
   void carry_on(const std::string& robot, const Habit& habit, std::uint64_t count);
   /// It spoke in this run before a start of the machine, and at most one message is told of since, which may
   /// be of before, too: from now on its silence counts.
   void expect(const std::string& robot, double now);
-  /// Nothing if nothing is known of it.
+  /// The habit of one robot, if it is known.
   std::optional<Habit> of(const std::string& robot) const;
 
   /// Those that have a habit.

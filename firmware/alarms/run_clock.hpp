@@ -20,10 +20,10 @@ struct ShownClock {
 /// The run's clock between two statuses. Times are seconds of a clock that never steps.
 class RunClock {
  public:
-  /// A status with the clock `shows` was heard.
+  /// Call for each status; `shows`: its clock.
   void heard(double shows, double now);
-  /// Nothing if no status was heard. A clock goes on unless it stands at 0 s, or the last statuses show that
-  /// it stands.
+  /// The clock at `now`, after the first status. A clock goes on unless it is at 0 s, or two statuses that
+  /// are more than 1.5 s apart show the same.
   std::optional<ShownClock> at(double now) const;
 
  private:

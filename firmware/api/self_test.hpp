@@ -32,7 +32,7 @@ struct TestedEndpoint {
 struct TestView {
   std::uint64_t number = 0;  // of tests since aditd started; 0 before the first
   bool running = false;
-  bool applied = true;    // of what is in use; else of what was named to be tried
+  bool applied = true;    // the settings in use are tested; false: named values are
   bool outdated = false;  // settings or tokens have changed since the test began
   std::string course;     // whose addresses and tokens count where none were named; "": none's
   std::vector<TestedEndpoint> endpoints;  // of the test that runs, or of the last; empty: none so far

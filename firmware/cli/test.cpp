@@ -101,7 +101,7 @@ std::expected<std::string, std::string> body_of(const Trial& trial) {
   return codec::write_json({std::move(body)});
 }
 
-/// Begins the test, or finds that one runs already: test() joins it if it is of what is in use.
+/// Begins the test. If one is running, test() joins it, provided that it tests the settings in use.
 std::expected<void, Outcome> begin(const Adit& adit, const Trial& trial) {
   auto body = body_of(trial);
   if (!body) return std::unexpected(unable(body.error()));

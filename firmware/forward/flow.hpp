@@ -124,7 +124,7 @@ class Flow final : public intake::Desk {
   const dispatch::Reports& reports() const { return scoring_.reports(); }
   const Maps& maps() const { return maps_; }
   const Telemetry& telemetry() const { return telemetry_; }
-  /// When robots were heard, of before a restart of the service.
+  /// When robots were heard before a restart, by robot.
   const std::map<std::string, journal::Heard>& heard_before() const { return heard_before_; }
   /// For the next process start.
   void keep(const journal::Heard& heard) { journal_.heard(heard); }

@@ -27,7 +27,7 @@ enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 /// Why a message was not taken upstream: sent too often, failed (both are sent again), or refused for good.
 enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
 
-/// Of which it is told when a robot was heard, as the API names them: the first of Kind.
+/// The kinds whose times outlive a restart, by their names in the API; the first ones of Kind.
 inline constexpr std::string_view kHeardKinds[] = {"grid", "cloud", "state"};
 
 /// The time of day of a stamp by the clock for stamps; now, if the stamp is ahead of that. NaN of NaN.
@@ -57,8 +57,8 @@ class Record {
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
-  /// When the last one was accepted, and forwarded (NaN: none was), before a restart of the service. A queued
-  /// message of which accepted() was told may be newer.
+  /// Restores when the last message was accepted, and delivered (NaN: never), before a restart. Call after
+  /// accepted() for queued messages, which may be newer.
   void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
   /// It was refused to the robot, because too much waits.
   void no_room(const Traffic& traffic, api::Time now);

@@ -123,7 +123,7 @@ std::expected<std::size_t, std::string> Folder::compact(std::uint64_t last, cons
 }
 
 void Folder::remove_before(std::uint64_t number) {
-  const Files all = files().value_or(Files{});  // what stays is removed after the next snapshot
+  const Files all = files().value_or(Files{});  // unread: the next snapshot removes these files
   std::error_code error;
   for (const std::string& part : all.parts) fs::remove(part, error);  // death came while it was written
   for (const std::uint64_t each : all.journals) {

@@ -37,8 +37,8 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// What the processes before left. If a file cannot be read, it stays: nothing is told, and nothing is
-  /// kept, until the next start.
+  /// The records of the processes before. If a file cannot be read, the files stay, the records are empty,
+  /// and each append fails until the next start.
   Carried read();
   /// Call once, after read() and before any other member.
   void begin(const Clock& clock);

@@ -128,12 +128,17 @@ async function aim(page) {
 }
 const z = (page) => page.inputValue("#compose input[name=z]");
 
-test("takes the height from the tracks at the place, by touch, and says how it was found", async (t) => {
+/** A report whose place is asked for, on a phone. */
+async function placeByTouch(t) {
   const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, hasTouch: true, bypassCSP: true });
   await toTab(page, "Reports");
   await page.locator("#reports .compose").tap();
   await choose(page, "Vent");
-  const tap = await aim(page);
+  return { page, tap: await aim(page) };
+}
+
+test("takes the height from the tracks at the place, by touch, and says how it was found", async (t) => {
+  const { page, tap } = await placeByTouch(t);
   assert.equal(await z(page), "");
   assert.equal(await text(page, "#compose .height"), "No data within 5 m of this place: type z.");
   await check(page);
@@ -160,11 +165,7 @@ test("takes the height from the tracks at the place, by touch, and says how it w
 });
 
 test("lets the operator choose where two levels cross", async (t) => {
-  const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, hasTouch: true, bypassCSP: true });
-  await toTab(page, "Reports");
-  await page.locator("#reports .compose").tap();
-  await choose(page, "Vent");
-  const tap = await aim(page);
+  const { page, tap } = await placeByTouch(t);
   await tap(52, 49);
   await page.getByText("The heights within 5 m of this place differ: choose one, or type z.").waitFor();
   assert.equal(await z(page), "");

@@ -46,7 +46,7 @@ test("drops a result once its values are others: typed, applied, or saved by ano
   assert.equal(await shows("typed", ""), 0);
   await type("Mapping port", 2);
   assert.equal(await shows("typed", "1 of 12 steps failed. These values are not applied yet. No report was spent."), 2);
-  await page.reload(); // what was typed stays, and whether it was tested is not known
+  await page.reload(); // the typed values stay; the page does not know whether they were tested
   assert.equal(await shows("typed", "1 of 12 steps failed. This test began elsewhere, perhaps with other values. No report was spent."), 2);
 
   await type("Mapping port", box.mapping);
@@ -54,7 +54,7 @@ test("drops a result once its values are others: typed, applied, or saved by ano
   await tried(page, "typed", "All is well. These values are not applied yet.");
   await page.getByRole("button", { name: "Apply changes" }).click();
   await page.getByRole("button", { name: "Apply", exact: true }).click();
-  await page.locator("#typed", { hasText: "Applied." }).waitFor();
+  await page.locator("#typed", { hasText: /Applied\./ }).waitFor();
   assert.ok(!(await outcome(page, "typed").innerText()).includes("not applied yet"));
   assert.equal(await shows("typed", changed), 0);
   await tries(page).click();
@@ -105,7 +105,7 @@ test("keeps what is wrong, whatever was asked for before is answered later", asy
     if (route.request().method() === "GET") await refused;
     await route.continue();
   });
-  await page.reload(); // what was typed stays, and how a test stands is asked for
+  await page.reload(); // the typed values stay, and the page asks for the state of the test
   await tries(page).click();
   await tried(page, "typed", "Mapping address: expected an IPv4 or IPv6 address");
   await (await late).finished();

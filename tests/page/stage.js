@@ -54,7 +54,7 @@ export async function look(browser, url, options = {}, prepare = () => {}) {
 export async function visit(browser, url, options = {}, prepare = () => {}) {
   const context = await browser.newContext({ viewport: { width: 1280, height: 720 }, ...options });
   context.setDefaultTimeout(patient(120_000));
-  // A worker's requests do not have the context's headers. Who comes by a token has a browser without shared workers.
+  // A worker's requests do not have the context's headers. A visitor with a token gets a browser without shared workers.
   if (options.extraHTTPHeaders) await context.addInitScript(() => delete globalThis.SharedWorker);
   const page = await context.newPage();
   page.complaints = [];

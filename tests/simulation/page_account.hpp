@@ -83,9 +83,8 @@ class PageAccount {
   std::map<std::pair<Stream, std::size_t>, double> age_from_;    // by a place in forwarded_
   std::map<std::string, Places> throttled_, foreign_;
   Places begun_;
-  std::vector<double>
-      recorded_until_;  // of each in begun_: what came before that, the process before recorded
-  Places forgotten_;    // where what a process recorded was lost, or is of another course
+  std::vector<double> recorded_until_;  // for each of begun_: the process before recorded all until then
+  Places forgotten_;                    // where what a process recorded was lost, or is of another course
 };
 
 /// "scoring" or "mapping".

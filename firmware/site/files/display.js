@@ -37,7 +37,7 @@ function show({ view: told, time, lost, trouble }) {
   const view = told && { ...told, reports: allReports(told, lost) };
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? `${away}.` : "");
-  const calling = [...view.alarms].sort((a, b) => (a.severity === "wait") - (b.severity === "wait") || a.acknowledged - b.acknowledged); // what is new first
+  const calling = [...view.alarms].sort((a, b) => (a.severity === "wait") - (b.severity === "wait") || a.acknowledged - b.acknowledged); // new alarms first
   showAttention(calling.length || lost ? calling.slice(0, lost ? 1 : 2) : [calm(view)], lost ? `${away}: last data at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showEnds(view, lost);

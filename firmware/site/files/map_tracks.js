@@ -27,7 +27,7 @@ export class Tracks {
   }
 
   follow({ now, run_number, robots }) {
-    if (now - this.#heard > SILENCE) this.isLoaded = false; // what came meanwhile was missed
+    if (now - this.#heard > SILENCE) this.isLoaded = false; // poses may be missing
     this.#heard = now;
     if (run_number !== this.#run) {
       this.forget();

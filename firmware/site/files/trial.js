@@ -1,5 +1,5 @@
-// The Test, and tries of what is not applied yet: each step to each endpoint, as it runs, and what to do where it fails. A result
-// belongs to the values that were tested: once they differ, it goes.
+// The connection test, of the settings in use or of typed values: each step to each endpoint as it runs, with advice if it fails. A
+// result belongs to the tested values and goes once they differ.
 import { forgetOutcome } from "./apply.js";
 import { badge, list, make, say } from "./dom.js";
 import { draft, ENDPOINTS, onDraft, same } from "./draft.js";

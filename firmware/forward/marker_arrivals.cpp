@@ -83,7 +83,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
     make_record(arrival);
     return false;
   }
-  arrival.record = journal::record_of(*arrival.update);
+  arrival.record = journal::said(*arrival.update);
   return keep(arrival);
 }
 
@@ -105,7 +105,7 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
 void MarkerArrivals::make_record(const Arrival& arrival) {
   const auto made = std::make_shared<std::string>();
   workers_.submit(
-      loop::Urgency::OnTheWay, [made, update = arrival.update] { *made = journal::record_of(*update); },
+      loop::Urgency::OnTheWay, [made, update = arrival.update] { *made = journal::said(*update); },
       [this, made] {
         arrivals_.front().record = std::move(*made);
         go(&MarkerArrivals::keep);
@@ -114,7 +114,7 @@ void MarkerArrivals::make_record(const Arrival& arrival) {
 }
 
 bool MarkerArrivals::keep(Arrival& arrival) {
-  if (const auto kept = journal_.accepted_record(arrival.record); !kept) {
+  if (const auto kept = journal_.accepted_markers(arrival.record); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
                           "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});
   }

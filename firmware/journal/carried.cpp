@@ -9,6 +9,7 @@
 #include "codec/body_decoder.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "host/log.hpp"
 
 namespace adit::journal {
 namespace {
@@ -98,8 +99,6 @@ bool Carried::apply(Kind kind, std::string_view said) {
       return read_poses(said);
     case Kind::Heard:
       return read_heard(said);
-    case Kind::End:
-      return true;
   }
   return false;
 }
@@ -293,6 +292,27 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
   write_markers(waiting);
 }
 
+std::pair<Carried, std::string> read_records(const store::Contents& contents) {
+  Carried carried;
+  std::string damage;
+  std::size_t unknown = 0;
+  for (const store::Item& item : contents.items) {
+    if (const auto* const gap = std::get_if<store::Gap>(&item)) {
+      damage = "records of the journal are missing: " + gap->file;
+      continue;
+    }
+    const auto& record = std::get<store::Record>(item);
+    Kind kind{record.kind};
+    if (!damage.empty() && kind == Kind::StateDone) kind = Kind::StateBack;
+    if (!damage.empty() && kind == Kind::MarkersDone) kind = Kind::MarkersBack;
+    if (!carried.apply(kind, record.body)) ++unknown;
+  }
+  if (unknown > 0) {
+    host::log(host::Level::Error, "unknown journal records skipped", {{"records", std::to_string(unknown)}});
+  }
+  return {std::move(carried), std::move(damage)};
+}
+
 std::string said(const Clock& clock) {
   Writer out;
   out.text(clock.boot).number(number_of(clock.at.time_since_epoch())).real(clock.stamp);
@@ -355,10 +375,6 @@ std::string said(const Heard& heard) {
 
 std::string said(const icd::MarkersUpdate& update) {
   return codec::write_markers_update(update).to_string();
-}
-
-std::string record_of(const icd::MarkersUpdate& update) {
-  return framed(Kind::Markers, codec::write_markers_update(update));
 }
 
 std::string said_sent(const std::vector<icd::RobotName>& robots) {

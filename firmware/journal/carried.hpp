@@ -9,6 +9,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "icd/markers_update.hpp"
@@ -20,6 +21,7 @@
 #include "lanes/posted_pose.hpp"
 #include "lanes/stamps.hpp"
 #include "pace/rate_limit.hpp"
+#include "store/contents.hpp"
 
 namespace adit::journal {
 
@@ -104,6 +106,10 @@ class Carried {
   std::vector<icd::Marker> markers_under_way_;
 };
 
+/// What the records come to, and which are damaged: a sentence, or "". Nothing counts as delivered behind a
+/// gap: what was delivered may be in it. Unknown records are logged.
+std::pair<Carried, std::string> read_records(const store::Contents& contents);
+
 /// What the records say.
 std::string said(const Clock& clock);
 std::string said(const lanes::Stamper& stamper, const lanes::SenderClock& clock);
@@ -113,8 +119,6 @@ std::string said(const std::string& name, const lanes::Extent& extent);
 std::string said(std::span<const lanes::PostedPose> poses);
 std::string said(const Heard& heard);
 std::string said(const icd::MarkersUpdate& update);
-/// The record of markers that were accepted: it may be made by any thread.
-std::string record_of(const icd::MarkersUpdate& update);
 /// Whose poses were sent.
 std::string said_sent(const std::vector<icd::RobotName>& robots);
 /// Which markers were sent: ns, id and action of each.

@@ -1,66 +1,82 @@
 #include "journal/journal.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <iterator>
 #include <memory>
 #include <utility>
 
-#include "host/files.hpp"
 #include "host/log.hpp"
+#include "store/snapshot.hpp"
 
 namespace adit::journal {
+namespace {
 
-Journal::Journal(loop::Loop& loop, std::string folder) : folder_(std::move(folder)), compactor_(loop, 1) {
-  const auto last = folder_.last();
-  number_ = last.value_or(0);
-  if (!last) unread_ = last.error();
+/// A snapshot of all before that log. Its size in bytes.
+store::Result<std::size_t> write_snapshot(const store::Directory& directory, store::Snapshot& snapshot,
+                                          std::uint64_t before, const std::atomic<bool>& enough) {
+  const auto contents = store::Contents::read(directory, Journal::kKeeping, before);
+  if (!contents) return std::unexpected(contents.error());
+  store::Result<void> written;
+  read_records(*contents).first.write([&](Kind kind, std::string_view said) {
+    if (written && !enough) written = snapshot.add(static_cast<std::uint8_t>(kind), said);
+  });
+  if (enough) return std::unexpected(store::Error{.what = "aditd is stopping"});
+  if (written) written = snapshot.finish();
+  if (!written) return std::unexpected(written.error());
+  return snapshot.bytes();
+}
+
+}  // namespace
+
+Journal::Journal(loop::Loop& loop, std::string folder) : path_(std::move(folder)), compactor_(loop, 1) {
+  if (const auto opened = open(); !opened) unread_ = opened.error();
 }
 
 Journal::~Journal() {
   ending_ = true;
 }
 
-Carried Journal::read() {
-  auto carried = folder_.read();
-  if (!carried) unread_ = carried.error();
-  if (!unread_.empty()) (void)failed(unread_);
-  return unread_.empty() ? std::move(*carried) : Carried();
+Journal::Kept Journal::open() {
+  auto directory = store::Directory::lock(path_);
+  if (!directory) return std::unexpected(directory.error().what);
+  auto contents = store::Contents::read(*directory, kKeeping);
+  if (!contents) return std::unexpected(contents.error().what);
+  directory_ = std::move(*directory);
+  contents_ = std::move(*contents);
+  return {};
 }
 
+Carried Journal::read() {
+  if (!contents_) {
+    (void)failed(unread_);
+    return {};
+  }
+  auto [carried, damage] = read_records(*contents_);
+  damage_ = std::move(damage);
+  if (!damage_.empty()) host::log(host::Level::Error, damage_);
+  return std::move(carried);
+}
+
+/// The files of the processes before become a snapshot.
 void Journal::begin(const Clock& clock) {
-  const std::uint64_t last = number_;
-  if (unread_.empty() && open_next() && last > 0) compact(last);
+  if (contents_) {
+    log_.emplace(*directory_, kKeeping);
+    const bool is_first = contents_->is_new;
+    const auto started = log_->start(*contents_);
+    contents_.reset();
+    if (!started) (void)failed(started.error().what);
+    if (!is_first) compact();
+  }
   note(Kind::LifeBegins, {});
   note(Kind::Clock, said(clock));
 }
 
-/// Never a file of an earlier life: its last record may be torn.
-bool Journal::open_next() {
-  const std::string path = folder_.journal(number_ + 1);
-  loop::FileDescriptor next(::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0600));
-  if (!next) {
-    (void)failed(host::trouble(path, errno));
-    return false;
-  }
-  ++number_;
-  size_ = 0;
-  file_ = std::move(next);
-  return true;
-}
-
 Journal::Kept Journal::accepted(std::span<const lanes::PostedPose> poses) {
-  return append(framed(Kind::Poses, said(poses)));
+  return append(Kind::Poses, said(poses));
 }
 
-/// All in one write.
 void Journal::senders(const lanes::StampShift::Clocks& clocks) {
-  std::string records;
-  for (const auto& [stamper, clock] : clocks) records += framed(Kind::Sender, said(stamper, clock));
-  if (!records.empty()) keep(Kind::Sender, std::move(records));
+  for (const auto& [stamper, clock] : clocks) note(Kind::Sender, said(stamper, clock));
 }
 
 void Journal::state_sent(const icd::StateUpdate& update) {
@@ -91,58 +107,58 @@ void Journal::stamped(icd::Uri uri, icd::Stamp stamp) {
 }
 
 Journal::Kept Journal::grids_begin() {
-  return append(framed(Kind::Grids, std::string_view()));
+  return append(Kind::Grids, {});
 }
 
 Journal::Kept Journal::grids_posted(const std::string& name, const lanes::Extent& extent) {
-  return append(framed(Kind::Grids, said(name, extent)));
+  return append(Kind::Grids, said(name, extent));
 }
 
-void Journal::keep(Kind kind, std::string record) {
-  if (append(record) || unsaid_size_ + record.size() > kMostUnsaid) return;
-  unsaid_size_ += record.size();
-  unsaid_.push_back({kind, std::move(record)});
+void Journal::note(Kind kind, std::string said) {
+  if (append(kind, said) || unsaid_size_ + said.size() > kMostUnsaid) return;
+  unsaid_size_ += said.size();
+  unsaid_.push_back({kind, std::move(said)});
 }
 
 void Journal::comes_back(Kind sent, Kind back) {
   const auto last = std::find_if(unsaid_.rbegin(), unsaid_.rend(),
                                  [&](const Unsaid& unsaid) { return unsaid.kind == sent; });
   if (last == unsaid_.rend()) return note(back, {});
-  unsaid_size_ -= last->record.size();
+  unsaid_size_ -= last->said.size();
   unsaid_.erase(std::next(last).base());
 }
 
-std::string Journal::unsaid_and(const std::string& record) const {
-  std::string bytes;
-  bytes.reserve(unsaid_size_ + record.size());
-  for (const Unsaid& unsaid : unsaid_) bytes += unsaid.record;
-  return bytes += record;
-}
-
-Journal::Kept Journal::append(const std::string& record) {
-  if (!unread_.empty()) return std::unexpected(unread_);
-  if (!file_ && !open_next()) return std::unexpected(trouble_);
-  if (auto written = unsaid_.empty() ? write(record) : write(unsaid_and(record)); !written) return written;
-  unsaid_.clear();
-  unsaid_size_ = 0;
+/// If the directory could not be opened at the start, it may be now. Records that are in it then were not
+/// read.
+Journal::Kept Journal::append(Kind kind, std::string_view said) {
+  if (!log_) {
+    if (!contents_) {
+      if (auto opened = open(); !opened) return failed(opened.error());
+    }
+    if (!contents_->is_new) return failed(unread_);
+    log_.emplace(*directory_, kKeeping);
+    if (auto started = log_->start(*contents_); !started) return failed(started.error().what);
+  }
+  if (auto said_before = append_unsaid(); !said_before) return said_before;
+  if (auto written = write(kind, said); !written) return written;
   trouble_.clear();
-  if (size_ > std::max(least_, snapshot_)) turn_over();
+  if (size_ > std::max(least_, snapshot_)) compact();
   return {};
 }
 
-/// All of it or nothing: a record that is half there would end the file for who reads it.
-Journal::Kept Journal::write(std::string_view bytes) {
-  ssize_t count = -1;
-  do {
-    count = ::write(file_.get(), bytes.data(), bytes.size());
-  } while (count < 0 && errno == EINTR);
-  if (count == static_cast<ssize_t>(bytes.size())) {
-    size_ += bytes.size();
-    return {};
+Journal::Kept Journal::append_unsaid() {
+  for (auto unsaid = unsaid_.begin(); unsaid != unsaid_.end(); unsaid = unsaid_.erase(unsaid)) {
+    if (auto written = write(unsaid->kind, unsaid->said); !written) return written;
+    unsaid_size_ -= unsaid->said.size();
   }
-  const int error = count < 0 ? errno : ENOSPC;
-  if (count > 0 && ::ftruncate(file_.get(), static_cast<off_t>(size_)) != 0) file_ = {};
-  return failed(host::trouble(folder_.journal(number_), error));
+  return {};
+}
+
+Journal::Kept Journal::write(Kind kind, std::string_view said) {
+  const auto written = log_->append(static_cast<std::uint8_t>(kind), said, store::Durability::Now);
+  if (!written) return failed(written.error().what);
+  size_ += store::room_of(said.size(), store::kInMemory);
+  return {};
 }
 
 Journal::Kept Journal::failed(const std::string& why) {
@@ -153,17 +169,20 @@ Journal::Kept Journal::failed(const std::string& why) {
   return std::unexpected(why);
 }
 
-/// What was written so far becomes a snapshot, aside, while the next file is written.
-void Journal::turn_over() {
-  const std::uint64_t last = number_;
-  if (!compacting_ && open_next()) compact(last);
-}
-
-void Journal::compact(std::uint64_t last) {
+/// What was written so far becomes a snapshot, while the next file is written.
+void Journal::compact() {
+  if (compacting_ || !log_->turn()) return;
+  size_ = 0;
+  auto begun = store::Snapshot::begin(*directory_, kKeeping, *log_);
+  if (!begun) return;
   compacting_ = true;
-  auto outcome = std::make_shared<std::expected<std::size_t, std::string>>(std::unexpected("no memory"));
+  const auto snapshot = std::make_shared<store::Snapshot>(std::move(*begun));
+  const auto outcome = std::make_shared<store::Result<std::size_t>>();
   compactor_.submit(
-      loop::Urgency::CanWait, [this, outcome, last] { *outcome = folder_.compact(last, ending_); },
+      loop::Urgency::CanWait,
+      [this, snapshot, outcome, before = log_->number()] {
+        *outcome = write_snapshot(*directory_, *snapshot, before, ending_);
+      },
       [this, outcome] {
         compacting_ = false;
         least_ = kLeastTurn;
@@ -171,7 +190,7 @@ void Journal::compact(std::uint64_t last) {
           snapshot_ = **outcome;
           return;
         }
-        host::log(host::Level::Warning, "cannot compact the journal", {{"why", outcome->error()}});
+        host::log(host::Level::Warning, "cannot compact the journal", {{"why", outcome->error().what}});
         least_ = size_ + kLeastTurn;  // to be tried again after as much
       });
 }

@@ -1,13 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <optional>
-#include <span>
 #include <string>
 #include <string_view>
-
-#include "icd/chunked_bytes.hpp"
 
 namespace adit::journal {
 
@@ -25,7 +20,6 @@ enum class Kind : std::uint8_t {
   MarkersBack = 12,
   Pace = 13,   // when a URI may be asked next, and what spacing was learned
   Stamp = 14,  // the last stamp of a URI
-  End = 15,    // of a whole snapshot
   Grids = 16,  // where grids of a name were posted
   Poses = 19,  // of a /state/update that was accepted
   Heard = 20,  // when a robot was heard, and how often it posts
@@ -59,14 +53,5 @@ class Reader {
   std::string_view left_;
   bool ok_ = true;
 };
-
-/// A record as it stands in a file: its length and its CRC-32 (RFC 1952 8), 4 bytes each, then its kind and
-/// what it says.
-std::string framed(Kind kind, std::string_view said);
-std::string framed(Kind kind, const icd::ChunkedBytes& said);
-
-/// Tells the whole records at the beginning of `bytes`, in order, until `told` returns false. A record that
-/// is torn or damaged, and all after it, is not told.
-void for_each_record(std::string_view bytes, const std::function<bool(Kind, std::string_view)>& told);
 
 }  // namespace adit::journal

@@ -11,6 +11,7 @@
 #include "forward/clouds.hpp"
 #include "host/folder.hpp"
 #include "host/numbered_name.hpp"
+#include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/messages.hpp"
 
@@ -121,7 +122,7 @@ TEST_F(MapsTest, NeverTellThatNoGridWasSentWhereThatIsNotKnown) {
       EXPECT_TRUE(!left.grids() || left.grids()->contains(lanes::Canvases::kAnyName)) << size;
     }
   }
-  EXPECT_TRUE(journal_.read().grids());
+  EXPECT_TRUE(journal::left_in(journal_folder_.path()).grids());
 }
 
 /// The next life takes the one of the higher number for the newer one.

@@ -124,6 +124,7 @@ TEST_F(NewsTest, LeavesNoPoseThatWasTakenToTheNextLife) {
   auto life = life_before(post.peer);
   ASSERT_TRUE(life->news.take(pose("r1", 1), 10));
   ASSERT_TRUE(comes(*life, [&] { return !life->as_forwarded.robots().empty(); }));
+  life.reset();
   life = life_without_a_token();
   EXPECT_EQ(life->news.waiting(Kind::State), 0u);
   ASSERT_TRUE(life->news.take(pose("r2", 2), 10));

@@ -1,6 +1,5 @@
-// A journal's file: damaged, and whole with anything said in its records.
+// What the records of a journal say, whatever that is.
 #include "journal/carried.hpp"
-#include "journal/record.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {
@@ -9,30 +8,27 @@ namespace {
 using journal::Carried;
 using journal::Kind;
 
-std::string snapshot_of(const Carried& carried) {
-  std::string records;
-  carried.write([&records](Kind kind, std::string_view said) { records += journal::framed(kind, said); });
+using Records = std::vector<std::pair<Kind, std::string>>;
+
+Records snapshot_of(const Carried& carried) {
+  Records records;
+  carried.write([&records](Kind kind, std::string_view said) { records.emplace_back(kind, said); });
   return records;
 }
 
-Carried replayed(std::string_view records) {
+Carried replayed(const Records& records) {
   Carried carried;
-  std::size_t told = 0;
-  journal::for_each_record(records, [&](Kind kind, std::string_view said) {
-    carried.apply(kind, said);
-    return ++told <= records.size();
-  });
+  for (const auto& [kind, said] : records) carried.apply(kind, said);
   return carried;
 }
 
-/// Records with their checksums right: of each a byte that is its kind, two that are its length, and what it
-/// says.
-std::string framed_records(Input input) {
-  std::string records;
+/// Of each a byte that is its kind, two that are its length, and what it says.
+Records records_of(Input input) {
+  Records records;
   while (input.size() >= 3) {
     const auto bytes = bytes_of(input.substr(0, 3));
     const std::size_t size = bytes[1] | bytes[2] << 8U;
-    records += journal::framed(static_cast<Kind>(bytes[0]), input.substr(3, size));
+    records.emplace_back(static_cast<Kind>(bytes[0]), input.substr(3, size));
     input.remove_prefix(std::min(input.size(), 3 + size));
   }
   return records;
@@ -41,9 +37,8 @@ std::string framed_records(Input input) {
 }  // namespace
 
 void try_journal(Input input) {
-  (void)replayed(input);
   // A snapshot says what the records before it came to.
-  const std::string once = snapshot_of(replayed(framed_records(input)));
+  const Records once = snapshot_of(replayed(records_of(input)));
   require(snapshot_of(replayed(once)) == once);
 }
 

@@ -2,15 +2,18 @@
 
 #include <string>
 
-#include "journal/folder.hpp"
+#include "journal/journal.hpp"
 
 namespace adit::journal {
 
-/// What a journal's folder tells, read beside a journal that goes on: a snapshot may replace a file that is
-/// about to be read.
-inline Carried left_in(const std::string& folder) {
+/// What a journal's directory tells, read beside a journal that goes on: a snapshot may replace a file that
+/// is about to be read.
+inline Carried left_in(const std::string& path) {
   while (true) {
-    if (auto carried = Folder(folder).read()) return *std::move(carried);
+    const auto directory = store::Directory::look(path);
+    if (!directory) continue;
+    if (const auto contents = store::Contents::read(*directory, Journal::kKeeping))
+      return read_records(*contents).first;
   }
 }
 

@@ -1,0 +1,170 @@
+#include "store/contents.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "store/scan.hpp"
+
+namespace adit::store {
+
+/// Puts the contents together from the files.
+class Assembly {
+ public:
+  Assembly(const Directory& directory, const Keeping& keeping, std::uint64_t before)
+      : directory_(directory), keeping_(keeping), before_(before) {}
+
+  Result<Contents> run() {
+    const auto files = directory_.files();
+    if (!files) return std::unexpected(files.error());
+    for (const FileName& file : *files) {
+      if (file.kind != FileName::Kind::Spare && file.number < before_) names_.push_back(file);
+      contents_.number = std::max(contents_.number, file.number);
+    }
+    contents_.is_new = names_.empty();
+    if (auto scanned = scan_all(); !scanned) return std::unexpected(scanned.error());
+    drop_void();
+    for (const Scan& log : logs_) find_durable(log);
+    for (const Scan& log : logs_) {
+      if (!take(log)) break;
+    }
+    finish();
+    return std::move(contents_);
+  }
+
+ private:
+  Result<Scan> scan_file(const FileName& name, const Layout& layout) {
+    auto bytes = directory_.read(name.text());
+    if (!bytes) return std::unexpected(bytes.error());
+    Scan found = scan(name, contents_.bytes_.emplace_back(std::move(*bytes)), layout);
+    if (found.header && found.header->version > FileHeader::kVersion)
+      return std::unexpected(Error{Error::Cause::Newer, name.text() + ": a later version wrote it"});
+    contents_.process = std::max(contents_.process, found.process);
+    return found;
+  }
+
+  Result<void> scan_all() {
+    const auto logs_end = std::ranges::find(names_, FileName::Kind::Snapshot, &FileName::kind);
+    contents_.bytes_.reserve(names_.size());
+    std::optional<Scan> snapshot;  // the newest whole one, else the newest
+    for (auto name = names_.end(); name != logs_end;) {
+      auto found = scan_file(*--name, snapshot_layout(layout_));
+      if (!found) return std::unexpected(found.error());
+      const bool is_whole = is_whole_snapshot(*found);
+      if (!is_whole) contents_.notes.push_back(found->name.text() + ": a damaged snapshot");
+      if (is_whole || !snapshot) snapshot = std::move(*found);
+      if (is_whole) break;
+    }
+    for (auto name = names_.begin(); name != logs_end; ++name) {
+      if (snapshot && name->number < snapshot->name.number) continue;
+      auto found = scan_file(*name, layout_);
+      if (!found) return std::unexpected(found.error());
+      logs_.push_back(std::move(*found));
+    }
+    if (snapshot) take_snapshot(*snapshot);
+    return {};
+  }
+
+  void take_snapshot(const Scan& snapshot) {
+    std::uint64_t next = 1;
+    for (const Scan::Found& found : snapshot.frames) {
+      if (found.frame.sequence != next) contents_.items.push_back(Gap{.file = snapshot.name.text()});
+      next = found.frame.sequence + 1;
+      if (found.frame.kind != kSnapshotEnds)
+        contents_.items.push_back(Record{.kind = found.frame.kind, .body = found.frame.body});
+    }
+    if (snapshot.frames.empty() || snapshot.frames.back().frame.kind != kSnapshotEnds)
+      contents_.items.push_back(Gap{.file = snapshot.name.text()});
+    if (snapshot.header) {
+      next_ = snapshot.header->base + 1;
+    } else if (!logs_.empty() && logs_.front().header) {
+      next_ = logs_.front().header->base + 1;
+    }
+    contents_.durable = next_ - 1;
+    if (logs_.empty()) gap(next_, std::nullopt, snapshot.name);
+  }
+
+  /// A record that was written to a file after a sync of it had failed was never acknowledged: the next file
+  /// says so.
+  void drop_void() {
+    std::uint64_t base = std::numeric_limits<std::uint64_t>::max();
+    for (auto log = logs_.rbegin(); log != logs_.rend(); ++log) {
+      std::erase_if(log->frames, [base](const Scan::Found& found) { return found.frame.sequence > base; });
+      if (log->header) base = std::min(base, log->header->base);
+    }
+  }
+
+  void find_durable(const Scan& log) {
+    if (log.header) contents_.durable = std::max(contents_.durable, log.header->base);
+    for (const Scan::Found& found : log.frames)
+      contents_.durable = std::max(contents_.durable, found.frame.durable);
+  }
+
+  /// A log on a disk has its name once its zeros are synced.
+  bool is_cut(const Scan& log) const {
+    const std::uint64_t size = log.header ? log.header->size : keeping_.syncs ? keeping_.file_bytes : 0;
+    return log.size < size;
+  }
+
+  /// False: the rest was never synced, and a frame of it is missing.
+  bool take(const Scan& log) {
+    if (is_cut(log)) gap(next_, std::nullopt, log.name);
+    for (const Scan::Found& found : log.frames) {
+      const Frame& frame = found.frame;
+      if (frame.sequence < next_) continue;
+      if (frame.sequence > next_) {
+        if (next_ > contents_.durable) return false;
+        gap(next_, frame.sequence - 1, log.name);
+      }
+      contents_.items.push_back(Record{frame.sequence, frame.kind, frame.body});
+      next_ = frame.sequence + 1;
+      if (found.good < layout_.copies)
+        contents_.notes.push_back(log.name.text() + ": a damaged copy of record " +
+                                  std::to_string(frame.sequence));
+      if (found.good < layout_.copies || frame.sequence > contents_.durable)
+        contents_.rewrites.push_back({log.name, found.offset, frame});
+      if (&log == &logs_.back()) {
+        if (first_here_ == 0) first_here_ = frame.sequence;
+        contents_.end = found.offset + layout_.copies * room_of(frame.body.size(), layout_);
+      }
+    }
+    return true;
+  }
+
+  void finish() {
+    if (next_ <= contents_.durable)
+      gap(next_, contents_.durable, logs_.empty() ? FileName() : logs_.back().name);
+    contents_.last = std::max(next_ - 1, contents_.durable);
+    if (logs_.empty()) return;
+    const Scan& log = logs_.back();
+    contents_.log = log.name;
+    contents_.size = log.size;
+    const std::uint64_t base = first_here_ == 0 ? contents_.last : first_here_ - 1;
+    const std::string& body = contents_.bytes_.emplace_back(
+        FileHeader{.number = log.name.number, .salt = log.name.salt, .base = base, .size = log.size}
+            .written());
+    const Frame header =
+        log.begin ? log.begin->frame : Frame{.kind = kFileBegins, .durable = base, .body = body};
+    contents_.rewrites.push_back({log.name, 0, header});
+    contents_.end = std::max(contents_.end, layout_.copies * room_of(header.body.size(), layout_));
+  }
+
+  void gap(std::uint64_t first, std::optional<std::uint64_t> last, const FileName& file) {
+    contents_.items.push_back(Gap{first, last, file.text()});
+  }
+
+  const Directory& directory_;
+  const Keeping keeping_;
+  const Layout layout_ = keeping_.layout;
+  const std::uint64_t before_;
+  std::vector<FileName> names_;
+  std::vector<Scan> logs_;
+  Contents contents_;
+  std::uint64_t next_ = 1;        // the sequence number that is expected
+  std::uint64_t first_here_ = 0;  // of the last log
+};
+
+Result<Contents> Contents::read(const Directory& directory, const Keeping& keeping, std::uint64_t before) {
+  return Assembly(directory, keeping, before).run();
+}
+
+}  // namespace adit::store

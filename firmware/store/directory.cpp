@@ -1,0 +1,186 @@
+#include "store/directory.hpp"
+
+#include <dirent.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cinttypes>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <tuple>
+
+namespace adit::store {
+namespace {
+
+constexpr std::array<std::string_view, 3> kBeginnings{"log-", "snapshot-", "spare-"};  // by kind
+constexpr std::size_t kSaltDigits = 16;
+
+std::optional<std::uint64_t> number_in(std::string_view text, int base) {
+  std::uint64_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::optional<FileName> parse_name(std::string_view name) {
+  for (std::size_t kind = 0; kind < kBeginnings.size(); ++kind) {
+    const std::size_t begin = kBeginnings[kind].size(), point = name.find('.');
+    if (!name.starts_with(kBeginnings[kind]) || point == name.npos) continue;
+    const auto number = number_in(name.substr(begin, point - begin), 10);
+    const auto salt = number_in(name.substr(point + 1), 16);
+    if (number && salt && name.size() == point + 1 + kSaltDigits)
+      return FileName{static_cast<FileName::Kind>(kind), *number, *salt};
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::string FileName::text() const {
+  std::array<char, 64> end;
+  std::snprintf(end.data(), end.size(), "%08" PRIu64 ".%016" PRIx64, number, salt);
+  return std::string(kBeginnings[static_cast<std::size_t>(kind)]) + end.data();
+}
+
+Result<Directory> Directory::open(const std::string& path) {
+  Directory directory;
+  directory.path_ = path;
+  directory.fd_ = loop::FileDescriptor(::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (!directory.fd_) return failed(path, errno);
+  return directory;
+}
+
+Result<Directory> Directory::lock(const std::string& path) {
+  if (::mkdir(path.c_str(), 0700) != 0 && errno != EEXIST) return failed(path, errno);
+  auto directory = open(path);
+  if (!directory) return directory;
+  if (::flock(directory->fd_.get(), LOCK_EX | LOCK_NB) == 0) return directory;
+  if (errno != EWOULDBLOCK) return failed(path, errno);
+  return std::unexpected(Error{Error::Cause::InUse, path + ": another process has it open"});
+}
+
+Result<Directory> Directory::look(const std::string& path) {
+  return open(path);
+}
+
+Result<std::vector<std::string>> Directory::names() const {
+  const int again = ::openat(fd_.get(), ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC);  // closedir() closes it
+  const std::unique_ptr<DIR, int (*)(DIR*)> all(again < 0 ? nullptr : ::fdopendir(again), ::closedir);
+  if (!all) {
+    const int number = errno;
+    if (again >= 0) loop::close_descriptor(again);
+    return failed(path_, number);
+  }
+  std::vector<std::string> names;
+  errno = 0;
+  while (const dirent* entry = ::readdir(all.get())) names.emplace_back(entry->d_name);
+  if (errno != 0) return failed(path_, errno);
+  return names;
+}
+
+Result<std::vector<FileName>> Directory::files() const {
+  const auto all = names();
+  if (!all) return std::unexpected(all.error());
+  std::vector<FileName> files;
+  for (const std::string& name : *all) {
+    if (const auto file = parse_name(name)) files.push_back(*file);
+  }
+  std::ranges::sort(files, {},
+                    [](const FileName& file) { return std::tuple(file.kind, file.number, file.salt); });
+  return files;
+}
+
+/// Opens without blocking: a FIFO in place of a file must not stop the start.
+Result<std::string> Directory::read(const std::string& name) const {
+  const loop::FileDescriptor file(
+      ::openat(fd_.get(), name.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW | O_CLOEXEC));
+  struct stat status{};
+  if (!file || ::fstat(file.get(), &status) != 0) return trouble(name, errno);
+  if (!S_ISREG(status.st_mode))
+    return std::unexpected(Error{Error::Cause::Other, path_ + '/' + name + ": not a regular file"});
+  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
+  std::size_t got = 0;
+  while (got < bytes.size()) {
+    const ssize_t count =
+        ::pread(file.get(), bytes.data() + got, bytes.size() - got, static_cast<off_t>(got));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return trouble(name, errno);
+    if (count == 0) break;
+    got += static_cast<std::size_t>(count);
+  }
+  bytes.resize(got);
+  return bytes;
+}
+
+Result<loop::FileDescriptor> Directory::make(const std::string& name) const {
+  loop::FileDescriptor file(::openat(fd_.get(), name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  if (!file) return trouble(name, errno);
+  return file;
+}
+
+Result<loop::FileDescriptor> Directory::open_to_write(const std::string& name) const {
+  loop::FileDescriptor file(
+      ::openat(fd_.get(), name.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW | O_CLOEXEC));
+  if (!file) return trouble(name, errno);
+  return file;
+}
+
+std::optional<std::uint64_t> Directory::size(const std::string& name) const {
+  struct stat status{};
+  if (::fstatat(fd_.get(), name.c_str(), &status, AT_SYMLINK_NOFOLLOW) != 0 || !S_ISREG(status.st_mode))
+    return std::nullopt;
+  return static_cast<std::uint64_t>(status.st_size);
+}
+
+Result<void> Directory::rename(const std::string& from, const std::string& to) const {
+  if (::renameat(fd_.get(), from.c_str(), fd_.get(), to.c_str()) != 0) return trouble(from, errno);
+  return {};
+}
+
+Result<void> Directory::remove(const std::string& name) const {
+  if (::unlinkat(fd_.get(), name.c_str(), 0) != 0 && errno != ENOENT) return trouble(name, errno);
+  return {};
+}
+
+Result<void> Directory::remove_parts() const {
+  const auto all = names();
+  if (!all) return std::unexpected(all.error());
+  for (const std::string& name : *all) {
+    if (!name.ends_with(kPart)) continue;
+    if (auto removed = remove(name); !removed) return removed;
+  }
+  return {};
+}
+
+Result<void> Directory::sync() const {
+  if (::fsync(fd_.get()) != 0) return failed(path_, errno);
+  return {};
+}
+
+int write_all(int fd, std::string_view bytes, std::size_t offset) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    if (count == 0) return EIO;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+    offset += static_cast<std::size_t>(count);
+  }
+  return 0;
+}
+
+Result<std::uint64_t> random_salt() {
+  std::uint64_t salt = 0;
+  if (::getrandom(&salt, sizeof salt, 0) != sizeof salt) return failed("random numbers", errno);
+  return salt;
+}
+
+}  // namespace adit::store

@@ -1,0 +1,214 @@
+#include "store/log.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <limits>
+#include <map>
+#include <utility>
+
+namespace adit::store {
+namespace {
+
+constexpr std::size_t kPiece = 256u << 10;  // of zeros, written and synced at once: nobody else waits long
+
+/// Writes so many zeros to a new file and syncs them; the errno, else 0.
+int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
+  const std::string zeros(std::min(size, kPiece), '\0');
+  for (std::size_t at = 0; at < size; at += zeros.size()) {
+    if (enough) return ECANCELED;
+    const std::size_t count = std::min(zeros.size(), size - at);
+    if (const int error = write_all(fd, std::string_view(zeros).substr(0, count), at); error != 0)
+      return error;
+    if (::fsync(fd) != 0) return errno;
+  }
+  return 0;
+}
+
+/// A file of `size` zeros, which has its name once they are synced.
+Result<void> make_zeros(const Directory& directory, const FileName& name, std::size_t size,
+                        const std::atomic<bool>& enough) {
+  const std::string part = name.text() + std::string(Directory::kPart);
+  const auto file = directory.make(part);
+  if (!file) return std::unexpected(file.error());
+  const int error = write_zeros(file->get(), size, enough);
+  Result<void> made = error == 0 ? directory.rename(part, name.text()) : directory.trouble(part, error);
+  if (!made) (void)directory.remove(part);
+  return made;
+}
+
+}  // namespace
+
+Result<void> Log::start(const Contents& contents) {
+  last_ = contents.last;
+  durable_ = contents.durable;
+  process_ = contents.process + 1;
+  highest_ = contents.number;
+  for (const Contents::Rewrite& each : contents.rewrites) {
+    if (each.frame.sequence > durable_) unsynced_.push_back({each.frame.kind, std::string(each.frame.body)});
+  }
+  if (auto removed = directory_.remove_parts(); !removed) return removed;
+  if (!contents.log) return {};
+  auto fd = directory_.open_to_write(contents.log->text());
+  if (!fd) return std::unexpected(fd.error());
+  const std::size_t size = keeping_.syncs ? contents.size : std::numeric_limits<std::size_t>::max();
+  file_ = {*contents.log, std::move(*fd), contents.end, std::max(size, contents.end)};
+  if (auto rewritten = rewrite(contents); !rewritten) return rewritten;
+  is_dead_ = false;
+  durable_ = last_;
+  unsynced_.clear();
+  return {};
+}
+
+/// A sync that failed in the process before may have left pages that read well and are not on the disk. They
+/// are written again, so that a sync that succeeds now means that they are.
+Result<void> Log::rewrite(const Contents& contents) {
+  std::map<std::string, loop::FileDescriptor> files;
+  for (const Contents::Rewrite& each : contents.rewrites) {
+    const std::string name = each.file.text();
+    auto& fd = files[name];
+    if (!fd) {
+      auto opened = directory_.open_to_write(name);
+      if (!opened) return std::unexpected(opened.error());
+      fd = std::move(*opened);
+    }
+    const std::string frame = written(each.frame, keeping_.layout, each.file.salt, each.offset);
+    if (const int error = write_all(fd.get(), frame, each.offset); error != 0)
+      return directory_.trouble(name, error);
+  }
+  if (!keeping_.syncs) return {};
+  for (const auto& [name, fd] : files) {
+    if (::fdatasync(fd.get()) != 0) return directory_.trouble(name, errno);
+  }
+  return directory_.sync();
+}
+
+Result<void> Log::append(std::uint8_t kind, std::string_view body, Durability durability) {
+  if (body.size() > kMostBody)
+    return std::unexpected(
+        Error{Error::Cause::TooLong, "a record of " + std::to_string(body.size()) + " bytes"});
+  if (room() < bytes_of(body.size())) {
+    if (auto turned = turn_for(body.size()); !turned) return turned;
+  }
+  if (auto wrote = write(file_, {kind, last_ + 1, process_, durable_, body}); !wrote) {
+    is_dead_ = keeping_.syncs;  // in memory the next frame goes to the same place
+    return wrote;
+  }
+  const bool is_durable = !keeping_.syncs || durability == Durability::Now;
+  if (is_durable) {
+    if (auto synced = sync(); !synced) return synced;
+  }
+  ++last_;
+  if (is_durable) {
+    durable_ = last_;
+    unsynced_.clear();
+  } else {
+    unsynced_.push_back({kind, std::string(body)});
+  }
+  return {};
+}
+
+Result<void> Log::flush() {
+  if (unsynced_.empty()) return {};
+  if (is_dead_) return turn();
+  if (auto synced = sync(); !synced) return synced;
+  durable_ = last_;
+  unsynced_.clear();
+  return {};
+}
+
+Result<void> Log::turn() {
+  return turn_for(0);
+}
+
+/// The file that is left was synced, or its records above durable_ are void: the header of the next one says
+/// so, and those that were accepted follow it.
+Result<void> Log::turn_for(std::size_t body) {
+  if (!is_dead_) (void)flush();  // an error: it is dead now
+  std::size_t size = bytes_of(FileHeader().written().size()) + bytes_of(body);
+  for (const Unsynced& each : unsynced_) size += bytes_of(each.body.size());
+  ++highest_;
+  auto next = make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0);
+  if (!next) return std::unexpected(next.error());
+  if (auto filled = fill(*next); !filled) {
+    (void)directory_.remove(next->name.text());  // if that fails, the header of a later file says the same
+    return filled;
+  }
+  file_ = std::move(*next);
+  is_dead_ = false;
+  durable_ = last_;
+  unsynced_.clear();
+  return {};
+}
+
+/// Its zeros and its name are synced.
+Result<Log::File> Log::make_file(std::size_t size) const {
+  const auto salt = random_salt();
+  if (!salt) return std::unexpected(salt.error());
+  File file{.name = {FileName::Kind::Log, highest_, *salt}, .size = size};
+  if (!keeping_.syncs) {
+    auto made = directory_.make(file.name.text());
+    if (!made) return std::unexpected(made.error());
+    file.fd = std::move(*made);
+    file.size = std::numeric_limits<std::size_t>::max();
+    return file;
+  }
+  const auto files = directory_.files();
+  if (!files) return std::unexpected(files.error());
+  const auto spare = std::ranges::find(*files, FileName::Kind::Spare, &FileName::kind);
+  Result<void> made;
+  if (spare != files->end() && directory_.size(spare->text()) == size) {
+    file.name.salt = spare->salt;
+    made = directory_.rename(spare->text(), file.name.text());
+  } else {
+    made = make_zeros(directory_, file.name, size, false);
+  }
+  if (made) made = directory_.sync();
+  if (!made) return std::unexpected(made.error());
+  auto fd = directory_.open_to_write(file.name.text());
+  if (!fd) return std::unexpected(fd.error());
+  file.fd = std::move(*fd);
+  return file;
+}
+
+Result<void> Log::fill(File& file) const {
+  const std::string header = FileHeader{.number = file.name.number,
+                                        .salt = file.name.salt,
+                                        .base = durable_,
+                                        .size = keeping_.syncs ? file.size : 0}
+                                 .written();
+  std::uint64_t sequence = durable_;
+  auto wrote = write(file, {kFileBegins, 0, process_, durable_, header});
+  for (const Unsynced& each : unsynced_) {
+    if (wrote) wrote = write(file, {each.kind, ++sequence, process_, durable_, each.body});
+  }
+  if (wrote && keeping_.syncs && ::fdatasync(file.fd.get()) != 0)
+    return directory_.trouble(file.name.text(), errno);
+  return wrote;
+}
+
+Result<void> Log::write(File& file, const Frame& frame) const {
+  const std::string bytes = written(frame, keeping_.layout, file.name.salt, file.at);
+  if (const int error = write_all(file.fd.get(), bytes, file.at); error != 0)
+    return directory_.trouble(file.name.text(), error);
+  file.at += bytes_of(frame.body.size());
+  return {};
+}
+
+Result<void> Log::sync() {
+  if (!keeping_.syncs || ::fdatasync(file_.fd.get()) == 0) return {};
+  is_dead_ = true;
+  return directory_.trouble(file_.name.text(), errno);
+}
+
+Result<void> make_spare(const Directory& directory, const Keeping& keeping, const std::atomic<bool>& enough) {
+  const auto files = directory.files();
+  if (!files) return std::unexpected(files.error());
+  const auto salt = random_salt();
+  if (!salt) return std::unexpected(salt.error());
+  if (std::ranges::find(*files, FileName::Kind::Spare, &FileName::kind) != files->end()) return {};
+  return make_zeros(directory, {FileName::Kind::Spare, 0, *salt}, keeping.file_bytes, enough);
+}
+
+}  // namespace adit::store

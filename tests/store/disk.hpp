@@ -1,0 +1,64 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "simulation/random.hpp"
+#include "simulation/unsynced.hpp"
+
+namespace adit::store {
+
+using simulation::Random;
+
+/// A directory of real files between which and the program this stands: the calls of libc that change files
+/// (disk.cpp) end in a kill, fail, or are lost in a power cut. One at a time.
+class Disk {
+ public:
+  /// The process is killed: thrown by a call of libc.
+  struct Killed {};
+
+  explicit Disk(Random random);
+  ~Disk();
+  Disk(const Disk&) = delete;
+  Disk& operator=(const Disk&) = delete;
+
+  std::string log() const { return path_ + "/log"; }
+  /// The process that starts next.
+  void start();
+  /// What is not synced may be lost.
+  void cut_power();
+  /// One bit of the bytes that are not zero, on the disk.
+  void flip_bit();
+  std::map<std::string, std::string> files() const;
+
+  // Chances, for each call.
+  double kills = 0, failing_syncs = 0, failing_writes = 0, full = 0, failing_opens = 0;
+
+  // For disk.cpp alone.
+  static Disk* of(int fd, const char* name);
+  int open(int folder, const char* name, int flags, mode_t mode);
+  ssize_t write(int fd, const char* bytes, std::size_t size, off_t at);
+  int sync(int fd);
+  int rename(const char* from, const char* to);
+  int remove(const char* name);
+
+ private:
+  struct Open {
+    std::string name;
+    bool is_folder;
+  };
+  void may_be_killed();
+  bool fails(double chance, int error);
+  std::optional<simulation::Content> content(const std::string& name) const;
+  std::string name_of(int fd) const;
+
+  Random random_;
+  std::string path_;
+  std::unique_ptr<simulation::Unsynced> unsynced_;
+  bool is_dead_ = false;
+};
+
+}  // namespace adit::store

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "store/log.hpp"
+#include "store/snapshot.hpp"
+
+namespace adit::store {
+
+/// Frames of 512 bytes, in two copies, in files for seven of them.
+inline constexpr Keeping kSmall{{512, 2}, 8192, true};
+
+/// A log in a directory of its own.
+class SmallLog {
+ public:
+  explicit SmallLog(const Keeping& keeps = kSmall) : keeping(keeps) {
+    std::string name =
+        (std::filesystem::exists("/dev/shm") ? "/dev/shm" : std::filesystem::temp_directory_path().native()) +
+        "/adit-store-XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("no directory");
+    path_ = name;
+  }
+  ~SmallLog() { std::filesystem::remove_all(path_); }
+  SmallLog(const SmallLog&) = delete;
+  SmallLog& operator=(const SmallLog&) = delete;
+
+  struct Opened {
+    Opened(const std::string& path, const Keeping& keeping)
+        : directory(Directory::lock(path).value()),
+          contents(Contents::read(directory, keeping).value()),
+          log(directory, keeping) {
+      log.start(contents).value();
+    }
+    Directory directory;
+    Contents contents;
+    Log log;
+  };
+  /// As a process opens it.
+  Opened open() const { return {path_, keeping}; }
+  Result<Contents> read() const { return Contents::read(Directory::look(path_).value(), keeping); }
+
+  /// One process appends these.
+  void fill(const std::vector<std::string>& bodies, Durability durability) const {
+    auto opened = open();
+    for (const std::string& body : bodies) opened.log.append(1, body, durability).value();
+  }
+  /// One process lets these stand for all before.
+  void snapshot(const std::vector<std::string>& bodies) const {
+    auto opened = open();
+    opened.log.turn().value();
+    auto snapshot = Snapshot::begin(opened.directory, keeping, opened.log).value();
+    for (const std::string& body : bodies) snapshot.add(1, body).value();
+    snapshot.finish().value();
+  }
+
+  const std::string& path() const { return path_; }
+  std::map<std::string, std::string> files() const {
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::directory_iterator(path_)) {
+      std::ifstream file(entry.path(), std::ios::binary);
+      files[entry.path().filename()] = {std::istreambuf_iterator<char>(file), {}};
+    }
+    return files;
+  }
+  void write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path_ + '/' + name, std::ios::binary)
+        .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  }
+
+  const Keeping keeping;
+
+ private:
+  std::string path_;
+};
+
+inline std::vector<std::string> bodies(const Contents& contents) {
+  std::vector<std::string> bodies;
+  for (const Item& item : contents.items) {
+    if (const auto* record = std::get_if<Record>(&item)) bodies.emplace_back(record->body);
+  }
+  return bodies;
+}
+inline bool has_gap(const Contents& contents) {
+  for (const Item& item : contents.items) {
+    if (std::holds_alternative<Gap>(item)) return true;
+  }
+  return false;
+}
+
+}  // namespace adit::store

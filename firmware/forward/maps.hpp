@@ -162,7 +162,7 @@ class Maps {
   void pack(const Place& prepared);
   void not_packed(const Place& prepared);
   Place* place_of(const Place& prepared);
-  void learn_from(const Prepared& cloud);
+  void learn_from(const Prepared& prepared);
   void is_packed(const Place& prepared);
   std::vector<std::uint64_t> unread_in(const lanes::WaitingMap& waiting) const;
   static std::vector<Damaged> damaged_in(const lanes::WaitingMap& waiting,

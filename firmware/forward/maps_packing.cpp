@@ -25,18 +25,13 @@ bool Maps::is_awaited(const lanes::WaitingMap& waiting) const {
   return !channel_.busy() && starts() <= waiting.accepted;
 }
 
-/// Of a large grid that leaves soon as it is kept, making it smaller saves less time than it takes. What a
-/// cloud takes to be packed hangs on more (pack::effort_for); where others wait the link is theirs, too.
+/// A small cloud is packed in a few milliseconds. If others wait, the link is theirs, too.
 Packing Maps::packing_for(const lanes::WaitingMap& waiting) const {
-  constexpr std::size_t kLargeGrid = 1u << 20;     // cells; smaller ones are packed in a few milliseconds
-  constexpr std::size_t kLargeCloud = 256u << 10;  // bytes, as these
-  constexpr int kSoon = 8;                         // in that part of the time between two maps
-  Packing packing{.arranges_clouds = settings_.command_post.arrange_clouds};
-  if (!is_awaited(waiting)) return packing;
-  const icd::MapData& data = waiting.map.data;
-  packing.leaves_grids =
-      data.raw_size >= kLargeGrid && slot_.transfer(data.bytes.size()) <= pace_.spacing() / kSoon;
-  if (data.raw_size >= kLargeCloud && lane_.count() == 0) packing.hurry = slot_.hurry(pace_.spacing());
+  constexpr std::size_t kLargeCloud = 256u << 10;  // bytes
+  Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
+  const bool may_save_time = waiting.map.is_grid() || (waiting.map.data.raw_size >= kLargeCloud &&
+                                                       lane_.count() == 0 && slot_.is_link_known());
+  if (!may_save_time || !is_awaited(waiting)) packing.hurry.bytes_per_second = 0;
   return packing;
 }
 
@@ -62,7 +57,7 @@ void Maps::pack(const Place& prepared) {
         preparing_ = false;
         if (prepared->damaged.empty()) {
           for (const std::uint64_t number : unread) unread_.erase(number);
-          if (prepared->packed.effort == pack::Effort::Full) slot_.packing_took(loop_.now() - began);
+          if (prepared->packed.effort != pack::Effort::None) slot_.packing_took(loop_.now() - began);
         }
         loop::guarded("a map that was packed", [&] { is_packed(prepared); });
         pump();
@@ -77,10 +72,10 @@ Maps::Place* Maps::place_of(const Place& prepared) {
   return prepared == following_ ? &following_ : nullptr;
 }
 
-/// One that was packed in a hurry does not say how small clouds become.
-void Maps::learn_from(const Prepared& cloud) {
-  const Packed& packed = cloud.packed;
-  slot_.worker_took(cloud.packing_took, packed.points_size, packed.effort);
+/// A cloud that was packed in a hurry does not say how small clouds become.
+void Maps::learn_from(const Prepared& prepared) {
+  const Packed& packed = prepared.packed;
+  slot_.worker_took(prepared.packing_took, packed.expected);
   if (packed.effort == pack::Effort::Full)
     slot_.packed(packed.points_size, packed.body.size(), packed.precision);
 }
@@ -132,9 +127,8 @@ void Maps::is_damaged(Place& place) {
 
 /// What cannot be stitched goes as it came, each part by itself.
 void Maps::is_packed(const Place& prepared) {
-  const icd::MapUpdate& map = prepared->waiting.map;
   const LeftOut& left_out = prepared->packed.left_out;
-  if (!map.is_grid() && prepared->damaged.empty()) learn_from(*prepared);
+  if (prepared->damaged.empty()) learn_from(*prepared);
   Place* const place = place_of(prepared);
   if (place == nullptr) return;
   if (!prepared->damaged.empty()) return is_damaged(*place);

@@ -49,18 +49,15 @@ void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_
   is_link_known_ = is_link_known_ || !was_held_back;
 }
 
-/// A cloud that is smaller, or that was not packed, says little.
-void Slot::worker_took(loop::Duration took, std::size_t points, pack::Effort effort) {
-  if (points < kTelling || effort == pack::Effort::None) return;
-  constexpr double kFastest = 0.1, kSlowest = 100;
-  const double seen = pack::slowness(effort, points, Seconds(took).count());
-  slowness_ = std::clamp((slowness_ + seen) / 2, kFastest, kSlowest);
+/// A small map, or one that was not packed, says little; and many grids take far less than is expected.
+void Slot::worker_took(loop::Duration took, double expected) {
+  constexpr double kLeastExpected = 0.5e-3, kFastest = 0.5, kSlowest = 100;
+  if (expected < kLeastExpected) return;
+  slowness_ = std::clamp((slowness_ + Seconds(took).count() / expected) / 2, kFastest, kSlowest);
 }
 
-std::optional<pack::Hurry> Slot::hurry(loop::Duration spacing) const {
-  if (!is_link_known_) return std::nullopt;
-  return pack::Hurry{
-      .bytes_per_second = bytes_per_second_, .slowness = slowness_, .longest = Seconds(spacing).count()};
+pack::Hurry Slot::hurry(loop::Duration spacing) const {
+  return {.bytes_per_second = bytes_per_second_, .slowness = slowness_, .longest = Seconds(spacing).count()};
 }
 
 void Slot::link_delivers(std::uint64_t bytes_per_second) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 
 #include "lanes/precision.hpp"
 #include "loop/loop.hpp"
@@ -25,8 +24,8 @@ class Slot {
   void packing_took(loop::Duration took);
   /// So many bytes of a cloud's points were packed to so many, at that precision.
   void packed(std::size_t points, std::size_t bytes, lanes::Precision precision);
-  /// A worker took so long to pack so many bytes of points with that effort.
-  void worker_took(loop::Duration took, std::size_t points, pack::Effort effort);
+  /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds.
+  void worker_took(loop::Duration took, double expected);
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
 
@@ -38,9 +37,10 @@ class Slot {
   loop::Duration lead() const;
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
-  /// What the effort for a cloud hangs on that is to leave within `spacing`. Nothing while it is not known
-  /// how fast the link is: no map has shown it yet.
-  std::optional<pack::Hurry> hurry(loop::Duration spacing) const;
+  /// What the effort for a map hangs on that is to leave at once and within `spacing`.
+  pack::Hurry hurry(loop::Duration spacing) const;
+  /// Whether a map has shown how fast the link is; until then it is taken to be as fast as allow() says.
+  bool is_link_known() const { return is_link_known_; }
   /// How many bytes of points, not packed, leave within `spacing`, at each precision: by the last cloud, and
   /// by what rounding makes of clouds.
   lanes::PointsAt points_within(loop::Duration spacing) const;

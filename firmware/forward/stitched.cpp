@@ -3,6 +3,7 @@
 #include <utility>
 #include <vector>
 
+#include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
 #include "codec/write.hpp"
 #include "lanes/lattice.hpp"
@@ -37,21 +38,10 @@ double unit_of(lanes::Precision precision) {
   return precision == lanes::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
 }
 
-bool is_compressed(const icd::MapUpdate& map) {
-  return map.data.compression != icd::Compression::None;
-}
-
 /// pack() says so by the origin.
 bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&after.msg);
   return cloud != nullptr && cloud->origin != std::get<icd::PointCloud2>(before.msg).origin;
-}
-
-/// What a setting asks for is done whatever it takes.
-pack::Effort effort_for(const icd::MapUpdate& map, const lanes::WaitingMap& waiting, const Packing& packing) {
-  const bool may_hurry = packing.hurry && !map.is_grid() && !is_compressed(map);
-  if (!may_hurry || unit_of(waiting.precision) > 0) return pack::Effort::Full;
-  return pack::effort_for(map.data, *packing.hurry);
 }
 
 }  // namespace
@@ -64,12 +54,14 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
   if (packed.left_out.is_all) return packed;
   if (waiting.ground) packed.drawn = drawn_over(*waiting.ground, whole->data);
   if (!whole->is_grid()) packed.points_size = whole->data.raw_size;
-  packed.effort = effort_for(*whole, waiting, packing);
-  const bool is_left = packing.leaves_grids && whole->is_grid() && is_compressed(*whole);
-  icd::MapUpdate map = is_left ? std::move(*whole)
-                               : pack::pack(std::move(*whole), {.is_arranged = packing.arranges_clouds,
-                                                                .unit = unit_of(waiting.precision),
-                                                                .effort = packed.effort});
+  if (whole->is_grid() && whole->data.compression == icd::Compression::None) {
+    whole->data.bytes = codec::gzip(std::move(whole->data.bytes), codec::GzipStrategy::Runs);
+    whole->data.compression = icd::Compression::Gzip;
+  }
+  const double unit = unit_of(waiting.precision);
+  if (unit == 0) packed.effort = pack::effort_for(*whole, packing.hurry);  // rounding is for Full alone
+  packed.expected = pack::seconds_for(packed.effort, *whole);
+  icd::MapUpdate map = pack::pack(std::move(*whole), {packing.arranges_clouds, unit, packed.effort});
   if (was_rounded(waiting.map, map)) packed.precision = waiting.precision;
   packed.body = codec::write_map_update(map);
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);

@@ -20,7 +20,8 @@ struct Packed {
   LeftOut left_out;
   lanes::Precision precision = lanes::Precision::Exact;  // of a cloud: what it was rounded to
   std::size_t points_size = 0;  // of a cloud: bytes of the points that are sent, before they were packed
-  pack::Effort effort = pack::Effort::Full;  // of a cloud
+  pack::Effort effort = pack::Effort::Full;
+  double expected = 0;  // seconds for packing it (pack::seconds_for)
   /// What it was packed over, with it; absent where that is not wanted, or its cells are damaged.
   std::optional<lanes::Ground> drawn;
 };
@@ -28,10 +29,8 @@ struct Packed {
 /// What is done to a map on its way to that form.
 struct Packing {
   bool arranges_clouds = true;
-  /// A grid that is compressed goes as it is: made smaller, it would leave later.
-  bool leaves_grids = false;
-  /// A cloud that is not rounded is packed with the effort with which it is there first.
-  std::optional<pack::Hurry> hurry{};
+  /// Decides the effort for a grid, and for a cloud that is not rounded.
+  pack::Hurry hurry{};
 };
 
 /// A cloud goes by waiting.precision, or exact where that cannot be held. CPU-bound in the size of the map:

@@ -68,8 +68,8 @@ bool has_only_invalid_points(const icd::MapUpdate& map) {
 }
 
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form) {
-  if (const auto* const grid = std::get_if<icd::OccupancyGrid>(&map.msg)) {
-    map.data = pack_cells(*grid, std::move(map.data));
+  if (map.is_grid()) {
+    map.data = pack_cells(std::move(map.data), form.effort);
     return map;
   }
   if (map.data.compression != icd::Compression::None) return map;

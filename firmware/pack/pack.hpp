@@ -7,11 +7,11 @@
 
 namespace adit::pack {
 
-/// What is done to a cloud so that it becomes smaller.
+/// What is done to a cloud so that it becomes smaller; of a grid, the effort.
 struct CloudForm {
   bool is_arranged = true;  // its padding is dropped, and its points are put in another order
   double unit = 0;          // metres, to which coordinates are rounded where it is arranged; 0: they are not
-  Effort effort = Effort::Full;  // where they are not rounded
+  Effort effort = Effort::Full;  // if they are not rounded
 };
 /// Units that there are.
 inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
@@ -19,7 +19,7 @@ inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
 /// A map as small as it can be made without loss but what `form` allows, ready to be written: a cloud loses
 /// the points that are not finite (ICD 6.3.2 takes clouds to be dense) and takes `form`: it was rounded where
 /// its origin is another (rounding.hpp), and if it is not compressed yet it is gzipped
-/// where that is smaller; where it is not, points stay in their order. A grid is compressed again where that
+/// where that is smaller; where it is not, points stay in their order. A grid is compressed again if that
 /// is smaller (pack_cells.hpp). CPU-bound in the size of the map, and
 /// takes as much memory as that and half as much more for a cloud: meant for a worker.
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});

@@ -1,22 +1,13 @@
 #pragma once
 
-#include <cstddef>
-
 #include "icd/map_update.hpp"
+#include "pack/effort.hpp"
 
 namespace adit::pack {
 
-/// A grid's data in the smallest form that is found in the time that a slot of the link leaves: as it is
-/// kept, by GridGzipper, by libdeflate, or not compressed. `data` may be compressed; if that is damaged, it
-/// stays as it is.
-///
-/// Up to 16 MiB of cells are whole in memory meanwhile, larger grids are read piece by piece. Where a grid
-/// has no rows to speak of, or does not become small by them, a part of it shows whether libdeflate is
-/// better; if so, up to 40 MiB are.
-icd::MapData pack_cells(const icd::OccupancyGrid& grid, icd::MapData data);
-
-/// libdeflate's level for so many cells: the smallest one within about 1 s on one core of a small board, and
-/// within 1 MiB of its own; those from 10 on ask for 9 MiB at once.
-int level_for(std::size_t cells);
+/// A grid's cells in the smallest of these forms: as they are kept, by libdeflate at the level of `effort`,
+/// or not compressed. Data that is damaged or not compressed stays as it is, and so does all with
+/// Effort::None. Otherwise the cells are whole in memory meanwhile, and 1 MiB of libdeflate's.
+icd::MapData pack_cells(icd::MapData data, Effort effort);
 
 }  // namespace adit::pack

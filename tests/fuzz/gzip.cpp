@@ -1,4 +1,4 @@
-// A map's data under gzip; what packs it.
+// A map's data under gzip.
 #include "codec/gzip.hpp"
 
 #include <algorithm>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "codec/gzip_whole.hpp"
-#include "pack/grid_gzipper.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {
@@ -50,14 +49,6 @@ void try_gzip(Input text) {
   for (const auto strategy : {codec::GzipStrategy::Default, codec::GzipStrategy::Runs}) {
     const auto member = codec::gzip(icd::ChunkedBytes(bytes_of(text)), strategy);
     require(inflated(member) == std::string(text));
-  }
-  for (const std::size_t width : {std::size_t{1}, piece, text.size() / 7 + 1}) {
-    pack::GridGzipper gzipper(width);
-    in_pieces(text, piece, [&](Input each) {
-      gzipper.feed(bytes_of(each));
-      return true;
-    });
-    require(inflated(gzipper.finish()) == std::string(text));
   }
   const auto whole = bytes_of(text);
   for (const int level : {codec::kFastestLevel, 6, codec::kSmallestLevel}) {

@@ -1,4 +1,4 @@
-// With how much effort a cloud is packed, by what its link carries.
+// With how much effort a map is packed, by what its link carries and how fast the box is.
 #include "pack/effort.hpp"
 
 #include <gtest/gtest.h>
@@ -110,19 +110,57 @@ TEST(Effort, IsFoundOutOfTheCloudItself) {
   };
   icd::MapUpdate alike = update_of(padded, Bytes(64 * 50'000)), plain = make.cloud(icd::xyz(), 50'000, noise);
   const Hurry hurry{60 * kMegabyte, 1, kSlot};
-  EXPECT_EQ(effort_for(alike.data, hurry), Effort::Quick);
-  EXPECT_EQ(effort_for(plain.data, hurry), Effort::None);
+  EXPECT_EQ(effort_for(alike, hurry), Effort::Quick);
+  EXPECT_EQ(effort_for(plain, hurry), Effort::None);
+  EXPECT_EQ(effort_for(alike, {}), Effort::Full) << "it waits meanwhile";
 }
 
 TEST(Effort, IsNoneForNoPoints) {
-  EXPECT_NO_FATAL_FAILURE((void)effort_for(icd::MapData{}, {1, 1, 1}));
-  EXPECT_NO_FATAL_FAILURE((void)effort_for(update_of(icd::xyz(), Bytes(12)).data, {1, 1, 100}));
+  EXPECT_NO_FATAL_FAILURE((void)effort_for(update_of(icd::xyz(), {}), {1, 1, 1}));
+  EXPECT_NO_FATAL_FAILURE((void)effort_for(update_of(icd::xyz(), Bytes(12)), {1, 1, 100}));
 }
 
-TEST(Effort, TellsHowSlowABoxIs) {
-  EXPECT_DOUBLE_EQ(slowness(Effort::Full, 2'000'000, 0.12), 4);
-  EXPECT_DOUBLE_EQ(slowness(Effort::None, 2'000'000, 0.12), 1);
+struct GridRow {
+  const char* what;
+  double megacells, kept_megabytes;
+  Hurry hurry;
+  Effort expected;
+};
+
+void PrintTo(const GridRow& row, std::ostream* out) {
+  *out << row.what;
 }
+
+class EffortForAGrid : public testing::TestWithParam<GridRow> {};
+
+TEST_P(EffortForAGrid, IsTheGreatestThatFitsItsSlotOnThisBox) {
+  const auto size = [](double megabytes) { return static_cast<std::size_t>(megabytes * kMegabyte); };
+  const GridRow& row = GetParam();
+  icd::MapUpdate grid;
+  grid.msg = icd::OccupancyGrid{};
+  grid.data = {icd::ChunkedBytes(Bytes(size(row.kept_megabytes))), icd::Compression::Gzip,
+               size(row.megacells)};
+  EXPECT_EQ(effort_for(grid, row.hurry), row.expected);
+  const double takes = row.hurry.slowness * seconds_for(row.expected, grid);
+  EXPECT_LE(takes, std::min(0.5, row.hurry.longest / 2));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Grids, EffortForAGrid,
+    testing::Values(GridRow{"waits", 3, 0.03, {0, 1, kSlot}, Effort::Full},
+                    GridRow{"waits, noise", 6, 1.1, {0, 1, kSlot}, Effort::Quick},
+                    GridRow{"waits, noise, slow slots", 6, 1.1, {0, 1, 60}, Effort::Quick},
+                    GridRow{"waits, fast slots", 3, 0.03, {0, 1, 0.1}, Effort::Quick},
+                    GridRow{"waits, slow box", 3, 0.03, {0, 4, kSlot}, Effort::Full},
+                    GridRow{"waits, slow box, large", 5, 0.06, {0, 4, kSlot}, Effort::Quick},
+                    GridRow{"waits, large", 16.7, 0.1, {0, 1, kSlot}, Effort::Full},
+                    GridRow{"waits, very large", 16.8, 0.1, {0, 1, kSlot}, Effort::None},
+                    GridRow{"waits, very large, noise", 40, 4, {0, 1, kSlot}, Effort::Quick},
+                    GridRow{"waits, too large", 42, 4, {0, 0.5, kSlot}, Effort::None},
+                    GridRow{"waits, slow box, noise", 20, 4, {0, 4, kSlot}, Effort::None},
+                    GridRow{"100 Mbit/s", 3, 0.03, {11.5 * kMegabyte, 1, kSlot}, Effort::None},
+                    GridRow{"100 Mbit/s, noise", 6, 5.2, {11.5 * kMegabyte, 1, kSlot}, Effort::Quick},
+                    GridRow{"1 Mbit/s", 3, 0.03, {0.115 * kMegabyte, 1, kSlot}, Effort::Full}));
 
 }  // namespace
 }  // namespace adit::pack

@@ -135,22 +135,5 @@ TEST(Pack, LeavesACloudThatIsCompressedAsItIs) {
   EXPECT_EQ(pack(cloud), cloud);
 }
 
-TEST(Pack, GzipsAGridHoweverItIsKept) {
-  icd::OccupancyGrid info;
-  info.width = 80;
-  info.height = 60;
-  const Bytes cells(4800, icd::kUnknownCell);
-  const icd::MapUpdate grid{{}, info, {icd::ChunkedBytes{cells}, icd::Compression::None, cells.size()}};
-  icd::MapUpdate kept = grid;
-  kept.data.bytes = codec::gzip(kept.data.bytes, codec::GzipStrategy::Runs);
-  kept.data.compression = icd::Compression::Gzip;
-  for (const icd::MapUpdate& each : {grid, kept}) {
-    const auto packed = pack(each);
-    EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
-    EXPECT_LE(packed.data.bytes.size(), kept.data.bytes.size());
-    EXPECT_EQ(inflated(packed.data), cells);
-  }
-}
-
 }  // namespace
 }  // namespace adit::pack

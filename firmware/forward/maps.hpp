@@ -103,7 +103,7 @@ class Maps {
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
-  /// A map of a life before this one whose data is not what it should be.
+  /// A map whose data is not what it should be.
   struct Damaged {
     std::uint64_t number = 0;
     std::string why;

@@ -52,6 +52,10 @@ void Maps::pack(const Place& prepared) {
         if (!prepared->damaged.empty()) return;
         prepared->packed = packed(prepared->waiting, std::move(*leaving_out), packing);
         prepared->packing_took = loop.now() - begins;
+        if (!prepared->packed.body.empty() || prepared->packed.left_out.is_all) return;
+        std::vector<std::uint64_t> numbers;
+        lanes::add_own_numbers(numbers, prepared->waiting);
+        prepared->damaged = damaged_in(prepared->waiting, numbers);
       },
       [this, began, prepared, unread] {
         preparing_ = false;

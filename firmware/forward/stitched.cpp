@@ -5,9 +5,11 @@
 
 #include "codec/gzip.hpp"
 #include "codec/map_pieces.hpp"
+#include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "lanes/lattice.hpp"
 #include "pack/pack.hpp"
+#include "pack/pack_cells.hpp"
 #include "pack/stitch.hpp"
 
 namespace adit::forward {
@@ -61,7 +63,15 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
   const double unit = unit_of(waiting.precision);
   if (unit == 0) packed.effort = pack::effort_for(*whole, packing.hurry);  // rounding is for Full alone
   packed.expected = pack::seconds_for(packed.effort, *whole);
-  icd::MapUpdate map = pack::pack(std::move(*whole), {packing.arranges_clouds, unit, packed.effort});
+  icd::MapUpdate map = *std::move(whole);
+  if (map.is_grid()) {
+    auto cells = pack::pack_cells(map.data, packed.effort);
+    const bool is_doubtful = !cells || (waiting.ground && !packed.drawn);
+    if (is_doubtful && !codec::check_data(map)) return {};
+    if (cells) map.data = *std::move(cells);
+  } else {
+    map = pack::pack(std::move(map), {packing.arranges_clouds, unit, packed.effort});
+  }
   if (was_rounded(waiting.map, map)) packed.precision = waiting.precision;
   packed.body = codec::write_map_update(map);
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);

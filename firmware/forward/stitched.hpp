@@ -15,7 +15,7 @@ namespace adit::forward {
 
 /// A map in the form that goes upstream.
 struct Packed {
-  icd::ChunkedBytes body;  // empty: all of it is left out, or what it would be stitched of is damaged
+  icd::ChunkedBytes body;  // empty: all of it is left out, or its data or that of a part is damaged
   icd::MapData stitched;   // its cells, where they were in its parts alone
   LeftOut left_out;
   lanes::Precision precision = lanes::Precision::Exact;  // of a cloud: what it was rounded to

@@ -7,7 +7,6 @@
 #include <utility>
 #include <variant>
 
-#include "pack/pack_cells.hpp"
 #include "pack/pack_points.hpp"
 #include "pack/points.hpp"
 
@@ -68,10 +67,6 @@ bool has_only_invalid_points(const icd::MapUpdate& map) {
 }
 
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form) {
-  if (map.is_grid()) {
-    map.data = pack_cells(std::move(map.data), form.effort);
-    return map;
-  }
   if (map.data.compression != icd::Compression::None) return map;
   auto& cloud = std::get<icd::PointCloud2>(map.msg);
   map.data = without_invalid_points(cloud, std::move(map.data));

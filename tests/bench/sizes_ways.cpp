@@ -10,6 +10,7 @@
 #include "codec/gzip.hpp"
 #include "codec/gzip_whole.hpp"
 #include "pack/pack.hpp"
+#include "pack/pack_cells.hpp"
 
 namespace adit::bench {
 namespace {
@@ -68,7 +69,7 @@ std::vector<PackingWay> ways_for_grids() {
   ways.push_back({"zlib's runs, as kept", false, false,
                   [](const icd::MapUpdate& map) { return as_kept(map).data.bytes.size(); }});
   ways.push_back({"Adit, of what is kept", false, true, [](const icd::MapUpdate& map) {
-                    return pack::pack(map, {.effort = pack::effort_for(map, {})}).data.bytes.size();
+                    return pack::pack_cells(map.data, pack::effort_for(map, {}))->bytes.size();
                   }});
   return ways;
 }

@@ -1,4 +1,4 @@
-// Maps of a life before this one whose data is damaged: that is found out when their turn comes.
+// Maps whose data is damaged, mostly those that an earlier process kept: that is found when they are packed.
 #include <filesystem>
 #include <fstream>
 
@@ -58,6 +58,15 @@ TEST_F(DamagedMap, ThatIsSentAgainByHandIsToldAndRejectedMessagesToo) {
   damage(kOne);
   auto kept = spool_.read();
   maps_->send_again(std::move(kept[0].second), [](bool) { return true; });
+  EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
+  EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
+  EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);
+}
+
+TEST_F(DamagedMap, ThatWasAcceptedByThisProcessIsNotSent) {
+  icd::MapUpdate map = grid_of("first", 64);
+  map.data.compression = icd::Compression::Gzip;
+  take(map);
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return row().failed == 1; }));
   EXPECT_TRUE(row().last_sentence.starts_with("its stored copy is damaged: ")) << row().last_sentence;
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 0U);

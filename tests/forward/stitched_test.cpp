@@ -59,12 +59,15 @@ TEST(StitchedMap, ThatWasPackedOnceIsNotStitchedAnotherTime) {
   EXPECT_EQ(second.stitched.raw_size, 0);
 }
 
-TEST(StitchedMap, HasNoBodyWhereAPartIsDamaged) {
+TEST(StitchedMap, HasNoBodyIfItsDataOrThatOfAPartIsDamaged) {
   auto damaged = row_at(3, {4, 5, 6});
   auto bytes = damaged.data.bytes.to_vector();
   bytes[bytes.size() - 6] ^= 1;
   damaged.data.bytes = icd::ChunkedBytes{bytes};
   EXPECT_TRUE(packed(taken_of({row_at(0, {1, 2, 3}), damaged})).body.empty());
+  const auto alone = taken_of({damaged});
+  EXPECT_TRUE(packed(alone).body.empty()) << "packing shows it";
+  EXPECT_TRUE(packed(alone, {}, {.hurry = {.longest = 0}}).body.empty()) << "drawing shows it";
 }
 
 TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
@@ -84,16 +87,6 @@ TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
   EXPECT_THAT(cells_of(take({row_at(4, {5}), row_at(7, {6})}).stitched),
               ElementsAre(5, icd::kUnknownCell, icd::kUnknownCell, 6))
       << "never sent";
-}
-
-TEST(StitchedMap, IsNotDrawnWhereItIsDamaged) {
-  auto damaged = row_at(3, {4, 5, 6});
-  auto bytes = damaged.data.bytes.to_vector();
-  bytes[bytes.size() - 6] ^= 1;
-  damaged.data.bytes = icd::ChunkedBytes{bytes};
-  const Packed map = packed(taken_of({damaged}));
-  EXPECT_FALSE(map.body.empty()) << "it goes as it came";
-  EXPECT_FALSE(map.drawn);
 }
 
 /// A cloud of `points` from `begin` metres on, as it was taken to be sent.

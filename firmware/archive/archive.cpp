@@ -74,12 +74,6 @@ void Archive::begin(const Head& head, GoOn go_on) {
       done, done);
 }
 
-void Archive::forget_who_goes_on() {
-  go_on_ = nullptr;
-  opening_ = false;
-  ++begun_;
-}
-
 void Archive::opened(Opening& opening) {
   opening_ = false;
   if (!opening.told) opening.told.emplace(0);

@@ -57,10 +57,6 @@ class Archive final : public api::KeptRuns {
   /// calls goes on with it, and gives the picture as it is then. Nothing is written before that.
   using GoOn = std::function<const picture::Mosaic&(picture::Mosaic picture, std::vector<api::Track> tracks)>;
   void begin(const Head& head, GoOn go_on);
-  /// Whoever gave the last GoOn is about to end: it is not called any more.
-  void forget_who_goes_on();
-  /// It knows the present run, or is about to.
-  bool has_begun() const { return opening_ || !key_.empty(); }
 
   /// Once a second; writes what is due.
   void tick(const Seen& seen);

@@ -29,9 +29,6 @@ struct FineTiles::Job {
   std::optional<picture::FineBlock> tiles{};
 };
 
-FineTiles::FineTiles(loop::Workers& workers, const picture::Mosaic& mosaic, picture::ForwardedGrids grids)
-    : workers_(workers), mosaic_(mosaic), grids_(std::move(grids)) {}
-
 void FineTiles::clear() {
   grids_.clear();
   drawn_.clear();

@@ -24,15 +24,13 @@ class FineTiles final : public api::FinerMap {
   static constexpr std::size_t kMostAskers = 256;
 
   /// Both outlive this; `mosaic` is what the grids were drawn upon.
-  FineTiles(loop::Workers& workers, const picture::Mosaic& mosaic, picture::ForwardedGrids grids);
+  FineTiles(loop::Workers& workers, const picture::Mosaic& mosaic) : workers_(workers), mosaic_(mosaic) {}
 
   /// False where no finer tile can differ by it.
   bool take(std::shared_ptr<const picture::ForwardedGrid> grid, std::uint64_t number) {
     return grids_.take(std::move(grid), number);
   }
   void clear();
-  /// For the one that follows. Ends this.
-  picture::ForwardedGrids hand_over() { return std::move(grids_); }
 
   std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const override {
     return grids_.finer(layer, since);

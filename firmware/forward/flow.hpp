@@ -33,15 +33,6 @@
 
 namespace adit::forward {
 
-/// What a flow hands on to the next one, which replaces it.
-struct Legacy {
-  Pictured picture;
-  std::int64_t pictured_run = 0;  // whose maps it shows; 0: none yet
-  AsForwarded as_forwarded;
-  std::unique_ptr<archive::Archive> archive;                     // which goes on writing meanwhile
-  icd::Stamp map_stamp = 0, state_stamp = 0, markers_stamp = 0;  // the last ones sent
-};
-
 /// What the flow hears of the time of day, in seconds since 1970, now.
 struct KnownTimes {
   std::optional<double> command_post, robots;
@@ -69,7 +60,7 @@ class Flow final : public intake::Desk {
 
   /// `settings`: with the course in use. All references outlive this.
   Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
-       const Folders& folders, std::optional<Legacy> legacy, Told told);
+       const Folders& folders, Told told);
 
   /// Goes on where the life before ended, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
@@ -89,8 +80,6 @@ class Flow final : public intake::Desk {
   /// Takes nothing new, waits for the answers under way, keeps what waits, and then calls `over`.
   void end(std::function<void()> over);
   bool is_ending() const { return ending_.has_begun(); }
-  /// Once it is over, or could not start.
-  Legacy hand_over();
 
   std::shared_ptr<intake::MapArrival> map_arrives() override;
   icd::Checked<void> take(icd::StateUpdate update, const intake::Sender& sender) override;
@@ -134,8 +123,8 @@ class Flow final : public intake::Desk {
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   api::FinerMap& finer() { return picture_.finer(); }
   /// What is kept of runs.
-  archive::Archive& archive() { return *archive_; }
-  const archive::Archive& archive() const { return *archive_; }
+  archive::Archive& archive() { return archive_; }
+  const archive::Archive& archive() const { return archive_; }
   /// Record's, with what waits.
   std::vector<api::ActivityRow> activities() const;
   /// Why states and markers cannot be kept, or "".
@@ -146,7 +135,7 @@ class Flow final : public intake::Desk {
   /// For work that takes long; they end before anything that the flow holds.
   loop::Workers& workers() { return workers_; }
   /// All its threads, to be asked for signs of life.
-  std::vector<loop::Workers*> threads() { return {&workers_, &writer_, &archive_->thread()}; }
+  std::vector<loop::Workers*> threads() { return {&workers_, &writer_, &archive_.thread()}; }
 
  private:
   UriPace& pace_of(icd::Uri uri) {
@@ -154,7 +143,6 @@ class Flow final : public intake::Desk {
   }
   std::optional<api::Time> behind_since(const Traffic& traffic) const;
   void carry_on();
-  void hold_back();
   void restore(bool is_first);
   void restore_record();
   void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
@@ -175,7 +163,6 @@ class Flow final : public intake::Desk {
   const settings::Settings& settings_;
   Tokens tokens_;
   Told told_;
-  std::optional<Legacy> legacy_;  // of a flow of this process, which may have sent a moment ago
   std::mt19937_64 random_;
   spool::Spool spool_;     // before its writer, whose jobs use it to the end
   loop::Writer writer_;    // of the runtime folder, in memory: an answer to a map waits for it
@@ -191,11 +178,11 @@ class Flow final : public intake::Desk {
   AsForwarded as_forwarded_;
   Telemetry telemetry_;
   Meter meter_;
-  std::int64_t pictured_run_;  // Legacy's
-  double clock_shown_ = 0;     // by the last status of it
-  std::string standby_;        // why nothing is taken and sent; "": it is
-  bool has_started_ = false;   // until then the ledger has not said which run it is
-  std::unique_ptr<archive::Archive> archive_;
+  std::int64_t pictured_run_ = 0;  // whose maps the picture shows; 0: none yet
+  double clock_shown_ = 0;         // by the last status of it
+  std::string standby_;            // why nothing is taken and sent; "": it is
+  bool has_started_ = false;       // until then the ledger has not said which run it is
+  archive::Archive archive_;
   Ending ending_;
   std::function<void()> over_;
   loop::Source drained_;

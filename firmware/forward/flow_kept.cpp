@@ -13,12 +13,12 @@ namespace adit::forward {
 void Flow::keep_the_run() {
   const dispatch::Run& run = reports().run();
   picture_.hold();
-  archive_->begin({.run = run.number, .began = run.began, .post = run.post},
-                  [this](picture::Mosaic picture, std::vector<api::Track> tracks) -> const picture::Mosaic& {
-                    as_forwarded_.go_on_from(std::move(tracks));
-                    picture_.go_on_from(std::move(picture));
-                    return picture_.mosaic();
-                  });
+  archive_.begin({.run = run.number, .began = run.began, .post = run.post},
+                 [this](picture::Mosaic picture, std::vector<api::Track> tracks) -> const picture::Mosaic& {
+                   as_forwarded_.go_on_from(std::move(tracks));
+                   picture_.go_on_from(std::move(picture));
+                   return picture_.mosaic();
+                 });
 }
 
 archive::Seen Flow::seen() const {

@@ -30,12 +30,11 @@ std::uint64_t seed() {
 }  // namespace
 
 Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
-           const Folders& folders, std::optional<Legacy> legacy, Told told)
+           const Folders& folders, Told told)
     : loop_(loop),
       settings_(settings),
       tokens_(std::move(tokens)),
       told_(std::move(told)),
-      legacy_(std::move(legacy)),
       random_(seed()),
       spool_(folders.runtime + "/waiting", beside_maps(settings)),
       writer_(loop),
@@ -45,18 +44,14 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       rejected_(loop, writer_, folders.runtime + "/rejected"),
       record_([this] { changed(); }),
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.restart),
-      picture_(
-          loop, workers_, [this] { changed(); }, legacy_ ? std::move(legacy_->picture) : Pictured()),
+      picture_(loop, workers_, [this] { changed(); }),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
-      as_forwarded_(legacy_ ? std::move(legacy_->as_forwarded) : AsForwarded()),
       telemetry_(loop, workers_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
                  as_forwarded_, told_.restart),
-      pictured_run_(legacy_ ? legacy_->pictured_run : 0),
-      archive_(legacy_ && legacy_->archive ? std::move(legacy_->archive)
-                                           : std::make_unique<archive::Archive>(loop, folders.state)),
+      archive_(loop, folders.state),
       drained_(loop.timer([this] { drain(); })) {
-  archive_->limit(limits_of(settings));
+  archive_.limit(limits_of(settings));
 }
 
 std::expected<void, std::string> Flow::start() {
@@ -65,7 +60,6 @@ std::expected<void, std::string> Flow::start() {
   telemetry_.start();
   has_started_ = true;
   status_came();  // what the life before heard is none
-  if (!archive_->has_begun() && pictured_run_ == reports().run().number) keep_the_run();
   picture_the_run();
   return {};
 }
@@ -77,20 +71,7 @@ void Flow::stand_by(const std::string& why) {
   telemetry_.stand_by();
 }
 
-Legacy Flow::hand_over() {
-  if (has_started_) archive_->write_now(seen());
-  archive_->forget_who_goes_on();
-  return {.picture = picture_.hand_over(),
-          .pictured_run = pictured_run_,
-          .as_forwarded = std::move(as_forwarded_),
-          .archive = std::move(archive_),
-          .map_stamp = maps_.last_stamp(),
-          .state_stamp = telemetry_.last_state_stamp(),
-          .markers_stamp = telemetry_.last_markers_stamp()};
-}
-
-/// Takes up what the life before left, in this process or another: rates and stamps go on as if nothing had
-/// been.
+/// Takes up what the process before left: rates and stamps go on as if nothing had been.
 void Flow::carry_on() {
   journal::Carried carried = journal_.read();
   const bool is_first = !carried.clock();
@@ -99,22 +80,9 @@ void Flow::carry_on() {
   scoring_.go_by(clocks_);
   maps_.carry_on(carried, clocks_.ran_before());
   telemetry_.carry_on(carried);
-  if (legacy_) {
-    maps_.go_on_from(legacy_->map_stamp);
-    telemetry_.go_on_from(legacy_->state_stamp, legacy_->markers_stamp);
-    hold_back();  // after what was carried on: it is written down, and must not put an earlier time there
-  }
   restore(is_first);
   heard_before_ = carried.heard();
   restore_record();
-}
-
-/// When the flow before sent last may not have been written down, and the Command Post sees too much of
-/// neither.
-void Flow::hold_back() {
-  scoring_.hold_back();
-  maps_.hold_back();
-  telemetry_.hold_back();
 }
 
 /// Takes up the messages that have files of their own. If the journal tells nothing of the process before,
@@ -122,7 +90,11 @@ void Flow::hold_back() {
 void Flow::restore(bool is_first) {
   rejected_.restore();
   spool::Spool::Kept kept = spool_.read();
-  if (is_first && !kept.empty()) hold_back();
+  if (is_first && !kept.empty()) {
+    scoring_.hold_back();
+    maps_.hold_back();
+    telemetry_.hold_back();
+  }
   for (auto& [number, map] : kept) {
     if (is_first) map.header().stamp = loop_.stamp_now();
   }
@@ -142,7 +114,7 @@ void Flow::restore_record() {
 
 void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   tokens_ = std::move(tokens);
-  archive_->limit(limits_of(settings_));
+  archive_.limit(limits_of(settings_));
   spool_.leave_to_others(beside_maps(settings_));
   if (restarts.scoring)
     scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
@@ -163,7 +135,7 @@ void Flow::tick(loop::Writer& disk) {
   meter_.second(sent_bytes());
   scoring_.tick();
   clocks_.keep(disk);
-  archive_->tick(seen());
+  archive_.tick(seen());
 }
 
 KnownTimes Flow::known_times() const {
@@ -178,7 +150,7 @@ void Flow::wall_was_set(double seconds) {
   record_.move(seconds);
   as_forwarded_.move(seconds);
   picture_.move(seconds);
-  archive_->move(seconds);
+  archive_.move(seconds);
 }
 
 void Flow::end(std::function<void()> over) {
@@ -190,7 +162,10 @@ void Flow::end(std::function<void()> over) {
 }
 
 void Flow::drain() {
-  if (ending_.is_over(loop_.now())) return over_();
+  if (ending_.is_over(loop_.now())) {
+    over_();
+    return archive_.write_now(seen());
+  }
   drained_.call_at(loop_.now() + Ending::kStep);
   const bool scoring = scoring_.stop(), maps = maps_.stop(), telemetry = telemetry_.stop();
   const bool kept = maps_.all_kept() && rejected_.all_kept();

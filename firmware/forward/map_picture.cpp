@@ -26,14 +26,12 @@ struct MapPicture::Job {
   std::shared_ptr<const picture::ForwardedGrid> forwarded{};  // null: a cloud
 };
 
-MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed,
-                       Pictured pictured)
+MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed)
     : loop_(loop),
       workers_(workers),
       changed_(std::move(changed)),
       wake_(loop.timer([this] { pump(); })),
-      mosaic_(std::move(pictured.mosaic)),
-      fine_(workers, mosaic_, std::move(pictured.grids)) {}
+      fine_(workers, mosaic_) {}
 
 void MapPicture::forwarded(icd::MapUpdate map) {
   std::erase_if(waiting_, [&](const Waiting& older) {
@@ -74,14 +72,7 @@ void MapPicture::begin_run() {
 void MapPicture::move(double seconds) {
   mosaic_.move(seconds);
   for (Waiting& waiting : waiting_) waiting.stamp += seconds;
-  if (drawing_) drawing_->stamp += seconds;
-}
-
-Pictured MapPicture::hand_over() {
-  if (drawing_) mosaic_.missed(drawing_->layer, drawing_->stamp);
-  for (const Waiting& waiting : waiting_) mosaic_.missed(picture::layer_of(waiting.map), waiting.stamp);
-  waiting_.clear();
-  return {.mosaic = std::move(mosaic_), .grids = fine_.hand_over()};
+  if (drawing_) *drawing_ += seconds;
 }
 
 void MapPicture::pump() {
@@ -94,7 +85,7 @@ void MapPicture::pump() {
 }
 
 void MapPicture::draw(Waiting waiting) {
-  drawing_ = Drawn{picture::layer_of(waiting.map), waiting.stamp};
+  drawing_ = waiting.stamp;
   auto job = std::make_shared<Job>(Job{std::move(waiting), {}});
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
   workers_.submit(
@@ -112,7 +103,7 @@ void MapPicture::draw(Waiting waiting) {
 }
 
 void MapPicture::drawn(Job& job) {
-  const double stamp = std::exchange(drawing_, std::nullopt)->stamp;
+  const double stamp = *std::exchange(drawing_, std::nullopt);
   const picture::Layer layer = picture::layer_of(job.waiting.map);
   const auto before = mosaic_.version();
   if (job.drawing) {

@@ -14,12 +14,6 @@
 
 namespace adit::forward {
 
-/// What was drawn, and what finer tiles are drawn of.
-struct Pictured {
-  picture::Mosaic mosaic;
-  picture::ForwardedGrids grids;
-};
-
 /// The picture of the maps as the Command Post took them. They are drawn on a worker, one after the other:
 /// each can wait, and gives way to what is on its way to the Command Post (loop::JobQueue).
 class MapPicture {
@@ -30,9 +24,8 @@ class MapPicture {
   /// How long what was drawn before is waited for.
   static constexpr std::chrono::seconds kMostHeld{10};
 
-  /// `changed` is called after each change of the picture. `pictured`: what an earlier one has.
-  MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed,
-             Pictured pictured = Pictured());
+  /// `changed` is called after each change of the picture.
+  MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed);
 
   /// The Command Post took this map. It need not be drawn if a later one covers it.
   void forwarded(icd::MapUpdate map);
@@ -49,17 +42,11 @@ class MapPicture {
   const picture::Mosaic& mosaic() const { return mosaic_; }
   api::FinerMap& finer() { return fine_; }
   std::size_t finer_bytes() const { return fine_.bytes(); }
-  /// The picture, for the MapPicture that follows this one, without the maps that still wait. Ends this.
-  Pictured hand_over();
 
  private:
   struct Waiting {
     icd::MapUpdate map;
     double stamp = 0;  // when it was forwarded, by the time of day
-  };
-  struct Drawn {
-    picture::Layer layer;
-    double stamp = 0;
   };
   struct Job;
 
@@ -75,7 +62,7 @@ class MapPicture {
   FineTiles fine_;
   std::deque<Waiting> waiting_;  // oldest first
   std::size_t waiting_bytes_ = 0;
-  std::optional<Drawn> drawing_;  // that is under way
+  std::optional<double> drawing_;  // when the map that is being drawn was forwarded
   loop::Instant held_until_{};
 };
 

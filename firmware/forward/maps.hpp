@@ -53,9 +53,6 @@ class Maps {
 
   /// `ran_before`: this box may have sent maps before.
   void carry_on(const journal::Carried& carried, bool ran_before);
-  /// What the flow before has sent, where the journal may not know.
-  void go_on_from(icd::Stamp last) { stamps_.carry_on(last); }
-  icd::Stamp last_stamp() const { return stamps_.last(); }
   /// As if something had just been sent, by whoever sent before.
   void hold_back() { pace_.sent(loop_.now()); }
   /// The settings are others, by which it goes from now on.

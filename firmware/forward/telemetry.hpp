@@ -34,13 +34,6 @@ class Telemetry {
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);
-  /// What the flow before has sent, where the journal may not know.
-  void go_on_from(icd::Stamp last_state, icd::Stamp last_markers) {
-    state_stamps_.carry_on(last_state);
-    marker_stamps_.carry_on(last_markers);
-  }
-  icd::Stamp last_state_stamp() const { return state_stamps_.last(); }
-  icd::Stamp last_markers_stamp() const { return marker_stamps_.last(); }
   /// As if something had just been sent, by whoever sent before.
   void hold_back() {
     state_pace_.sent(loop_.now());

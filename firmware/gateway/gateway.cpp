@@ -28,7 +28,6 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       settings_(settings::in_use(parts_.loaded.settings)),
       disk_writer_(loop),
       flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.state_folder},
-            std::exchange(parts_.legacy, std::nullopt),
             {.changed = [this] { api_.changed(); },
              .restart = [this] { make_way(); },
              .posted = [this](const std::string& name) { note_robot(name); }}),

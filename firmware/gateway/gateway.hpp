@@ -62,13 +62,12 @@ struct Parts {
   std::string panel_socket = {};              // of adit-panel, which has both; or ""
   std::string runtime_folder;
   std::string state_folder;
-  std::string update_folder;              // where adit-update tells its status
-  std::string network_folder;             // where adit-network tells its status
-  std::string watch_folder;               // where adit-network --watch tells who else has our addresses
-  std::string clock_folder;               // where adit-clock tells its status
-  std::string spare_folder;               // where adit-spare tells its status
-  std::string notices_folder;             // where root's programs leave notices, at a start or later
-  std::optional<forward::Legacy> legacy;  // of the gateway before, where there was one
+  std::string update_folder;   // where adit-update tells its status
+  std::string network_folder;  // where adit-network tells its status
+  std::string watch_folder;    // where adit-network --watch tells who else has our addresses
+  std::string clock_folder;    // where adit-clock tells its status
+  std::string spare_folder;    // where adit-spare tells its status
+  std::string notices_folder;  // where root's programs leave notices, at a start or later
 };
 
 /// The whole of Adit at work: the flow, the team's listeners, the page and the box, wired together.
@@ -81,10 +80,8 @@ class Gateway final : public api::Source, public api::Operator {
   std::expected<void, std::string> start();
   /// Takes nothing new, waits for the answers under way, keeps what waits, and stops the loop.
   void stop();
-  /// Whether it stopped so that another, of what the store holds by now, takes its place.
+  /// Whether it stopped for the process to start again, with what the disk holds by now.
   bool makes_way() const { return makes_way_; }
-  /// Once it has stopped, or could not start.
-  forward::Legacy hand_over() { return flow_.hand_over(); }
   /// All its threads, to be asked for signs of life.
   std::vector<loop::Workers*> threads();
   /// What systemd shows: one line.

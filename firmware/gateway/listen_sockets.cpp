@@ -114,6 +114,16 @@ void ListenSockets::settle() {
   }
 }
 
+/// systemd has a copy of each of them. The next start opens the others.
+std::vector<host::Inherited> ListenSockets::hand_over() {
+  std::vector<host::Inherited> given;
+  for (Held& held : held_) {
+    if (held.door || held.stored) given.push_back({std::move(held.name), std::move(held.socket)});
+  }
+  held_.clear();
+  return given;
+}
+
 /// Two entries may ask for any free port of one address: each takes one.
 bool ListenSockets::is_held(const intake::Listen& listen) {
   const std::string name = name_of(listen);

@@ -12,8 +12,8 @@
 
 namespace adit::gateway {
 
-/// The sockets at which the team is served. They outlive the gateways, and by systemd the process: whoever
-/// connects while another takes over waits in the kernel's queue, and is served by that one.
+/// The sockets at which the team is served. They outlive the process, by exec or by systemd: a client that
+/// connects meanwhile waits in the kernel's queue, and is served by the next one.
 ///
 /// The box's own doors are those of systemd's socket unit: they are always served, whatever the settings say,
 /// so that the page is reached. So an address that the box does not have yet (a cable that is out, DHCP)
@@ -44,6 +44,9 @@ class ListenSockets {
     BySystemd,  // by systemd, for they are the box's doors: the process has to restart
   };
   Reach reach() const;
+
+  /// Those that the next start of the process gets from this one, as systemd would give them. Ends this.
+  std::vector<host::Inherited> hand_over();
 
   /// What open() was told last is what counts: the others are closed for good, these are kept by systemd.
   void settle();

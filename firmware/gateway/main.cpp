@@ -1,6 +1,7 @@
 /// aditd.
 
 #include <malloc.h>
+#include <sys/prctl.h>
 
 #include "box/version.hpp"
 #include "command_line/answer.hpp"
@@ -15,6 +16,7 @@ int main(int argc, char** argv) {
   const auto options = adit::command_line::read(command_line_of, {argv + 1, argv + argc});
   if (const auto exit = adit::command_line::answer(command_line_of, adit::box::kVersion, options))
     return *exit;
+  ::prctl(PR_SET_NAME, "aditd");  // after an exec of /proc/self/exe it is "exe"
   // The chunks of a map are mappings of their own: what is freed of it goes back to the machine at once.
   ::mallopt(M_MMAP_THRESHOLD, int{adit::icd::ChunkedBytes::kChunk});
   adit::loop::tell_of_caught([](const char* where, const char* what) {
@@ -22,6 +24,6 @@ int main(int argc, char** argv) {
                     {{"what", where}, {"why", what}});
   });
   int exit = 1;
-  adit::loop::guarded("the service", [&] { exit = adit::gateway::Service(*options).run(); });
+  adit::loop::guarded("the service", [&] { exit = adit::gateway::Service(*options, argv).run(); });
   return exit;
 }

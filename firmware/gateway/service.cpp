@@ -3,17 +3,31 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "box/open_panel.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "loop/watchdog.hpp"
 #include "panel/remote.hpp"
 #include "settings/saved.hpp"
 
 namespace adit::gateway {
 namespace {
+
+/// What a process leaves to the start that follows it in exec: why the last change was reverted, and how many
+/// seconds a ledger that cannot be written rests.
+constexpr const char *kTrouble = "ADIT_TROUBLE", *kLedgerRest = "ADIT_LEDGER_REST";
+
+/// A variable of the environment, or ""; from now on there is none.
+std::string take_variable(const char* variable) {
+  const char* const value = std::getenv(variable);
+  std::string text = value != nullptr ? value : "";
+  unsetenv(variable);
+  return text;
+}
 
 /// Where what need not outlive the box is kept.
 std::string runtime_folder(const Options& options) {
@@ -87,8 +101,7 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .watch_folder = options.watch,
                .clock_folder = options.clock,
                .spare_folder = options.spare,
-               .notices_folder = options.notices,
-               .legacy = std::nullopt};
+               .notices_folder = options.notices};
 }
 
 int fail(const std::string& why) {
@@ -98,16 +111,22 @@ int fail(const std::string& why) {
 
 }  // namespace
 
-Service::Service(const Options& options)
+Service::Service(const Options& options, char* const* arguments)
     : options_(options),
+      arguments_(arguments),
       store_(options.settings, options.secrets, options.state),
       reset_(store_, options.state, runtime_folder(options)),
-      taking_over_(store_, options.state, runtime_folder(options)) {}
+      taking_over_(store_, options.state, runtime_folder(options)),
+      trouble_(take_variable(kTrouble)),
+      ledger_rest_(std::strtol(take_variable(kLedgerRest).c_str(), nullptr, 10)) {
+  if (ledger_rest_ < LedgerReturn::kRest) ledger_rest_ = LedgerReturn::kRest;
+}
 
 int Service::run() {
   const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
   const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
-  announce();
+  // First: the lights show a start that fails.
+  if (!options_.panel.empty()) announced_ = panel::announce(options_.panel);
   if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
   if (auto made = make_folder(options_.state); !made) {
     host::log(host::Level::Error, "cannot create the state directory", {{"why", made.error()}});
@@ -116,32 +135,27 @@ int Service::run() {
        {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
     host::remove_unwritten(folder);
   }
-  while (true) {
-    const auto again = run_one();
-    if (again && !*again) break;
-    trouble_.clear();
-    if (again) continue;
+  const auto again = run_gateway();
+  if (!again) {
     if (!store_.revert()) return fail(again.error());
-    trouble_ = "the last change was reverted: " + again.error();
     host::log(host::Level::Error, "the last change of the settings was reverted", {{"why", again.error()}});
+    start_again("the last change was reverted: " + again.error());
   }
   host::log(host::Level::Notice, "stopped");
+  if (*again) start_again("");
   return 0;
 }
 
-/// First of all: a start that comes to nothing shows on the lights.
-void Service::announce() {
-  if (!announced_ && !options_.panel.empty()) announced_ = panel::announce(options_.panel);
+void Service::start_again(const std::string& trouble) {
+  host::start_again(sockets_.hand_over(), arguments_,
+                    {{kTrouble, trouble}, {kLedgerRest, std::to_string(ledger_rest_.count())}});
 }
 
-/// Whether another is to follow; an error: it could not start.
-std::expected<bool, std::string> Service::run_one() {
-  announce();
+/// Whether the process is to start again; an error: the gateway could not start.
+std::expected<bool, std::string> Service::run_gateway() {
   if (const auto done = reset_.finish(); !done) {
     trouble_ = "the factory reset is incomplete: " + done.error();
     host::log(host::Level::Error, trouble_);
-  } else if (*done) {
-    legacy_.reset();  // the team's before: its map, its robots
   }
   const std::string take_over_trouble = finish_taking_over();
   auto parts = gather(options_, store_, reset_, taking_over_, sockets_, std::exchange(announced_, {}));
@@ -152,22 +166,16 @@ std::expected<bool, std::string> Service::run_one() {
   const bool waits_for_ledger = !parts->ledger.refusal().empty();
   parts->ledger_rest =
       std::exchange(ledger_rest_, waits_for_ledger ? longer(ledger_rest_) : LedgerReturn::kRest);
-  parts->legacy = std::exchange(legacy_, std::nullopt);
   Gateway gateway(loop_, std::move(*parts));
-  const auto ran = run(gateway, settings);
-  legacy_ = gateway.hand_over();
-  return ran;
+  return run(gateway, settings);
 }
 
 /// Why it is not finished, or "".
 std::string Service::finish_taking_over() {
   const auto done = taking_over_.finish(loop_);
-  if (!done) {
-    host::log(host::Level::Error, "the take-over is incomplete", {{"why", done.error()}});
-    return done.error();
-  }
-  if (*done) legacy_.reset();  // of this box, which goes on as another
-  return "";
+  if (done) return "";
+  host::log(host::Level::Error, "the take-over is incomplete", {{"why", done.error()}});
+  return done.error();
 }
 
 std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::Settings& settings) {
@@ -175,19 +183,15 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
   store_.settle(settings);
   sockets_.settle();
   host::notify_ready(gateway.status_line());
-  begin_watchdog();
-  if (watchdog_) watchdog_->ask_also(gateway.threads());
+  std::optional<loop::Watchdog> watchdog;
+  if (const auto within = host::watchdog_within()) {
+    watchdog.emplace(loop_, *within, &host::notify_alive);
+    watchdog->ask_also(gateway.threads());
+  }
   running_ = &gateway;
   loop_.run();
-  if (watchdog_) watchdog_->ask_also({});
+  if (gateway.makes_way()) host::notify_starting_again();
   return gateway.makes_way();
-}
-
-void Service::begin_watchdog() {
-  if (watchdog_) return;
-  if (const auto within = host::watchdog_within()) {
-    watchdog_.emplace(loop_, *within, &host::notify_alive);
-  }
 }
 
 std::expected<void, std::string> Service::take_over_sockets() {

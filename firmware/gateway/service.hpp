@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <expected>
-#include <optional>
 #include <string>
 
 #include "admin/factory_reset.hpp"
@@ -14,40 +13,37 @@
 #include "gateway/options.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
-#include "loop/watchdog.hpp"
 
 namespace adit::gateway {
 
-/// The life of aditd. Gateways, one after the other on one loop: each runs until it is stopped, or makes way
-/// for another: after a factory reset, or where the ledger can be written to again.
+/// The life of aditd: a gateway that runs until it is stopped, or until the process starts again by exec,
+/// after a factory reset or if the ledger can be written to again. Each start reads the disk.
 class Service {
  public:
-  /// `options` outlive this.
-  explicit Service(const Options& options);
+  /// `options` and `arguments`, main()'s, outlive this.
+  Service(const Options& options, char* const* arguments);
 
-  /// Until SIGTERM or SIGINT: 0; 1: it could not start, and has said why.
+  /// Until SIGTERM or SIGINT: 0; 1: it could not start, and has said why. Else it ends in exec.
   int run();
 
  private:
-  void announce();
-  std::expected<bool, std::string> run_one();
+  std::expected<bool, std::string> run_gateway();
   std::expected<bool, std::string> run(Gateway& gateway, const settings::Settings& settings);
-  void begin_watchdog();
   std::expected<void, std::string> take_over_sockets();
   std::string finish_taking_over();
+  [[noreturn]] void start_again(const std::string& trouble);
 
   const Options& options_;
+  char* const* const arguments_;
   admin::Store store_;
   admin::FactoryReset reset_;
   admin::TakingOver taking_over_;
   ListenSockets sockets_;
   loop::Loop loop_;
-  loop::FileDescriptor announced_;          // to adit-panel, until its lights are opened
-  std::optional<loop::Watchdog> watchdog_;  // where systemd wants one
-  Gateway* running_ = nullptr;              // signals come while the loop runs, and so does it
-  std::string trouble_;                     // what came of the last change
-  std::optional<forward::Legacy> legacy_;
-  std::chrono::seconds ledger_rest_ = LedgerReturn::kRest;
+  loop::FileDescriptor announced_;    // to adit-panel, until its lights are opened
+  Gateway* running_ = nullptr;        // signals come while the loop runs, and so does it
+  std::string trouble_;               // what came of the last change
+  std::chrono::seconds ledger_rest_;  // if the ledger cannot be written; then that of the next start
 };
 
 }  // namespace adit::gateway

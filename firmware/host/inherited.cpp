@@ -1,7 +1,11 @@
 #include "host/inherited.hpp"
 
+#include <fcntl.h>
 #include <systemd/sd-daemon.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <memory>
@@ -29,6 +33,42 @@ void store_descriptor(const std::string& name, int descriptor) {
 
 void forget_descriptor(const std::string& name) {
   sd_notify(0, ("FDSTOREREMOVE=1\nFDNAME=" + name).c_str());
+}
+
+namespace {
+
+/// On stderr, because the log's own descriptor may be gone.
+void must(int result, const char* doing) {
+  if (result >= 0) return;
+  std::fprintf(stderr, "cannot start again: %s: %s\n", doing, std::strerror(errno));
+  _exit(1);
+}
+
+}  // namespace
+
+void start_again(std::vector<Inherited> sockets, char* const* arguments,
+                 std::map<std::string, std::string> variables) {
+  const int count = static_cast<int>(sockets.size());
+  std::string names;
+  must(close_range(SD_LISTEN_FDS_START, ~0U, CLOSE_RANGE_CLOEXEC), "closing descriptors");
+  // First above all places: a place may be that of another socket.
+  for (Inherited& each : sockets) {
+    each.descriptor =
+        loop::FileDescriptor(fcntl(each.descriptor.get(), F_DUPFD_CLOEXEC, SD_LISTEN_FDS_START + count));
+    must(each.descriptor.get(), "copying a socket");
+    names += (names.empty() ? "" : ":") + each.name;
+  }
+  for (int i = 0; i < count; ++i)
+    must(dup2(sockets[static_cast<std::size_t>(i)].descriptor.get(), SD_LISTEN_FDS_START + i),
+         "passing a socket");
+  if (count > 0) {  // 0 would be an error there
+    variables["LISTEN_PID"] = std::to_string(getpid());
+    variables["LISTEN_FDS"] = std::to_string(count);
+    variables["LISTEN_FDNAMES"] = names;
+  }
+  for (const auto& [name, value] : variables) setenv(name.c_str(), value.c_str(), 1);
+  must(execv("/proc/self/exe", arguments), "exec");
+  std::abort();
 }
 
 }  // namespace adit::host

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <expected>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -23,5 +24,11 @@ std::expected<std::vector<Inherited>, std::string> inherited();
 void store_descriptor(const std::string& name, int descriptor);
 /// All that were stored by that name.
 void forget_descriptor(const std::string& name);
+
+/// Ends the process in exec of its own program; the PID stays. The new start gets `sockets` as inherited(),
+/// no other descriptor but 0 to 2, and the environment with `variables`. Blocked signals stay pending. Other
+/// threads end. If exec fails, the process exits with status 1. `arguments`: main()'s.
+[[noreturn]] void start_again(std::vector<Inherited> sockets, char* const* arguments,
+                              std::map<std::string, std::string> variables);
 
 }  // namespace adit::host

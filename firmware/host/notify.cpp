@@ -12,10 +12,16 @@ std::string assignment(const std::string& status) {
   return "STATUS=" + escaped(without_secrets(status));
 }
 
+/// From now on systemd waits so long for each sign of life.
+void notify_watchdog(std::chrono::microseconds within) {
+  sd_notify(0, ("WATCHDOG_USEC=" + std::to_string(within.count())).c_str());
+}
+
 }  // namespace
 
 void notify_ready(const std::string& status) {
   sd_notify(0, ("READY=1\n" + assignment(status)).c_str());
+  if (const auto within = watchdog_within()) notify_watchdog(*within);
 }
 
 void notify_status(const std::string& status) {
@@ -24,6 +30,10 @@ void notify_status(const std::string& status) {
 
 void notify_stopping() {
   sd_notify(0, "STOPPING=1");
+}
+
+void notify_starting_again() {
+  if (watchdog_within()) notify_watchdog(kLongestStart);
 }
 
 void notify_alive() {

@@ -20,7 +20,11 @@ namespace adit::host {
 void notify_ready(const std::string& status);
 void notify_status(const std::string& status);
 void notify_stopping();
-void notify_alive();  // WATCHDOG=1
+/// The process is about to start again (inherited.hpp). Until notify_ready() systemd gives it as long as any
+/// start.
+void notify_starting_again();
+void notify_alive();                                      // WATCHDOG=1
+inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=
 
 /// How long systemd waits for a sign of life (WatchdogSec=) before it kills the service; nothing where it
 /// does not wait for any.

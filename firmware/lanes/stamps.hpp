@@ -108,8 +108,6 @@ class StampOrder {
  public:
   /// `stamp`, or the last one given out if that is later.
   icd::Stamp next(icd::Stamp stamp);
-  /// The last one given out; 0: none.
-  icd::Stamp last() const { return last_; }
   /// `last` was the last of an earlier life.
   void carry_on(icd::Stamp last) { last_ = std::max(last_, last); }
 

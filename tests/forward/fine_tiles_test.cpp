@@ -31,14 +31,10 @@ class FineTilesTest : public testing::Test {
  protected:
   using Answer = std::optional<icd::Checked<picture::Tile>>;
 
-  FineTilesTest() { begin(Pictured()); }
-  void begin(Pictured pictured) {
-    picture = std::make_unique<MapPicture>(loop, workers, [this] { ++changes; }, std::move(pictured));
-  }
   std::shared_ptr<Answer> asked(const std::string& robot, const TileAt& at) {
     auto answer = std::make_shared<Answer>();
-    picture->finer().tile({robot, picture::Kind::Grid}, at,
-                          [answer](auto tile) { *answer = std::move(tile); });
+    picture.finer().tile({robot, picture::Kind::Grid}, at,
+                         [answer](auto tile) { *answer = std::move(tile); });
     return answer;
   }
   /// Null where there is none.
@@ -57,18 +53,18 @@ class FineTilesTest : public testing::Test {
     return pixels[picture::index_of(0, 0)];
   }
   std::optional<picture::Finer> finer(const std::string& robot, std::uint64_t since = 0) {
-    return picture->finer().finer({robot, picture::Kind::Grid}, since);
+    return picture.finer().finer({robot, picture::Kind::Grid}, since);
   }
   void forward(const icd::MapUpdate& map) {
     const int before = changes;
-    picture->forwarded(map);
+    picture.forwarded(map);
     ASSERT_TRUE(loop::turn_until(loop, [&] { return changes > before; }));
   }
 
   loop::Loop loop;
   loop::Workers workers{loop, 1};
   int changes = 0;
-  std::unique_ptr<MapPicture> picture;
+  MapPicture picture{loop, workers, [this] { ++changes; }};
 };
 
 TEST_F(FineTilesTest, AreDrawnOfWhatWasForwardedAndOfTheLatest) {
@@ -93,12 +89,12 @@ TEST_F(FineTilesTest, AChangeThatOnlyTheyShowIsToldOf) {
   std::swap(cells[0], cells[1]);
   other.data.bytes = icd::ChunkedBytes{cells};
   forward(one);
-  const auto before = picture->mosaic().version();
+  const auto before = picture.mosaic().version();
   EXPECT_FALSE(finer("r1", before)->area);
   forward(other);
-  EXPECT_GT(picture->mosaic().version(), before);
+  EXPECT_GT(picture.mosaic().version(), before);
   EXPECT_EQ(*finer("r1", before)->area, (picture::Area{0, 0, 1, 1}));
-  EXPECT_FALSE(finer("r1", picture->mosaic().version())->area) << "who has asked since knows it";
+  EXPECT_FALSE(finer("r1", picture.mosaic().version())->area) << "who has asked since knows it";
 }
 
 TEST_F(FineTilesTest, ThoseOfABlockAreDrawnOnceUntilAGridComesThere) {
@@ -125,15 +121,9 @@ TEST_F(FineTilesTest, WhoAsksAmidADrawingGetsWhatHasComeSince) {
 TEST_F(FineTilesTest, ANewRunHasNone) {
   forward(grid("r1", 0, 400, 0));
   EXPECT_EQ(index("r1", {-1, 0, 0}), 1);
-  picture->begin_run();
+  picture.begin_run();
   EXPECT_FALSE(finer("r1"));
   EXPECT_EQ(tile("r1", {-1, 0, 0}), nullptr);
-}
-
-TEST_F(FineTilesTest, AreThereForTheNextFlow) {
-  forward(grid("r1", 0, 400, 0));
-  begin(picture->hand_over());
-  EXPECT_EQ(index("r1", {-1, 0, 0}), 1);
 }
 
 TEST_F(FineTilesTest, ArePassedByAMapOnItsWay) {
@@ -154,7 +144,7 @@ TEST_F(FineTilesTest, OfManyRobotsTakeNoMoreThanTheirBudget) {
   for (int robot = 0; robot < 20; ++robot) {
     for (int part = 0; part < 3; ++part) {
       ASSERT_EQ(index("r" + std::to_string(robot), {-1, part * 5, 0}), 1) << robot << ", " << part;
-      ASSERT_LE(picture->finer_bytes(), FineTiles::kMostDrawn + picture::ForwardedGrids::kBudget);
+      ASSERT_LE(picture.finer_bytes(), FineTiles::kMostDrawn + picture::ForwardedGrids::kBudget);
     }
   }
 }

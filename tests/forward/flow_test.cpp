@@ -2,13 +2,11 @@
 
 #include <gmock/gmock.h>
 
-#include <bit>
-#include <memory>
+#include <atomic>
 #include <mutex>
 
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
-#include "host/service.hpp"
 #include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/bytes_read.hpp"
@@ -31,7 +29,7 @@ class FlowTest : public testing::Test {
     flow_.reset();
     flow_.emplace(loop_, ledger_, settings_,
                   Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
-                  Flow::Folders{folder_.path(), folder_.path()}, std::nullopt,
+                  Flow::Folders{folder_.path(), folder_.path()},
                   Flow::Told{.changed = [] {},
                              .restart = [this] { restart_ = true; },
                              .posted = [this](const std::string& name) { posted_.push_back(name); }});
@@ -173,113 +171,52 @@ TEST_F(FlowTest, EndsAndSendsNothingRejectedMessagesFromThenOn) {
   EXPECT_FALSE(restart_);
 }
 
-/// The last state that the Command Post was sent, and when.
-class Seen {
- public:
-  void saw(const std::string& request) {
-    const std::scoped_lock lock(mutex_);
-    last_ = request;
-    ++states_;
-    at_ = std::chrono::steady_clock::now();
+/// States go to a Command Post that accepts them.
+class FlowThatSends : public testing::Test {
+ protected:
+  FlowThatSends() { settings_.command_post.mapping = {post_.endpoint().address, post_.endpoint().port}; }
+  void sends(Flow& flow, const char* sender, double stamp, const char* robot) {
+    const icd::StateUpdate update{.header = {stamp}, .poses = {at(robot, 0)}};
+    const int before = states_;
+    ASSERT_TRUE(flow.take(update, {.address = sender}));
+    ASSERT_TRUE(loop::turn_until(loop_, [&] { return states_ > before; }));
   }
-  int states() const { return of(states_); }
-  std::string last() const { return of(last_); }
-  loop::Instant at() const { return of(at_); }
-  /// In CBOR: the key, a byte that says that a double follows, and its bytes, the highest first.
-  double stamp() const {
-    constexpr std::string_view kKey = "stamp\xfb";
-    const std::string request = of(last_);
-    const std::size_t key = request.find(kKey);
-    std::uint64_t bits = 0;
-    for (std::size_t i = 0; key != std::string::npos && i < sizeof bits; ++i) {
-      bits = bits << 8 | static_cast<std::uint8_t>(request.at(key + kKey.size() + i));
-    }
-    return std::bit_cast<double>(bits);
+  std::string last() const {
+    const std::scoped_lock lock(mutex_);
+    return last_;
   }
 
- private:
-  template <class What>
-  What of(const What& what) const {
-    const std::scoped_lock lock(mutex_);
-    return what;
-  }
   mutable std::mutex mutex_;
   std::string last_;
-  int states_ = 0;
-  loop::Instant at_{};
-};
-
-class FlowAfterAnother : public testing::Test {
- protected:
-  FlowAfterAnother() { settings_.command_post.mapping = {post_.endpoint().address, post_.endpoint().port}; }
-  std::unique_ptr<Flow> flow(const host::Folder& folder, std::optional<Legacy> legacy) {
-    auto flow = std::make_unique<Flow>(
-        loop_, ledger_, settings_,
-        Tokens{.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
-        Flow::Folders{folder.path(), folder.path()}, std::move(legacy),
-        Flow::Told{.changed = [] {}, .restart = [] {}, .posted = [](const std::string&) {}});
-    EXPECT_TRUE(flow->start());
-    return flow;
-  }
-  void sends(Flow& flow, const char* sender, double stamp, const char* robot = "r2") {
-    const icd::StateUpdate update{.header = {stamp}, .poses = {at(robot, 0)}};
-    const int before = seen_.states();
-    ASSERT_TRUE(flow.take(update, {.address = sender}));
-    ASSERT_TRUE(loop::turn_until(loop_, [&] { return seen_.states() > before; }));
-  }
-
-  Seen seen_;
+  std::atomic<int> states_ = 0;
   uplink::ListeningPeer post_{std::vector<uplink::Peer::Script>(1, [this](uplink::Wire& wire) {
     for (auto request = wire.read_request(); !request.empty(); request = wire.read_request()) {
-      seen_.saw(request);
+      {
+        const std::scoped_lock lock(mutex_);
+        last_ = request;
+      }
+      ++states_;
       if (!wire.write(uplink::answer("200 OK", "null"))) return;
     }
   })};
-  host::Folder first_, second_, ledger_folder_;
+  host::Folder folder_;
   loop::Loop loop_;
   settings::Settings settings_;
-  ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(ledger_folder_.path()));
+  ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
 };
 
-/// A full runtime folder takes no record: what is in memory alone goes from one flow to the next.
-TEST_F(FlowAfterAnother, SendsNoEarlierStampAndNoSoonerThoughNothingWasWrittenDown) {
-  auto before = flow(first_, std::nullopt);
-  sends(*before, "10.0.0.5", 50);
-  sends(*before, "10.0.0.5", 54);  // its clock runs ahead
-  const double last = seen_.stamp();
-  EXPECT_GT(last, loop_.stamp_now() + 1);
-  auto legacy = before->hand_over();
-  before.reset();
-  const loop::Instant began = loop_.now();
-  const auto after = flow(second_, std::move(legacy));
-  sends(*after, "10.0.0.6", 7);
-  EXPECT_GE(seen_.stamp(), last);
-  EXPECT_GE(seen_.at() - began, std::chrono::milliseconds{990});
-}
-
-TEST_F(FlowAfterAnother, RepeatsThePosesOfTheRunAndOfNoRunBefore) {
-  const auto flow = this->flow(first_, std::nullopt);
-  sends(*flow, "10.0.0.5", 50, "was_here");
-  sends(*flow, "10.0.0.6", 50, "goes_on");
-  EXPECT_THAT(seen_.last(), testing::HasSubstr("was_here"));
-  flow->begin_run();
-  sends(*flow, "10.0.0.6", 52, "goes_on");
-  EXPECT_THAT(seen_.last(), testing::Not(testing::HasSubstr("was_here")));
-}
-
-/// As it may be asked to stop before it sends anything itself.
-TEST_F(FlowAfterAnother, LeavesThePauseThatACommandPostAskedForToTheNextLife) {
-  const std::string runtime = first_.path();
-  const auto end_of_pause = loop_.now() + std::chrono::seconds{20};
-  {
-    journal::Journal journal(loop_, runtime + "/journal");
-    journal.begin({.boot = host::boot(), .at = loop_.now(), .stamp = loop_.stamp_now()});
-    journal.paced(icd::Uri::MarkersUpdate, {.earliest = {.first = end_of_pause, .last = end_of_pause}});
-  }
-  auto legacy = flow(second_, std::nullopt)->hand_over();
-  flow(first_, std::move(legacy));
-  const journal::Carried carried = journal::Journal(loop_, runtime + "/journal").read();
-  EXPECT_EQ(carried.paces().at(icd::Uri::MarkersUpdate).earliest.first, end_of_pause);
+TEST_F(FlowThatSends, RepeatsThePosesOfTheRunAndOfNoRunBefore) {
+  Flow flow(loop_, ledger_, settings_,
+            {.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
+            {folder_.path(), folder_.path()},
+            {.changed = [] {}, .restart = [] {}, .posted = [](const std::string&) {}});
+  ASSERT_TRUE(flow.start());
+  sends(flow, "10.0.0.5", 50, "was_here");
+  sends(flow, "10.0.0.6", 50, "goes_on");
+  EXPECT_THAT(last(), testing::HasSubstr("was_here"));
+  flow.begin_run();
+  sends(flow, "10.0.0.6", 52, "goes_on");
+  EXPECT_THAT(last(), testing::Not(testing::HasSubstr("was_here")));
 }
 
 }  // namespace

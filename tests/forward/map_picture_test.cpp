@@ -79,18 +79,6 @@ TEST_F(MapPictureTest, FreesNoMapOnTheLoop) {
   EXPECT_NE(freed_by.load(), std::this_thread::get_id());
 }
 
-TEST_F(MapPictureTest, IsHandedOnWithWhatItHasDrawnAndCountsWhatItHasNot) {
-  picture.forwarded(grid("r1", 0, 4, 0));
-  ASSERT_TRUE(loop::turn_until(loop, [&] { return drawn("r1", {0, 0, 0}); }));
-  picture.forwarded(grid("r2", 0, 4, 0));
-  const picture::Mosaic handed = picture.hand_over().mosaic;
-  const auto layers = handed.layers();
-  ASSERT_EQ(layers.size(), 2u);
-  EXPECT_EQ(layers[0].missed, 0u);
-  EXPECT_FALSE(layers[0].tiles.empty());
-  EXPECT_EQ(layers[1].missed, 1u);
-}
-
 /// What the thread of the only worker has used of a core.
 class WorkerTime {
  public:

@@ -132,7 +132,7 @@ class MapsOverRuns : public testing::Test {
     flow_.reset();
     const auto token = icd::BearerToken::parse("a-token");
     flow_.emplace(loop_, ledger_, settings_, Tokens{.scoring = token, .mapping = token, .all = {*token}},
-                  Flow::Folders{folder_.path(), folder_.path()}, std::nullopt,
+                  Flow::Folders{folder_.path(), folder_.path()},
                   Flow::Told{.changed = [] {}, .restart = [] {}, .posted = [](const std::string&) {}});
     ASSERT_TRUE(flow_->start());
   }

@@ -48,6 +48,14 @@ TEST_F(Notify, TellsSystemdHowTheServiceIs) {
   EXPECT_EQ(heard(), "WATCHDOG=1");
   notify_stopping();
   EXPECT_EQ(heard(), "STOPPING=1");
+  notify_starting_again();
+  EXPECT_EQ(heard(), "") << "no watchdog";
+  setenv("WATCHDOG_USEC", "10000000", 1);
+  notify_starting_again();
+  EXPECT_EQ(heard(), "WATCHDOG_USEC=60000000");
+  notify_ready("serving");
+  EXPECT_EQ(heard() + heard(), "READY=1\nSTATUS=servingWATCHDOG_USEC=10000000");
+  unsetenv("WATCHDOG_USEC");
 }
 
 TEST_F(Notify, TakesNoOrdersFromAStatus) {

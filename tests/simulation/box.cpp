@@ -143,7 +143,7 @@ Box::~Box() {
 }
 
 void Box::live() {
-  while (!finished_) one_life();
+  while (!finished_ || starts_again_) one_life();
 }
 
 void Box::one_life() {
@@ -156,14 +156,16 @@ void Box::one_life() {
   options.update = folder_ / "update";
   options.notices = folder_ / "notices";
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
-  world_.begin_life();
+  world_.begin_life(std::exchange(starts_again_, false));
   world_.note(
       {.actor = Actor::Disk, .kind = Kind::Serves, .what = "settings", .who = world_.disk().settings()});
   if (const auto how = std::exchange(dies_at_start_, std::nullopt)) die_soon(*how);
   try {
-    const bool began = gateway::Service(options).run() == 0;
+    const bool began = gateway::Service(options, nullptr).run() == 0;
     if (!began && !world_.is_dead()) world_.note({.kind = Kind::Fails, .what = "aditd", .who = ""});
   } catch (const Killed&) {
+  } catch (const StartsAgain&) {
+    starts_again_ = true;
   }
   if (world_.is_dead()) {
     fs::remove_all(folder_);
@@ -171,6 +173,7 @@ void Box::one_life() {
     world_.disk().mount(folder_);
   }
   world_.end_life();
+  if (starts_again_) return;
   const auto& [least, most] = std::exchange(boots_, false) ? kBoot : kRestart;
   if (!finished_) world_.run_for(seconds(random_.between(least, most)));
 }

@@ -47,7 +47,7 @@ class Box {
   std::filesystem::path top_, folder_, next_;
   std::size_t most_map_bytes_ = 0;
   int folders_ = 0;
-  bool finished_ = false, boots_ = false;
+  bool finished_ = false, boots_ = false, starts_again_ = false;
   std::optional<World::How> dies_at_start_;
 };
 

@@ -54,11 +54,8 @@ void DiskFaultsSeen::add(const Event& event) {
   }
 }
 
-/// A gateway begins with a life, and within one where settings are saved or the ledger can be written again.
 bool DiskFaultsSeen::forgets_at(const Event& event) const {
-  const bool has_its_ledger = event.kind == Kind::Said && event.text.contains("restarting with its ledger");
-  return (event.kind == Kind::Begins || event.kind == Kind::Saved || has_its_ledger) &&
-         in_this_life("RuntimeFull");
+  return (event.kind == Kind::Begins || event.kind == Kind::Saved) && in_this_life("RuntimeFull");
 }
 
 bool DiskFaultsSeen::within(double seconds, double now) const {

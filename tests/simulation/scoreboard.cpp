@@ -10,8 +10,7 @@ namespace {
 constexpr int kSeenToRun = 4;       // statuses that were heard
 constexpr double kSeenToBeOn = 30;  // seconds: a new run may be seen when it has been on for so long
 /// What is heard in between is forgotten.
-constexpr const char *kLedgerIsGone = "rejecting reports: the ledger cannot be written",
-                     *kLedgerIsBack = "restarting with its ledger";
+constexpr const char* kLedgerIsGone = "rejecting reports: the ledger cannot be written";
 
 std::string json_number(double value) {
   char text[32];
@@ -36,7 +35,7 @@ bool Scoreboard::may_begin_run() const {
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Event& event = events[i];
     const bool is_said = event.kind == Kind::Said;
-    if (event.kind == Kind::Begins || (is_said && event.text.contains(kLedgerIsBack))) is_kept = true;
+    if (event.kind == Kind::Begins) is_kept = true;
     if (is_said && event.text.contains(kLedgerIsGone)) is_kept = false;
     const bool is_heard = event.kind == Kind::Replied && event.what == kStatus && event.status == 200 &&
                           event.serial == place_ && event.says.size() == 3;

@@ -115,11 +115,13 @@ void World::note(Event event) {
   history_.note(std::move(event));
 }
 
-void World::begin_life() {
+void World::begin_life(bool again) {
   ++life_;
   dead_ = false;
-  dies_ = nullptr;
-  crossings_after_report_.reset();
+  if (!again) {
+    dies_ = nullptr;
+    crossings_after_report_.reset();
+  }
   note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = life_});
   heap_at_begin_ = heap();
   most_wanted();
@@ -136,7 +138,6 @@ void World::look_at_heap() {
 
 void World::end_life() {
   look_at_heap();
-  dies_ = nullptr;
   dead_ = true;
   network_.cut();
   door_.cut();

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "host/inherited.hpp"
 #include "loop/loop.hpp"
 #include "simulation/descriptors.hpp"
 #include "simulation/disk.hpp"
@@ -25,6 +26,8 @@ using loop::Instant;
 
 /// Thrown out of Loop::run() where the process was killed.
 struct Killed {};
+/// Thrown where the process starts again by exec.
+struct StartsAgain {};
 
 inline Duration seconds(double seconds) {
   return std::chrono::duration_cast<Duration>(std::chrono::duration<double>(seconds));
@@ -82,8 +85,8 @@ class World {
   Disk& disk() { return disk_; }
 
   int life() const { return life_; }
-  /// A process begins.
-  void begin_life();
+  /// A process begins, or starts again: then a death that was drawn for it is still to come.
+  void begin_life(bool again = false);
   /// It is over: its connections are cut.
   void end_life();
   /// A call of the seam: the process may die in it, before or after its effect.
@@ -102,6 +105,7 @@ class World {
   void look_at_heap();
 
   std::function<void()> on_sigterm;
+  std::vector<host::Inherited> inherited;  // by a process that starts again
 
  private:
   struct Planned {

@@ -1,4 +1,8 @@
-// What host/service.hpp tells systemd, over the simulated world.
+// What host/service.hpp tells systemd, and host/inherited.hpp, over the simulated world.
+#include <cstdlib>
+#include <utility>
+
+#include "host/inherited.hpp"
 #include "host/service.hpp"
 #include "simulation/world.hpp"
 
@@ -30,12 +34,29 @@ void notify_stopping() {
   tell("STOPPING");
 }
 
+void notify_starting_again() {}
+
 void notify_alive() {
   tell("WATCHDOG");
 }
 
 std::optional<std::chrono::microseconds> watchdog_within() {
   return kWatchdog;
+}
+
+std::expected<std::vector<Inherited>, std::string> inherited() {
+  return std::exchange(World::current().inherited, {});
+}
+void store_descriptor(const std::string&, int) {}
+void forget_descriptor(const std::string&) {}
+
+void start_again(std::vector<Inherited> sockets, char* const*, std::map<std::string, std::string> variables) {
+  World& world = World::current();
+  world.crossing();
+  if (world.is_dead()) throw simulation::Killed{};
+  for (const auto& [name, value] : variables) ::setenv(name.c_str(), value.c_str(), 1);
+  world.inherited = std::move(sockets);
+  throw simulation::StartsAgain{};
 }
 
 }  // namespace adit::host

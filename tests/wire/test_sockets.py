@@ -18,6 +18,7 @@ import hosts
 import programs
 from activation import TOKEN, listening
 
+CODE, PASSWORD = "31415926", "correct horse battery"
 NOBODY = {"address": "127.0.0.1", "port": 9}  # discard: nobody listens there
 
 
@@ -223,6 +224,59 @@ class Sockets(unittest.TestCase):
             self.assertEqual(clients.answered, len(clients.visits))
             if number == signal.SIGTERM:
                 self.assertEqual(clients.cut, 0)
+
+
+    def resettable(self):
+        """A manager of an aditd that can be reset, and the ports of its door and of its own socket."""
+        door = listening()
+        manager = self.manager(door)
+        code = manager.folder / "secrets/label.code"
+        code.write_text(CODE)
+        code.chmod(0o600)
+        own = free_port()
+        manager.ready(manager.start(settings(("127.0.0.1", own)), WATCHDOG_USEC="10000000"))
+        return manager, door.getsockname()[1], own
+
+    def reset(self, port):
+        for path, body in (("password", {"role": "operator", "code": CODE, "password": PASSWORD}),
+                           ("reset", {"password": PASSWORD})):
+            self.assertEqual(ask(port, "POST", f"/adit/{path}", body)[0], 200)
+
+    def test_a_reset_starts_the_same_process_again_and_turns_nobody_away(self):
+        manager, port, own = self.resettable()
+        process = pathlib.Path(f"/proc/{manager.process.pid}")
+
+        def descriptors():
+            return len(list((process / "fd").iterdir()))
+        before, command = descriptors(), (process / "cmdline").read_bytes()
+        clients = [Clients(port), Clients(own)]
+        for each in clients:
+            each.start()
+        for _ in range(3):
+            begun = len(manager.said)
+            self.reset(port)
+            manager.ready(begun)
+            said = [line for _, line in manager.said[begun:]]
+            self.assertLess(said.index("WATCHDOG_USEC=60000000"), said.index("READY=1"))
+            for each in clients:
+                each.go_on()
+        for each in clients:
+            each.stop()
+            self.assertEqual((each.refused, each.cut, each.troubles), (0, 0, []))
+        self.assertIsNone(manager.process.poll())
+        self.assertEqual(((process / "comm").read_text(), (process / "cmdline").read_bytes()), ("aditd\n", command))
+        programs.wait_until(lambda: descriptors() == before, "as many descriptors as before")
+        self.assertFalse(manager.heard("STOPPING=1"))
+        self.assertEqual([name for name, _ in manager.store], [f"listen--127.0.0.1-{own}"], "systemd keeps the same one")
+
+    def test_a_signal_ends_it_while_it_starts_again(self):
+        dice = random.Random(7)
+        for _ in range(12):
+            manager, port, _ = self.resettable()
+            self.reset(port)
+            time.sleep(dice.uniform(0.0, 0.3))
+            manager.process.send_signal(signal.SIGTERM)
+            self.assertEqual(manager.process.wait(programs.patient(30)), 0)
 
 
 class TeamPort(unittest.TestCase):

@@ -10,7 +10,6 @@
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 #include "icd/success.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 
@@ -124,7 +123,7 @@ std::optional<uplink::Sent> Channel::has_arrived() const {
 }
 
 void Channel::ended(const std::shared_ptr<UnderWay>& request, uplink::Outcome outcome) {
-  loop::guarded("noting an answer", [&] { note(*request, outcome); });
+  note(*request, outcome);
   std::erase(under_way_, request);
   const auto done = std::move(request->done);
   done(std::move(outcome));

@@ -54,7 +54,7 @@ class Flow final : public intake::Desk {
   /// Who is told what. Each is called on the loop.
   struct Told {
     std::function<void()> changed;                        // what the page shows
-    std::function<void()> restart;                        // see whole.hpp
+    std::function<void()> restart;                        // the ledger cannot be read: see Scoring
     std::function<void(const std::string& name)> posted;  // a robot posts
   };
 

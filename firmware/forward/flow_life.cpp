@@ -5,7 +5,6 @@
 #include "forward/flow.hpp"
 #include "host/random.hpp"
 #include "host/service.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 namespace {
@@ -48,7 +47,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
       telemetry_(loop, workers_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
-                 as_forwarded_, told_.restart),
+                 as_forwarded_),
       archive_(loop, folders.state),
       drained_(loop.timer([this] { drain(); })) {
   archive_.limit(limits_of(settings));
@@ -157,8 +156,7 @@ void Flow::end(std::function<void()> over) {
   if (is_ending()) return;
   ending_.begin(loop_.now());
   over_ = std::move(over);
-  drained_.call_at(loop_.now() + Ending::kStep);  // first: whatever fails below, the end comes
-  loop::guarded("ending", [this] { drain(); });
+  drain();
 }
 
 void Flow::drain() {

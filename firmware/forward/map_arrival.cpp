@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "loop/guard.hpp"
-
 namespace adit::forward {
 
 MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
@@ -14,9 +12,7 @@ MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
 MapArrival::~MapArrival() {
   const auto writer = writer_.lock();
   if (!writer || !stored_->file) return;
-  loop::guarded("letting a map go", [&] {
-    writer->submit([stored = std::move(stored_)]() mutable { stored->file.reset(); }, [] {});
-  });
+  writer->submit([stored = std::move(stored_)]() mutable { stored->file.reset(); }, [] {});
 }
 
 void MapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) {

@@ -6,7 +6,6 @@
 #include "dispatch/mapping_verdict.hpp"
 #include "forward/upstream_answer.hpp"
 #include "host/log.hpp"
-#include "loop/guard.hpp"
 #include "pace/budget.hpp"
 
 namespace adit::forward {
@@ -95,8 +94,7 @@ void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   pump();
 }
 
-/// What fails is tried again by itself: nobody else may come for a while.
-void Maps::pump() {
+void Maps::pump() noexcept {
   if (!stopping_ && channel_.turns()) {
     pace_.link_is_back();
     blame_ = {};
@@ -104,13 +102,10 @@ void Maps::pump() {
     leads_elsewhere();
   }
   if (stopping_ || preparing_ || !channel_.has_token()) return;
-  if (loop::guarded("sending a map", [this] { go_on(); })) return;
-  if (!channel_.busy()) pace_.failed(loop_.now());
-  wake_.call_at(channel_.busy() ? loop_.now() + Slot::kLongestLead : pace_.ready());
+  go_on();
 }
 
 void Maps::go_on() {
-  forget({});
   const loop::Instant now = loop_.now();
   Place& next = channel_.busy() ? following_ : prepared_;
   if (next && next->is_under_way) return;
@@ -150,33 +145,21 @@ loop::Instant Maps::begins_to_pack(loop::Instant now) const {
 
 void Maps::send(const Place& prepared) {
   const bool ahead = channel_.busy();
-  const bool is_sent = loop::guarded("giving a map to its connection", [&] {
-    prepared->last_byte_not_before = pace_.earliest().last;
-    pace_.sent(loop_.now(), ahead);
-    channel_.send(
-        icd::Uri::MapUpdate, codec::kCbor, prepared->packed.body,
-        [this, prepared](const uplink::Outcome& outcome) { answered(prepared, outcome); },
-        prepared->last_byte_not_before);
-  });
-  if (!is_sent) {
-    pace_.failed(uplink::NeverSent{}, loop_.now());
-    return wake_.call_at(pace_.ready());
-  }
+  prepared->last_byte_not_before = pace_.earliest().last;
+  pace_.sent(loop_.now(), ahead);
+  channel_.send(
+      icd::Uri::MapUpdate, codec::kCbor, prepared->packed.body,
+      [this, prepared](const uplink::Outcome& outcome) { answered(prepared, outcome); },
+      prepared->last_byte_not_before);
   prepared->is_under_way = true;
   prepared->went_ahead = ahead;
   prepared->arrived.reset();
   wake_.call_at(loop_.now());  // for the one that follows
 }
 
-/// An answer that cannot be dealt with is as good as none: the map is sent again, as it is. Where a later one
-/// was sent, it is packed again first, for its stamp.
 void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
   sent->is_under_way = false;
-  if (!loop::guarded("the answer to a map", [&] { judge(sent, outcome); })) {
-    pace_.lost(loop_.now());
-    ahead_.failed(false);
-    if (sent == prepared_ && following_ && following_->is_under_way) sent->packed = {};
-  }
+  judge(sent, outcome);
   pump();
 }
 
@@ -198,14 +181,12 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   slot_.left(sent->packed.body.size(), answered.sent, sent->last_byte_not_before);
   if (!points_.hold(sent->packed.left_out)) return goes_whole(sent, answered.status);
   ahead_.taken(sent->went_ahead);
-  leaves(sent);  // whatever fails from here on, it has arrived
+  leaves(sent);
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer does the one before the other.
-  loop::guarded("replacing rejected maps", [&] {
-    for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) rejected_.taken(*said);
-  });
+  for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) rejected_.taken(*said);
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
   lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
@@ -243,7 +224,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
   }
 }
 
-/// The newer one first: old cells never follow newer ones. Where it throws, what is not back is as it was.
+/// The newer one first: old cells never follow newer ones.
 void Maps::again(const Place& sent) {
   ahead_.failed(sent->went_ahead || channel_.busy());
   if (sent == prepared_) put_back(following_);

@@ -147,9 +147,8 @@ class Maps {
   bool is_said_by_what_goes(const lanes::WaitingMap& back) const;
   lanes::WaitingMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
   std::uint64_t next_number(bool again);
-  void will_be_forgotten();
   void forget(std::span<const std::uint64_t> numbers);
-  void pump();
+  void pump() noexcept;
   void go_on();
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
@@ -207,9 +206,7 @@ class Maps {
   Place prepared_;          // while it is packed, waits for its time, or is under way
   Place following_;         // the next one, while that is under way; may be so itself, too
   lanes::Ahead ahead_;
-  std::vector<std::uint64_t> to_forget_;  // that the writer could not be told of; has room for all
-  std::set<std::uint64_t> unread_;        // numbers of maps whose data is still to be checked
-  std::size_t remembered_ = 0;            // numbers that were given, and are still to be forgotten
+  std::set<std::uint64_t> unread_;  // numbers of maps whose data is still to be checked
   lanes::Blame blame_;
   bool stopping_ = false;
 };

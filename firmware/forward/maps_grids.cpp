@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "forward/maps.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 
@@ -37,31 +36,25 @@ bool Maps::is_heard_from() const {
 
 void Maps::heard() {
   if (!is_heard_from()) return;
-  loop::guarded("recording sent maps", [this] {
-    std::vector<const icd::MapUpdate*> under_way;
-    for (const Place& place : {prepared_, following_}) {
-      if (place) under_way.push_back(&place->waiting.map);
-    }
-    lane_.canvases().heard(under_way);
-  });
+  std::vector<const icd::MapUpdate*> under_way;
+  for (const Place& place : {prepared_, following_}) {
+    if (place) under_way.push_back(&place->waiting.map);
+  }
+  lane_.canvases().heard(under_way);
 }
 
 void Maps::change_run(dispatch::NextMap next) {
   points_.forget();
-  loop::guarded("maps for another run", [&] {
-    pack_again();
-    lanes::Canvases& canvases = lane_.canvases();
-    if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
-    if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
-    canvases.change_run();
-  });
+  pack_again();
+  lanes::Canvases& canvases = lane_.canvases();
+  if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
+  if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
+  canvases.change_run();
 }
 
 void Maps::leads_elsewhere() {
-  loop::guarded("maps for another Command Post", [this] {
-    lane_.canvases().lead_to(channel_.address());
-    pack_again();
-  });
+  lane_.canvases().lead_to(channel_.address());
+  pack_again();
 }
 
 /// What is not under way yet may hold what lay there before.

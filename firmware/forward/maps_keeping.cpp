@@ -5,7 +5,6 @@
 #include "forward/maps.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
-#include "loop/guard.hpp"
 #include "pack/pack.hpp"
 
 namespace adit::forward {
@@ -80,7 +79,6 @@ std::uint64_t Maps::next_number(bool again) {
 
 /// By the writer, under the next number; then `told` has it, kept or not.
 void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
-  will_be_forgotten();
   keeping->number = next_number(keeping->again.has_value());
   keeping->size = keeping->update.data.bytes.size();
   const auto over = [this, keeping, told] {
@@ -101,7 +99,7 @@ void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<voi
         keeping->kept = std::unexpected(not_kept());
         over();
       });
-  ++being_kept_;  // only now: where it could not be submitted, nothing is
+  ++being_kept_;
   bytes_being_kept_ += keeping->size;
 }
 
@@ -130,7 +128,6 @@ void Maps::restore(spool::Spool::Kept kept) {
 }
 
 void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
-  will_be_forgotten();
   const bool again = number < kFirstNumber;
   std::uint64_t& last = again ? again_numbers_ : numbers_;
   last = std::max(last, number);
@@ -161,27 +158,13 @@ void Maps::tell_clouds(const icd::MapUpdate& update) {
   if (clouds != lanes::Clouds::Auto) record_.clouds_are(traffic_of(update), clouds);
 }
 
-/// One number more: forgetting it will take no memory, for there may be none then.
-void Maps::will_be_forgotten() {
-  const std::size_t all = remembered_ + 1;
-  if (all > to_forget_.capacity()) to_forget_.reserve(2 * all);
-  remembered_ = all;
-}
-
-/// What cannot be told to the writer just now is told with the next.
 void Maps::forget(std::span<const std::uint64_t> numbers) {
-  to_forget_.insert(to_forget_.end(), numbers.begin(), numbers.end());
-  if (to_forget_.empty()) return;
-  const bool told = loop::guarded("forgetting maps", [this] {
-    writer_.submit(
-        [&spool = spool_, gone = to_forget_] {
-          for (const std::uint64_t number : gone) spool.forget(number);
-        },
-        [] {});
-  });
-  if (!told) return;
-  remembered_ -= std::min(remembered_, to_forget_.size());
-  to_forget_.clear();
+  if (numbers.empty()) return;
+  writer_.submit(
+      [&spool = spool_, gone = std::vector(numbers.begin(), numbers.end())] {
+        for (const std::uint64_t number : gone) spool.forget(number);
+      },
+      [] {});
 }
 
 /// What waits or is under way may say all of it by now: it must not follow that.

@@ -5,7 +5,6 @@
 #include "codec/read.hpp"
 #include "forward/maps.hpp"
 #include "host/log.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 
@@ -35,7 +34,6 @@ Packing Maps::packing_for(const lanes::WaitingMap& waiting) const {
   return packing;
 }
 
-/// Where it throws, `prepared` waits to be packed.
 void Maps::pack(const Place& prepared) {
   icd::Header& header = prepared->waiting.map.header();
   header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
@@ -63,11 +61,11 @@ void Maps::pack(const Place& prepared) {
           for (const std::uint64_t number : unread) unread_.erase(number);
           if (prepared->packed.effort != pack::Effort::None) slot_.packing_took(loop_.now() - began);
         }
-        loop::guarded("a map that was packed", [&] { is_packed(prepared); });
+        is_packed(prepared);
         pump();
       },
       [this, prepared] { not_packed(prepared); });
-  preparing_ = true;  // only now: where it could not be submitted, it is not
+  preparing_ = true;
 }
 
 /// Null where it went back into the lane meanwhile.
@@ -154,10 +152,8 @@ void Maps::not_packed(const Place& prepared) {
   pace_.failed(loop_.now());
   prepared->packed = {};
   if (Place* const place = place_of(prepared)) {
-    loop::guarded("putting a map back", [&] {
-      record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be compressed");
-      put_back(*place);
-    });
+    record_.not_taken(traffic_of(prepared->waiting.map), NotTaken::Failed, 0, "it could not be compressed");
+    put_back(*place);
   }
   wake_.call_at(pace_.ready());
 }

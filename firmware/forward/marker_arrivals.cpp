@@ -6,9 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "forward/whole.hpp"
 #include "icd/sentence.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 namespace {
@@ -28,14 +26,12 @@ icd::Refusal no_memory() {
 }  // namespace
 
 MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
-                               lanes::MarkerLane& lane, Record& record, std::function<void()> restart,
-                               std::function<void()> came)
+                               lanes::MarkerLane& lane, Record& record, std::function<void()> came)
     : loop_(loop),
       workers_(workers),
       journal_(journal),
       lane_(lane),
       record_(record),
-      restart_(std::move(restart)),
       came_(std::move(came)),
       next_turn_(
           loop.timer([this] { go(is_in_part() ? &MarkerArrivals::add_part : &MarkerArrivals::begin); })) {}
@@ -46,16 +42,8 @@ void MarkerArrivals::take(icd::MarkersUpdate update, std::size_t bytes_received,
   if (arrivals_.size() == 1) go(&MarkerArrivals::begin);
 }
 
-void MarkerArrivals::go(Step step) {
-  Arrival& first = arrivals_.front();
-  bool over = false;
-  if (!loop::guarded("receiving markers", [&] { over = (this->*step)(first); })) return give_up();
-  if (over) end();
-}
-
-void MarkerArrivals::give_up() {
-  loop::guarded("rejecting markers", [this] { fail(arrivals_.front(), no_memory()); });
-  end();
+void MarkerArrivals::go(Step step) noexcept {
+  if ((this->*step)(arrivals_.front())) end();
 }
 
 bool MarkerArrivals::fail(Arrival& arrival, icd::Refusal why) {
@@ -67,8 +55,8 @@ void MarkerArrivals::end() {
   Arrival first = std::move(arrivals_.front());
   arrivals_.pop_front();
   if (!arrivals_.empty()) next_turn_.call_at(loop_.now());
-  loop::guarded("answering markers", [&] { first.done(std::move(first.outcome)); });
-  loop::guarded("sending markers", came_);
+  first.done(std::move(first.outcome));
+  came_();
 }
 
 bool MarkerArrivals::begin(Arrival& arrival) {
@@ -110,7 +98,10 @@ void MarkerArrivals::make_record(const Arrival& arrival) {
         arrivals_.front().record = std::move(*made);
         go(&MarkerArrivals::keep);
       },
-      [this] { give_up(); });
+      [this] {
+        fail(arrivals_.front(), no_memory());
+        end();
+      });
 }
 
 bool MarkerArrivals::keep(Arrival& arrival) {
@@ -120,29 +111,25 @@ bool MarkerArrivals::keep(Arrival& arrival) {
   }
   arrival.is_kept = true;
   arrival.record = {};
-  whole(restart_, [&] { record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now()); });
+  record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now());
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);
   next_turn_.call_at(loop_.now());
   return false;
 }
 
-/// That the rest is not in the lane where memory runs out is no loss: whole() restarts, and the journal has
-/// it.
 bool MarkerArrivals::add_part(Arrival& arrival) {
   const std::span<icd::Marker> markers = arrival.update->markers;
   const auto part = markers.subspan(arrival.added, std::min(kPart, markers.size() - arrival.added));
   const auto invisible = static_cast<std::size_t>(std::ranges::count_if(part, icd::is_invisible));
-  whole(restart_, [&] {
-    record_.invisible(invisible);
-    arrival.last = lane_.add_part(part, arrival.last);
-  });
+  record_.invisible(invisible);
+  arrival.last = lane_.add_part(part, arrival.last);
   arrival.added += part.size();
   free_needless();
   if (arrival.added < markers.size()) {
     next_turn_.call_at(loop_.now());
     return false;
   }
-  whole(restart_, [&] { lane_.end_of_update(arrival.last, loop_.now()); });
+  lane_.end_of_update(arrival.last, loop_.now());
   return true;
 }
 

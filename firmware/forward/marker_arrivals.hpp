@@ -29,9 +29,9 @@ class MarkerArrivals {
   static constexpr std::size_t kSmall = 128u << 10;
   static constexpr std::size_t kPart = 500;  // markers that go into the lane in one turn
 
-  /// `came` is called when the lane has more than before; `restart`: see whole.hpp.
+  /// `came` is called when the lane has more than before.
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal, lanes::MarkerLane& lane,
-                 Record& record, std::function<void()> restart, std::function<void()> came);
+                 Record& record, std::function<void()> came);
 
   void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
 
@@ -53,7 +53,7 @@ class MarkerArrivals {
   /// A step with the first of them: true where its outcome is known.
   using Step = bool (MarkerArrivals::*)(Arrival&);
 
-  void go(Step step);
+  void go(Step step) noexcept;
   bool begin(Arrival& arrival);
   /// Where there is no room for it: whether some of it may be taken all the same.
   bool takes_some(Arrival& arrival);
@@ -62,7 +62,6 @@ class MarkerArrivals {
   bool add_part(Arrival& arrival);
   void free_needless();
   bool fail(Arrival& arrival, icd::Refusal why);
-  void give_up();
   void end();
 
   loop::Loop& loop_;
@@ -70,7 +69,7 @@ class MarkerArrivals {
   journal::Journal& journal_;
   lanes::MarkerLane& lane_;
   Record& record_;
-  std::function<void()> restart_, came_;
+  std::function<void()> came_;
   std::deque<Arrival> arrivals_;  // the first is being taken
   loop::Source next_turn_;
 };

@@ -9,10 +9,8 @@
 #include "dispatch/said.hpp"
 #include "dispatch/turn.hpp"
 #include "forward/upstream_answer.hpp"
-#include "forward/whole.hpp"
 #include "host/log.hpp"
 #include "intake/icd_routes.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 namespace {
@@ -80,7 +78,7 @@ void Scoring::settings_changed() {
 void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
   channel_.lead_to(endpoint_of(post, post.scoring, 0), std::move(token), post.timeouts.scoring_answer);
-  if (channel_.busy()) whole(restart_, [&] { reports_->will_move(address_text(post.scoring), time()); });
+  if (channel_.busy()) reports_->will_move(address_text(post.scoring), time());
   pump();
 }
 
@@ -91,8 +89,7 @@ void Scoring::endpoint_turned() {
   run_clock_ = {};
   known_status_ = {};
   poll_due_ = true;
-  const auto opened = whole(restart_, [this] { return open_reports(); });
-  if (!opened) {
+  if (const auto opened = open_reports(); !opened) {
     host::log(host::Level::Error, "cannot read the ledger; restarting", {{"why", opened.error()}});
     restart_();
   }
@@ -111,11 +108,9 @@ void Scoring::take(const icd::ArtifactReport& report, const intake::Sender& send
        output_.add(std::move(responder)));
 }
 
-void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) {
+void Scoring::take(const dispatch::Posted& posted, dispatch::ClientId client) noexcept {
   const bool may_send = !channel_.busy() && channel_.connected() && pace_.report_ready() <= loop_.now();
-  whole(restart_, [&] {
-    if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
-  });
+  if (reports_->take(posted, client, may_send, time())) send(*reports_->sending());
   watch_deadlines();
   record_.changed();
   pump();
@@ -174,7 +169,7 @@ intake::Answer Scoring::no_status(const std::string& why) {
   return answer;
 }
 
-void Scoring::pump() {
+void Scoring::pump() noexcept {
   if (!stopping_ && channel_.turns()) endpoint_turned();
   if (stopping_ || !channel_.has_token()) return;
   const dispatch::Time at = time();
@@ -213,12 +208,7 @@ bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
 }
 
 void Scoring::send_next() {
-  const bool is_sent = whole(restart_, [&] {
-    const dispatch::Report* const chosen = reports_->choose(time());
-    if (chosen != nullptr) send(*chosen);
-    return chosen != nullptr;
-  });
-  if (is_sent) return;
+  if (const dispatch::Report* const chosen = reports_->choose(time())) return send(*chosen);
   // The disk refused it (or it was the same as another one): it must not leave.
   if (!trouble().empty()) pace_.report_failed(loop_.now());
   wake_.call_at(std::max(pace_.report_ready(), loop_.now()));
@@ -239,11 +229,8 @@ void Scoring::hear_time() {
   if (clocks_ != nullptr && there && clocks_->hear(*there)) reports_->leapt(clocks_->leap());
 }
 
-/// An answer that cannot be dealt with is as good as none: the report is in doubt in the next life.
 void Scoring::report_answered(const uplink::Outcome& outcome) {
-  const bool judged =
-      loop::guarded("the answer to a report", [&] { whole(restart_, [&] { judge_report(outcome); }); });
-  if (!judged) return;
+  judge_report(outcome);
   known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
   poll_due_ = true;
   watch_deadlines();
@@ -301,12 +288,12 @@ void Scoring::tell_askers(loop::Instant now) {
 
 void Scoring::deadline_came() {
   tell_askers(loop_.now());
-  whole(restart_, [&] { reports_->tick(time()); });
+  reports_->tick(time());
   watch_deadlines();
 }
 
 void Scoring::tick() {
-  whole(restart_, [&] { reports_->tick(time()); });
+  reports_->tick(time());
   pump();
 }
 
@@ -321,7 +308,7 @@ void Scoring::ask_status(bool decides) {
 void Scoring::status_answered(const uplink::Outcome& outcome) {
   const loop::Instant asked = std::exchange(asked_status_, std::nullopt)->at;
   poll_.call_at(loop_.now() + kAskEvery);
-  loop::guarded("the answer to a status", [&] { judge_status(outcome, asked); });
+  judge_status(outcome, asked);
   watch_deadlines();
   record_.changed();
   pump();
@@ -354,10 +341,9 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
     run_ = *run;
     run_heard_ = loop_.wall_now();
     run_clock_.heard(run->run_clock, loop_.stamp_now());
-    whole(restart_, [&] { reports_->status_heard(*run, asked, time()); });
+    reports_->status_heard(*run, asked, time());
   } else {
-    const bool left = !std::holds_alternative<uplink::NeverSent>(outcome);
-    whole(restart_, [&] { reports_->status_failed(left, time()); });
+    reports_->status_failed(!std::holds_alternative<uplink::NeverSent>(outcome), time());
   }
 }
 
@@ -370,14 +356,13 @@ void Scoring::answer_askers(const intake::Answer& answer) {
   for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
-dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action action) {
-  const dispatch::Reports::Outcome outcome = whole(restart_, [&] {
-    return action == api::Action::Send       ? reports_->send(number, time())
-           : action == api::Action::Hold     ? reports_->hold(number, time())
-           : action == api::Action::Withdraw ? reports_->withdraw(number, time())
-           : action == api::Action::Settle   ? reports_->settle(number, time())
-                                             : reports_->resubmit(number, time());
-  });
+dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action action) noexcept {
+  const dispatch::Reports::Outcome outcome =
+      action == api::Action::Send       ? reports_->send(number, time())
+      : action == api::Action::Hold     ? reports_->hold(number, time())
+      : action == api::Action::Withdraw ? reports_->withdraw(number, time())
+      : action == api::Action::Settle   ? reports_->settle(number, time())
+                                        : reports_->resubmit(number, time());
   record_.changed();
   pump();
   return outcome;
@@ -393,8 +378,8 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
   return told.number;
 }
 
-std::int64_t Scoring::begin_run() {
-  const std::int64_t number = whole(restart_, [&] { return reports_->declare_new_run(time()); });
+std::int64_t Scoring::begin_run() noexcept {
+  const std::int64_t number = reports_->declare_new_run(time());
   record_.changed();
   poll();
   return number;

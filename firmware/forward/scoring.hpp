@@ -42,7 +42,7 @@ class Scoring {
   /// So long a report waits for the answer to a status that no report needs; then that is given up.
   static constexpr std::chrono::milliseconds kGivesWayAfter{200};
 
-  /// `restart`: see whole.hpp; after it this object must not go on.
+  /// `restart` is called if the ledger cannot be read; only a new start can go on.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
           journal::Journal& journal, std::function<void()> restart);
@@ -72,10 +72,10 @@ class Scoring {
   void tick();
 
   /// An operator's action on a report; gives the number of the report that it moved, or a sentence why not.
-  dispatch::Reports::Outcome judge(std::int64_t number, api::Action action);
+  dispatch::Reports::Outcome judge(std::int64_t number, api::Action action) noexcept;
   /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
-  std::int64_t begin_run();
+  std::int64_t begin_run() noexcept;
 
   /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
   /// awaited. Called again until it is true or there is no more time.
@@ -116,9 +116,9 @@ class Scoring {
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   std::expected<void, std::string> open_reports();
   void endpoint_turned();
-  void take(const dispatch::Posted& posted, dispatch::ClientId client);
+  void take(const dispatch::Posted& posted, dispatch::ClientId client) noexcept;
   void poll();
-  void pump();
+  void pump() noexcept;
   bool is_free(const dispatch::Wish& wish, loop::Instant now);
   void send(const dispatch::Report& report);
   void send_next();

@@ -7,7 +7,6 @@
 
 #include "codec/write.hpp"
 #include "dispatch/turn.hpp"
-#include "forward/whole.hpp"
 
 namespace adit::forward {
 
@@ -36,22 +35,20 @@ lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
 
 Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
                      std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
-                     std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
-                     std::function<void()> restart)
+                     std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded)
     : loop_(loop),
       settings_(settings),
       record_(record),
       rejected_(rejected),
       journal_(journal),
       as_forwarded_(as_forwarded),
-      restart_(std::move(restart)),
       channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
                std::move(token), settings.command_post.timeouts.mapping_answer),
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
       markers_pace_(icd::Uri::MarkersUpdate, settings.command_post.rates.markers_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       markers_(bounds_of(settings.queues)),
-      arrivals_(loop, workers, journal, markers_, record, restart_, [this] { pump(); }) {}
+      arrivals_(loop, workers, journal, markers_, record, [this] { pump(); }) {}
 
 void Telemetry::carry_on(const journal::Carried& carried) {
   state_pace_.carry_on(carried, loop_.now());
@@ -103,24 +100,22 @@ icd::Checked<void> Telemetry::has_room_for(const icd::StateUpdate& update) {
   return full("too many robots");
 }
 
-icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received) {
+icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses,
+                                   std::size_t bytes_received) noexcept {
   const std::vector<lanes::PostedPose> news = state_.news_in(poses);
   if (const auto kept = journal_.accepted(news); !kept) return not_kept(kept.error());
-  whole(restart_, [&] {
-    for (const lanes::PostedPose& pose : poses) {
-      record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
-    }
-    state_.add(news, loop_.now());
-  });
+  for (const lanes::PostedPose& pose : poses)
+    record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
+  state_.add(news, loop_.now());
   pump();
   return {};
 }
 
-void Telemetry::pump() {
+void Telemetry::pump() noexcept {
   if (to_show_ && show_some()) return wake_.call_at(loop_.now());
   if (!stopping_ && !rejected_writes_ && channel_.turns()) endpoint_turned();
   if (stopping_ || rejected_writes_ || channel_.busy() || !channel_.has_token()) return;
-  whole(restart_, [this] { send_next(); });
+  send_next();
 }
 
 void Telemetry::send_next() {

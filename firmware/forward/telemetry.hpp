@@ -25,12 +25,10 @@ namespace adit::forward {
 /// has the older news first.
 class Telemetry {
  public:
-  /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then;
-  /// `restart`: see whole.hpp.
+  /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then.
   Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
             std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
-            std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded,
-            std::function<void()> restart);
+            std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded);
 
   /// Takes up what the lives before have left.
   void carry_on(const journal::Carried& carried);
@@ -56,7 +54,7 @@ class Telemetry {
   /// An error of 429: the lane is full.
   icd::Checked<void> has_room_for(const icd::StateUpdate& update);
   /// A state for which there is room. An error of 503: it cannot be kept.
-  icd::Checked<void> take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received);
+  icd::Checked<void> take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received) noexcept;
   /// Stamps are on the gateway's clock. Refused with 429 where the lane is full, and with 503 where it cannot
   /// be kept.
   void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
@@ -82,7 +80,7 @@ class Telemetry {
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
-  void pump();
+  void pump() noexcept;
   void endpoint_turned();
   void send_next();
   void send_state();
@@ -146,7 +144,6 @@ class Telemetry {
   RejectedStore& rejected_;
   journal::Journal& journal_;
   AsForwarded& as_forwarded_;
-  std::function<void()> restart_;
   Channel channel_;
   UriPace state_pace_, markers_pace_;
   loop::Source wake_;

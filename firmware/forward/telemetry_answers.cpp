@@ -5,8 +5,6 @@
 
 #include "dispatch/mapping_verdict.hpp"
 #include "forward/telemetry.hpp"
-#include "forward/whole.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::forward {
 
@@ -29,16 +27,12 @@ NotTaken why_not(MappingVerdict verdict) {
 
 }  // namespace
 
-/// An answer that cannot be dealt with is as good as none: the message is sent again.
 template <class Waiting>
 void Telemetry::answered(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
                          const uplink::Outcome& outcome) {
   if (kind == Kind::Markers) markers_under_way_.reset();
   under_way_.reset();
-  if (!loop::guarded("the answer to a state or markers", [&] { judge(kind, pace, sent, bytes, outcome); })) {
-    pace.lost(loop_.now());
-    loop::guarded("putting a state or markers back", [&] { whole(restart_, [&] { put_back(*sent); }); });
-  }
+  judge(kind, pace, sent, bytes, outcome);
   pump();
 }
 

@@ -166,7 +166,7 @@ void Gateway::make_way() {
 
 void Gateway::end() {
   if (flow_.is_ending()) return;
-  flow_.end([this] { finish(); });  // first: whatever fails below, the end comes
+  flow_.end([this] { finish(); });
   listeners_.stop();
   routes_.stop();
 }
@@ -200,8 +200,7 @@ std::optional<api::ReportDetail> Gateway::report(std::int64_t number) const {
 }
 
 void Gateway::every_second() {
-  second_.call_at(loop_.now() +
-                  std::chrono::seconds(1));  // first: whatever fails below, the next second comes
+  second_.call_at(loop_.now() + std::chrono::seconds(1));
   look_at_clock();
   flow_.tick(disk_writer_);
   links_.look();

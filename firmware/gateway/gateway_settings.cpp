@@ -9,18 +9,12 @@
 
 namespace adit::gateway {
 
-/// What the disk holds by now is run with, or reverted. Where that ends halfway (no memory), another
-/// gateway reads it.
+/// What the disk holds by now is run with, or reverted.
 void Gateway::apply_change() {
   if (flow_.is_ending()) return;
-  try {
-    auto loaded = parts_.store.load();
-    const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
-    if (!done) revert(done.error());
-  } catch (...) {
-    make_way();
-    throw;
-  }
+  auto loaded = parts_.store.load();
+  const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
+  if (!done) revert(done.error());
   api_.changed();
 }
 

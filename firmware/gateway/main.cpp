@@ -20,10 +20,8 @@ int main(int argc, char** argv) {
   // The chunks of a map are mappings of their own: what is freed of it goes back to the machine at once.
   ::mallopt(M_MMAP_THRESHOLD, int{adit::icd::ChunkedBytes::kChunk});
   adit::loop::tell_of_caught([](const char* where, const char* what) {
-    adit::host::log(adit::host::Level::Error, "unhandled exception; the callback was aborted",
-                    {{"what", where}, {"why", what}});
+    adit::host::log(adit::host::Level::Error, "unhandled exception", {{"ended", where}, {"why", what}});
   });
-  int exit = 1;
-  adit::loop::guarded("the service", [&] { exit = adit::gateway::Service(*options, argv).run(); });
-  return exit;
+  adit::loop::end_by_uncaught();
+  return adit::gateway::Service(*options, argv).run();
 }

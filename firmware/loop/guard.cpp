@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdio>
+#include <cstdlib>
 
 namespace adit::loop {
 namespace {
@@ -26,6 +27,15 @@ std::uint64_t caught_so_far() noexcept {
 
 void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept {
   tell.store(told);
+}
+
+void end_by_uncaught() noexcept {
+  std::set_terminate([] {
+    tell_of_caught(nullptr);  // stderr alone: this thread may hold the log's lock
+    if (const auto thrown = std::current_exception())
+      guarded("the process", [&] { std::rethrow_exception(thrown); });
+    std::_Exit(1);
+  });
 }
 
 }  // namespace adit::loop

@@ -15,9 +15,13 @@ std::uint64_t caught_so_far() noexcept;
 /// Who is told of them from now on; called on the thread that caught it, and may throw.
 void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 
+/// Other exceptions end the process from now on, with status 1 after a line in the log: those of the loop's
+/// callbacks and of functions that are noexcept. What was accepted is on the disk, and the next start reads
+/// it.
+void end_by_uncaught() noexcept;
+
 /// Calls `work`; an exception, whichever library it is from, ends `work` and nothing else. False: it did.
-/// What calls back from C (sd-event, libmicrohttpd) and what runs on a thread goes through here, so that no
-/// request and no answer ends the process.
+/// Requests and jobs of workers go through here, so that each of them fails alone.
 template <class Work>
 bool guarded(const char* where, Work&& work) noexcept {
   try {

@@ -16,7 +16,6 @@
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
-#include "loop/guard.hpp"
 #include "loop/wall_clock.hpp"
 
 namespace adit::loop {
@@ -58,10 +57,10 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
 
   void end() { source = sd_event_source_disable_unref(source); }
 
-  /// Holds the callback while it runs, for it may destroy its own Source.
+  /// Holds the callback while it runs, for it may destroy its own Source. An exception ends the process.
   static int run(void* userdata, std::uint32_t events) noexcept {
     const auto alive = static_cast<State*>(userdata)->weak_from_this().lock();
-    guarded("a callback of the loop", [&] { alive->call(events); });
+    alive->call(events);
     return 0;
   }
   static int ready(sd_event_source*, int, std::uint32_t events, void* userdata) {
@@ -164,7 +163,7 @@ class Loop::Impl {
     }
     running_tasks_ = true;
     for (auto& task : tasks) {
-      guarded("a task of the loop", [&] { task(); });
+      task();
       task = nullptr;  // what it holds is freed before the next one runs
     }
     running_tasks_ = false;

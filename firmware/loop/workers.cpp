@@ -17,7 +17,6 @@ namespace adit::loop {
 namespace {
 
 /// How long a result waits that cannot be handed back for want of memory.
-constexpr std::chrono::milliseconds kNoMemory{10};
 
 unsigned threads_for(unsigned asked) {
   if (asked > 0) return asked;
@@ -171,14 +170,7 @@ class Workers::Impl {
   void run(Job& job) noexcept {
     job.ends->well = guarded("a job of a worker", job.work);
     job.work = nullptr;  // freed here, so that `done` finds its data its own
-    hand_back(std::move(job.end));
-  }
-
-  /// Somebody waits for it: where there is no memory for it just now, it is tried until there is.
-  void hand_back(std::function<void()> end) noexcept {
-    while (!guarded("handing a job back", [&] { loop_.post(std::move(end)); })) {
-      std::this_thread::sleep_for(kNoMemory);
-    }
+    loop_.post(std::move(job.end));
   }
 
   Loop& loop_;

@@ -42,7 +42,7 @@ void Connection::Impl::connect() {
   phase_ = Phase::Connecting;
   watched_ = EPOLLOUT;
   timer_.call_at(began_ + endpoint_.connect_within);
-  source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) { guard(&Impl::ready); });
+  source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) { call(&Impl::ready); });
 }
 
 /// Now, or when the pause since the last time is over.

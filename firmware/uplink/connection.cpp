@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "icd/require.hpp"
-#include "loop/guard.hpp"
 #include "uplink/connection_impl.hpp"
 #include "uplink/socket.hpp"
 
@@ -13,34 +12,28 @@ namespace adit::uplink {
 Connection::Impl::Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token,
                        std::shared_ptr<LinkPace> pace)
     : loop_(loop), endpoint_(std::move(endpoint)), token_(std::move(token)), pace_(std::move(pace)) {
-  timer_ = loop_.timer([this] { guard(&Impl::time_came); });
-  tell_ = loop_.timer([this] { guard(&Impl::tell); });
-  look_ = loop_.timer([this] { guard(&Impl::look); });
+  timer_ = loop_.timer([this] { call(&Impl::time_came); });
+  tell_ = loop_.timer([this] { call(&Impl::tell); });
+  look_ = loop_.timer([this] { call(&Impl::look); });
 }
 
 std::shared_ptr<Connection::Impl> Connection::Impl::another() const {
   return std::make_shared<Impl>(loop_, endpoint_, token_, pace_);
 }
 
-/// Calls one of its own parts. What throws there ends the request under way, of which bytes may have left,
-/// and the connection. That takes no memory, for there may be none.
-void Connection::Impl::guard(void (Impl::*part)()) {
+/// Calls one of its own parts, and lives until that has ended.
+void Connection::Impl::call(void (Impl::*part)()) {
   const auto alive = shared_from_this();
-  if (loop::guarded("a connection to the Command Post", [&] { (this->*part)(); })) return;
-  if (!exchange_) return drop();
-  loop::guarded("the loss of an answer", [&] { in_doubt(std::move(undealt_)); });
+  (this->*part)();
 }
 
 void Connection::Impl::send(Request request, std::function<void(Outcome)> done) {
   icd::require(!busy());
-  InDoubt undealt{.why = "the peer's answer could not be processed"};
-  auto exchange = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
-  undealt_ = std::move(undealt);
-  exchange_ = std::move(exchange);
+  exchange_ = std::make_unique<Exchange>(endpoint_, token_, std::move(request));
   done_ = std::move(done);
   sent_ = 0;
   within_send_ = true;
-  guard(&Impl::begin_sending);
+  call(&Impl::begin_sending);
   within_send_ = false;
 }
 

@@ -45,7 +45,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   static constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
   static constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
 
-  void guard(void (Impl::*part)());
+  void call(void (Impl::*part)());
 
   // What the socket and the timers call.
   void ready();
@@ -97,7 +97,6 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   std::unique_ptr<Exchange> exchange_;
   std::function<void(Outcome)> done_;
   bool within_send_ = false;
-  InDoubt undealt_;                 // for guard()
   std::optional<Outcome> outcome_;  // known within send(), to be told after it
   loop::Source tell_;
   std::size_t sent_ = 0;

@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "icd/require.hpp"
-#include "loop/guard.hpp"
 
 namespace adit::uplink {
 
@@ -54,7 +53,7 @@ void Connections::send(Request request, std::function<void(Outcome)> done) {
   Connection& one = one_for_the_next();
   request.goes_ahead = busy();
   one.send(std::move(request), [this, &one, done = std::move(done)](Outcome outcome) {
-    loop::guarded("the end of a request", [&] { ended(one); });
+    ended(one);
     done(std::move(outcome));  // which may destroy all this
   });
   latest_ = &one;

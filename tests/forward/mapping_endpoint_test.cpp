@@ -68,8 +68,7 @@ TEST_F(MappingEndpoint, IsLeftAtOnceByAMap) {
 
 TEST_F(MappingEndpoint, IsLeftAtOnceByAState) {
   AsForwarded as_forwarded;
-  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded,
-                 [] {});
+  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded);
   ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0}}, 10));
   EXPECT_TRUE(is_left_at_once(news));
 }
@@ -90,8 +89,7 @@ TEST_F(MappingEndpoint, ThatWantsASlashGetsEachStateOnceTheFirstWasRedirected) {
   settings_.command_post.mapping = with_slash_.address();
   settings_.command_post.rates.state_hz = 1000;
   AsForwarded as_forwarded;
-  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded,
-                 [] {});
+  Telemetry news(loop_, workers_, settings_, token_, record_, rejected_, random_, journal_, as_forwarded);
   for (const int arrived : {1, 2}) {
     ASSERT_TRUE(news.take({{.name = *icd::RobotName::parse("r1"), .pose = {}, .stamp = 1.0 * arrived}}, 10));
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return with_slash_.came == arrived; }));

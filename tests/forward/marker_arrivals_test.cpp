@@ -53,11 +53,9 @@ class MarkerArrivalsTest : public testing::Test {
   journal::Journal journal_{loop_, folder_.path() + "/journal"};
   lanes::MarkerLane lane_{{}};
   Record record_{[] {}};
-  bool restart_ = false;
   int came_ = 0;
   std::vector<icd::Status> said_;
-  MarkerArrivals arrivals_{
-      loop_, workers_, journal_, lane_, record_, [this] { restart_ = true; }, [this] { ++came_; }};
+  MarkerArrivals arrivals_{loop_, workers_, journal_, lane_, record_, [this] { ++came_; }};
 };
 
 TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
@@ -91,7 +89,6 @@ TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreKeptAndWait) {
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
   EXPECT_EQ(lane_.pending(), many("many").markers);
-  EXPECT_FALSE(restart_);
 }
 
 /// As the journal has them, and whoever reads it in a life to come.

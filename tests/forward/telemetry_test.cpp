@@ -13,7 +13,6 @@
 #include "host/folder.hpp"
 #include "journal/left_in.hpp"
 #include "loop/turn_until.hpp"
-#include "scarce_memory.hpp"
 
 namespace adit::forward {
 namespace {
@@ -51,8 +50,7 @@ struct Life {
         workers(loop, 1),
         journal(loop, folder + "/journal"),
         rejected(loop, writer, folder + "/rejected"),
-        news(loop, workers, settings, std::move(token), record, rejected, random, journal, as_forwarded,
-             [this] { restart = true; }) {
+        news(loop, workers, settings, std::move(token), record, rejected, random, journal, as_forwarded) {
     const journal::Carried carried = journal.read();
     journal.begin({.boot = "b", .at = loop.now(), .stamp = loop.stamp_now()});
     news.carry_on(carried);
@@ -73,7 +71,6 @@ struct Life {
   journal::Journal journal;
   RejectedStore rejected;
   AsForwarded as_forwarded;
-  bool restart = false;  // another life is to follow
   Telemetry news;
 };
 
@@ -221,40 +218,6 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
   ASSERT_TRUE(comes(*life, [&] { return post.requests >= 20; }));
   EXPECT_THAT(life->rejected.rows(), IsEmpty());
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
-}
-
-/// From the moment it is taken on, each allocation in turn, and all from each on.
-TEST_F(NewsTest, LosesNothingWhereMemoryRunsOutOnTheWay) {
-  TelemetryPost post(true);
-  auto life = life_before(post.peer);
-  double stamp = 0;
-  for (const std::size_t count : {std::size_t{1}, ScarceMemory::kAll}) {
-    for (std::size_t n = 0;; ++n) {
-      SCOPED_TRACE(n);
-      const int before = post.requests;
-      ASSERT_TRUE(life->news.take(pose("r1", ++stamp), 10));
-      ASSERT_TRUE(life->take(icd::MarkersUpdate{.markers = {marker("path", std::to_string(n).c_str())}}));
-      ScarceMemory scarce(n, count);
-      const auto all_there = [&] {
-        return life->news.waiting(Kind::State) + life->news.waiting(Kind::Markers) == 0 &&
-               !life->news.channel().busy();
-      };
-      while (!all_there() && ScarceMemory::failed() == 0) loop_.turn(std::chrono::milliseconds{2});
-      const std::size_t failed = scarce.end();
-      bool there = false;  // looked at once: meanwhile a snapshot may replace what is read
-      ASSERT_TRUE(loop::turn_until(loop_, [&] {
-        if (there) return true;
-        if (std::exchange(life->restart, false)) {
-          life.reset();
-          life = life_before(post.peer);
-        }
-        life->news.link_is_back();
-        return there = all_there() && left().robots().empty() && left().markers().markers.empty();
-      }));
-      EXPECT_GE(post.requests, before + 2);
-      if (failed == 0) break;
-    }
-  }
 }
 
 TEST_F(NewsTest, OfAFullLaneTakesInWhatChangesTheMarkersThatWait) {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
-#include "loop/guard.hpp"
 #include "loop/loop.hpp"
 #include "loop/wall_clock.hpp"
 #include "simulation/world.hpp"
@@ -54,7 +53,7 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
   static void run(const std::weak_ptr<State>& weak, std::uint32_t events) {
     const auto alive = weak.lock();
     if (!alive || alive->over || alive->world.is_dead()) return;
-    guarded("a callback of the loop", [&] { alive->call(events); });
+    alive->call(events);
   }
   bool over = false;
 };
@@ -118,7 +117,7 @@ class Loop::Impl {
   bool turn() {
     const auto tasks = std::exchange(posted, {});
     for (const auto& task : tasks) {
-      if (!world.is_dead()) guarded("a task of the loop", task);
+      if (!world.is_dead()) task();
     }
     const bool any = world.descriptors().dispatch(simulation::Descriptors::Whose::All);
     return world.network().dispatch() || any || !tasks.empty();

@@ -5,6 +5,8 @@
 #include <sstream>
 #include <string>
 
+#include "scarce_memory.hpp"
+
 namespace adit::uplink {
 namespace {
 
@@ -209,6 +211,14 @@ TEST(AnswerParser, RefusesAnswersThatNeverEnd) {
     EXPECT_EQ(state, State::Malformed);
     EXPECT_THAT(parser.fault(), HasSubstr("too long"));
   }
+}
+
+TEST(AnswerParser, AnExceptionIsAFaultOfThatAnswerAlone) {
+  AnswerParser parser(kLongest);
+  ScarceMemory scarce(0, 1);
+  const State state = parser.feed("HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nnull");
+  EXPECT_GT(scarce.end(), 0u);
+  EXPECT_EQ(state, State::Malformed);
 }
 
 }  // namespace

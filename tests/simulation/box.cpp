@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLargestMap = 64u << 10;  // as a robot or a flood posts it
 constexpr std::uint64_t kRightThen = 4, kSoon = 40, kMostCrossings = 400;
+constexpr double kDiesInExec = 0.3;
 /// Seconds until a process is started again, and until a machine is.
 constexpr double kRestart[] = {0.05, 2}, kBoot[] = {5, 20};
 
@@ -166,6 +167,8 @@ void Box::one_life() {
   } catch (const Killed&) {
   } catch (const StartsAgain&) {
     starts_again_ = true;
+    const auto how = random_.chance(0.5) ? World::How::Killed : World::How::PowerCut;
+    if (random_.chance(kDiesInExec) && !world_.omits("death in exec")) die(how);
   }
   if (world_.is_dead()) {
     fs::remove_all(folder_);

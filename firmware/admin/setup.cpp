@@ -30,8 +30,9 @@ std::string listed(const std::vector<settings::Address>& addresses) {
 std::optional<icd::BearerToken> token_for(const std::string& endpoint, const Settings& settings,
                                           const host::Secrets& secrets) {
   const std::string& course = settings.command_post.course;
-  auto own = course.empty() ? std::nullopt : secrets.token(icd::sentence("course.", course, ".", endpoint));
-  return own ? std::move(own) : secrets.token(endpoint);
+  const std::string own = icd::sentence("course.", course, ".", endpoint);
+  const bool has_own = !course.empty() && (secrets.tokens.contains(own) || secrets.damaged.contains(own));
+  return secrets.token(has_own ? own : endpoint);
 }
 
 Setup::Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
@@ -48,24 +49,14 @@ void Setup::runs_with(const Store::Loaded& loaded, std::string trouble) {
   settings_ = loaded.settings;
   saved_ = loaded.saved;
   trouble_ = std::move(trouble);
-  tokens_set_.clear();
-  const auto odd = loaded.secrets.odd_tokens();
-  for (const auto& [name, token] : loaded.secrets.tokens) {
-    const auto found = odd.find(name);
-    std::string& warning = tokens_set_[name] = found == odd.end() ? "" : found->second;
-    if (!warning.empty()) host::log(host::Level::Warning, warning);
+  tokens_.clear();
+  auto odd = loaded.secrets.odd_tokens();
+  for (const std::string& name : token_names(settings_)) {
+    const bool is_set = loaded.secrets.tokens.contains(name);
+    if (is_set && odd.contains(name)) host::log(host::Level::Warning, odd[name]);
+    tokens_.push_back({name, is_set, std::move(odd[name])});
   }
   applying_ = false;
-}
-
-std::vector<api::TokenRow> Setup::tokens() const {
-  std::vector<api::TokenRow> rows;
-  for (std::string& name : token_names(settings_)) {
-    const auto found = tokens_set_.find(name);
-    const bool set = found != tokens_set_.end();
-    rows.push_back({std::move(name), set, set ? found->second : ""});
-  }
-  return rows;
 }
 
 std::vector<std::string> Setup::warnings(const Settings& next) const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,7 +29,7 @@ class Setup final : public api::Setup {
   bool saved() const override { return saved_; }
   bool applying() const override { return applying_; }
   const std::string& trouble() const override { return trouble_; }
-  std::vector<api::TokenRow> tokens() const override;
+  std::vector<api::TokenRow> tokens() const override { return tokens_; }
   std::vector<std::string> warnings(const settings::Settings& next) const override;
   icd::Checked<void> save(const settings::Settings& next) override;
   icd::Checked<void> set_token(const std::string& name,
@@ -47,7 +46,7 @@ class Setup final : public api::Setup {
   settings::Settings settings_;
   bool saved_ = false;
   std::string trouble_;
-  std::map<std::string, std::string> tokens_set_;  // by name: a warning about the token, or ""
+  std::vector<api::TokenRow> tokens_;
   Meaning for_reports_;
   std::function<void()> apply_, restart_;
   bool applying_ = false;

@@ -37,21 +37,21 @@ std::string draw_box() {
 }  // namespace
 
 Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
-             std::string status_folder, const std::string& trouble, Asked asked)
+             std::string status_folder, const std::string& stuck, Asked asked)
     : loop_(loop),
       workers_(workers),
       taking_over_(taking_over),
       state_(std::move(state_folder)),
       stick_(loop, state_, std::move(status_folder),
              [this](std::string file) { taken_from_stick(std::move(file)); }),
-      trouble_(trouble),
+      stuck_(stuck),
       asked_(std::move(asked)),
       restart_(loop.timer([this] { asked_.restart(); })) {
   auto file = SpareFile::read(state_);
   const std::string unread = file ? "" : file.error();
   if (file) file_ = *std::move(file);
-  if (!trouble_.empty()) {
-    standby_ = "the take-over is not finished: " + trouble_;
+  if (is_stuck()) {
+    standby_ = stuck_;
   } else if (!unread.empty()) {
     standby_ = "it is not known whether a spare took over: " + unread;
   } else if (file_.rest) {

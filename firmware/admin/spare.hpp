@@ -28,15 +28,15 @@ class Spare final : public api::Spare {
     std::function<void()> restart;
   };
 
-  /// `status_folder`: where adit-spare answers. `trouble`: why a take-over is not finished, or "". `workers`:
-  /// for what costs 0.1 s. All outlive this.
+  /// `status_folder`: where adit-spare answers. `stuck`: why the box is on standby whatever
+  /// its own file says (a take-over is not finished, the settings cannot be read), or "". `workers`: for what
+  /// costs 0.1 s. All outlive this.
   Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
-        std::string status_folder, const std::string& trouble, Asked asked);
+        std::string status_folder, const std::string& stuck, Asked asked);
 
   /// Why the box takes nothing and sends nothing; "": it does.
   const std::string& standby() const { return standby_; }
-  /// A take-over is not finished.
-  bool is_stuck() const { return !trouble_.empty(); }
+  bool is_stuck() const { return !stuck_.empty(); }
   /// Nothing is under way any more as this gateway ends: what /api/status would answer now.
   void ends(const std::optional<icd::RunStatus>& expected);
 
@@ -65,7 +65,7 @@ class Spare final : public api::Spare {
   TakingOver& taking_over_;
   std::string state_;
   SpareStick stick_;
-  std::string trouble_;
+  std::string stuck_;
   Asked asked_;
   loop::Source restart_;  // once who asked is answered
   SpareFile file_;

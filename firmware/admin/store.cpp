@@ -12,32 +12,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// So that the box still serves a page on which it can be set right.
-void set_aside(const std::string& path, const std::string& why) {
-  host::set_damaged_aside(path, "the saved set-up", why);
-}
-
-std::expected<settings::Settings, std::string> read_settings(const std::string& file) {
+/// What `parse` makes of a file's text. `unread`: why the file cannot be read; else as it was.
+template <class Parse>
+auto read_settings(const std::string& file, Parse parse, std::string& unread)
+    -> std::expected<typename decltype(parse(""))::value_type, std::string> {
   const auto text = host::read_file(file);
-  if (!text) return std::unexpected(text.error());
-  auto settings = settings::parse(*text);
+  if (!text) return std::unexpected(unread = text.error());
+  auto settings = parse(*text);
   if (settings) return std::move(*settings);
   return std::unexpected(file + ": " + settings::sentence_of(settings.error()));
-}
-
-/// Those that were saved here. What a later Adit knew beside is left out: an update that was reverted must
-/// not cost the rest of them.
-std::expected<settings::Settings, std::string> read_saved(const std::string& file, std::string& trouble) {
-  const auto text = host::read_file(file);
-  if (!text) return std::unexpected(text.error());
-  auto saved = settings::parse_saved(*text);
-  if (!saved) return std::unexpected(file + ": " + settings::sentence_of(saved.error()));
-  if (!saved->passed_over.empty()) {
-    trouble = "a later Adit saved the settings; these settings are ignored:";
-    for (const std::string& path : saved->passed_over) trouble += " " + path;
-    host::log(host::Level::Warning, trouble);
-  }
-  return std::move(saved->settings);
 }
 
 }  // namespace
@@ -53,33 +36,58 @@ icd::Redaction Store::redaction() const {
 }
 
 std::expected<Store::Loaded, std::string> Store::load() {
+  unread_.clear();
+  auto loaded = read(unread_);
+  if (!loaded) return loaded;
+  // So that the box still serves a page on which it can be set right.
+  if (loaded->is_damaged) {
+    host::set_damaged_aside(file(), "the saved set-up", loaded->trouble);
+  } else if (!loaded->trouble.empty()) {
+    host::log(host::Level::Warning, loaded->trouble);
+  }
+  return loaded;
+}
+
+bool Store::can_be_read() const {
+  std::string unread;
+  return read(unread) && unread.empty();
+}
+
+/// Of what a later Adit saved, the settings that this one does not know are left out: an update that was
+/// reverted must not cost the rest of them.
+std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const {
   Loaded loaded;
-  auto settings =
-      host::may_exist(file()) ? read_saved(file(), loaded.trouble) : read_settings(given_settings_);
-  loaded.saved = settings.has_value() && host::may_exist(file());
-  if (!settings && host::may_exist(file())) {
-    loaded.trouble =
-        "the saved settings were set aside; the initial settings are in use: " + settings.error();
-    set_aside(file(), loaded.trouble);
-    settings = read_settings(given_settings_);
+  loaded.saved = host::may_exist(file());
+  if (loaded.saved) {
+    auto saved = read_settings(file(), settings::parse_saved, unread);
+    loaded.saved = saved.has_value();
+    loaded.is_damaged = !saved && unread.empty();
+    if (loaded.is_damaged)
+      loaded.trouble = "the saved settings were set aside; the initial settings are in use: " + saved.error();
+    if (saved && !saved->passed_over.empty()) {
+      loaded.trouble = "a later Adit saved the settings; these settings are ignored:";
+      for (const std::string& path : saved->passed_over) loaded.trouble += " " + path;
+    }
+    if (saved) loaded.settings = std::move(saved->settings);
   }
-  if (!settings) return std::unexpected(settings.error());
-  loaded.settings = std::move(*settings);
-  const std::vector<std::string> names = token_names(loaded.settings);
-  auto secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
-  if (!secrets && secrets.error().in == host::SecretsError::In::Saved) {
-    loaded.trouble =
-        "the saved tokens were set aside; the initial tokens are in use: " + secrets.error().sentence;
-    set_aside(secrets_folder(), loaded.trouble);
-    secrets = host::read_secrets(given_secrets_, secrets_folder(), names);
+  if (!loaded.saved) {
+    const auto parse = [](std::string_view json) { return settings::parse(json); };
+    auto given = read_settings(given_settings_, parse, unread);
+    if (!given) return std::unexpected(given.error());
+    loaded.settings = std::move(*given);
   }
-  if (!secrets) return std::unexpected(secrets.error().sentence);
+  auto secrets = host::read_secrets(given_secrets_, secrets_folder(), token_names(loaded.settings));
+  if (!secrets) return std::unexpected(secrets.error());
+  if (unread.empty()) unread = secrets->unread;
+  for (const auto& [name, why] : secrets->damaged)
+    loaded.trouble += (loaded.trouble.empty() ? "" : "; ") + why;
   loaded.secrets = std::move(*secrets);
   return loaded;
 }
 
 /// An empty file of settings before stands for none.
 std::expected<void, std::string> Store::save(const settings::Settings& settings) {
+  if (!unread_.empty()) return std::unexpected(unread_);
   if (!host::may_exist(file_before())) {
     const auto before =
         host::may_exist(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
@@ -105,6 +113,7 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
 }
 
 void Store::settle(const settings::Settings& settings) {
+  if (!unread_.empty()) return;
   const std::vector<std::string> names = token_names(settings);
   const auto files = host::names_in(secrets_folder());
   if (!files) host::log(host::Level::Warning, "unused tokens may remain", {{"why", files.error()}});
@@ -120,6 +129,7 @@ void Store::settle(const settings::Settings& settings) {
 }
 
 bool Store::revert() {
+  if (!unread_.empty()) return false;
   const auto before = host::read_file(file_before());
   if (!before) return false;
   if (before->empty()) {

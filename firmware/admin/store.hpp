@@ -27,21 +27,27 @@ class Store {
   struct Loaded {
     settings::Settings settings;
     bool saved = false;
+    bool is_damaged = false;  // the saved settings were read, and cannot be understood
     host::Secrets secrets;
     std::string trouble;  // why saved settings or tokens do not count, though there are any
   };
   /// Of the secrets that there are whatever the settings say: a sentence on what is wrong with these quotes
   /// them.
   icd::Redaction redaction() const;
-  /// What counts. An error: neither can be used. Damaged saved settings or tokens are set aside.
+  /// What counts. An error: neither can be used. Damaged saved settings are set aside.
   std::expected<Loaded, std::string> load();
+  /// Why load() could not read a file, or "". What it gave then is not what was saved: the box must not go by
+  /// it. Until load() succeeds, save(), settle() and revert() change nothing.
+  const std::string& unread() const { return unread_; }
+  /// Whether load() could read all files now. Thread-safe.
+  bool can_be_read() const;
 
   std::expected<void, std::string> save(const settings::Settings& settings);
   std::expected<void, std::string> save_token(const std::string& name,
                                               const std::optional<icd::BearerToken>& token);
   /// What counts works. Tokens of courses that there are no more are removed: nobody could see them.
   void settle(const settings::Settings& settings);
-  /// False: nothing is on trial.
+  /// False: nothing is on trial, or it failed.
   bool revert();
   /// Forgets all that was saved.
   std::expected<void, std::string> forget();
@@ -54,8 +60,11 @@ class Store {
     return secrets_folder() + "/" + name + settings::kTokenEnding;
   }
   std::expected<void, std::string> make_secrets_folder();
+  /// As load(); changes nothing on the disk.
+  std::expected<Loaded, std::string> read(std::string& unread) const;
 
-  std::string given_settings_, given_secrets_, state_;
+  const std::string given_settings_, given_secrets_, state_;
+  std::string unread_;
 };
 
 }  // namespace adit::admin

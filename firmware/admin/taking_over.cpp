@@ -160,7 +160,9 @@ std::expected<void, std::string> TakingOver::take_ledger(const spare::Content& c
 std::expected<void, std::string> TakingOver::take_settings(const spare::Content& content) {
   auto saved = settings::parse_saved(content.settings);
   if (!saved) return std::unexpected("the first box's settings: " + settings::sentence_of(saved.error()));
-  if (auto here = store_.load()) keep_hardware(here->settings, saved->settings);
+  auto here = store_.load();
+  if (!store_.unread().empty()) return std::unexpected(store_.unread());
+  if (here) keep_hardware(here->settings, saved->settings);
   for (const std::string& name : token_names(saved->settings)) {
     const auto found = content.tokens.find(name);
     const auto token = found == content.tokens.end() ? std::nullopt : std::optional(found->second);

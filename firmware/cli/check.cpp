@@ -63,7 +63,8 @@ std::vector<std::string> warnings_of(const Options& options, const Settings& set
   std::vector<std::string> sentences;
   const auto secrets =
       host::read_secrets(options.secrets, options.saved_secrets, settings::token_names(settings));
-  if (!secrets) sentences.push_back("cannot check the tokens: " + secrets.error().sentence);
+  const std::string unread = secrets ? secrets->unread : secrets.error();
+  if (!unread.empty()) sentences.push_back("cannot check the tokens: " + unread);
   if (secrets) {
     for (const auto& [name, sentence] : secrets->odd_tokens()) sentences.push_back(sentence);
   }

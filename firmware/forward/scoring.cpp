@@ -56,7 +56,8 @@ std::expected<void, std::string> Scoring::start() {
   return {};
 }
 
-/// Where it fails, those before go on.
+/// If it fails, the reports of before stay. On standby nothing is sent, so no other Command Post begins a
+/// run.
 std::expected<void, std::string> Scoring::open_reports() {
   auto all = ledger_.reports();
   if (!all) return std::unexpected(all.error().what);
@@ -64,7 +65,7 @@ std::expected<void, std::string> Scoring::open_reports() {
   if (!runs) return std::unexpected(runs.error().what);
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
   if (clocks_ != nullptr) next->leapt(clocks_->leap());
-  next->open(std::move(*all), std::move(*runs), time(), channel_.address(), *reports_);
+  next->open(std::move(*all), std::move(*runs), time(), stopping_ ? "" : channel_.address(), *reports_);
   reports_ = std::move(next);
   return {};
 }

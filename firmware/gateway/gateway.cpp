@@ -62,8 +62,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
       clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd),
-      spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder,
-             parts_.take_over_trouble,
+      spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder, parts_.stuck,
              {.content = [this] { return content(); },
               .is_time_set = [this] { return clock_.is_set().value_or(false); },
               .restart = [this] { make_way(); }}),
@@ -90,10 +89,12 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                  }),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {
-  if (!parts_.ledger.refusal().empty()) {
-    ledger_return_.emplace(loop, disk_writer_, parts_.state_folder, parts_.ledger_rest,
-                           [this] { ledger_is_back(); });
-  }
+  const bool has_ledger = parts_.ledger.refusal().empty();
+  if (has_ledger && parts_.store.unread().empty()) return;
+  const auto can_be_opened = [has_ledger, folder = parts_.state_folder, &store = parts_.store] {
+    return (has_ledger || ledger::Ledger::can_be_opened(folder)) && store.can_be_read();
+  };
+  ledger_return_.emplace(loop, disk_writer_, can_be_opened, parts_.ledger_rest, [this] { state_is_back(); });
 }
 
 Gateway::~Gateway() = default;
@@ -101,7 +102,7 @@ Gateway::~Gateway() = default;
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
   options.rules = settings_.rules;
-  options.asks_token = settings_.team.require_token;
+  options.asks_token = settings_.team.require_token && parts_.store.unread().empty();  // else all get 503
   for (const std::string_view each : settings::words(settings_.team.origins))
     options.origins.emplace_back(each);
   options.tokens = tokens().all;
@@ -128,15 +129,16 @@ std::vector<loop::Workers*> Gateway::threads() {
   return threads;
 }
 
-void Gateway::ledger_is_back() {
-  host::log(host::Level::Notice, "the state directory is writable again; restarting with its ledger");
+void Gateway::state_is_back() {
+  host::log(host::Level::Notice, "the state directory can be used again; restarting with its ledger");
   make_way();
 }
 
 std::expected<void, std::string> Gateway::start() {
   host::keep_out_of_log(redaction());
   if (!spare_.standby().empty())
-    flow_.stand_by("this box is on standby, for its spare to take over; it accepts and sends no messages");
+    flow_.stand_by(
+        icd::sentence("this box is on standby: ", spare_.standby(), "; it accepts and sends no messages"));
   if (auto started = flow_.start(); !started) return started;
   lookout_.carry_on(flow_, loop_.stamp_now());
   if (auto listening = listen(settings_.team); !listening) return listening;

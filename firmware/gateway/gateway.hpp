@@ -51,8 +51,8 @@ struct Parts {
   admin::TakingOver& taking_over;  // this
   ListenSockets& sockets;          // and this
   admin::Store::Loaded loaded;
-  std::string trouble;            // for the operator: why the settings are not those that were wanted; or ""
-  std::string take_over_trouble;  // why a take-over is not finished; or ""
+  std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
+  std::string stuck;  // why the box has to be on standby: an unfinished take-over, an unreadable file; or ""
   ledger::Ledger ledger;
   std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
   settings::Board board;
@@ -120,7 +120,7 @@ class Gateway final : public api::Source, public api::Operator {
   void keep_sessions();
   void look_at_sockets();
   void log_crowding();
-  void ledger_is_back();
+  void state_is_back();
   void show_lights();
   void add_to(api::Usage& usage) const;
   std::expected<void, std::string> listen(const settings::Team& team);

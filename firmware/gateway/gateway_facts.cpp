@@ -46,7 +46,7 @@ void Gateway::add_flow(alarms::Facts& facts) const {
   facts.unknown_robots = roster_.unknown(loop_.now());
   facts.known_robots = roster_.names();
   facts.crowds = crowding_.crowds(loop_.now());
-  facts.shut_out = settings_.team.require_token && parts_.loaded.secrets.tokens.empty();
+  facts.shut_out = icd_options().asks_token && parts_.loaded.secrets.tokens.empty();
   facts.queued = flow_.maps().queued_bytes();
   facts.queue_room = settings_.queues.map_bytes;
   facts.queue_grows = lookout_.queue_grows(steady);

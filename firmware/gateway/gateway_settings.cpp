@@ -9,10 +9,13 @@
 
 namespace adit::gateway {
 
-/// What the disk holds by now is run with, or reverted.
+/// What the disk holds by now is run with, or reverted. If a file could not be read, now or at the start, the
+/// next process reads it.
 void Gateway::apply_change() {
   if (flow_.is_ending()) return;
+  const bool was_unread = !parts_.store.unread().empty();
   auto loaded = parts_.store.load();
+  if (was_unread || !parts_.store.unread().empty()) return make_way();
   const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
   if (!done) revert(done.error());
   api_.changed();

@@ -3,15 +3,13 @@
 #include <memory>
 #include <utility>
 
-#include "ledger/ledger.hpp"
-
 namespace adit::gateway {
 
-LedgerReturn::LedgerReturn(loop::Loop& loop, loop::Writer& writer, std::string folder,
+LedgerReturn::LedgerReturn(loop::Loop& loop, loop::Writer& writer, std::function<bool()> can_be_opened,
                            std::chrono::seconds rest, std::function<void()> is_back)
     : loop_(loop),
       writer_(writer),
-      folder_(std::move(folder)),
+      can_be_opened_(std::move(can_be_opened)),
       rest_(rest),
       is_back_(std::move(is_back)),
       timer_(loop.timer([this] { look(); })) {
@@ -20,7 +18,7 @@ LedgerReturn::LedgerReturn(loop::Loop& loop, loop::Writer& writer, std::string f
 
 void LedgerReturn::look() {
   const auto can = std::make_shared<bool>(false);
-  writer_.submit([can, folder = folder_] { *can = ledger::Ledger::can_be_opened(folder); },
+  writer_.submit([can, can_be_opened = can_be_opened_] { *can = can_be_opened(); },
                  [this, can] { looked(*can); }, [this] { looked(false); });
 }
 

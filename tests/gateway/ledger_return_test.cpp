@@ -6,6 +6,7 @@
 #include <future>
 
 #include "host/folder.hpp"
+#include "ledger/ledger.hpp"
 #include "loop/turn_until.hpp"
 
 namespace adit::gateway {
@@ -18,11 +19,14 @@ class LedgerReturnTest : public testing::Test {
   host::Folder folder_;
   loop::Loop loop_;
   loop::Writer writer_{loop_};
+  const std::function<bool()> can_be_opened_ = [this] {
+    return ledger::Ledger::can_be_opened(folder_.path());
+  };
   int back_ = 0;
 };
 
 TEST_F(LedgerReturnTest, IsSaidOnceWhereTheFolderTakesAWriteAgain) {
-  const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
+  const LedgerReturn waits(loop_, writer_, can_be_opened_, std::chrono::seconds{0}, [&] { ++back_; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
   for (int i = 0; i < 20; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_EQ(back_, 1);
@@ -32,7 +36,7 @@ TEST_F(LedgerReturnTest, IsSaidOnceWhereTheFolderTakesAWriteAgain) {
 TEST_F(LedgerReturnTest, IsNotSaidWhereTheLedgerItselfCannotBeOpened) {
   const std::string in_the_way = folder_.path() + "/ledger.sqlite";
   fs::create_directory(in_the_way);
-  const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
+  const LedgerReturn waits(loop_, writer_, can_be_opened_, std::chrono::seconds{0}, [&] { ++back_; });
   for (int i = 0; i < 40; ++i) loop_.turn(std::chrono::milliseconds{5});
   EXPECT_EQ(back_, 0);
   fs::remove(in_the_way);
@@ -43,7 +47,7 @@ TEST_F(LedgerReturnTest, IsWaitedForByADiskThatTakesLongAndNotByTheLoop) {
   bool turned = false;
   std::promise<void> let_go;
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
-  const LedgerReturn waits(loop_, writer_, folder_.path(), std::chrono::seconds{0}, [&] { ++back_; });
+  const LedgerReturn waits(loop_, writer_, can_be_opened_, std::chrono::seconds{0}, [&] { ++back_; });
   auto other = loop_.timer([&] { turned = true; });
   other.call_at(loop_.now());
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return turned; }));

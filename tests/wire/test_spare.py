@@ -116,7 +116,7 @@ class Spare(WithAlarms):
         self.sees(stage, "standby", "bad", "box")
         refused = submit(stage, another(1))
         self.assertEqual((refused.status_code, refused.json()),
-                         (503, "this box is on standby, for its spare to take over; it accepts and sends no messages"))
+                         (503, "this box is on standby: its spare takes over; it accepts and sends no messages"))
         self.assertEqual(self.send_map(stage, "r1").status_code, 503)
         self.assertEqual(stage.box.judge(1, "resubmit")[0], 409)
         stage.unplug()

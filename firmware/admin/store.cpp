@@ -85,12 +85,11 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
   return loaded;
 }
 
-/// An empty file of settings before stands for none.
 std::expected<void, std::string> Store::save(const settings::Settings& settings) {
   if (!unread_.empty()) return std::unexpected(unread_);
   if (!host::may_exist(file_before())) {
-    const auto before =
-        host::may_exist(file()) ? host::read_file(file()) : std::expected<std::string, std::string>("");
+    std::expected<std::string, std::string> before = settings::kNoneBefore;
+    if (host::may_exist(file())) before = host::read_file(file());
     if (!before) return std::unexpected(before.error());
     if (const auto kept = host::write_file(file_before(), *before, host::kOursAlone); !kept) return kept;
   }
@@ -129,24 +128,21 @@ void Store::settle(const settings::Settings& settings) {
 }
 
 bool Store::revert() {
-  if (!unread_.empty()) return false;
+  if (!unread_.empty() || !host::may_exist(file_before())) return false;
   const auto before = host::read_file(file_before());
-  if (!before) return false;
-  if (before->empty()) {
-    if (!host::remove_file(file())) return false;
-  } else if (const auto written = host::write_file(file(), *before, host::kOursAlone); !written) {
-    host::log(host::Level::Error, "cannot write the previous settings", {{"why", written.error()}});
-    return false;
-  }
-  return host::remove_file(file_before()).has_value();
+  const auto reverted = !before ? std::unexpected(before.error())
+                        : *before == settings::kNoneBefore
+                            ? host::remove_file(file())
+                            : host::write_file(file(), *before, host::kOursAlone);
+  if (!reverted)
+    host::log(host::Level::Error, "cannot restore the previous settings", {{"why", reverted.error()}});
+  return reverted && host::remove_file(file_before());
 }
 
 std::expected<void, std::string> Store::forget() {
   std::error_code error;
-  for (const std::string& folder : {secrets_folder(), secrets_folder() + host::kDamaged}) {
-    fs::remove_all(folder, error);
-    if (error) return std::unexpected(folder + ": " + error.message());
-  }
+  fs::remove_all(secrets_folder(), error);
+  if (error) return std::unexpected(secrets_folder() + ": " + error.message());
   for (const std::string& each : {file_before(), file(), file() + host::kDamaged}) {
     if (auto removed = host::remove_file(each); !removed) return removed;
   }

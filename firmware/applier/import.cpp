@@ -210,7 +210,8 @@ Done Import::save_settings(UntrustedFolder& state, const settings::Settings& set
   if (!*before) {
     const auto now = state.read(settings::kSavedFile);
     if (!now) return std::unexpected(now.error());
-    if (auto kept = put(state, settings::kFileBefore, now->value_or("")); !kept) return kept;
+    if (auto kept = put(state, settings::kFileBefore, now->value_or(settings::kNoneBefore)); !kept)
+      return kept;
   }
   return put(state, settings::kSavedFile, settings::file_of(settings));
 }

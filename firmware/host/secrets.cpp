@@ -33,16 +33,18 @@ struct Fault {
   bool is_unread = false;  // the file cannot be read; else it was read, and holds no token
 };
 
-/// Nothing where there is no such file, or nothing in it. No sentence shows what is in it.
-std::expected<Token, Fault> read_token(const std::string& path, bool credential) {
+enum class Place : std::uint8_t { Saved, Given, Credentials };
+
+/// Nothing if there is no such file, or nothing in a given one. No sentence shows what is in it.
+std::expected<Token, Fault> read_token(const std::string& path, Place place) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();
   if (!file) return std::unexpected(Fault{trouble(path, file.error()), true});
-  if (!credential && (file->status.st_mode & 077) != 0) {
+  if (place != Place::Credentials && (file->status.st_mode & 077) != 0) {
     return std::unexpected(Fault{path + ": other users may read or write it; run: chmod 600 " + path});
   }
   const std::string_view text = trimmed(file->text);
-  if (text.empty()) return Token();
+  if (text.empty() && place != Place::Saved) return Token();
   auto token = icd::BearerToken::parse(text);
   if (!token)
     return std::unexpected(Fault{path + ": expected one token of 1 to 256 visible ASCII characters"});
@@ -74,12 +76,12 @@ std::map<std::string, std::string> Secrets::odd_tokens() const {
 
 std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
                                                  std::span<const std::string> names) {
-  const bool credentials = holds_credentials(given);
+  const Place place = holds_credentials(given) ? Place::Credentials : Place::Given;
   Secrets secrets;
   for (const std::string& name : names) {
-    auto token = read_token(saved + "/" + name + ".token", false);
+    auto token = read_token(saved + "/" + name + ".token", Place::Saved);
     const bool is_saved = !token || *token;
-    if (!is_saved) token = read_token(given + "/" + name + ".token", credentials);
+    if (!is_saved) token = read_token(given + "/" + name + ".token", place);
     if (token && *token) secrets.tokens.emplace(name, std::move(**token));
     if (token) continue;
     if (token.error().is_unread) {
@@ -91,7 +93,7 @@ std::expected<Secrets, std::string> read_secrets(const std::string& given, const
       return std::unexpected(std::move(token.error().why));
     }
   }
-  auto label = read_token(given + "/label.code", credentials);
+  auto label = read_token(given + "/label.code", place);
   if (!label && !label.error().is_unread) return std::unexpected(std::move(label.error().why));
   if (!label) {
     secrets.unread = std::move(label.error().why);

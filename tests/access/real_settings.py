@@ -216,7 +216,7 @@ class SetUp(unittest.TestCase):
         with contextlib.closing(socket.create_server(("127.0.0.1", 0))) as taken:
             given["team"]["listen"][0]["port"] = taken.getsockname()[1]
             (self.box.state / "settings.json").write_text(json.dumps(given))
-            (self.box.state / "settings.json.before").write_text("")
+            (self.box.state / "settings.json.before").write_text("none\n")
             self.box.start()
         self.assertEqual(self.alarms(), {"settings_not_changed"})
         self.assertFalse(self.settings()["saved"])

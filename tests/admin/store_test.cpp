@@ -67,6 +67,15 @@ TEST_F(StoreTest, TakesTheFirstBackToWhatTheBoxWasGiven) {
   EXPECT_EQ(connections(), 20u);
 }
 
+TEST_F(StoreTest, TakesEmptiedSettingsOfBeforeForNoneOfTheTeams) {
+  (void)store_.save(with_connections(30));
+  store_.settle(with_connections(30));
+  (void)store_.save(with_connections(40));
+  state_.put("settings.json.before", "");
+  EXPECT_TRUE(store_.revert());
+  EXPECT_THAT(store_.load()->trouble, HasSubstr("the saved settings were set aside"));
+}
+
 TEST_F(StoreTest, SetsSavedSettingsAsideThatCannotBeUnderstood) {
   state_.put("settings.json", R"({"version": 1, "team": 7})");
   const auto loaded = store_.load().value();
@@ -177,11 +186,8 @@ TEST_F(StoreTest, ForgetsAllThatWasSavedAndNothingElse) {
   (void)store_.save(with_connections(30));
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
   state_.put("settings.json.damaged", "what nobody could read");
-  std::filesystem::create_directory(state_ / "secrets.damaged");
-  state_.put("secrets.damaged/mapping.token", "saved-2");
   ASSERT_TRUE(store_.forget().has_value());
-  for (const char* gone :
-       {"settings.json", "settings.json.before", "settings.json.damaged", "secrets", "secrets.damaged"})
+  for (const char* gone : {"settings.json", "settings.json.before", "settings.json.damaged", "secrets"})
     EXPECT_FALSE(kept(gone)) << gone;
   EXPECT_TRUE(kept("ledger.sqlite"));
   EXPECT_EQ(connections(), 20u);

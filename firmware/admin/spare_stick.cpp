@@ -2,11 +2,11 @@
 
 #include <unistd.h>
 
-#include <fstream>
 #include <utility>
 
 #include "admin/nonce.hpp"
 #include "admin/refuse.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
@@ -38,13 +38,10 @@ std::optional<icd::Refusal> hindrance_in(const std::optional<api::StickRow>& now
 
 /// Of adit-spare's folder, in memory.
 std::expected<std::string, std::string> read_from_stick(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes(spare::kLargestExport, '\0');
-  file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  if (!file.is_open() || file.bad())
-    return std::unexpected("the export that was read from the stick is gone: try again");
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
+  auto file = host::slurp(path, spare::kLargestExport);
+  if (!file)
+    return std::unexpected("cannot read the export from the stick: " + host::trouble(path, file.error()));
+  return std::move(file->text);
 }
 
 }  // namespace

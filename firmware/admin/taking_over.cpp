@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "admin/spare_file.hpp"
 #include "forward/stamp_floor.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "ledger/ledger.hpp"
@@ -17,13 +16,6 @@ namespace adit::admin {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::expected<std::string, std::string> read_whole(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(file), {}};
-  if (!file) return std::unexpected(path + ": cannot read the file");
-  return bytes;
-}
 
 /// A folder of this program's own, gone with it.
 class OwnFolder {
@@ -104,9 +96,9 @@ std::expected<void, std::string> TakingOver::begin(const std::string& content) {
 
 std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
   if (!host::may_exist(begun())) return false;
-  const auto text = read_whole(begun());
-  if (!text) return std::unexpected(text.error());
-  const auto content = spare::read(*text);
+  const auto file = host::slurp(begun(), spare::kLargestExport);
+  if (!file) return std::unexpected(host::trouble(begun(), file.error()));
+  const auto content = spare::read(file->text);
   if (!content) return std::unexpected(begun() + ": " + content.error());
   if (auto done = take(*content, loop); !done) return std::unexpected(std::move(done.error()));
   if (auto removed = host::remove_file(begun()); !removed) return std::unexpected(std::move(removed.error()));

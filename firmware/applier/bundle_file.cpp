@@ -9,21 +9,17 @@
 
 #include "host/files.hpp"
 #include "icd/sentence.hpp"
+#include "loop/regular_file.hpp"
 #include "update/messages.hpp"
 
 namespace adit::applier {
 namespace {
 
-/// O_NONBLOCK: a FIFO must not hold this up.
-constexpr int kOpen = O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
-
 std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& path,
                                                             const std::string& name) {
-  loop::FileDescriptor file(::open(path.c_str(), kOpen));
-  if (!file) return std::unexpected(host::trouble(name, errno));
+  loop::FileDescriptor file = loop::open_regular(path, O_RDONLY | O_NOFOLLOW);
   struct stat status{};
-  if (fstat(file.get(), &status) != 0) return std::unexpected(host::trouble(name, errno));
-  if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
+  if (!file || fstat(file.get(), &status) != 0) return std::unexpected(host::trouble(name, errno));
   if (status.st_size == 0) return std::unexpected(name + ": expected a bundle, got an empty file");
   if (std::cmp_greater(status.st_size, update::kLargestBundle)) {
     return std::unexpected(

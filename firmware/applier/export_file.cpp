@@ -10,16 +10,13 @@
 
 #include "host/files.hpp"
 #include "host/service.hpp"
-#include "loop/file_descriptor.hpp"
+#include "loop/regular_file.hpp"
 #include "spare/sealed.hpp"
 
 namespace adit::applier {
 namespace {
 
 using loop::FileDescriptor;
-
-/// O_NONBLOCK: a FIFO must not hold this up.
-constexpr int kPlainly = O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC;
 
 FileDescriptor open_folder(const std::string& path) {
   return FileDescriptor(open(path.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
@@ -45,7 +42,7 @@ int write_all(int file, const std::string& bytes) {
 /// The same, of the new file in the folder.
 int put(int folder, const std::string& name, const std::string& bytes) {
   const FileDescriptor file(
-      openat(folder, kUnfinished, O_WRONLY | O_CREAT | O_EXCL | kPlainly, host::kForAll));
+      openat(folder, kUnfinished, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, host::kForAll));
   if (!file) return errno;
   if (const int error = write_all(file.get(), bytes); error != 0) return error;
   if (renameat(folder, kUnfinished, folder, name.c_str()) != 0) return errno;
@@ -67,23 +64,13 @@ std::expected<void, std::string> write_export(const std::string& folder, const s
 
 std::expected<std::string, std::string> read_export(const std::string& folder, const std::string& name) {
   const FileDescriptor in = open_folder(folder);
-  const FileDescriptor file(in ? openat(in.get(), name.c_str(), O_RDONLY | kPlainly) : -1);
+  const FileDescriptor file =
+      in ? loop::open_regular(name, O_RDONLY | O_NOFOLLOW, in.get()) : FileDescriptor();
   if (!file) return failed(name, errno);
-  struct stat status{};
-  if (fstat(file.get(), &status) != 0) return failed(name, errno);
-  if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
-  std::string bytes(spare::kLargestExport + 1, '\0');
-  std::size_t size = 0;
-  while (size < bytes.size()) {
-    const ssize_t count = read(file.get(), bytes.data() + size, bytes.size() - size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return failed(name, errno);
-    if (count == 0) break;
-    size += static_cast<std::size_t>(count);
-  }
-  if (size == bytes.size()) return std::unexpected(name + ": the file is larger than an export may be");
-  bytes.resize(size);
-  return bytes;
+  auto bytes = loop::read_all(file, spare::kLargestExport);
+  if (bytes) return std::move(*bytes);
+  if (bytes.error() == EFBIG) return std::unexpected(name + ": the file is larger than an export may be");
+  return failed(name, bytes.error());
 }
 
 }  // namespace adit::applier

@@ -15,6 +15,7 @@
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/require.hpp"
+#include "loop/regular_file.hpp"
 
 namespace adit::archive {
 namespace {
@@ -106,7 +107,7 @@ std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view b
   if (auto looked = look(); !looked) return std::unexpected(std::move(looked.error()));
   const bool fits = !numbers_.empty() && sizes_.back() + bytes.size() <= largest;
   if (fits && !file_) {
-    file_ = loop::FileDescriptor(::open(path(numbers_.back()).c_str(), O_WRONLY | O_APPEND | O_CLOEXEC));
+    file_ = loop::open_regular(path(numbers_.back()), O_WRONLY | O_APPEND);
   }
   if (!fits || !file_) {
     if (const auto opened = open_next(); !opened) return std::unexpected(opened.error());

@@ -13,7 +13,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
-#include "loop/file_descriptor.hpp"
+#include "loop/regular_file.hpp"
 
 namespace adit::host {
 namespace {
@@ -59,26 +59,17 @@ bool fill(int fd, const std::string& text, int mode) {
 }  // namespace
 
 std::string trouble(const std::string& path, int error) {
-  return path + ": " + std::system_category().message(error);
+  return path + ": " + loop::text_of(error);
 }
 
 std::expected<File, int> slurp(const std::string& path, std::size_t most) {
-  // Not to wait for whoever might write into a pipe of that name.
-  const FileDescriptor fd(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
-  if (!fd) return std::unexpected(errno);
+  const FileDescriptor fd = loop::open_regular(path, O_RDONLY);
   File file{};
-  if (fstat(fd.get(), &file.status) != 0) return std::unexpected(errno);
-  if (S_ISDIR(file.status.st_mode)) return std::unexpected(EISDIR);
-  if (S_ISFIFO(file.status.st_mode)) return std::unexpected(EINVAL);
-  char buffer[16384];
-  while (true) {
-    const ssize_t count = read(fd.get(), buffer, sizeof buffer);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return std::unexpected(errno);
-    if (count == 0) return file;
-    file.text.append(buffer, static_cast<std::size_t>(count));
-    if (file.text.size() > most) return std::unexpected(EFBIG);
-  }
+  if (!fd || fstat(fd.get(), &file.status) != 0) return std::unexpected(errno);
+  auto text = loop::read_all(fd, most);
+  if (!text) return std::unexpected(text.error());
+  file.text = std::move(*text);
+  return file;
 }
 
 bool may_exist(const std::string& path) {
@@ -116,7 +107,7 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
 }
 
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text) {
-  const FileDescriptor fd(open(path.c_str(), O_WRONLY | O_NOFOLLOW | O_CLOEXEC));
+  const FileDescriptor fd = loop::open_regular(path, O_WRONLY | O_NOFOLLOW);
   const bool is_written = fd && write_all(fd.get(), text) &&
                           ftruncate(fd.get(), static_cast<off_t>(text.size())) == 0 && fsync(fd.get()) == 0;
   if (!is_written) return std::unexpected(trouble(path, errno));

@@ -14,33 +14,14 @@
 
 #include "host/files.hpp"
 #include "host/service.hpp"
+#include "loop/regular_file.hpp"
 
 namespace adit::host {
 namespace {
 
-/// Neither followed elsewhere nor waited for: O_NONBLOCK, because a FIFO may have no writer.
+/// Not followed elsewhere.
 loop::FileDescriptor open_file(const loop::FileDescriptor& folder, const std::string& name, int how) {
-  return loop::FileDescriptor(
-      openat(folder.get(), name.c_str(), how | O_NOFOLLOW | O_NONBLOCK | O_NOCTTY | O_CLOEXEC));
-}
-
-/// All of a plain file.
-std::expected<std::string, std::string> read_all(int fd, const std::string& name) {
-  struct stat status{};
-  if (fstat(fd, &status) != 0) return std::unexpected(trouble(name, errno));
-  if (!S_ISREG(status.st_mode)) return std::unexpected(name + ": expected a plain file");
-  std::string text(UntrustedFolder::kLargest + 1, '\0');
-  std::size_t size = 0;
-  while (size < text.size()) {
-    const ssize_t count = read(fd, text.data() + size, text.size() - size);
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return std::unexpected(trouble(name, errno));
-    if (count == 0) break;
-    size += static_cast<std::size_t>(count);
-  }
-  if (size == text.size()) return std::unexpected(trouble(name, EFBIG));
-  text.resize(size);
-  return text;
+  return loop::open_regular(name, how | O_NOFOLLOW, folder.get());
 }
 
 }  // namespace
@@ -59,8 +40,8 @@ std::expected<std::optional<std::string>, UntrustedFolder::Untaken> UntrustedFol
   if (auto gone = remove(name); !gone)
     return std::unexpected(Untaken{.why = std::move(gone.error()), .stays = true});
   if (!fd) return std::unexpected(Untaken{.why = trouble(name, error)});
-  auto text = read_all(fd.get(), name);
-  if (!text) return std::unexpected(Untaken{.why = std::move(text.error())});
+  auto text = loop::read_all(fd, kLargest);
+  if (!text) return std::unexpected(Untaken{.why = trouble(name, text.error())});
   return std::move(*text);
 }
 
@@ -86,14 +67,15 @@ std::expected<std::optional<std::string>, std::string> UntrustedFolder::read(con
   const loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY);
   if (!fd && errno == ENOENT) return std::nullopt;
   if (!fd) return std::unexpected(trouble(name, errno));
-  auto text = read_all(fd.get(), name);
-  if (!text) return std::unexpected(std::move(text.error()));
+  auto text = loop::read_all(fd, kLargest);
+  if (!text) return std::unexpected(trouble(name, text.error()));
   return std::move(*text);
 }
 
 std::expected<std::optional<UntrustedFolder>, std::string> UntrustedFolder::folder(
     const std::string& name) const {
-  loop::FileDescriptor fd = open_file(folder_, name, O_RDONLY | O_DIRECTORY);
+  loop::FileDescriptor fd(
+      openat(folder_.get(), name.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC));
   if (!fd && errno == ENOENT) return std::nullopt;
   if (!fd) return std::unexpected(trouble(name, errno));
   return UntrustedFolder(std::move(fd));
@@ -106,7 +88,7 @@ std::expected<std::vector<std::string>, std::string> UntrustedFolder::names() co
 bool UntrustedFolder::wipe(const std::string& name) {
   const loop::FileDescriptor fd = open_file(folder_, name, O_WRONLY);
   struct stat status{};
-  bool blank = fd && fstat(fd.get(), &status) == 0 && S_ISREG(status.st_mode);
+  bool blank = fd && fstat(fd.get(), &status) == 0;
   const std::string zeros(4096, '\0');
   for (off_t at = 0; blank && at < status.st_size;) {
     const auto size = std::min(zeros.size(), static_cast<std::size_t>(status.st_size - at));

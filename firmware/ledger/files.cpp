@@ -8,8 +8,8 @@
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
+#include <limits>
 #include <vector>
 
 namespace adit::ledger {
@@ -35,6 +35,7 @@ Error::Kind kind_of(int code) {
     case EPERM:
       return Error::Kind::ReadOnly;
     case EIO:
+    case loop::kNotRegular:
       return Error::Kind::Failing;
     default:
       return Error::Kind::Other;
@@ -45,7 +46,7 @@ Error::Kind kind_of(int code) {
 
 Error system_error(const std::string& doing) {
   const int code = errno;
-  return {kind_of(code), doing + ": " + std::strerror(code)};
+  return {kind_of(code), doing + ": " + loop::text_of(code)};
 }
 
 bool exists(const std::string& path) {
@@ -62,21 +63,18 @@ Result<loop::FileDescriptor> lock_folder(const std::string& folder) {
 }
 
 Result<std::string> read_file(const std::string& path) {
-  const loop::FileDescriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const loop::FileDescriptor file = loop::open_regular(path, O_RDONLY);
   if (!file && errno == ENOENT) return std::string();
-  struct stat found{};
-  if (!file || ::fstat(file.get(), &found) != 0) return std::unexpected(system_error("reading " + path));
-  std::string bytes(static_cast<std::size_t>(found.st_size), '\0');
-  std::size_t had = 0;
-  while (had < bytes.size()) {
-    const ssize_t more = ::pread(file.get(), bytes.data() + had, bytes.size() - had, static_cast<off_t>(had));
-    if (more < 0 && errno == EINTR) continue;
-    if (more < 0) return std::unexpected(system_error("reading " + path));
-    if (more == 0) break;
-    had += static_cast<std::size_t>(more);
-  }
-  bytes.resize(had);
-  return bytes;
+  if (!file) return std::unexpected(system_error("reading " + path));
+  auto bytes = loop::read_all(file, std::numeric_limits<std::size_t>::max());
+  if (bytes) return std::move(*bytes);
+  errno = bytes.error();
+  return std::unexpected(system_error("reading " + path));
+}
+
+Result<void> check_regular(const std::string& path) {
+  if (loop::open_regular(path, O_RDONLY) || errno == ENOENT) return {};
+  return std::unexpected(system_error("opening " + path));
 }
 
 Result<void> make_file(const std::string& path) {
@@ -124,7 +122,7 @@ void remove_trials(const std::string& folder) {
 }
 
 Result<void> try_opening(const std::string& path) {
-  const loop::FileDescriptor file(::open(path.c_str(), O_RDWR | O_CLOEXEC));
+  const loop::FileDescriptor file = loop::open_regular(path, O_RDWR);
   if (!file && errno == ENOENT) return {};
   if (!file) return std::unexpected(system_error("opening " + path));
   return set_mode(path);

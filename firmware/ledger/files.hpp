@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "ledger/database.hpp"
-#include "loop/file_descriptor.hpp"
+#include "loop/regular_file.hpp"
 
 namespace adit::ledger {
 
@@ -19,6 +19,8 @@ bool exists(const std::string& path);
 Result<loop::FileDescriptor> lock_folder(const std::string& folder);
 /// All of a file; one that is not there is empty.
 Result<std::string> read_file(const std::string& path);
+/// A failure if the file is there, and cannot be opened or is no regular file, for which SQLite would wait.
+Result<void> check_regular(const std::string& path);
 /// Makes an empty file of mode 0600 where there is none; SQLite gives its -wal the same mode.
 Result<void> make_file(const std::string& path);
 /// A new or renamed file outlives a power cut only once its folder is on disk too.

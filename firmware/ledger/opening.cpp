@@ -124,6 +124,9 @@ class Opening {
 
   Result<Opened> open() {
     if (auto writable = try_writing(folder_); !writable) return std::unexpected(writable.error());
+    for (const char* suffix : {"", "-wal", "-shm", "-journal", ".salvaged"}) {
+      if (auto regular = check_regular(path_ + suffix); !regular) return std::unexpected(regular.error());
+    }
     if (auto there = have_file(); !there) return std::unexpected(there.error());
     auto database = open_file();
     if (!database && database.error().kind == Error::Kind::Damaged) {
@@ -218,7 +221,7 @@ class Opening {
   Result<void> repair_log(const std::vector<LogReading::Repair>& repairs) {
     if (repairs.empty()) return {};
     const std::string path = path_ + "-wal";
-    const loop::FileDescriptor file(::open(path.c_str(), O_WRONLY | O_CLOEXEC));
+    const loop::FileDescriptor file = loop::open_regular(path, O_WRONLY);
     if (!file) return std::unexpected(system_error("repairing " + path));
     for (const auto& [at, byte] : repairs) {
       if (::pwrite(file.get(), &byte, 1, static_cast<off_t>(at)) != 1) {

@@ -9,10 +9,10 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <vector>
 
 #include "icd/sentence.hpp"
+#include "loop/regular_file.hpp"
 
 namespace adit::spool {
 namespace {
@@ -40,7 +40,7 @@ std::span<const std::uint8_t> as_bytes(std::string_view text) {
 }  // namespace
 
 std::expected<MappedFile, int> map_file(const std::string& path) {
-  const loop::FileDescriptor fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const loop::FileDescriptor fd = loop::open_regular(path, O_RDONLY);
   if (!fd) return std::unexpected(errno);
   std::array<std::uint8_t, 4096> small;
   const ssize_t count = ::read(fd.get(), small.data(), small.size());
@@ -55,7 +55,7 @@ std::string_view text_in(const MappedFile& file) {
 
 icd::Refusal unreadable(const std::string& path, int error) {
   const auto status = error == ENOENT ? icd::Status::UnprocessableEntity : icd::Status::ServiceUnavailable;
-  return {status, icd::sentence("cannot read ", path, ": ", std::strerror(error))};
+  return {status, icd::sentence("cannot read ", path, ": ", loop::text_of(error))};
 }
 
 PartFile::PartFile(const std::string& path)

@@ -3,6 +3,7 @@
 import contextlib
 import http.client
 import json
+import os
 import pathlib
 import re
 import select
@@ -124,6 +125,27 @@ class Login(unittest.TestCase):
         self.assertNotIn("code=", box.said()[before:])
         self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False)
         self.assertEqual(box.ask("GET /adit/run", **box.log_in())[0], 200)
+
+    def test_a_fifo_in_place_of_a_file_holds_no_start_up(self):
+        box = self.box(first=False)
+        box.stop()
+        for name in ("settings.json", "settings.json.before", "secrets/team.token", "access.json", "devices.json",
+                     "sessions.json", "first-start.code", "acknowledged.json", "spare.json", "take-over", "stamps",
+                     "ledger.sqlite", "ledger.sqlite-wal", "ledger.sqlite-shm", "ledger.sqlite.salvaged",
+                     "journal/journal-00000001", "journal/snapshot-00000001.part", "waiting/map-00000001.cbor",
+                     "rejected/1.json", "runs/1/facts.json", "runs/1/map-00000001"):
+            with self.subTest(name):
+                file, elsewhere = box.state / name, box.state / "elsewhere"
+                file.parent.mkdir(parents=True, exist_ok=True)
+                if file.exists():
+                    file.rename(elsewhere)
+                os.mkfifo(file)
+                box.start()
+                self.assertEqual(box.ask("GET /adit/session")[0], 200)
+                box.stop()
+                file.unlink(missing_ok=True)
+                if elsewhere.exists():
+                    elsewhere.rename(file)
 
     def test_the_code_of_the_label_is_not_told(self):
         box = self.box(first=False, label="31415926")

@@ -239,7 +239,7 @@ class SetUp(unittest.TestCase):
         file.mkdir()
         self.box.start()
         self.assertEqual(self.alarms(), {"standby"})
-        said = f"this box is on standby: the saved settings or tokens cannot be read: {file}: Is a directory; " \
+        said = f"this box is on standby: the saved settings or tokens cannot be read: {file}: is not a regular file; " \
                "it accepts and sends no messages"
         self.assertEqual(self.box.ask("POST /state/update", state("ugv1"))[:2], (503, said))
         shown = self.settings()

@@ -104,7 +104,7 @@ TEST_F(SpareStickTest, SaysWhyItCameToNothing) {
   ASSERT_TRUE(stick_.take(kName));
   EXPECT_EQ(stick_.view()->refusal, "") << "while it is tried again";
   answer({});
-  EXPECT_THAT(stick_.view()->refusal, HasSubstr("is gone")) << "adit-spare left no file";
+  EXPECT_THAT(stick_.view()->refusal, HasSubstr("No such file")) << "adit-spare left no file";
   EXPECT_TRUE(taken_.empty());
 }
 

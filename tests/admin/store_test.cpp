@@ -149,7 +149,7 @@ TEST_F(StoreTest, LeavesAnUnreadableFileAsItIsAndRevertsNothingForIt) {
     std::filesystem::create_directory(state_ / name);
     const auto loaded = store_.load();
     ASSERT_TRUE(loaded.has_value()) << loaded.error();
-    EXPECT_EQ(store_.unread(), (state_ / name) + ": Is a directory");
+    EXPECT_EQ(store_.unread(), (state_ / name) + ": is not a regular file");
     EXPECT_EQ(store_.save(loaded->settings).error(), store_.unread()) << "on those that nobody chose";
     store_.settle(loaded->settings);
     EXPECT_FALSE(store_.revert());

@@ -54,7 +54,7 @@ TEST(ExportFile, IsAPlainOneOfBoundedSize) {
   fs::create_symlink(secret, stick / "link.adit-spare");
   EXPECT_FALSE(read_export(stick.path(), "link.adit-spare"));
   ASSERT_EQ(mkfifo((stick / "pipe.adit-spare").c_str(), 0600), 0);
-  EXPECT_THAT(read_export(stick.path(), "pipe.adit-spare").error(), HasSubstr("expected a plain file"));
+  EXPECT_THAT(read_export(stick.path(), "pipe.adit-spare").error(), HasSubstr("is not a regular file"));
   fs::create_directory(stick / "folder.adit-spare");
   EXPECT_FALSE(read_export(stick.path(), "folder.adit-spare"));
   EXPECT_FALSE(read_export(stick.path(), "none.adit-spare"));

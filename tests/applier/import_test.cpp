@@ -225,8 +225,8 @@ TEST_F(ImportTest, TakesPlainFilesAlone) {
   fs::create_directory(options.card + "/secrets/team.token");
   import();
   EXPECT_THAT(taken(),
-              AllOf(HasSubstr("adit/settings.json: "), HasSubstr("adit/network.json: expected a plain file"),
-                    HasSubstr("adit/secrets/team.token: expected a plain file")));
+              AllOf(HasSubstr("adit/settings.json: "), HasSubstr("adit/network.json: is not a regular file"),
+                    HasSubstr("adit/secrets/team.token: is not a regular file")));
   EXPECT_FALSE(fs::exists(options.state));
   fs::remove_all(options.card + "/secrets");
   bring("secrets", "no folder");

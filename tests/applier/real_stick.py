@@ -233,7 +233,7 @@ class Stick(Sticks):
         run("umount", top)
         self.mount_stick()
         self.assertEqual(len(self.run_it()["exports"]), 6, "they are names so far")
-        for name, why in (("link", "link.adit-spare"), ("pipe", "expected a plain file"), ("folder", "expected a plain file"),
+        for name, why in (("link", "link.adit-spare"), ("pipe", "is not a regular file"), ("folder", "is not a regular file"),
                           ("none", "the file is not an export from Adit"), ("empty", "the file is not an export from Adit"),
                           ("large", "larger than an export may be")):
             with self.subTest(name):

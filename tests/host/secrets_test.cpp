@@ -100,7 +100,7 @@ TEST_F(ReadSecrets, TellsOfAFileThatCannotBeReadAndHasTheOthers) {
     std::filesystem::create_directory(path);
     const auto secrets = read(folder_.path());
     ASSERT_TRUE(secrets.has_value()) << secrets.error();
-    EXPECT_EQ(secrets->unread, path + ": Is a directory");
+    EXPECT_EQ(secrets->unread, path + ": is not a regular file");
     EXPECT_EQ(secrets->token("scoring")->reveal(), "flux230{showroom");
     std::filesystem::remove(path);
   }

@@ -179,7 +179,7 @@ TEST_F(JournalTest, KeepsNothingAndRemovesNothingIfAFileCannotBeRead) {
   ASSERT_TRUE(life()->accepted(pose(1)));
   const fs::path unreadable = folder_ / "journal" / "log-00000002.0123456789abcdef";
   fs::create_directory(unreadable);
-  const std::string why = unreadable.string() + ": not a regular file";
+  const std::string why = unreadable.string() + ": is not a regular file";
   {
     Journal journal(loop_, folder_ / "journal");
     EXPECT_TRUE(journal.read().robots().empty());

@@ -120,7 +120,8 @@ TEST_F(SpoolTest, KeepsAFileThatItCannotReadAndRefusesMapsUntilTheNextStart) {
   fs::create_directory(folder_ / "map-00000001.cbor");  // open succeeds, read fails
   EXPECT_EQ(spool.read().size(), 1u) << "the other map is queued";
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor"));
-  const std::string why = "cannot read " + (folder_ / "map-00000001.cbor").string() + ": Is a directory";
+  const std::string why =
+      "cannot read " + (folder_ / "map-00000001.cbor").string() + ": is not a regular file";
   EXPECT_EQ(spool.trouble(), why);
   const auto kept = spool.keep(1, grid("r1", 1), 0);
   ASSERT_FALSE(kept);

@@ -136,7 +136,7 @@ class Refused(OnABox):
     def test_what_is_no_plain_file_is_taken_away(self):
         path = self.box.folder / "wanted/update.raucb"
         for make, sentence in ((lambda: path.symlink_to(self.newer), "Too many levels"),
-                               (lambda: os.mkfifo(path), "expected a plain file"), (path.mkdir, "expected a plain file"),
+                               (lambda: os.mkfifo(path), "is not a regular file"), (path.mkdir, "is not a regular file"),
                                (lambda: (path.touch(), os.truncate(path, (256 << 20) + 1)), "expected at most"),
                                (lambda: None, "No such file")):
             with self.subTest(sentence):

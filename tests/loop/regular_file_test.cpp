@@ -1,0 +1,50 @@
+#include "loop/regular_file.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+
+#include <filesystem>
+#include <fstream>
+
+namespace adit::loop {
+namespace {
+
+class RegularFile : public testing::Test {
+ protected:
+  ~RegularFile() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ = [] {
+    std::string name = std::filesystem::temp_directory_path() / "adit-loop-XXXXXX";
+    EXPECT_NE(::mkdtemp(name.data()), nullptr);
+    return name;
+  }();
+};
+
+TEST_F(RegularFile, IsOpenedAndNothingElseIsWaitedFor) {
+  std::ofstream(folder_ / "file") << "text";
+  ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+  const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+  (folder_ / "socket").string().copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(::bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  for (const int flags : {O_RDONLY, O_WRONLY | O_APPEND, O_RDWR}) {
+    EXPECT_TRUE(open_regular(folder_ / "file", flags));
+    for (const std::filesystem::path& other :
+         {folder_, folder_ / "pipe", folder_ / "socket", std::filesystem::path("/dev/null")}) {
+      EXPECT_FALSE(open_regular(other, flags)) << other;
+      EXPECT_EQ(text_of(errno), "is not a regular file") << other;
+    }
+    EXPECT_FALSE(open_regular(folder_ / "none", flags));
+    EXPECT_EQ(errno, ENOENT);
+  }
+}
+
+TEST_F(RegularFile, IsReadToItsEndUpToTheMostBytes) {
+  std::ofstream(folder_ / "file") << std::string(100'000, 'x');
+  EXPECT_EQ(read_all(open_regular(folder_ / "file", O_RDONLY), 100'000), std::string(100'000, 'x'));
+  EXPECT_EQ(read_all(open_regular(folder_ / "file", O_RDONLY), 99'999).error(), EFBIG);
+}
+
+}  // namespace
+}  // namespace adit::loop

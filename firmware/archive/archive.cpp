@@ -7,6 +7,7 @@
 #include "archive/run_report.hpp"
 #include "codec/row_file.hpp"
 #include "host/log.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::archive {
 
@@ -25,12 +26,17 @@ std::function<bool()> Archive::enough() const {
 
 namespace {
 
-/// Logs and skips the files of a run that cannot be read. Damaged records are skipped, too.
+/// Skips the files of a run that cannot be read and damaged records. The log says so, and the run itself,
+/// among what needed the operator.
 void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
               const std::function<bool()>& enough) {
   const auto all_read = read_run(runs.folder_of(key), told, enough);
-  if (!all_read)
-    host::log(host::Level::Warning, "cannot read a part of a stored run", {{"why", all_read.error()}});
+  if (all_read && told.damaged() == 0) return;
+  const std::string why = all_read ? icd::sentence("damaged records: ", told.damaged()) : all_read.error();
+  host::log(host::Level::Error, "a part of a stored run is lost; the rest is used",
+            {{"run", key}, {"why", why}});
+  told.samples().add(api::AttentionStep{told.last(), true,
+                                        "a part of the run's stored map, tracks and plots is lost: " + why});
 }
 
 }  // namespace

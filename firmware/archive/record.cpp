@@ -37,6 +37,13 @@ std::string_view body_at_begin(std::string_view bytes) {
   return checksum_of(body) == number_at(bytes, 8) ? body : std::string_view();
 }
 
+/// Whether the record at the begin of `bytes` is whole. A torn one is shorter than it says.
+bool is_whole(std::string_view bytes) {
+  if (bytes.size() <= kHead) return false;
+  const std::size_t size = kHead + number_at(bytes, 4);
+  return size == bytes.size() || (size < bytes.size() && bytes.substr(size).starts_with(kBegins));
+}
+
 }  // namespace
 
 std::string framed(Kind kind, std::string_view said) {
@@ -49,21 +56,23 @@ std::string framed(Kind kind, std::string_view said) {
   return record += body;
 }
 
-void for_each_record(std::string_view bytes, const std::function<void(Kind, std::string_view)>& told) {
-  int damaged = 0;
-  while (damaged < kMostDamaged) {
+std::size_t for_each_record(std::string_view bytes, const std::function<void(Kind, std::string_view)>& told) {
+  std::size_t damaged = 0;
+  for (int passed_over = 0; passed_over < kMostDamaged;) {
     const auto begin = bytes.find(kBegins);
-    if (begin == std::string_view::npos) return;
+    if (begin == std::string_view::npos) break;
     bytes.remove_prefix(begin);
     const std::string_view body = body_at_begin(bytes);
     if (body.empty()) {
-      ++damaged;
+      ++passed_over;
+      if (is_whole(bytes)) ++damaged;
       bytes.remove_prefix(1);
       continue;
     }
     told(static_cast<Kind>(body.front()), body.substr(1));
     bytes.remove_prefix(kHead + body.size());
   }
+  return damaged;
 }
 
 }  // namespace adit::archive

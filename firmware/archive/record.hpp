@@ -28,7 +28,8 @@ inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 std::string framed(Kind kind, std::string_view said);
 
 /// Tells the whole records in `bytes`, in order. What is damaged is passed over up to the next whole record;
-/// in a file that is damaged all over, the rest is.
-void for_each_record(std::string_view bytes, const std::function<void(Kind, std::string_view)>& told);
+/// in a file that is damaged all over, the rest is. Returns the number of damaged records: not of torn ones,
+/// which a death leaves.
+std::size_t for_each_record(std::string_view bytes, const std::function<void(Kind, std::string_view)>& told);
 
 }  // namespace adit::archive

@@ -6,7 +6,7 @@
 namespace adit::archive {
 
 void Told::tell(std::string_view bytes, std::uint64_t file) {
-  for_each_record(bytes, [&](Kind kind, std::string_view said) { tell(kind, said, file); });
+  damaged_ += for_each_record(bytes, [&](Kind kind, std::string_view said) { tell(kind, said, file); });
 }
 
 void Told::tell(Kind kind, std::string_view said, std::uint64_t file) {

@@ -40,6 +40,7 @@ class Told {
   std::map<TileKey, std::uint64_t>& files() { return files_; }
   /// How much of the finest tiles was known over time: pixels of all layers.
   const std::vector<std::pair<double, std::uint64_t>>& known() const { return known_; }
+  std::size_t damaged() const { return damaged_; }                  // records
   double last() const { return std::max(last_line_, last_tile_); }  // of what is told of
 
  private:
@@ -57,6 +58,7 @@ class Told {
   std::optional<Head> head_;
   bool tiles_fit_ = false;
   bool is_ours_ = false;
+  std::size_t damaged_ = 0;
   std::map<std::string, std::vector<api::TrackPose>> tracks_;
   std::size_t poses_ = 0;
   std::map<TileKey, std::uint64_t> files_;

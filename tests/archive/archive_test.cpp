@@ -259,6 +259,16 @@ TEST_F(ArchiveTest, ReadsARunToBeLookedAtAgain) {
   EXPECT_EQ(shown((*read)->picture), shown(run.easel.mosaic));
   EXPECT_EQ((*read)->facts.course, "alpha");
   EXPECT_EQ((*read)->history.at.size(), 1U);
+  EXPECT_TRUE((*read)->history.attention.empty());
+  std::fstream(folder / "runs/3/lines-00000001", std::ios::in | std::ios::out)
+      .seekp(-1, std::ios::end)
+      .put('x');
+  read.reset();
+  archive->read("3", [&](auto its) { read = its; });
+  ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));
+  ASSERT_EQ((*read)->history.attention.size(), 1U) << "damage is told of";
+  EXPECT_EQ((*read)->history.attention[0].sentence,
+            "a part of the run's stored map, tracks and plots is lost: damaged records: 1");
   read.reset();
   archive->read("7", [&](auto its) { read = its; });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return read.has_value(); }));

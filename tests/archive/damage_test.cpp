@@ -77,6 +77,15 @@ TEST_F(Damage, ByACutLeavesWhatWasBefore) {
   }
 }
 
+TEST_F(Damage, IsCountedAndATornEndIsNone) {
+  Told torn(0), damaged(0);
+  torn.tell(file.substr(0, file.size() - 1), 1);
+  EXPECT_EQ(torn.damaged(), 0u);
+  file.back() ^= 1;
+  damaged.tell(file + file, 1);
+  EXPECT_EQ(damaged.damaged(), 2u) << "the one at its end, too";
+}
+
 TEST_F(Damage, AllOverIsNoCrash) {
   std::mt19937 random{5};
   for (int i = 0; i < 300; ++i) {

@@ -19,11 +19,11 @@ double rounded(double number) {
   return std::round(number * kSteps) / kSteps + 0.0;  // no -0
 }
 
-/// The time goes on whatever happens.
+/// The clocks go on whatever happens.
 bool is_news(const std::optional<codec::Value>& patch) {
-  if (!patch) return false;
-  const auto& members = std::get<codec::Value::Object>(patch->is);
-  return members.size() > 1 || members.front().first != "now";
+  return patch && std::ranges::any_of(std::get<codec::Value::Object>(patch->is), [](const auto& member) {
+           return member.first != "now" && member.first != "run_clock";
+         });
 }
 
 }  // namespace
@@ -40,9 +40,6 @@ RunView Live::look() const {
   };
   for (ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
   for (RobotRow& robot : view.robots) whole_seconds(robot.age);
-  if (view.run_clock) {
-    for (double* const each : {&view.run_clock->seconds, &view.run_clock->age}) *each = std::floor(*each);
-  }
   return view;
 }
 

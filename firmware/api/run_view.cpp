@@ -162,7 +162,6 @@ constexpr Member kView[] = {
     member<&RunView::now>("now", kWhen),
     member<&RunView::version>("version"),
     member<&RunView::run>("run"),
-    member<&RunView::run_heard>("run_heard", kWhen),
     member<&RunView::run_clock>("run_clock", "null if there is no status"),
     member<&RunView::run_number>("run_number"),
     member<&RunView::run_id>("run_id", "the Command Post's name of the run; empty if there is none"),

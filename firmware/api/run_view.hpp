@@ -150,7 +150,6 @@ struct RunView {
   Time now = 0;
   std::string version;
   std::optional<icd::RunStatus> run;
-  std::optional<Time> run_heard;
   std::optional<alarms::ShownClock> run_clock;
   std::int64_t run_number = 1;
   std::string run_id;

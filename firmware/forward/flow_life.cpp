@@ -145,7 +145,6 @@ KnownTimes Flow::known_times() const {
 /// other runs stay as they are.
 void Flow::wall_was_set(double seconds) {
   clocks_.wall_was_set();
-  scoring_.move(seconds);
   record_.move(seconds);
   as_forwarded_.move(seconds);
   picture_.move(seconds);

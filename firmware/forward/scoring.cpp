@@ -86,7 +86,6 @@ void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
 void Scoring::endpoint_turned() {
   pace_.endpoint_turned();
   run_.reset();
-  run_heard_.reset();
   run_clock_ = {};
   known_status_ = {};
   poll_due_ = true;
@@ -340,7 +339,6 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   }
   if (run) {
     run_ = *run;
-    run_heard_ = loop_.wall_now();
     run_clock_.heard(run->run_clock, loop_.stamp_now());
     reports_->status_heard(*run, asked, time());
   } else {

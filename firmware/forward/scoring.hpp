@@ -87,12 +87,7 @@ class Scoring {
 
   const Channel& channel() const { return channel_; }
   const std::optional<icd::RunStatus>& run() const { return run_; }
-  std::optional<api::Time> run_heard() const { return run_heard_; }
   std::optional<alarms::ShownClock> run_clock() const { return run_clock_.at(loop_.stamp_now()); }
-  /// The time of day was set ahead by so many seconds.
-  void move(double seconds) {
-    if (run_heard_) *run_heard_ += seconds;
-  }
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
   const std::string& trouble() const {
@@ -154,7 +149,6 @@ class Scoring {
   bool poll_due_ = false;  // Adit itself wants to know the status
 
   std::optional<icd::RunStatus> run_;
-  std::optional<api::Time> run_heard_;
   alarms::RunClock run_clock_;
   KnownStatus known_status_;
   std::optional<AskedStatus> asked_status_;

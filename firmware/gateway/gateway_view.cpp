@@ -69,7 +69,6 @@ api::RunView Gateway::view() const {
   api::RunView view{.now = loop_.wall_now(),
                     .version = box::kVersion,
                     .run = flow_.scoring().run(),
-                    .run_heard = flow_.scoring().run_heard(),
                     .run_clock = flow_.scoring().run_clock(),
                     .run_number = flow_.reports().run().number,
                     .run_id = flow_.reports().run().id,

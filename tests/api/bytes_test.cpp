@@ -38,7 +38,6 @@ RunView view() {
   view.now = 1000.5;
   view.version = "0.1";
   view.run = {.score = 7, .run_clock = 754.5, .remaining_reports = 18, .current_team = "cave"};
-  view.run_heard = 999;
   view.run_clock = {.seconds = 756, .age = 1.5, .runs = true};
   view.run_number = 2;
   view.run_id = "beta";
@@ -107,7 +106,7 @@ TEST(Bytes, OfARun) {
   EXPECT_EQ(
       codec::to_json(view()),
       R"({"now":1000.5,"version":"0.1","run":{"score":7,"run_clock":754.5,"remaining_reports":18,)"
-      R"("current_team":"cave"},"run_heard":999.0,"run_clock":{"seconds":756.0,"age":1.5,"runs":true,)"
+      R"("current_team":"cave"},"run_clock":{"seconds":756.0,"age":1.5,"runs":true,)"
       R"("old":false},"run_number":2,"run_id":"beta","run_seconds":3600,)"
       R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
       R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"

@@ -121,7 +121,7 @@ TEST(RunViewJson, WritesWhatIsAbsentAsNull) {
   view.reports.emplace_back();
   const json parsed = json::parse(codec::to_json(view));
   EXPECT_TRUE(parsed.at("run").is_null());
-  EXPECT_TRUE(parsed.at("run_heard").is_null());
+  EXPECT_TRUE(parsed.at("run_clock").is_null());
   EXPECT_TRUE(parsed.at("endpoints")[0].at("answer_ms").is_null());
   EXPECT_TRUE(parsed.at("activities")[0].at("last_forwarded").is_null());
   EXPECT_TRUE(parsed.at("reports")[0].at("score_change").is_null());

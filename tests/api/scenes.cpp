@@ -76,7 +76,6 @@ RunView calm(Time now, double elapsed) {
   const double heard = std::floor(elapsed);
   const Time began = now - elapsed;
   view.run = icd::RunStatus{7, 754 + heard, 18, "Cerberus"};
-  view.run_heard = now - (elapsed - heard);
   view.run_clock = {.seconds = 754 + elapsed, .age = elapsed - heard, .runs = true};
   view.endpoints[0].connected = view.endpoints[1].connected = true;
   view.endpoints[0].last_status = view.endpoints[1].last_status = 200;

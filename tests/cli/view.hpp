@@ -10,7 +10,6 @@ inline api::RunView sample_view() {
   view.now = 1000;
   view.version = "0.1.0";
   view.run = {.score = 7, .run_clock = 754.5, .remaining_reports = 18, .current_team = "cave_club"};
-  view.run_heard = 999.6;
   view.run_clock = {.seconds = 754.9, .age = 0.4, .runs = true};
   view.budget_mbit = 100;
   view.sent_mbit = 12.34;

@@ -127,7 +127,7 @@ void judge_run(const Evidence& evidence, std::size_t begun, const Reading& readi
                                    ", and the Command Post ", heard->text));
     return;
   }
-  const double age = reading.view.at("now").get<double>() - reading.view.at("run_heard").get<double>();
+  const double age = reading.view.at("run_clock").at("age").get<double>();
   const double asked = reading.at - heard->at, told = evidence.events[reading.heard - 1].at - heard->at;
   if (age < asked - kAgeRounding || age > told + kAgeRounding)
     broken.push_back(icd::sentence("Honest: at ", reading.at, " the page calls the status ", age,

@@ -185,7 +185,7 @@ class Page:
         return self.ask(f"POST /adit/reports/{number}/{action}", {"Content-Type": "application/json"})
 
     def knows_the_run(self):
-        return self.ask("GET /adit/run")[1]["run_heard"] is not None
+        return self.ask("GET /adit/run")[1]["run_clock"] is not None
 
 
 def log_in(page, password):

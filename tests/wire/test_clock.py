@@ -116,7 +116,7 @@ class Step(unittest.TestCase):
     def ages(self):
         """How long ago all is that the page shows with an age or on its time bar, by name."""
         box, run = self.stage.box, self.view()
-        times = {"run_heard": run["run_heard"]}
+        times = {"run_clock": run["run_clock"] and run["now"] - run["run_clock"]["age"]}
         times |= {f"robot {row['name']}": row["at"] for row in run["robots"]}
         times |= {f"refusal {row['uri']}": row["at"] for row in run["refusals"]}
         times |= {f"alarm {row['id']}": row["since"] for row in run["alarms"]}

@@ -6,12 +6,6 @@ const at = (id) => document.getElementById(id);
 const FEW = 5; // reports left
 const LABELS = { clock: "run clock", togo: "to go", score: "score", remaining: "reports left" };
 
-/** The run's clock at `now`, a time of the box. */
-function runClock({ run, run_heard, run_clock: { runs, old } }, now, lost) {
-  const age = Math.max(0, now - run_heard);
-  return { seconds: run.run_clock + (runs ? age : 0), age, runs, isStale: old || Boolean(lost) };
-}
-
 function figure(id, text, label, { isStale = false, level = "" } = {}) {
   const node = at(id);
   if (!node) return; // the display has not all
@@ -33,7 +27,8 @@ export function showRun(view, now, lost) {
     for (const [id, label] of Object.entries(LABELS)) figure(id, "–", label);
     return say(at("run-note"), "No answer from the Command Post yet");
   }
-  const { seconds, age, runs, isStale } = runClock(view, now, lost), toGo = view.run_seconds - seconds;
+  const { runs, old, ...then } = view.run_clock, since = now - view.now, isStale = old || Boolean(lost);
+  const seconds = then.seconds + (runs ? since : 0), toGo = view.run_seconds - seconds;
   const told = (time) => (isStale && runs ? `≈${clock(time)}` : clock(time));
   const stale = isStale ? clock(run.run_clock) : "";
   figure("clock", told(seconds), LABELS.clock, { isStale });
@@ -42,7 +37,7 @@ export function showRun(view, now, lost) {
   const [label, level] = left(run.remaining_reports);
   figure("remaining", String(run.remaining_reports), stale ? `${label} ${stale}` : label, { isStale, level });
   const team = run.current_team ? `${clip(run.current_team, 40)} · ` : "";
-  say(at("run-note"), `${team}${isStale ? "last answer" : "updated"} ${ago(age)}`);
+  say(at("run-note"), `${team}${isStale ? "last answer" : "updated"} ${ago(then.age + since)}`);
 }
 
 /** `lost`: what to say of a box that does not answer, or "". */

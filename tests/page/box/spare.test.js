@@ -30,7 +30,7 @@ const notes = (section, words) => section.locator(".note", { hasText: words }).w
 
 test("one press puts the box to rest and downloads its export, and the other box takes over by it", async (t) => {
   const [first, spare] = await Promise.all([box(t), box(t)]);
-  await until(async () => (await first.run()).run_heard, "the run");
+  await until(async () => (await first.run()).run_clock, "the run");
   const number = await first.compose("Drill", 3, 4, 5);
   await first.becomes(number, "answered");
 
@@ -80,5 +80,5 @@ test("standby is ended if the spare did not take over", async (t) => {
   await press("End standby");
   await yes(page);
   await notes(section, "A spare box can take over");
-  await until(async () => (await made.run()).run_heard, "the run");
+  await until(async () => (await made.run()).run_clock, "the run");
 });

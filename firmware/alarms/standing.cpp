@@ -31,6 +31,15 @@ bool is_silent(const std::string& robot, const Facts& facts) {
   return found != facts.robots.end() && found->second.silent && !is_cut_off;
 }
 
+std::vector<std::string> unheard(const Facts& facts) {
+  std::vector<std::string> names;
+  for (const auto& [name, robot] : facts.robots) {
+    const bool is_heard = std::ranges::count(facts.streams, name, &Stream::robot) > 0;
+    if (!is_heard && is_silent(name, facts)) names.push_back(name);
+  }
+  return names;
+}
+
 const Endpoint* stopped(const Facts& facts) {
   const Endpoint* const endpoint = mapping(facts);
   return endpoint != nullptr && endpoint->trouble < PostTrouble::Throttling ? endpoint : nullptr;

@@ -40,12 +40,7 @@ std::map<std::string, Maps> maps_of(const Facts& facts) {
     const double age = std::min(*stream.forwarded, stream.behind.value_or(*stream.forwarded));
     maps.oldest = std::max(age, maps.oldest.value_or(0));
   }
-  // Of one that has said nothing since the service began nothing else is known.
-  for (const auto& [name, robot] : facts.robots) {
-    if (is_silent(name, facts) &&
-        std::ranges::find(facts.streams, name, &Stream::robot) == facts.streams.end())
-      all[name].level = Level::Bad;
-  }
+  for (const std::string& name : unheard(facts)) all[name].level = Level::Bad;
   return all;
 }
 

@@ -1,8 +1,10 @@
 #include "api/judged.hpp"
 
 #include <algorithm>
+#include <map>
 
 #include "alarms/standing.hpp"
+#include "alarms/words.hpp"
 #include "icd/require.hpp"
 
 namespace adit::api {
@@ -35,6 +37,39 @@ std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Tim
   return streams;
 }
 
+namespace {
+
+/// `rows`: the robot's, in the order of their kinds.
+StandingRow standing_of(const std::string& name, std::vector<const ActivityRow*> rows) {
+  const auto is_pose = [](const ActivityRow* row) { return row->kind == "state"; };
+  const auto is_quiet = [](const ActivityRow* row) { return row->level == alarms::Level::Quiet; };
+  const ActivityRow& worst = **std::ranges::max_element(rows, {}, &ActivityRow::level);
+  const bool silent = std::ranges::count(rows, alarms::Arrival::Silent, &ActivityRow::arrival) > 0;
+  const bool has_map = !std::ranges::all_of(rows, is_pose);
+  if (has_map) std::erase_if(rows, is_pose);
+  const bool are_quiet = std::ranges::all_of(rows, is_quiet);
+  if (!are_quiet) std::erase_if(rows, is_quiet);
+  const auto [newest, oldest] = std::ranges::minmax(rows, {}, &ActivityRow::age);
+  const auto age = newest->age && !are_quiet ? oldest->age : newest->age;
+  return {name, worst.level, worst.word, silent, has_map, age};
+}
+
+void judge_robots(RunView& view, const alarms::Facts& facts) {
+  std::map<std::string, std::vector<const ActivityRow*>> all;
+  for (const ActivityRow& row : view.activities) all[row.robot].push_back(&row);
+  all.erase("");
+  for (const auto& [name, rows] : all) view.standings.push_back(standing_of(name, rows));
+  if (alarms::stopped(facts) != nullptr) return;
+  for (const std::string& name : alarms::unheard(facts)) {
+    const auto pose = std::ranges::find(view.robots, name, &RobotRow::name);
+    const auto age = pose == view.robots.end() ? std::nullopt : pose->age;
+    view.standings.push_back({name, alarms::Level::Bad, "silent", true, false, age});
+  }
+  std::ranges::sort(view.standings, {}, &StandingRow::name);
+}
+
+}  // namespace
+
 void judge(RunView& view, const alarms::Facts& facts) {
   icd::require(facts.streams.size() == view.activities.size());
   for (std::size_t i = 0; i < view.activities.size(); ++i) {
@@ -44,6 +79,8 @@ void judge(RunView& view, const alarms::Facts& facts) {
     row.level = level;
     row.behind = facts.streams[i].behind;
     row.age = facts.streams[i].forwarded;
+    const bool is_late = arrival == alarms::Arrival::Late && row.behind;
+    row.word = is_late ? alarms::age_text(*row.behind) + " behind" : std::string(name_of(arrival));
   }
   for (RobotRow& robot : view.robots) {
     const auto its = std::ranges::find_if(view.activities, [&robot](const ActivityRow& row) {
@@ -52,6 +89,7 @@ void judge(RunView& view, const alarms::Facts& facts) {
     if (its != view.activities.end() && its->age) robot.at = facts.now - *its->age;
     if (robot.at) robot.age = seconds_since(*robot.at, facts.now);
   }
+  judge_robots(view, facts);
   view.verdict = alarms::verdict_of(facts);
 }
 

@@ -40,6 +40,7 @@ RunView Live::look() const {
   };
   for (ActivityRow& row : view.activities) whole_seconds(row.behind), whole_seconds(row.age);
   for (RobotRow& robot : view.robots) whole_seconds(robot.age);
+  for (StandingRow& robot : view.standings) whole_seconds(robot.age);
   return view;
 }
 

@@ -96,6 +96,17 @@ constexpr Member kActivity[] = {
     member<&ActivityRow::arrival>("arrival", "whether updates reach the Command Post")
         .one_of(alarms::kArrivalWords),
     member<&ActivityRow::level>("level", "severity of arrival").one_of(alarms::kLevelWords),
+    member<&ActivityRow::word>("word", "arrival as text; if late, how far behind"),
+};
+
+constexpr Member kStanding[] = {
+    member<&StandingRow::name>("name"),
+    member<&StandingRow::level>("level", "of the worst activity").one_of(alarms::kLevelWords),
+    member<&StandingRow::word>("word", "of that activity"),
+    member<&StandingRow::silent>("silent", "whether the robot is silent for longer than usual"),
+    member<&StandingRow::has_map>("has_map", "whether the robot sends maps"),
+    member<&StandingRow::age>("age",
+                              "of its oldest map that is not quiet, or else of its newest map or pose"),
 };
 
 constexpr Member kRefusal[] = {
@@ -172,7 +183,8 @@ constexpr Member kView[] = {
                               "newest first, at most 200: all open reports, and the newest of the others"),
     member<&RunView::near_metres>("near_metres",
                                   "two reports of one type that are this near may be of one artifact"),
-    member<&RunView::activities>("activities"),
+    member<&RunView::activities>("activities", "by kind, then by robot"),
+    member<&RunView::standings>("standings", "how each robot's data arrive, by name"),
     member<&RunView::refusals>("refusals", "the last 50, newest first"),
     member<&RunView::rejected>("rejected", "rejected messages, oldest first, at most 100"),
     member<&RunView::lights>("lights"),
@@ -202,6 +214,7 @@ constexpr codec::Row ReportStep::kRow = {"", kStep};
 constexpr codec::Row ReportDetail::kRow = {"ReportDetail", kDetail};
 constexpr codec::Row ActivityRow::kRow = {"Activity", kActivity, "The traffic of one robot and kind.",
                                           kByTraffic};
+constexpr codec::Row StandingRow::kRow = {"Standing", kStanding, "", kByName};
 constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "A rejected message.", kByMoment};
 constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
 constexpr codec::Row RejectedRow::kRow = {"Rejected", kRejected, "", kByNumber};

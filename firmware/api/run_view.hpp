@@ -80,6 +80,18 @@ struct ActivityRow {
   std::uint64_t points_left_out = 0, no_valid_point = 0, invisible = 0;
   alarms::Arrival arrival = alarms::Arrival::NotYet;
   alarms::Level level = alarms::Level::Quiet;
+  std::string word = {};  // judge()'s
+
+  static const codec::Row kRow;
+};
+
+/// How a robot's data arrive.
+struct StandingRow {
+  std::string name;
+  alarms::Level level = alarms::Level::Quiet;
+  std::string word = {};
+  bool silent = false, has_map = false;
+  std::optional<double> age = {};
 
   static const codec::Row kRow;
 };
@@ -159,6 +171,7 @@ struct RunView {
   std::vector<ReportRow> reports;
   double near_metres = 0;
   std::vector<ActivityRow> activities;
+  std::vector<StandingRow> standings;
   std::vector<RefusalRow> refusals;
   std::vector<RejectedRow> rejected;
   std::vector<LightRow> lights;

@@ -45,11 +45,6 @@ std::string alarms_table(const RunView& view, bool colour) {
   return table.empty() ? "" : table.written(colour) + '\n';
 }
 
-Tone tone_of_level(alarms::Level level) {
-  constexpr Tone kTones[] = {Tone::Faint, Tone::Good, Tone::Warning, Tone::Bad};
-  return kTones[static_cast<std::size_t>(level)];
-}
-
 std::string verdict_line(const RunView& view, bool colour) {
   if (view.verdict.what.empty()) return "";
   return "Maps  " + painted(view.verdict.what, tone_of_level(view.verdict.level), colour) + ": " +
@@ -124,13 +119,6 @@ std::string endpoints_table(const RunView& view, bool colour) {
   return table.empty() ? "" : "\nCommand Post\n" + table.written(colour);
 }
 
-/// Whether it reaches the Command Post, and how far that is behind.
-Cell arrival_cell(const api::ActivityRow& row) {
-  const bool late = row.arrival == alarms::Arrival::Late && row.behind;
-  return {late ? duration(*row.behind) + " behind" : std::string(name_of(row.arrival)),
-          tone_of_level(row.level)};
-}
-
 std::string ago(double seconds) {
   return duration(seconds) + " ago";
 }
@@ -165,7 +153,7 @@ std::string activities_table(const RunView& view, bool colour) {
   for (const api::ActivityRow& row : view.activities) {
     table.add({{row.robot.empty() ? "(all)" : row.robot, Tone::Strong},
                {kind_of(row)},
-               arrival_cell(row),
+               {row.word, tone_of_level(row.level)},
                {std::to_string(row.accepted)},
                {std::to_string(row.forwarded)},
                {std::to_string(row.queued)},
@@ -193,6 +181,11 @@ std::string refusals_table(const RunView& view, bool colour) {
 }
 
 }  // namespace
+
+Tone tone_of_level(alarms::Level level) {
+  constexpr Tone kTones[] = {Tone::Faint, Tone::Good, Tone::Warning, Tone::Bad};
+  return kTones[static_cast<std::size_t>(level)];
+}
 
 std::string status_text(const RunView& view, bool colour) {
   return alarms_table(view, colour) + run_line(view, colour) + verdict_line(view, colour) + link_line(view) +

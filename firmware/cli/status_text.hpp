@@ -3,8 +3,11 @@
 #include <string>
 
 #include "api/run_view.hpp"
+#include "cli/words.hpp"
 
 namespace adit::cli {
+
+Tone tone_of_level(alarms::Level level);
 
 /// What `adit status` prints.
 std::string status_text(const api::RunView& view, bool colour);

@@ -85,32 +85,15 @@ void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines
   }
 }
 
-struct Told {
-  const char* word;
-  Tone tone;
-  bool operator==(const Told& other) const { return std::string_view(word) == other.word; }
-};
+constexpr std::string_view kArrives = "arrives", kNotArriving = "NOT ARRIVING";
 
-/// Late is none of its own: where many robots share the link, each is late in its turn.
-Told said_of(alarms::Arrival arrival) {
-  using enum alarms::Arrival;
-  switch (arrival) {
-    case UpToDate:
-    case Arriving:
-    case Late:
-    case Quiet:
-      return {"arrives", Tone::Good};
-    case Throttled:
-    case Failing:
-    case NotArriving:
-    case Refused:
-      return {"NOT ARRIVING", Tone::Bad};
-    case Silent:
-      return {"silent", Tone::Warning};
-    case NotYet:
-      break;
-  }
-  return {"none sent yet", Tone::Faint};
+/// By arrival. Late is none of its own: where many robots share the link, each is late in its turn.
+constexpr std::string_view kTold[] = {"none sent yet", kArrives,     kArrives,     kArrives, kNotArriving,
+                                      kNotArriving,    kNotArriving, kNotArriving, kArrives, "silent"};
+static_assert(std::size(kTold) == std::size(alarms::kArrivalWords));
+
+std::string_view told_of(const api::ActivityRow& row) {
+  return kTold[static_cast<std::size_t>(row.arrival)];
 }
 
 void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines) {
@@ -118,12 +101,11 @@ void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines)
     const auto was = std::ranges::find_if(before.activities, [&row](const api::ActivityRow& each) {
       return each.robot == row.robot && each.kind == row.kind;
     });
-    const Told said = said_of(row.arrival);
-    if (was != before.activities.end() && said_of(was->arrival) == said) continue;
-    const std::string why = said.tone == Tone::Bad ? ": " + row.last_sentence : "";
-    lines.add(
-        icd::sentence(row.robot.empty() ? "all robots" : row.robot, ", ", row.kind, ": ", said.word, why),
-        said.tone);
+    const std::string_view told = told_of(row);
+    if (was != before.activities.end() && told_of(*was) == told) continue;
+    const std::string why = told == kNotArriving ? ": " + row.last_sentence : "";
+    lines.add(icd::sentence(row.robot.empty() ? "all robots" : row.robot, ", ", row.kind, ": ", told, why),
+              tone_of_level(row.level));
   }
 }
 

@@ -15,7 +15,7 @@ namespace adit::codec {
 /// it; what it cannot write stops the build.
 class Schemas {
  public:
-  static constexpr std::size_t kLongest = 40960;
+  static constexpr std::size_t kLongest = 49152;
 
   /// Of those rows, which have names, and of all that they name.
   consteval explicit Schemas(std::initializer_list<const Schema*> roots) {

@@ -78,6 +78,7 @@ api::RunView Gateway::view() const {
                     .reports = latest_rows(flow_.reports(), kMostReportRows, answers_),
                     .near_metres = settings_.reports.near_metres,
                     .activities = flow_.activities(),
+                    .standings = {},
                     .refusals = flow_.record().refusals(),
                     .rejected = flow_.rejected().rows(),
                     .lights = {},

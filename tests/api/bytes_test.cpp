@@ -64,7 +64,9 @@ RunView view() {
   activity.precision = "1mm", activity.points_left_out = 16, activity.no_valid_point = 20;
   activity.invisible = 21;
   activity.arrival = alarms::Arrival::Late, activity.level = alarms::Level::Wait;
+  activity.word = "17 s behind";
   view.activities = {activity};
+  view.standings = {{.name = "r", .level = alarms::Level::Wait, .word = "w", .has_map = true, .age = 22}};
   view.refusals = {
       {.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2, .setting = "r.m"}};
   view.rejected = {{.number = 1,
@@ -124,7 +126,8 @@ TEST(Bytes, OfARun) {
       R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
       R"("invisible":21,)"
-      R"("arrival":"late","level":"wait"}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
+      R"("arrival":"late","level":"wait","word":"17 s behind"}],"standings":[{"name":"r","level":"wait",)"
+      R"("word":"w","silent":false,"has_map":true,"age":22.0}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2,"setting":"r.m"}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"replaced":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"

@@ -24,6 +24,7 @@ RunView team(int robots, int reports) {
   RunView view = *scene("calm", 1'793'000'000.5, 0);
   view.robots.clear();
   view.activities.clear();
+  view.standings.clear();
   view.reports.clear();
   for (int i = 0; i < robots; ++i) {
     const std::string name = "ugv" + std::to_string(i);
@@ -209,17 +210,21 @@ TEST_F(LiveTest, TellsOfOneRobotsPoseInFewBytesWhateverTheListsLengths) {
 
 TEST_F(LiveTest, TellsAgesInWholeSeconds) {
   source.now = team(20, 0);
-  source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = 7.2;
+  std::optional<double>& standing = source.now.standings.emplace_back().age;
+  source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = standing = 7.2;
   const auto page = open();
   for (const double age : {7.9, 8.1}) {
-    source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = age;
+    source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = standing =
+        age;
     change();
     pass(milliseconds{300});
   }
   ASSERT_THAT(page->sent, SizeIs(3));
   EXPECT_THAT(page->sent[1], testing::Not(HasSubstr("age")));
   EXPECT_THAT(page->sent[2], HasSubstr(R"("rows":{"2":{"age":8.0}})"));
-  EXPECT_THAT(page->sent[2], HasSubstr(R"("rows":{"0":{"age":8.0},"1":{"behind":8.0}})"));
+  EXPECT_THAT(
+      page->sent[2],
+      HasSubstr(R"("rows":{"0":{"age":8.0},"1":{"behind":8.0}}},"standings":{"rows":{"0":{"age":8.0}})"));
 }
 
 TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {

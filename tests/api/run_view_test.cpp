@@ -5,8 +5,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "alarms/words.hpp"
 #include "api/judged.hpp"
 #include "api/scenes.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {
@@ -54,41 +56,48 @@ TEST(RunView, SaysHowOldTheRobotsOwnDataIsAndNotWhenItWasForwarded) {
   EXPECT_EQ(view.robots[1].age, std::nullopt) << "before a start of the machine";
 }
 
-TEST(RunViewJson, NamesEachMemberAsTheViewDoes) {
-  const RunView view = *scene("trouble", 1000.5, 3);
-  const json parsed = json::parse(codec::to_json(view));
-  EXPECT_EQ(parsed["refusals"][0]["parts"], 0);
-  EXPECT_EQ(parsed["now"], 1000.5);
-  EXPECT_EQ(parsed["run"]["score"], 7);
-  EXPECT_EQ(parsed["run"]["run_clock"], 757.0);
-  EXPECT_EQ(parsed["run"]["remaining_reports"], 18);
-  EXPECT_EQ(parsed["run"]["current_team"], "Cerberus");
-  EXPECT_EQ(parsed["endpoints"][1]["trouble"], "connecting to 10.100.1.201:8000: Connection refused");
-  EXPECT_EQ(parsed["endpoints"][0]["connected"], true);
-  EXPECT_EQ(parsed["endpoints"][0]["answer_ms"], 3.4);
-  EXPECT_EQ(parsed["reports"][0]["number"], 10);
-  EXPECT_EQ(parsed["reports"][2]["state"], "in_doubt");
-  EXPECT_EQ(parsed["reports"][3]["position"], (json{{"x", 85.75}, {"y", -4.5}, {"z", 0.25}}));
-  EXPECT_EQ(parsed["reports"][3]["score_change"], 1);
-  EXPECT_EQ(parsed["activities"][2]["merged"], 96);
-  EXPECT_EQ(parsed["activities"][1]["queued"], 12);
-  EXPECT_EQ(parsed["refusals"][0]["status"], 422);
-  EXPECT_EQ(parsed["lights"][3], (json{{"name", "attention"}, {"pattern", "fast"}}));
-  EXPECT_EQ(parsed["budget_mbit"], 100.0);
-  EXPECT_EQ(parsed["endpoints"][1]["throttled"], 3);
-  EXPECT_EQ(parsed["near_metres"], 5.0);
-  EXPECT_EQ(parsed["robots"][0], (json{{"name", "ANYmal1"},
-                                       {"position", {{"x", 24.0}, {"y", 6.0}, {"z", 0.5}}},
-                                       {"heading", 0.5},
-                                       {"at", view.robots[0].at.value()},
-                                       {"age", view.robots[0].age.value()}}));
-  EXPECT_EQ(parsed["identify_until"], nullptr);
-  EXPECT_EQ(parsed["setup_open_until"], nullptr);
-  EXPECT_EQ(parsed["run_number"], 1);
-  EXPECT_EQ(parsed["run_id"], "");
-  EXPECT_EQ(parsed["queued_bytes"], 214'000'000);
-  EXPECT_EQ(parsed["alarms"].size(), 3);
-  EXPECT_EQ(parsed["verdict"]["what"], "3 of 4 arrive");
+alarms::Stream of(const char* kind, std::optional<double> age, int status = 200,
+                  std::optional<double> behind = {}) {
+  return {.kind = kind, .robot = "r", .behind = behind, .forwarded = age, .last_status = status};
+}
+
+const struct {
+  const char* what;
+  std::vector<alarms::Stream> streams;
+  const char* standing;
+  bool silent = false;
+  alarms::PostTrouble mapping = alarms::PostTrouble::None;
+} kStandings[] = {
+    {"worst kind, oldest map",
+     {of("grid", 3), of("cloud", 40, 200, 33), of("state", 99)},
+     "wait, 33 s behind, map 40 s"},
+    {"first of two as bad", {of("grid", 3, 422), of("cloud", 4)}, "bad, refused, silent, map 4 s", true},
+    {"a quiet map beside another", {of("grid", 600), of("cloud", 4)}, "good, up to date, map 4 s"},
+    {"two quiet maps", {of("grid", 600), of("cloud", 99), of("state", 70)}, "quiet, quiet, map 1 min"},
+    {"a map never delivered", {of("grid", {}), of("cloud", 4)}, "wait, waiting, map never"},
+    {"no map", {of("state", 4)}, "good, up to date, 4 s"},
+    {"nothing heard: as old as its last pose", {}, "bad, silent, silent, 34 s", true},
+    {"nothing heard while the endpoint is down", {}, "", true, alarms::PostTrouble::Silent},
+};
+
+TEST(RunView, SaysHowARobotStands) {
+  for (const auto& each : kStandings) {
+    alarms::Facts facts{.now = 1000, .robots = {{"r", {.silent = each.silent}}}, .streams = each.streams};
+    facts.endpoints = {{.name = "mapping", .trouble = each.mapping}};
+    facts.streams.push_back({.kind = "grid", .robot = "", .forwarded = 4});
+    RunView view;
+    view.robots = {{.name = "r", .position = {}, .at = 966}};
+    view.activities.resize(facts.streams.size());
+    for (std::size_t i = 0; i < facts.streams.size(); ++i)
+      view.activities[i].kind = facts.streams[i].kind, view.activities[i].robot = facts.streams[i].robot;
+    judge(view, facts);
+    std::string standing;
+    for (const auto& [name, level, word, silent, has_map, age] : view.standings)
+      standing += icd::sentence(alarms::kLevelWords[static_cast<std::size_t>(level)], ", ", word,
+                                silent ? ", silent, " : ", ", has_map ? "map " : "",
+                                age ? alarms::age_text(*age) : "never");
+    EXPECT_EQ(standing, each.standing) << each.what;
+  }
 }
 
 TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {

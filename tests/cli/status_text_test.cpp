@@ -107,8 +107,7 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
 
 TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
   api::RunView view = sample_view();
-  view.activities[0].behind = 33;
-  view.activities[0].arrival = alarms::Arrival::Late;
+  view.activities[0].word = "33 s behind";
   view.activities[0].queued = 247;
   view.activities[0].no_room = 1110;
   EXPECT_THAT(status_text(view, false),

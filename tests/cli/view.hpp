@@ -51,6 +51,7 @@ inline api::RunView sample_view() {
   grid.last_status = 200;
   grid.arrival = alarms::Arrival::UpToDate;
   grid.level = alarms::Level::Good;
+  grid.word = "up to date";
   view.activities = {grid};
   return view;
 }

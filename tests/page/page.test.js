@@ -294,6 +294,8 @@ test("says that a silent box is lost, and recovers by itself", async (t) => {
   await page.waitForSelector("body[data-link=lost]");
   await said(page, "The box does not answer");
   assert.match(await text(page, "#link"), /Box lost/);
+  assert.match(await page.getAttribute('#robots li[data-key="ANYmal2"]', "title"), /^ANYmal2: unknown\n/);
+  await page.locator('#robots li[data-key="ANYmal2"][data-level=quiet] .age .text', { hasText: /^1\d s$/ }).waitFor();
   assert.match(await text(page, "#arriving"), /Unknown/);
   assert.match(await page.title(), /lost/);
   stage.thaw();

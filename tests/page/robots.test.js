@@ -56,10 +56,9 @@ test("has the worst first: who is silent is filled and says so, who is late has 
 
 test("says of a robot that sends no map that it has none, and of one whose map never came that it never did", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
-    const like = view.activities.find(({ kind }) => kind === "grid");
-    const now = { ...like, age: 0 };
-    const waits = { ...now, robot: "carter", age: null, bytes_sent: 0 };
-    return like ? { ...view, activities: [{ ...now, robot: "scout", kind: "state" }, waits, { ...now, robot: "carter", kind: "state" }] } : view;
+    const row = { ...view.activities[0], age: 0 }, robot = { level: "good", word: "up to date", silent: false };
+    const activities = [{ ...row, robot: "scout", kind: "state" }, { ...row, robot: "carter", kind: "grid", age: null }];
+    return { ...view, activities, standings: [{ ...robot, name: "scout", has_map: false, age: 0 }, { ...robot, name: "carter", has_map: true, age: null }] };
   });
   const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
   const age = (name) => page.innerText(`#robots li[data-key="${name}"] .age`);
@@ -67,12 +66,8 @@ test("says of a robot that sends no map that it has none, and of one whose map n
   assert.deepEqual([await age("scout"), await age("carter")], ["no map", "never"]);
 });
 
-for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+silent\s+unknown$/]]) test(`has a row for one that an alarm alone tells of, with its age if that is known: ${age}`, async (t) => {
-  const prepare = (page) => retell(page, (age) => (view) => {
-    const alarm = { id: "robot_silent:uav9", subject: "uav9", severity: "bad", side: "robot", since: view.now - 40, what: "uav9 is silent", why: "", action: { word: "", link: "" }, hides: 0, acknowledged: false };
-    const robot = { name: "uav9", position: { x: 1, y: 2, z: 0 }, heading: 0, at: age && view.now - age, age };
-    return { ...view, alarms: [alarm], robots: [...view.robots, robot] };
-  }, age);
+for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+silent\s+unknown$/]]) test(`has a row for one of which nothing was heard since the service began, with its age if that is known: ${age}`, async (t) => {
+  const prepare = (page) => retell(page, (age) => (view) => ({ ...view, standings: [...view.standings, { name: "uav9", level: "bad", word: "silent", silent: true, has_map: false, age }] }), age);
   const { page } = await watch(t, "calm", { prepare, viewport: LARGE });
   await page.waitForSelector('#robots li[data-key="uav9"][data-level=bad]');
   assert.match(await page.innerText('#robots li[data-key="uav9"]'), words);

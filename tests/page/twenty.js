@@ -13,10 +13,11 @@ export const twenty = (page, { silent = ["uav5"], late = ["uav6"] } = {}) => ret
     const robots = names.flatMap((name, i) => {
       const turn = 1 + (i % 9), since = (view.now - began + i) % turn;
       const [grid, cloud] = [row(view, "grid", name, since), row(view, "cloud", name, since / 2)];
-      if (globalThis.told.silent.includes(name)) for (const each of [grid, cloud]) Object.assign(each, { age: view.now - began + 94, level: "bad", arrival: "silent" });
-      if (globalThis.told.late.includes(name)) Object.assign(grid, { behind: view.now - began + 12, age: view.now - began + 13, queued: 3, level: "wait", arrival: "late" });
+      if (globalThis.told.silent.includes(name)) for (const each of [grid, cloud]) Object.assign(each, { age: view.now - began + 94, level: "bad", word: "silent" });
+      if (globalThis.told.late.includes(name)) Object.assign(grid, { age: view.now - began + 13, queued: 3, level: "wait", word: `${Math.floor(view.now - began + 12)} s behind` });
       return [grid, cloud, row(view, "state", name, 0.4)];
     });
-    return { ...view, activities: [...view.activities.filter(({ robot }) => !robot), ...robots] };
+    const standings = names.map((name) => ({ ...robots.find(({ robot }) => robot === name), name, silent: globalThis.told.silent.includes(name), has_map: true }));
+    return { ...view, activities: [...view.activities.filter(({ robot }) => !robot), ...robots], standings };
   };
 }, silent, late);

@@ -1,17 +1,9 @@
 // What the figures mean: for each thing a level (its shape and colour), a word, and a sentence where one helps.
 //   good: as it should be   wait: late, or about to be decided   bad: it does not work   quiet: nothing to tell
 //   ask: it waits for the operator's word
-import { age, signed } from "./words.js";
+import { signed } from "./words.js";
 
-const KINDS = { grid: "grid", cloud: "cloud", state: "pose", markers: "markers" };
-export const kindOf = (row) => KINDS[row.kind] ?? row.kind;
-export const robotOf = (row) => row.robot || "Merged map";
-
-/** Whether what a robot sends of one kind reaches the Command Post: the box's word, and how far that is behind. */
-export function arrival(row) {
-  const word = row.arrival === "late" && row.behind !== null ? `${age(row.behind)} behind` : row.arrival;
-  return { level: row.level, word };
-}
+export const kindOf = (row) => (row.kind === "state" ? "pose" : row.kind);
 
 function gained({ score_change, report_status }) {
   if (score_change === null) return { level: "quiet", word: report_status || "answered" };

@@ -114,7 +114,7 @@ export class MapOfRun {
     if (run.map_version !== this.#version && !this.#asked) this.#refresh(run.map_version);
     this.#markers.follow(run.marker_version);
     this.#tracks.follow(run);
-    this.#ill = new Set(run.activities.filter(({ robot, level }) => robot && level === "bad").map(({ robot }) => robot));
+    this.#ill = new Set(run.standings.filter(({ level }) => level === "bad").map(({ name }) => name));
     const places = JSON.stringify([run.reports.map(({ number, state, asking }) => [number, state, asking]), run.near_metres,
       run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot)]), this.#markers.at(run.now).length, [...this.#ill]]);
     if (places === this.#drawn) return;

@@ -24,18 +24,19 @@ function createRow({ name }) {
 /** "grid 6 s", or what is wrong with it. */
 const kindWords = ({ kind, level, word, age }) => `${kind} ${level === "good" || level === "quiet" ? mapAge(age) : word}`;
 
-function words({ isSilent, kinds }, isFull) {
+function words({ silent, kinds }, isFull) {
   const shown = isFull ? kinds : kinds.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
-  const isAllOne = !isFull && !isSilent && shown.length > 1 && shown.every(({ level, word }) => level === "bad" && word === shown[0].word);
+  const isAllOne = !isFull && !silent && shown.length > 1 && shown.every(({ level, word }) => level === "bad" && word === shown[0].word);
   if (isAllOne) return shown[0].word; // "not arriving", of grid and cloud: there may be room for no more
   const texts = shown.map((kind) => (isFull && kind.details ? `${kindWords(kind)}, ${kind.details}` : kindWords(kind)));
-  return [...(isSilent ? ["silent"] : []), ...texts].join(" · ");
+  return [...(silent ? ["silent"] : []), ...texts].join(" · ");
 }
 
 /** Of its map, or if it is silent of its data; a silent robot that was not heard since a start of the box has none that is known. */
-function ageWords({ hasMap, isSilent, age }) {
-  if (isSilent && age === null) return "unknown";
-  return hasMap || isSilent ? mapAge(age) : "no map";
+function ageWords({ has_map, silent, kinds, age }) {
+  const isUnheard = kinds.length === 0;
+  if (age === null && (silent || isUnheard)) return "unknown";
+  return has_map || silent || isUnheard ? mapAge(age) : "no map";
 }
 
 function updateRow(row, robot, isFull) {

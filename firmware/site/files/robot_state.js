@@ -1,10 +1,6 @@
-// How each robot stands: from what the box tells of each kind of data that it sends.
-import { arrival, kindOf, robotOf } from "./arriving.js";
-import { grouped } from "./grouped.js";
+// How each robot stands: the box's words on it and on each kind of its data, as old as they are now.
+import { kindOf } from "./arriving.js";
 import { age, bytes, clock } from "./words.js";
-
-const KINDS = ["grid", "cloud", "state"];
-const WORST = ["bad", "wait", "good", "quiet"];
 
 /** How old a map is: "9 s", "1:34", "1:05 h". */
 export const mapAge = (seconds) => (seconds === null ? "never" : seconds >= 60 && seconds < 3600 ? clock(seconds) : age(seconds));
@@ -30,34 +26,16 @@ function details(row) {
   return row.bytes_sent ? bytes(row.bytes_sent) : "";
 }
 
-/** One kind of data: {kind, level, word, age (seconds; null: never), details, title}. `since`: seconds since the box said so;
- *  `lost`: it does not answer, so nothing is known. */
-export function stateOf(row, since, lost) {
-  const known = lost ? { level: "quiet", word: "unknown" } : arrival(row);
-  return { kind: kindOf(row), ...known, age: row.age === null ? null : row.age + since, details: details(row), title: `${kindOf(row)}: ${counts(row)}` };
-}
 
-/** A robot's map at the Command Post: as old as the older of its kinds; one that it stopped to send does not count beside another. null: none arrived. */
-function oldest(kinds) {
-  const maps = kinds.filter(({ kind }) => kind !== "pose"), live = maps.filter(({ level }) => level !== "quiet");
-  const ages = (live.length ? live : maps).map(({ age }) => age);
-  if (ages.length === 0 || ages.includes(null)) return null;
-  return live.length ? Math.max(...ages) : Math.min(...ages);
-}
+/** As it is `since` seconds after the box said so; `lost`: the box does not answer, so nothing is known. */
+const shown = ({ level, word, age }, since, lost) => ({
+  ...(lost ? { level: "quiet", word: "unknown" } : { level, word }), age: age === null ? null : age + since,
+});
 
-function robotState(name, rows, since, lost) {
-  const kinds = KINDS.flatMap((kind) => rows.filter((row) => row.kind === kind)).map((row) => stateOf(row, since, lost));
-  const worst = WORST.map((level) => kinds.find((kind) => kind.level === level)).find(Boolean);
-  const isSilent = !lost && rows.some((row) => row.arrival === "silent");
-  const hasMap = kinds.some(({ kind }) => kind !== "pose");
-  return { name, level: worst.level, word: worst.word, isSilent, age: hasMap ? oldest(kinds) : kinds[0].age, hasMap, kinds };
-}
-
-/** {robots: each with {name, level, word, isSilent, age, hasMap, kinds}, shared: the merged map and the markers, as stateOf(), with a name}. */
-export function robotsOf(activities, since, lost) {
-  const rows = activities.filter(({ kind }) => KINDS.includes(kind));
-  const byName = grouped(rows.filter(({ robot }) => robot), robotOf);
-  const shared = rows.filter(({ robot }) => !robot).map((row) => ({ name: row.kind === "grid" ? "Merged" : `Merged ${kindOf(row)}`, ...stateOf(row, since, lost) }));
-  for (const row of activities) if (row.kind === "markers") shared.push({ name: "Markers", ...stateOf(row, since, lost) });
-  return { robots: [...byName].map(([name, its]) => robotState(name, its, since, lost)), shared };
+/** {robots: the view's standings, each with the kinds of its data; shared: the merged map and the markers}. */
+export function robotsOf({ standings, activities }, since, lost) {
+  const kindsOf = (name) => activities.filter(({ robot }) => robot === name).map((row) =>
+    ({ kind: kindOf(row), ...shown(row, since, lost), details: details(row), title: `${kindOf(row)}: ${counts(row)}` }));
+  const robots = standings.map((robot) => ({ ...robot, ...shown(robot, since, lost), silent: robot.silent && !lost, kinds: kindsOf(robot.name) }));
+  return { robots, shared: kindsOf("") };
 }

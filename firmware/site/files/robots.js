@@ -1,6 +1,6 @@
 // Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
 import { badge, list, make, mark, say } from "./dom.js";
-import { kindOf, robotOf, troubleOf } from "./arriving.js";
+import { kindOf, troubleOf } from "./arriving.js";
 import { sampleAges } from "./robot_ages.js";
 import { RobotRows } from "./robot_rows.js";
 import { mapAge, robotsOf } from "./robot_state.js";
@@ -11,11 +11,13 @@ const panel = document.getElementById("maps");
 const rows = new RobotRows(panel, document.getElementById("robots"));
 const shared = document.getElementById("shared");
 
+const SHARED = { grid: "Merged", cloud: "Merged cloud", markers: "Markers" };
+
 /** What is all robots': how old it is, and a word where it is not as it should be. */
 function showShared(all) {
-  list(shared, all, ({ name }) => name, () => make("span", make("span.name"), " ", make("span.badge")), (node, state) => {
+  list(shared, all, ({ kind }) => kind, () => make("span", make("span.name"), " ", make("span.badge")), (node, state) => {
     mark(node, "level", state.level);
-    say(node.firstChild, state.name);
+    say(node.firstChild, SHARED[state.kind] ?? state.kind);
     const isWell = state.level === "good" || state.level === "quiet";
     badge(node.lastChild, state.level, isWell ? mapAge(state.age) : state.word);
     node.title = state.title;
@@ -30,32 +32,21 @@ function showSayings(activities) {
   list(place, said, (row) => `${row.kind} ${row.robot}`,
     () => make("li", make("strong"), " ", make("span")),
     (node, row) => {
-      say(node.children[0], row.kind === "markers" ? "Markers:" : `${clip(robotOf(row), 40)} ${kindOf(row)}:`);
+      say(node.children[0], row.kind === "markers" ? "Markers:" : `${clip(row.robot || "Merged map", 40)} ${kindOf(row)}:`);
       say(node.children[1], clip(row.last_status ? `${row.last_status} ${row.last_sentence}` : row.last_sentence));
     });
 }
 
-/** Robots of which nothing was heard since the box started: an alarm alone tells of them, and their last pose. */
-function unheard({ alarms, robots }, known) {
-  const silent = alarms.filter(({ id, subject }) => id === `robot_silent:${subject}` && !known.some(({ name }) => name === subject));
-  return silent.map(({ subject: name }) => {
-    const last = robots.find((robot) => robot.name === name);
-    return { name, level: "bad", word: "silent", isSilent: true, age: last?.age ?? null, hasMap: false, kinds: [] };
-  });
-}
-
 /** Gives how the robots stand, as robotsOf(). */
 export function showRobots(view, now, lost) {
-  const { activities } = view;
   const isAway = troubleOf(view, "mapping")?.level === "bad";
-  const state = robotsOf(activities, now - view.now, lost);
-  if (!lost) state.robots.push(...unheard(view, state.robots));
+  const state = robotsOf(view, now - view.now, lost);
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));
   panel.querySelector(".empty").hidden = state.robots.length > 0;
   rows.show(state.robots, now);
   showShared(state.shared);
-  showSayings(activities);
+  showSayings(view.activities);
   return state;
 }

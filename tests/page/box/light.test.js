@@ -35,9 +35,9 @@ const move = (made, name, x) =>
   made.ask("/state/update", { header: { stamp: Date.now() / 1000, frame_id: "darpa" }, poses: [{ name, position: { x, y: 2, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } }] });
 
 /** Without what goes on while nothing happens. */
-const lasting = ({ now, run, run_clock, sent_mbit, endpoints, verdict, activities, robots, ...view }) => ({
+const lasting = ({ now, run, run_clock, sent_mbit, endpoints, verdict, activities, standings, robots, ...view }) => ({
   ...view, endpoints: endpoints.map(({ answer_ms, ...row }) => row),
-  activities: activities.map(({ age, behind, ...row }) => row), robots: robots.map(({ age, ...row }) => row),
+  activities: activities.map(({ age, behind, ...row }) => row), standings: standings.map(({ age, ...row }) => row), robots: robots.map(({ age, ...row }) => row),
 });
 
 /** Once both have all that the box has. */

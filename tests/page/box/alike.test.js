@@ -47,23 +47,6 @@ test("goes on with the run clock as an estimate, and says so, if the Command Pos
   assert.match(await status(made), /^Run +about \d+:\d\d +about \d+:\d\d to go .*\(heard \d+ s ago\)$/m);
 });
 
-test("says that a robot is silent, everywhere as the box judges it", async (t) => {
-  const made = await box(t, { robots: 3, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
-  await until(async () => {
-    const { activities } = await made.run();
-    return activities.filter(({ kind, accepted }) => kind === "state" && accepted > 20).length === 3;
-  }, "the robots' habits");
-  made.freezeRobots();
-  const pages = [await look(t, made), await look(t, made, "display")];
-  await until(async () => (await made.run()).alarms.some(({ id }) => id === "robots_silent"), "their silence");
-  const silent = (page) => page.$$eval("#robots > li", (rows) => rows.filter((row) => row.innerText.includes("silent") && row.dataset.level === "bad").length);
-  for (const page of pages) await until(async () => (await silent(page)) === 3, "three that are silent");
-  const told = (await status(made)).split("\n").filter((line) => / state .* silent /.test(line));
-  assert.equal(told.length, 3, told.join("\n"));
-  made.thawRobots();
-  for (const page of pages) await until(async () => (await silent(page)) === 0, "none that is silent");
-});
-
 test("says that one of three robots is silent over a kill of the service and a new run, from the first answer", async (t) => {
   const made = await box(t, { robots: 2, settings: { alarms: { silent_for_ms: 2000, silent_times: 2 } } });
   for (let x = 0; x < 6; ++x) {
@@ -81,18 +64,20 @@ test("says that one of three robots is silent over a kill of the service and a n
   const check = async (when) => {
     const view = await made.run(); // the first answer
     assert.ok(isSilent(view), `${when}: ${view.alarms.map(({ id }) => id)}`);
-    assert.deepEqual(rows(view).map(({ arrival }) => arrival), ["silent", "silent"], when);
+    assert.deepEqual([...rows(view), view.standings.find(({ name }) => name === "r9")].map(({ level, word }) => `${level} ${word}`), Array(3).fill("bad silent"), when);
     for (const { age } of rows(view)) assert.ok(Math.abs(view.now - posted - age) < 2, `${when}: ${age} of ${view.now - posted} s`);
     const isPlaced = ({ now, robots }) => robots.some(({ name, age }) => name === "r9" && Math.abs(now - posted - age) < 2);
     await until(async () => isPlaced(await made.run()), `${when}: its place, which is read from the disk`);
     assert.equal(view.verdict.level, "wait", `${when}: ${view.verdict.what}`);
     assert.notEqual(light(view), "off", when);
-    assert.match(await status(made), /^ +r9 +state +silent .* [\d.]+ s /m, when);
+    assert.match(await status(made), /^ +r9 +grid +silent .*\n(.*\n)* +r9 +state +silent .* [\d.]+ s /m, when);
     const metrics = await (await fetch(`${made.url}metrics`, { headers: { Authorization: `Bearer ${TOKENS.team}` } })).text();
-    assert.match(metrics, /^adit_alarm\{id="robot_silent:r9"/m, when);
-    const page = await look(t, made);
-    await page.waitForSelector('#robots [data-key="r9"]');
-    assert.match(await page.$eval('#robots [data-key="r9"]', (node) => `${node.dataset.level}: ${node.innerText}`), /^bad: .*silent/s, when);
+    for (const sample of [/^adit_alarm\{id="robot_silent:r9"/m, /^adit_updates_arrive\{kind="grid",robot="r9",arrival="silent"\} 1$/m]) assert.match(metrics, sample, when);
+    for (const page of [await look(t, made), await look(t, made, "display")]) {
+      await page.waitForSelector('#robots [data-key="r9"]');
+      const row = await page.$eval('#robots [data-key="r9"]', (node) => `${node.dataset.level} ${node.querySelector(".glyph").dataset.level} ${node.title}\n${node.textContent}`);
+      assert.match(row, /^bad bad r9: silent\n(.*\n)+r9 silent · grid silent/, `${when}: ${row}`);
+    }
   };
   await check("before");
   await made.killAditd();

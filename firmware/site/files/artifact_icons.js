@@ -22,7 +22,8 @@ export function icon(type) {
   const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
   const path = document.createElementNS(svg.namespaceURI, "path");
   const looks = { fill: "none", stroke: "currentColor", "stroke-width": "1.9", "stroke-linecap": "round", "stroke-linejoin": "round" };
-  for (const [name, value] of Object.entries({ class: "icon", viewBox: "0 0 24 24", width: 24, height: 24, "aria-hidden": "true" })) svg.setAttribute(name, value);
+  const frame = { class: "icon", viewBox: "0 0 24 24", width: "24", height: "24", "aria-hidden": "true" };
+  for (const [name, value] of Object.entries(frame)) svg.setAttribute(name, value);
   for (const [name, value] of Object.entries({ d: linesOf(type), ...looks })) path.setAttribute(name, value);
   svg.append(path);
   return svg;

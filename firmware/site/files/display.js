@@ -12,6 +12,7 @@ import { showEnds } from "./strip.js";
 import { clip, placeOf, timeOfDay } from "./words.js";
 
 const calm = ({ verdict }) => ({ id: "calm", severity: verdict.level === "good" ? "good" : "quiet", what: "No alarm" });
+const newFirst = ({ severity, acknowledged }) => 2 * Number(severity === "wait") + Number(acknowledged);
 const MOST_REPORTS = 20; // more than fit any screen
 
 const map = new MapOfRun(document.querySelector("#map canvas"));
@@ -37,8 +38,8 @@ function show({ view: told, time, lost, trouble }) {
   const view = told && { ...told, reports: allReports(told, lost) };
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
   if (!view) return showAttention([], lost ? `${away}.` : "");
-  const calling = [...view.alarms].sort((a, b) => (a.severity === "wait") - (b.severity === "wait") || a.acknowledged - b.acknowledged); // new alarms first
-  showAttention(calling.length || lost ? calling.slice(0, lost ? 1 : 2) : [calm(view)], lost ? `${away}: last data at ${timeOfDay(view.now)}.` : "");
+  const calling = [...view.alarms].sort((a, b) => newFirst(a) - newFirst(b)).slice(0, lost ? 1 : 2);
+  showAttention(calling.length || lost ? calling : [calm(view)], lost ? `${away}: last data at ${timeOfDay(view.now)}.` : "");
   showRun(view, time, lost);
   showEnds(view, lost);
   showRobots(view, time, lost);

@@ -30,7 +30,7 @@ function wanted() {
 
 async function ask() {
   const mine = ++asked, query = wanted();
-  query.set("since", last);
+  query.set("since", String(last));
   const answer = await get(`/adit/log?${query}`);
   if (mine !== asked) return;
   if (answer.last < last) return startOver(); // the box restarted

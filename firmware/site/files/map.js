@@ -37,6 +37,7 @@ export class MapOfRun {
   #isFit = true; // until somebody moves it, all is shown
   #isExact = true; // and at the next look so that it just fits; else only what leaves the view moves that
   #version = -1;
+  /** @type {Record<string, string>} */
   #colours = {};
   #picked = null;
   #followed = null;
@@ -271,9 +272,10 @@ export class MapOfRun {
 
   #mapKey = () => [this.#base, this.#tiles.changes, this.#at, this.#shown.grid, this.#shown.cloud, [...this.#hidden], this.#look()].join();
   #layers() {
-    const layers = [...this.#tiles.layers.values()].filter(this.#isSeen);
     // The merged map lies below those of robots, and clouds lie upon grids.
-    return layers.sort((a, b) => (a.kind === "cloud") - (b.kind === "cloud") || (a.robot !== "") - (b.robot !== "") || a.robot.localeCompare(b.robot));
+    const rank = ({ kind, robot }) => 2 * Number(kind === "cloud") + Number(robot !== "");
+    const layers = [...this.#tiles.layers.values()].filter(this.#isSeen);
+    return layers.sort((a, b) => rank(a) - rank(b) || a.robot.localeCompare(b.robot));
   }
   #drawMaps = (paint, view, piece) => {
     drawLayers(paint, view, this.#tiles, this.#layers(), this.#at, this.#picture.density(), piece);
@@ -289,7 +291,7 @@ export class MapOfRun {
   #markersKey = () => [this.#places.markers.reduce((sum, { mark }) => (Math.imul(sum, 31) + mark) | 0, this.#places.markers.length), this.#look()].join();
   #drawMarkers = (paint, view) => drawShapes(paint, this.#colours, view, this.#places.markers, this.#picture.fontSize / 14);
 
-  #signsKey = () => [this.#drawn, this.#at, this.#tracks.changes * !this.isLive(), this.#shown.robots, this.#shown.reports, this.#markersKey(), this.#followed,
+  #signsKey = () => [this.#drawn, this.#at, this.isLive() ? 0 : this.#tracks.changes, this.#shown.robots, this.#shown.reports, this.#markersKey(), this.#followed,
     this.#pair?.map(({ number }) => number), this.#onTap !== null, this.#covers.boxes(), this.#picture.hasNames].join();
   #drawSigns = (paint, view) => {
     const { reports, robots, markers } = this.#places, size = this.#picture.fontSize, colours = this.#colours;

@@ -12,7 +12,9 @@ export function listenTo(canvas, view, { moved, held, tapped, fit }) {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   };
+  /** @param {number[][]} places: of one finger, or of two */
   const middle = ([[a, b], [c, d] = [a, b]]) => [(a + c) / 2, (b + d) / 2];
+  /** @param {number[][]} places */
   const apart = ([[a, b], [c, d] = [a, b]]) => Math.hypot(a - c, b - d);
 
   canvas.addEventListener("pointerdown", (event) => {

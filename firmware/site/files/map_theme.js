@@ -16,7 +16,8 @@ const hex = (parts) => parts.map((part) => Math.round(part).toString(16).padStar
 const bare = (colour) => (colour.length === 4 ? [...colour.slice(1)].map((digit) => digit + digit).join("") : colour.slice(1));
 
 /** {grid: [free, occupied], cloud: [lowest, highest] or null (the box's own, from violet to yellow), robot(name): the same of a
- *  cloud by its robot, heights: the legend's colours where they are not the box's own}. */
+ *  cloud by its robot, heights: the legend's colours where they are not the box's own}.
+ *  @param {Record<string, string>} colours */
 export function looksOf({ free, wall }) {
   const theme = themeNow();
   const red = theme === "red" ? ["46100a", "ff8a78"] : null;

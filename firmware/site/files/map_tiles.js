@@ -193,7 +193,7 @@ export class Tiles {
     if (!next) return;
     const { known, name } = next;
     ++this.#loading;
-    this.#loadingFiner += Boolean(known.isFiner);
+    if (known.isFiner) ++this.#loadingFiner;
     try {
       const answer = await fetchSoon(name, known.etag ? { headers: { "If-None-Match": known.etag } } : {});
       const image = answer.status === 200 ? await createImageBitmap(await answer.blob()) : null;
@@ -208,7 +208,7 @@ export class Tiles {
       if (known.name === name) known.name = ""; // asked for again when it is next drawn
     } finally {
       --this.#loading;
-      this.#loadingFiner -= Boolean(known.isFiner);
+      if (known.isFiner) --this.#loadingFiner;
       this.#drop();
       this.#load();
     }

@@ -17,7 +17,8 @@ function worded(part) {
   return unit ? `${words.slice(0, -1).join(" ")} (${unit})` : words.join(" ");
 }
 
-/** Of "robots[ugv1].alias" or "robots[0].alias", a whole item included: "Robot ugv1: alias"; counted from 1. */
+/** Of "robots[ugv1].alias" or "robots[0].alias", a whole item included: "Robot ugv1: alias"; counted from 1.
+ *  @param {string[]} match */
 function ofItem([, path, item, rest]) {
   const which = /^\d+$/.test(item) ? Number(item) + 1 : item;
   return `${LISTS[path]} ${which}${rest ? `: ${rest.split(".").map(worded).join(" ")}` : ""}`;

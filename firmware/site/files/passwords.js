@@ -39,8 +39,8 @@ async function remove({ current }) {
 }
 
 export function offerPasswords() {
-  for (const form of document.querySelectorAll("#passwords form")) {
-    const fields = () => Object.fromEntries(new FormData(form));
+  for (const form of document.getElementById("passwords").querySelectorAll("form")) {
+    const fields = () => /** @type {any} */ (Object.fromEntries(new FormData(form)));
     form.addEventListener("submit", (event) => {
       event.preventDefault();
       attempt(form, () => set(form.dataset.role, fields()));

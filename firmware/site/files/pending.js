@@ -5,7 +5,7 @@ import { after, boxNow, get } from "./session.js";
 const EVERY = 4000, PENDING = 1000; // ms
 const nav = document.querySelector("header nav");
 const strip = document.querySelector("header.strip");
-let sign = null, last = null, hear = () => {};
+let sign = null, last = null, hear = (_network, _error = undefined) => {};
 
 /** Until the box takes it back: "73 s left". */
 export function left({ pending }) {

@@ -2,6 +2,7 @@
 import { badge, list, make, mark, say } from "./dom.js";
 
 const SIDES = { team: "Team’s side", command_post: "Command Post’s side" };
+/** @type {[string, (port: any) => string][]} */
 const FACTS = [
   ["Addresses", ({ addresses }) => addresses.join(", ") || "none"],
   ["Name", ({ side, name }) => name || (side === "team" ? "none" : "none: the box does not listen on this side")],

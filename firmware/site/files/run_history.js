@@ -15,12 +15,13 @@ const steps = new Steps();
 /** [{at, level}]: when something came that needed the operator. */
 export const alarmTicks = () => alarms;
 
-function take({ attention, ...plots }, time, isFirst) {
+function take(history, time, isFirst) {
+  const { at, attention } = history;
   alarms = [...alarms, ...attention.filter(({ came }) => came).map(({ at }) => ({ at, level: "bad" }))];
-  last = Math.max(last, plots.at.at(-1) ?? 0, attention.at(-1)?.at ?? 0);
+  last = Math.max(last, at.at(-1) ?? 0, attention.at(-1)?.at ?? 0);
   if (!isFirst) return;
-  fillLink(plots, time);
-  fillAges(plots, time);
+  fillLink(history, time);
+  fillAges(history, time);
 }
 
 /** With each view of the run. */

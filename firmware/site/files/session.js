@@ -23,7 +23,7 @@ export function isFault(error) {
 }
 
 /** fetch() for a GET that ends in time. */
-export const fetchSoon = (path, options) => fetch(path, { signal: after(GET_WITHIN), ...options });
+export const fetchSoon = (path, options = {}) => fetch(path, { signal: after(GET_WITHIN), ...options });
 
 let asked = null;
 
@@ -94,7 +94,7 @@ let ahead = 0; // of this device's clock, in ms
 /** The box's clock, in seconds since 1970: a phone's own may be anything. */
 export const boxNow = () => (Date.now() + ahead) / 1000;
 
-async function ask(path, signal = after(GET_WITHIN)) {
+async function ask(path, signal) {
   const answer = await fetch(path, { cache: "no-store", signal });
   if (answer.status === 401) toLogin();
   ahead = Date.parse(answer.headers.get("Date")) - Date.now() || 0;
@@ -102,7 +102,7 @@ async function ask(path, signal = after(GET_WITHIN)) {
 }
 
 /** The JSON of a path; an Error's message is the sentence to show. */
-export const get = (path, signal) => ask(path, signal).then(resultOf).catch(unanswered);
+export const get = (path, signal = after(GET_WITHIN)) => ask(path, signal).then(resultOf).catch(unanswered);
 
 /** The file of a path: its name and its bytes. It may take any time, unless none of its bytes comes for 15 s. */
 export async function getFile(path) {

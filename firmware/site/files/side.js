@@ -15,7 +15,7 @@ export const side = () => document.body.dataset.side;
 export const whenSide = (id, changed) => changes.set(id, changed);
 
 /** Opens a panel in the place of the reports; `focused`: what of it has the focus then, if not its title. */
-export function openSide(id, focused) {
+export function openSide(id, focused = null) {
   const before = side();
   if (before === id) return;
   if (before === "reports") back = document.activeElement;

@@ -208,6 +208,11 @@ for (const path of ["", "display"]) {
         await page.setViewportSize({ width, height });
         const [wide, tall] = await page.evaluate(({ documentElement: page } = document) => [page.scrollWidth, page.scrollHeight]);
         assert.ok(wide <= width && tall <= height, `${wide} x ${tall} on ${width} x ${height}`);
+        const outside = await page.$$eval("ol button, ul button", (buttons) => buttons.map((button) => {
+          const [own, list] = [button, button.closest("ol, ul")].map((node) => node.getBoundingClientRect());
+          return own.right > list.right + 1 ? button.textContent : "";
+        }).filter(Boolean));
+        assert.deepEqual(outside, [], `${width} x ${height}`);
       }
     });
   }

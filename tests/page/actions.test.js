@@ -112,7 +112,7 @@ test("offers nothing while the box is lost, and again once it is back", async (t
   const { stage, page } = await watch(t, "reports");
   stage.freeze();
   await page.waitForSelector("body[data-link=lost]");
-  await said(page, "The box does not answer, so you cannot act");
+  await said(page, "The box sends no data to this page, so you cannot act");
   assert.ok(await button(page, "Send", 24).isDisabled());
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");

@@ -302,7 +302,7 @@ test("says that a silent box is lost, and recovers by itself", async (t) => {
   assert.match(await page.getAttribute('#robots li[data-key="ANYmal2"]', "title"), /^ANYmal2: unknown\n/);
   await page.locator('#robots li[data-key="ANYmal2"][data-level=quiet] .age .text', { hasText: /^1\d s$/ }).waitFor();
   assert.match(await text(page, "#arriving"), /Unknown/);
-  assert.match(await page.title(), /lost/);
+  assert.match(await page.title(), /The box does not answer/);
   stage.thaw();
   await page.waitForSelector("body[data-link=live]");
   await page.waitForFunction(() => document.getElementById("attention").textContent.startsWith("No alarm"));

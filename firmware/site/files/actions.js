@@ -36,8 +36,11 @@ export function actionsOf(report, isNear = false) {
 let role = null, lost = false; // null: not learned yet
 
 /** Why nothing can be done now, or "". */
-export const barred = () =>
-  lost ? "The box does not answer, so you cannot act." : role === null ? "Checking your login." : role !== "operator" ? "Only an operator can act. Log in as operator." : "";
+export function barred() {
+  if (lost) return "The box sends no data to this page, so you cannot act.";
+  if (role === null) return "Checking your login.";
+  return role === "operator" ? "" : "Only an operator can act. Log in as operator.";
+}
 
 export function linkIs(isLost) {
   if (lost && !isLost) learnRole();

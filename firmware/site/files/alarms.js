@@ -29,11 +29,11 @@ function calm(over, verdict) {
 
 const ICONS = { bad: "icon_bad.svg", ask: "icon_ask.svg", wait: "icon_wait.svg" };
 
-function showTab(alarms, lost) {
+function showTab(alarms) {
   const worst = alarms.find((alarm) => !alarm.acknowledged) ?? alarms[0];
   const icon = ICONS[worst?.severity] ?? "icon.svg", link = document.querySelector("link[rel=icon]");
   if (link.getAttribute("href") !== icon) link.setAttribute("href", icon);
-  const title = lost ? "Box lost – Adit" : worst ? `(${alarms.length}) ${clip(worst.what, 60)} – Adit` : "Adit";
+  const title = worst ? `(${alarms.length}) ${clip(worst.what, 60)} – Adit` : "Adit";
   if (document.title !== title) document.title = title;
 }
 
@@ -53,6 +53,6 @@ export function showAlarms(view, time, lost, trouble) {
   else list(cards, shown.slice(0, SHOWN), (alarm) => alarm.id, alarmCard, (node, alarm) => fillCard(node, alarm, now));
   say(all, shown.length ? `All ${shown.length}` : "History");
   fillAlarmList(dialog, shown, over, now);
-  showTab(shown, lost);
+  showTab(shown);
   sounds(shown);
 }

@@ -29,7 +29,7 @@ import { clip, timeOfDay } from "./words.js";
 
 function show({ view: told, time, lost, trouble }) {
   const view = told && { ...told, reports: allReports(told, lost) };
-  showLink(view, lost);
+  showLink(view, lost, trouble);
   linkIs(lost);
   showAlarms(view, time, lost, trouble);
   if (!view) return;

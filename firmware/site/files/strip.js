@@ -15,9 +15,14 @@ export function showEnds(view, lost) {
   });
 }
 
+function linkWords(view, lost, trouble) {
+  if (trouble) return `The box answers: ${trouble}`;
+  if (lost) return view ? "Box lost" : "No box";
+  return view ? "Live" : "Looking for the box";
+}
+
 /** For who only listens; others see it in verdict and alarms. */
-export function showLink(view, lost) {
+export function showLink(view, lost, trouble) {
   mark(document.body, "link", lost ? "lost" : view ? "live" : "opening");
-  const words = lost ? (view ? "Box lost" : "No box") : view ? "Live" : "Looking for the box";
-  say(document.getElementById("link"), words);
+  say(document.getElementById("link"), linkWords(view, lost, trouble));
 }

@@ -4,7 +4,7 @@ import { clip } from "./words.js";
 
 /** The answer in a few words, and why. */
 export function showVerdict(view, now, lost) {
-  const { level, what, why } = lost ? { level: "bad", what: "Unknown", why: "the box does not answer" } : view.verdict;
+  const { level, what, why } = lost ? { level: "bad", what: "Unknown", why: "the box sends no data to this page" } : view.verdict;
   const node = document.getElementById("arriving");
   mark(node, "level", level);
   badge(node, level, clip(what, 60));

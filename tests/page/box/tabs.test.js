@@ -100,6 +100,8 @@ test("a page that the box serves no stream says the box's sentence, and is live 
     await pages[i].locator("#attention", { hasText: `too many pages are open: the box serves at most ${MOST} at once` }).waitFor();
     assert.doesNotMatch(await pages[i].innerText("#attention"), /does not answer/);
   }
+  assert.equal(await pages[0].textContent("#link"), `The box answers: too many pages are open: the box serves at most ${MOST} at once`);
+  assert.match(await pages[0].title(), /The box sends no data to this page/);
   others.end();
   await Promise.all(pages.map(isLive));
 });

@@ -149,6 +149,46 @@ test("shows two operators what each has done, and lets one go on from the newer"
   assert.equal(await field(other, "command_post.mapping.port").locator("input").inputValue(), "8003");
 });
 
+test("keeps what is typed while the box applies a change, and drops what is typed on top of another operator's settings", async (t) => {
+  const { ask, page } = await ready(t, "setup#robots", { robots: [{ name: "ugv1" }] });
+  const apply = async () => {
+    await page.getByRole("button", { name: "Apply changes" }).click();
+    await review(page);
+    await page.getByRole("button", { name: "Apply", exact: true }).click();
+  };
+  const robots = async () => (await ask("/adit/settings")).said.settings.robots.map(({ name, alias }) => `${name} ${alias}`);
+  let answer;
+  const typed = new Promise((resolve) => (answer = resolve));
+  await type(page, "robots[0].name", "ugv2");
+  await page.route("**/adit/settings", async (route) => {
+    if (route.request().method() === "GET") await typed;
+    return route.continue();
+  });
+  await apply();
+  await hears(page, "The box applies the changes.");
+  await field(page, "robots[0].alias").locator("input").focus();
+  await page.keyboard.type("on");
+  answer();
+  await hears(page, /Applied\. 1 change not yet applied/);
+  await page.keyboard.type("e");
+  await apply();
+  await hears(page, /Applied\./);
+  assert.deepEqual(await robots(), ["ugv2 one"]);
+  await page.unrouteAll();
+
+  await type(page, "robots[0].alias", "two");
+  const { settings, tag } = (await ask("/adit/settings")).said;
+  settings.command_post.scoring.port = 8001;
+  assert.equal((await ask("/adit/settings", { settings, base: tag })).status, 200);
+  await page.getByRole("button", { name: "Apply changes" }).click();
+  await page.getByRole("button", { name: "Keep mine on top of theirs" }).click();
+  await page.getByRole("button", { name: "Cancel" }).click();
+  await page.evaluate(() => (location.hash = "post"));
+  await type(page, "command_post.mapping.port", "8002");
+  await page.getByRole("button", { name: "Drop" }).click();
+  assert.equal(await field(page, "command_post.mapping.port").locator("input").inputValue(), "2");
+});
+
 test("knows its own save, though the answer was lost, and after a reload", async (t) => {
   const { ask, page } = await ready(t, "setup#post");
   let answersLost = 1;

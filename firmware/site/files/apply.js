@@ -1,6 +1,6 @@
 // Applying what was typed, or a file: shown first, and never over what somebody else saved meanwhile.
 import { answered } from "./dialog.js";
-import { beginFrom, check, differs, draft, drop, flat, merged, onDraft, onFindings, refresh, same, findings } from "./draft.js";
+import { beginFrom, check, differs, draft, drop, flat, goOnFrom, merged, onDraft, onFindings, refresh, same, findings } from "./draft.js";
 import { make, say } from "./dom.js";
 import { blameAll, fieldOf } from "./field.js";
 import { nameOf, spoken } from "./names.js";
@@ -21,7 +21,7 @@ const MOST = 250_000; // bytes of a file; the box takes a little more
 
 let outcome = "", link = "", isBusy = false;
 
-export const STALE = "Another operator has changed this meanwhile.";
+const STALE = "Another operator has changed this meanwhile.";
 
 /** A value as people read it. */
 function shown(value) {
@@ -99,9 +99,9 @@ async function isSaved(settings) {
 
 /** Two operators: theirs is in use, and one goes on from it. If the box does not answer, that is asked with the next save. */
 async function settle() {
-  const { base, settings: mine, newer } = draft;
+  const { base, newer } = draft, mine = structuredClone(draft.settings);
   const isOwn = await isSaved(mine).catch(() => null);
-  if (isOwn) return beginFrom(newer), report(OWN);
+  if (isOwn) return goOnFrom(newer, mine), report(OWN);
   if (isOwn === null) return;
   const [was, own, theirs] = [base, mine, newer.settings].map((each) => flat(each));
   const isOther = (path) => own.get(path) !== was.get(path) || theirs.get(path) !== was.get(path);
@@ -119,7 +119,7 @@ async function settle() {
 
 /** Posts settings that were looked at; whether the box runs with them now. */
 export async function save(settings) {
-  const { tag, base } = draft;
+  const { tag, base } = draft, before = structuredClone(draft.settings);
   isBusy = true;
   link = "";
   report("The box applies the changes.");
@@ -130,14 +130,14 @@ export async function save(settings) {
     const said = await applied();
     const isDone = said && (said.tag !== tag || !changes.length);
     if (said && !isDone) link = "";
-    if (isDone) beginFrom(said);
+    if (isDone) goOnFrom(said, before);
     if (said) await refresh();
     if (link) report("The page has moved to");
     else if (isDone) report("Applied.");
     else report(said ? said.trouble || "The change was reverted." : "The box does not answer.");
     return isDone;
   } catch (error) {
-    return notSaved(error, settings, base);
+    return notSaved(error, settings, { base, before });
   } finally {
     isBusy = false;
     show();
@@ -145,11 +145,11 @@ export async function save(settings) {
 }
 
 /** A save that failed, or whose answer was lost. */
-async function notSaved(error, settings, base) {
+async function notSaved(error, settings, { base, before }) {
   if (error.status && error.status !== 409) return report(error.message), false;
   if (await isSaved(settings).catch(() => false)) {
     const said = await applied();
-    if (said) beginFrom(said);
+    if (said) goOnFrom(said, before);
     return report(OWN), true;
   }
   if (!error.status) link = newAddress(settings, base);
@@ -226,7 +226,7 @@ export function offerApply() {
   });
   applyIt.addEventListener("click", apply);
   onDraft((what) => {
-    if (what === "typed") outcome = link = "";
+    if (what === "typed" && !isBusy) outcome = link = "";
     show();
   });
   onFindings(show);

@@ -1,5 +1,5 @@
 // What lets the box in at a Command Post: tokens, which are set and never shown again; and the switch between courses.
-import { applied, insist, reviewed, STALE } from "./apply.js";
+import { applied, insist, reviewed, save } from "./apply.js";
 import { badge, giveFocus, list, make, say } from "./dom.js";
 import { differs, draft, ENDPOINTS, onDraft, refresh, same } from "./draft.js";
 import { blame, labelled } from "./field.js";
@@ -125,25 +125,14 @@ function changesBy(name) {
 
 async function switchTo(name) {
   const outcome = document.querySelector("#step-courses > .outcome");
-  const { base } = draft, changes = changesBy(name), isStale = () => !same(changesBy(name), changes);
-  const settings = { ...base, command_post: { ...base.command_post, course: name } };
-  const { warnings } = await insist(() => post("/adit/settings/check", { settings })).catch((error) => ({ warnings: [error.message] }));
+  const settings = () => ({ ...draft.base, command_post: { ...draft.base.command_post, course: name } });
+  const changes = changesBy(name), isStale = () => !same(changesBy(name), changes);
+  const { warnings } = await insist(() => post("/adit/settings/check", { settings: settings() })).catch((error) => ({ warnings: [error.message] }));
   if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch", isStale }))) return;
-  say(outcome, "The box switches the course.");
-  outcome.dataset.bad = false;
-  try {
-    await insist(refresh);
-    if (isStale()) throw new Error(`${STALE} The box did not switch the course.`);
-    await insist(() => post("/adit/course", { name }));
-    await applied();
-    await insist(refresh);
-    const isDone = draft.base.command_post.course === name;
-    outcome.dataset.bad = !isDone;
-    say(outcome, isDone ? `${nameOf(name)} is in use.` : `${nameOf(name)} is not in use. The switch may have been reverted.`);
-  } catch (error) {
-    outcome.dataset.bad = true;
-    say(outcome, error.message);
-  }
+  say(outcome, "");
+  const isDone = await save(settings());
+  outcome.dataset.bad = !isDone;
+  say(outcome, `${nameOf(name)} is ${isDone ? "in use" : "not in use"}.`);
 }
 
 function createCourse() {

@@ -38,10 +38,13 @@ function tell(what) {
 }
 
 /** Begins from `said`, with `settings` as typed. */
-export function beginFrom(said, settings = structuredClone(said.settings)) {
-  Object.assign(draft, { settings, base: said.settings, tag: said.tag, newer: null });
+export function beginFrom(said, settings = said.settings) {
+  Object.assign(draft, { settings: structuredClone(settings), base: said.settings, tag: said.tag, newer: null });
   tell("begun");
 }
+
+/** The same; what was typed after `before` stays. */
+export const goOnFrom = (said, before) => beginFrom(said, merged(before, draft.settings, said.settings));
 
 export const drop = () => beginFrom({ settings: draft.base, tag: draft.tag });
 

@@ -114,9 +114,9 @@ export function listOf(place) {
     const fields = keys.map(([name]) => setting(`${path}[${i}].${name}`, capital(name.replace(".", " "))));
     return make("fieldset.item", make("legend", `${item} ${i + 1}`), make("div.fields", ...fields), ...(readOnly ? [] : [remove]));
   };
-  const show = (what) => {
+  const show = () => {
     const count = read(path).length;
-    if (what !== "begun" && count === shown) return;
+    if (count === shown) return;
     shown = count;
     for (const field of rows.querySelectorAll(".field")) known.delete(field);
     rows.replaceChildren(...Array.from({ length: count }, (_, i) => row(i)));
@@ -127,7 +127,7 @@ export function listOf(place) {
     rows.lastElementChild.querySelector("input").focus();
   });
   onDraft(show);
-  show("begun");
+  show();
 }
 
 /** Says at each field what is wrong with it; gives the errors with their fields, where there is one. */

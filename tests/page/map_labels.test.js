@@ -1,8 +1,8 @@
-// What is reckoned for the map without a browser: names that do not collide, steps of the grid in metres, plates that are copied.
+// What is reckoned for the map without a browser: names that do not collide, steps of the grid in metres, layers that are copied.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Labels } from "../../firmware/site/files/map_labels.js";
-import { drawFigures, drawScale, stepOf, takenByMetres } from "../../firmware/site/files/map_metres.js";
+import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
 import { MapView } from "../../firmware/site/files/map_view.js";
 
 const SIZE = 12;
@@ -26,7 +26,7 @@ const overlap = (a, b) => a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[
 
 test("writes no name upon another, nor cut at the edge, nor upon what is drawn", () => {
   const paint = paper(), roll = dice(7), drawn = [];
-  const labels = new Labels(paint, {}, SIZE, { width: 800, height: 500, rim: [100, 100] });
+  const labels = new Labels(paint, {}, SIZE, { width: 800, height: 500, margin: [100, 100] });
   for (let i = 0; i < 12; ++i) {
     const place = [100 + roll() * 600, 100 + roll() * 300];
     labels.keepOff(place, 8);
@@ -50,7 +50,7 @@ test("leaves a gap between two names in a row: they are two", () => {
     const one = new Labels(paper(), {}, SIZE, { width: 4000, height: 500 });
     one.write("r8", 400, 250);
     one.write("r10", left - SIZE, 250);
-    const [, next] = one.paint.written;
+    const [, next] = one.ctx.written;
     assert.ok(next[1] !== 250 - SIZE / 2 || Math.max(next[0] - end, begin - next[2]) >= SIZE / 2, `${next} beside ${begin} to ${end}`);
   }
 });
@@ -74,9 +74,9 @@ test("writes no name upon the scale and the figures at the edges", () => {
   for (const [width, height, scale] of [[374, 230, 3.3], [374, 184, 2.7], [1260, 720, 8], [2900, 1800, 31]]) {
     const view = Object.assign(new MapView(), { width, height, scale, centre: { x: 40, y: -3 } });
     const edges = { ...paper(), beginPath() {}, moveTo() {}, lineTo() {}, stroke() {} };
-    drawFigures(edges, {}, view, SIZE);
-    drawScale(edges, {}, view, SIZE);
-    const boxes = [...takenByMetres(view, SIZE)];
+    drawGridLabels(edges, {}, view, SIZE);
+    drawScaleBar(edges, {}, view, SIZE);
+    const boxes = [...gridLabelBoxes(view, SIZE)];
     assert.equal(boxes.length, edges.written.length);
     for (const [i, [left, top, right, bottom]] of boxes.entries()) assert.ok(overlap(boxes[i], edges.written[i]) && right - left < 400 && bottom - top < 2 * SIZE);
     const paint = paper(), labels = new Labels(paint, {}, SIZE, view), roll = dice(3);

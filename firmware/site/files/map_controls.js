@@ -53,11 +53,11 @@ function drawLegend() {
   say(section.querySelector(".low"), `${metres(legend.spread.low)} m`);
   say(section.querySelector(".high"), `${metres(legend.spread.high)} m`);
   const canvas = section.querySelector(".legend canvas");
-  const paint = canvas.getContext("2d");
-  const ramp = paint.createLinearGradient(0, 0, canvas.width, 0);
+  const ctx = canvas.getContext("2d");
+  const ramp = ctx.createLinearGradient(0, 0, canvas.width, 0);
   legend.heights.forEach((colour, i) => ramp.addColorStop(i / (legend.heights.length - 1), colour));
-  paint.fillStyle = ramp;
-  paint.fillRect(0, 0, canvas.width, canvas.height);
+  ctx.fillStyle = ramp;
+  ctx.fillRect(0, 0, canvas.width, canvas.height);
 }
 whenThemeChanges(drawLegend);
 

@@ -3,7 +3,8 @@
 const TAP = 8; // pixels: one finger that moves less is a tap
 const STEP = 60; // pixels a key press moves
 
-/** Moves `view` as it is told; `moved` after each change, `held(true or false)` as fingers come down and are lifted, `tapped({x, y})` for a tap. */
+/** Moves `view` as it is told. Calls `moved()` after each change, `held(true or false)` as fingers come down and are lifted, and
+ *  `tapped({x, y})` for a tap. */
 export function listenTo(canvas, view, { moved, held, tapped, fit }) {
   const fingers = new Map(); // pointerId to [left, top]
   let travelled = 0, alone = true;

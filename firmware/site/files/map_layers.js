@@ -1,21 +1,24 @@
 // The picture of the maps on a canvas: of which level a layer is drawn, which of its tiles are seen, and each in its place.
 
-const TOO_COARSE = 4; // pixels: where the base's are larger, a finer level is drawn, if there is one
-const MOST_FINER = 200; // tiles at a time, the uppermost layers first: a layer that finds no room is as coarse as the base
+const MAX_PIXEL = 4; // pixels: where the base's are larger, a finer level is drawn, if there is one
+const MAX_FINER_TILES = 200; // tiles at a time, the uppermost layers first: a layer that finds no room is as coarse as the base
 
 const pixelsOf = (tiles, view, density, level) => (tiles.metresOf(level) / tiles.side) * view.scale * density;
 
 /** The level of the mosaic whose pixels are about as large as those of the page. */
-const levelOf = (tiles, view, density) => Math.max(0, tiles.metresPerPixel.findLastIndex((_, level) => pixelsOf(tiles, view, density, level) <= 2));
+function levelOf(tiles, view, density) {
+  const isSmall = (_, level) => pixelsOf(tiles, view, density, level) <= 2;
+  return Math.max(0, tiles.metresPerPixel.findLastIndex(isSmall));
+}
 
 function finerLevelOf(tiles, view, density, { finer }) {
   let level = 0;
-  while (finer && level > finer.level && pixelsOf(tiles, view, density, level) > TOO_COARSE) --level;
+  while (finer && level > finer.level && pixelsOf(tiles, view, density, level) > MAX_PIXEL) --level;
   return level;
 }
 
 /** Those tiles of a layer that are seen, of which it has one: [{name, level, x, y}]. */
-function placesIn(layer, level, seen, metres) {
+function tilesIn(layer, level, seen, metres) {
   const places = [];
   for (const [name, { level: of, x, y, blank }] of layer.tiles) {
     const isSeen = x * metres < seen.right && (x + 1) * metres > seen.left && y * metres < seen.top && (y + 1) * metres > seen.bottom;
@@ -25,13 +28,18 @@ function placesIn(layer, level, seen, metres) {
 }
 
 /** Those of a finer level in their place that lie in `seen`. */
-function finerPlacesIn(tiles, layer, level, seen) {
-  const places = [], base = tiles.metresOf(0), metres = tiles.metresOf(level), along = Math.round(base / metres);
-  for (const { x, y, blank } of placesIn(layer, 0, seen, base)) {
+function finerTilesIn(tiles, layer, level, seen) {
+  const base = tiles.metresOf(0), metres = tiles.metresOf(level);
+  const along = Math.round(base / metres);
+  const places = [];
+  for (const { x, y, blank } of tilesIn(layer, 0, seen, base)) {
     if (blank) continue;
-    const first = (at, from) => Math.max(at * along, Math.floor(from / metres)), last = (at, to) => Math.min((at + 1) * along, Math.ceil(to / metres));
+    const first = (at, from) => Math.max(at * along, Math.floor(from / metres));
+    const last = (at, to) => Math.min((at + 1) * along, Math.ceil(to / metres));
     for (let row = first(y, seen.bottom); row < last(y, seen.top); ++row) {
-      for (let column = first(x, seen.left); column < last(x, seen.right); ++column) places.push({ name: `${level}/${column}/${row}`, level, x: column, y: row });
+      for (let column = first(x, seen.left); column < last(x, seen.right); ++column) {
+        places.push({ name: `${level}/${column}/${row}`, level, x: column, y: row });
+      }
     }
   }
   return places;
@@ -39,15 +47,15 @@ function finerPlacesIn(tiles, layer, level, seen) {
 
 /** Of each of `layers`, the lowest first, the tiles that are seen: [{layer, places}]. `at`: null is now; of earlier times there is
  *  nothing finer. */
-function plan(tiles, layers, view, density, at, seen) {
+function visibleTiles(tiles, layers, view, density, at, seen) {
   const level = levelOf(tiles, view, density);
-  let room = MOST_FINER;
+  let room = MAX_FINER_TILES;
   return [...layers].reverse().map((layer) => {
     const finer = level === 0 && at === null ? finerLevelOf(tiles, view, density, layer) : 0;
-    const count = finer < 0 ? finerPlacesIn(tiles, layer, finer, view.bounds()).length : 0;
-    if (!count || count > room) return { layer, places: placesIn(layer, level, seen, tiles.metresOf(level)) };
+    const count = finer < 0 ? finerTilesIn(tiles, layer, finer, view.bounds()).length : 0;
+    if (!count || count > room) return { layer, places: tilesIn(layer, level, seen, tiles.metresOf(level)) };
     room -= count;
-    return { layer, places: finerPlacesIn(tiles, layer, finer, seen) };
+    return { layer, places: finerTilesIn(tiles, layer, finer, seen) };
   }).reverse();
 }
 
@@ -70,29 +78,34 @@ function imageOf(tiles, layer, place, at) {
 
 /** Asks for the images of what is seen that changed. */
 export function fetchLayers(view, tiles, layers, at, density) {
-  for (const { layer, places } of plan(tiles, layers, view, density, at, view.bounds())) {
+  for (const { layer, places } of visibleTiles(tiles, layers, view, density, at, view.bounds())) {
     for (const place of places) imageOf(tiles, layer, place, at);
   }
 }
 
-const common = (a, b) => ({ left: Math.max(a.left, b.left), right: Math.min(a.right, b.right), bottom: Math.max(a.bottom, b.bottom), top: Math.min(a.top, b.top) });
+const intersection = (a, b) => ({
+  left: Math.max(a.left, b.left),
+  right: Math.min(a.right, b.right),
+  bottom: Math.max(a.bottom, b.bottom),
+  top: Math.min(a.top, b.top),
+});
 
 /** Draws those tiles that lie in `piece`, metres, as far as that is seen; of `layers` the lowest first. */
-export function drawLayers(paint, view, tiles, layers, at, density, piece = view.bounds()) {
-  const seen = common(piece, view.bounds()); // a coarse tile is larger than that, and what lies in it is not to be asked for
-  for (const { layer, places } of plan(tiles, layers, view, density, at, seen)) {
-    for (const place of places) drawTile(paint, view, tiles, place, imageOf(tiles, layer, place, at), density);
+export function drawLayers(ctx, view, tiles, layers, at, density, piece = view.bounds()) {
+  const seen = intersection(piece, view.bounds()); // a coarse tile is larger than that, and what lies in it is not to be asked for
+  for (const { layer, places } of visibleTiles(tiles, layers, view, density, at, seen)) {
+    for (const place of places) drawTile(ctx, view, tiles, place, imageOf(tiles, layer, place, at), density);
   }
 }
 
-function drawTile(paint, view, tiles, { level, x, y }, { image, of }, density) {
+function drawTile(ctx, view, tiles, { level, x, y }, { image, of }, density) {
   if (!image) return;
   const metres = tiles.metresOf(level), whole = tiles.metresOf(of.level);
-  paint.imageSmoothingEnabled = pixelsOf(tiles, view, density, of.level) < 1;
+  ctx.imageSmoothingEnabled = pixelsOf(tiles, view, density, of.level) < 1;
   // Whole pixels, so that no line shows between two tiles.
   const [left, top] = view.toPixel({ x: x * metres, y: (y + 1) * metres }).map(Math.round);
   const [right, bottom] = view.toPixel({ x: (x + 1) * metres, y: y * metres }).map(Math.round);
   const side = (metres / whole) * tiles.side; // of the part of the image that this tile is
   const from = [(x * metres) / whole - of.x, of.y + 1 - ((y + 1) * metres) / whole].map((part) => part * tiles.side);
-  paint.drawImage(image, ...from, side, side, left, top, right - left, bottom - top);
+  ctx.drawImage(image, ...from, side, side, left, top, right - left, bottom - top);
 }

@@ -11,12 +11,13 @@ const LONGEST = 40; // letters
 
 /** What of the map a marker may cover, in metres. */
 function boundsOf({ position, points, scale }) {
-  let [left, right, bottom, top] = points.length ? [Infinity, -Infinity, Infinity, -Infinity] : [position.x, position.x, position.y, position.y];
-  for (let i = 0; i < points.length; i += 2) {
-    left = Math.min(left, points[i]);
-    right = Math.max(right, points[i]);
-    bottom = Math.min(bottom, points[i + 1]);
-    top = Math.max(top, points[i + 1]);
+  const places = points.length ? points : [position.x, position.y];
+  let left = Infinity, right = -Infinity, bottom = Infinity, top = -Infinity;
+  for (let i = 0; i < places.length; i += 2) {
+    left = Math.min(left, places[i]);
+    right = Math.max(right, places[i]);
+    bottom = Math.min(bottom, places[i + 1]);
+    top = Math.max(top, places[i + 1]);
   }
   const rim = Math.max(Math.abs(scale.x), Math.abs(scale.y));
   return { left: left - rim, right: right + rim, bottom: bottom - rim, top: top + rim };
@@ -27,7 +28,7 @@ export class Markers {
   #all = new Map(); // "ns id" to marker
   #version = 0;
   #asked = false;
-  #taken = 0;
+  #serial = 0;
   #changed;
 
   /** `changed` is called when there is something new to draw. */
@@ -41,7 +42,7 @@ export class Markers {
     this.#asked = true;
     try {
       const answer = await fetchSoon(`/adit/markers?since=${this.#version}`);
-      if (answer.ok) this.#take(await answer.json());
+      if (answer.ok) this.#store(await answer.json());
     } catch {
       // asked for again with the next event
     } finally {
@@ -54,14 +55,14 @@ export class Markers {
     this.#version = 0;
   }
 
-  #take({ version, whole, left_out, markers, gone }) {
+  #store({ version, whole, left_out, markers, gone }) {
     if (whole) this.#all.clear();
     const key = ({ ns, id }) => `${id} ${ns}`;
     for (const marker of gone) this.#all.delete(key(marker));
     for (const marker of markers) {
       this.#all.delete(key(marker)); // the newest is drawn last, and so on top
       const needsPoints = !marker.points.length && MADE_OF_POINTS.includes(marker.type);
-      this.#all.set(key(marker), { ...marker, needsPoints, bounds: boundsOf(marker), mark: ++this.#taken });
+      this.#all.set(key(marker), { ...marker, needsPoints, bounds: boundsOf(marker), mark: ++this.#serial });
     }
     this.#version = version;
     this.leftOut = left_out;

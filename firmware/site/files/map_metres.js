@@ -1,7 +1,7 @@
 // The grid in metres: lines with the ground, their figures at the edges, the origin, and a line of a round length.
 import { metres } from "./words.js";
 
-const LEAST_STEP = 84; // pixels between two lines
+const MIN_STEP = 84; // pixels between two lines
 const TOOLS = 64; // pixels above, where the choice of a robot stands
 const NAMES = 5; // of six letters or less: room that a figure takes, in letters
 
@@ -9,7 +9,7 @@ const minus = (n) => String(n).replace("-", "−");
 
 /** 1, 2 or 5 times a power of ten: metres between two lines. */
 export function stepOf(scale) {
-  const least = LEAST_STEP / scale, power = 10 ** Math.floor(Math.log10(least));
+  const least = MIN_STEP / scale, power = 10 ** Math.floor(Math.log10(least));
   return power * ([1, 2, 5].find((n) => n * power >= least) ?? 10);
 }
 
@@ -18,51 +18,61 @@ function* multiples(from, to, step) {
   for (let i = Math.ceil(from / step); i * step <= to; ++i) yield Number((i * step).toPrecision(12));
 }
 
-export function drawLines(paint, colours, view) {
+export function drawGridLines(ctx, colours, view) {
   const { left, right, bottom, top } = view.bounds(), step = stepOf(view.scale);
-  paint.beginPath();
+  ctx.beginPath();
   for (const x of multiples(left, right, step)) {
     const at = Math.round(view.toPixel({ x, y: 0 })[0]) + 0.5;
-    paint.moveTo(at, 0);
-    paint.lineTo(at, view.height);
+    ctx.moveTo(at, 0);
+    ctx.lineTo(at, view.height);
   }
   for (const y of multiples(bottom, top, step)) {
     const at = Math.round(view.toPixel({ x: 0, y })[1]) + 0.5;
-    paint.moveTo(0, at);
-    paint.lineTo(view.width, at);
+    ctx.moveTo(0, at);
+    ctx.lineTo(view.width, at);
   }
-  Object.assign(paint, { lineWidth: 1, strokeStyle: colours.edge, globalAlpha: 0.22 });
-  paint.stroke();
-  paint.globalAlpha = 1;
+  Object.assign(ctx, { lineWidth: 1, strokeStyle: colours.edge, globalAlpha: 0.22 });
+  ctx.stroke();
+  ctx.globalAlpha = 1;
 }
 
 /** Where x and y are 0: a ring, and the way of both axes. */
-export function drawOrigin(paint, colours, view, unit) {
+export function drawOrigin(ctx, colours, view, unit) {
   const [left, top] = view.toPixel({ x: 0, y: 0 });
-  paint.lineCap = "round";
+  ctx.lineCap = "round";
   for (const [width, colour] of [[5, colours.ground], [2, colours.ink]]) {
-    Object.assign(paint, { lineWidth: width * unit, strokeStyle: colour });
-    paint.beginPath();
-    paint.arc(left, top, 5 * unit, 0, 2 * Math.PI);
-    paint.moveTo(left + 5 * unit, top);
-    paint.lineTo(left + 20 * unit, top);
-    paint.moveTo(left, top - 5 * unit);
-    paint.lineTo(left, top - 20 * unit);
-    paint.stroke();
+    Object.assign(ctx, { lineWidth: width * unit, strokeStyle: colour });
+    ctx.beginPath();
+    ctx.arc(left, top, 5 * unit, 0, 2 * Math.PI);
+    ctx.moveTo(left + 5 * unit, top);
+    ctx.lineTo(left + 20 * unit, top);
+    ctx.moveTo(left, top - 5 * unit);
+    ctx.lineTo(left, top - 20 * unit);
+    ctx.stroke();
   }
-  paint.lineCap = "butt";
+  ctx.lineCap = "butt";
 }
 
-function write(paint, colours, text, left, top, align) {
-  paint.textAlign = align;
-  paint.strokeText(text, left, top);
-  paint.fillText(text, left, top);
+/** How text is written that any map may lie below. */
+const textStyle = (colours, weight, size, fillStyle) => ({
+  font: `${weight} ${size}px system-ui, sans-serif`,
+  textBaseline: "middle",
+  lineJoin: "round",
+  lineWidth: size / 3,
+  strokeStyle: colours.ground,
+  fillStyle,
+});
+
+function write(ctx, text, left, top, align) {
+  ctx.textAlign = align;
+  ctx.strokeText(text, left, top);
+  ctx.fillText(text, left, top);
 }
 
 const fontOf = (size) => Math.max(11, size * 0.86);
 
 /** The figures of the lines, below and at the left: [text, left, top, align]; those that would stand upon the scale are left out. */
-function* figuresOf(view, size) {
+function* gridLabelsOf(view, size) {
   const { left, right, bottom, top } = view.bounds(), step = stepOf(view.scale), small = fontOf(size);
   for (const x of multiples(left, right, step)) {
     const [at] = view.toPixel({ x, y: 0 });
@@ -74,19 +84,18 @@ function* figuresOf(view, size) {
   }
 }
 
-export function drawFigures(paint, colours, view, size) {
-  const small = fontOf(size);
-  Object.assign(paint, { font: `500 ${small}px system-ui, sans-serif`, textBaseline: "middle", lineJoin: "round", lineWidth: small / 3, strokeStyle: colours.ground, fillStyle: colours.soft });
-  for (const figure of figuresOf(view, size)) write(paint, colours, ...figure);
-  paint.textAlign = "left";
+export function drawGridLabels(ctx, colours, view, size) {
+  Object.assign(ctx, textStyle(colours, 500, fontOf(size), colours.soft));
+  for (const [text, left, top, align] of gridLabelsOf(view, size)) write(ctx, text, left, top, align);
+  ctx.textAlign = "left";
 }
 
 const scaleOf = (view, size) => ({ length: stepOf(view.scale), left: size * 0.5, top: view.height - size * 2.4 });
 
 /** What figures and scale take: [left, top, right, bottom], pixels of the view. */
-export function* takenByMetres(view, size) {
+export function* gridLabelBoxes(view, size) {
   const small = fontOf(size), letter = small * 0.62;
-  for (const [text, left, top, align] of figuresOf(view, size)) {
+  for (const [text, left, top, align] of gridLabelsOf(view, size)) {
     const from = align === "center" ? left - text.length * letter / 2 : left;
     yield [from, top - small * 0.6, from + text.length * letter, top + small * 0.6];
   }
@@ -95,15 +104,15 @@ export function* takenByMetres(view, size) {
 }
 
 /** A line of a round length in the corner, above the figures. */
-export function drawScale(paint, colours, view, size) {
+export function drawScaleBar(ctx, colours, view, size) {
   const { length, left, top } = scaleOf(view, size), width = length * view.scale;
   for (const [line, colour] of [[6, colours.ground], [2.5, colours.ink]]) {
-    Object.assign(paint, { lineWidth: line, strokeStyle: colour });
-    paint.beginPath();
-    paint.moveTo(left, top);
-    paint.lineTo(left + width, top);
-    paint.stroke();
+    Object.assign(ctx, { lineWidth: line, strokeStyle: colour });
+    ctx.beginPath();
+    ctx.moveTo(left, top);
+    ctx.lineTo(left + width, top);
+    ctx.stroke();
   }
-  Object.assign(paint, { font: `600 ${size}px system-ui, sans-serif`, textBaseline: "middle", lineJoin: "round", lineWidth: size / 3, strokeStyle: colours.ground, fillStyle: colours.ink });
-  write(paint, colours, `${length < 1 ? metres(length) : length} m`, left + width + size * 0.5, top, "left");
+  Object.assign(ctx, textStyle(colours, 600, size, colours.ink));
+  write(ctx, `${length < 1 ? metres(length) : length} m`, left + width + size * 0.5, top, "left");
 }

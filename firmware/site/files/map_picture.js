@@ -1,20 +1,20 @@
-// How the map gets onto its canvas: plates one above the other, each drawn again only when what is on it changed. All but the
+// How the map gets onto its canvas: cached layers one above the other, each drawn again only when what is on it changed. All but the
 // uppermost, which changes with every step of a robot, are put together on one; a frame is a copy of these two, and what is
 // written at the edges.
-import { Plate } from "./map_plate.js";
+import { CachedLayer } from "./map_cached_layer.js";
 
 const REST = 160; // ms without a move: then all is drawn exactly for what is seen
-const WHILE = 10; // ms: what is not drawn within so long waits for the next frame
-const SPACING = 400; // ms: pieces of a plate are drawn again no more often
+const FRAME_BUDGET = 10; // ms: what is not drawn within so long waits for the next frame
+const PATCH_INTERVAL = 400; // ms: pieces of a cache are drawn again no more often
 
 export class Picture {
   #canvas;
-  #paint;
+  #ctx;
   #view;
-  #layers; // from the lowest: {plate, key(), draw(paint, view)}
+  #layers; // from the lowest: {cache, key(), draw(ctx, view)}
   #over;
   #ground;
-  #below = new Plate(true);
+  #below = new CachedLayer(true);
   #patched = -Infinity;
   #composed = 0;
   #waiting = false;
@@ -25,13 +25,13 @@ export class Picture {
   hasNames = true; // or there is no room for any
   before = () => {};
 
-  /** `layers`: from the lowest, {key(), draw(paint, view)}; of a layer of which pieces change also `pieces()`, what changed since it was
-   *  last asked, [{left, right, bottom, top}] in metres; then draw() has the piece as its third. `over(paint, view)` is drawn each time;
+  /** `layers`: from the lowest, {key(), draw(ctx, view)}; of a layer of which pieces change also `pieces()`, what changed since it was
+   *  last asked, [{left, right, bottom, top}] in metres; then draw() has the piece as its third. `over(ctx, view)` is drawn each time;
    *  `ground()` is the colour below all. */
   constructor(canvas, view, { layers, over, ground }) {
     [this.#canvas, this.#view, this.#over, this.#ground] = [canvas, view, over, ground];
-    this.#layers = layers.map((layer) => ({ ...layer, plate: new Plate() }));
-    this.#paint = canvas.getContext("2d", { alpha: false });
+    this.#layers = layers.map((layer) => ({ ...layer, cache: new CachedLayer() }));
+    this.#ctx = canvas.getContext("2d", { alpha: false });
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
 
@@ -72,30 +72,30 @@ export class Picture {
     });
   }
 
-  /** Gives how many plates still wait. */
+  /** Gives how many layers still wait. */
   #refresh(isMoving, density) {
     const began = performance.now(), top = this.#layers.at(-1);
     let waiting = 0;
     for (const layer of this.#layers) {
-      const { plate, key, draw, pieces } = layer, now = key();
-      if (!plate.isDue(this.#view, now, density, isMoving)) {
+      const { cache, key, draw, pieces } = layer, now = key();
+      if (!cache.needsRedraw(this.#view, now, density, isMoving)) {
         if (pieces && this.#patch(layer)) ++this.#composed;
         continue;
       }
-      if (performance.now() - began > WHILE) {
+      if (performance.now() - began > FRAME_BUDGET) {
         ++waiting;
         continue;
       }
       pieces?.();
-      plate.draw(this.#view, now, density, draw);
+      cache.draw(this.#view, now, density, draw);
       if (layer !== top) ++this.#composed;
     }
     return waiting;
   }
 
   /** Gives whether something was drawn again. */
-  #patch({ plate, pieces, draw }) {
-    const next = this.#patched + SPACING - performance.now();
+  #patch({ cache, pieces, draw }) {
+    const next = this.#patched + PATCH_INTERVAL - performance.now();
     if (next > 0) {
       clearTimeout(this.#later);
       this.#later = setTimeout(() => this.redraw(), next);
@@ -104,31 +104,31 @@ export class Picture {
     const all = pieces();
     if (!all.length) return false;
     this.#patched = performance.now();
-    for (const piece of all) plate.patch(piece, draw);
+    for (const piece of all) cache.patch(piece, draw);
     return true;
   }
   #later = 0;
 
   #draw() {
     this.before();
-    const paint = this.#paint, view = this.#view, density = this.density();
+    const ctx = this.#ctx, view = this.#view, density = this.density();
     const isMoving = this.#isHeld || performance.now() - this.#moved < REST;
     const waiting = this.#refresh(isMoving, density);
     const key = `${this.#composed} ${this.#ground()}`;
-    if (this.#below.isDue(view, key, density, isMoving)) this.#below.draw(view, key, density, this.#compose);
-    paint.resetTransform();
-    paint.fillStyle = this.#ground();
-    paint.fillRect(0, 0, this.#canvas.width, this.#canvas.height);
-    this.#below.copyTo(paint, view);
-    this.#layers.at(-1).plate.copyTo(paint, view);
-    paint.setTransform(density, 0, 0, density, 0, 0);
-    this.#over(paint, view);
+    if (this.#below.needsRedraw(view, key, density, isMoving)) this.#below.draw(view, key, density, this.#compose);
+    ctx.resetTransform();
+    ctx.fillStyle = this.#ground();
+    ctx.fillRect(0, 0, this.#canvas.width, this.#canvas.height);
+    this.#below.copyTo(ctx, view);
+    this.#layers.at(-1).cache.copyTo(ctx, view);
+    ctx.setTransform(density, 0, 0, density, 0, 0);
+    this.#over(ctx, view);
     if (waiting) this.redraw();
   }
 
-  #compose = (paint, view) => {
-    paint.fillStyle = this.#ground();
-    paint.fillRect(0, 0, view.width, view.height);
-    for (const { plate } of this.#layers.slice(0, -1)) plate.copyTo(paint, view);
+  #compose = (ctx, view) => {
+    ctx.fillStyle = this.#ground();
+    ctx.fillRect(0, 0, view.width, view.height);
+    for (const { cache } of this.#layers.slice(0, -1)) cache.copyTo(ctx, view);
   };
 }

@@ -9,10 +9,10 @@ const LABELS_FROM = 2; // pixels per metre
 const PICTURES_FROM = 0.7; // pixels per metre: below it only shapes are told apart
 const NEWEST = 6; // are named before the others
 
-function path(paint, points, left, top, size) {
-  paint.beginPath();
-  for (const [x, y] of points) paint.lineTo(left + x * size, top + y * size);
-  paint.closePath();
+function path(ctx, points, left, top, size) {
+  ctx.beginPath();
+  for (const [x, y] of points) ctx.lineTo(left + x * size, top + y * size);
+  ctx.closePath();
 }
 
 const SHAPES = {
@@ -22,73 +22,77 @@ const SHAPES = {
 };
 
 /** The shapes of page.css, with a rim in the ground's colour that sets them off from any map. */
-function drawShape(paint, colours, level, left, top, size) {
+function drawShape(ctx, colours, level, left, top, size) {
   if (SHAPES[level]) {
-    path(paint, SHAPES[level], left, top, size);
+    path(ctx, SHAPES[level], left, top, size);
   } else {
-    paint.beginPath();
-    paint.arc(left, top, size * 0.9, 0, 2 * Math.PI);
+    ctx.beginPath();
+    ctx.arc(left, top, size * 0.9, 0, 2 * Math.PI);
   }
-  paint.lineJoin = "round";
-  paint.strokeStyle = colours.ground;
-  paint.lineWidth = size * 0.7;
-  paint.stroke();
-  paint.strokeStyle = paint.fillStyle = colours[level];
-  paint.lineWidth = size * 0.35;
-  if (level === "quiet") paint.stroke();
-  else paint.fill();
+  ctx.lineJoin = "round";
+  ctx.strokeStyle = colours.ground;
+  ctx.lineWidth = size * 0.7;
+  ctx.stroke();
+  ctx.strokeStyle = ctx.fillStyle = colours[level];
+  ctx.lineWidth = size * 0.35;
+  if (level === "quiet") ctx.stroke();
+  else ctx.fill();
 }
 
 /** A plate with the picture of what was found; its state's shape stands at its corner. */
-function drawPicture(paint, colours, report, [left, top], size) {
+function drawPicture(ctx, colours, report, [left, top], size) {
   const { level } = life(report), side = size * 1.25;
-  paint.beginPath();
-  paint.roundRect(left - side, top - side, 2 * side, 2 * side, side * 0.45);
-  Object.assign(paint, { fillStyle: colours.panel, strokeStyle: colours.ground, lineWidth: size * 0.6 });
-  paint.stroke();
-  paint.fill();
-  Object.assign(paint, { strokeStyle: colours[level], lineWidth: Math.max(1.5, size * 0.2) });
-  paint.stroke();
-  paint.save();
-  paint.translate(left - side * 0.75, top - side * 0.75);
-  paint.scale((side * 1.5) / 24, (side * 1.5) / 24);
-  Object.assign(paint, { lineWidth: 2.2, lineCap: "round", lineJoin: "round" });
-  paint.stroke(iconPath(report.type));
-  paint.restore();
-  drawShape(paint, colours, level, left + side, top - side, size * 0.45);
+  ctx.beginPath();
+  ctx.roundRect(left - side, top - side, 2 * side, 2 * side, side * 0.45);
+  Object.assign(ctx, { fillStyle: colours.panel, strokeStyle: colours.ground, lineWidth: size * 0.6 });
+  ctx.stroke();
+  ctx.fill();
+  Object.assign(ctx, { strokeStyle: colours[level], lineWidth: Math.max(1.5, size * 0.2) });
+  ctx.stroke();
+  ctx.save();
+  ctx.translate(left - side * 0.75, top - side * 0.75);
+  ctx.scale((side * 1.5) / 24, (side * 1.5) / 24);
+  Object.assign(ctx, { lineWidth: 2.2, lineCap: "round", lineJoin: "round" });
+  ctx.stroke(iconPath(report.type));
+  ctx.restore();
+  drawShape(ctx, colours, level, left + side, top - side, size * 0.45);
 }
 
 /** Two reports that may be of one artifact, joined by a line. */
-function drawPair(paint, colours, labels, view, { one, other, metres: apart }) {
+function drawPair(ctx, colours, labels, view, { one, other, metres: apart }) {
   const [left, top] = view.toPixel(one.position), [right, bottom] = view.toPixel(other.position);
   for (const [width, colour] of [[6, colours.ground], [3, colours.wait]]) {
-    paint.lineWidth = width;
-    paint.strokeStyle = colour;
-    paint.beginPath();
-    paint.moveTo(left, top);
-    paint.lineTo(right, bottom);
-    paint.stroke();
+    ctx.lineWidth = width;
+    ctx.strokeStyle = colour;
+    ctx.beginPath();
+    ctx.moveTo(left, top);
+    ctx.lineTo(right, bottom);
+    ctx.stroke();
   }
-  if (Math.hypot(left - right, top - bottom) > 8 * labels.size) labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
+  if (Math.hypot(left - right, top - bottom) <= 8 * labels.size) return;
+  labels.write(`${apart.toFixed(1)} m`, (left + right) / 2, (top + bottom) / 2);
 }
 
 const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;
 
-export function drawReports(paint, colours, labels, view, run, reports, size) {
+export function drawReports(ctx, colours, labels, view, run, reports, size) {
   const isPicture = view.scale >= PICTURES_FROM;
   for (const report of reports) labels.keepOff(view.toPixel(report.position), isPicture ? size * 1.3 : size * 0.8);
-  for (const pair of nearPairs({ ...run, reports })) drawPair(paint, colours, labels, view, pair);
+  for (const pair of nearPairs({ ...run, reports })) drawPair(ctx, colours, labels, view, pair);
   for (const report of [...reports].reverse()) {
     const place = view.toPixel(report.position);
-    if (isPicture) drawPicture(paint, colours, report, place, size);
-    else drawShape(paint, colours, life(report).level, ...place, size * 0.9);
+    if (isPicture) drawPicture(ctx, colours, report, place, size);
+    else drawShape(ctx, colours, life(report).level, ...place, size * 0.9);
   }
 }
 
 /** Those that wait for a word and the newest first; `named`: those whose names stand there already. */
 export function nameReports(labels, view, reports, size, named) {
   const numbers = named.map(({ number }) => number);
-  const rank = (report, i) => (life(report).level === "ask" ? 0 : i < NEWEST ? 1 : 2);
+  const rank = (report, i) => {
+    if (life(report).level === "ask") return 0;
+    return i < NEWEST ? 1 : 2;
+  };
   const ranked = reports.map((report, i) => ({ report, rank: rank(report, i) })).sort((a, b) => a.rank - b.rank);
   for (const { report, rank: its } of ranked) {
     if (numbers.includes(report.number) || (its > 0 && view.scale < LABELS_FROM)) continue;
@@ -97,30 +101,30 @@ export function nameReports(labels, view, reports, size, named) {
 }
 
 /** Sets two reports off from all others; their names come first. */
-export function drawPairRings(paint, colours, labels, view, pair, size) {
+export function drawPairRings(ctx, colours, labels, view, pair, size) {
   for (const report of pair) {
     const [left, top] = view.toPixel(report.position);
     for (const [width, colour] of [[7, colours.ground], [3, colours.ask]]) {
-      paint.lineWidth = width;
-      paint.strokeStyle = colour;
-      paint.beginPath();
-      paint.arc(left, top, size * 1.3, 0, 2 * Math.PI);
-      paint.stroke();
+      ctx.lineWidth = width;
+      ctx.strokeStyle = colour;
+      ctx.beginPath();
+      ctx.arc(left, top, size * 1.3, 0, 2 * Math.PI);
+      ctx.stroke();
     }
     labels.write(nameOf(report), left - size * 2, top - size * 2);
   }
 }
 
 /** Where a report is being composed, or would be. */
-export function drawCross(paint, colours, [left, top], size) {
+export function drawCross(ctx, colours, [left, top], size) {
   for (const [line, colour] of [[7, colours.ground], [3, colours.ask]]) {
-    paint.lineWidth = line;
-    paint.strokeStyle = colour;
-    paint.beginPath();
+    ctx.lineWidth = line;
+    ctx.strokeStyle = colour;
+    ctx.beginPath();
     for (const [x, y] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
-      paint.moveTo(left + x * size * 0.5, top + y * size * 0.5);
-      paint.lineTo(left + x * size * 2, top + y * size * 2);
+      ctx.moveTo(left + x * size * 0.5, top + y * size * 0.5);
+      ctx.lineTo(left + x * size * 2, top + y * size * 2);
     }
-    paint.stroke();
+    ctx.stroke();
   }
 }

@@ -27,18 +27,18 @@ export class Ruler {
     return `${Math.hypot(along, up).toFixed(2)} m (x ${metres(along)}, y ${metres(up)})`;
   }
 
-  draw(paint, colours, view, size) {
+  draw(ctx, colours, view, size) {
     if (!this.isOn) return;
     const places = this.#points.map(view.toPixel), look = { ...colours, ask: colours.lamp };
     if (places.length === 2) {
       for (const [width, colour] of [[6, colours.ground], [2.5, colours.lamp]]) {
-        Object.assign(paint, { lineWidth: width, strokeStyle: colour });
-        paint.beginPath();
-        paint.moveTo(...places[0]);
-        paint.lineTo(...places[1]);
-        paint.stroke();
+        Object.assign(ctx, { lineWidth: width, strokeStyle: colour });
+        ctx.beginPath();
+        ctx.moveTo(...places[0]);
+        ctx.lineTo(...places[1]);
+        ctx.stroke();
       }
     }
-    for (const place of places) drawCross(paint, look, place, size * 0.6);
+    for (const place of places) drawCross(ctx, look, place, size * 0.6);
   }
 }

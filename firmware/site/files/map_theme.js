@@ -5,7 +5,7 @@ import { themeNow } from "./theme_now.js";
 const NAMES = ["ground", "panel", "edge", "ink", "soft", "good", "wait", "bad", "quiet", "ask", "lamp", "free", "wall"];
 
 /** The page's colours, which differ by theme. */
-export function coloursOf(node) {
+export function themeColours(node) {
   const style = getComputedStyle(node);
   return Object.fromEntries(NAMES.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]));
 }

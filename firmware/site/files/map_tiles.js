@@ -2,7 +2,7 @@
 // when it is looked at and its version changed (README.md: GET /adit/map).
 import { fetchSoon } from "./session.js";
 
-const AT_ONCE = 4, FINER_AT_ONCE = 2, MOST_IMAGES = 500; // a finer tile may have to be drawn first
+const AT_ONCE = 4, FINER_AT_ONCE = 2, MAX_IMAGES = 500; // a finer tile may have to be drawn first
 const NONE = [204, 404]; // nothing is known there, of what may be asked for; of anything else
 
 const overlap = (a, b) => a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
@@ -52,8 +52,13 @@ export class Tiles {
     ++this.changes;
   }
 
-  #coloursOf({ kind, robot }) {
-    const [from, to] = kind === "grid" ? this.#looks.grid : this.#byRobot ? this.#looks.robot(robot) : this.#looks.cloud ?? [];
+  #rampOf({ kind, robot }) {
+    if (kind === "grid") return this.#looks.grid;
+    return this.#byRobot ? this.#looks.robot(robot) : this.#looks.cloud ?? [];
+  }
+
+  #coloursOf(layer) {
+    const { kind } = layer, [from, to] = this.#rampOf(layer);
     const spread = kind === "cloud" && this.heights ? `&low=${this.heights.low}&high=${this.heights.high}` : "";
     return from ? `${spread}&from=${from}&to=${to}` : spread;
   }
@@ -65,7 +70,7 @@ export class Tiles {
       this.forget(); // the box restarted, and its picture with it
       map = await this.#ask();
     }
-    this.#take(map);
+    this.#store(map);
   }
 
   async #ask() {
@@ -74,7 +79,7 @@ export class Tiles {
     return answer.json();
   }
 
-  #take(map) {
+  #store(map) {
     if (map.version === this.#version) return;
     this.#version = map.version;
     this.metresPerPixel = map.metres_per_pixel;
@@ -83,12 +88,12 @@ export class Tiles {
     this.colours = map.colours;
     for (const { tiles, ...layer } of map.layers) {
       const key = `${layer.kind} ${layer.robot}`;
-      const known = this.layers.get(key) ?? { tiles: new Map() };
-      this.layers.set(key, Object.assign(known, layer));
+      const entry = this.layers.get(key) ?? { tiles: new Map() };
+      this.layers.set(key, Object.assign(entry, layer));
       if (layer.finer?.area) this.#ageFiner(layer);
       for (const tile of tiles) {
         const place = `${tile.level}/${tile.x}/${tile.y}`;
-        known.tiles.set(place, tile);
+        entry.tiles.set(place, tile);
         if (tile.blank) this.#pieces.set(place, this.#areaOf(place)); // no image will come
       }
     }
@@ -97,8 +102,8 @@ export class Tiles {
   }
 
   #ageFiner({ kind, robot, finer: { area } }) {
-    for (const [path, known] of this.#images) {
-      if (known.isFiner && path.startsWith(this.#pathOf(kind, robot, "")) && overlap(this.#areaOf(known.place), area)) known.isOld = true;
+    for (const [path, entry] of this.#images) {
+      if (entry.isFiner && path.startsWith(this.#pathOf(kind, robot, "")) && overlap(this.#areaOf(entry.place), area)) entry.isOld = true;
     }
   }
 
@@ -131,9 +136,11 @@ export class Tiles {
     for (const layer of this.layers.values()) {
       const b = layer.bounds;
       if (!b || !shows(layer)) continue;
-      all = all
-        ? { left: Math.min(all.left, b.left), bottom: Math.min(all.bottom, b.bottom), right: Math.max(all.right, b.right), top: Math.max(all.top, b.top) }
-        : b;
+      all ??= { ...b };
+      all.left = Math.min(all.left, b.left);
+      all.right = Math.max(all.right, b.right);
+      all.bottom = Math.min(all.bottom, b.bottom);
+      all.top = Math.max(all.top, b.top);
     }
     return all;
   }
@@ -145,22 +152,22 @@ export class Tiles {
     const isNewest = at === null || (at >= tile.stamp && !tile.blank);
     const path = this.#pathOf(layer.kind, layer.robot, place), colours = this.#coloursOf(layer);
     const name = `${path}?${isNewest ? `v=${tile.version}` : `at=${at}`}${colours}`;
-    const known = this.#known(path, place);
-    if (known.name !== name && !(at !== null && known.isAsOf?.(at, colours))) this.#want(known, name);
-    return known.image;
+    const entry = this.#entryOf(path, place);
+    if (entry.name !== name && !(at !== null && entry.isAsOf?.(at, colours))) this.#request(entry, name);
+    return entry.image;
   }
 
   /** The same of a finer level; `asks`: it is fetched where it is not there. */
   finerImage(layer, place, asks) {
     const path = this.#pathOf(layer.kind, layer.robot, place), colours = this.#coloursOf(layer);
     if (!asks) return this.#images.get(path)?.image ?? null;
-    const known = this.#known(path, place);
-    known.isFiner = true;
-    if (known.isOld || known.version === undefined) Object.assign(known, { version: layer.finer.version, isOld: false });
-    if (known.colours !== colours) Object.assign(known, { colours, etag: "" });
-    const name = `${path}?v=${known.version}${colours}`;
-    if (known.name !== name) this.#want(known, name);
-    return known.image;
+    const entry = this.#entryOf(path, place);
+    entry.isFiner = true;
+    if (entry.isOld || entry.version === undefined) Object.assign(entry, { version: layer.finer.version, isOld: false });
+    if (entry.colours !== colours) Object.assign(entry, { colours, etag: "" });
+    const name = `${path}?v=${entry.version}${colours}`;
+    if (entry.name !== name) this.#request(entry, name);
+    return entry.image;
   }
 
   /** In metres. */
@@ -168,48 +175,49 @@ export class Tiles {
 
   #pathOf = (kind, robot, place) => `${this.#base}/map/${kind}/${robot || "-"}/${place}${place && ".png"}`;
 
-  #known(path, place) {
-    let known = this.#images.get(path);
-    if (!known) this.#images.set(path, (known = { name: "", image: null, place }));
-    known.used = performance.now();
-    return known;
+  #entryOf(path, place) {
+    let entry = this.#images.get(path);
+    if (!entry) this.#images.set(path, (entry = { name: "", image: null, place }));
+    entry.used = performance.now();
+    return entry;
   }
 
-  #want(known, name) {
-    known.name = name;
-    this.#queue = this.#queue.filter((other) => other.known !== known);
-    this.#queue.push({ known, name });
+  #request(entry, name) {
+    entry.name = name;
+    this.#queue = this.#queue.filter((other) => other.entry !== entry);
+    this.#queue.push({ entry, name });
     this.#load();
   }
 
-  #next() {
+  #nextRequest() {
     if (this.#loading >= AT_ONCE) return null;
-    const next = this.#queue.findIndex(({ known }) => !known.isFiner || (this.#loadingFiner < FINER_AT_ONCE && this.#loading < AT_ONCE - 1));
+    const mayFiner = this.#loadingFiner < FINER_AT_ONCE && this.#loading < AT_ONCE - 1;
+    const next = this.#queue.findIndex(({ entry }) => !entry.isFiner || mayFiner);
     return next < 0 ? null : this.#queue.splice(next, 1)[0];
   }
 
   async #load() {
-    const next = this.#next();
+    const next = this.#nextRequest();
     if (!next) return;
-    const { known, name } = next;
+    const { entry, name } = next;
     ++this.#loading;
-    if (known.isFiner) ++this.#loadingFiner;
+    if (entry.isFiner) ++this.#loadingFiner;
     try {
-      const answer = await fetchSoon(name, known.etag ? { headers: { "If-None-Match": known.etag } } : {});
+      const answer = await fetchSoon(name, entry.etag ? { headers: { "If-None-Match": entry.etag } } : {});
       const image = answer.status === 200 ? await createImageBitmap(await answer.blob()) : null;
-      if (known.isFiner && answer.status === 503) known.name = ""; // asked for again when it is next drawn
-      if (known.name !== name || !(image || NONE.includes(answer.status))) return;
-      known.image = image;
-      if (known.isFiner) known.etag = answer.headers.get("ETag") ?? "";
-      known.isAsOf = spanOf(answer, name);
-      this.#pieces.set(known.place, this.#areaOf(known.place));
+      if (entry.isFiner && answer.status === 503) entry.name = ""; // asked for again when it is next drawn
+      if (entry.name !== name || !(image || NONE.includes(answer.status))) return;
+      entry.image = image;
+      if (entry.isFiner) entry.etag = answer.headers.get("ETag") ?? "";
+      entry.isAsOf = spanOf(answer, name);
+      this.#pieces.set(entry.place, this.#areaOf(entry.place));
       this.#changed();
     } catch {
-      if (known.name === name) known.name = ""; // asked for again when it is next drawn
+      if (entry.name === name) entry.name = ""; // asked for again when it is next drawn
     } finally {
       --this.#loading;
-      if (known.isFiner) --this.#loadingFiner;
-      this.#drop();
+      if (entry.isFiner) --this.#loadingFiner;
+      this.#evict();
       this.#load();
     }
   }
@@ -219,9 +227,9 @@ export class Tiles {
     return { left: x * metres, right: (x + 1) * metres, bottom: y * metres, top: (y + 1) * metres };
   }
 
-  #drop() {
-    if (this.#images.size <= MOST_IMAGES) return;
-    const oldest = [...this.#images].sort(([, a], [, b]) => a.used - b.used).slice(0, MOST_IMAGES / 4);
+  #evict() {
+    if (this.#images.size <= MAX_IMAGES) return;
+    const oldest = [...this.#images].sort(([, a], [, b]) => a.used - b.used).slice(0, MAX_IMAGES / 4);
     for (const [path] of oldest) this.#images.delete(path);
   }
 }

@@ -3,10 +3,10 @@
 import { robotColour } from "./robot_colour.js";
 import { fetchSoon } from "./session.js";
 
-const SPACING = 1; // s
+const SPACING = 1, SAME_SPACING = 10; // s; the second while a robot stands
 const SILENCE = 5; // s without an event: some were missed
 const GAP = 60; // s without a pose: where it went in between is not known
-const LEAST_STEP = 2; // pixels: a line need not be finer
+const MIN_STEP = 2; // pixels: a line need not be finer
 // From the newest: up to how many seconds ago, how wide, how strong.
 const AGES = [[60, 2.25, 0.95], [300, 1.75, 0.6], [Infinity, 1.5, 0.35]];
 
@@ -35,10 +35,9 @@ export class Tracks {
     }
     if (!this.isLoaded) this.#fetch();
     for (const { name, at, position: { x, y, z }, heading } of robots) {
-      const track = this.#of(name), last = track.at(-1);
-      if (!last || (at >= last[0] + SPACING && (x !== last[1] || y !== last[2] || z !== last[3] || heading !== last[4] || at > last[0] + 10))) {
-        track.push([at, x, y, z, heading]);
-      }
+      const track = this.#of(name), last = track.at(-1), pose = [at, x, y, z, heading];
+      const isSame = last && pose.every((value, i) => i === 0 || value === last[i]);
+      if (!last || at >= last[0] + (isSame ? SAME_SPACING : SPACING)) track.push(pose);
     }
   }
 
@@ -93,21 +92,21 @@ export class Tracks {
 }
 
 /** In each robot's colour; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. */
-export function drawTracks(paint, colours, view, tracks, now, unit) {
-  paint.lineJoin = "round";
+export function drawTracks(ctx, colours, view, tracks, now, unit) {
+  ctx.lineJoin = "round";
   for (let age = AGES.length - 1; age >= 0; --age) {
     const [oldest, width, alpha] = AGES[age], newest = AGES[age - 1]?.[0] ?? -Infinity;
     for (const { name, poses } of tracks) {
-      if (!trace(paint, view, poses, now - oldest, now - newest)) continue;
+      if (!trace(ctx, view, poses, now - oldest, now - newest)) continue;
       if (age === 0) {
-        Object.assign(paint, { lineWidth: (width + 2) * unit, strokeStyle: colours.ground, globalAlpha: 0.5 });
-        paint.stroke();
+        Object.assign(ctx, { lineWidth: (width + 2) * unit, strokeStyle: colours.ground, globalAlpha: 0.5 });
+        ctx.stroke();
       }
-      Object.assign(paint, { lineWidth: width * unit, strokeStyle: robotColour(name), globalAlpha: alpha });
-      paint.stroke();
+      Object.assign(ctx, { lineWidth: width * unit, strokeStyle: robotColour(name), globalAlpha: alpha });
+      ctx.stroke();
     }
   }
-  paint.globalAlpha = 1;
+  ctx.globalAlpha = 1;
 }
 
 /** The index of the first pose after `time`. */
@@ -122,18 +121,18 @@ function firstAfter(poses, time) {
 }
 
 /** The way after `from` up to `to`, from the pose before it on. Gives whether there is one. */
-function trace(paint, view, poses, from, to) {
+function trace(ctx, view, poses, from, to) {
   const begin = Math.max(0, firstAfter(poses, from) - 1), end = firstAfter(poses, to);
   if (end - begin < 2) return false;
   let last = null, lastAt = -Infinity;
-  paint.beginPath();
+  ctx.beginPath();
   for (let i = begin; i < end; ++i) {
     const [at, x, y] = poses[i], [left, top] = view.toPixel({ x, y });
     const isGap = at - lastAt > GAP;
     lastAt = at;
-    if (last && !isGap && i < end - 1 && Math.hypot(left - last[0], top - last[1]) < LEAST_STEP) continue;
-    if (isGap) paint.moveTo(left, top);
-    else paint.lineTo(left, top);
+    if (last && !isGap && i < end - 1 && Math.hypot(left - last[0], top - last[1]) < MIN_STEP) continue;
+    if (isGap) ctx.moveTo(left, top);
+    else ctx.lineTo(left, top);
     last = [left, top];
   }
   return true;

@@ -1,9 +1,9 @@
 // Where the map's canvas looks: metres of the frame "darpa" (x to the right, y up) to pixels of the page.
 
-const MOST_METRES = 8192, LEAST_SCALE = 0.02, MOST_SCALE = 400;
+const MAX_METRES = 8192, MIN_SCALE = 0.02, MAX_SCALE = 400;
 const SAME = 1e-6; // pixels
 
-const within = (value, least, most) => Math.min(most, Math.max(least, value));
+const clamp = (value, least, most) => Math.min(most, Math.max(least, value));
 
 export class MapView {
   width = 1;
@@ -26,7 +26,8 @@ export class MapView {
 
   /** The same with so many pixels more on each side. */
   widened(along, down) {
-    return Object.assign(new MapView(), { width: this.width + 2 * along, height: this.height + 2 * down, centre: this.centre, scale: this.scale });
+    const size = { width: this.width + 2 * along, height: this.height + 2 * down };
+    return Object.assign(new MapView(), { ...size, centre: this.centre, scale: this.scale });
   }
 
   /** Whether all that `view` shows is in it. */
@@ -37,11 +38,11 @@ export class MapView {
 
   /** Whether an area is seen whole, and not at the very edge. */
   holds({ left, right, bottom, top }) {
-    const own = this.bounds(), rim = Math.min(this.width, this.height) * 0.02 / this.scale;
-    return left - rim >= own.left && right + rim <= own.right && bottom - rim >= own.bottom && top + rim <= own.top;
+    const own = this.bounds(), margin = Math.min(this.width, this.height) * 0.02 / this.scale;
+    return left - margin >= own.left && right + margin <= own.right && bottom - margin >= own.bottom && top + margin <= own.top;
   }
 
-  /** Whether it has the same middle, and the room of a rim around `view`. */
+  /** Whether it has the same middle, and the room of a margin around `view`. */
   isAround({ centre: { x, y }, width, height }) {
     const isNear = (metres) => Math.abs(metres) * this.scale < SAME;
     return isNear(this.centre.x - x) && isNear(this.centre.y - y) && this.width > width && this.height > height;
@@ -52,21 +53,21 @@ export class MapView {
   }
 
   lookAt(x, y) {
-    this.centre = { x: within(x, -MOST_METRES, MOST_METRES), y: within(y, -MOST_METRES, MOST_METRES) };
+    this.centre = { x: clamp(x, -MAX_METRES, MAX_METRES), y: clamp(y, -MAX_METRES, MAX_METRES) };
   }
 
   /** What is under (left, top) stays there. */
   zoom(factor, left = this.width / 2, top = this.height / 2) {
     const before = this.toMetres(left, top);
-    this.scale = within(this.scale * factor, LEAST_SCALE, MOST_SCALE);
+    this.scale = clamp(this.scale * factor, MIN_SCALE, MAX_SCALE);
     const after = this.toMetres(left, top);
     this.lookAt(this.centre.x + before.x - after.x, this.centre.y + before.y - after.y);
   }
 
-  /** Shows the whole of an area with a rim; a small one not larger than is useful. */
+  /** Shows the whole of an area with a margin; a small one not larger than is useful. */
   fit({ left, right, bottom, top }) {
     this.lookAt((left + right) / 2, (bottom + top) / 2);
     const scale = 0.9 * Math.min(this.width / Math.max(1, right - left), this.height / Math.max(1, top - bottom));
-    this.scale = within(scale, LEAST_SCALE, 40);
+    this.scale = clamp(scale, MIN_SCALE, 40);
   }
 }

@@ -1,5 +1,5 @@
 // Ticks at the slider of time: reports above its line, alarms below.
-import { coloursOf } from "./map_theme.js";
+import { themeColours } from "./map_theme.js";
 
 const THUMB = 8; // pixels: half of the slider's, which its line ends within
 const NEAR = 3; // pixels: two ticks are one
@@ -10,17 +10,17 @@ const SHAPES = {
 };
 
 /** A line with the shape of its level at the outer end. */
-function drawTick(paint, colours, x, outer, inner, level) {
-  paint.strokeStyle = colours[level] ?? colours.soft;
-  paint.beginPath();
-  paint.moveTo(x, outer);
-  paint.lineTo(x, inner);
-  paint.stroke();
+function drawTick(ctx, colours, x, outer, inner, level) {
+  ctx.strokeStyle = colours[level] ?? colours.soft;
+  ctx.beginPath();
+  ctx.moveTo(x, outer);
+  ctx.lineTo(x, inner);
+  ctx.stroke();
   const shape = SHAPES[level];
   if (!shape) return;
-  paint.beginPath();
-  for (const [a, b] of shape) paint.lineTo(x + 3 * a, outer + 3 * b);
-  paint.stroke();
+  ctx.beginPath();
+  for (const [a, b] of shape) ctx.lineTo(x + 3 * a, outer + 3 * b);
+  ctx.stroke();
 }
 
 /** `ticks`: {reports, alarms}, each [{at, level}]; `first` and `last`: the times at both ends. */
@@ -28,15 +28,15 @@ export function drawTicks(canvas, { reports, alarms }, first, last) {
   const density = devicePixelRatio || 1, { clientWidth: width, clientHeight: height } = canvas;
   if (!width) return;
   Object.assign(canvas, { width: Math.round(width * density), height: Math.round(height * density) });
-  const paint = canvas.getContext("2d"), colours = coloursOf(document.documentElement);
-  paint.scale(density, density);
-  paint.lineWidth = 2;
+  const ctx = canvas.getContext("2d"), colours = themeColours(document.documentElement);
+  ctx.scale(density, density);
+  ctx.lineWidth = 2;
   const row = (all, outer, inner) => {
     let before = -Infinity;
     for (const { at, level } of [...all].sort((a, b) => a.at - b.at)) {
       const x = THUMB + ((at - first) / Math.max(1, last - first)) * (width - 2 * THUMB);
       if (at < first || at > last || (x - before < NEAR && level !== "ask")) continue;
-      drawTick(paint, colours, x, outer, inner, level);
+      drawTick(ctx, colours, x, outer, inner, level);
       before = x;
     }
   };

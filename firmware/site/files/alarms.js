@@ -8,7 +8,8 @@ import { list, make, mark, say } from "./dom.js";
 import { clip, timeOfDay } from "./words.js";
 
 const SHOWN = 2;
-const LOST = { id: BOX_LOST, severity: "bad", side: "box", what: "The box does not answer", action: { word: "", link: "" }, acknowledged: false, hides: 0 };
+const NO_ACTION = { word: "", link: "" };
+const LOST = { id: BOX_LOST, severity: "bad", side: "box", what: "The box does not answer", action: NO_ACTION, acknowledged: false, hides: 0 };
 
 const cards = document.getElementById("attention");
 const dialog = document.getElementById("all-alarms");
@@ -20,8 +21,10 @@ const inOrder = (alarms) => [...alarms.filter((alarm) => !alarm.acknowledged), .
 
 /** Beside maps that are late, it is not green. */
 function calm(over, verdict) {
-  if (!cards.querySelector(".calm")) cards.replaceChildren();
-  const node = cards.querySelector(".calm") ?? cards.appendChild(make("div.calm", make("span.glyph"), make("p.tx", make("strong", "No alarm"), make("span.why"))));
+  if (!cards.querySelector(".calm")) {
+    cards.replaceChildren(make("div.calm", make("span.glyph"), make("p.tx", make("strong", "No alarm"), make("span.why"))));
+  }
+  const node = cards.querySelector(".calm");
   node.dataset.key = "calm";
   mark(node.firstChild, "level", verdict.level === "good" ? "good" : "quiet");
   say(node.querySelector(".why"), over.length ? `last alarm: ${formerly(over[0])}` : "no earlier alarm");

@@ -1,4 +1,5 @@
-// Every report: an event has the newest 200, and those with which something is still to happen. The others are asked for once, and then each that changes.
+// Every report: an event has the newest 200, and those with which something is still to happen. The others are asked for once, and
+// then each that changes.
 import { get } from "./session.js";
 
 const IN_EVENT = 200;
@@ -46,8 +47,10 @@ export function allReports({ reports }, lost) {
     if (known.size > reports.length) known.clear();
     return reports;
   }
-  const wait = isWhole ? Infinity : RETRY;
-  if (!lost && performance.now() - asked > (reports.every(isOpen) ? EVERY : wait)) learnAll(); // of more than 200 open ones events have not all
+  const retry = isWhole ? Infinity : RETRY;
+  const wait = reports.every(isOpen) ? EVERY : retry; // of more than 200 open ones events have not all
+  if (!lost && performance.now() - asked > wait) learnAll();
   for (const number of before) if (!newest.has(number) && isOpen(known.get(number))) learnOne(number);
-  return known.size === reports.length ? reports : [...reports, ...[...known.values()].filter(({ number }) => !newest.has(number)).sort((a, b) => b.number - a.number)];
+  const older = [...known.values()].filter(({ number }) => !newest.has(number));
+  return [...reports, ...older.sort((a, b) => b.number - a.number)];
 }

@@ -44,7 +44,8 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
   dialog.querySelector("h2").textContent = title;
   dialog.querySelector(".text").textContent = text;
   heads.replaceChildren(...["Setting", ...columns].map((name) => head(name, "col")));
-  rows.replaceChildren(...changes.map(([path, ...values]) => make("tr", head(nameOf(path), "row"), ...values.map((value) => make("td", shown(value))))));
+  const row = ([path, ...values]) => make("tr", head(nameOf(path), "row"), ...values.map((value) => make("td", shown(value))));
+  rows.replaceChildren(...changes.map(row));
   dialog.querySelector(".scroll").hidden = !changes.length;
   dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", spoken(warning))));
   yes.textContent = word;

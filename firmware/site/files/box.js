@@ -67,7 +67,16 @@ export async function showAbout() {
   const section = document.getElementById("about");
   try {
     const { version, build, licence, uptime, kernel, model, board, parts } = await get("/adit/about");
-    const facts = [["Version", version], ["Build", build], ["Licence", licence], ["Running for", age(uptime)], ["Clock", await clockSaid()], ["Kernel", kernel], ["Machine", model], ["Board", board?.title]];
+    const facts = [
+      ["Version", version],
+      ["Build", build],
+      ["Licence", licence],
+      ["Running for", age(uptime)],
+      ["Clock", await clockSaid()],
+      ["Kernel", kernel],
+      ["Machine", model],
+      ["Board", board?.title],
+    ];
     section.querySelector("dl").replaceChildren(...facts.filter(([, value]) => value).map(([name, value]) => fact(name, value)));
     section.querySelector("tbody").replaceChildren(...parts.map(part));
   } catch (error) {

@@ -15,8 +15,8 @@ function cost({ run }, isSame) {
 
 function none(view, report) {
   const next = nearestOf(view, report);
-  const words = `No other ${report.type} within ${view.near_metres} m`;
-  return { key: "none", level: "good", text: next ? `${words}: the nearest is #${next.other.number}, ${next.metres.toFixed(0)} m away.` : `${words}.` };
+  const nearest = next ? `: the nearest is #${next.other.number}, ${next.metres.toFixed(0)} m away` : "";
+  return { key: "none", level: "good", text: `No other ${report.type} within ${view.near_metres} m${nearest}.` };
 }
 
 /** [{key, level, text}] of a report {type, position} that is about to be sent. */

@@ -56,7 +56,8 @@ function typed() {
     const text = field(axis).value.trim();
     position[axis] = numberIn(text);
     if (!Number.isFinite(position[axis])) {
-      throw Object.assign(new Error(`${axis}: expected metres, such as 12.5${text ? `, got ${clip(text, 40)}` : ""}.`), { field: field(axis) });
+      const got = text ? `, got ${clip(text, 40)}` : "";
+      throw Object.assign(new Error(`${axis}: expected metres, such as 12.5${got}.`), { field: field(axis) });
     }
   }
   return position;

@@ -109,13 +109,17 @@ export function showTokens(isReadOnly) {
 const nameOf = (course) => (course ? `Course ${course}` : "No course");
 const at = ({ address, port }) => `${address.includes(":") ? `[${address}]` : address}:${port}`;
 const postOf = (settings, name) => (name ? settings.courses.find((course) => course.name === name) : settings.command_post);
-const tokenOf = (name, endpoint) =>
-  draft.tokens[`course.${name}.${endpoint}`] ? "own" : draft.tokens[endpoint] ? "common" : "missing";
+
+function tokenOf(name, endpoint) {
+  if (draft.tokens[`course.${name}.${endpoint}`]) return "own";
+  return draft.tokens[endpoint] ? "common" : "missing";
+}
 
 /** What a switch to the course changes, from what is in use. */
 function changesBy(name) {
   const { base } = draft, now = base.command_post.course;
-  const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${endpoint[0].toUpperCase()}${endpoint.slice(1)} ${what}`, value(now, endpoint), value(name, endpoint)]);
+  const capital = (word) => word[0].toUpperCase() + word.slice(1);
+  const rows = (what, value) => ENDPOINTS.map((endpoint) => [`${capital(endpoint)} ${what}`, value(now, endpoint), value(name, endpoint)]);
   const addressOf = (course, endpoint) => {
     const post = postOf(base, course);
     return post ? at(post[endpoint]) : "removed";
@@ -127,7 +131,8 @@ async function switchTo(name) {
   const outcome = document.querySelector("#step-courses > .outcome");
   const settings = () => ({ ...draft.base, command_post: { ...draft.base.command_post, course: name } });
   const changes = changesBy(name), isStale = () => !same(changesBy(name), changes);
-  const { warnings } = await insist(() => post("/adit/settings/check", { settings: settings() })).catch((error) => ({ warnings: [error.message] }));
+  const asked = insist(() => post("/adit/settings/check", { settings: settings() }));
+  const { warnings } = await asked.catch((error) => ({ warnings: [error.message] }));
   if (!(await reviewed({ title: `Switch to ${nameOf(name)}?`, changes, warnings, word: "Switch", isStale }))) return;
   say(outcome, "");
   const isDone = await save(settings());

@@ -56,7 +56,8 @@ export async function refresh() {
   const { tag } = draft, before = aside();
   const said = await get("/adit/settings");
   if (draft.tag !== tag) return; // what it began from meanwhile is newer
-  Object.assign(draft, { saved: said.saved, tokens: said.tokens, oddTokens: said.odd_tokens, keys: new Map(said.keys.map((key) => [key.path, key])) });
+  const keys = new Map(said.keys.map((key) => [key.path, key]));
+  Object.assign(draft, { saved: said.saved, tokens: said.tokens, oddTokens: said.odd_tokens, keys });
   const fresh = !draft.tag;
   if (fresh) Object.assign(draft, JSON.parse(sessionStorage.getItem(STORED) ?? "{}"));
   if (!draft.tag || (said.tag !== draft.tag && !differs())) return beginFrom(said);
@@ -86,11 +87,14 @@ function named(items) {
 export function merged(base, mine, theirs) {
   if (same(mine, base)) return theirs;
   if (same(theirs, base) || ![base, mine, theirs].every(isObject)) return mine;
-  if (!Array.isArray(mine)) return Object.fromEntries(Object.keys(theirs).map((name) => [name, merged(base[name], mine[name], theirs[name])]));
+  if (!Array.isArray(mine)) {
+    return Object.fromEntries(Object.keys(theirs).map((name) => [name, merged(base[name], mine[name], theirs[name])]));
+  }
   const [was, own, newer] = [base, mine, theirs].map(named);
   const kept = [...newer].filter(([name]) => own.has(name) || !was.has(name));
   const added = [...own].filter(([name, item]) => !newer.has(name) && !same(item, was.get(name)));
-  return [...kept.map(([name, item]) => (own.has(name) ? merged(was.get(name), own.get(name), item) : item)), ...added.map(([, item]) => item)];
+  const mergedItem = ([name, item]) => (own.has(name) ? merged(was.get(name), own.get(name), item) : item);
+  return [...kept.map(mergedItem), ...added.map(([, item]) => item)];
 }
 
 /** All values by their paths; items of lists by their names. */

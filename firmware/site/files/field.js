@@ -156,11 +156,13 @@ export function showAll() {
   const place = section.querySelector(".all"), search = section.querySelector("input"), empty = section.querySelector(".empty");
   const groups = grouped([...draft.keys.keys()].filter((path) => !ELSEWHERE.test(path)), (path) => path.split(".")[0]);
   for (const [name, paths] of groups) {
-    place.append(make("fieldset", make("legend", name.replace("_", " ")), make("div.fields", ...paths.map((path) => setting(path, nameOf(path), path)))));
+    const fields = paths.map((path) => setting(path, nameOf(path), path));
+    place.append(make("fieldset", make("legend", name.replace("_", " ")), make("div.fields", ...fields)));
   }
   search.addEventListener("input", () => {
     const words = search.value.toLowerCase().split(/\s+/);
-    for (const field of place.querySelectorAll(".field")) field.hidden = !words.every((word) => field.textContent.toLowerCase().includes(word));
+    const isFound = (text) => words.every((word) => text.includes(word));
+    for (const field of place.querySelectorAll(".field")) field.hidden = !isFound(field.textContent.toLowerCase());
     for (const group of place.children) group.hidden = !group.querySelector(".field:not([hidden])");
     const found = place.querySelectorAll(".field:not([hidden])").length;
     say(empty, !search.value ? "" : found ? `${found} found.` : "No setting matches.");

@@ -18,13 +18,40 @@ function quantities(view, lost) {
   counted.set("all", sum);
   const known = (value) => (lost ? undefined : value);
   return [
-    { key: "rate", label: "Sent", value: known(view.sent_mbit), text: mbit(view.sent_mbit), of: `of ${mbit(view.budget_mbit)} Mbit/s`, least: 1, unit: (n) => `${mbit(n)} Mbit/s` },
-    { key: "queue", label: "Queued", value: known(view.queued_bytes), text: view.queued_bytes ? bytes(view.queued_bytes) : "empty", least: 1e5, unit: bytes },
+    {
+      key: "rate",
+      label: "Sent",
+      value: known(view.sent_mbit),
+      text: mbit(view.sent_mbit),
+      of: `of ${mbit(view.budget_mbit)} Mbit/s`,
+      least: 1,
+      unit: (n) => `${mbit(n)} Mbit/s`,
+    },
+    {
+      key: "queue",
+      label: "Queued",
+      value: known(view.queued_bytes),
+      text: view.queued_bytes ? bytes(view.queued_bytes) : "empty",
+      least: 1e5,
+      unit: bytes,
+    },
     ...view.endpoints.map((row) => ({
-      key: `delay ${row.name}`, label: `${row.name === "scoring" ? "Scoring" : "Mapping"} answers in`, least: 1, unit: ms,
-      value: known(row.connected ? row.answer_ms : null), text: ms(row.connected ? row.answer_ms : null),
+      key: `delay ${row.name}`,
+      label: `${row.name === "scoring" ? "Scoring" : "Mapping"} answers in`,
+      value: known(row.connected ? row.answer_ms : null),
+      text: ms(row.connected ? row.answer_ms : null),
+      least: 1,
+      unit: ms,
     })),
-    { key: "throttled", label: "Asked to slow down", value: known(Math.max(0, sum - before)), text: `${sum}`, of: "times", least: 1, unit: (n) => `${n} a second` },
+    {
+      key: "throttled",
+      label: "Asked to slow down",
+      value: known(Math.max(0, sum - before)),
+      text: `${sum}`,
+      of: "times",
+      least: 1,
+      unit: (n) => `${n} a second`,
+    },
   ];
 }
 

@@ -15,8 +15,9 @@ let last = 0; // the number of the newest that was asked for
 let asked = 0; // counts what was asked, so that a late answer to an older question is not shown
 
 function row({ at, level, message, fields }) {
-  const item = make("li", make("time", timeOfDay(at)), badge(make("span.badge"), LEVELS[level] ?? "quiet", level), make("span.message", clip(message, 600)));
-  item.dataset.level = LEVELS[level] ?? "quiet";
+  const shown = LEVELS[level] ?? "quiet";
+  const item = make("li", make("time", timeOfDay(at)), badge(make("span.badge"), shown, level), make("span.message", clip(message, 600)));
+  item.dataset.level = shown;
   const said = Object.entries(fields).map(([name, value]) => `${name}=${value}`);
   if (said.length) item.append(make("span.fields", clip(said.join("  "), 1200)));
   return item;

@@ -10,9 +10,14 @@ const section = document.getElementById("sessions");
 const rows = section.querySelector(".who"), trouble = section.querySelector(".trouble");
 
 // The first word of a User-Agent counts: Android says Linux, and most browsers say Chrome and Safari.
-const BROWSERS = { Edg: "Edge", OPR: "Opera", SamsungBrowser: "Samsung Internet", Firefox: "Firefox", FxiOS: "Firefox", CriOS: "Chrome", Chrome: "Chrome", Safari: "Safari" };
-const SYSTEMS = { Android: "Android", iPhone: "iPhone", iPad: "iPad", Windows: "Windows", "Mac OS X": "Mac OS X", CrOS: "ChromeOS", Linux: "Linux" };
-const named = (agent, names) => names[Object.keys(names).find((word) => agent.includes(word))];
+const BROWSERS = ["Edg", "OPR", "SamsungBrowser", "Firefox", "FxiOS", "CriOS", "Chrome", "Safari"];
+const SYSTEMS = ["Android", "iPhone", "iPad", "Windows", "Mac OS X", "CrOS", "Linux"];
+const NAMES = { Edg: "Edge", OPR: "Opera", SamsungBrowser: "Samsung Internet", FxiOS: "Firefox", CriOS: "Chrome", CrOS: "ChromeOS" };
+
+function named(agent, words) {
+  const found = words.find((word) => agent.includes(word));
+  return NAMES[found] ?? found;
+}
 
 /** "Chrome on Windows" of a User-Agent, or its beginning. */
 function browserOf(agent) {

@@ -6,8 +6,9 @@ const sameType = (a, b) => a.type.toLowerCase() === b.type.toLowerCase();
 
 export const distance = ({ position: a }, { position: b }) => Math.hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 
-/** Those of the present run that were or may be sent. */
-const counted = ({ reports, run_number }) => reports.filter((report) => report.position && report.run === run_number && report.state !== "withdrawn");
+/** Whether it is of the present run, and was or may be sent. */
+export const isCounted = (report, { run_number }) => report.position && report.run === run_number && report.state !== "withdrawn";
+const counted = (view) => view.reports.filter((report) => isCounted(report, view));
 
 /** The one at the same place and of the same type, or undefined. */
 export const sameAs = (view, report) => counted(view).find((other) => sameType(other, report) && distance(other, report) === 0);

@@ -46,8 +46,12 @@ async function check() {
   const findings = await insist(() => post("/adit/network/check", wanted()));
   if (mine !== asked) return null;
   const left = findings.errors.filter(({ path }) => !fieldAt(path));
-  for (const field of fields.values()) blame(field, findings.errors.filter(({ path }) => fieldAt(path) === field).map(({ what }) => what).join(". "));
-  warned.replaceChildren(...left.map(({ path, what }) => make("li", `${nameOf(path)}: ${what}`)), ...findings.warnings.map((warning) => make("li", spoken(warning))));
+  for (const field of fields.values()) {
+    const errors = findings.errors.filter(({ path }) => fieldAt(path) === field);
+    blame(field, errors.map(({ what }) => what).join(". "));
+  }
+  const sentences = [...left.map(({ path, what }) => `${nameOf(path)}: ${what}`), ...findings.warnings.map(spoken)];
+  warned.replaceChildren(...sentences.map((sentence) => make("li", sentence)));
   return findings;
 }
 

@@ -2,7 +2,7 @@
 import { barred, actionsOf, isBusy, outcomeOf, perform } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { badge, list, make, mark, say } from "./dom.js";
-import { nearTo } from "./near.js";
+import { isCounted, nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
 import { showHistory } from "./history.js";
 import { life } from "./arriving.js";
@@ -82,7 +82,7 @@ export function reveal(number) {
   return row !== null;
 }
 
-const nearestOf = (report, view) => (report.position && report.run === view.run_number && report.state !== "withdrawn" ? nearTo(view, report)[0] : undefined);
+const nearestOf = (report, view) => (isCounted(report, view) ? nearTo(view, report)[0] : undefined);
 
 /** What else there is to know: the Command Post's words, or why it is where it is. */
 function more(report, nearest) {
@@ -160,14 +160,19 @@ const RANKS = { ask: 0, wait: 1 };
 /** Open ones first, those that wait for the operator's word before all; then the newest. */
 const inOrder = (reports) => {
   const rank = (report) => (isOpen(report) ? (RANKS[life(report).level] ?? 1) : 2);
-  return reports.map((report) => [rank(report), report]).sort(([a, one], [b, other]) => a - b || other.number - one.number).map(([, report]) => report);
+  const ranked = reports.map((report) => ({ report, rank: rank(report) }));
+  return ranked.sort((a, b) => a.rank - b.rank || b.report.number - a.report.number).map(({ report }) => report);
 };
 
 /** "20 sent, 1 in doubt" */
 function counted(reports) {
   const count = (...states) => reports.filter(({ state }) => states.includes(state)).length;
-  const parts = [[count("sending", "in_doubt", "answered", "settled", "rejected"), "sent"], [count("in_doubt"), "in doubt"], [count("held"), "held"],
-    [count("queued"), "queued"]];
+  const parts = [
+    [count("sending", "in_doubt", "answered", "settled", "rejected"), "sent"],
+    [count("in_doubt"), "in doubt"],
+    [count("held"), "held"],
+    [count("queued"), "queued"],
+  ];
   return parts.filter(([n]) => n).map(([n, words]) => `${n} ${words}`).join(", ");
 }
 

@@ -22,9 +22,13 @@ export async function lookAgain(base, title, run) {
   say(head, `Opening ${title} …`); // a long run takes seconds
   section.hidden = false;
   head.focus();
-  const [layers, { tracks }, { attention }, reports] = await Promise.all([get(`${base}/map`), get(`${base}/tracks`), get(`${base}/history`), get(`/adit/reports?run=${run}`)])
-    .then(([all, ...others]) => [all.layers, ...others]);
-  const times = [...layers.flatMap(({ first, last }) => [first, last]), ...tracks.flatMap(({ poses }) => [poses[0][0], poses.at(-1)[0]]), ...reports.map(({ received }) => received)];
+  const paths = [`${base}/map`, `${base}/tracks`, `${base}/history`, `/adit/reports?run=${run}`];
+  const [{ layers }, { tracks }, { attention }, reports] = await Promise.all(paths.map((path) => get(path)));
+  const times = [
+    ...layers.flatMap(({ first, last }) => [first, last]),
+    ...tracks.flatMap(({ poses }) => [poses[0][0], poses.at(-1)[0]]),
+    ...reports.map(({ received }) => received),
+  ];
   const first = times.length ? times.reduce((a, b) => Math.min(a, b)) : null;
   end = times.reduce((a, b) => Math.max(a, b), 0);
   say(head, title);
@@ -32,7 +36,10 @@ export async function lookAgain(base, title, run) {
   map.lookAgain(base, { reports: [...reports].reverse(), run_number: run, now: end });
   showTools({ robots: tracks.map(({ robot }) => ({ name: robot })) });
   time.stretch(first, end);
-  time.setTicks({ reports: reports.map((report) => ({ at: report.received, level: life(report).level })), alarms: attention.filter(({ came }) => came).map(({ at }) => ({ at, level: "bad" })) });
+  time.setTicks({
+    reports: reports.map((report) => ({ at: report.received, level: life(report).level })),
+    alarms: attention.filter(({ came }) => came).map(({ at }) => ({ at, level: "bad" })),
+  });
   time.goLive();
 }
 

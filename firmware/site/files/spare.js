@@ -33,9 +33,15 @@ function factsOf({ standby, code, taken_in: taken, takes_over: takesOver }) {
   if (takesOver) return [];
   if (taken) {
     const { name, version, at, reports, open, post: where, run, left_out: leftOut } = taken;
-    return [["Box", name], ["Adit", version], ["Standby since", `${whenOf(at)}, by its clock`], ["Reports", `${reports}, ${open} of them not finished`],
-      ["Command Post", where], ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"],
-      ...(leftOut.length ? [["Left out", `settings unknown to this box: ${leftOut.join(", ")}`]] : [])];
+    return [
+      ["Box", name],
+      ["Adit", version],
+      ["Standby since", `${whenOf(at)}, by its clock`],
+      ["Reports", `${reports}, ${open} of them not finished`],
+      ["Command Post", where],
+      ["Score", run ? `${run.score}, ${run.remaining_reports} reports left` : "not known"],
+      ...(leftOut.length ? [["Left out", `settings unknown to this box: ${leftOut.join(", ")}`]] : []),
+    ];
   }
   return standby && code ? [["Code", code]] : [];
 }
@@ -63,7 +69,17 @@ function show(view) {
   file.hidden = takes || takesOver;
   showStick(view, takes, (name) => act(() => takeFromStick(name)));
   const free = stick && !stick.doing;
-  const shown = { standby: !standby && !takes, standbyToStick: free && !standby && !takes, toStick: free && standby && code && !takes, download: standby && code && !takes, resume: standby && !takes, take: !takes, over: taken, forget: takes };
+  const isServing = !standby && !takes, isOnStandby = standby && !takes, isExported = isOnStandby && code;
+  const shown = {
+    standby: isServing,
+    standbyToStick: free && isServing,
+    toStick: free && isExported,
+    download: isExported,
+    resume: isOnStandby,
+    take: !takes,
+    over: taken,
+    forget: takes,
+  };
   for (const [does, button] of Object.entries(buttons)) button.hidden = takesOver || !shown[does];
 }
 

@@ -28,7 +28,9 @@ export class TimeBar {
     const slider = this.#slider;
     slider.addEventListener("input", () => this.#slid());
     slider.addEventListener("keydown", (event) => this.#pressed(event));
-    for (const button of node.querySelectorAll("[data-step]")) button.addEventListener("click", () => this.step(Number(button.dataset.step)));
+    for (const button of node.querySelectorAll("[data-step]")) {
+      button.addEventListener("click", () => this.step(Number(button.dataset.step)));
+    }
     this.#find("play").addEventListener("click", () => this.play(!this.#played));
     this.#find("play").append(drawn("play"));
     this.#find("speed").addEventListener("click", () => this.#setSpeed(SPEEDS[(SPEEDS.indexOf(this.#speed) + 1) % SPEEDS.length]));
@@ -72,7 +74,8 @@ export class TimeBar {
   }
 
   #drawTicks(isNew = false) {
-    const key = JSON.stringify([this.#first && Math.floor(this.#first), this.#slider.max, this.#ticks, document.documentElement.dataset.theme]);
+    const begin = this.#first && Math.floor(this.#first);
+    const key = JSON.stringify([begin, this.#slider.max, this.#ticks, document.documentElement.dataset.theme]);
     if (!isNew && key === this.#ticksDrawn) return;
     this.#ticksDrawn = key;
     const first = Math.floor(this.#first ?? 0);

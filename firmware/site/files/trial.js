@@ -108,7 +108,8 @@ function show() {
     if (note?.where === name) showAt(place, note);
     else if (name !== where) showAt(place, {});
     else if (!view) showAt(place, { text: lost, isBad: true });
-    else showAt(place, { text: verdictOf(states), ...(isCurrent(view) && { isBad: !view.running && states.includes("bad"), endpoints: view.endpoints }) });
+    else if (!isCurrent(view)) showAt(place, { text: verdictOf(states) });
+    else showAt(place, { text: verdictOf(states), isBad: !view.running && states.includes("bad"), endpoints: view.endpoints });
   }
   barTries();
   const before = result;
@@ -162,8 +163,10 @@ function typed({ command_post: post } = draft.settings, tokenOf = typedToken) {
 }
 
 /** Tries a course's Command Post before it is switched to. */
-export const tryCourse = (name) =>
-  begin("course", () => ({ course: name, ...Object.fromEntries(ENDPOINTS.map((endpoint) => [endpoint, { token: typedToken(`course.${name}.${endpoint}`) }])) }));
+export function tryCourse(name) {
+  const tokens = () => ENDPOINTS.map((endpoint) => [endpoint, { token: typedToken(`course.${name}.${endpoint}`) }]);
+  return begin("course", () => ({ course: name, ...Object.fromEntries(tokens()) }));
+}
 
 export function offerTest() {
   const isOperator = document.body.dataset.role === "operator";

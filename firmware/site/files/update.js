@@ -32,7 +32,8 @@ async function restartBy(path, question, place, done) {
     place.dataset.bad = true;
   }
 }
-const restartIt = () => restartBy("/adit/update/restart", { title: "Restart the box?", text: MEANING, word: "Restart" }, restarted, "The box is restarting.");
+const RESTART = { title: "Restart the box?", text: MEANING, word: "Restart" };
+const restartIt = () => restartBy("/adit/update/restart", RESTART, restarted, "The box is restarting.");
 
 const strayed = document.querySelector("#update .stray"), [whyStrayed, leaving] = strayed.querySelectorAll("p");
 const [goBack, stay] = strayed.querySelectorAll("button");
@@ -45,7 +46,8 @@ function showStray({ stray, slot, doing }, operator) {
   stay.textContent = `Stay with slot ${slot}`;
 }
 
-const goBackIt = () => restartBy("/adit/update/back", { title: "Go back to the slot that was good last?", text: MEANING, word: "Go back" }, leaving, "The box is restarting.");
+const GO_BACK = { title: "Go back to the slot that was good last?", text: MEANING, word: "Go back" };
+const goBackIt = () => restartBy("/adit/update/back", GO_BACK, leaving, "The box is restarting.");
 
 async function stayIt() {
   const text = "The box then starts the version that runs now, and returns to it if an update fails.";

@@ -9,7 +9,6 @@ import { looksOf } from "./map_theme.js";
 import { MapView } from "./map_view.js";
 
 const PAIR_MARGIN = 4; // metres around two reports that are compared
-const CLOSE_SCALE = 6; // pixels per metre, at least, at a place that is looked at
 
 export class MapOfRun {
   #canvas;
@@ -34,11 +33,9 @@ export class MapOfRun {
   }
 
   redraw = () => this.#drawing.picture.redraw();
-  isLive = () => this.#scene.isLive();
   markers = () => this.#scene.markers;
   robots = () => this.#scene.robotNames();
   kinds = () => this.#scene.kinds();
-  centre = () => this.#view.centre;
   followed = () => this.#marks.followed;
   ruler = () => this.#ruler;
   /** When the first map came; null where there is none yet. */
@@ -148,14 +145,6 @@ export class MapOfRun {
     if (isOn === this.#ruler.isOn) return;
     this.#ruler.set(isOn);
     this.onTool();
-    this.redraw();
-  }
-
-  lookAt({ x, y }) {
-    this.follow(null);
-    this.#isFit = false;
-    this.#view.lookAt(x, y);
-    this.#view.scale = Math.max(CLOSE_SCALE, this.#view.scale);
     this.redraw();
   }
 

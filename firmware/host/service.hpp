@@ -71,9 +71,10 @@ std::expected<void, std::string> remove_file(const std::string& path);
 
 struct Secrets {
   std::map<std::string, icd::BearerToken, std::less<>> tokens;  // by name: "scoring", "course.A.mapping"
-  std::optional<icd::BearerToken> label_code;  // what sets the first password; absent: one is drawn
-  std::map<std::string, std::string> damaged;  // by name: why a saved token is none, nor the given one
-  std::string unread;                          // why a file cannot be read, so that a token is missing; or ""
+  std::optional<icd::BearerToken> label_code =
+      std::nullopt;                                 // what sets the first password; absent: one is drawn
+  std::map<std::string, std::string> damaged = {};  // by name: why a saved token is none, nor the given one
+  std::string unread = "";  // why a file cannot be read, so that a token is missing; or ""
 
   icd::Redaction redaction() const;
   /// A sentence by the name: of damaged tokens, and of the Command Post's tokens whose length is none that

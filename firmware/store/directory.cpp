@@ -13,9 +13,12 @@
 #include <charconv>
 #include <cinttypes>
 #include <cstdio>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <tuple>
+
+#include "loop/regular_file.hpp"
 
 namespace adit::store {
 namespace {
@@ -98,26 +101,12 @@ Result<std::vector<FileName>> Directory::files() const {
   return files;
 }
 
-/// Opens without blocking: a FIFO in place of a file must not stop the start.
 Result<std::string> Directory::read(const std::string& name) const {
-  const loop::FileDescriptor file(
-      ::openat(fd_.get(), name.c_str(), O_RDONLY | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW | O_CLOEXEC));
-  struct stat status{};
-  if (!file || ::fstat(file.get(), &status) != 0) return trouble(name, errno);
-  if (!S_ISREG(status.st_mode))
-    return std::unexpected(Error{Error::Cause::Other, path_ + '/' + name + ": not a regular file"});
-  std::string bytes(static_cast<std::size_t>(status.st_size), '\0');
-  std::size_t got = 0;
-  while (got < bytes.size()) {
-    const ssize_t count =
-        ::pread(file.get(), bytes.data() + got, bytes.size() - got, static_cast<off_t>(got));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return trouble(name, errno);
-    if (count == 0) break;
-    got += static_cast<std::size_t>(count);
-  }
-  bytes.resize(got);
-  return bytes;
+  const auto file = loop::open_regular(name, O_RDONLY | O_NOFOLLOW, fd_.get());
+  if (!file) return trouble(name, errno);
+  auto bytes = loop::read_all(file, std::numeric_limits<std::size_t>::max());
+  if (!bytes) return trouble(name, bytes.error());
+  return std::move(*bytes);
 }
 
 Result<loop::FileDescriptor> Directory::make(const std::string& name) const {
@@ -127,8 +116,7 @@ Result<loop::FileDescriptor> Directory::make(const std::string& name) const {
 }
 
 Result<loop::FileDescriptor> Directory::open_to_write(const std::string& name) const {
-  loop::FileDescriptor file(
-      ::openat(fd_.get(), name.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW | O_CLOEXEC));
+  auto file = loop::open_regular(name, O_WRONLY | O_NOFOLLOW, fd_.get());
   if (!file) return trouble(name, errno);
   return file;
 }

@@ -1,7 +1,8 @@
 #include "store/error.hpp"
 
 #include <cerrno>
-#include <system_error>
+
+#include "loop/regular_file.hpp"
 
 namespace adit::store {
 namespace {
@@ -26,7 +27,7 @@ Error::Cause cause_of(int number) {
 }  // namespace
 
 std::unexpected<Error> failed(const std::string& path, int number) {
-  return std::unexpected(Error{cause_of(number), path + ": " + std::system_category().message(number)});
+  return std::unexpected(Error{cause_of(number), path + ": " + loop::text_of(number)});
 }
 
 }  // namespace adit::store

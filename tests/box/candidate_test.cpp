@@ -25,8 +25,7 @@ icd::BearerToken token(const char* text) {
 }
 const host::Secrets kSecrets = {.tokens = {{"scoring", token("common-scoring")},
                                            {"mapping", token("common-mapping")},
-                                           {"course.B.scoring", token("own-scoring")}},
-                                .label_code = {}};
+                                           {"course.B.scoring", token("own-scoring")}}};
 
 Tried good(const api::Candidate& candidate, const settings::Settings& beside = written()) {
   const auto tried = tried_of(candidate, beside, kSecrets);

@@ -49,7 +49,7 @@ std::optional<FileName> parse_name(std::string_view name) {
 
 std::string FileName::text() const {
   std::array<char, 64> end;
-  std::snprintf(end.data(), end.size(), "%08" PRIu64 ".%016" PRIx64, number, salt);
+  (void)std::snprintf(end.data(), end.size(), "%08" PRIu64 ".%016" PRIx64, number, salt);
   return std::string(kBeginnings[static_cast<std::size_t>(kind)]) + end.data();
 }
 

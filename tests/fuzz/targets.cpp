@@ -40,7 +40,7 @@ constexpr Target kTargets[] = {
     {"ledger", try_ledger, 50},   {"log", try_log, 300},        {"names", try_names},
     {"network", try_network},     {"panel", try_panel},         {"rauc", try_rauc},
     {"same_cbor", try_same_cbor}, {"same_json", try_same_json}, {"settings", try_settings},
-    {"spool", try_spool, 500},    {"store", try_store, 300},     {"updates", try_updates},
+    {"spool", try_spool, 500},    {"store", try_store, 300},    {"updates", try_updates},
 #ifdef ADIT_FUZZ_API
     {"api", try_api, 1500},
 #endif

@@ -12,6 +12,15 @@ constexpr std::chrono::milliseconds kLookAtLeaving{10};
 /// for so often from then on: the link is idle in between.
 constexpr std::chrono::milliseconds kGetReady{50}, kLookForEnd{2};
 
+/// A Command Post may read both at the same time, and then check the small one before a large one that
+/// arrived first. Its stamp would run backward. A slow one reads so many bytes of a map's data in a second.
+constexpr double kReads = 20e6;
+
+loop::Duration reading_takes(const icd::MapUpdate& map) {
+  return std::chrono::duration_cast<loop::Duration>(
+      std::chrono::duration<double>(static_cast<double>(map.data.raw_size) / kReads));
+}
+
 }  // namespace
 
 /// Once the one that is under way has arrived; it is looked for when the next may start, and not before.
@@ -27,8 +36,11 @@ void Maps::go_ahead(loop::Instant now) {
     prepared_->arrived = arrived->last;
     pace_.left(*arrived);
   }
-  if (prepared_->arrived && channel_.can_go_ahead() && now >= starts()) return send(following_);
-  wake_.call_at(std::max(starts(), now + kLookForEnd));
+  loop::Instant begin = starts();
+  if (prepared_->arrived)
+    begin = std::max(begin, *prepared_->arrived + reading_takes(prepared_->waiting.map));
+  if (prepared_->arrived && channel_.can_go_ahead() && now >= begin) return send(following_);
+  wake_.call_at(std::max(begin, now + kLookForEnd));
 }
 
 /// If not, the answer to the one that is under way is awaited.

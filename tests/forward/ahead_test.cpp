@@ -33,8 +33,8 @@ class MapAhead : public WithLettingPost {
   }
   /// Of the second map, once it follows the first one: whether bytes of it have left before that is answered.
   /// On a machine so busy that the answer is called late, nothing goes ahead: then once more.
-  bool goes_ahead(const char* robot, const icd::MapUpdate& next) {
-    take(grid_of(robot, 10));
+  bool goes_ahead(const char* robot, const icd::MapUpdate& next, std::uint32_t width = 10) {
+    take(grid_of(robot, width));
     if (!loop::turn_until(loop_, [&] { return post_.came().size() > before_; })) return false;
     const std::uint64_t sent = maps_->channel().bytes_sent();
     take(next);
@@ -93,6 +93,15 @@ TEST_F(MapAhead, StaysUnderWayWhereTheOneBeforeIsRefused) {
 TEST_F(MapAhead, GoesNotAheadOfAnOlderGridOfItsRobot) {
   has_answered_well();
   EXPECT_FALSE(goes_ahead("first", grid_of("first", 5)));
+  for (int i = 0; i < 2; ++i) post_.answer("200 OK");
+  EXPECT_TRUE(are_gone());
+}
+
+/// A Command Post that reads both at once would check the small one first: the other one's stamp would run
+/// backward.
+TEST_F(MapAhead, GoesNotAheadOfALargeMapThatMayStillBeRead) {
+  has_answered_well();
+  EXPECT_FALSE(goes_ahead("first", grid_of("second", 10), 4000));
   for (int i = 0; i < 2; ++i) post_.answer("200 OK");
   EXPECT_TRUE(are_gone());
 }

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <map>
+#include <ranges>
 
 #include "alarms/standing.hpp"
 #include "alarms/words.hpp"
 #include "icd/require.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 
@@ -68,6 +70,37 @@ void judge_robots(RunView& view, const alarms::Facts& facts) {
   std::ranges::sort(view.standings, {}, &StandingRow::name);
 }
 
+/// What an alarm, by its name, says of an endpoint.
+constexpr std::pair<std::string_view, std::string_view> kTroubles[] = {
+    {"no_token", "no token"},
+    {"cable_out", "cable out"},
+    {"cables_exchanged", "cables exchanged"},
+    {"no_address", "no address"},
+    {"command_post_unreachable", "unreachable"},
+    {"command_post_foreign", "wrong host"},
+    {"command_post_refusing", "refused"},
+    {"command_post_silent", "silent"},
+    {"command_post_failing", "failing"},
+    {"command_post_throttling", "slow down"}};
+
+/// Trouble without an alarm may pass. Some servers close the connection after each answer.
+void judge_endpoint(EndpointRow& row, const std::vector<alarms::Alarm>& alarms) {
+  const bool is_well = row.trouble.empty() && (row.connected || row.last_status > 0);
+  row.level = is_well ? alarms::Level::Good : alarms::Level::Wait;
+  row.word = is_well                  ? "connected"
+             : row.last_status >= 400 ? icd::sentence("status ", row.last_status)
+             : row.connected          ? "retrying"
+                                      : "not connected";
+  for (const alarms::Alarm& alarm : alarms | std::views::reverse) {
+    if (!alarm.subject.empty() && alarm.subject != row.name && alarm.subject != "command_post") continue;
+    for (const auto& [name, word] : kTroubles) {
+      if (alarm.id.substr(0, alarm.id.find(':')) != name) continue;
+      row.level = alarm.severity == alarms::Severity::Bad ? alarms::Level::Bad : alarms::Level::Wait;
+      row.word = word;
+    }
+  }
+}
+
 }  // namespace
 
 void judge(RunView& view, const alarms::Facts& facts) {
@@ -89,6 +122,7 @@ void judge(RunView& view, const alarms::Facts& facts) {
     if (its != view.activities.end() && its->age) robot.at = facts.now - *its->age;
     if (robot.at) robot.age = seconds_since(*robot.at, facts.now);
   }
+  for (EndpointRow& row : view.endpoints) judge_endpoint(row, view.alarms);
   judge_robots(view, facts);
   view.verdict = alarms::verdict_of(facts);
 }

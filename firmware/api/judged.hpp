@@ -17,7 +17,7 @@ std::optional<double> age_of(const ActivityRow& row, Time now);
 /// What the rules of alarms go by, of each row.
 std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Time now);
 
-/// Sets ages, arrival, level, words, standings and verdict by the view's activities and robots.
+/// Sets ages, arrival, levels, words, standings and verdict by the view's other members.
 /// Requires that `facts.streams` is streams_of(view.activities).
 void judge(RunView& view, const alarms::Facts& facts);
 

@@ -134,6 +134,8 @@ constexpr Member kEndpoint[] = {
     member<&EndpointRow::throttled>("throttled", "number of answers of 429"),
     member<&EndpointRow::foreign>(
         "foreign", "number of answers that are not from a Command Post: pages of HTML, redirects"),
+    member<&EndpointRow::level>("level", "bad only with an alarm").one_of(alarms::kLevelWords),
+    member<&EndpointRow::word>("word", "how the endpoint answers, in few words"),
 };
 
 constexpr Member kRejected[] = {

@@ -109,12 +109,14 @@ struct RefusalRow {
 };
 
 struct EndpointRow {
-  std::string name, address;
+  std::string name = {}, address = {};
   bool connected = false;
-  std::string trouble;
+  std::string trouble = {};
   int last_status = 0;
-  std::optional<double> answer_ms;
+  std::optional<double> answer_ms = {};
   std::uint64_t throttled = 0, foreign = 0;
+  alarms::Level level = alarms::Level::Quiet;
+  std::string word = {};  // judge()'s
 
   static const codec::Row kRow;
 };

@@ -109,10 +109,9 @@ std::string last_answer(const api::EndpointRow& endpoint) {
 std::string endpoints_table(const RunView& view, bool colour) {
   Table table({{}, {}, {}, {}, {}});
   for (const api::EndpointRow& endpoint : view.endpoints) {
-    const bool well = endpoint.connected && endpoint.trouble.empty();
     table.add({{endpoint.name, Tone::Strong},
                {endpoint.address},
-               {endpoint.connected ? "connected" : "not connected", well ? Tone::Good : Tone::Bad},
+               {endpoint.word, tone_of_level(endpoint.level)},
                {last_answer(endpoint)},
                {endpoint.trouble, Tone::Bad}});
   }

@@ -72,16 +72,14 @@ void reports(const api::RunView& before, const api::RunView& now, Lines& lines) 
 }
 
 std::string state_of(const api::EndpointRow& endpoint) {
-  const std::string state = endpoint.connected ? "connected" : "not connected";
-  return endpoint.trouble.empty() ? state : state + ", " + endpoint.trouble;
+  return endpoint.trouble.empty() ? endpoint.word : endpoint.word + ", " + endpoint.trouble;
 }
 
 void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines) {
   for (const api::EndpointRow& endpoint : now.endpoints) {
     const auto was = std::ranges::find(before.endpoints, endpoint.name, &api::EndpointRow::name);
     if (was != before.endpoints.end() && state_of(*was) == state_of(endpoint)) continue;
-    const bool well = endpoint.connected && endpoint.trouble.empty();
-    lines.add(endpoint.name + " endpoint: " + state_of(endpoint), well ? Tone::Good : Tone::Bad);
+    lines.add(endpoint.name + " endpoint: " + state_of(endpoint), tone_of_level(endpoint.level));
   }
 }
 

@@ -120,8 +120,8 @@ std::string Gateway::report_under_way() const {
 /// What is to be thought of it.
 void Gateway::judge(api::RunView& view) const {
   const alarms::Facts found = facts(view.activities);
-  api::judge(view, found);
   view.alarms = board_.shown(alarms::conditions_of(found), found.now);
+  api::judge(view, found);
 }
 
 std::string Gateway::status_line() const {

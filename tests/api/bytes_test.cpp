@@ -48,8 +48,10 @@ RunView view() {
                      .last_status = 201,
                      .answer_ms = 3.5,
                      .throttled = 1,
-                     .foreign = 2},
-                    {.name = "mapping", .address = "b:1", .trouble = "", .answer_ms = std::nullopt}};
+                     .foreign = 2,
+                     .level = alarms::Level::Bad,
+                     .word = "w"},
+                    {.name = "mapping", .address = "b:1"}};
   view.robots = {{.name = "r", .position = {1, 2, 3}, .heading = 0.5, .at = 990, .age = 19}};
   view.reports = {report(), {}};
   view.near_metres = 5;
@@ -111,9 +113,9 @@ TEST(Bytes, OfARun) {
       R"("current_team":"cave"},"run_clock":{"seconds":756.0,"age":1.5,"runs":true,)"
       R"("old":false},"run_number":2,"run_id":"beta","run_seconds":3600,)"
       R"("endpoints":[{"name":"scoring","address":"a:1","connected":true,"trouble":"t",)"
-      R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2},{"name":"mapping",)"
+      R"("last_status":201,"answer_ms":3.5,"throttled":1,"foreign":2,"level":"bad","word":"w"},{"name":"mapping",)"
       R"("address":"b:1","connected":false,"trouble":"","last_status":0,"answer_ms":null,)"
-      R"("throttled":0,"foreign":0}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
+      R"("throttled":0,"foreign":0,"level":"quiet","word":""}],"robots":[{"name":"r","position":{"x":1.0,"y":2.0,"z":3.0},)"
       R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
       R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","robot":"spot1","received":940.0,"changed":941.25,)"
       R"("state":"in_doubt","status":500,"report_status":"scored","score_change":-1,)"

@@ -5,6 +5,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "alarms/board.hpp"
+#include "alarms/conditions.hpp"
 #include "alarms/words.hpp"
 #include "api/judged.hpp"
 #include "api/scenes.hpp"
@@ -100,28 +102,35 @@ TEST(RunView, SaysHowARobotStands) {
   }
 }
 
-TEST(RunViewJson, TellsTheVersionsOfThePicturesToTheLastDigit) {
+std::string standing_of(const EndpointRow& row, const alarms::Facts& facts = {}) {
   RunView view;
-  view.map_version = 1'793'000'123'456;
-  view.marker_version = 1'793'000'123'457;
-  view.identify_until = 12.5;
-  view.setup_open_until = 13.5;
-  const json parsed = json::parse(codec::to_json(view));
-  EXPECT_EQ(parsed["map_version"], 1'793'000'123'456);
-  EXPECT_EQ(parsed["marker_version"], 1'793'000'123'457);
-  EXPECT_EQ(parsed["identify_until"], 12.5);
-  EXPECT_EQ(parsed["setup_open_until"], 13.5);
+  view.endpoints = {row};
+  view.alarms = alarms::Board().shown(alarms::conditions_of(facts), facts.now);
+  judge(view, facts);
+  const auto level = static_cast<std::size_t>(view.endpoints[0].level);
+  return icd::sentence(alarms::kLevelWords[level], " ", view.endpoints[0].word);
 }
 
-TEST(RunViewJson, TellsOfEachReportWhoseWordItWaitsFor) {
-  const json parsed = json::parse(codec::to_json(*scene("reports", 1000, 0)));
-  EXPECT_EQ(parsed["run_number"], 2);
-  EXPECT_EQ(parsed["run_id"], "cave-2");
-  EXPECT_EQ(parsed["reports"][2]["asking"], true);
-  EXPECT_EQ(parsed["reports"][3]["asking"], false);
-  EXPECT_EQ(parsed["reports"][5]["reconciled"], true);
-  EXPECT_EQ(parsed["reports"][7]["same_as"], 17);
-  EXPECT_EQ(parsed["reports"][10]["run"], 1);
+TEST(RunView, SaysHowAnEndpointStands) {
+  using enum alarms::PostTrouble;
+  EndpointRow row{.name = "mapping"};
+  EXPECT_EQ(standing_of(row), "wait not connected");
+  row.connected = true, row.trouble = "t";
+  EXPECT_EQ(standing_of(row), "wait retrying");
+  row.last_status = 422;
+  EXPECT_EQ(standing_of(row), "wait status 422");
+  row.trouble = "", row.last_status = 200, row.connected = false;
+  std::vector<std::string> all;
+  for (const auto trouble : {NoToken, Unreachable, Foreign, Refusing, Silent, Failing, Throttling})
+    all.push_back(standing_of(row, {.endpoints = {{.name = "mapping", .trouble = trouble}}}));
+  EXPECT_THAT(all, testing::ElementsAre("bad no token", "bad unreachable", "bad wrong host", "bad refused",
+                                        "bad silent", "bad failing", "wait slow down"));
+  EXPECT_EQ(standing_of(row, {.endpoints = {{.name = "scoring", .trouble = Silent}}}), "good connected");
+  row.connected = true, row.last_status = 0;
+  EXPECT_EQ(standing_of(row, {.cables = {{true, "team0", false}}}), "good connected");
+  EXPECT_EQ(standing_of(row, {.cables = {{false, "darpa0", false}}}), "bad cable out");
+  EXPECT_EQ(standing_of(row, {.network = {.no_address = true}}), "bad no address");
+  EXPECT_EQ(standing_of(row, {.network = {.exchanged = alarms::ExchangedAddress{}}}), "bad cables exchanged");
 }
 
 TEST(RunViewJson, WritesWhatIsAbsentAsNull) {

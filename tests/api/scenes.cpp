@@ -12,8 +12,8 @@ RunView empty(Time now) {
   RunView view;
   view.now = now;
   view.version = "0.1.0";
-  view.endpoints = {{.name = "scoring", .address = "10.100.1.200:8000", .trouble = {}, .answer_ms = {}},
-                    {.name = "mapping", .address = "10.100.1.201:8000", .trouble = {}, .answer_ms = {}}};
+  view.endpoints = {{.name = "scoring", .address = "10.100.1.200:8000"},
+                    {.name = "mapping", .address = "10.100.1.201:8000"}};
   view.lights = {{"health", "on"}, {"scoring", "off"}, {"mapping", "off"}, {"attention", "off"}};
   view.budget_mbit = 100;
   view.near_metres = 5;
@@ -117,10 +117,7 @@ RunView trouble(Time now, double elapsed) {
   const Time began = now - elapsed;
   view.endpoints[1] = {.name = "mapping",
                        .address = "10.100.1.201:8000",
-                       .connected = false,
                        .trouble = "connecting to 10.100.1.201:8000: Connection refused",
-                       .last_status = 0,
-                       .answer_ms = {},
                        .throttled = 3};
   view.lights = {{"health", "on"}, {"scoring", "on"}, {"mapping", "slow"}, {"attention", "fast"}};
   view.sent_mbit = 0;

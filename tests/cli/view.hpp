@@ -16,16 +16,14 @@ inline api::RunView sample_view() {
   view.queued_bytes = 3400000;
   view.endpoints = {{.name = "scoring",
                      .address = "10.100.1.200:8000",
-                     .connected = true,
-                     .trouble = "",
                      .last_status = 201,
-                     .answer_ms = 3.42},
+                     .answer_ms = 3.42,
+                     .word = "connected"},
                     {.name = "mapping",
                      .address = "10.100.1.201:8000",
-                     .connected = true,
-                     .trouble = "",
                      .last_status = 200,
-                     .answer_ms = 42.1}};
+                     .answer_ms = 42.1,
+                     .word = "connected"}};
   api::ReportRow report;
   report.number = 3;
   report.type = "Survivor";

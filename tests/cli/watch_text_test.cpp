@@ -68,13 +68,13 @@ TEST(Watching, TellsOfReports) {
 
 TEST(Watching, TellsOfEndpointsAndRobots) {
   api::RunView now = later();
-  now.endpoints[1].connected = false;
+  now.endpoints[1].word = "unreachable";
   now.endpoints[1].trouble = "no route to host";
   now.activities[0].last_status = 500;
   now.activities[0].last_sentence = "it failed";
   now.activities[0].arrival = alarms::Arrival::Failing;
   EXPECT_EQ(changed(sample_view(), now),
-            "mapping endpoint: not connected, no route to host\nr1, grid: NOT ARRIVING: it failed\n");
+            "mapping endpoint: unreachable, no route to host\nr1, grid: NOT ARRIVING: it failed\n");
   EXPECT_EQ(changed(now, later()), "mapping endpoint: connected\nr1, grid: arrives\n");
 }
 

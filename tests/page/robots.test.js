@@ -74,15 +74,6 @@ for (const [age, words] of [[94, /^uav9\s+silent\s+1:\d\d$/], [null, /^uav9\s+si
   assert.equal((await names(page))[0], "uav9");
 });
 
-test("is dim while the list of alarms says that the Command Post is away", async (t) => {
-  const { page, stage } = await watchTwenty(t);
-  await page.waitForSelector("#maps[data-away=false]");
-  stage.play("trouble");
-  await page.waitForSelector("#maps[data-away=true]");
-  stage.play("calm");
-  await page.waitForSelector("#maps[data-away=false]");
-});
-
 test("moves no row under a pointer; the order changes once it has left", async (t) => {
   const { page } = await watchTwenty(t);
   await page.locator("#robots li[data-level=bad]").waitFor();

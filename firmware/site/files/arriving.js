@@ -25,36 +25,3 @@ export function life(report) {
     default: return { level: "quiet", word: report.state };
   }
 }
-
-const AWAY = {
-  no_token: "no token", cable_out: "cable out", cables_exchanged: "cables exchanged", no_address: "no address", command_post_unreachable: "unreachable", command_post_foreign: "wrong host",
-  command_post_refusing: "refused", command_post_silent: "silent", command_post_failing: "failing", command_post_throttling: "slow down",
-};
-
-/** What is wrong with an endpoint of the Command Post, or with the way to it, by the list of alarms: {level, word}, or undefined. */
-export function troubleOf({ alarms }, endpoint) {
-  const isOf = ({ id, subject }) => id === "cable_out:command_post" || id === "cables_exchanged" || id === "no_address" || subject === "" || subject === endpoint;
-  const alarm = alarms.find((each) => AWAY[each.id.split(":")[0]] && isOf(each));
-  return alarm && { level: alarm.severity, word: AWAY[alarm.id.split(":")[0]] };
-}
-
-/** How an endpoint stands. What is no alarm yet may pass. */
-export function endpoint(row, view) {
-  const trouble = troubleOf(view, row.name);
-  if (trouble) return trouble;
-  if (!row.connected) return { level: "wait", word: "not connected" };
-  if (row.trouble) return { level: "wait", word: "retrying" };
-  return row.last_status >= 400 ? { level: "wait", word: "connected" } : { level: "good", word: "connected" };
-}
-
-const ms = (value) => `${value.toFixed(value < 10 ? 1 : 0)} ms`;
-
-/** How fast an endpoint answers, or why it does not, in a word or two. */
-export function answerOf(row, view) {
-  const trouble = troubleOf(view, row.name);
-  if (trouble) return trouble;
-  if (row.trouble) return { level: "wait", word: row.last_status >= 400 ? `status ${row.last_status}` : "no answer" };
-  if (row.last_status === 429) return { level: "wait", word: "slow down" };
-  if (row.last_status >= 400) return { level: "bad", word: `status ${row.last_status}` };
-  return row.answer_ms === null ? { level: "quiet", word: "–" } : { level: "good", word: ms(row.answer_ms) };
-}

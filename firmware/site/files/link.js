@@ -1,14 +1,12 @@
 // The link over the last ten minutes: rate, queue, what was throttled, and each endpoint's delay.
 import { list, make, say } from "./dom.js";
 import { Plot } from "./plot.js";
-import { bytes, mbit } from "./words.js";
+import { bytes, mbit, ms } from "./words.js";
 
 const SVG = "http://www.w3.org/2000/svg";
 const plots = document.getElementById("plots");
 const known = new Map(); // a plot by its key
 const counted = new Map(); // an endpoint's throttled, when last sampled
-
-const ms = (value) => (value === null ? "–" : `${value.toFixed(value < 10 ? 1 : 0)} ms`);
 
 /** What is plotted: {key, label, value, text, least, most(value)}; a null value is not known, and
  *  undefined is one that the box could not tell. */

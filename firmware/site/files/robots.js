@@ -1,6 +1,6 @@
 // Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
 import { badge, list, make, mark, say } from "./dom.js";
-import { kindOf, troubleOf } from "./arriving.js";
+import { kindOf } from "./arriving.js";
 import { sampleAges } from "./robot_ages.js";
 import { RobotRows } from "./robot_rows.js";
 import { mapAge, robotsOf } from "./robot_state.js";
@@ -39,7 +39,7 @@ function showSayings(activities) {
 
 /** Gives how the robots stand, as robotsOf(). */
 export function showRobots(view, now, lost) {
-  const isAway = troubleOf(view, "mapping")?.level === "bad";
+  const isAway = view.endpoints.find(({ name }) => name === "mapping").level === "bad";
   const state = robotsOf(view, now - view.now, lost);
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);

@@ -1,17 +1,16 @@
 // The strip's right side: how fast each address of the Command Post answers, and whether the box does.
 import { list, make, mark, say } from "./dom.js";
-import { answerOf } from "./arriving.js";
-import { clip } from "./words.js";
+import { clip, ms } from "./words.js";
 
 const ends = document.querySelector(".strip .ends");
 
 export function showEnds(view, lost) {
   const create = () => make("div", make("dt"), make("dd"));
   list(ends, view.endpoints, ({ name }) => name, create, (node, row) => {
-    const { level, word } = lost ? { level: "quiet", word: "–" } : answerOf(row, view);
+    const { level, word } = lost ? { level: "quiet", word: "–" } : row;
     mark(node, "level", level);
     say(node.firstChild, clip(row.name, 12));
-    say(node.lastChild, word);
+    say(node.lastChild, level === "good" && row.answer_ms !== null ? ms(row.answer_ms) : word);
   });
 }
 

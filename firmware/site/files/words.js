@@ -24,6 +24,8 @@ export function bytes(n) {
   return `${(n / 1e6).toFixed(n < 1e7 ? 1 : 0)} MB`;
 }
 
+export const ms = (value) => (value === null ? "–" : `${value.toFixed(value < 10 ? 1 : 0)} ms`);
+
 export const mbit = (n) => (n >= 1e5 ? n.toExponential(0) : n.toFixed(n >= 10 ? 0 : 1));
 
 /** A number as people type it, or copy it from this page: with a decimal comma or a true minus sign. NaN: it is none. */

@@ -111,7 +111,8 @@ for (const { is, word, fault } of CASES) {
     const blamesNobody = ({ alarms, activities }) => alarms.some(({ id }) => id === is) && activities.some(({ arrival }) => arrival === "not arriving") && !activities.some(({ level }) => level === "bad" || level === "wait");
     await until(async () => blamesNobody(await made.run()), "what waits to be nobody's fault");
     for (const page of pages) await page.waitForFunction(() => document.querySelector("#maps[data-away=true]") && !document.querySelector("#robots li:is([data-level=bad], [data-level=wait])"));
-    await until(async () => /^Maps +No map arrives: for \d+:\d\d; the box keeps all maps$/m.test(await status(made)), "the same of `adit status`");
+    const same = new RegExp(`^Maps +No map arrives: for \\d+:\\d\\d; the box keeps all maps$[^]*^ +mapping +\\S+ +${word} `, "m");
+    await until(async () => same.test(await status(made)), "the same of `adit status`");
     if (!fault) return; // it is gone for good
     await made.behave();
     const blamed = [];

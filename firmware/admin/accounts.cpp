@@ -19,16 +19,23 @@ namespace {
 using access::Role;
 using host::Level;
 
-access::Accounts accounts_in(const std::string& file) {
-  auto accounts = read_kept_file(file, &access::read_accounts);
+constexpr const char* kUnread = "the passwords cannot be read: ";
+
+access::Accounts accounts_in(const std::string& file, std::string& unread) {
+  auto accounts = read_kept_file(file, &access::read_accounts, unread);
   if (accounts) return std::move(*accounts);
-  host::log(Level::Error, "cannot read the passwords: set them again", {{"why", accounts.error()}});
+  if (!unread.empty()) {
+    unread = kUnread + unread;
+  } else {
+    host::set_damaged_aside(file, "the list of passwords", accounts.error());
+  }
   return {};
 }
 
-std::vector<access::Device> read_known(const std::string& file, const access::Accounts& accounts) {
-  auto devices =
-      read_kept_file(file, [&](std::string_view json) { return access::read_devices(json, accounts); });
+std::vector<access::Device> read_known(const std::string& file, const access::Accounts& accounts,
+                                       std::string& unread) {
+  const auto parse = [&](std::string_view json) { return access::read_devices(json, accounts); };
+  auto devices = read_kept_file(file, parse, unread);
   if (devices) return std::move(*devices);
   host::log(Level::Warning, "cannot read the known devices: no browser is known", {{"why", devices.error()}});
   return {};
@@ -58,8 +65,9 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
       writer_(writer),
       sessions_(sessions),
       folder_(std::move(folder)),
-      accounts_(accounts_in(file())),
-      devices_(read_known(devices_file(), accounts_), [this] { keep_devices(); }) {
+      accounts_(accounts_in(file(), unread_)),
+      devices_(read_known(devices_file(), accounts_, unread_devices_), [this] { keep_devices(); }) {
+  if (!unread_.empty()) return;
   if (!first_start()) {
     unlink(code_file().c_str());  // left by a kill, or of a card: the consoles show it
     return;
@@ -68,16 +76,20 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
   code_ = on_label ? std::move(label_code) : kept_code();
   if (on_label) {
     host::log(Level::Notice, "no password is set: the page asks for the code on the label");
-  } else {
+  } else if (code_) {
     host::tell_console(Level::Notice, "no password is set: the page asks for this code",
                        {{"code", code_->reveal()}});
   }
 }
 
-/// The one that an earlier start drew, or a new one.
-icd::BearerToken Accounts::kept_code() {
-  std::string code;
-  if (const auto kept = host::read_file(code_file())) code = kept->substr(0, kept->find('\n'));
+/// The one that an earlier start drew, or a new one; none if the file cannot be read.
+std::optional<icd::BearerToken> Accounts::kept_code() {
+  const auto kept = host::may_exist(code_file()) ? host::read_file(code_file()) : "";
+  if (!kept) {
+    unread_ = kUnread + kept.error();
+    return std::nullopt;
+  }
+  std::string code = kept->substr(0, kept->find('\n'));
   if (!access::is_code(code)) {
     std::uint64_t random = 0;
     host::fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
@@ -87,7 +99,7 @@ icd::BearerToken Accounts::kept_code() {
                 {{"why", written.error()}});
     }
   }
-  return *icd::BearerToken::parse(code);
+  return icd::BearerToken::parse(code);
 }
 
 bool Accounts::is_code(std::string_view presented) const {
@@ -96,6 +108,7 @@ bool Accounts::is_code(std::string_view presented) const {
 
 void Accounts::check(std::string password, std::string address,
                      std::function<void(std::optional<Role>)> done) {
+  if (!unread_.empty()) return;  // no password is right or wrong now: the client waits for the next process
   auto role = std::make_shared<std::optional<Role>>();
   workers_.submit(
       loop::Urgency::OnTheWay,
@@ -118,6 +131,7 @@ void Accounts::check(std::string password, std::string address,
 
 void Accounts::set(Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) {
+  if (!unread_.empty()) return done(refuse(icd::Status::ServiceUnavailable, unread_));
   if (std::exchange(setting_, true)) {
     return done(refuse(icd::Status::Conflict, "another password is being set: try again"));
   }
@@ -157,6 +171,7 @@ void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
 
 /// What a power cut takes of it costs a browser its precedence until it is in again.
 void Accounts::keep_devices() {
+  if (!unread_devices_.empty()) return;
   auto written = std::make_shared<std::expected<void, std::string>>();
   writer_.submit(
       [written, file = devices_file(), text = access::write_devices(devices_.all(), accounts_)] {

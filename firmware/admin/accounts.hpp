@@ -15,14 +15,15 @@
 
 namespace adit::admin {
 
-/// The passwords. What is wrong with the state folder is logged, and keeps nothing else from working.
+/// The passwords. If their file or the code's cannot be read, no password is set and no login is accepted. A
+/// damaged file of passwords is set aside, and the code sets them again.
 class Accounts final : public api::Keys {
  public:
   /// In the state folder: the passwords' hashes, and until there is one the code that sets it, where the
   /// box's label has none.
   static constexpr const char* kFile = "access.json";
   static constexpr const char* kCodeFile = access::kCodeFile;
-  /// Beside them: the browsers that have been in.
+  /// Beside them: the browsers that have been in. An unreadable file stays as it is until the next start.
   static constexpr const char* kDevicesFile = "devices.json";
   static constexpr std::chrono::minutes kSetUp{10}, kAtBox{1};  // for how long the button's press is good
 
@@ -31,7 +32,9 @@ class Accounts final : public api::Keys {
   Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, SessionKeeper& sessions,
            std::string folder, std::optional<icd::BearerToken> label_code);
 
-  bool first_start() const override { return !accounts_.operator_; }
+  /// Why a file cannot be read, as a sentence; or "". The next process reads it again.
+  const std::string& unread() const { return unread_; }
+  bool first_start() const override { return !accounts_.operator_ && unread_.empty(); }
   bool is_code(std::string_view presented) const override;
   bool set_up_open() const override { return set_up_left().has_value(); }
   void check(std::string password, std::string address,
@@ -55,7 +58,7 @@ class Accounts final : public api::Keys {
   std::string file() const { return folder_ + '/' + kFile; }
   std::string code_file() const { return folder_ + '/' + kCodeFile; }
   std::string devices_file() const { return folder_ + '/' + kDevicesFile; }
-  icd::BearerToken kept_code();
+  std::optional<icd::BearerToken> kept_code();
   void keep_devices();
   void was_set(access::Role role, const icd::Checked<access::Accounts>& changed,
                const std::function<void(icd::Checked<void>)>& done);
@@ -64,7 +67,7 @@ class Accounts final : public api::Keys {
   loop::Workers& workers_;
   loop::Writer& writer_;
   SessionKeeper& sessions_;
-  std::string folder_;
+  std::string folder_, unread_, unread_devices_;
   access::Accounts accounts_;
   std::optional<icd::BearerToken> code_;
   access::Devices devices_;

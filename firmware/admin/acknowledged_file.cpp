@@ -12,7 +12,7 @@ AcknowledgedFile::AcknowledgedFile(const std::string& state_folder, loop::Writer
     : file_(state_folder + '/' + kFile), writer_(writer) {}
 
 std::vector<alarms::Acknowledged> AcknowledgedFile::read() {
-  auto read = read_kept_file(file_, &alarms::read_acknowledged);
+  auto read = read_kept_file(file_, &alarms::read_acknowledged, unread_);
   if (!read) {
     host::log(host::Level::Warning, "cannot read the acknowledged alarms: no alarm is acknowledged",
               {{"why", read.error()}});
@@ -25,6 +25,7 @@ std::vector<alarms::Acknowledged> AcknowledgedFile::read() {
 void AcknowledgedFile::keep(std::vector<alarms::Acknowledged> all) {
   if (all == kept_) return;
   kept_ = std::move(all);
+  if (!unread_.empty()) return;
   const auto write = [file = file_, text = alarms::write_acknowledged(kept_), failed = failed_] {
     const auto written = host::write_file(file, text, host::kOursAlone);
     const bool failed_before = std::exchange(*failed, !written.has_value());

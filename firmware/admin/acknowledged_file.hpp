@@ -10,7 +10,8 @@
 namespace adit::admin {
 
 /// Which alarms are acknowledged, kept in a file for aditd alone, so that they stay so when the service ends.
-/// Losing it costs no more than a blinking light: what is wrong with it is logged, and none counts then.
+/// Losing it costs no more than a blinking light: what is wrong with it is logged, and none counts then. An
+/// unreadable file stays as it is until the next start.
 class AcknowledgedFile {
  public:
   static constexpr const char* kFile = "acknowledged.json";  // in the state folder
@@ -23,7 +24,7 @@ class AcknowledgedFile {
   void keep(std::vector<alarms::Acknowledged> all);
 
  private:
-  std::string file_;
+  std::string file_, unread_;
   loop::Writer& writer_;
   std::vector<alarms::Acknowledged> kept_;
   std::shared_ptr<bool> failed_ = std::make_shared<bool>(false);  // the writer's

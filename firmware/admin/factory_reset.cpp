@@ -41,7 +41,8 @@ std::expected<bool, std::string> FactoryReset::finish() {
   for (const std::string& file :
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
         state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,
-        state_ + '/' + Accounts::kFile, state_ + '/' + TakingOver::kFile, begun()}) {
+        state_ + '/' + Accounts::kFile, state_ + '/' + Accounts::kFile + host::kDamaged,
+        state_ + '/' + TakingOver::kFile, begun()}) {
     if (const auto done = host::remove_file(file); !done) return std::unexpected(done.error());
   }
   host::log(host::Level::Notice, "factory reset: settings, tokens, passwords and sessions deleted");

@@ -11,7 +11,7 @@ namespace adit::admin {
 
 SessionKeeper::SessionKeeper(std::string file, access::Instant now)
     : file_(std::move(file)), boot_(host::boot()), sessions_([this] { keep(); }) {
-  auto kept = read_kept_file(file_, &access::read_sessions);
+  auto kept = read_kept_file(file_, &access::read_sessions, unread_);
   if (!kept) {
     host::log(host::Level::Warning, "cannot read the sessions: users have to log in again",
               {{"why", kept.error()}});
@@ -21,6 +21,7 @@ SessionKeeper::SessionKeeper(std::string file, access::Instant now)
 }
 
 void SessionKeeper::keep() {
+  if (!unread_.empty()) return;
   access::KeptSessions kept{.boot = boot_, .last = sessions_.last(), .sessions = sessions_.in_order()};
   const auto written = host::write_file(file_, access::write_sessions(kept), host::kOursAlone);
   const bool failed_before = std::exchange(failed_, !written.has_value());

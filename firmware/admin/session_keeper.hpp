@@ -8,7 +8,7 @@ namespace adit::admin {
 
 /// Those who are logged in, kept in a file for aditd alone, so that they stay so when the service ends, also
 /// suddenly. A start of the machine forgets them. What is wrong with the file is logged, and costs no more
-/// than a login.
+/// than a login. An unreadable file stays as it is until the next start.
 class SessionKeeper {
  public:
   static constexpr const char* kFile = "sessions.json";  // in the runtime folder
@@ -21,7 +21,7 @@ class SessionKeeper {
   void keep();
 
  private:
-  std::string file_, boot_;
+  std::string file_, boot_, unread_;
   access::Sessions sessions_;
   bool failed_ = false;
 };

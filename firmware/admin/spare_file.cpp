@@ -35,8 +35,9 @@ constexpr codec::Row TakenFrom::kRow = {"", kTakenMembers};
 constexpr codec::Row SpareFile::kRow = {"", kFileMembers};
 
 std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_folder) {
-  return read_kept_file(state_folder + '/' + kName,
-                        [](std::string_view text) { return codec::read_file<SpareFile>(text, kFormat); });
+  std::string unread;
+  const auto parse = [](std::string_view text) { return codec::read_file<SpareFile>(text, kFormat); };
+  return read_kept_file(state_folder + '/' + kName, parse, unread);
 }
 
 std::expected<void, std::string> SpareFile::write(const std::string& state_folder) const {

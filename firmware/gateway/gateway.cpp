@@ -20,6 +20,15 @@ namespace {
 constexpr std::chrono::minutes kKeepSessionsEvery{1};
 constexpr std::chrono::seconds kAnswerLeaves{1};
 
+/// Whether the files of Gateway::unread() can be read now.
+bool can_be_read(const std::string& state_folder) {
+  for (const char* const name : {admin::Accounts::kFile, admin::Accounts::kCodeFile}) {
+    const std::string file = state_folder + '/' + name;
+    if (host::may_exist(file) && !host::read_file(file)) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Gateway::Gateway(loop::Loop& loop, Parts parts)
@@ -62,7 +71,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
                [this] { return report_under_way(); }),
       clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd),
-      spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder, parts_.stuck,
+      spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder,
+             unread().empty() ? parts_.stuck : unread(),
              {.content = [this] { return content(); },
               .is_time_set = [this] { return clock_.is_set().value_or(false); },
               .restart = [this] { make_way(); }}),
@@ -90,9 +100,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {
   const bool has_ledger = parts_.ledger.refusal().empty();
-  if (has_ledger && parts_.store.unread().empty()) return;
+  if (has_ledger && unread().empty()) return;
   const auto can_be_opened = [has_ledger, folder = parts_.state_folder, &store = parts_.store] {
-    return (has_ledger || ledger::Ledger::can_be_opened(folder)) && store.can_be_read();
+    return (has_ledger || ledger::Ledger::can_be_opened(folder)) && store.can_be_read() &&
+           can_be_read(folder);
   };
   ledger_return_.emplace(loop, disk_writer_, can_be_opened, parts_.ledger_rest, [this] { state_is_back(); });
 }
@@ -121,6 +132,12 @@ icd::Redaction Gateway::redaction() const {
   icd::Redaction redaction = parts_.loaded.secrets.redaction();
   if (const auto& code = accounts_.code()) redaction.add(*code);
   return redaction;
+}
+
+/// Why a saved file cannot be read, so that the box has to be on standby; or "".
+std::string Gateway::unread() const {
+  const std::string& settings = parts_.store.unread();
+  return settings.empty() ? accounts_.unread() : "the saved settings or tokens cannot be read: " + settings;
 }
 
 std::vector<loop::Workers*> Gateway::threads() {

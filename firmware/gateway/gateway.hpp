@@ -52,7 +52,7 @@ struct Parts {
   ListenSockets& sockets;          // and this
   admin::Store::Loaded loaded;
   std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
-  std::string stuck;  // why the box has to be on standby: an unfinished take-over, an unreadable file; or ""
+  std::string stuck;    // why a take-over is not finished, so that the box has to be on standby; or ""
   ledger::Ledger ledger;
   std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
   settings::Board board;
@@ -82,6 +82,8 @@ class Gateway final : public api::Source, public api::Operator {
   void stop();
   /// Whether it stopped for the process to start again, with what the disk holds by now.
   bool makes_way() const { return makes_way_; }
+  /// Whether it runs without a file that it needs, and makes way when it can have it.
+  bool awaits_files() const { return ledger_return_.has_value(); }
   /// All its threads, to be asked for signs of life.
   std::vector<loop::Workers*> threads();
   /// What systemd shows: one line.
@@ -133,6 +135,7 @@ class Gateway final : public api::Source, public api::Operator {
   intake::IcdOptions icd_options() const;
   forward::Tokens tokens() const;
   icd::Redaction redaction() const;
+  std::string unread() const;
   void note_robot(const std::string& name);
   void assert_states();
   void pressed(panel::Press press);

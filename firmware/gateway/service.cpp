@@ -160,16 +160,12 @@ std::expected<bool, std::string> Service::run_gateway() {
   const std::string taking_over = finish_taking_over();
   auto parts = gather(options_, store_, reset_, taking_over_, sockets_, std::exchange(announced_, {}));
   if (!parts) return std::unexpected(parts.error());
-  if (!store_.unread().empty()) {
-    parts->stuck = "the saved settings or tokens cannot be read: " + store_.unread();
-  } else if (!taking_over.empty()) {
-    parts->stuck = "the take-over is not finished: " + taking_over;
-  }
+  if (!taking_over.empty()) parts->stuck = "the take-over is not finished: " + taking_over;
   const settings::Settings settings = parts->loaded.settings;
   parts->trouble = trouble_;
-  const bool waits = !parts->ledger.refusal().empty() || !store_.unread().empty();
-  parts->ledger_rest = std::exchange(ledger_rest_, waits ? longer(ledger_rest_) : LedgerReturn::kRest);
+  parts->ledger_rest = ledger_rest_;
   Gateway gateway(loop_, std::move(*parts));
+  ledger_rest_ = gateway.awaits_files() ? longer(ledger_rest_) : LedgerReturn::kRest;
   return run(gateway, settings);
 }
 

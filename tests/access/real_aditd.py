@@ -294,13 +294,20 @@ class Login(unittest.TestCase):
             self.assertEqual(headers["Referrer-Policy"], "no-referrer")
             self.assertNotIn(b"<script>", text)
 
-    def test_a_damaged_file_of_passwords_asks_for_the_code_again_and_stops_nothing(self):
+    def test_an_unreadable_file_of_passwords_opens_nothing_and_puts_the_box_on_standby_until_it_can_be_read(self):
         box = self.box()
         box.stop()
-        (box.state / "access.json").write_text("{\"version\":1,\"oper")
+        file, elsewhere = box.state / "access.json", box.state / "elsewhere"
+        file.rename(elsewhere)
+        file.mkdir()
         box.start()
-        self.assertIn("cannot read the passwords", box.said())
-        self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], True)
-        self.assertEqual(box.ask("GET /adit/run", Authorization=f"Bearer {TOKENS['team']}")[0], 200)
-        self.assertEqual(box.set_first(password="another password")[0], 200)
-        box.log_in("another password")
+        team = {"Authorization": f"Bearer {TOKENS['team']}"}
+        alarms = box.ask("GET /adit/run", **team)[1]["alarms"]
+        self.assertEqual([alarm["id"] for alarm in alarms], ["standby"])
+        self.assertIn(f"the passwords cannot be read: {file}: is not a regular file", str(alarms))
+        self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False)
+        self.assertEqual(box.set_first("12345678", "another password")[0], 401)
+        file.rmdir()
+        elsewhere.rename(file)
+        wait_until(lambda: not box.ask("GET /adit/run", **team)[1]["alarms"], "the end of the standby")
+        box.log_in(OPERATOR)

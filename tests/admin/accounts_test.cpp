@@ -19,14 +19,17 @@ constexpr const char* kNew = "another horse entirely";
 
 /// aditd's part that knows passwords, from start to end.
 struct Life {
-  explicit Life(const host::Folder& folder)
+  explicit Life(const host::Folder& folder, const char* label_code = "12345678")
       : sessions(folder / "sessions.json", loop.now()),
-        accounts(loop, workers, writer, sessions, folder.path(), icd::BearerToken::parse("12345678")) {}
+        accounts(loop, workers, writer, sessions, folder.path(), icd::BearerToken::parse(label_code)) {}
 
-  void set(Role role, const std::string& password) {
-    bool done = false;
-    accounts.set(role, password, [&done](const icd::Checked<void>& kept) { done = kept.has_value(); });
-    while (!done) loop.turn(100ms);
+  /// Why it was refused, or "".
+  std::string set(Role role, const std::string& password) {
+    std::optional<std::string> why;
+    accounts.set(role, password,
+                 [&why](const icd::Checked<void>& kept) { why = kept ? "" : kept.error().sentence; });
+    while (!why) loop.turn(100ms);
+    return *why;
   }
   std::string add_device(Role role) { return accounts.devices().add(accounts.draw(), role).id.reveal(); }
   bool knows(const std::string& id) { return accounts.devices().find(id) != nullptr; }
@@ -68,6 +71,44 @@ TEST(Accounts, ACodeIsKeptOnlyWhileItIsAskedFor) {
       folder.put(Accounts::kCodeFile, "87654321\n");  // a kill came first, or a card brought it
   const Life life(folder);
   EXPECT_FALSE(std::filesystem::exists(code));
+}
+
+TEST(Accounts, AnUnreadableFileSetsNoPasswordAndStaysAsItIs) {
+  for (const char* const name : {Accounts::kFile, Accounts::kCodeFile}) {
+    const host::Folder folder;
+    ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
+    Life life(folder, name == Accounts::kFile ? "12345678" : "");
+    EXPECT_FALSE(life.accounts.first_start() || life.accounts.code()) << name;
+    life.accounts.open_set_up();
+    EXPECT_EQ(life.set(Role::Operator, kNew),
+              "the passwords cannot be read: " + (folder / name) + ": is not a regular file");
+    EXPECT_TRUE(std::filesystem::is_fifo(folder / name));
+    bool is_checked = false, is_over = false;
+    life.accounts.check(kNew, "10.0.0.5", [&](std::optional<Role>) { is_checked = true; });
+    life.workers.submit(loop::Urgency::OnTheWay, [] {}, [&] { is_over = true; });
+    while (!is_over) life.loop.turn(100ms);
+    EXPECT_FALSE(is_checked) << "no password is right or wrong";
+  }
+}
+
+TEST(Accounts, ADamagedFileIsSetAsideAndTheCodeIsAskedAgain) {
+  const host::Folder folder;
+  Life(folder).set(Role::Operator, kOld);
+  folder.put(Accounts::kFile, "{\"version\":1,\"oper");
+  const Life life(folder);
+  EXPECT_TRUE(life.accounts.is_code("12345678"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "access.json.damaged"));
+}
+
+TEST(Accounts, UnreadableDevicesStayAsTheyAre) {
+  const host::Folder folder;
+  ASSERT_EQ(mkfifo((folder / Accounts::kDevicesFile).c_str(), 0600), 0);
+  {
+    Life life(folder);
+    life.set(Role::Operator, kOld);
+    EXPECT_TRUE(life.knows(life.add_device(Role::Operator)));
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(folder / Accounts::kDevicesFile));
 }
 
 TEST(Accounts, TheDeviceThatSetThePasswordStaysKnown) {

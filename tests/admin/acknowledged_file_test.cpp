@@ -76,6 +76,17 @@ TEST_F(AcknowledgedFileTest, IsWrittenOnlyWhereTheyChange) {
   EXPECT_EQ(host::read_file(folder_ / "acknowledged.json").value(), "untouched");
 }
 
+TEST_F(AcknowledgedFileTest, StaysAsItIsWhereItCannotBeRead) {
+  ASSERT_EQ(mkfifo((folder_ / "acknowledged.json").c_str(), 0600), 0);
+  loop::Loop loop;
+  loop::Writer writer(loop);
+  AcknowledgedFile file(folder_.path(), writer);
+  EXPECT_TRUE(file.read().empty());
+  file.keep({kHeld});
+  wait_for(writer, 0);
+  EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "acknowledged.json"));
+}
+
 TEST_F(AcknowledgedFileTest, IsComplainedOfOnceWhereItCannotBeWritten) {
   std::filesystem::create_directory(folder_ / "acknowledged.json");
   EXPECT_EQ(keep({{kHeld}, {}, {kHeld}}), 1u);

@@ -64,10 +64,14 @@ TEST_F(SessionKeeperTest, StartsWithNobodyWhereTheFileIsDamaged) {
   EXPECT_TRUE(knows(after, mine));
 }
 
-TEST_F(SessionKeeperTest, GoesOnInMemoryWhereNothingCanBeWritten) {
-  SessionKeeper keeper(folder_ / "none/sessions.json", kStart);
-  const std::string mine = log_in(keeper);
-  EXPECT_TRUE(knows(keeper, mine));
+TEST_F(SessionKeeperTest, GoesOnInMemoryWhereNothingCanBeReadOrWritten) {
+  ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
+  for (const std::string& file : {folder_ / "none/sessions.json", file_}) {
+    SessionKeeper keeper(file, kStart);
+    const std::string mine = log_in(keeper);
+    EXPECT_TRUE(knows(keeper, mine));
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(file_)) << "an unreadable file stays as it is";
 }
 
 }  // namespace

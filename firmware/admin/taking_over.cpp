@@ -110,15 +110,17 @@ std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
 /// Each step may be done again. Who exported is noted last: until then it is not finished.
 std::expected<void, std::string> TakingOver::take(const spare::Content& content, const loop::Loop& loop) {
   forward::StampFloor stamps(state_);
-  const forward::StampFloor::Kept kept = stamps.read();
-  const double least = std::ceil(std::max(content.about.stamps, kept.least));  // as it is kept
+  const auto kept = stamps.read();
+  if (!kept) return std::unexpected(kept.error());
+  const double least = std::ceil(std::max(content.about.stamps, kept->least));  // as it is kept
   const dispatch::Handover handover{
       .expected = content.about.expected,
       .stamp = std::max(loop.stamp_now(), least),
       .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
   if (auto taken = take_ledger(content, handover); !taken) return taken;
-  stamps.write({.floor = std::max(kept.floor, least), .wall = kept.wall, .least = least});
-  if (stamps.read().least < least) return std::unexpected("cannot store the first box's time stamps");
+  stamps.write({.floor = std::max(kept->floor, least), .wall = kept->wall, .least = least});
+  const auto written = stamps.read();
+  if (!written || written->least < least) return std::unexpected("cannot store the first box's time stamps");
   if (auto taken = take_settings(content); !taken) return taken;
   return note(content.about);
 }

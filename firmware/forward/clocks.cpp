@@ -7,11 +7,11 @@
 namespace adit::forward {
 
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
-  const StampFloor::Kept kept = floor_.read();
-  boot_ = boot;
+  const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
   carried.machine_is(boot);
   const auto& clock = carried.clock();
-  ran_before_ = clock || kept.floor > 0;
+  boot_ = clock || kept_ ? boot : "unknown";  // a clock that began without the bound is not carried on
+  ran_before_ = clock || !kept_ || kept.floor > 0;
   if (clock) {
     senders_ = carried.senders();
     loop_.set_stamp(clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count());
@@ -87,6 +87,7 @@ void Clocks::stamp(icd::MarkersUpdate& update, const intake::Sender& sender) {
 }
 
 void Clocks::keep(loop::Writer& writer) {
+  if (!kept_) return;
   const auto due = floor_.due(loop_.stamp_now(), loop_.wall_now());
   if (due) writer.submit([floor = floor_, due = *due]() mutable { floor.write(due); }, [] {});
 }

@@ -24,8 +24,11 @@ class Clocks {
  public:
   /// `loop` and `journal` outlive this.
   Clocks(loop::Loop& loop, journal::Journal& journal, const std::string& state_folder)
-      : loop_(loop), journal_(journal), floor_(state_folder) {}
+      : loop_(loop), journal_(journal), floor_(state_folder), kept_(floor_.read()) {}
 
+  /// Why the bound of the stamps cannot be read, as a sentence; or "". Then no stamp may be sent, and the
+  /// file stays as it is: the next process reads it again.
+  std::string unread() const { return kept_ ? "" : "the last time stamps cannot be read: " + kept_.error(); }
   /// Goes on where the life before ended, and begins the journal of this one. `boot`: the machine's.
   void carry_on(journal::Carried& carried, const std::string& boot);
 
@@ -65,6 +68,7 @@ class Clocks {
   loop::Loop& loop_;
   journal::Journal& journal_;
   StampFloor floor_;
+  const std::expected<StampFloor::Kept, std::string> kept_;  // as the process before left it
   lanes::StampShift senders_;
   dispatch::Leap leap_;
   Off off_;

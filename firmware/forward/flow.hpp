@@ -64,6 +64,8 @@ class Flow final : public intake::Desk {
 
   /// Goes on where the life before ended, and connects. An error: the ledger cannot be read.
   std::expected<void, std::string> start();
+  /// Why a file without which nothing may be sent cannot be read, as a sentence; or "".
+  std::string unread() const { return clocks_.unread(); }
   /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who
   /// asks.
   void stand_by(const std::string& why);

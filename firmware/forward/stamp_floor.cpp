@@ -25,19 +25,20 @@ double take_time(std::string_view& rest) {
 
 }  // namespace
 
-StampFloor::Kept StampFloor::read() const {
-  if (!host::may_exist(file_)) return {};
+std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
+  if (!host::may_exist(file_)) return Kept{};
   const auto text = host::read_file(file_);
-  std::string_view rest = text ? *text : std::string_view();
+  if (!text) return std::unexpected(text.error());
+  std::string_view rest = *text;
   const double floor = take_time(rest);
   // A release that had no second line brought the time of day to its stamps.
   if (floor >= 0) {
     const double wall = std::max(0.0, rest.empty() ? floor - kAhead : take_time(rest));
-    return {.floor = floor, .wall = wall, .least = std::max(0.0, take_time(rest))};
+    return Kept{.floor = floor, .wall = wall, .least = std::max(0.0, take_time(rest))};
   }
   host::log(host::Level::Warning, "cannot read the last time stamps used",
-            {{"why", text ? file_ + ": expected seconds since 1970" : text.error()}});
-  return {};
+            {{"why", file_ + ": expected seconds since 1970"}});
+  return Kept{};
 }
 
 std::optional<StampFloor::Kept> StampFloor::due(double now, double wall) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <expected>
 #include <memory>
 #include <optional>
 #include <string>
@@ -25,8 +26,8 @@ class StampFloor {
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// A faulty file is logged.
-  Kept read() const;
+  /// A damaged file is logged and counts as none. An error: the file cannot be read, and must not be written.
+  std::expected<Kept, std::string> read() const;
 
   /// What is to be written by now, if anything. `now`: by the clock for stamps; `wall`: the time of day.
   std::optional<Kept> due(double now, double wall);

@@ -5,6 +5,7 @@
 #include "box/candidate.hpp"
 #include "box/notices.hpp"
 #include "dispatch/another_post.hpp"
+#include "forward/stamp_floor.hpp"
 #include "gateway/report_rows.hpp"
 #include "host/interfaces.hpp"
 #include "host/link_changes.hpp"
@@ -22,7 +23,8 @@ constexpr std::chrono::seconds kAnswerLeaves{1};
 
 /// Whether the files of Gateway::unread() can be read now.
 bool can_be_read(const std::string& state_folder) {
-  for (const char* const name : {admin::Accounts::kFile, admin::Accounts::kCodeFile}) {
+  for (const char* const name :
+       {admin::Accounts::kFile, admin::Accounts::kCodeFile, forward::StampFloor::kFile}) {
     const std::string file = state_folder + '/' + name;
     if (host::may_exist(file) && !host::read_file(file)) return false;
   }
@@ -137,7 +139,8 @@ icd::Redaction Gateway::redaction() const {
 /// Why a saved file cannot be read, so that the box has to be on standby; or "".
 std::string Gateway::unread() const {
   const std::string& settings = parts_.store.unread();
-  return settings.empty() ? accounts_.unread() : "the saved settings or tokens cannot be read: " + settings;
+  if (!settings.empty()) return "the saved settings or tokens cannot be read: " + settings;
+  return accounts_.unread().empty() ? flow_.unread() : accounts_.unread();
 }
 
 std::vector<loop::Workers*> Gateway::threads() {

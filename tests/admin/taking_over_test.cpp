@@ -74,7 +74,7 @@ TEST_F(TakingOverTest, TakesReportsSettingsTokensAndStampsOnce) {
   EXPECT_TRUE(loaded->saved);
   EXPECT_EQ(loaded->secrets.token("scoring")->reveal(), "the-first-box-s");
   EXPECT_FALSE(loaded->secrets.token("mapping")) << "the first box had none";
-  EXPECT_EQ(forward::StampFloor(state_.path()).read().least, 9e9 / 2);
+  EXPECT_EQ(forward::StampFloor(state_.path()).read()->least, 9e9 / 2);
   EXPECT_EQ(SpareFile::read(state_.path())->taken.at(0).at, 100);
   EXPECT_EQ(taking_over_.finish(loop_), false);
   EXPECT_TRUE(fs::is_empty(runtime_.path()));
@@ -134,12 +134,21 @@ TEST_F(TakingOverTest, CountsTheTimeOfTheSwapOnlyWhereBothTimesOfDayAreTold) {
     if (are_told) content.about.told_at = content.about.at;
     ASSERT_TRUE(taking_over_.begin(spare::write(content)));
     ASSERT_EQ(taking_over_.finish(loop_), true);
-    const double stamp = forward::StampFloor(state_.path()).read().least;  // ahead of the clock: as all of it
+    const double stamp =
+        forward::StampFloor(state_.path()).read()->least;  // ahead of the clock: as all of it
     const auto runs = *ledger::Ledger::open(state_.path())->runs();
     ASSERT_THAT(runs, SizeIs(1));
     EXPECT_NEAR(stamp - runs.at(0).heard, are_told ? 5010 : 10, 2);
     fs::remove_all(state_ / "ledger.sqlite");
   }
+}
+
+TEST_F(TakingOverTest, IsNotFinishedWhileTheStampsCannotBeRead) {
+  const std::string file = state_ / forward::StampFloor::kFile;
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  EXPECT_EQ(taking_over_.finish(loop_).error(), file + ": is not a regular file");
+  EXPECT_TRUE(fs::is_fifo(file));
 }
 
 TEST_F(TakingOverTest, KeepsWhatIsOfThisMachine) {

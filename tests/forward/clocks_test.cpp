@@ -52,6 +52,24 @@ TEST_F(ClocksTest, ASenderGoesOnAsItDidInTheLifeBefore) {
   EXPECT_NEAR(stamped(50.3, 2), first + 0.3, 1e-6);
 }
 
+TEST_F(ClocksTest, AnUnreadableBoundOfTheStampsStaysAndCountsOnceItCanBeRead) {
+  const std::string file = folder_ / StampFloor::kFile, elsewhere = folder_ / "elsewhere";
+  const double floor = now() + kFar;
+  StampFloor(folder_.path()).write({.floor = floor, .wall = now()});
+  std::filesystem::rename(file, elsewhere);
+  ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
+  live();
+  EXPECT_EQ(clocks_->unread(), "the last time stamps cannot be read: " + file + ": is not a regular file");
+  clocks_->keep(disk_);
+  bool is_written = false;
+  disk_.submit([] {}, [&] { is_written = true; });
+  ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_written; }));
+  ASSERT_TRUE(std::filesystem::is_fifo(file));
+  std::filesystem::rename(elsewhere, file);
+  live();
+  EXPECT_GE(now(), floor);
+}
+
 TEST_F(ClocksTest, StampsGoOnInTheNextLifeWhateverTheTimeOfDayIsThen) {
   for (const double set : {-kFar, kFar}) {
     live();

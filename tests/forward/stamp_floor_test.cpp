@@ -28,35 +28,35 @@ TEST_F(StampFloorTest, IsNeverBelowAStampThatWasGivenOutWheneverThePowerIsCut) {
   for (double now = 1.7e9; now < 1.7e9 + 100; now += 1) {  // once a second
     if (const auto due = living.due(now, 5)) living.write(*due);
     const double latest = now + 1 + lanes::StampShift::kJump;  // until it is asked again
-    ASSERT_GT(StampFloor(folder_.string()).read().floor, latest);
-    ASSERT_LT(StampFloor(folder_.string()).read().floor, now + 60) << "nor far ahead";
+    ASSERT_GT(StampFloor(folder_.string()).read()->floor, latest);
+    ASSERT_LT(StampFloor(folder_.string()).read()->floor, now + 60) << "nor far ahead";
   }
 }
 
 TEST_F(StampFloorTest, KeepsTheTimeOfDayBesideIt) {
   StampFloor living(folder_.string());
   living.write(*living.due(1.7e9, 1.8e9));
-  EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read().wall, 1.8e9);
+  EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.8e9);
   EXPECT_FALSE(living.due(1.7e9 + 1, 1.6e9));
   living.is_due();  // it was set
   living.write(*living.due(1.7e9 + 1, 1.6e9));
-  EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read().wall, 1.6e9);
+  EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.6e9);
 }
 
 TEST_F(StampFloorTest, ReadsWhatAReleaseWroteThatKeptTheStampsAlone) {
   std::ofstream(folder_ / StampFloor::kFile) << "1700000030.000000\n";
-  const StampFloor::Kept kept = StampFloor(folder_.string()).read();
+  const StampFloor::Kept kept = StampFloor(folder_.string()).read().value();
   EXPECT_EQ(kept.floor, 1700000030);
   EXPECT_EQ(kept.wall, 1700000000) << "the stamps were of the time of day";
 }
 
 TEST_F(StampFloorTest, KeepsTheLeastUntilTheStampsHavePassedIt) {
   StampFloor living(folder_.string());
-  EXPECT_EQ(StampFloor(folder_.string()).read().least, 0);
+  EXPECT_EQ(StampFloor(folder_.string()).read()->least, 0);
   living.write({.floor = 1.7e9, .wall = 1.6e9, .least = 1.75e9});
-  EXPECT_EQ(StampFloor(folder_.string()).read().least, 1.75e9);
+  EXPECT_EQ(StampFloor(folder_.string()).read()->least, 1.75e9);
   living.write(*living.due(1.75e9, 1.6e9));
-  EXPECT_EQ(StampFloor(folder_.string()).read().least, 0);
+  EXPECT_EQ(StampFloor(folder_.string()).read()->least, 0);
 }
 
 TEST_F(StampFloorTest, IsWrittenSeldom) {
@@ -91,16 +91,16 @@ TEST_F(StampFloorTest, IsKeptWhereThereIsNoRoomForAnotherFile) {
   const std::uint64_t before = host::logged();
   floor.write({.floor = 1.8e9, .wall = 1.7e9});
   EXPECT_EQ(host::logged(), before);
-  EXPECT_EQ(floor.read().floor, 1.8e9);
-  EXPECT_EQ(floor.read().wall, 1.7e9);
-  EXPECT_EQ(floor.read().least, 0) << "nothing is left of what was longer";
+  EXPECT_EQ(floor.read()->floor, 1.8e9);
+  EXPECT_EQ(floor.read()->wall, 1.7e9);
+  EXPECT_EQ(floor.read()->least, 0) << "nothing is left of what was longer";
 }
 
 TEST_F(StampFloorTest, SaysNothingWhereNothingIsKnown) {
-  EXPECT_EQ(StampFloor(folder_.string()).read().floor, 0);
+  EXPECT_EQ(StampFloor(folder_.string()).read()->floor, 0);
   for (const char* text : {"", "soon", "-5", "nan", "inf", "1e300"}) {
     std::ofstream(folder_ / StampFloor::kFile) << text;
-    const StampFloor::Kept kept = StampFloor(folder_.string()).read();
+    const StampFloor::Kept kept = StampFloor(folder_.string()).read().value();
     EXPECT_EQ(kept.floor, 0) << text;
     EXPECT_EQ(kept.wall, 0) << text;
   }

@@ -27,8 +27,14 @@ std::expected<std::optional<Token>, std::string> find_token(const std::string& f
   if (!file.empty()) return token_in_file(file);
   for (const char* name : {"/team.token", "/scoring.token"}) {
     for (const std::string& folder : folders) {
-      const auto text = host::read_file(folder + name);
-      if (text && !trimmed(*text).empty()) return token_in_file(folder + name);
+      const std::string path = folder + name;
+      if (!host::may_exist(path)) continue;
+      const auto text = host::read_file(path);
+      if (!text)
+        return std::unexpected(text.error() +
+                               "; run adit as root, or name a token file by --token-file FILE");
+      const bool is_saved = &folder == &folders.front();
+      if (is_saved || !trimmed(*text).empty()) return token_in_file(path);
     }
   }
   return std::nullopt;

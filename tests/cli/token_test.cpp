@@ -60,6 +60,16 @@ TEST_F(FindToken, TakesTheTeamsBeforeTheScoringToken) {
   EXPECT_EQ((*find_token("", folders_))->file, team);
 }
 
+TEST_F(FindToken, StopsAtASavedTokenThatIsEmptyAndAtAnUnreadableOne) {
+  write("team.token", "given-1");
+  const std::string saved = folders_[0] + "/team.token";
+  std::ofstream(saved) << '\n';
+  EXPECT_THAT(found(), testing::StartsWith("error: " + saved + ": expected one token"));
+  std::filesystem::remove(saved);
+  std::filesystem::create_directory(saved);
+  EXPECT_THAT(found(), testing::StartsWith("error: " + saved + ": is not a regular file; "));
+}
+
 TEST_F(FindToken, TakesTheFileThatIsNamed) {
   write("team.token", "team-1");
   const std::string mine = write("mine", "\tmine-1\r\n");

@@ -5,10 +5,9 @@
 
 #include <csignal>
 #include <cstdio>
-#include <fstream>
-#include <iterator>
 
 #include "command_line/answer.hpp"
+#include "loop/regular_file.hpp"
 #include "loop/watchdog.hpp"
 #include "panel/keeper.hpp"
 #include "panel/panel_options.hpp"
@@ -20,16 +19,20 @@ namespace {
 using namespace adit;
 
 constexpr const char* kConsumer = "adit-panel";
+constexpr std::size_t kLargestBoard = 1 << 20;
 
 void complain(const std::string& sentence) {
   std::fprintf(stderr, "adit-panel: %s\n", sentence.c_str());
 }
 
-/// Nothing: there is no such file, or it names no panel; one that is wrong is told and passed over.
-std::optional<settings::Panel> panel_of_board(const std::string& file) {
-  std::ifstream stream(file);
-  if (file.empty() || !stream) return std::nullopt;
-  auto board = settings::parse_board(std::string(std::istreambuf_iterator<char>(stream), {}));
+/// Nothing: there is no such file, or it names no panel; one that is wrong is told and passed over. An error:
+/// the file cannot be read.
+std::expected<std::optional<settings::Panel>, std::string> panel_of_board(const std::string& file) {
+  const loop::FileDescriptor fd = loop::open_regular(file, O_RDONLY);
+  if (!fd && errno == ENOENT) return std::nullopt;  // so it is for ""
+  const auto text = fd ? loop::read_all(fd, kLargestBoard) : std::unexpected(errno);
+  if (!text) return std::unexpected(file + ": " + loop::text_of(text.error()));
+  auto board = settings::parse_board(*text);
   if (board) return std::move(board->panel);
   complain(file + ": " + settings::sentence_of(board.error()));
   return std::nullopt;
@@ -52,12 +55,13 @@ std::expected<loop::FileDescriptor, std::string> listening(const std::string& so
 
 int run(const panel::PanelOptions& options) {
   auto socket = listening(options.socket);
-  if (!socket) {
-    complain(socket.error());
+  const auto board = panel_of_board(options.board);
+  if (!socket || !board) {
+    complain(socket ? board.error() : socket.error());
     return 1;
   }
   loop::Loop loop;
-  panel::Keeper keeper(loop, std::move(*socket), panel_of_board(options.board),
+  panel::Keeper keeper(loop, std::move(*socket), *board,
                        {.open =
                             [&](const settings::Panel& panel) {
                               return panel::hold(panel, kConsumer, options.simulated, &complain);

@@ -136,6 +136,11 @@ class Starting(Running):
         self.shows("1000")
         self.assertNotIn("another-chip", self.said())
 
+    def test_a_board_that_cannot_be_read_is_told_and_read_again_at_the_next_start(self):
+        panel = self.begin_panel("--board", self.folder)
+        self.wait_until(lambda: f"{self.folder}: is not a regular file" in self.said(), "the board to be told")
+        self.assertEqual(panel.wait(PATIENCE), 1)
+
     def test_a_board_that_is_wrong_is_told(self):
         board = self.folder / "board.json"
         board.write_text('{"name": "b", "title": "B", "panle": {}}')

@@ -31,9 +31,8 @@ std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   if (!text) return std::unexpected(text.error());
   std::string_view rest = *text;
   const double floor = take_time(rest);
-  // A release that had no second line brought the time of day to its stamps.
   if (floor >= 0) {
-    const double wall = std::max(0.0, rest.empty() ? floor - kAhead : take_time(rest));
+    const double wall = std::max(0.0, take_time(rest));
     return Kept{.floor = floor, .wall = wall, .least = std::max(0.0, take_time(rest))};
   }
   host::log(host::Level::Warning, "cannot read the last time stamps used",

@@ -293,23 +293,3 @@ class Login(unittest.TestCase):
             self.assertEqual(headers["X-Content-Type-Options"], "nosniff")
             self.assertEqual(headers["Referrer-Policy"], "no-referrer")
             self.assertNotIn(b"<script>", text)
-
-    def test_an_unreadable_file_opens_nothing_and_puts_the_box_on_standby_until_it_can_be_read(self):
-        box = self.box()
-        team = {"Authorization": f"Bearer {TOKENS['team']}"}
-        for name, what in (("access.json", "the passwords"), ("stamps", "the last time stamps")):
-            wait_until((box.state / name).exists, name)
-            box.stop()
-            file, elsewhere = box.state / name, box.state / "elsewhere"
-            file.rename(elsewhere)
-            file.mkdir()
-            box.start()
-            alarms = box.ask("GET /adit/run", **team)[1]["alarms"]
-            self.assertEqual([alarm["id"] for alarm in alarms], ["standby"])
-            self.assertIn(f"{what} cannot be read: {file}: is not a regular file", str(alarms))
-            self.assertEqual(box.ask("GET /adit/session")[1]["first_start"], False)
-            self.assertEqual(box.set_first("12345678", "another password")[0], 401)
-            file.rmdir()
-            elsewhere.rename(file)
-            wait_until(lambda: not box.ask("GET /adit/run", **team)[1]["alarms"], "the end of the standby")
-            box.log_in(OPERATOR)

@@ -231,24 +231,23 @@ class SetUp(unittest.TestCase):
         self.assertFalse(self.settings()["saved"])
         self.assertTrue((self.box.state / "settings.json.damaged").exists())
 
-    def test_settings_that_cannot_be_read_put_the_box_on_standby_until_they_can(self):
+    def test_a_file_that_cannot_be_read_opens_nothing_and_puts_the_box_on_standby_until_it_can(self):
         self.change(lambda settings: settings["reports"].update(near_metres=7))
-        self.box.stop()
-        file, elsewhere = self.box.state / "settings.json", self.box.state / "elsewhere"
-        file.rename(elsewhere)
-        file.mkdir()
-        self.box.start()
-        self.assertEqual(self.alarms(), {"standby"})
-        said = f"this box is on standby: the saved settings or tokens cannot be read: {file}: is not a regular file; " \
-               "it accepts and sends no messages"
-        self.assertEqual(self.box.ask("POST /state/update", state("ugv1"))[:2], (503, said))
-        shown = self.settings()
-        shown["settings"]["reports"]["near_metres"] = 9
-        self.assertEqual(self.box.ask("POST /adit/settings", {"settings": shown["settings"], "base": shown["tag"]},
-                                      **self.me)[0], 503, "they would replace those that nobody has seen")
-        file.rmdir()
-        elsewhere.rename(file)
-        wait_until(lambda: self.is_applied() and not self.alarms(), "the end of the standby")
+        for name, what in (("settings.json", "the saved settings or tokens"), ("access.json", "the passwords"),
+                           ("stamps", "the last time stamps")):
+            file, elsewhere = self.box.state / name, self.box.state / "elsewhere"
+            wait_until(file.exists, name)
+            self.box.stop()
+            file.rename(elsewhere)
+            file.mkdir()
+            self.box.start()
+            self.assertEqual(self.alarms(), {"standby"})
+            said = f"this box is on standby: {what} cannot be read: {file}: is not a regular file; it accepts and sends no messages"
+            self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), **TEAM)[:2], (503, said))
+            self.assertEqual(self.box.ask("GET /adit/session")[1]["first_start"], False)
+            file.rmdir()
+            elsewhere.rename(file)
+            wait_until(lambda: self.is_applied() and not self.alarms(), "the end of the standby")
         self.assertEqual(self.settings()["settings"]["reports"]["near_metres"], 7)
 
     def test_of_two_operators_the_one_who_has_not_seen_the_others_change_is_told(self):

@@ -43,13 +43,6 @@ TEST_F(StampFloorTest, KeepsTheTimeOfDayBesideIt) {
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.6e9);
 }
 
-TEST_F(StampFloorTest, ReadsWhatAReleaseWroteThatKeptTheStampsAlone) {
-  std::ofstream(folder_ / StampFloor::kFile) << "1700000030.000000\n";
-  const StampFloor::Kept kept = StampFloor(folder_.string()).read().value();
-  EXPECT_EQ(kept.floor, 1700000030);
-  EXPECT_EQ(kept.wall, 1700000000) << "the stamps were of the time of day";
-}
-
 TEST_F(StampFloorTest, KeepsTheLeastUntilTheStampsHavePassedIt) {
   StampFloor living(folder_.string());
   EXPECT_EQ(StampFloor(folder_.string()).read()->least, 0);

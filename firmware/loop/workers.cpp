@@ -16,8 +16,6 @@
 namespace adit::loop {
 namespace {
 
-/// How long a result waits that cannot be handed back for want of memory.
-
 unsigned threads_for(unsigned asked) {
   if (asked > 0) return asked;
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;

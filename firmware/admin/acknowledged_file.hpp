@@ -10,7 +10,7 @@
 namespace adit::admin {
 
 /// Which alarms are acknowledged, kept in a file for aditd alone, so that they stay so when the service ends.
-/// Losing it costs no more than a blinking light: what is wrong with it is logged, and none counts then. An
+/// A damaged or unreadable file is logged, and no alarm counts as acknowledged: the light blinks. An
 /// unreadable file stays as it is until the next start.
 class AcknowledgedFile {
  public:

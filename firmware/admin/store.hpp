@@ -36,8 +36,8 @@ class Store {
   icd::Redaction redaction() const;
   /// What counts. An error: neither can be used. Damaged saved settings are set aside.
   std::expected<Loaded, std::string> load();
-  /// Why load() could not read a file, or "". What it gave then is not what was saved: the box must not go by
-  /// it. Until load() succeeds, save(), settle() and revert() change nothing.
+  /// Why load() could not read a file, or "". Its result then is not the saved set-up, and the box must
+  /// not use it. Until load() succeeds, save(), settle() and revert() change nothing.
   const std::string& unread() const { return unread_; }
   /// Whether load() could read all files now. Thread-safe.
   bool can_be_read() const;

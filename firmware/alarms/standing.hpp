@@ -24,7 +24,7 @@ Standing standing_of(const Stream& stream, const Facts& facts);
 /// It says nothing any more, and that is its own doing.
 bool is_silent(const std::string& robot, const Facts& facts);
 
-/// The silent robots that have no stream, by name: nothing was heard of them since the service began.
+/// The silent robots without a stream, by name: they have sent no message since the service began.
 std::vector<std::string> unheard(const Facts& facts);
 
 /// The mapping endpoint, where nothing is taken at all; or null.

@@ -24,7 +24,7 @@ std::expected<Token, std::string> token_in_file(const std::string& file);
 
 /// The token in `file`; or, if that is "", in the first of team.token and scoring.token in `folders`, each in
 /// the first folder (the saved tokens) first; perhaps none. An empty file counts as none, except in the first
-/// folder. An error names the file, never what is in it: the file cannot be read, or holds no token.
+/// folder. An error names the file, never its content: the file cannot be read, or holds no token.
 std::expected<std::optional<Token>, std::string> find_token(const std::string& file,
                                                             std::span<const std::string> folders);
 

@@ -42,7 +42,7 @@ class Service {
   loop::Loop loop_;
   loop::FileDescriptor announced_;    // to adit-panel, until its lights are opened
   Gateway* running_ = nullptr;        // signals come while the loop runs, and so does it
-  std::string trouble_;               // what came of the last change
+  std::string trouble_;               // a sentence about the last change
   std::chrono::seconds ledger_rest_;  // if the ledger cannot be written; then that of the next start
 };
 

@@ -35,7 +35,7 @@ struct Fault {
 
 enum class Place : std::uint8_t { Saved, Given, Credentials };
 
-/// Nothing if there is no such file, or nothing in a given one. No sentence shows what is in it.
+/// No token if the file is absent, or if a given file is empty. No sentence shows the file's content.
 std::expected<Token, Fault> read_token(const std::string& path, Place place) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();

@@ -89,7 +89,7 @@ struct Secrets {
 /// The tokens of these names, each in NAME.token in `saved` or else in `given` (a folder of systemd
 /// credentials, or one of mode 0700 with files of mode 0600); and `label.code` in `given`. White space around
 /// a token is cut; a missing file is none, as is an empty one in `given`. An error names the file in `given`,
-/// never what is in it: others may read it, or it holds no token.
+/// never its content: others may read it, or it holds no token.
 std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
                                                  std::span<const std::string> names);
 

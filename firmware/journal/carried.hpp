@@ -106,8 +106,8 @@ class Carried {
   std::vector<icd::Marker> markers_under_way_;
 };
 
-/// What the records come to, and which are damaged: a sentence, or "". Nothing counts as delivered behind a
-/// gap: what was delivered may be in it. Unknown records are logged.
+/// The sum of the records, and a sentence about damage, or "". No message counts as delivered behind a gap,
+/// because the delivered message may be in the gap. Unknown records are logged.
 std::pair<Carried, std::string> read_records(const store::Contents& contents);
 
 /// What the records say.

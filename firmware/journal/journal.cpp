@@ -169,12 +169,13 @@ Journal::Kept Journal::failed(const std::string& why) {
   return std::unexpected(why);
 }
 
-/// What was written so far becomes a snapshot, while the next file is written.
+/// All records until now become a snapshot, while the next file is written.
 void Journal::compact() {
-  if (compacting_ || !log_->turn()) return;
+  if (compacting_) return;
+  if (const auto turned = log_->turn(); !turned) return not_compacted(turned.error());
   size_ = 0;
   auto begun = store::Snapshot::begin(*directory_, kKeeping, *log_);
-  if (!begun) return;
+  if (!begun) return not_compacted(begun.error());
   compacting_ = true;
   const auto snapshot = std::make_shared<store::Snapshot>(std::move(*begun));
   const auto outcome = std::make_shared<store::Result<std::size_t>>();
@@ -185,14 +186,16 @@ void Journal::compact() {
       },
       [this, outcome] {
         compacting_ = false;
+        if (!*outcome) return not_compacted(outcome->error());
         least_ = kLeastTurn;
-        if (*outcome) {
-          snapshot_ = **outcome;
-          return;
-        }
-        host::log(host::Level::Warning, "cannot compact the journal", {{"why", outcome->error().what}});
-        least_ = size_ + kLeastTurn;  // to be tried again after as much
+        snapshot_ = **outcome;
       });
+}
+
+/// It is tried again after as much.
+void Journal::not_compacted(const store::Error& error) {
+  host::log(host::Level::Warning, "cannot compact the journal", {{"why", error.what}});
+  least_ = size_ + kLeastTurn;
 }
 
 }  // namespace adit::journal

@@ -26,8 +26,8 @@ namespace adit::journal {
 ///
 /// Each record is one write by the loop to a log in memory (store/README.md), and is there for the next
 /// process once the call has returned. If there is no room for a record that nobody is answered for, it waits
-/// in memory and is written before the next one: nothing is accepted until it is known what became of all
-/// before.
+/// in memory and is written before the next one. Until then the journal accepts no
+/// other record.
 class Journal {
  public:
   /// How the log is kept.
@@ -93,6 +93,7 @@ class Journal {
   Kept append_unsaid();
   Kept write(Kind kind, std::string_view said);
   void compact();
+  void not_compacted(const store::Error& error);
   Kept failed(const std::string& why);
 
   const std::string path_;

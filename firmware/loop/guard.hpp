@@ -15,9 +15,8 @@ std::uint64_t caught_so_far() noexcept;
 /// Who is told of them from now on; called on the thread that caught it, and may throw.
 void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 
-/// Other exceptions end the process from now on, with status 1 after a line in the log: those of the loop's
-/// callbacks and of functions that are noexcept. What was accepted is on the disk, and the next start reads
-/// it.
+/// From now on an exception of a loop's callback or of a noexcept function ends the process with status 1,
+/// after a line on stderr. Accepted messages are on the disk, and the next start reads them.
 void end_by_uncaught() noexcept;
 
 /// Calls `work`; an exception, whichever library it is from, ends `work` and nothing else. False: it did.

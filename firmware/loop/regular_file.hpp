@@ -16,8 +16,8 @@ inline constexpr int kNotRegular = EBADFD;
 /// "No such file or directory"
 std::string text_of(int error);
 
-/// open(2) without waiting: a FIFO may have no other end. Invalid, with errno: it failed, or what has the
-/// name is no regular file.
+/// open(2) without blocking, because a FIFO may have no other end. Invalid, with errno, if open(2) fails or
+/// the name is not that of a regular file.
 FileDescriptor open_regular(const std::string& path, int flags, int folder = AT_FDCWD);
 
 /// The bytes from where the file stands to its end, or the errno: EFBIG above `most` bytes.

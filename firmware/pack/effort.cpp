@@ -84,7 +84,7 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
   return best;
 }
 
-/// If none is best for a cloud of which nothing were left, there is nothing to try.
+/// If even a cloud of no bytes is best sent unpacked, no part of it is tried.
 Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
   if (map.is_grid()) return for_cells(map, hurry);
   const std::size_t size = map.data.bytes.size();
@@ -93,7 +93,7 @@ Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
   return effort_for(size, tried(map.data.bytes), hurry);
 }
 
-/// Measured, the longest of all grids: a high level takes its time for what is left in the kept form.
+/// Measured: the longest time of all grids. A high level takes its time for the bytes of the kept form.
 double seconds_for(Effort effort, const icd::MapUpdate& map) {
   const double size = static_cast<double>(map.data.raw_size);
   if (!map.is_grid()) return seconds_per_byte(effort) * size;

@@ -37,8 +37,8 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry);
 /// The same, for an exact cloud that is not compressed: a part of it is tried, if that can matter.
 ///
 /// For a grid as it is kept: the greatest effort that takes at most half of `longest`, half a second, and as
-/// long as the grid takes to leave as it is kept. None for more than 40 MiB of cells, for they are whole in
-/// memory meanwhile; more than 16 MiB must be worth it: their kept form has more than a byte for 40 cells.
+/// long as the grid takes to leave as it is kept. None for more than 40 MiB of cells, because they are whole
+/// in memory meanwhile; more than 16 MiB must be worth it: their kept form has more than a byte for 40 cells.
 Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry);
 
 /// Seconds for packing `map`, uncompressed points or kept cells, on the box of tests/bench/README.md: the

@@ -25,8 +25,8 @@ void complain(const std::string& sentence) {
   std::fprintf(stderr, "adit-panel: %s\n", sentence.c_str());
 }
 
-/// Nothing: there is no such file, or it names no panel; one that is wrong is told and passed over. An error:
-/// the file cannot be read.
+/// Absent if there is no file, or it names no panel. A wrong one is told and ignored. An error: the file
+/// cannot be read.
 std::expected<std::optional<settings::Panel>, std::string> panel_of_board(const std::string& file) {
   const loop::FileDescriptor fd = loop::open_regular(file, O_RDONLY);
   if (!fd && errno == ENOENT) return std::nullopt;  // so it is for ""

@@ -165,7 +165,7 @@ export class MapOfRun {
       bottom: Math.min(one.y, other.y) - margin,
       top: Math.max(one.y, other.y) + margin,
     });
-    this.#view.pan(0, this.#view.height / 6); // below what is said of them
+    this.#view.pan(0, this.#view.height / 6); // below their label
   }
 
   /** Before each frame: what is where, and where one looks. */

@@ -1,4 +1,4 @@
-// A part of the map's picture on a canvas of its own, larger than what is seen: while the map is moved it is copied, not drawn again.
+// A part of the map's picture on a canvas of its own, larger than the view: while the map is moved it is copied, not drawn again.
 
 const MARGIN = 0.2, MAX_MARGIN = 200; // of the view's sides; pixels
 const MAX_RATIO = 1.6, MIN_RATIO = 0.7; // while somebody zooms, a layer is shown so much larger or smaller than it was drawn

@@ -1,10 +1,10 @@
-// How the map gets onto its canvas: cached layers one above the other, each drawn again only when what is on it changed. All but the
+// How the map gets onto its canvas: cached layers one above the other, each drawn again only if its content changed. All but the
 // uppermost, which changes with every step of a robot, are put together on one; a frame is a copy of these two, and what is
 // written at the edges.
 import { CachedLayer } from "./map_cached_layer.js";
 
 const REST = 160; // ms without a move: then all is drawn exactly for what is seen
-const FRAME_BUDGET = 10; // ms: what is not drawn within so long waits for the next frame
+const FRAME_BUDGET = 10; // ms: the rest waits for the next frame
 const PATCH_INTERVAL = 400; // ms: pieces of a cache are drawn again no more often
 
 export class Picture {

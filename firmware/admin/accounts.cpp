@@ -108,7 +108,6 @@ bool Accounts::is_code(std::string_view presented) const {
 
 void Accounts::check(std::string password, std::string address,
                      std::function<void(std::optional<Role>)> done) {
-  if (!unread_.empty()) return;  // no password is right or wrong now: the client waits for the next process
   auto role = std::make_shared<std::optional<Role>>();
   workers_.submit(
       loop::Urgency::OnTheWay,
@@ -144,8 +143,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
   };
   const auto keep = [changed, file = file(), code_file = code_file()] {
     if (!*changed) return;
-    if (const auto written = host::write_file(file, access::write_accounts(**changed), host::kOursAlone);
-        !written) {
+    if (const auto written = host::write_kept(file, access::write_accounts(**changed)); !written) {
       *changed = refuse(icd::Status::ServiceUnavailable, "cannot store the password: " + written.error());
     } else {
       unlink(code_file.c_str());  // if there was one, it has done its service
@@ -175,7 +173,7 @@ void Accounts::keep_devices() {
   auto written = std::make_shared<std::expected<void, std::string>>();
   writer_.submit(
       [written, file = devices_file(), text = access::write_devices(devices_.all(), accounts_)] {
-        *written = host::write_file(file, text, host::kOursAlone);
+        *written = host::write_kept(file, text);
       },
       [written] {
         if (*written) return;

@@ -33,7 +33,7 @@ class Accounts final : public api::Keys {
            std::string folder, std::optional<icd::BearerToken> label_code);
 
   /// Why a file cannot be read, as a sentence; or "". The next process reads it again.
-  const std::string& unread() const { return unread_; }
+  const std::string& unread() const override { return unread_; }
   bool first_start() const override { return !accounts_.operator_ && unread_.empty(); }
   bool is_code(std::string_view presented) const override;
   bool set_up_open() const override { return set_up_left().has_value(); }

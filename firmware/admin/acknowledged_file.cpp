@@ -27,7 +27,7 @@ void AcknowledgedFile::keep(std::vector<alarms::Acknowledged> all) {
   kept_ = std::move(all);
   if (!unread_.empty()) return;
   const auto write = [file = file_, text = alarms::write_acknowledged(kept_), failed = failed_] {
-    const auto written = host::write_file(file, text, host::kOursAlone);
+    const auto written = host::write_kept(file, text);
     const bool failed_before = std::exchange(*failed, !written.has_value());
     if (written || failed_before) return;
     host::log(host::Level::Warning, "cannot store the acknowledged alarms: they are only in memory",

@@ -101,7 +101,7 @@ icd::Checked<void> Setup::applied(const std::expected<void, std::string>& writte
 icd::Checked<void> Setup::save(const Settings& next) {
   if (applying_) return being_applied();
   const auto changes = settings::changes(settings_, next);
-  if (changes.empty() && is_kept_) return {};
+  if (changes.empty() && is_kept_ && store_.unread().empty()) return {};
   for (const settings::Change& change : changes) {
     host::log(host::Level::Notice, "setting changed", {{"setting", change.path}});
   }

@@ -125,7 +125,9 @@ icd::Checked<void> Spare::stand_by() {
 icd::Checked<void> Spare::resume() {
   if (standby_.empty()) return refuse(Status::Conflict, "this box is not on standby");
   if (!is_stuck()) {
-    SpareFile next = file_;
+    std::string unread;
+    SpareFile next = SpareFile::read(state_, unread).value_or(SpareFile());  // a damaged one is replaced
+    if (!unread.empty()) return refuse(Status::ServiceUnavailable, std::move(unread));
     next.rest.reset();
     if (auto kept = keep(next); !kept) return kept;
     host::log(host::Level::Notice, "this box was woken up: no spare took over");

@@ -36,12 +36,16 @@ constexpr codec::Row SpareFile::kRow = {"", kFileMembers};
 
 std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_folder) {
   std::string unread;
+  return read(state_folder, unread);
+}
+
+std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_folder, std::string& unread) {
   const auto parse = [](std::string_view text) { return codec::read_file<SpareFile>(text, kFormat); };
   return read_kept_file(state_folder + '/' + kName, parse, unread);
 }
 
 std::expected<void, std::string> SpareFile::write(const std::string& state_folder) const {
-  return host::write_file(state_folder + '/' + kName, codec::write_file(*this, kFormat), host::kOursAlone);
+  return host::write_kept(state_folder + '/' + kName, codec::write_file(*this, kFormat));
 }
 
 std::string SpareFile::hindrance(const spare::About& about) const {

@@ -43,6 +43,8 @@ struct SpareFile {
   static constexpr const char* kName = "spare.json";
   /// One that is not there yet is new.
   static std::expected<SpareFile, std::string> read(const std::string& state_folder);
+  /// `unread`: the error if it cannot be read. Then it must not be replaced; one that is damaged may be.
+  static std::expected<SpareFile, std::string> read(const std::string& state_folder, std::string& unread);
   std::expected<void, std::string> write(const std::string& state_folder) const;
 
   /// Why that export must not be taken over from; "": it may.

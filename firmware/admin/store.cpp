@@ -91,9 +91,9 @@ std::expected<void, std::string> Store::save(const settings::Settings& settings)
     std::expected<std::string, std::string> before = settings::kNoneBefore;
     if (host::may_exist(file())) before = host::read_file(file());
     if (!before) return std::unexpected(before.error());
-    if (const auto kept = host::write_file(file_before(), *before, host::kOursAlone); !kept) return kept;
+    if (const auto kept = host::write_kept(file_before(), *before); !kept) return kept;
   }
-  return host::write_file(file(), settings::file_of(settings), host::kOursAlone);
+  return host::write_kept(file(), settings::file_of(settings));
 }
 
 std::expected<void, std::string> Store::make_secrets_folder() {
@@ -108,7 +108,7 @@ std::expected<void, std::string> Store::save_token(const std::string& name,
                                                    const std::optional<icd::BearerToken>& token) {
   if (!token) return host::remove_file(token_file(name));
   if (auto made = make_secrets_folder(); !made) return made;
-  return host::write_file(token_file(name), token->reveal() + "\n", host::kOursAlone);
+  return host::write_kept(token_file(name), token->reveal() + "\n");
 }
 
 void Store::settle(const settings::Settings& settings) {
@@ -130,10 +130,9 @@ void Store::settle(const settings::Settings& settings) {
 bool Store::revert() {
   if (!unread_.empty() || !host::may_exist(file_before())) return false;
   const auto before = host::read_file(file_before());
-  const auto reverted = !before ? std::unexpected(before.error())
-                        : *before == settings::kNoneBefore
-                            ? host::remove_file(file())
-                            : host::write_file(file(), *before, host::kOursAlone);
+  const auto reverted = !before                            ? std::unexpected(before.error())
+                        : *before == settings::kNoneBefore ? host::remove_file(file())
+                                                           : host::write_kept(file(), *before);
   if (!reverted)
     host::log(host::Level::Error, "cannot restore the previous settings", {{"why", reverted.error()}});
   return reverted && host::remove_file(file_before());

@@ -18,6 +18,8 @@ class Keys {
  public:
   virtual ~Keys() = default;
 
+  /// Why the passwords cannot be read, as a sentence; or "". Then none is right or wrong.
+  virtual const std::string& unread() const = 0;
   /// No operator's password is set: the code sets it.
   virtual bool first_start() const = 0;
   /// False where it is not the first start.

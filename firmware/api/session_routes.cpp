@@ -98,6 +98,10 @@ SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
 }
 
 bool SessionRoutes::may_try(const Poster& poster) {
+  if (!keys_.unread().empty()) {
+    poster.responder->answer(refusal(icd::Status::ServiceUnavailable, keys_.unread()));
+    return false;
+  }
   const access::Wait wait = checking_ < kMostChecks ? guesses_.begin(poster.guesser, loop_.now())
                                                     : access::Wait{.left = std::chrono::seconds(1)};
   if (wait.left > access::Duration::zero()) poster.responder->answer(slow_down(wait));

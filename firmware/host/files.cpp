@@ -2,10 +2,14 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <libdeflate.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cinttypes>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <system_error>
@@ -52,6 +56,16 @@ FileDescriptor make_new(const std::string& path) {
   return FileDescriptor(open(path.c_str(), kFlags, kOursAlone));
 }
 
+constexpr const char* kChecksum = "crc32 ";
+
+/// The last line of a file of aditd's own.
+std::string checksum_of(const std::string& text) {
+  std::array<char, 32> line;
+  (void)std::snprintf(line.data(), line.size(), "%s%08" PRIx32 "\n", kChecksum,
+                      libdeflate_crc32(0, text.data(), text.size()));
+  return line.data();
+}
+
 bool fill(int fd, const std::string& text, int mode) {
   return fchmod(fd, static_cast<mode_t>(mode)) == 0 && write_all(fd, text) && fsync(fd) == 0;
 }
@@ -90,7 +104,13 @@ void set_damaged_aside(const std::string& path, std::string_view what, const std
 std::expected<std::string, std::string> read_file(const std::string& path) {
   auto file = slurp(path);
   if (!file) return std::unexpected(trouble(path, file.error()));
-  return std::move(file->text);
+  return without_checksum(std::move(file->text));
+}
+
+std::string without_checksum(std::string text) {
+  const std::size_t line = text.rfind(kChecksum);
+  if (line != std::string::npos && text.substr(line) == checksum_of(text.substr(0, line))) text.resize(line);
+  return text;
 }
 
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode) {
@@ -104,6 +124,10 @@ std::expected<void, std::string> write_file(const std::string& path, const std::
   }
   if (!sync_folder(path)) return std::unexpected(trouble(folder_of(path), errno));
   return {};
+}
+
+std::expected<void, std::string> write_kept(const std::string& path, const std::string& text) {
+  return write_file(path, text + checksum_of(text), kOursAlone);
 }
 
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text) {

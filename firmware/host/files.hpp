@@ -17,6 +17,8 @@ struct File {
 
 /// The text, or the errno; EFBIG above `most` bytes.
 std::expected<File, int> slurp(const std::string& path, std::size_t most = kLargestFile);
+/// A file's text without the line of write_kept(), if that has the right checksum.
+std::string without_checksum(std::string text);
 
 /// "PATH: No such file or directory"
 std::string trouble(const std::string& path, int error);

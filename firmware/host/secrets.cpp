@@ -43,7 +43,8 @@ std::expected<Token, Fault> read_token(const std::string& path, Place place) {
   if (place != Place::Credentials && (file->status.st_mode & 077) != 0) {
     return std::unexpected(Fault{path + ": other users may read or write it; run: chmod 600 " + path});
   }
-  const std::string_view text = trimmed(file->text);
+  const std::string checked = without_checksum(file->text);
+  const std::string_view text = trimmed(checked);
   if (text.empty() && place != Place::Saved) return Token();
   auto token = icd::BearerToken::parse(text);
   if (!token)

@@ -39,7 +39,8 @@ inline constexpr const char* kDamaged = ".damaged";
 /// look at it. Logs `what`, `why` and the path, and a failure to rename.
 void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why);
 
-/// A small text file, at most 1 MiB.
+/// A small text file, at most 1 MiB, without the line of write_kept(). If its checksum is wrong, that line
+/// stays: whoever reads the text finds it damaged.
 std::expected<std::string, std::string> read_file(const std::string& path);
 
 /// Modes of files: readable for everybody, or for nobody else.
@@ -48,6 +49,8 @@ inline constexpr int kForAll = 0644, kOursAlone = 0600;
 /// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it
 /// (PATH.writing), fsync, rename, fsync of the folder. One call at a time for a path.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
+/// The same for this user alone, with a checksum in a last line ("crc32 1a2b3c4d").
+std::expected<void, std::string> write_kept(const std::string& path, const std::string& text);
 /// Writes over the file that is there, which takes no more room on a full disk: of at most 512 bytes, which a
 /// disk writes all or none of.
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text);

@@ -44,6 +44,14 @@ TEST_F(SetupTest, AppliesNothingWhereTheBoxRunsWithTheSameSettings) {
   EXPECT_FALSE(std::filesystem::exists(saved_file()));
 }
 
+TEST_F(SetupTest, SavesNothingWhileTheSavedSettingsCannotBeRead) {
+  std::filesystem::create_directory(saved_file());
+  setup_.runs_with(store_.load().value(), "");
+  const auto saved = setup_.save(setup_.settings());
+  ASSERT_FALSE(saved) << "nobody knows whether they are the same";
+  EXPECT_EQ(saved.error().status, icd::Status::ServiceUnavailable);
+}
+
 TEST_F(SetupTest, RefusesAnythingWhileAChangeIsBeingApplied) {
   ASSERT_TRUE(setup_.save(with_connections(30)).has_value());
   EXPECT_EQ(setup_.save(setup_.settings()).error().status, icd::Status::Conflict);

@@ -19,6 +19,7 @@ inline icd::BearerToken token(std::string_view text = "team-1") {
 
 /// Passwords in the clear, checked when it is told to.
 struct FakeKeys final : Keys {
+  const std::string& unread() const override { return unread_; }
   bool first_start() const override { return !operator_; }
   bool is_code(std::string_view presented) const override { return first_start() && presented == "12345678"; }
   bool set_up_open() const override { return set_up; }
@@ -53,6 +54,7 @@ struct FakeKeys final : Keys {
   }
 
   std::optional<std::string> operator_ = "correct horse", viewer = "look, do not touch";
+  std::string unread_;
   bool set_up = false, at_box = false;
   bool slow = false;
   std::vector<std::function<void()>> waiting;

@@ -179,6 +179,14 @@ TEST_F(GuessedAtTest, GiveTheOperatorsBrowserItsOwnAfterTheViewers) {
   EXPECT_EQ(keys.devices_.all().back().role, access::Role::Operator);
 }
 
+TEST_F(SessionRoutesTest, CallNoPasswordWrongWhileTheyCannotBeRead) {
+  keys.unread_ = "the passwords cannot be read: access.json: Input/output error";
+  const intake::Answer answer = post("/adit/login", {{"password", "correct horse"}});
+  EXPECT_EQ(answer.status, Status::ServiceUnavailable);
+  EXPECT_NE(answer.body.find("access.json"), std::string::npos);
+  EXPECT_EQ(keys.checked, 0);
+}
+
 TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnceAndAnswerEachWhenItIsChecked) {
   keys.slow = true;
   const Headers headers = of({});

@@ -54,6 +54,24 @@ TEST(WriteFile, MakesANewFileOfTheModeAskedFor) {
   EXPECT_EQ(status.st_mode & 07777, 0640u);
 }
 
+TEST(WriteKept, IsReadAsItWasAndEachFlippedBitShows) {
+  const Folder folder;
+  const std::string text = "{\"port\":8000}\n";
+  ASSERT_TRUE(write_kept(folder / "kept", text));
+  EXPECT_EQ(read_file(folder / "kept").value(), text);
+  std::ifstream file(folder / "kept", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(bytes, text + "crc32 4f177a42\n");
+  for (std::size_t bit = 0; bit < 8 * bytes.size(); ++bit) {
+    std::string flipped = bytes;
+    flipped[bit / 8] = static_cast<char>(flipped[bit / 8] ^ (1 << bit % 8));
+    folder.put("kept", flipped);
+    EXPECT_EQ(read_file(folder / "kept").value(), flipped)
+        << bit << ": whoever parses it finds the last line";
+  }
+  EXPECT_EQ(read_file(folder.put("edited", text)).value(), text) << "by a person";
+}
+
 TEST(WriteFile, ReplacesTheFileRatherThanWritingIntoIt) {
   const Folder folder;
   folder.put("settings", "old");

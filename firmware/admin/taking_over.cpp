@@ -17,51 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this program's own, gone with it.
-class OwnFolder {
- public:
-  explicit OwnFolder(std::string path) : path_(std::move(path)) {
-    fs::remove_all(path_, error_);
-    if (!error_) fs::create_directory(path_, error_);
-    if (!error_) fs::permissions(path_, fs::perms::owner_all, error_);
-  }
-  ~OwnFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  OwnFolder(const OwnFolder&) = delete;
-  OwnFolder& operator=(const OwnFolder&) = delete;
-
-  const std::string& path() const { return path_; }
-  std::string trouble() const { return error_ ? path_ + ": " + error_.message() : ""; }
-
- private:
-  std::string path_;
-  std::error_code error_;
-};
-
-/// The ledger of the box that made an export, as long as this is there.
-class FirstLedger {
- public:
-  FirstLedger(const std::string& runtime, const std::string& bytes)
-      : folder_(runtime + "/first-box"), ledger_(opened(bytes)) {}
-
-  const std::expected<ledger::Ledger, std::string>& ledger() const { return ledger_; }
-
- private:
-  std::expected<ledger::Ledger, std::string> opened(const std::string& bytes) const {
-    if (std::string why = folder_.trouble(); !why.empty()) return std::unexpected(std::move(why));
-    const auto written = host::write_file(folder_.path() + "/ledger.sqlite", bytes, host::kOursAlone);
-    if (!written) return std::unexpected(written.error());
-    auto there = ledger::Ledger::open(folder_.path());
-    if (!there) return std::unexpected(std::move(there.error().what));
-    return std::move(*there);
-  }
-
-  OwnFolder folder_;  // before the ledger, which is in it
-  std::expected<ledger::Ledger, std::string> ledger_;
-};
-
 /// How far the stamps here, which are at `stamp`, are ahead of the first box's: as much time went by since it
 /// came to rest as the times of day say. Where they may differ none did for certain: what makes a new run is
 /// silence. `wall`: here.
@@ -117,8 +72,9 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
       .expected = content.about.expected,
       .stamp = std::max(loop.stamp_now(), least),
       .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
-  if (auto taken = take_ledger(content, handover); !taken) return taken;
-  stamps.write({.floor = std::max(kept->floor, least), .wall = kept->wall, .least = least});
+  if (auto taken = take_ledger(content, handover, kept->ledger); !taken) return taken;
+  stamps.write(
+      {.floor = std::max(kept->floor, least), .wall = kept->wall, .least = least, .ledger = kept->ledger});
   const auto written = stamps.read();
   if (!written || written->least < least) return std::unexpected("cannot store the first box's time stamps");
   if (auto taken = take_settings(content); !taken) return taken;
@@ -130,9 +86,8 @@ std::expected<std::vector<std::string>, std::string> TakingOver::check(const spa
   if (!saved)
     return std::unexpected("this box cannot use the export's settings: " +
                            settings::sentence_of(saved.error()));
-  const FirstLedger there(runtime_, content.ledger);
-  if (!there.ledger())
-    return std::unexpected("this box cannot use the export's ledger: " + there.ledger().error());
+  if (!ledger::Ledger::is_copy(content.ledger))
+    return std::unexpected("this box cannot use the export's ledger: it is no copy of a ledger");
   return std::move(saved->passed_over);
 }
 
@@ -141,12 +96,11 @@ std::expected<void, std::string> TakingOver::abandon() {
 }
 
 std::expected<void, std::string> TakingOver::take_ledger(const spare::Content& content,
-                                                         const dispatch::Handover& handover) {
-  const FirstLedger there(runtime_, content.ledger);
-  if (!there.ledger()) return std::unexpected("the first box's ledger: " + there.ledger().error());
-  auto here = ledger::Ledger::open(state_);
+                                                         const dispatch::Handover& handover,
+                                                         const ledger::Known& known) {
+  auto here = ledger::Ledger::open(state_, known);
   if (!here) return std::unexpected("this box's ledger: " + here.error().what);
-  if (auto taken = here->take_over(*there.ledger(), handover); !taken)
+  if (auto taken = here->take_over(content.ledger, handover); !taken)
     return std::unexpected(std::move(taken.error().what));
   return {};
 }

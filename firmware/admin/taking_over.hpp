@@ -6,6 +6,7 @@
 
 #include "admin/store.hpp"
 #include "dispatch/taking_over.hpp"
+#include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
 #include "spare/content.hpp"
 
@@ -20,8 +21,7 @@ class TakingOver {
   static constexpr const char* kFile = "take-over";
 
   /// `store` outlives this.
-  TakingOver(Store& store, std::string state_folder, std::string runtime_folder)
-      : store_(store), state_(std::move(state_folder)), runtime_(std::move(runtime_folder)) {}
+  TakingOver(Store& store, std::string state_folder) : store_(store), state_(std::move(state_folder)) {}
 
   /// The paths of those of its settings that this box does not know, and will leave out. An error: why it
   /// cannot take over from that one. Nothing is changed.
@@ -39,12 +39,13 @@ class TakingOver {
   std::string begun() const { return state_ + '/' + kFile; }
   std::expected<void, std::string> take(const spare::Content& content, const loop::Loop& loop);
   std::expected<void, std::string> take_ledger(const spare::Content& content,
-                                               const dispatch::Handover& handover);
+                                               const dispatch::Handover& handover,
+                                               const ledger::Known& known);
   std::expected<void, std::string> take_settings(const spare::Content& content);
   std::expected<void, std::string> note(const spare::About& about);
 
   Store& store_;
-  std::string state_, runtime_;
+  std::string state_;
 };
 
 }  // namespace adit::admin

@@ -98,10 +98,15 @@ void find_disk_troubles(const Facts& facts, Found& found) {
   add(found, facts.ledger_refusal,
       {.id = "ledger_unwritable",
        .headline = {"Reports", "not accepted", true},
-       .why = "the box cannot write the ledger: ",
+       .why = facts.ledger_is_closed ? "the box cannot read the ledger; wait, or run adit ledger new: "
+                                     : "the box cannot write the ledger: ",
        .action = kOpenSystem});
   add(found, facts.ledger_damage,
       {.id = "ledger_damaged", .severity = Severity::Ask, .headline = {"The ledger", "damaged"}});
+  add(found, facts.put_aside,
+      {.id = "queue_put_aside",
+       .severity = Severity::Ask,
+       .headline = {"Queued messages", "put aside", true}});
   add(found, facts.disk.map, {.id = "map_not_kept", .headline = {"The last map", "not accepted"}});
   add(found, facts.disk.state,
       {.id = "state_not_kept",

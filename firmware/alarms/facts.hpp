@@ -120,6 +120,8 @@ struct Facts {
   std::uint64_t newest_rejected = 0;  // number of the newest of them; later ones have larger numbers
 
   std::string ledger_refusal = {}, ledger_damage = {};
+  std::string put_aside = {};     // what was queued and is put aside, and why; or ""
+  bool ledger_is_closed = false;  // it cannot be read
   Disk disk = {};
   std::optional<bool> time_set = {};                // nothing: the box cannot tell
   std::string ntp_trouble = {};                     // why NTP is not as the settings have it; or ""

@@ -22,6 +22,11 @@ intake::Answer RunRoutes::begin_run() {
   return object({{"run", json(number)}});
 }
 
+intake::Answer RunRoutes::begin_ledger() {
+  const auto kept_as = operator_.begin_ledger();
+  return kept_as ? object({{"kept_as", json(*kept_as)}}) : refused(kept_as.error());
+}
+
 intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) {
   const auto done = operator_.rejected(number, action);
   live_.changed();

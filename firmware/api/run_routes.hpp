@@ -22,6 +22,8 @@ class RunRoutes {
   intake::Answer run() const;
   void events(const Call& call);
   intake::Answer begin_run();
+  /// Instead of a ledger that cannot be read.
+  intake::Answer begin_ledger();
   /// An action on a message that the Command Post did not take.
   template <RejectedAction action>
   intake::Answer rejected(std::uint64_t number) {

@@ -9,6 +9,7 @@
 #include "api/run_view.hpp"
 #include "api/scene.hpp"
 #include "icd/artifact_report.hpp"
+#include "icd/status.hpp"
 
 namespace adit::picture {
 class Mosaic;
@@ -54,6 +55,9 @@ class Operator {
   virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
   /// Gives the new run's number.
   virtual std::int64_t begin_run() = 0;
+  /// Instead of a ledger that cannot be read; the gateway restarts. Refused: 409 if it can be read, 503 if
+  /// its files cannot be renamed. Gives their new name.
+  virtual icd::Checked<std::string> begin_ledger() = 0;
   /// All lights blink for so long. Gives until when.
   virtual Time identify(double seconds) = 0;
 };

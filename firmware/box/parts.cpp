@@ -6,7 +6,6 @@
 #include <libdeflate.h>
 #include <microhttpd.h>
 #include <sodium.h>
-#include <sqlite3.h>
 #include <zlib.h>
 
 #include <boost/version.hpp>
@@ -35,7 +34,6 @@ std::vector<api::PartRow> parts() {
           {.name = "cJSON", .version = cJSON_Version(), .licence = "MIT"},
           {.name = "zlib", .version = zlibVersion(), .licence = "Zlib"},
           {.name = "libdeflate", .version = LIBDEFLATE_VERSION_STRING, .licence = "MIT"},
-          {.name = "SQLite", .version = sqlite3_libversion(), .licence = "blessing"},
           {.name = "Boost.Beast", .version = boost_version(), .licence = "BSL-1.0"},
           {.name = "libsystemd", .version = kSystemdVersion, .licence = kLesserGpl},
           {.name = "libgpiod", .version = panel::gpiod_version(), .licence = kLesserGpl},

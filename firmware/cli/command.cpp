@@ -6,6 +6,7 @@
 #include "cli/clock.hpp"
 #include "cli/complete.hpp"
 #include "cli/help.hpp"
+#include "cli/ledger.hpp"
 #include "cli/network.hpp"
 #include "cli/options.hpp"
 #include "cli/rejected.hpp"
@@ -50,6 +51,8 @@ Outcome run(std::span<const std::string_view> words, const Console& console) {
       return clock(*options);
     case Command::Spare:
       return spare(*options, console);
+    case Command::Ledger:
+      return ledger(*options, console);
     case Command::Network:
       return network(*options);
     case Command::Test:

@@ -17,6 +17,7 @@ constexpr Argument kKeyAndValue{"KEY VALUE", "a settings key or its value", 2, 2
 constexpr Argument kFile{"FILE", "a file", 1, 1, 0, Among::Files};
 constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kExport{"[FILE]", "a file", 0, 1, 0, Among::Files};
+constexpr Argument kDirectory{"[DIRECTORY]", "a directory", 0, 1, 0, Among::Files};
 constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0, Among::Files};
 constexpr Argument kCommand{"[COMMAND]", "a command", 0, 1, 0, Among::Commands};
 constexpr Argument kWord{"[WORD]", "a subcommand of `adit reports`", 0, 1, 0};
@@ -86,6 +87,14 @@ constexpr Form kSpareForms[] = {
      "--stick --code --yes"},
     {"resume", Verb::Resume, kNothing,
      "end the standby. If a spare has taken over from this box, reports may be sent twice", "--yes"}};
+constexpr Form kLedgerForms[] = {
+    {"new", Verb::New, kNothing,
+     "begin another ledger instead of one that cannot be read. Adit keeps its files, but does not know its "
+     "reports: one may be sent twice",
+     "--yes"},
+    {"dump", Verb::Dump, kDirectory,
+     "print each record of the ledger in DIRECTORY (/var/lib/adit/ledger if not given) as a line of JSON, "
+     "without asking Adit"}};
 constexpr Form kTestForms[] = {
     {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
 constexpr Form kUpdateForms[] = {
@@ -228,6 +237,14 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit spare export /media/stick/box.adit-spare\n"
      "  sudo adit spare take /media/stick/box.adit-spare --code '1234 5678 9012 3456'\n"
      "  adit spare export --stick --at 10.0.0.1 --token-file team.token"},
+    {Command::Ledger, "ledger", "print the ledger's records, or begin another ledger", kLedgerForms,
+     "The ledger has all reports and runs, each step of them as a record. A record that is missing is "
+     "printed "
+     "as {\"gap\": ...}.",
+     "the command succeeded",
+     "a record is missing or damaged, or the ledger can be read, so that Adit begins no other",
+     "  sudo adit ledger dump | jq -c '.reports[]?'\n"
+     "  sudo adit ledger new"},
     {Command::Update, "update", "show the box's version, or install another", kUpdateForms,
      "Without FILE or an option: show the running version, its slot, and the result of the last update. FILE "
      "is adit-BOARD-VERSION.raucb. The box checks it and installs it in the other slot, which takes some "

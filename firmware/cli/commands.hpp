@@ -20,6 +20,7 @@ enum class Command : std::uint8_t {
   Network,
   Clock,
   Spare,
+  Ledger,
   Test,
   Update,
   Check,
@@ -52,7 +53,8 @@ enum class Verb : std::uint8_t {
   Report,
   Delete,
   Take,
-  Resume
+  Resume,
+  Dump
 };
 
 /// What an argument may be, for the completion of shells: `adit complete` lists all but files.

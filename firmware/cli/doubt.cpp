@@ -33,4 +33,13 @@ std::optional<Failure> doubt(const Adit& adit, std::int64_t number, const Consol
   return std::nullopt;
 }
 
+std::optional<Failure> doubt(const Options& options, const Console& console, const std::string& why,
+                             const std::string& question) {
+  if (options.yes) return std::nullopt;
+  const auto meant = console.ask(why + '\n' + question);
+  if (!meant) return Failure{Exit::Attention, why + " It was not done; to do it, add --yes"};
+  if (!*meant) return Failure{Exit::Attention, "it was not done"};
+  return std::nullopt;
+}
+
 }  // namespace adit::cli

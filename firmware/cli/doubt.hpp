@@ -11,4 +11,8 @@ namespace adit::cli {
 /// nobody is there; or it cannot be looked at. Nothing: it may be sent.
 std::optional<Failure> doubt(const Adit& adit, std::int64_t number, const Console& console);
 
+/// Why it is not done; nothing if the operator confirms.
+std::optional<Failure> doubt(const Options& options, const Console& console, const std::string& why,
+                             const std::string& question);
+
 }  // namespace adit::cli

@@ -185,7 +185,8 @@ Wrong take_last(Options& options, const std::string& value) {
 bool takes(const CommandRow& command, const Form& form, std::string_view option) {
   if (option == "--json" || option == "--settings" || option == "--help") return true;
   if (option == "--version") return command.command == Command::Help;
-  if (option == "--at" || option == "--token-file") return command.command != Command::Check;
+  if (option == "--at" || option == "--token-file")
+    return command.command != Command::Check && form.verb != Verb::Dump;
   return form.options.contains(option);
 }
 

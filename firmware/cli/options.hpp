@@ -43,7 +43,8 @@ struct Options {
   bool json = false, csv = false;
   bool yes = false;     // what is asked on a terminal is meant
   std::string at;       // "ADDR[:PORT]"; empty: as the settings say
-  std::string file;     // of settings: to check or apply; of Update: the bundle; of Spare: the export
+  std::string file;     // of settings: to check or apply; of Update: the bundle; of Spare: the export; of
+                        // Ledger: its directory
   std::string key;      // of settings show, or where several begin; of settings set
   std::string value;    // of settings set
   std::string word;     // of Complete: of `adit reports`

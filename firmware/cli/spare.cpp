@@ -7,6 +7,7 @@
 #include "api/reports_csv.hpp"
 #include "api/spare.hpp"
 #include "cli/ask.hpp"
+#include "cli/doubt.hpp"
 #include "cli/http_client.hpp"
 #include "cli/reading.hpp"
 #include "cli/where.hpp"
@@ -77,16 +78,6 @@ std::expected<SpareView, Failure> spare_of(const Adit& adit) {
   auto view = read<SpareView>(adit, *json);
   if (!view) return std::unexpected(Failure{Exit::Unable, view.error()});
   return *std::move(view);
-}
-
-/// Why it is not done; nothing if the operator confirms.
-std::optional<Failure> doubt(const Options& options, const Console& console, const std::string& why,
-                             const std::string& question) {
-  if (options.yes) return std::nullopt;
-  const auto meant = console.ask(why + '\n' + question);
-  if (!meant) return Failure{Exit::Attention, why + " It was not done; to do it, add --yes"};
-  if (!*meant) return Failure{Exit::Attention, "it was not done"};
-  return std::nullopt;
 }
 
 /// Each answer within that it is there or not, while the box ends what is under way and begins again.

@@ -86,9 +86,9 @@ void Clocks::stamp(icd::MarkersUpdate& update, const intake::Sender& sender) {
   keep();
 }
 
-void Clocks::keep(loop::Writer& writer) {
+void Clocks::keep(loop::Writer& writer, const ledger::Known& ledger) {
   if (!kept_) return;
-  const auto due = floor_.due(loop_.stamp_now(), loop_.wall_now());
+  const auto due = floor_.due(loop_.stamp_now(), loop_.wall_now(), ledger);
   if (due) writer.submit([floor = floor_, due = *due]() mutable { floor.write(due); }, [] {});
 }
 

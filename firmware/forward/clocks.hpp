@@ -46,7 +46,7 @@ class Clocks {
   void stamp(icd::MarkersUpdate& update, const intake::Sender& sender);
 
   /// To be called now and then. Writes by the disk's own writer, because a disk may be slow.
-  void keep(loop::Writer& writer);
+  void keep(loop::Writer& writer, const ledger::Known& ledger);
   /// The time of day was set: what was kept of it is wrong.
   void wall_was_set() { floor_.is_due(); }
   /// The time of day by the stamps of a robot that has spoken for a while: of several, the earliest that a

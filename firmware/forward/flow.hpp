@@ -48,13 +48,17 @@ struct Tokens {
 /// and Telemetry send them.
 class Flow final : public intake::Desk {
  public:
+  /// Upkeep of the ledger begins so long after the start, because what comes then goes first, and so long
+  /// after one that failed.
+  static constexpr std::chrono::seconds kUpkeepEvery{60};
+  /// Below the runtime folder: what is queued.
+  static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting";
   struct Folders {
     std::string runtime, state;
   };
   /// Who is told what. Each is called on the loop.
   struct Told {
     std::function<void()> changed;                        // what the page shows
-    std::function<void()> restart;                        // the ledger cannot be read: see Scoring
     std::function<void(const std::string& name)> posted;  // a robot posts
   };
 
@@ -62,8 +66,8 @@ class Flow final : public intake::Desk {
   Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
        const Folders& folders, Told told);
 
-  /// Goes on where the life before ended, and connects. An error: the ledger cannot be read.
-  std::expected<void, std::string> start();
+  /// Goes on where the life before ended, and connects.
+  void start();
   /// Why a file without which nothing may be sent cannot be read, as a sentence; or "".
   std::string unread() const { return clocks_.unread(); }
   /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who
@@ -145,6 +149,7 @@ class Flow final : public intake::Desk {
   }
   std::optional<api::Time> behind_since(const Traffic& traffic) const;
   void carry_on();
+  void keep_ledger(loop::Writer& disk);
   void restore(bool is_first);
   void restore_record();
   void take(icd::MapUpdate update, const intake::Sender& sender, std::shared_ptr<spool::MapFile> file,
@@ -162,6 +167,9 @@ class Flow final : public intake::Desk {
   std::string without_tokens(std::string sentence) const;
 
   loop::Loop& loop_;
+  ledger::Ledger& ledger_;
+  loop::Instant upkeep_at_ = loop_.now() + kUpkeepEvery;  // of the ledger
+  std::string upkeep_trouble_;                            // why the last one failed, or ""
   const settings::Settings& settings_;
   Tokens tokens_;
   Told told_;

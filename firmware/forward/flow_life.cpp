@@ -31,18 +31,19 @@ std::uint64_t seed() {
 Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
            const Folders& folders, Told told)
     : loop_(loop),
+      ledger_(ledger),
       settings_(settings),
       tokens_(std::move(tokens)),
       told_(std::move(told)),
       random_(seed()),
-      spool_(folders.runtime + "/waiting", beside_maps(settings)),
+      spool_(folders.runtime + kWaiting, beside_maps(settings)),
       writer_(loop),
       workers_(loop, 0),
-      journal_(loop, folders.runtime + "/journal"),
+      journal_(loop, folders.runtime + kJournal),
       clocks_(loop, journal_, folders.state),
       rejected_(loop, writer_, folders.runtime + "/rejected"),
       record_([this] { changed(); }),
-      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, told_.restart),
+      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_),
       picture_(loop, workers_, [this] { changed(); }),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
@@ -53,14 +54,13 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
   archive_.limit(limits_of(settings));
 }
 
-std::expected<void, std::string> Flow::start() {
+void Flow::start() {
   carry_on();
-  if (auto started = scoring_.start(); !started) return started;
+  scoring_.start();
   telemetry_.start();
   has_started_ = true;
   status_came();  // what the life before heard is none
   picture_the_run();
-  return {};
 }
 
 void Flow::stand_by(const std::string& why) {
@@ -133,7 +133,8 @@ void Flow::link_is_back() {
 void Flow::tick(loop::Writer& disk) {
   meter_.second(sent_bytes());
   scoring_.tick();
-  clocks_.keep(disk);
+  clocks_.keep(disk, ledger_.known());
+  keep_ledger(disk);
   archive_.tick(seen());
 }
 
@@ -151,8 +152,26 @@ void Flow::wall_was_set(double seconds) {
   archive_.move(seconds);
 }
 
+void Flow::keep_ledger(loop::Writer& disk) {
+  if (loop_.now() < upkeep_at_ || is_ending()) return;
+  auto work = ledger_.upkeep();
+  if (!work) return;
+  upkeep_at_ = loop_.now() + kUpkeepEvery;  // if it fails
+  const auto result =
+      std::make_shared<ledger::Result<void>>(std::unexpected(ledger::Error{.what = "an exception"}));
+  disk.submit([work = std::move(work), result] { *result = work(); },
+              [this, result] {
+                ledger_.upkeep_done(*result);
+                if (*result) upkeep_at_ = loop_.now();
+                const std::string why = *result ? "" : result->error().what;
+                if (std::exchange(upkeep_trouble_, why) != why && !*result)
+                  host::log(host::Level::Warning, "the ledger has no room in reserve", {{"why", why}});
+              });
+}
+
 void Flow::end(std::function<void()> over) {
   if (is_ending()) return;
+  ledger_.end_upkeep();
   ending_.begin(loop_.now());
   over_ = std::move(over);
   drain();

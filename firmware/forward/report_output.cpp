@@ -26,7 +26,23 @@ intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::R
 }  // namespace
 
 ReportOutput::ReportOutput(loop::Loop& loop, ledger::Ledger& ledger)
-    : loop_(loop), ledger_(ledger), follow_up_(loop.timer([this] { follow_up(); })) {}
+    : loop_(loop),
+      ledger_(ledger),
+      follow_up_(loop.timer([this] { follow_up(); })),
+      try_again_(loop.timer([this] { tried(ledger_.make_ready()); })),
+      trouble_(ledger.refusal()) {
+  if (trouble_.empty()) return;
+  host::log(host::Level::Error, "rejecting reports: the ledger cannot be written", {{"why", trouble_}});
+  try_again_.call_at(loop.now() + kTryEvery);
+}
+
+void ReportOutput::tried(const ledger::Result<void>& result) {
+  const bool was_well = trouble_.empty();
+  trouble_ = result ? "" : result.error().what;
+  if (result && !was_well) host::log(host::Level::Notice, "the ledger can be written again");
+  if (!result && was_well) host::log(host::Level::Error, "the ledger cannot be written", {{"why", trouble_}});
+  if (!result) try_again_.call_at(loop_.now() + kTryEvery);
+}
 
 /// The flush first: the log waits where its reader is slow.
 void ReportOutput::follow_up() {
@@ -53,15 +69,8 @@ dispatch::ClientId ReportOutput::add(std::shared_ptr<intake::Responder> responde
 bool ReportOutput::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                          dispatch::Flush flush) {
   const auto written = ledger_.write(steps, run, flush);
-  if (!written) {
-    if (trouble_ != written.error().what) {
-      host::log(host::Level::Error, "the ledger cannot be written", {{"why", written.error().what}});
-    }
-    trouble_ = written.error().what;
-    return false;
-  }
-  if (!trouble_.empty()) host::log(host::Level::Notice, "the ledger can be written again");
-  trouble_.clear();
+  if (!written || ledger_.refusal().empty()) tried(written);
+  if (!written) return false;
   for (const dispatch::Report& report : steps) {
     unlogged_.push_back(
         {report.number, report.report.type, report.sender, report.state, report.status, report.note});

@@ -18,6 +18,8 @@ class ReportOutput final : public dispatch::Output {
   /// What can follow once a report has left, or its client has its answer, follows so soon: Flush::Soon, and
   /// the log.
   static constexpr std::chrono::milliseconds kSoon{2};
+  /// While the ledger takes no report it is tried so often.
+  static constexpr std::chrono::seconds kTryEvery{5};
 
   ReportOutput(loop::Loop& loop, ledger::Ledger& ledger);
 
@@ -33,7 +35,7 @@ class ReportOutput final : public dispatch::Output {
   void tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
             const dispatch::Report& report) override;
 
-  /// Why the last write failed, or "".
+  /// Why the ledger takes no report, by the last try, or "".
   const std::string& trouble() const { return trouble_; }
 
  private:
@@ -46,10 +48,11 @@ class ReportOutput final : public dispatch::Output {
     std::string note;
   };
   void follow_up();
+  void tried(const ledger::Result<void>& result);
 
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
-  loop::Source follow_up_;
+  loop::Source follow_up_, try_again_;
   std::vector<Step> unlogged_;
   std::map<dispatch::ClientId, std::shared_ptr<intake::Responder>> clients_;
   dispatch::ClientId last_client_ = 0;

@@ -33,12 +33,11 @@ intake::Answer no_status_in(const uplink::Answered& answered) {
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
                  std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-                 journal::Journal& journal, std::function<void()> restart)
+                 journal::Journal& journal)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
       record_(record),
-      restart_(std::move(restart)),
       output_(loop, ledger),
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
       channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
@@ -48,26 +47,20 @@ Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Setti
       poll_(loop.timer([this] { poll(); })),
       deadline_(loop.timer([this] { deadline_came(); })) {}
 
-std::expected<void, std::string> Scoring::start() {
-  if (auto opened = open_reports(); !opened) return opened;
-  if (stopping_) return {};
+void Scoring::start() {
+  open_reports();
+  if (stopping_) return;
   channel_.keep_warm();
   poll();
-  return {};
 }
 
-/// If it fails, the reports of before stay. On standby nothing is sent, so no other Command Post begins a
+/// On standby nothing is sent, so no other Command Post begins a
 /// run.
-std::expected<void, std::string> Scoring::open_reports() {
-  auto all = ledger_.reports();
-  if (!all) return std::unexpected(all.error().what);
-  auto runs = ledger_.runs();
-  if (!runs) return std::unexpected(runs.error().what);
+void Scoring::open_reports() {
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
   if (clocks_ != nullptr) next->leapt(clocks_->leap());
-  next->open(std::move(*all), std::move(*runs), time(), stopping_ ? "" : channel_.address(), *reports_);
+  next->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address(), *reports_);
   reports_ = std::move(next);
-  return {};
 }
 
 void Scoring::settings_changed() {
@@ -89,10 +82,7 @@ void Scoring::endpoint_turned() {
   run_clock_ = {};
   known_status_ = {};
   poll_due_ = true;
-  if (const auto opened = open_reports(); !opened) {
-    host::log(host::Level::Error, "cannot read the ledger; restarting", {{"why", opened.error()}});
-    restart_();
-  }
+  open_reports();
   watch_deadlines();
   record_.changed();
 }
@@ -220,7 +210,6 @@ void Scoring::send(const dispatch::Report& report) {
   channel_.send(icd::Uri::ArtifactReports, codec::kJson,
                 icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(body.data()), body.size()}),
                 [this](const uplink::Outcome& outcome) { report_answered(outcome); });
-  ledger_.expect(dispatch::Flush::Soon);  // its answer is what comes next
 }
 
 /// Before what it says is judged, which goes by how long nothing was heard.

@@ -42,10 +42,9 @@ class Scoring {
   /// So long a report waits for the answer to a status that no report needs; then that is given up.
   static constexpr std::chrono::milliseconds kGivesWayAfter{200};
 
-  /// `restart` is called if the ledger cannot be read; only a new start can go on.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-          journal::Journal& journal, std::function<void()> restart);
+          journal::Journal& journal);
 
   void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
   /// As if something had just been sent: the flow before may have.
@@ -62,8 +61,8 @@ class Scoring {
   void go_by(Clocks& clocks) { clocks_ = &clocks; }
   /// Before start(): connects to nobody, and sends nothing.
   void stand_by() { stopping_ = true; }
-  /// Begins with what the ledger holds, and connects. An error: the ledger cannot be read.
-  std::expected<void, std::string> start();
+  /// Begins with what the ledger holds, and connects.
+  void start();
 
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
             std::shared_ptr<intake::Responder> responder);
@@ -90,9 +89,7 @@ class Scoring {
   std::optional<alarms::ShownClock> run_clock() const { return run_clock_.at(loop_.stamp_now()); }
   const dispatch::Reports& reports() const { return *reports_; }
   /// Why the ledger cannot be written, or "".
-  const std::string& trouble() const {
-    return ledger_.refusal().empty() ? output_.trouble() : ledger_.refusal();
-  }
+  const std::string& trouble() const { return output_.trouble(); }
 
  private:
   /// The status that was asked for, and is still to be answered.
@@ -109,7 +106,7 @@ class Scoring {
   void hear_time();
   /// Reports are written down by the clock for stamps, which nobody sets: rules compare their times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
-  std::expected<void, std::string> open_reports();
+  void open_reports();
   void endpoint_turned();
   void take(const dispatch::Posted& posted, dispatch::ClientId client) noexcept;
   void poll();
@@ -137,7 +134,6 @@ class Scoring {
   ledger::Ledger& ledger_;
   const settings::Settings& settings_;
   Record& record_;
-  std::function<void()> restart_;
   ReportOutput output_;
   Clocks* clocks_ = nullptr;                    // without them no clock has leapt
   std::unique_ptr<dispatch::Reports> reports_;  // never null

@@ -14,12 +14,18 @@ namespace {
 /// Year 2200: what is later is no stamp.
 constexpr double kLatest = 7.26e9;
 
-/// The line at the beginning of `rest`, which is taken away; -1: it is no time.
-double take_time(std::string_view& rest) {
-  double time = -1;
+/// The number in the line at the beginning of `rest`, which is taken away; -1: it is none.
+template <class Number>
+Number take(std::string_view& rest) {
+  Number number = -1;
   const std::string_view line = rest.substr(0, rest.find('\n'));
-  std::from_chars(line.data(), line.data() + line.size(), time);
+  std::from_chars(line.data(), line.data() + line.size(), number);
   rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+  return number;
+}
+
+double take_time(std::string_view& rest) {
+  const auto time = take<double>(rest);
   return time >= 0 && time < kLatest ? time : -1;
 }
 
@@ -32,23 +38,28 @@ std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   std::string_view rest = *text;
   const double floor = take_time(rest);
   if (floor >= 0) {
-    const double wall = std::max(0.0, take_time(rest));
-    return Kept{.floor = floor, .wall = wall, .least = std::max(0.0, take_time(rest))};
+    Kept kept{.floor = floor};
+    kept.wall = std::max(0.0, take_time(rest));
+    kept.least = std::max(0.0, take_time(rest));
+    kept.ledger.reports = std::max(std::int64_t{0}, take<std::int64_t>(rest));
+    kept.ledger.log = static_cast<std::uint64_t>(std::max(std::int64_t{0}, take<std::int64_t>(rest)));
+    return kept;
   }
   host::log(host::Level::Warning, "cannot read the last time stamps used",
             {{"why", file_ + ": expected seconds since 1970"}});
   return Kept{};
 }
 
-std::optional<StampFloor::Kept> StampFloor::due(double now, double wall) {
+std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const ledger::Known& ledger) {
   if (now < next_) return {};
   next_ = now + kEvery;
-  return Kept{.floor = now + kAhead, .wall = wall};
+  return Kept{.floor = now + kAhead, .wall = wall, .ledger = ledger};
 }
 
 void StampFloor::write(const Kept& kept) {
-  std::string text = std::to_string(kept.floor) + '\n' + std::to_string(kept.wall) + '\n';
-  if (kept.least > 0) text += std::to_string(kept.least) + '\n';
+  std::string text;
+  for (const double time : {kept.floor, kept.wall, kept.least}) text += std::to_string(time) + '\n';
+  text += std::to_string(kept.ledger.reports) + '\n' + std::to_string(kept.ledger.log) + '\n';
   auto written = host::write_file(file_, text, host::kOursAlone);
   if (!written && host::write_over(file_, text)) written = {};  // on a full disk
   const std::string why = written ? "" : written.error();

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "lanes/stamps.hpp"
+#include "ledger/ledger.hpp"
 
 namespace adit::forward {
 
@@ -18,6 +19,7 @@ class StampFloor {
   struct Kept {
     double floor = 0, wall = 0;  // seconds since 1970; 0: nothing is known
     double least = 0;  // no stamp may be earlier, even where the machine did not restart: another box's were
+    ledger::Known ledger = {};  // if the ledger has less, it is damaged
   };
   static constexpr const char* kFile = "stamps";
   static constexpr double kEvery = 10;  // seconds
@@ -30,7 +32,7 @@ class StampFloor {
   std::expected<Kept, std::string> read() const;
 
   /// What is to be written by now, if anything. `now`: by the clock for stamps; `wall`: the time of day.
-  std::optional<Kept> due(double now, double wall);
+  std::optional<Kept> due(double now, double wall, const ledger::Known& ledger);
   /// By the next time that this is asked.
   void is_due() { next_ = 0; }
   /// May be called on a worker, one call after the other, and on copies. A failure to write is logged once,

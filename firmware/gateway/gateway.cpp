@@ -40,7 +40,6 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       disk_writer_(loop),
       flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.state_folder},
             {.changed = [this] { api_.changed(); },
-             .restart = [this] { make_way(); },
              .posted = [this](const std::string& name) { note_robot(name); }}),
       log_ins_(loop, 1),
       lights_(loop, std::move(parts_.lines)),
@@ -101,13 +100,12 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                  }),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {
-  const bool has_ledger = parts_.ledger.refusal().empty();
+  const bool has_ledger = !parts_.ledger.is_closed();
   if (has_ledger && unread().empty()) return;
-  const auto can_be_opened = [has_ledger, folder = parts_.state_folder, &store = parts_.store] {
-    return (has_ledger || ledger::Ledger::can_be_opened(folder)) && store.can_be_read() &&
-           can_be_read(folder);
+  const auto all_can_be_read = [has_ledger, folder = parts_.state_folder, &store = parts_.store] {
+    return (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() && can_be_read(folder);
   };
-  ledger_return_.emplace(loop, disk_writer_, can_be_opened, parts_.ledger_rest, [this] { state_is_back(); });
+  file_return_.emplace(loop, disk_writer_, all_can_be_read, parts_.file_rest, [this] { state_is_back(); });
 }
 
 Gateway::~Gateway() = default;
@@ -150,7 +148,7 @@ std::vector<loop::Workers*> Gateway::threads() {
 }
 
 void Gateway::state_is_back() {
-  host::log(host::Level::Notice, "the state directory can be used again; restarting with its ledger");
+  host::log(host::Level::Notice, "the state directory can be read again; restarting");
   make_way();
 }
 
@@ -159,7 +157,7 @@ std::expected<void, std::string> Gateway::start() {
   if (!spare_.standby().empty())
     flow_.stand_by(
         icd::sentence("this box is on standby: ", spare_.standby(), "; it accepts and sends no messages"));
-  if (auto started = flow_.start(); !started) return started;
+  flow_.start();
   lookout_.carry_on(flow_, loop_.stamp_now());
   if (auto listening = listen(settings_.team); !listening) return listening;
   board_.remember(acknowledged_.read(), loop_.wall_now());

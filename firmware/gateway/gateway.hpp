@@ -27,7 +27,7 @@
 #include "box/this_box.hpp"
 #include "forward/flow.hpp"
 #include "gateway/crowding.hpp"
-#include "gateway/ledger_return.hpp"
+#include "gateway/file_return.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/listeners.hpp"
 #include "gateway/lookout.hpp"
@@ -51,10 +51,11 @@ struct Parts {
   admin::TakingOver& taking_over;  // this
   ListenSockets& sockets;          // and this
   admin::Store::Loaded loaded;
-  std::string trouble;  // for the operator: why the settings are not those that were wanted; or ""
-  std::string stuck;    // why a take-over is not finished, so that the box has to be on standby; or ""
+  std::string trouble;    // for the operator: why the settings are not those that were wanted; or ""
+  std::string put_aside;  // what was queued and is put aside, and why; or ""
+  std::string stuck;      // why a take-over is not finished, so that the box has to be on standby; or ""
   ledger::Ledger ledger;
-  std::chrono::seconds ledger_rest;  // before it is looked whether one that takes no write does again
+  std::chrono::seconds file_rest;  // before files that cannot be read are tried again
   settings::Board board;
   std::string board_trouble;  // why what the board's file says does not count; or ""
   std::unique_ptr<panel::Lines> lines;
@@ -83,7 +84,7 @@ class Gateway final : public api::Source, public api::Operator {
   /// Whether it stopped for the process to start again, with what the disk holds by now.
   bool makes_way() const { return makes_way_; }
   /// Whether it runs without a file that it needs, and makes way when it can have it.
-  bool awaits_files() const { return ledger_return_.has_value(); }
+  bool awaits_files() const { return file_return_.has_value(); }
   /// All its threads, to be asked for signs of life.
   std::vector<loop::Workers*> threads();
   /// What systemd shows: one line.
@@ -104,6 +105,7 @@ class Gateway final : public api::Source, public api::Operator {
   }
   std::expected<void, std::string> acknowledge(const std::string& id) override;
   std::int64_t begin_run() override { return flow_.begin_run(); }
+  icd::Checked<std::string> begin_ledger() override;
   api::Time identify(double seconds) override;
   const picture::Mosaic& map() const override { return flow_.picture(); }
   api::MarkerChanges markers(std::uint64_t since) const override {
@@ -182,7 +184,7 @@ class Gateway final : public api::Source, public api::Operator {
   Listeners listeners_;
   loop::Source second_, change_;
   loop::Instant sessions_kept_{};
-  std::optional<LedgerReturn> ledger_return_;
+  std::optional<FileReturn> file_return_;
   bool makes_way_ = false;
   mutable ReadAnswers answers_;  // of the view's reports
   std::string notified_;

@@ -80,10 +80,12 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.network = network_.fact();
   facts.ledger_refusal = flow_.scoring().trouble();
   facts.ledger_damage = parts_.ledger.damage();
+  facts.ledger_is_closed = parts_.ledger.is_closed();
   facts.disk = {flow_.archive().trouble(), flow_.maps().trouble(), flow_.journal_trouble(),
                 host::free_bytes(parts_.state_folder)};
   facts.time_set = clock_.is_set();
   facts.ntp_trouble = clock_.ntp_trouble();
+  facts.put_aside = parts_.put_aside;
   facts.change_trouble = parts_.trouble;
   facts.settings_trouble = parts_.loaded.trouble;
   facts.board_trouble = parts_.board_trouble;

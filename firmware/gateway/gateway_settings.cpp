@@ -15,7 +15,11 @@ void Gateway::apply_change() {
   if (flow_.is_ending()) return;
   const bool was_unread = !parts_.store.unread().empty();
   auto loaded = parts_.store.load();
-  if (was_unread || !parts_.store.unread().empty()) return make_way();
+  if (was_unread || !parts_.store.unread().empty()) {
+    host::log(host::Level::Warning, "restarting: the saved settings could not be read",
+              {{"why", parts_.store.unread()}});
+    return make_way();
+  }
   const auto done = loaded ? take_over(std::move(*loaded)) : std::unexpected(std::move(loaded.error()));
   if (!done) revert(done.error());
   api_.changed();
@@ -77,6 +81,17 @@ void Gateway::revert(const std::string& why) {
   setup_.runs_with(parts_.loaded, parts_.trouble);
   if (auto listening = listen(settings_.team); !listening) return make_way();
   parts_.sockets.settle();
+}
+
+icd::Checked<std::string> Gateway::begin_ledger() {
+  using enum icd::Status;
+  if (!parts_.ledger.is_closed())
+    return std::unexpected(icd::Refusal{Conflict, "the ledger can be read; aditd begins no other"});
+  auto kept_as = ledger::Ledger::set_aside(parts_.state_folder);
+  if (!kept_as) return std::unexpected(icd::Refusal{ServiceUnavailable, std::move(kept_as.error().what)});
+  host::log(host::Level::Warning, "restarting with another ledger", {{"kept_as", *kept_as}});
+  make_way();
+  return *std::move(kept_as);
 }
 
 }  // namespace adit::gateway

@@ -107,9 +107,7 @@ std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, con
   if (report == nullptr) return std::nullopt;
   ReadAnswers answers;
   api::ReportDetail detail{.row = row_of(reports, *report, answers), .history = {}, .answer = report->answer};
-  if (const auto history = ledger.history(number)) {
-    for (const auto& step : *history) detail.history.push_back({step.at, step.state, step.note});
-  }
+  for (const auto& step : ledger.history(number)) detail.history.push_back({step.at, step.state, step.note});
   return detail;
 }
 

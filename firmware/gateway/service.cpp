@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "box/open_panel.hpp"
+#include "forward/stamp_floor.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 #include "loop/watchdog.hpp"
 #include "panel/remote.hpp"
 #include "settings/saved.hpp"
@@ -18,8 +20,8 @@ namespace adit::gateway {
 namespace {
 
 /// What a process leaves to the start that follows it in exec: why the last change was reverted, and how many
-/// seconds a ledger that cannot be written rests.
-constexpr const char *kTrouble = "ADIT_TROUBLE", *kLedgerRest = "ADIT_LEDGER_REST";
+/// seconds files that cannot be read rest.
+constexpr const char *kTrouble = "ADIT_TROUBLE", *kFileRest = "ADIT_FILE_REST";
 
 /// A variable of the environment, or ""; from now on there is none.
 std::string take_variable(const char* variable) {
@@ -35,6 +37,16 @@ std::string runtime_folder(const Options& options) {
   return runtime != nullptr ? runtime : options.state;
 }
 
+/// Renames a directory of the runtime folder; an older one of that name goes.
+std::string renamed_aside(const std::string& directory) {
+  const std::string aside = directory + ".aside";
+  std::error_code error;
+  if (!std::filesystem::exists(directory, error) && !error) return "";
+  if (!error) std::filesystem::remove_all(aside, error);
+  if (!error) std::filesystem::rename(directory, aside, error);
+  return error ? directory + ": " + error.message() + "; " : aside + "; ";
+}
+
 /// The state folder, made where it is not there yet, for this user alone.
 std::expected<void, std::string> make_folder(const std::string& folder) {
   std::error_code error;
@@ -45,25 +57,14 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
-/// Where the state folder is full, cannot be written to, or fails, maps and states flow all the same; reports
-/// are refused, and those that can be read are shown.
+/// If the ledger cannot be read, reports are refused; maps and states flow all the same.
 ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
-  using ledger::Ledger;
-  std::error_code unknown;
-  const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
-  const std::string scratch = runtime != nullptr ? runtime : std::filesystem::temp_directory_path(unknown);
-  Ledger::sweep(options.state, scratch);
-  auto opened = Ledger::open(options.state);
-  const bool is_there = std::filesystem::exists(options.state, unknown);
-  const auto is_the_disk = [](const ledger::Error& error) {
-    using enum ledger::Error::Kind;
-    return error.kind == Full || error.kind == ReadOnly || error.kind == Failing;
-  };
-  if (!opened && (is_the_disk(opened.error()) || !is_there)) {
-    host::log(host::Level::Error, "rejecting reports: the ledger cannot be written",
-              {{"why", opened.error().what}});
-    opened = Ledger::stand_in(options.state, scratch, opened.error().what);
-  }
+  using enum ledger::Error::Cause;
+  const auto kept = forward::StampFloor(options.state).read();  // an error: the box will be on standby
+  const ledger::Known known = kept ? kept->ledger : ledger::Known();
+  auto opened = ledger::Ledger::open(options.state, known);
+  if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
+    return ledger::Ledger::closed(opened.error().what, known);
   if (opened && !opened->damage().empty()) host::log(host::Level::Error, opened->damage());
   return opened;
 }
@@ -86,9 +87,10 @@ std::expected<Parts, std::string> gather(const Options& options, admin::Store& s
                .sockets = sockets,
                .loaded = std::move(*loaded),
                .trouble = "",
+               .put_aside = "",
                .stuck = "",
                .ledger = std::move(*ledger),
-               .ledger_rest = LedgerReturn::kRest,
+               .file_rest = FileReturn::kRest,
                .board = std::move(known.board),
                .board_trouble = std::move(known.trouble),
                .lines = std::move(panel.lines),
@@ -116,10 +118,10 @@ Service::Service(const Options& options, char* const* arguments)
       arguments_(arguments),
       store_(options.settings, options.secrets, options.state),
       reset_(store_, options.state, runtime_folder(options)),
-      taking_over_(store_, options.state, runtime_folder(options)),
+      taking_over_(store_, options.state),
       trouble_(take_variable(kTrouble)),
-      ledger_rest_(std::strtol(take_variable(kLedgerRest).c_str(), nullptr, 10)) {
-  if (ledger_rest_ < LedgerReturn::kRest) ledger_rest_ = LedgerReturn::kRest;
+      file_rest_(std::strtol(take_variable(kFileRest).c_str(), nullptr, 10)) {
+  if (file_rest_ < FileReturn::kRest) file_rest_ = FileReturn::kRest;
 }
 
 int Service::run() {
@@ -146,9 +148,29 @@ int Service::run() {
   return 0;
 }
 
+std::string Service::faults_file(const Options& options) {
+  return runtime_folder(options) + "/faults";
+}
+
+/// A sentence, or "".
+std::string Service::put_queue_aside() {
+  std::error_code error;
+  const std::uintmax_t faults = std::filesystem::file_size(faults_file(options_), error);
+  if (error || faults < kMostFaults) return "";
+  std::string why = icd::sentence("aditd ended ", faults,
+                                  " times by a fault, soon after its start; queued maps, states and "
+                                  "markers were put aside: ");
+  for (const char* const directory : {forward::Flow::kJournal, forward::Flow::kWaiting})
+    why += renamed_aside(runtime_folder(options_) + directory);
+  std::filesystem::resize_file(faults_file(options_), 0, error);
+  why.resize(why.size() - 2);
+  host::log(host::Level::Error, why);
+  return why;
+}
+
 void Service::start_again(const std::string& trouble) {
   host::start_again(sockets_.hand_over(), arguments_,
-                    {{kTrouble, trouble}, {kLedgerRest, std::to_string(ledger_rest_.count())}});
+                    {{kTrouble, trouble}, {kFileRest, std::to_string(file_rest_.count())}});
 }
 
 /// Whether the process is to start again; an error: the gateway could not start.
@@ -157,15 +179,17 @@ std::expected<bool, std::string> Service::run_gateway() {
     trouble_ = "the factory reset is incomplete: " + done.error();
     host::log(host::Level::Error, trouble_);
   }
+  const std::string put_aside = put_queue_aside();
   const std::string taking_over = finish_taking_over();
   auto parts = gather(options_, store_, reset_, taking_over_, sockets_, std::exchange(announced_, {}));
   if (!parts) return std::unexpected(parts.error());
   if (!taking_over.empty()) parts->stuck = "the take-over is not finished: " + taking_over;
   const settings::Settings settings = parts->loaded.settings;
   parts->trouble = trouble_;
-  parts->ledger_rest = ledger_rest_;
+  parts->put_aside = put_aside;
+  parts->file_rest = file_rest_;
   Gateway gateway(loop_, std::move(*parts));
-  ledger_rest_ = gateway.awaits_files() ? longer(ledger_rest_) : LedgerReturn::kRest;
+  file_rest_ = gateway.awaits_files() ? longer(file_rest_) : FileReturn::kRest;
   return run(gateway, settings);
 }
 
@@ -188,7 +212,14 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
     watchdog->ask_also(gateway.threads());
   }
   running_ = &gateway;
+  const auto forget_faults = [this] {
+    std::error_code none;
+    std::filesystem::resize_file(faults_file(options_), 0, none);
+  };
+  loop::Source well = loop_.timer(forget_faults);
+  well.call_at(loop_.now() + kWell);
   loop_.run();
+  forget_faults();
   if (gateway.makes_way()) host::notify_starting_again();
   return gateway.makes_way();
 }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
-#include <string_view>
+
+#include "store/values.hpp"
 
 namespace adit::journal {
 
@@ -25,33 +25,7 @@ enum class Kind : std::uint8_t {
   Heard = 20,  // when a robot was heard, and how often it posts
 };
 
-/// Puts numbers and texts one after the other, little-endian.
-class Writer {
- public:
-  Writer& number(std::uint64_t number);
-  Writer& real(double real);
-  Writer& text(std::string_view text);
-  std::string finish() { return std::move(bytes_); }
-
- private:
-  std::string bytes_;
-};
-
-/// Reads what a Writer wrote. What is not there reads as 0, and ok() is false.
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : left_(bytes) {}
-  std::uint64_t number();
-  double real();
-  std::string_view text();
-  bool ok() const { return ok_; }
-  bool at_end() const { return left_.empty(); }
-
- private:
-  std::string_view take(std::size_t size);
-
-  std::string_view left_;
-  bool ok_ = true;
-};
+using store::Reader;
+using store::Writer;
 
 }  // namespace adit::journal

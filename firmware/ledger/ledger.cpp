@@ -1,218 +1,162 @@
 #include "ledger/ledger.hpp"
 
 #include <algorithm>
-#include <cstdint>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <optional>
 #include <utility>
 
-#include "ledger/database.hpp"
-#include "ledger/files.hpp"
-#include "ledger/mark.hpp"
-#include "ledger/opening.hpp"
-#include "ledger/rows.hpp"
-#include "ledger/scratch.hpp"
+#include "icd/sentence.hpp"
+#include "ledger/book.hpp"
+#include "store/directory.hpp"
+#include "store/log.hpp"
+#include "store/snapshot.hpp"
 
 namespace adit::ledger {
 namespace {
 
-/// A ledger is some kilobytes, and begins with a few.
-constexpr const char* kFile = "/ledger.sqlite";
-constexpr std::int64_t kRoomToBegin = 1 << 20;
+double now() {
+  using std::chrono::system_clock;
+  return std::chrono::duration<double>(system_clock::now().time_since_epoch()).count();
+}
 
-/// All that a statement without parameters reads.
-template <class Row>
-Result<std::vector<Row>> rows_of(const Database& database, const Statement& statement,
-                                 Row (*row_of)(const Query&), const char* doing, std::size_t about) {
-  Query query(statement);
-  std::vector<Row> all;
-  all.reserve(about);
-  int result = SQLITE_OK;
-  while ((result = query.step()) == SQLITE_ROW) all.push_back(row_of(query));
-  if (result != SQLITE_DONE) return std::unexpected(database.error(doing));
-  return all;
+Result<void> write(store::Snapshot& snapshot, const Book& book, const std::atomic<bool>& enough) {
+  for (const auto& [kind, body] : book.records()) {
+    if (enough) return std::unexpected(Error{.what = "aditd is stopping"});
+    if (auto added = snapshot.add(kind, body); !added) return added;
+  }
+  return snapshot.finish();
 }
 
 }  // namespace
 
 class Ledger::Impl {
  public:
-  static Result<std::unique_ptr<Impl>> make(Opened opened) {
-    auto impl = std::make_unique<Impl>(std::move(opened));
-    const std::pair<Statement*, const std::string&> statements[] = {{&impl->write_report_, kWriteReport},
-                                                                    {&impl->write_run_, kWriteRun},
-                                                                    {&impl->write_sighting_, kWriteSighting},
-                                                                    {&impl->write_robot_, kWriteRobot},
-                                                                    {&impl->read_reports_, kReadReports},
-                                                                    {&impl->read_history_, kReadHistory},
-                                                                    {&impl->read_runs_, kReadRuns}};
-    for (const auto& [statement, sql] : statements) {
-      auto prepared = Statement::prepare(impl->database_, sql);
-      if (!prepared) return std::unexpected(prepared.error());
-      *statement = std::move(*prepared);
-    }
-    sqlite3_wal_hook(impl->database_.get(), &Impl::note_pages, impl.get());
-    return impl;
-  }
-
-  /// What the file says of itself alone is then so.
-  ~Impl() {
-    (void)flush_each(false);  // closing flushes
-    (void)write_mark(database_, false, 0);
-  }
+  Impl(std::string refusal, const Known& known) : refusal_(std::move(refusal)), known_(known) {}
+  Impl(store::Directory directory, store::Contents contents, Book book, std::string damage, bool is_damaged,
+       const Known& known)
+      : directory_(std::make_shared<store::Directory>(std::move(directory))),
+        contents_(std::move(contents)),
+        book_(std::move(book)),
+        damage_(std::move(damage)),
+        known_(known),
+        is_damaged_(is_damaged) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
-
-  explicit Impl(Opened opened) : database_(std::move(opened.database)), damage_(std::move(opened.damage)) {}
+  ~Impl() { *enough_ = true; }
 
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
-    if (!refusal_.empty()) return std::unexpected(Error{Error::Kind::ReadOnly, refusal_});
-    const bool soon = flush == dispatch::Flush::Soon;
-    if (auto mended = mend_log(); !mended) return mended;
-    if (auto set = flush_each(!soon); !set) return set;
-    unflushed_ = unflushed_ || soon;
-    auto written = write(steps, run);
-    has_hole_ = has_hole_ || (!written && unflushed_);
-    if (pages_ >= kPagesOfLog) restart_log();
-    return written;
+    const auto record = book_.record(steps, run);
+    if (!record) return std::unexpected(record.error());
+    const bool has_new = std::ranges::any_of(
+        steps, [this](const dispatch::Report& step) { return !book_.knows(step.number); });
+    return append(*record, flush, has_new);
   }
 
-  Result<void> flush() {
-    if (auto mended = mend_log(); !mended) return mended;
-    if (!unflushed_) return {};
-    sqlite3_file* const log = database_.log();
-    if (log != nullptr && log->pMethods->xSync(log, SQLITE_SYNC_NORMAL) != SQLITE_OK) {
-      has_hole_ = true;
-      return std::unexpected(Error{.what = "the ledger's log could not be flushed"});
-    }
-    unflushed_ = false;
-    return flush_each(true);  // here, where nobody waits for it
-  }
-
-  static int note_pages(void* self, sqlite3*, const char*, int pages) {
-    static_cast<Impl*>(self)->pages_ = pages;
-    return SQLITE_OK;
-  }
-
-  bool restart_log() {
-    (void)flush_each(false);  // taking it over flushes all that is in it
-    return take_over_log(database_);
-  }
-
-  /// What was not flushed when a flush failed never will be, though it reads well: a power cut would take all
-  /// that is in the log behind it.
-  Result<void> mend_log() {
-    if (!has_hole_) return {};
-    if (!restart_log()) return std::unexpected(Error{.what = "the ledger's log could not be restarted"});
-    has_hole_ = unflushed_ = false;
-    return flush_each(true);
-  }
-
-  /// NORMAL differs from FULL in this alone: the log is not flushed at the end of a transaction.
-  Result<void> flush_each(bool each) {
-    if (each == flushes_each_) return {};
-    const char* const set = each ? "PRAGMA synchronous = FULL" : "PRAGMA synchronous = NORMAL";
-    if (auto done = database_.execute(set); !done) return std::unexpected(done.error());
-    flushes_each_ = each;
+  Result<void> append(const std::string& record, dispatch::Flush flush, bool has_new) {
+    if (auto ready = has_new ? make_ready(record.size()) : begin(); !ready) return ready;
+    const auto durability = flush == dispatch::Flush::Now ? store::Durability::Now : store::Durability::Soon;
+    constexpr auto kKind = static_cast<std::uint8_t>(Kind::Steps);
+    if (auto appended = log_->append(kKind, record, durability); !appended) return appended;
+    (void)book_.apply(kKind, record);
     return {};
   }
 
-  /// A statement alone is a transaction of its own.
-  Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run) {
-    if (run == nullptr && of_the_first(steps) == steps.size() && !steps.back().report.robot)
-      return write_one(steps);
-    Transaction transaction(database_);
-    if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
-    while (!steps.empty()) {
-      const std::size_t count = of_the_first(steps);
-      if (auto written = write_one(steps.first(count)); !written) return written;
-      steps = steps.subspan(count);
+  Result<void> make_ready(std::size_t record = 0) {
+    auto ready = begin();
+    if (ready && log_->room() < log_->bytes_of(record) + kForKnown) ready = log_->turn();
+    refusal_ = ready ? "" : ready.error().what;
+    return ready;
+  }
+
+  /// Goes on behind what was read. A ledger that was damaged begins with a snapshot of what is left.
+  Result<void> begin() {
+    if (has_begun_) return {};
+    if (!directory_) return std::unexpected(Error{.what = refusal_});
+    auto begun = begin_log();
+    refusal_ = begun ? "" : begun.error().what;
+    has_begun_ = begun.has_value();
+    return begun;
+  }
+
+  std::function<Result<void>()> upkeep() {
+    if (!has_begun_ || is_under_way_) return nullptr;
+    if (log_->number() == snapshot_) {
+      if (spare_ == log_->number()) return nullptr;
+      is_under_way_ = true;
+      next_spare_ = log_->number();
+      return [directory = directory_, enough = enough_] {
+        return store::make_spare(*directory, kKeeping, *enough);
+      };
     }
-    if (run != nullptr) {
-      if (auto written = write_one(*run); !written) return written;
-    }
-    if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
-    return {};
+    auto begun = store::Snapshot::begin(*directory_, kKeeping, *log_);
+    is_under_way_ = true;
+    if (!begun) return [error = begun.error()] { return Result<void>(std::unexpected(error)); };
+    next_snapshot_ = log_->number();
+    return [directory = directory_, enough = enough_, book = book_,
+            snapshot = std::make_shared<store::Snapshot>(std::move(*begun))] {
+      return ledger::write(*snapshot, book, *enough);
+    };
   }
 
-  /// How many of the steps, from the first on, are of the same report.
-  static std::size_t of_the_first(std::span<const dispatch::Report> steps) {
-    std::size_t count = 0;
-    while (count < steps.size() && steps[count].number == steps[0].number) ++count;
-    return count;
+  void upkeep_done(const Result<void>& done) {
+    is_under_way_ = false;
+    if (!done) return;
+    snapshot_ = next_snapshot_;
+    spare_ = next_spare_;
   }
 
-  Result<void> write_one(const dispatch::Run& run) {
-    Query query(write_run_);
-    bind_run(query, run);
-    Query sighting(write_sighting_);
-    bind_sighting(sighting, run);
-    if (query.step() == SQLITE_DONE && sighting.step() == SQLITE_DONE) return {};
-    return std::unexpected(database_.error("recording run " + std::to_string(run.number)));
-  }
-
-  /// Steps of one report: one row.
-  Result<void> write_one(std::span<const dispatch::Report> steps) {
-    return write_one(steps.back(), history_of(steps));
-  }
-
-  /// `history`: what is added to that of the report.
-  Result<void> write_one(const dispatch::Report& report, const std::string& history) {
-    const auto doing = [&] { return "recording a step of report " + std::to_string(report.number); };
-    Query row(write_report_);
-    bind_report(row, report, history);
-    if (row.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
-    if (sqlite3_changes(database_.get()) != 1)
-      return std::unexpected(Error{.what = doing() + ": another report has this number"});
-    if (!report.report.robot) return {};
-    Query robot(write_robot_);
-    bind_robot(robot, report.number, *report.report.robot);
-    if (robot.step() != SQLITE_DONE) return std::unexpected(database_.error(doing()));
-    return {};
-  }
-
-  /// The history of a report as it is kept.
-  Result<std::string> history_text(std::int64_t number) const {
-    Query query(read_history_);
-    query.bind(number);
-    const int result = query.step();
-    if (result == SQLITE_ROW) return query.bytes(0);
-    if (result == SQLITE_DONE) return std::string();
-    return std::unexpected(database_.error("reading the history of report " + std::to_string(number)));
-  }
-
-  /// `there`: where what is new here comes from.
-  Result<void> write(const dispatch::TakeOver& taken, const Impl& there) {
-    Transaction transaction(database_);
-    if (auto begun = transaction.begin(); !begun) return std::unexpected(begun.error());
-    for (const dispatch::Run& run : taken.runs) {
-      if (auto written = write_one(run); !written) return written;
-    }
-    for (const dispatch::TakenOver& each : taken.reports) {
-      std::string history;
-      if (each.there != 0) {
-        auto before = there.history_text(each.there);
-        if (!before) return std::unexpected(std::move(before.error()));
-        history = *std::move(before);
-      }
-      if (each.has_stepped) history += history_of({&each.report, 1});
-      if (auto written = write_one(each.report, history); !written) return written;
-    }
-    if (auto committed = transaction.commit(); !committed) return std::unexpected(committed.error());
-    return {};
-  }
-
-  Scratch scratch_;            // before the database, which is in it
-  loop::FileDescriptor lock_;  // of the folder, for as long as the database is open
-  Database database_;          // before the statements, which it outlives
+  /// Those that damage has cost, and those that a worker uses, outlive this.
+  std::shared_ptr<store::Directory> directory_;  // null: closed
+  store::Contents contents_;                     // until log_ goes on behind it
+  std::optional<store::Log> log_;
+  Book book_;
   std::string damage_, refusal_;
-  std::string unread_;        // why what this stands in for cannot be read
-  bool flushes_each_ = true;  // as it was opened
-  int pages_ = 0;             // in the log
-  bool unflushed_ = false;    // something was written whose flush was left for later
-  bool has_hole_ = false;     // and that failed
-  Statement write_report_, write_run_, write_sighting_, write_robot_, read_reports_, read_history_,
-      read_runs_;
+  Known known_;  // by who opened it
+  bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
+  bool is_under_way_ = false;                       // upkeep
+  std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // the log with which the last one began
+  std::uint64_t spare_ = 0, next_spare_ = 0;        // the log that has a spare file behind it
+  std::shared_ptr<std::atomic<bool>> enough_ = std::make_shared<std::atomic<bool>>(false);
+
+ private:
+  /// What was done stays done if a later step fails and all is tried again.
+  Result<void> begin_log() {
+    if (!log_) {
+      store::Log log(*directory_, kKeeping);
+      if (auto started = log.start(contents_); !started) return started;
+      log_.emplace(std::move(log));
+      // So a snapshot that a kill has ended is due again.
+      if (!contents_.logs.empty()) snapshot_ = next_snapshot_ = contents_.logs.front();
+      contents_ = {};
+    }
+    if (is_damaged_) return begin_again();
+    if (log_->number() != 0) return {};
+    auto turned = log_->turn();
+    snapshot_ = next_snapshot_ = log_->number();
+    return turned;
+  }
+
+  Result<void> begin_again() {
+    if (!is_aside_) {
+      if (auto aside = directory_->put_aside(); !aside) return aside;
+      is_aside_ = true;
+    }
+    if (!has_turned_) {
+      if (auto turned = log_->turn(); !turned) return turned;
+      has_turned_ = true;
+    }
+    auto snapshot = store::Snapshot::begin(*directory_, kKeeping, *log_);
+    if (!snapshot) return std::unexpected(snapshot.error());
+    if (auto written = ledger::write(*snapshot, book_, *enough_); !written) return written;
+    snapshot_ = next_snapshot_ = log_->number();
+    is_damaged_ = false;
+    return {};
+  }
 };
 
 Ledger::Ledger(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -220,106 +164,95 @@ Ledger::Ledger(Ledger&&) noexcept = default;
 Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 Ledger::~Ledger() = default;
 
-Result<Ledger> Ledger::open_unlocked(const std::string& folder) {
-  auto opened = open_database(folder);
-  if (!opened) return std::unexpected(std::move(opened.error()));
-  auto impl = Impl::make(std::move(*opened));
-  if (!impl) return std::unexpected(std::move(impl.error()));
-  return Ledger(std::move(*impl));
-}
-
-Result<Ledger> Ledger::open(const std::string& folder) {
-  auto lock = lock_folder(folder);
-  if (!lock) return std::unexpected(std::move(lock.error()));
-  auto ledger = open_unlocked(folder);
-  if (ledger) ledger->impl_->lock_ = std::move(*lock);
-  return ledger;
-}
-
-Result<Ledger> Ledger::stand_in(const std::string& folder, const std::string& scratch,
-                                const std::string& why) {
-  Scratch made(scratch);
-  if (made.path().empty()) return std::unexpected(system_error("creating a directory in " + scratch));
-  std::string unread;
-  if (auto copied = copy_database(folder + kFile, made.path() + kFile); !copied) {
-    unread = "its content cannot be read: " + copied.error().what;
-    remove_database(made.path() + kFile);
+Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
+  auto directory = store::Directory::lock(state + kDirectory);
+  if (!directory) return std::unexpected(directory.error());
+  auto contents = store::Contents::read(*directory, kKeeping);
+  if (!contents) return std::unexpected(contents.error());
+  auto reading = read(*contents);
+  if (!reading) return std::unexpected(reading.error());
+  Book& book = reading->book;
+  if ((known.log != 0 && !contents->has(known.log)) || book.highest() < known.reports) {
+    reading->gap += icd::sentence(reading->gap.empty() ? "" : ", ", "its last records are not there");
+    reading->end_is_lost = true;
   }
-  auto opened = open_unlocked(made.path());  // `made` has the lock
-  if (!opened) return opened;
-  opened->impl_->refusal_ = unread.empty() ? why : why + "; " + unread;
-  opened->impl_->unread_ = unread;
-  opened->impl_->scratch_ = std::move(made);
-  return opened;
+  // A name that is taken once is not taken again, also of a log that is gone.
+  contents->number = std::max(contents->number, known.log);
+  std::string damage;
+  const bool is_damaged = !reading->gap.empty();
+  if (is_damaged) {
+    const std::string found = book.salvage(now(), known.reports, reading->end_is_lost);
+    damage = icd::sentence("The ledger was damaged (", reading->gap, "). Its files are kept in ", state,
+                           kDirectory, "/damaged-*; ", found, ".");
+  } else if (!contents->notes.empty()) {
+    damage = "The ledger's files were damaged and were repaired: ";
+    for (const std::string& note : contents->notes)
+      damage += (note == contents->notes.front() ? "" : "; ") + note;
+    damage += ". No report is missing.";
+  }
+  auto impl = std::make_unique<Impl>(std::move(*directory), std::move(*contents), std::move(book),
+                                     std::move(damage), is_damaged, known);
+  (void)impl->make_ready();  // refusal() says why not
+  return Ledger(std::move(impl));
 }
 
-void Ledger::sweep(const std::string& folder, const std::string& scratch) {
-  remove_trials(folder);
-  sweep_scratch(scratch);
+Ledger Ledger::closed(std::string why, const Known& known) {
+  return Ledger(std::make_unique<Impl>(std::move(why), known));
 }
 
-bool Ledger::can_be_opened(const std::string& folder) {
-  // Tables of an earlier version are written again, and so is a ledger that is salvaged.
-  return try_opening(folder + kFile) && try_room(folder, kRoomToBegin + 2 * size_of(folder + kFile)) &&
-         sync_folder(folder);
+bool Ledger::can_be_read(const std::string& state) {
+  const auto directory = store::Directory::lock(state + kDirectory);
+  return directory && store::Contents::read(*directory, kKeeping);
+}
+
+Result<std::string> Ledger::set_aside(const std::string& state) {
+  const auto folder = store::Directory::look(state);
+  if (!folder) return std::unexpected(folder.error());
+  return folder->rename_aside(kDirectory + 1);
 }
 
 Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                            dispatch::Flush flush) {
   return impl_->write(steps, run, flush);
 }
-void Ledger::expect(dispatch::Flush flush) {
-  (void)impl_->flush_each(flush == dispatch::Flush::Now);  // where that fails, so will write(), and say so
-}
 
 Result<void> Ledger::flush() {
-  return impl_->flush();
-}
-Result<std::vector<dispatch::Report>> Ledger::reports() const {
-  constexpr std::int64_t kNoMore = 100'000;  // whatever a damaged number says
-  const auto highest = impl_->database_.number("SELECT coalesce(max(number), 0) FROM report");
-  if (!highest) return std::unexpected(impl_->database_.error("reading the reports"));
-  const auto about = static_cast<std::size_t>(std::clamp<std::int64_t>(*highest, 0, kNoMore));
-  return rows_of(impl_->database_, impl_->read_reports_, report_of, "reading the reports", about);
-}
-Result<std::vector<dispatch::Run>> Ledger::runs() const {
-  return rows_of(impl_->database_, impl_->read_runs_, run_of, "reading the runs", 0);
+  return impl_->log_ ? impl_->log_->flush() : Result<void>();
 }
 
-Result<std::vector<Ledger::Step>> Ledger::history(std::int64_t number) const {
-  const auto doing = [number] { return "reading the history of report " + std::to_string(number); };
-  Query query(impl_->read_history_);
-  query.bind(number);
-  const int result = query.step();
-  if (result == SQLITE_DONE) return std::vector<Step>();
-  if (result != SQLITE_ROW) return std::unexpected(impl_->database_.error(doing()));
-  auto steps = steps_of(number, query.bytes(0));
-  if (!steps) return std::unexpected(Error{.what = doing() + ": it is damaged"});
-  return *std::move(steps);
+Result<void> Ledger::make_ready() {
+  return impl_->make_ready();
+}
+
+std::vector<dispatch::Report> Ledger::reports() const {
+  return impl_->book_.reports();
+}
+std::vector<dispatch::Run> Ledger::runs() const {
+  return impl_->book_.runs();
+}
+std::vector<Step> Ledger::history(std::int64_t report) const {
+  return impl_->book_.history(report);
 }
 
 Result<std::string> Ledger::copy() const {
-  if (!impl_->unread_.empty())
-    return std::unexpected(Error{Error::Kind::Failing, "the ledger: " + impl_->unread_});
-  sqlite3_int64 size = 0;
-  const std::unique_ptr<unsigned char, decltype(&sqlite3_free)> bytes(
-      sqlite3_serialize(impl_->database_.get(), "main", &size, 0), &sqlite3_free);
-  if (!bytes) return std::unexpected(impl_->database_.error("copying the ledger"));
-  return std::string(reinterpret_cast<const char*>(bytes.get()), static_cast<std::size_t>(size));
+  if (is_closed()) return std::unexpected(Error{.what = "the ledger cannot be read: " + impl_->refusal_});
+  return impl_->book_.copy();
 }
 
-Result<void> Ledger::take_over(const Ledger& there, const dispatch::Handover& handover) {
-  dispatch::Books books[2];
-  const Ledger* const ledgers[] = {this, &there};
-  for (std::size_t i = 0; i < std::size(ledgers); ++i) {
-    auto reports = ledgers[i]->reports();
-    if (!reports) return std::unexpected(std::move(reports.error()));
-    auto runs = ledgers[i]->runs();
-    if (!runs) return std::unexpected(std::move(runs.error()));
-    books[i] = {*std::move(reports), *std::move(runs)};
-  }
-  if (!impl_->refusal_.empty()) return std::unexpected(Error{Error::Kind::ReadOnly, impl_->refusal_});
-  return impl_->write(dispatch::take_over(books[0], books[1], handover), *there.impl_);
+bool Ledger::is_copy(const std::string& copy) {
+  return steps_record_in(copy).has_value();
+}
+
+Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover& handover) {
+  Book there;
+  if (!there.apply(static_cast<std::uint8_t>(Kind::Steps), copy))
+    return std::unexpected(Error{.what = "it is no copy of a ledger"});
+  const Book& here = impl_->book_;
+  const dispatch::TakeOver taken =
+      dispatch::take_over({here.reports(), here.runs()}, {there.reports(), there.runs()}, handover);
+  const auto record = here.record(taken, there);
+  if (!record) return std::unexpected(record.error());
+  return impl_->append(*record, dispatch::Flush::Now, true);
 }
 
 const std::string& Ledger::damage() const {
@@ -327,6 +260,25 @@ const std::string& Ledger::damage() const {
 }
 const std::string& Ledger::refusal() const {
   return impl_->refusal_;
+}
+bool Ledger::is_closed() const {
+  return impl_->directory_ == nullptr;
+}
+
+Known Ledger::known() const {
+  const Known& known = impl_->known_;
+  return {std::max(known.reports, impl_->book_.highest()),
+          impl_->has_begun_ ? impl_->log_->number() : known.log};
+}
+
+std::function<Result<void>()> Ledger::upkeep() {
+  return impl_->upkeep();
+}
+void Ledger::upkeep_done(const Result<void>& done) {
+  impl_->upkeep_done(done);
+}
+void Ledger::end_upkeep() {
+  *impl_->enough_ = true;
 }
 
 }  // namespace adit::ledger

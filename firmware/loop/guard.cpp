@@ -1,6 +1,9 @@
 #include "loop/guard.hpp"
 
+#include <unistd.h>
+
 #include <atomic>
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
@@ -9,6 +12,12 @@ namespace {
 
 std::atomic<std::uint64_t> so_far{0};
 std::atomic<void (*)(const char*, const char*)> tell{nullptr};
+
+std::atomic<int> faults_file{-1};
+
+void count_fault() noexcept {
+  [[maybe_unused]] const auto written = ::write(faults_file.load(), "x", 1);
+}
 
 }  // namespace
 
@@ -34,8 +43,22 @@ void end_by_uncaught() noexcept {
     tell_of_caught(nullptr);  // stderr alone: this thread may hold the log's lock
     if (const auto thrown = std::current_exception())
       guarded("the process", [&] { std::rethrow_exception(thrown); });
+    count_fault();
     std::_Exit(1);
   });
+}
+
+void count_faults(int fd) noexcept {
+  faults_file.store(fd);
+  struct sigaction action{};
+  action.sa_flags =
+      static_cast<int>(SA_RESETHAND);  // then the signal ends the process as it does without this
+  action.sa_handler = [](int signal) {
+    count_fault();
+    (void)::raise(signal);
+  };
+  for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT})
+    (void)::sigaction(signal, &action, nullptr);
 }
 
 }  // namespace adit::loop

@@ -19,6 +19,10 @@ void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 /// after a line on stderr. Accepted messages are on the disk, and the next start reads them.
 void end_by_uncaught() noexcept;
 
+/// From now on each end of the process by such an exception, or by a signal of its own fault (SIGSEGV,
+/// SIGABRT and others), adds a byte to the open file `fd`.
+void count_faults(int fd) noexcept;
+
 /// Calls `work`; an exception, whichever library it is from, ends `work` and nothing else. False: it did.
 /// Requests and jobs of workers go through here, so that each of them fails alone.
 template <class Work>

@@ -46,25 +46,31 @@ class Assembly {
     const auto logs_end = std::ranges::find(names_, FileName::Kind::Snapshot, &FileName::kind);
     contents_.bytes_.reserve(names_.size());
     std::optional<Scan> snapshot;  // the newest whole one, else the newest
+    bool is_whole = false;
     for (auto name = names_.end(); name != logs_end;) {
       auto found = scan_file(*--name, snapshot_layout(layout_));
       if (!found) return std::unexpected(found.error());
-      const bool is_whole = is_whole_snapshot(*found);
+      is_whole = is_whole_snapshot(*found);
       if (!is_whole) contents_.notes.push_back(found->name.text() + ": a damaged snapshot");
       if (is_whole || !snapshot) snapshot = std::move(*found);
       if (is_whole) break;
     }
     for (auto name = names_.begin(); name != logs_end; ++name) {
-      if (snapshot && name->number < snapshot->name.number) continue;
+      if (is_whole && name->number < snapshot->name.number) continue;
       auto found = scan_file(*name, layout_);
       if (!found) return std::unexpected(found.error());
       logs_.push_back(std::move(*found));
     }
-    if (snapshot) take_snapshot(*snapshot);
+    if (snapshot) take_snapshot(*snapshot, is_whole);
+    for (const Scan& log : logs_) contents_.logs.push_back(log.name.number);
     return {};
   }
 
-  void take_snapshot(const Scan& snapshot) {
+  void take_snapshot(const Scan& snapshot, bool is_whole) {
+    const bool has_first = !logs_.empty() && logs_.front().header && logs_.front().header->base == 0;
+    if (!is_whole && has_first) return;  // the logs have all
+    std::erase_if(logs_, [&](const Scan& log) { return log.name.number < snapshot.name.number; });
+    contents_.snapshot = snapshot.name.number;
     std::uint64_t next = 1;
     for (const Scan::Found& found : snapshot.frames) {
       if (found.frame.sequence != next) contents_.items.push_back(Gap{.file = snapshot.name.text()});
@@ -100,14 +106,13 @@ class Assembly {
   }
 
   /// A log on a disk has its name once its zeros are synced.
-  bool is_cut(const Scan& log) const {
-    const std::uint64_t size = log.header ? log.header->size : keeping_.syncs ? keeping_.file_bytes : 0;
-    return log.size < size;
+  std::uint64_t least_size(const Scan& log) const {
+    return log.header ? log.header->size : keeping_.syncs ? keeping_.file_bytes : 0;
   }
 
   /// False: the rest was never synced, and a frame of it is missing.
   bool take(const Scan& log) {
-    if (is_cut(log)) gap(next_, std::nullopt, log.name);
+    if (log.size < least_size(log)) gap(next_, std::nullopt, log.name);
     for (const Scan::Found& found : log.frames) {
       const Frame& frame = found.frame;
       if (frame.sequence < next_) continue;
@@ -117,10 +122,11 @@ class Assembly {
       }
       contents_.items.push_back(Record{frame.sequence, frame.kind, frame.body});
       next_ = frame.sequence + 1;
-      if (found.good < layout_.copies)
+      const bool was_synced = frame.sequence <= contents_.durable;  // else a kill or a power cut has torn it
+      if (found.good < layout_.copies && was_synced)
         contents_.notes.push_back(log.name.text() + ": a damaged copy of record " +
                                   std::to_string(frame.sequence));
-      if (found.good < layout_.copies || frame.sequence > contents_.durable)
+      if (found.good < layout_.copies || !was_synced)
         contents_.rewrites.push_back({log.name, found.offset, frame});
       if (&log == &logs_.back()) {
         if (first_here_ == 0) first_here_ = frame.sequence;
@@ -140,7 +146,10 @@ class Assembly {
     contents_.size = log.size;
     const std::uint64_t base = first_here_ == 0 ? contents_.last : first_here_ - 1;
     const std::string& body = contents_.bytes_.emplace_back(
-        FileHeader{.number = log.name.number, .salt = log.name.salt, .base = base, .size = log.size}
+        FileHeader{.number = log.name.number,
+                   .salt = log.name.salt,
+                   .base = base,
+                   .size = std::max<std::uint64_t>(log.size, least_size(log))}  // a cut stays one
             .written());
     const Frame header =
         log.begin ? log.begin->frame : Frame{.kind = kFileBegins, .durable = base, .body = body};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -57,13 +58,18 @@ class Contents {
   static Result<Contents> read(const Directory& directory, const Keeping& keeping,
                                std::uint64_t before = kAll);
 
+  /// Whether the log of this number was read, or a snapshot stands for it.
+  bool has(std::uint64_t one) const { return one < snapshot || std::ranges::find(logs, one) != logs.end(); }
+
   Contents() = default;
   Contents(Contents&&) = default;
   Contents& operator=(Contents&&) = default;
 
   std::vector<Item> items;
-  std::vector<std::string> notes;  // sentences about damage that cost no record
-  bool is_new = false;             // the directory holds neither a log nor a snapshot
+  std::vector<std::string> notes;   // sentences about damage that cost no record
+  bool is_new = false;              // the directory holds neither a log nor a snapshot
+  std::uint64_t snapshot = 0;       // number of the one that was read; 0: none
+  std::vector<std::uint64_t> logs;  // numbers of those that were read
 
   // What a log that goes on must know.
   std::uint64_t last = 0;       // sequence number of the last record, or of the last that is missing

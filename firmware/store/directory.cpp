@@ -111,7 +111,7 @@ Result<std::string> Directory::read(const std::string& name) const {
 
 Result<loop::FileDescriptor> Directory::make(const std::string& name) const {
   loop::FileDescriptor file(::openat(fd_.get(), name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
-  if (!file) return trouble(name, errno);
+  if (!file) return trouble(errno);
   return file;
 }
 
@@ -148,9 +148,48 @@ Result<void> Directory::remove_parts() const {
   return {};
 }
 
+Result<std::string> Directory::first_free(const std::string& beginning) const {
+  const auto all = names();
+  if (!all) return std::unexpected(all.error());
+  for (int number = 1;; ++number) {
+    std::string name = beginning + std::to_string(number);
+    if (std::ranges::find(*all, name) == all->end()) return name;
+  }
+}
+
+Result<void> Directory::put_aside() const {
+  const auto all = files();
+  if (!all) return std::unexpected(all.error());
+  if (all->empty()) return {};
+  const auto aside = first_free("damaged-");
+  if (!aside) return std::unexpected(aside.error());
+  if (::mkdirat(fd_.get(), aside->c_str(), 0700) != 0) return trouble(*aside, errno);
+  for (const FileName& file : *all) {
+    const std::string name = file.text(), link = *aside + '/' + name;
+    if (file.kind == FileName::Kind::Spare) continue;
+    if (::linkat(fd_.get(), name.c_str(), fd_.get(), link.c_str(), 0) != 0) return trouble(link, errno);
+  }
+  return sync();
+}
+
+Result<std::string> Directory::rename_aside(const std::string& name) const {
+  auto aside = first_free(name + ".damaged-");
+  if (!aside) return aside;
+  if (auto renamed = rename(name, *aside); !renamed) return std::unexpected(renamed.error());
+  if (auto synced = sync(); !synced) return std::unexpected(synced.error());
+  return aside;
+}
+
 Result<void> Directory::sync() const {
   if (::fsync(fd_.get()) != 0) return failed(path_, errno);
   return {};
+}
+
+Result<void> Directory::sync_name() const {
+  const auto slash = path_.rfind('/');
+  const auto above = open(slash == path_.npos ? "." : path_.substr(0, slash));
+  if (!above) return std::unexpected(above.error());
+  return above->sync();
 }
 
 int write_all(int fd, std::string_view bytes, std::size_t offset) {

@@ -46,15 +46,25 @@ class Directory {
   Result<void> remove(const std::string& name) const;
   /// Removes the files that a kill left without their name.
   Result<void> remove_parts() const;
+  /// Links the files of a damaged log, as they are, into a new directory below this one.
+  Result<void> put_aside() const;
+  /// Renames `name` to the first NAME.damaged-1, -2 ... that is free. Its new name.
+  Result<std::string> rename_aside(const std::string& name) const;
   /// Syncs the names.
   Result<void> sync() const;
+  /// Syncs its own name.
+  Result<void> sync_name() const;
   std::unexpected<Error> trouble(const std::string& name, int number) const {
     return failed(path_ + '/' + name, number);
   }
+  /// Of a write: its file's name is another one at each try.
+  std::unexpected<Error> trouble(int number) const { return failed(path_, number); }
 
  private:
   static Result<Directory> open(const std::string& path);
   Result<std::vector<std::string>> names() const;
+  /// The first of `beginning`1, 2 ... that nothing has.
+  Result<std::string> first_free(const std::string& beginning) const;
 
   loop::FileDescriptor fd_;
   std::string path_;

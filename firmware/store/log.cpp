@@ -1,5 +1,6 @@
 #include "store/log.hpp"
 
+#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,8 +14,11 @@ namespace {
 
 constexpr std::size_t kPiece = 256u << 10;  // of zeros, written and synced at once: nobody else waits long
 
-/// Writes so many zeros to a new file and syncs them; the errno, else 0.
+/// Writes so many zeros to a new file and syncs them; the errno, else 0. A disk that has no room is not
+/// filled up first.
 int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
+  struct statvfs disk{};
+  if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size) return ENOSPC;
   const std::string zeros(std::min(size, kPiece), '\0');
   for (std::size_t at = 0; at < size; at += zeros.size()) {
     if (enough) return ECANCELED;
@@ -33,7 +37,7 @@ Result<void> make_zeros(const Directory& directory, const FileName& name, std::s
   const auto file = directory.make(part);
   if (!file) return std::unexpected(file.error());
   const int error = write_zeros(file->get(), size, enough);
-  Result<void> made = error == 0 ? directory.rename(part, name.text()) : directory.trouble(part, error);
+  Result<void> made = error == 0 ? directory.rename(part, name.text()) : directory.trouble(error);
   if (!made) (void)directory.remove(part);
   return made;
 }
@@ -49,6 +53,9 @@ Result<void> Log::start(const Contents& contents) {
     if (each.frame.sequence > durable_) unsynced_.push_back({each.frame.kind, std::string(each.frame.body)});
   }
   if (auto removed = directory_.remove_parts(); !removed) return removed;
+  if (keeping_.syncs) {  // the process before may have made it, and ended
+    if (auto synced = directory_.sync_name(); !synced) return synced;
+  }
   if (!contents.log) return {};
   auto fd = directory_.open_to_write(contents.log->text());
   if (!fd) return std::unexpected(fd.error());
@@ -183,15 +190,14 @@ Result<void> Log::fill(File& file) const {
   for (const Unsynced& each : unsynced_) {
     if (wrote) wrote = write(file, {each.kind, ++sequence, process_, durable_, each.body});
   }
-  if (wrote && keeping_.syncs && ::fdatasync(file.fd.get()) != 0)
-    return directory_.trouble(file.name.text(), errno);
+  if (wrote && keeping_.syncs && ::fdatasync(file.fd.get()) != 0) return directory_.trouble(errno);
   return wrote;
 }
 
 Result<void> Log::write(File& file, const Frame& frame) const {
   const std::string bytes = written(frame, keeping_.layout, file.name.salt, file.at);
   if (const int error = write_all(file.fd.get(), bytes, file.at); error != 0)
-    return directory_.trouble(file.name.text(), error);
+    return directory_.trouble(error);
   file.at += bytes_of(frame.body.size());
   return {};
 }
@@ -199,7 +205,7 @@ Result<void> Log::write(File& file, const Frame& frame) const {
 Result<void> Log::sync() {
   if (!keeping_.syncs || ::fdatasync(file_.fd.get()) == 0) return {};
   is_dead_ = true;
-  return directory_.trouble(file_.name.text(), errno);
+  return directory_.trouble(errno);
 }
 
 Result<void> make_spare(const Directory& directory, const Keeping& keeping, const std::atomic<bool>& enough) {

@@ -43,6 +43,10 @@ class Log {
   std::uint64_t process() const { return process_; }
   /// Bytes of the file that are left.
   std::size_t room() const { return is_dead_ ? 0 : file_.size - file_.at; }
+  /// Bytes that a record takes of it.
+  std::size_t bytes_of(std::size_t body) const {
+    return keeping_.layout.copies * room_of(body, keeping_.layout);
+  }
 
  private:
   struct File {
@@ -54,9 +58,6 @@ class Log {
     std::uint8_t kind;
     std::string body;
   };
-  std::size_t bytes_of(std::size_t body) const {
-    return keeping_.layout.copies * room_of(body, keeping_.layout);
-  }
   Result<void> write(File& file, const Frame& frame) const;
   Result<void> sync();
   Result<void> rewrite(const Contents& contents);

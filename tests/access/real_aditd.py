@@ -131,7 +131,7 @@ class Login(unittest.TestCase):
         box.stop()
         for name in ("settings.json", "settings.json.before", "secrets/team.token", "access.json", "devices.json",
                      "sessions.json", "first-start.code", "acknowledged.json", "spare.json", "take-over", "stamps",
-                     "ledger.sqlite", "ledger.sqlite-wal", "ledger.sqlite-shm", "ledger.sqlite.salvaged",
+                     "ledger", "ledger/log-00000009.0123456789abcdef", "ledger/snapshot-00000009.0123456789abcdef.part",
                      "journal/journal-00000001", "journal/snapshot-00000001.part", "waiting/map-00000001.cbor",
                      "rejected/1.json", "runs/1/facts.json", "runs/1/map-00000001"):
             with self.subTest(name):
@@ -162,7 +162,7 @@ class Login(unittest.TestCase):
         self.assertEqual((status, said), (200, {"role": "viewer"}))
         file = box.state / "access.json"
         self.assertEqual(stat.S_IMODE(file.stat().st_mode), 0o600)
-        kept = json.loads(file.read_text())
+        kept = json.loads(file.read_text().rpartition("crc32 ")[0])
         self.assertEqual(kept["version"], 1)
         for role in ("operator", "viewer"):
             self.assertTrue(kept[role].startswith("$y$j9T$"), role)

@@ -250,6 +250,29 @@ class SetUp(unittest.TestCase):
             wait_until(lambda: self.is_applied() and not self.alarms(), "the end of the standby")
         self.assertEqual(self.settings()["settings"]["reports"]["near_metres"], 7)
 
+    def test_a_ledger_that_cannot_be_read_is_waited_for_until_the_operator_begins_another(self):
+        ledger, elsewhere = self.box.state / "ledger", self.box.state / "elsewhere"
+        lost = {"ledger_damaged", "report_lost:1", "report_lost:1000", "run_unreliable"}
+        self.assertEqual(self.box.ask("POST /adit/reports", REPORT, **self.me)[:2], (202, {"report": 1}))
+        self.assertEqual(self.box.ask("POST /adit/ledger/new", {}, **self.me)[:2],
+                         (409, "the ledger can be read; aditd begins no other"))
+        for begins_another in (False, True):
+            self.box.stop()
+            ledger.rename(elsewhere)
+            ledger.write_text("no directory")
+            self.box.start()
+            self.assertEqual(self.alarms(), {"ledger_unwritable"})
+            self.assertEqual(self.box.ask("POST /adit/reports", REPORT, **self.me)[0], 409)
+            if begins_another:
+                self.applied("POST /adit/ledger/new", {})
+                self.assertEqual((self.box.state / "ledger.damaged-1").read_text(), "no directory")
+            else:
+                ledger.unlink()
+                elsewhere.rename(ledger)
+            wait_until(lambda: self.is_applied() and "ledger_unwritable" not in self.alarms(), "a ledger that can be read")
+            self.assertEqual(self.alarms(), lost if begins_another else set())
+        self.assertEqual(self.box.ask("POST /adit/reports", REPORT, **self.me)[:2], (202, {"report": 1001}))
+
     def test_of_two_operators_the_one_who_has_not_seen_the_others_change_is_told(self):
         mine = self.settings()
         self.change(lambda settings: settings["robots"].append({"name": "ugv1", "alias": ""}))

@@ -15,7 +15,7 @@ class FactoryResetTest : public testing::Test {
  protected:
   void SetUp() override {
     for (const char* file : {"access.json", "access.json.damaged", "acknowledged.json", "devices.json",
-                             "first-start.code", "settings.json", "ledger.sqlite"})
+                             "first-start.code", "settings.json", "ledger"})
       state_.put(file, "something");
     std::filesystem::create_directory(state_ / "secrets");
     state_.put("secrets/team.token", "secret");
@@ -35,7 +35,7 @@ class FactoryResetTest : public testing::Test {
       EXPECT_FALSE(std::filesystem::exists(runtime_ / gone)) << "the next team would send it";
     }
     EXPECT_TRUE(kept("forget.json")) << "adit-network is asked to forget the addresses";
-    EXPECT_TRUE(kept("ledger.sqlite"));
+    EXPECT_TRUE(kept("ledger"));
   }
 
   host::Folder state_, runtime_, given_;

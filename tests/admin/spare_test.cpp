@@ -73,6 +73,7 @@ class Box {
   }
 
   double stamp() const { return loop_.stamp_now(); }
+  const host::Folder& state() const { return state_; }
 
   std::string trouble;
   bool is_time_set = false;
@@ -88,11 +89,11 @@ class Box {
     return content;
   }
 
-  host::Folder given_, state_, runtime_, stick_;
+  host::Folder given_, state_, stick_;
   loop::Loop loop_;
   loop::Workers workers_{loop_, 1};
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  TakingOver taking_over_{store_, state_.path(), runtime_.path()};
+  TakingOver taking_over_{store_, state_.path()};
   std::optional<Spare> spare_;
 };
 
@@ -243,6 +244,23 @@ TEST(SpareBox, CountsItsRestsAndKeepsWhenTheyWere) {
   box.is_time_set = false;  // since then
   box.restart();
   EXPECT_EQ(about_of(box).told_at, about_of(box).at);
+}
+
+TEST(SpareBox, IsNotWokenUpIfItsFileCannotBeReadAndIsIfThatIsDamaged) {
+  Box box;
+  ASSERT_TRUE(box.spare().stand_by());
+  const std::filesystem::path file = box.state() / SpareFile::kName, elsewhere = box.state() / "elsewhere";
+  std::filesystem::rename(file, elsewhere);
+  std::filesystem::create_directory(file);
+  box.restart();
+  EXPECT_THAT(why(box.spare().resume()), HasSubstr("spare.json"));
+  std::filesystem::remove(file);
+  std::filesystem::rename(elsewhere, file);
+  box.restart();
+  EXPECT_NE(box.spare().standby(), "") << "it still rests";
+  box.state().put(SpareFile::kName, "no JSON");
+  box.restart();
+  EXPECT_TRUE(box.spare().resume());
 }
 
 TEST(SpareFile, NamesWhatWasTakenOverFromBefore) {

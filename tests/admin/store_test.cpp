@@ -182,14 +182,14 @@ TEST_F(StoreTest, SaysThatItCannotBeWritten) {
 }
 
 TEST_F(StoreTest, ForgetsAllThatWasSavedAndNothingElse) {
-  state_.put("ledger.sqlite", "reports");
+  state_.put("ledger", "reports");
   (void)store_.save(with_connections(30));
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));
   state_.put("settings.json.damaged", "what nobody could read");
   ASSERT_TRUE(store_.forget().has_value());
   for (const char* gone : {"settings.json", "settings.json.before", "settings.json.damaged", "secrets"})
     EXPECT_FALSE(kept(gone)) << gone;
-  EXPECT_TRUE(kept("ledger.sqlite"));
+  EXPECT_TRUE(kept("ledger"));
   EXPECT_EQ(connections(), 20u);
 }
 

@@ -49,24 +49,24 @@ class TakingOverTest : public testing::Test {
   }
   std::vector<dispatch::Report> reports() const {
     const auto ledger = ledger::Ledger::open(state_.path());
-    return ledger ? *ledger->reports() : std::vector<dispatch::Report>();
+    return ledger ? ledger->reports() : std::vector<dispatch::Report>();
   }
 
-  host::Folder given_, state_, runtime_;
+  host::Folder given_, state_;
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
-  TakingOver taking_over_{store_, state_.path(), runtime_.path()};
+  TakingOver taking_over_{store_, state_.path()};
   loop::Loop loop_;
 };
 
 TEST_F(TakingOverTest, DoesNothingUnlessItWasBegun) {
   EXPECT_EQ(taking_over_.finish(loop_), false);
-  EXPECT_FALSE(fs::exists(state_ / "ledger.sqlite"));
+  EXPECT_FALSE(fs::exists(state_ / "ledger"));
 }
 
 TEST_F(TakingOverTest, TakesReportsSettingsTokensAndStampsOnce) {
   store_.save_token("mapping", icd::BearerToken::parse("the-spare-s-own"));
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
-  EXPECT_FALSE(fs::exists(state_ / "ledger.sqlite")) << "nothing is changed while others use it";
+  EXPECT_FALSE(fs::exists(state_ / "ledger")) << "nothing is changed while others use it";
   ASSERT_EQ(taking_over_.finish(loop_), true);
   EXPECT_THAT(reports(), SizeIs(2));
   const auto loaded = store_.load();
@@ -77,8 +77,20 @@ TEST_F(TakingOverTest, TakesReportsSettingsTokensAndStampsOnce) {
   EXPECT_EQ(forward::StampFloor(state_.path()).read()->least, 9e9 / 2);
   EXPECT_EQ(SpareFile::read(state_.path())->taken.at(0).at, 100);
   EXPECT_EQ(taking_over_.finish(loop_), false);
-  EXPECT_TRUE(fs::is_empty(runtime_.path()));
   EXPECT_FALSE(fs::exists(state_ / "../../escaped.token"));
+}
+
+TEST_F(TakingOverTest, KeepsHowMuchTheLedgerHereHad) {
+  const dispatch::Report report = answered(1);
+  auto here = ledger::Ledger::open(state_.path());
+  ASSERT_TRUE(here->write({&report, 1}));
+  forward::StampFloor(state_.path()).write({.floor = 1, .ledger = here->known()});
+  here = std::unexpected(ledger::Error());  // it is closed
+  ASSERT_TRUE(taking_over_.begin(spare::write(content())));
+  ASSERT_EQ(taking_over_.finish(loop_), true);
+  const auto kept = forward::StampFloor(state_.path()).read();
+  EXPECT_EQ(kept->ledger.reports, 1);
+  EXPECT_EQ(kept->ledger.log, 1U);
 }
 
 TEST_F(TakingOverTest, IsDoneAgainWhereThePowerWentBeforeItsLastStep) {
@@ -100,8 +112,6 @@ TEST_F(TakingOverTest, EndsTheRestOfABoxThatTakesOver) {
 TEST_F(TakingOverTest, IsNotFinishedWhereItsLedgerIsNoneAndSaysSo) {
   spare::Content other = content();
   other.ledger = "no ledger";
-  other.ledger.resize(8192, 'x');
-  fs::create_directory(state_ / "ledger.sqlite");  // its own cannot be opened either
   ASSERT_TRUE(taking_over_.begin(spare::write(other)));
   const auto done = taking_over_.finish(loop_);
   ASSERT_FALSE(done);
@@ -136,10 +146,10 @@ TEST_F(TakingOverTest, CountsTheTimeOfTheSwapOnlyWhereBothTimesOfDayAreTold) {
     ASSERT_EQ(taking_over_.finish(loop_), true);
     const double stamp =
         forward::StampFloor(state_.path()).read()->least;  // ahead of the clock: as all of it
-    const auto runs = *ledger::Ledger::open(state_.path())->runs();
+    const auto runs = ledger::Ledger::open(state_.path())->runs();
     ASSERT_THAT(runs, SizeIs(1));
     EXPECT_NEAR(stamp - runs.at(0).heard, are_told ? 5010 : 10, 2);
-    fs::remove_all(state_ / "ledger.sqlite");
+    fs::remove_all(state_ / "ledger");
   }
 }
 

@@ -72,6 +72,7 @@ void the_box(std::vector<Facts>& days) {
   Facts& facts = days.back();
   facts.ledger_refusal = facts.disk.map = facts.disk.state = facts.disk.run = "no space";
   facts.ledger_damage = "its reports were recovered";
+  facts.put_aside = "aditd ended 3 times";
   facts.disk.free = 500u << 10;
   facts.time_set = false;
   facts.ntp_trouble = "the NTP server ADDRESS does not answer";

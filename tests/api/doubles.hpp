@@ -78,6 +78,7 @@ struct FakeOperator final : Operator {
     return {};
   }
   std::int64_t begin_run() override { return ++run; }
+  icd::Checked<std::string> begin_ledger() override { return ledger; }
   Time identify(double seconds) override {
     identified = seconds;
     return 1000 + seconds;
@@ -92,6 +93,7 @@ struct FakeOperator final : Operator {
   std::vector<std::string> acknowledged;
   std::string alarm_trouble;  // of acknowledge(), where there is any
   std::int64_t run = 1;
+  icd::Checked<std::string> ledger = "ledger.damaged-1";
   double identified = 0;  // seconds
 };
 

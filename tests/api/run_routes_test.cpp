@@ -43,6 +43,14 @@ TEST_F(RunRoutesTest, KnowNothingRejectedMessagesByWhatIsNoNumber) {
   EXPECT_TRUE(judge.judged_messages.empty());
 }
 
+TEST_F(RunRoutesTest, BeginALedgerInsteadOfOneThatCannotBeRead) {
+  EXPECT_EQ(post("/adit/ledger/new").body, R"({"kept_as":"ledger.damaged-1"})");
+  judge.ledger = std::unexpected(icd::Refusal{icd::Status::Conflict, "the ledger can be read"});
+  const auto answer = post("/adit/ledger/new");
+  EXPECT_EQ(answer.status, icd::Status::Conflict);
+  EXPECT_EQ(answer.body, R"("the ledger can be read")");
+}
+
 TEST_F(RunRoutesTest, MakeTheLightsBlinkAndSayUntilWhen) {
   const auto answer = identify(R"({"seconds": 12.5})");
   EXPECT_EQ(answer.status, icd::Status::Ok);

@@ -88,10 +88,10 @@ TEST(Options, NameTheWordThatIsWrong) {
   } cases[] = {
       {{},
        "a command is missing: status, watch, reports, rejected, run, runs, settings, course, identify, "
-       "network, clock, test, spare, update, check or complete"},
+       "network, clock, test, spare, ledger, update, check or complete"},
       {{"--json"},
        "a command is missing: status, watch, reports, rejected, run, runs, settings, course, identify, "
-       "network, clock, test, spare, update, check or complete"},
+       "network, clock, test, spare, ledger, update, check or complete"},
       {{"stat"}, "no such command: stat; did you mean status?"},
       {{"xyzzy"}, "no such command: xyzzy"},
       {{"help", "report"}, "no such command: report; did you mean reports?"},

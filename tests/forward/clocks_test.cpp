@@ -32,7 +32,7 @@ class ClocksTest : public testing::Test {
     return *clocks_->stamped(update, {.address = "10.0.0.5", .connection = connection}).at(0).stamp;
   }
   void keep() {
-    clocks_->keep(disk_);
+    clocks_->keep(disk_, {});
     ASSERT_TRUE(loop::turn_until(
         loop_, [&] { return std::filesystem::exists(folder_.path() + '/' + StampFloor::kFile); }));
   }
@@ -60,7 +60,7 @@ TEST_F(ClocksTest, AnUnreadableBoundOfTheStampsStaysAndCountsOnceItCanBeRead) {
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
   live();
   EXPECT_EQ(clocks_->unread(), "the last time stamps cannot be read: " + file + ": is not a regular file");
-  clocks_->keep(disk_);
+  clocks_->keep(disk_, {});
   bool is_written = false;
   disk_.submit([] {}, [&] { is_written = true; });
   ASSERT_TRUE(loop::turn_until(loop_, [&] { return is_written; }));

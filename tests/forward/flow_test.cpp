@@ -8,6 +8,7 @@
 #include "../uplink/peer.hpp"
 #include "host/folder.hpp"
 #include "journal/left_in.hpp"
+#include "loop/simulated_time.hpp"
 #include "loop/turn_until.hpp"
 #include "spool/bytes_read.hpp"
 #include "spool/messages.hpp"
@@ -27,13 +28,12 @@ class FlowTest : public testing::Test {
   void SetUp() override { live(); }
   void live() {
     flow_.reset();
-    flow_.emplace(loop_, ledger_, settings_,
-                  Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
-                  Flow::Folders{folder_.path(), folder_.path()},
-                  Flow::Told{.changed = [] {},
-                             .restart = [this] { restart_ = true; },
-                             .posted = [this](const std::string& name) { posted_.push_back(name); }});
-    ASSERT_TRUE(flow_->start());
+    flow_.emplace(
+        loop_, ledger_, settings_,
+        Tokens{.scoring = {}, .mapping = {}, .all = {*icd::BearerToken::parse("a-secret")}},
+        Flow::Folders{folder_.path(), folder_.path()},
+        Flow::Told{.changed = [] {}, .posted = [this](const std::string& name) { posted_.push_back(name); }});
+    flow_->start();
   }
   icd::Checked<void> take_map(icd::MapUpdate map = spool::cloud(3)) {
     std::optional<icd::Checked<void>> said;
@@ -67,7 +67,6 @@ class FlowTest : public testing::Test {
   settings::Settings settings_;
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
   std::vector<std::string> posted_;
-  bool restart_ = false;
   std::optional<Flow> flow_;
 };
 
@@ -168,7 +167,50 @@ TEST_F(FlowTest, EndsAndSendsNothingRejectedMessagesFromThenOn) {
   EXPECT_TRUE(flow_->is_ending());
   EXPECT_FALSE(flow_->rejected(1, api::RejectedAction::Discard));
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return over; }));
-  EXPECT_FALSE(restart_);
+}
+
+class FlowsLedger : protected loop::SimulatedTime, public FlowTest {
+ protected:
+  /// So much later, with all that was due on the disk.
+  void tick(loop::Duration passed) {
+    pass(passed);
+    flow_->tick(disk_);
+    ASSERT_TRUE(loop::turn_until_idle(loop_, disk_));
+  }
+  bool has(const std::string& beginning) const {
+    const std::filesystem::directory_iterator files(folder_ / "ledger");
+    return std::ranges::any_of(
+        files, [&](const auto& file) { return file.path().filename().string().starts_with(beginning); });
+  }
+
+  loop::Writer disk_{loop_};
+};
+
+TEST_F(FlowsLedger, HasASpareFileAMinuteAfterTheStartAndASnapshotOnceAFileIsFull) {
+  tick(Flow::kUpkeepEvery - std::chrono::seconds(1));
+  EXPECT_FALSE(has("spare-"));
+  tick(std::chrono::seconds(1));
+  EXPECT_TRUE(has("spare-"));
+  dispatch::Report report{.number = 1, .report = {"Backpack", {1, 2, 3}}, .sender = "10.0.0.7"};
+  report.answer.resize(1u << 20);
+  while (has("spare-")) ASSERT_TRUE(ledger_.write({&report, 1}));
+  EXPECT_FALSE(has("snapshot-"));
+  tick(std::chrono::seconds(1));
+  EXPECT_TRUE(has("snapshot-"));
+  tick(std::chrono::seconds(1));
+  EXPECT_TRUE(has("spare-"));
+  EXPECT_FALSE(ledger_.upkeep()) << "nothing is due";
+}
+
+TEST_F(FlowsLedger, IsKnownElsewhereAlsoWhileItCannotBeRead) {
+  StampFloor(folder_.path()).write({.floor = 1, .ledger = {.reports = 7, .log = 3}});
+  ledger_ = ledger::Ledger::closed("it cannot be read", {.reports = 7, .log = 3});
+  live();
+  tick(std::chrono::seconds(10));
+  const auto kept = StampFloor(folder_.path()).read();
+  EXPECT_GT(kept->floor, 1);
+  EXPECT_EQ(kept->ledger.reports, 7);
+  EXPECT_EQ(kept->ledger.log, 3U);
 }
 
 /// States go to a Command Post that accepts them.
@@ -208,9 +250,8 @@ class FlowThatSends : public testing::Test {
 TEST_F(FlowThatSends, RepeatsThePosesOfTheRunAndOfNoRunBefore) {
   Flow flow(loop_, ledger_, settings_,
             {.scoring = {}, .mapping = icd::BearerToken::parse("a-token"), .all = {}},
-            {folder_.path(), folder_.path()},
-            {.changed = [] {}, .restart = [] {}, .posted = [](const std::string&) {}});
-  ASSERT_TRUE(flow.start());
+            {folder_.path(), folder_.path()}, {.changed = [] {}, .posted = [](const std::string&) {}});
+  flow.start();
   sends(flow, "10.0.0.5", 50, "was_here");
   sends(flow, "10.0.0.6", 50, "goes_on");
   EXPECT_THAT(last(), testing::HasSubstr("was_here"));

@@ -133,8 +133,8 @@ class MapsOverRuns : public testing::Test {
     const auto token = icd::BearerToken::parse("a-token");
     flow_.emplace(loop_, ledger_, settings_, Tokens{.scoring = token, .mapping = token, .all = {*token}},
                   Flow::Folders{folder_.path(), folder_.path()},
-                  Flow::Told{.changed = [] {}, .restart = [] {}, .posted = [](const std::string&) {}});
-    ASSERT_TRUE(flow_->start());
+                  Flow::Told{.changed = [] {}, .posted = [](const std::string&) {}});
+    flow_->start();
   }
   const dispatch::Run& run() const { return flow_->reports().run(); }
   /// The next status.
@@ -233,10 +233,9 @@ TEST_F(MapsOverRuns, KeepAnAreaAfterAStopWithoutAWord) {
   begin_with_the_area();
   flow_.reset();
   auto known = ledger_.runs();
-  ASSERT_TRUE(known);
-  ASSERT_EQ(known->size(), 1U);
-  known->front().heard -= 3000;
-  ASSERT_TRUE(ledger_.write(known->front()));
+  ASSERT_EQ(known.size(), 1U);
+  known.front().heard -= 3000;
+  ASSERT_TRUE(ledger_.write(known.front()));
   live();
   hear({.clock = 602});
   ASSERT_EQ(run().number, 2);

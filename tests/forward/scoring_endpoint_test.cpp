@@ -74,12 +74,10 @@ class ScoringEndpoint : public testing::Test, protected AroundScoring {
     settings_.command_post.rates.reports_hz = settings_.command_post.rates.status_hz = 1000;
     settings_.command_post.scoring = here_.address();
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
-    scoring_.emplace(loop_, ledger_, settings_, token_, record_, random_, journal_,
-                     [this] { restart_ = true; });
-    EXPECT_TRUE(scoring_->start());
+    scoring_.emplace(loop_, ledger_, settings_, token_, record_, random_, journal_);
+    scoring_->start();
     EXPECT_TRUE(comes([this] { return scoring_->run().has_value(); }));
   }
-  void TearDown() override { EXPECT_FALSE(restart_); }
 
   bool comes(const std::function<bool()>& done) {
     return loop::turn_until(loop_, [&] {
@@ -100,7 +98,6 @@ class ScoringEndpoint : public testing::Test, protected AroundScoring {
 
   const std::optional<icd::BearerToken> token_ = icd::BearerToken::parse("a-token");
   ScoringPost here_, there_;
-  bool restart_ = false;
   std::vector<int> first_, second_;
   std::optional<Scoring> scoring_;
 };

@@ -26,7 +26,7 @@ class StampFloorTest : public testing::Test {
 TEST_F(StampFloorTest, IsNeverBelowAStampThatWasGivenOutWheneverThePowerIsCut) {
   StampFloor living(folder_.string());
   for (double now = 1.7e9; now < 1.7e9 + 100; now += 1) {  // once a second
-    if (const auto due = living.due(now, 5)) living.write(*due);
+    if (const auto due = living.due(now, 5, {})) living.write(*due);
     const double latest = now + 1 + lanes::StampShift::kJump;  // until it is asked again
     ASSERT_GT(StampFloor(folder_.string()).read()->floor, latest);
     ASSERT_LT(StampFloor(folder_.string()).read()->floor, now + 60) << "nor far ahead";
@@ -35,11 +35,11 @@ TEST_F(StampFloorTest, IsNeverBelowAStampThatWasGivenOutWheneverThePowerIsCut) {
 
 TEST_F(StampFloorTest, KeepsTheTimeOfDayBesideIt) {
   StampFloor living(folder_.string());
-  living.write(*living.due(1.7e9, 1.8e9));
+  living.write(*living.due(1.7e9, 1.8e9, {}));
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.8e9);
-  EXPECT_FALSE(living.due(1.7e9 + 1, 1.6e9));
+  EXPECT_FALSE(living.due(1.7e9 + 1, 1.6e9, {}));
   living.is_due();  // it was set
-  living.write(*living.due(1.7e9 + 1, 1.6e9));
+  living.write(*living.due(1.7e9 + 1, 1.6e9, {}));
   EXPECT_DOUBLE_EQ(StampFloor(folder_.string()).read()->wall, 1.6e9);
 }
 
@@ -48,14 +48,28 @@ TEST_F(StampFloorTest, KeepsTheLeastUntilTheStampsHavePassedIt) {
   EXPECT_EQ(StampFloor(folder_.string()).read()->least, 0);
   living.write({.floor = 1.7e9, .wall = 1.6e9, .least = 1.75e9});
   EXPECT_EQ(StampFloor(folder_.string()).read()->least, 1.75e9);
-  living.write(*living.due(1.75e9, 1.6e9));
+  living.write(*living.due(1.75e9, 1.6e9, {}));
   EXPECT_EQ(StampFloor(folder_.string()).read()->least, 0);
+}
+
+TEST_F(StampFloorTest, KeepsHowMuchTheLedgerHas) {
+  StampFloor living(folder_.string());
+  living.write(*living.due(1.7e9, 1.6e9, {.reports = 5000000000, .log = 12}));
+  EXPECT_EQ(StampFloor(folder_.string()).read()->ledger.reports, 5000000000);
+  EXPECT_EQ(StampFloor(folder_.string()).read()->ledger.log, 12U);
+  for (const char* text : {"1.7e9\n1.6e9\n", "1.7e9\n1.6e9\n0\nmany\n-1\n"}) {
+    std::ofstream(folder_ / StampFloor::kFile) << text;
+    const StampFloor::Kept kept = StampFloor(folder_.string()).read().value();
+    EXPECT_EQ(kept.floor, 1.7e9) << text;
+    EXPECT_EQ(kept.ledger.reports, 0) << text;
+    EXPECT_EQ(kept.ledger.log, 0U) << text;
+  }
 }
 
 TEST_F(StampFloorTest, IsWrittenSeldom) {
   StampFloor floor(folder_.string());
   int written = 0;
-  for (int second = 0; second < 100; ++second) written += floor.due(1.7e9 + second, 0) ? 1 : 0;
+  for (int second = 0; second < 100; ++second) written += floor.due(1.7e9 + second, 0, {}) ? 1 : 0;
   EXPECT_EQ(written, 10);
 }
 

@@ -18,7 +18,6 @@ void try_heads(Input);
 void try_journal(Input);
 void try_json(Input);
 void try_ledger(Input);
-void try_log(Input);
 void try_names(Input);
 void try_network(Input);
 void try_panel(Input);
@@ -33,14 +32,14 @@ void try_updates(Input);
 namespace {
 
 constexpr Target kTargets[] = {
-    {"accounts", try_accounts},   {"answer", try_answer},       {"base64", try_base64},
-    {"card", try_card, 300},      {"cbor", try_cbor},           {"chunks", try_chunks},
-    {"clock", try_clock},         {"coding", try_coding},       {"gzip", try_gzip},
-    {"heads", try_heads},         {"journal", try_journal},     {"json", try_json},
-    {"ledger", try_ledger, 50},   {"log", try_log, 300},        {"names", try_names},
-    {"network", try_network},     {"panel", try_panel},         {"rauc", try_rauc},
-    {"same_cbor", try_same_cbor}, {"same_json", try_same_json}, {"settings", try_settings},
-    {"spool", try_spool, 500},    {"store", try_store, 300},    {"updates", try_updates},
+    {"accounts", try_accounts},   {"answer", try_answer},     {"base64", try_base64},
+    {"card", try_card, 300},      {"cbor", try_cbor},         {"chunks", try_chunks},
+    {"clock", try_clock},         {"coding", try_coding},     {"gzip", try_gzip},
+    {"heads", try_heads},         {"journal", try_journal},   {"json", try_json},
+    {"ledger", try_ledger, 50},   {"names", try_names},       {"network", try_network},
+    {"panel", try_panel},         {"rauc", try_rauc},         {"same_cbor", try_same_cbor},
+    {"same_json", try_same_json}, {"settings", try_settings}, {"spool", try_spool, 500},
+    {"store", try_store, 300},    {"updates", try_updates},
 #ifdef ADIT_FUZZ_API
     {"api", try_api, 1500},
 #endif

@@ -223,7 +223,7 @@ TEST_F(JournalTest, SaysThatThereIsNoRoomAndKeepsWhatItHas) {
     const NoRoom none(size + room);
     const auto kept = journal->accepted(one_marker(2));
     ASSERT_FALSE(kept) << "with room for " << room << " bytes";
-    EXPECT_THAT(kept.error(), testing::HasSubstr("log-"));
+    EXPECT_THAT(kept.error(), testing::HasSubstr("journal: "));
     EXPECT_EQ(journal->trouble(), kept.error());
   }
   ASSERT_TRUE(journal->accepted(one_marker(3)));

@@ -1,7 +1,10 @@
 #include "loop/guard.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
+#include <csignal>
+#include <filesystem>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -62,6 +65,22 @@ TEST(UncaughtDeathTest, EndsTheProcessAndIsTold) {
               "the process: .*a timer's");
   EXPECT_EXIT(run([](Loop& loop, Source&) { loop.post([] { throw std::bad_alloc(); }); }),
               testing::ExitedWithCode(1), "the process: .*bad_alloc");
+}
+
+TEST(FaultsDeathTest, AreCountedByExceptionsAndSignalsOfTheProcessItself) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const std::string file = testing::TempDir() + "adit-faults";
+  const auto end = [&file](void (*fault)()) {
+    end_by_uncaught();
+    count_faults(::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
+    fault();
+  };
+  EXPECT_EXIT(end([] { std::terminate(); }), testing::ExitedWithCode(1), "");
+  EXPECT_EXIT(end([] { std::abort(); }), testing::KilledBySignal(SIGABRT), "");
+  EXPECT_EXIT(end([] { (void)::raise(SIGSEGV); }), testing::KilledBySignal(SIGSEGV), "");
+  EXPECT_EXIT(end([] { (void)::raise(SIGTERM); }), testing::KilledBySignal(SIGTERM), "") << "somebody else's";
+  EXPECT_EQ(std::filesystem::file_size(file), 3u);
+  std::filesystem::remove(file);
 }
 
 TEST_F(Guard, EndsTheJobThatThrowsAndTellsWhoeverWaitsForIt) {

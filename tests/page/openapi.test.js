@@ -134,6 +134,7 @@ test("every path and method does as it is described to an operator", async (t) =
     "POST /adit/spare/resume", "GET /adit/spare/export", "POST /adit/spare/to-stick", // it does not rest
     "POST /adit/spare/from-stick", // nor is a stick in it
     "POST /adit/spare/take", "POST /adit/spare/open", "POST /adit/spare/take-over", // and no other box does
+    "POST /adit/ledger/new", // the ledger can be read
     "POST /adit/clock"]; // and nobody sets the clock here
   for (const each of operations) {
     const name = `${each.method} ${each.path}`;

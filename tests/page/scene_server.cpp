@@ -67,6 +67,7 @@ class Stage final : public Source, public Operator {
     return played_.acknowledge(view(), id);
   }
   std::int64_t begin_run() override { return played_.begin_run(view()); }
+  icd::Checked<std::string> begin_ledger() override { return "ledger.damaged-1"; }
   Time identify(double seconds) override {
     identify_until_ = loop_.wall_now() + seconds;
     return identify_until_;
@@ -102,7 +103,7 @@ void furnish(FakeBox& box, Time now) {
               .kernel = "Linux 6.1.0 aarch64",
               .model = "A board",
               .parts = {{.name = "zlib", .version = "1.2.13", .licence = "Zlib"},
-                        {.name = "SQLite", .version = "3.40.1", .licence = "blessing"}}};
+                        {.name = "libdeflate", .version = "1.14", .licence = "MIT"}}};
   box.say(5, "notice", "listening", "10.0.0.1:8000");
   box.say(6, "info", "refused", "msg.info.width: expected a whole number, got a string");
   box.say(4, "warning", "the Command Post refused a state", "<img src=x onerror=window.pwned=1>");

@@ -52,7 +52,8 @@ Broken all_checks(const Evidence& evidence) {
         has_room})
     check(evidence, broken);
   const std::vector<Event> told = with_losses(evidence.events);
-  const Evidence with_them{told, evidence.reports, evidence.readings, evidence.most_map_bytes};
+  const Evidence with_them{told, evidence.reports, evidence.readings, evidence.most_map_bytes,
+                           evidence.missing};
   for (const auto check : {cloud_arrived, markers_arrived, pose_arrived, grid_arrived})
     check(with_them, broken);
   return broken;

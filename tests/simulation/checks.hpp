@@ -18,6 +18,7 @@ struct Evidence {
   const std::vector<dispatch::Report>& reports;  // of the ledger
   const std::vector<Reading>& readings;          // of the page
   std::size_t most_map_bytes = 0;                // that wait at once, by the first settings
+  std::size_t missing = 0;                       // records of the ledger
 };
 
 /// The window of the world's clock in which something was that the box has as from `first` to `last` by its

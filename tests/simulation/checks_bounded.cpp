@@ -10,8 +10,11 @@ namespace adit::simulation {
 namespace {
 
 constexpr std::uint64_t kMiB = 1u << 20;
-/// A ledger's file and its log, of which 4 MiB are reserved.
-constexpr std::uint64_t kLedger = 6 * kMiB;
+/// The log that is written, a spare one, and one for each of the disk's faults, which begin another one:
+/// until there are two snapshots. With all else in the state folder.
+constexpr std::uint64_t kStateFolder = 26 * kMiB;
+/// What stays of a damaged ledger.
+constexpr std::uint64_t kDamaged = 5 * kMiB;
 /// The journal that is written, and the one that is made smaller beside its snapshot.
 constexpr std::uint64_t kJournal = 5 * kMiB / 2;
 /// The sessions, and the rejected messages of a run.
@@ -25,9 +28,9 @@ constexpr Most kLists[] = {{"activities", 200}, {"refusals", 50}, {"reports", 20
 
 class Looking {
  public:
-  /// `ledgers`: that may be there: the one in use, and each damaged one that was rejected, with its log.
-  Looking(const Reading& reading, std::uint64_t ledgers, Broken& broken)
-      : reading_(reading), ledgers_(ledgers * kLedger), broken_(broken) {}
+  /// `damaged`: so many damaged ledgers were put aside.
+  Looking(const Reading& reading, std::uint64_t damaged, Broken& broken)
+      : reading_(reading), state_(kStateFolder + damaged * kDamaged), broken_(broken) {}
 
   void at(const char* what, std::uint64_t bytes, std::uint64_t most) {
     if (bytes > most)
@@ -38,29 +41,25 @@ class Looking {
     for (const auto& [list, rows] : kLists) at(list, reading_.view.at(list).size(), rows);
   }
   void at_files() {
-    at("bytes in the state folder", reading_.stored.state, ledgers_);
+    at("bytes in the state folder", reading_.stored.state, state_);
     at("bytes of the journal", reading_.stored.journal, kJournal);
-    // One may stand in for another until the gateway has restarted.
-    at("bytes of what stands in for the ledger", reading_.stored.others, ledgers_ + kLedger + kBeside);
-  }
-  void at_rest() {
-    at("bytes of maps that wait no more", reading_.stored.waiting, 0);
     at("bytes in the runtime folder", reading_.stored.others, kBeside);
   }
+  void at_rest() { at("bytes of maps that wait no more", reading_.stored.waiting, 0); }
 
  private:
   const Reading& reading_;
-  std::uint64_t ledgers_;
+  std::uint64_t state_;
   Broken& broken_;
 };
 
 /// When so many events had happened.
-std::uint64_t ledgers_after(std::size_t events, const Evidence& evidence) {
+std::uint64_t damaged_after(std::size_t events, const Evidence& evidence) {
   const auto was_damaged = [](const Event& event) {
     return event.kind == Kind::Said && event.text.contains("The ledger was damaged");
   };
-  return 1 + static_cast<std::uint64_t>(
-                 std::ranges::count_if(evidence.events | std::views::take(events), was_damaged));
+  return static_cast<std::uint64_t>(
+      std::ranges::count_if(evidence.events | std::views::take(events), was_damaged));
 }
 
 bool nothing_waits(const nlohmann::json& view) {
@@ -77,14 +76,14 @@ void bounded(const Evidence& evidence, Broken& broken) {
       broken.push_back(icd::sentence("Bounded: at ", event.at, " ", event.text));
   }
   for (const Reading& reading : evidence.readings) {
-    Looking looking(reading, ledgers_after(reading.heard, evidence), broken);
+    Looking looking(reading, damaged_after(reading.heard, evidence), broken);
     looking.at_lists();
     looking.at_files();
     if (reading.at < changed)
       looking.at("bytes of maps", reading.view.at("queued_bytes"), evidence.most_map_bytes);
   }
   if (evidence.readings.empty() || !nothing_waits(evidence.readings.back().view)) return;
-  Looking(evidence.readings.back(), 1, broken).at_rest();
+  Looking(evidence.readings.back(), 0, broken).at_rest();
 }
 
 }  // namespace adit::simulation

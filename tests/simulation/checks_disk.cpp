@@ -3,23 +3,10 @@
 #include "simulation/checks.hpp"
 
 namespace adit::simulation {
-namespace {
-
-/// A life may end before it has begun where its disk has a fault, and there is no room for what would stand
-/// in for the ledger.
-bool may_not_begin(const DiskFaultsSeen& seen) {
-  const bool has_fault =
-      seen.in_this_life("Full") || seen.in_this_life("ReadOnly") || seen.in_this_life("SyncFails");
-  return has_fault && seen.in_this_life("RuntimeFull");
-}
-
-}  // namespace
 
 void starts(const Evidence& evidence, Broken& broken) {
-  DiskFaultsSeen seen;
   for (const Event& event : evidence.events) {
-    seen.add(event);
-    if (event.kind == Kind::Fails && !may_not_begin(seen))
+    if (event.kind == Kind::Fails)
       broken.push_back(icd::sentence("Starts: life ", event.life, " did not begin, at ", event.at));
   }
 }

@@ -73,6 +73,8 @@ void once(const Evidence& evidence, Broken& broken) {
 }
 
 void not_lost(const Evidence& evidence, Broken& broken) {
+  if (evidence.missing > 0)
+    broken.push_back(icd::sentence("NotLost: ", evidence.missing, " records of the ledger are missing"));
   const auto records = first_records(evidence);
   std::set<std::int64_t> blurred;
   for (const dispatch::Report& report : evidence.reports) {

@@ -1,6 +1,5 @@
 #include "simulation/disk.hpp"
 
-#include <sqlite3.h>
 #include <sys/stat.h>
 
 #include <algorithm>
@@ -51,20 +50,11 @@ std::string mark_of(const std::string& bytes) {
   return std::to_string(hash % 1000000);
 }
 
-/// The salts of the ledger's log, and so its bytes, come from the run's seed.
-int seed_sqlite(sqlite3_vfs*, int size, char* bytes) {
-  Random random = World::current().random("sqlite");
-  std::generate_n(bytes, size, [&random] { return static_cast<char>(random.next()); });
-  return size;
-}
-
 }  // namespace
 
 Disk::Disk(World& world)
     : world_(world), random_(world.random("disk")), unique_(world.random("names")), faults_(world) {
   the_disk = this;
-  sqlite3_vfs_find(nullptr)->xRandomness = &seed_sqlite;
-  sqlite3_randomness(0, nullptr);  // of the run before nothing is left
 }
 
 Disk::~Disk() {
@@ -136,6 +126,11 @@ std::uint64_t Disk::room(int folder, const char* path) {
   return is_full(name) ? faults_.room(is_in_memory(name)) : kRoom;
 }
 
+std::uint64_t Disk::room(int fd) {
+  const std::string& name = open_.at(fd).name;
+  return is_full(name) ? faults_.room(is_in_memory(name)) : kRoom;
+}
+
 std::optional<Content> Disk::content_of(const std::string& name) const {
   if (is_in_memory(name) || is_folder(folder_ + name)) return std::nullopt;
   const int file = real::open(AT_FDCWD, (folder_ + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
@@ -152,6 +147,9 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
   struct stat found{};
   const bool is_there = ::fstatat(folder, path, &found, 0) == 0;
   if (!is_there && (flags & O_CREAT) == 0) return -1;
+  const bool is_file = is_there && S_ISREG(found.st_mode);
+  if (!writes && is_file && name.starts_with("state/") && faults_.is(DiskFaults::Kind::Unreadable))
+    return fail(EIO);
   const bool makes = (flags & O_CREAT) != 0 && !is_there;
   const bool cuts = writes && (flags & O_TRUNC) != 0 && is_there && found.st_size > 0;
   if ((writes || makes) && is_read_only(name)) return fail(EROFS);
@@ -298,6 +296,23 @@ int Disk::make_folder(int folder, const char* path, mode_t mode) {
   const int result = real::make_folder(folder, path, mode);
   if (result == 0 && !world_.is_dead() && !is_in_memory(name)) unsynced_.made(name);
   return result;
+}
+
+int Disk::link(int from_folder, const char* from, int to_folder, const char* to) {
+  const std::string name = name_of(to_folder, to);
+  if (is_read_only(name)) return fail(EROFS);
+  if (is_full(name) && faults_.room(is_in_memory(name)) == 0) return fail(ENOSPC);
+  world_.crossing();
+  const int result = real::link(from_folder, from, to_folder, to);
+  if (result == 0 && !world_.is_dead() && !is_in_memory(name)) unsynced_.made(name);
+  return result;
+}
+
+bool Disk::fill_random(void* bytes, std::size_t size) {
+  if (the_disk == nullptr) return false;
+  std::generate_n(static_cast<char*>(bytes), size,
+                  [] { return static_cast<char>(the_disk->unique_.below(256)); });
+  return true;
 }
 
 std::string Disk::settings() const {

@@ -57,13 +57,17 @@ class Disk {
   int rename(int from_folder, const char* from, int to_folder, const char* to);
   int unlink(int folder, const char* path, int flags);
   int make_folder(int folder, const char* path, mode_t mode);
+  int link(int from_folder, const char* from, int to_folder, const char* to);
   int may_change(int folder, const char* path);
   /// Six letters for a new name.
   std::string unique();
+  /// Bytes that come from the run's seed. False: no run is on.
+  static bool fill_random(void* bytes, std::size_t size);
   /// The bytes of all files whose names below the folder begin so.
   std::uint64_t stored(const std::string& beginning) const;
   /// Bytes that are left in the file system of that path.
   std::uint64_t room(int folder, const char* path);
+  std::uint64_t room(int fd);
 
  private:
   struct Open {

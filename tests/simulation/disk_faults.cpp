@@ -7,7 +7,7 @@
 namespace adit::simulation {
 namespace {
 
-constexpr const char* kDiskFaults[] = {"Full", "SyncFails", "ReadOnly", "Slow", "RuntimeFull"};
+constexpr const char* kDiskFaults[] = {"Full", "SyncFails", "ReadOnly", "Slow", "RuntimeFull", "Unreadable"};
 constexpr double kSlowest = 5;  // seconds that a sync takes
 
 }  // namespace
@@ -18,10 +18,13 @@ DiskFaults::DiskFaults(World& world)
 void DiskFaults::plan(double trouble_for) {
   const std::uint64_t kinds = random_.chance(0.5) ? 0 : 1 + random_.below(2);
   for (std::uint64_t i = 0; i < kinds; ++i) {
-    const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::End)));
+    const auto kind = static_cast<Kind>(random_.below(static_cast<std::uint64_t>(Kind::Unreadable)));
     names_.append(names_.empty() ? "; disk: " : " ").append(kDiskFaults[static_cast<int>(kind)]);
     for (std::uint64_t times = 1 + random_.below(2); times > 0; --times) plan(kind, trouble_for);
   }
+  if (!world_.random("unreadable").chance(0.1)) return;
+  names_.append(names_.empty() ? "; disk: " : " ").append("Unreadable");
+  plan(Kind::Unreadable, trouble_for);
 }
 
 /// A time of trouble may begin with the run.

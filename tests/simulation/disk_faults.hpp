@@ -18,6 +18,7 @@ class DiskFaults {
     ReadOnly,
     Slow,         // some syncs take up to 5 s
     RuntimeFull,  // the folder in memory
+    Unreadable,   // a file that is opened to be read
     End
   };
 

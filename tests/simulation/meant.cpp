@@ -17,7 +17,7 @@ constexpr double kShortly = 25;
 constexpr double kSwitching = 0.01;
 /// Seconds within which what a client asked may still count that heard nothing.
 constexpr double kUnknown = 12;
-constexpr const char* kStandsIn = "rejecting reports: the ledger cannot be written";
+constexpr const char* kUnwritten = "rejecting reports: the ledger cannot be written";
 
 }  // namespace
 
@@ -72,10 +72,10 @@ void Meant::add(const Event& event) {
   const bool is_status = event.kind == Kind::Replied && event.what == kStatus && !event.says.empty();
   if (is_status) heard_.insert(static_cast<int>(event.serial));
   const bool is_said = event.kind == Kind::Said;
-  // What stood in for the ledger is gone, and what was heard meanwhile with it.
-  if (stands_in_ && event.kind == Kind::Begins) heard_ = heard_before_;
-  if (event.kind == Kind::Begins) stands_in_ = false;
-  if (is_said && event.text.contains(kStandsIn)) stands_in_ = true;
+  // What was heard while the ledger could not be written is forgotten.
+  if (unwritten_ && event.kind == Kind::Begins) heard_ = heard_before_;
+  if (event.kind == Kind::Begins) unwritten_ = false;
+  if (is_said && event.text.contains(kUnwritten)) unwritten_ = true;
   if (event.kind == Kind::Begins) heard_before_ = heard_;
   if (event.actor != Actor::Team) return;
   if (event.what == kCourse) {

@@ -45,7 +45,7 @@ class Meant {
   std::map<std::uint64_t, Open> open_;  // requests that may still count
   std::map<int, double> run_began_;
   std::set<int> heard_, heard_before_;  // before this life
-  bool stands_in_ = false;              // something else for the ledger
+  bool unwritten_ = false;              // the ledger could not be written in this life
   int place_ = 0, before_ = 0;
   double switched_ = -1e9;
   bool unsure_ = false;  // whether the last switch was made

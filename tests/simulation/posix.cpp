@@ -1,5 +1,5 @@
 // The calls of libc that change files, in front of libc's own (ELF: the program's come before a library's),
-// so that SQLite's and libstdc++'s go to the simulated disk, too. What does not belong to the box's folder
+// so that libstdc++'s go to the simulated disk, too. What does not belong to the box's folder
 // goes straight to the kernel. They bear names of their own, for libc's headers say more of theirs than is
 // wanted.
 #include <dlfcn.h>
@@ -55,15 +55,26 @@ std::FILE* open_stream(const char* path, const char* mode) {
   return fd < 0 ? nullptr : ::fdopen(fd, mode);
 }
 
+void tell_space(std::uint64_t room, struct statvfs* space) {
+  space->f_bsize = space->f_frsize = 4096;
+  space->f_blocks = Disk::kRoom / 4096;
+  space->f_bfree = space->f_bavail = room / 4096;
+}
+
 int space_of(const char* path, struct statvfs* space) {
   const auto next = reinterpret_cast<int (*)(const char*, struct statvfs*)>(::dlsym(RTLD_NEXT, "statvfs"));
   const int result = next(path, space);
   Disk* const disk = Disk::of(AT_FDCWD, path);
-  if (result != 0 || disk == nullptr) return result;
-  space->f_bsize = space->f_frsize = 4096;
-  space->f_blocks = Disk::kRoom / 4096;
-  space->f_bfree = space->f_bavail = disk->room(AT_FDCWD, path) / 4096;
-  return 0;
+  if (result == 0 && disk != nullptr) tell_space(disk->room(AT_FDCWD, path), space);
+  return result;
+}
+
+int space_of(int fd, struct statvfs* space) {
+  const auto next = reinterpret_cast<int (*)(int, struct statvfs*)>(::dlsym(RTLD_NEXT, "fstatvfs"));
+  const int result = next(fd, space);
+  Disk* const disk = Disk::of(fd);
+  if (result == 0 && disk != nullptr) tell_space(disk->room(fd), space);
+  return result;
 }
 
 mode_t mode_in(int flags, std::va_list arguments) {
@@ -109,8 +120,13 @@ int adit_unlinkat(int folder, const char* path, int flags) ADIT_STANDS_FOR("unli
 int adit_remove(const char* path) ADIT_STANDS_FOR("remove");
 int adit_rmdir(const char* path) ADIT_STANDS_FOR("rmdir");
 int adit_mkdir(const char* path, mode_t mode) ADIT_STANDS_FOR("mkdir");
+int adit_mkdirat(int folder, const char* path, mode_t mode) ADIT_STANDS_FOR("mkdirat");
+int adit_linkat(int from_folder, const char* from, int to_folder, const char* to, int flags)
+    ADIT_STANDS_FOR("linkat");
+ssize_t adit_getrandom(void* bytes, std::size_t size, unsigned flags) ADIT_STANDS_FOR("getrandom");
 int adit_chmod(const char* path, mode_t mode) ADIT_STANDS_FOR("chmod");
 int adit_statvfs(const char* path, struct statvfs* space) ADIT_STANDS_FOR("statvfs");
+int adit_fstatvfs(int fd, struct statvfs* space) ADIT_STANDS_FOR("fstatvfs");
 int adit_close(int fd) ADIT_STANDS_FOR("close");
 
 int adit_open(const char* path, int flags, ...) {
@@ -244,9 +260,21 @@ int adit_remove(const char* path) {
   if (adit_unlink(path) == 0) return 0;
   return errno == EISDIR ? adit_rmdir(path) : -1;
 }
+int adit_mkdirat(int folder, const char* path, mode_t mode) {
+  Disk* const disk = Disk::of(folder, path);
+  return disk != nullptr ? disk->make_folder(folder, path, mode) : real::make_folder(folder, path, mode);
+}
 int adit_mkdir(const char* path, mode_t mode) {
-  Disk* const disk = Disk::of(AT_FDCWD, path);
-  return disk != nullptr ? disk->make_folder(AT_FDCWD, path, mode) : real::make_folder(AT_FDCWD, path, mode);
+  return adit_mkdirat(AT_FDCWD, path, mode);
+}
+int adit_linkat(int from_folder, const char* from, int to_folder, const char* to, int flags) {
+  Disk* const disk = Disk::of(to_folder, to);
+  return disk != nullptr ? disk->link(from_folder, from, to_folder, to)
+                         : static_cast<int>(::syscall(SYS_linkat, from_folder, from, to_folder, to, flags));
+}
+ssize_t adit_getrandom(void* bytes, std::size_t size, unsigned flags) {
+  return Disk::fill_random(bytes, size) ? static_cast<ssize_t>(size)
+                                        : ::syscall(SYS_getrandom, bytes, size, flags);
 }
 int adit_chmod(const char* path, mode_t mode) {
   Disk* const disk = Disk::of(AT_FDCWD, path);
@@ -255,6 +283,9 @@ int adit_chmod(const char* path, mode_t mode) {
 }
 int adit_statvfs(const char* path, struct statvfs* space) {
   return space_of(path, space);
+}
+int adit_fstatvfs(int fd, struct statvfs* space) {
+  return space_of(fd, space);
 }
 int adit_close(int fd) {
   Disk::forget(fd);

@@ -27,7 +27,7 @@ inline bool may_be_hole(int fd, std::span<const char> bytes, off_t at) {
   return bytes.size() >= 4096 && bytes[0] == 0 && std::memcmp(&bytes[0], &bytes[1], bytes.size() - 1) == 0 &&
          ::fstat(fd, &file) == 0 && S_ISREG(file.st_mode) && file.st_size <= at;
 }
-/// The ledger's log begins as 4 MiB of zeros in each life: a hole takes no time to make and to copy.
+/// A file of the ledger begins as 4 MiB of zeros: a hole takes no time to make and to copy.
 inline ssize_t write_at(int fd, std::span<const char> bytes, off_t at) {
   const auto size = static_cast<ssize_t>(bytes.size());
   if (may_be_hole(fd, bytes, at)) return truncate(fd, at + size) == 0 ? size : -1;
@@ -41,6 +41,9 @@ inline int sync(int fd) {
 }
 inline int rename(int from_folder, const char* from, int to_folder, const char* to) {
   return static_cast<int>(::syscall(SYS_renameat2, from_folder, from, to_folder, to, 0));
+}
+inline int link(int from_folder, const char* from, int to_folder, const char* to) {
+  return static_cast<int>(::syscall(SYS_linkat, from_folder, from, to_folder, to, 0));
 }
 inline int unlink(int folder, const char* path, int flags) {
   return static_cast<int>(::syscall(SYS_unlinkat, folder, path, flags));

@@ -1,10 +1,10 @@
 #include "simulation/run.hpp"
 
-#include "ledger/ledger.hpp"
 #include "simulation/box.hpp"
 #include "simulation/checks.hpp"
 #include "simulation/courses.hpp"
 #include "simulation/judge.hpp"
+#include "simulation/ledger_reading.hpp"
 #include "simulation/operator.hpp"
 #include "simulation/reader.hpp"
 #include "simulation/team.hpp"
@@ -46,12 +46,6 @@ void plan_clock(World& world, double trouble_for) {
   }
 }
 
-std::vector<dispatch::Report> reports_in(const std::string& folder) {
-  const auto ledger = ledger::Ledger::open(folder);
-  if (!ledger) return {};
-  return ledger->reports().value_or(std::vector<dispatch::Report>());
-}
-
 }  // namespace
 
 Outcome play(const Plan& plan) {
@@ -74,13 +68,14 @@ Outcome play(const Plan& plan) {
   world.after(seconds(trouble_for), [&] { posts.calm(); });
   reader.wait_for_rest(trouble_for + kLeastRest, trouble_for + kMostRest, [&] { box.finish(); });
   box.live();
+  const LedgerReading ledger = read_ledger(box.state() + "/ledger");
   return {.hash = world.history().hash(),
           .seconds = world.time(),
           .steps = world.steps(),
           .faults = world.history().faults(),
           .drawn = faults.names() + world.disk().faults().names(),
-          .broken = all_checks(
-              {world.history().events(), reports_in(box.state()), reader.readings(), box.most_map_bytes()}),
+          .broken = all_checks({world.history().events(), ledger.reports, reader.readings(),
+                                box.most_map_bytes(), ledger.missing}),
           .actions = world.actions()};
 }
 

@@ -20,7 +20,7 @@ Content content() {
   content.settings = "{\"version\": 1}\n";
   content.tokens.emplace("scoring", *icd::BearerToken::parse("scoring-token"));
   content.tokens.emplace("course.A.mapping", *icd::BearerToken::parse("mapping-token"));
-  content.ledger = std::string("SQLite\0\nformat 3", 16);
+  content.ledger = std::string("records\0\n of it", 15);
   return content;
 }
 

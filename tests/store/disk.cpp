@@ -8,7 +8,6 @@
 #include <cstdarg>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -23,8 +22,10 @@ namespace real = simulation::real;
 Disk* the_one = nullptr;
 
 std::string read_file(const fs::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
+  if (!fs::is_regular_file(path)) return "";
+  std::string bytes(fs::file_size(path), '\0');
+  std::ifstream(path, std::ios::binary).read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
 }
 
 std::string path_of(int fd) {
@@ -34,7 +35,8 @@ std::string path_of(int fd) {
 
 }  // namespace
 
-Disk::Disk(Random random) : random_(random), unsynced_(std::make_unique<simulation::Unsynced>()) {
+Disk::Disk(Random random, std::string directory)
+    : random_(random), directory_(std::move(directory)), unsynced_(std::make_unique<simulation::Unsynced>()) {
   std::string name =
       (fs::exists("/dev/shm") ? "/dev/shm" : fs::temp_directory_path().native()) + "/adit-store-XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) std::abort();
@@ -92,7 +94,8 @@ std::string Disk::name_of(int fd) const {
 }
 
 void Disk::may_be_killed() {
-  if (is_dead_ || !random_.chance(kills)) return;
+  const bool is_due = kill_at != 0 && --kill_at == 0;
+  if (is_dead_ || !(is_due || random_.chance(kills))) return;
   is_dead_ = true;
   throw Killed();
 }
@@ -112,7 +115,13 @@ std::optional<simulation::Content> Disk::content(const std::string& name) const 
 int Disk::open(int folder, const char* name, int flags, mode_t mode) {
   const bool makes = (flags & O_CREAT) != 0;
   may_be_killed();
-  if (fails(failing_opens, EMFILE) || (makes && fails(full, ENOSPC))) return -1;
+  if (is_read_only && (makes || (flags & O_ACCMODE) != O_RDONLY)) {
+    errno = EROFS;
+    return -1;
+  }
+  const bool is_failing = !failing_file.empty() && std::string_view(name).starts_with(failing_file);
+  if (fails(is_failing ? 1 : 0, EIO) || fails(failing_opens, EMFILE) || (makes && fails(full, ENOSPC)))
+    return -1;
   if (is_dead_ && makes) return -1;
   const int fd =
       real::open(folder, name, (flags & O_ACCMODE) == O_WRONLY ? (flags & ~O_ACCMODE) | O_RDWR : flags, mode);
@@ -157,18 +166,19 @@ int Disk::sync(int fd) {
 }
 
 int Disk::rename(const char* from, const char* to) {
-  if (is_dead_ || fails(full, ENOSPC)) return -1;
+  may_be_killed();
+  if (is_dead_ || fails(failing_writes, EIO)) return -1;
   const int result =
       real::rename(AT_FDCWD, (log() + '/' + from).c_str(), AT_FDCWD, (log() + '/' + to).c_str());
-  if (result == 0) unsynced_->renamed(std::string("log/") + from, std::string("log/") + to, std::nullopt);
+  if (result == 0) unsynced_->renamed(directory_ + '/' + from, directory_ + '/' + to, std::nullopt);
   return result;
 }
 
 int Disk::remove(const char* name) {
   if (is_dead_ || fails(failing_writes, EIO)) return -1;
-  auto removed = content(std::string("log/") + name);
+  auto removed = content(directory_ + '/' + name);
   const int result = real::unlink(AT_FDCWD, (log() + '/' + name).c_str(), 0);
-  if (result == 0) unsynced_->removed(std::string("log/") + name, std::move(removed));
+  if (result == 0) unsynced_->removed(directory_ + '/' + name, std::move(removed));
   return result;
 }
 

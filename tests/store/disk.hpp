@@ -20,12 +20,14 @@ class Disk {
   /// The process is killed: thrown by a call of libc.
   struct Killed {};
 
-  explicit Disk(Random random);
+  /// `directory`: of the log, below a directory of the test's own.
+  explicit Disk(Random random, std::string directory = "log");
   ~Disk();
   Disk(const Disk&) = delete;
   Disk& operator=(const Disk&) = delete;
 
-  std::string log() const { return path_ + "/log"; }
+  const std::string& path() const { return path_; }
+  std::string log() const { return path_ + '/' + directory_; }
   /// The process that starts next.
   void start();
   /// What is not synced may be lost.
@@ -36,6 +38,9 @@ class Disk {
 
   // Chances, for each call.
   double kills = 0, failing_syncs = 0, failing_writes = 0, full = 0, failing_opens = 0;
+  bool is_read_only = false;
+  std::string failing_file = "";  // no file whose name begins so can be opened
+  std::size_t kill_at = 0;        // so many calls from now; 0: never
 
   // For disk.cpp alone.
   static Disk* of(int fd, const char* name);
@@ -46,10 +51,6 @@ class Disk {
   int remove(const char* name);
 
  private:
-  struct Open {
-    std::string name;
-    bool is_folder;
-  };
   void may_be_killed();
   bool fails(double chance, int error);
   std::optional<simulation::Content> content(const std::string& name) const;
@@ -57,6 +58,7 @@ class Disk {
 
   Random random_;
   std::string path_;
+  const std::string directory_;
   std::unique_ptr<simulation::Unsynced> unsynced_;
   bool is_dead_ = false;
 };

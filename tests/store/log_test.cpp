@@ -91,6 +91,41 @@ TEST_F(LogTest, OneDamagedCopyIsToldAndWrittenAgain) {
   EXPECT_EQ(small_.files(), files_);
 }
 
+/// A kill or a power cut tore it: nothing followed from it.
+TEST_F(LogTest, OneTornCopyOfTheLastRecordIsNoDamage) {
+  small_.fill({"a", "b"}, Durability::Now);
+  files_ = small_.files();
+  damage(files_.begin()->first, 2 * 1024 + 512, 512);
+  const auto opened = small_.open();
+  EXPECT_THAT(bodies(opened.contents), ElementsAre("a", "b"));
+  EXPECT_THAT(opened.contents.notes, IsEmpty());
+}
+
+/// A start writes into the file, and may be killed before a snapshot stands for what is left.
+TEST_F(LogTest, AFileThatIsCutIsToldAtEachStart) {
+  small_.fill({"a"}, Durability::Now);
+  for (const std::size_t size : {0, 700, 2048}) {
+    files_ = small_.files();
+    small_.write(files_.begin()->first, files_.begin()->second.substr(0, size));
+    EXPECT_TRUE(has_gap(small_.open().contents)) << size;
+    EXPECT_TRUE(has_gap(small_.open().contents)) << size;
+    small_.write(files_.begin()->first, files_.begin()->second);
+  }
+}
+
+TEST_F(LogTest, TakesAllLogsIfTheFirstSnapshotIsDamaged) {
+  small_.fill({"a"}, Durability::Now);
+  small_.snapshot({"A"});
+  small_.fill({"b"}, Durability::Now);
+  EXPECT_TRUE(small_.read()->has(1) && small_.read()->has(2));
+  EXPECT_FALSE(small_.read()->has(3));
+  files_ = small_.files();
+  damage(files_.rbegin()->first, 0, files_.rbegin()->second.size());
+  const auto opened = small_.open();
+  EXPECT_THAT(bodies(opened.contents), ElementsAre("a", "b"));
+  EXPECT_THAT(opened.contents.notes, ElementsAre(HasSubstr("a damaged snapshot")));
+}
+
 TEST_F(LogTest, GoesBackToTheSnapshotBeforeIfTheLastOneIsDamaged) {
   small_.fill({"a"}, Durability::Now);
   small_.snapshot({"A"});

@@ -7,16 +7,14 @@ import math
 import os
 import pathlib
 import re
-import shutil
 import signal
 import socket
-import sqlite3
 import subprocess
 import sys
 import tempfile
-import time
 
 import hosts
+import ledger_files
 
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1]))
 from patience import patient, wait_until  # noqa: E402, after the path is set
@@ -215,18 +213,11 @@ class Box(Program, Page):
         super().__init__(network, network.box, folder / "aditd.log", command)
         wait_until(self._answers, "aditd to listen")
 
-    def on_disk(self, query="SELECT state FROM report ORDER BY number"):
-        """Rows of the ledger; of one column: its values. From a copy, as aditd keeps the ledger to itself, and again
-        where that was torn."""
-        for _ in range(50):
-            with tempfile.TemporaryDirectory() as copy, contextlib.suppress(sqlite3.Error, OSError):
-                for file in self.state.glob("ledger.sqlite*"):
-                    shutil.copy(file, copy)
-                with contextlib.closing(sqlite3.connect(f"{copy}/ledger.sqlite")) as ledger:
-                    rows = ledger.execute(query).fetchall()
-                    return [row[0] if len(row) == 1 else row for row in rows]
-            time.sleep(0.02)
-        raise AssertionError("the ledger cannot be read")
+    def on_disk(self, member="state"):
+        """This member of each report in the ledger's files, oldest first."""
+        reports = wait_until(lambda: [ledger_files.read(self.state / "ledger")[0]], "the ledger's files to stay",
+                             tolerates=FileNotFoundError)[0]
+        return [reports[number][member] for number in sorted(reports)]
 
     def _answers(self):
         if self.process.poll() is not None:

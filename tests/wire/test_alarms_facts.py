@@ -4,6 +4,7 @@ The rules and the words of each alarm are in tests/alarms/conditions_test."""
 import json
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import time
@@ -16,7 +17,7 @@ from alarming import WithAlarms
 from filling import Filler
 from networkd import AditNetwork
 from programs import wait_until
-from reporting import left_unanswered
+from reporting import another, is_taken, left_unanswered
 
 UPDATE = {"format": 1, "trouble": "", "running": {"compatible": "adit-x", "version": "1.2.0", "slot": "B", "other": "A"},
           "nonce": "", "refusal": "", "doing": "", "progress": None,
@@ -98,6 +99,25 @@ class Facts(WithAlarms):
         number = self.view(stage)["rejected"][0]["number"]
         self.assertEqual(stage.box.ask(f"POST /adit/rejected/{number}/discard", body={})[0], 200)
         self.goes(stage, "messages_rejected")
+
+    def test_three_faults_put_the_queue_aside(self):
+        """As if a queued map ended each process: the next one leaves it alone, and reports flow."""
+        runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))
+        self.enterContext(mock.patch.dict(os.environ, RUNTIME_DIRECTORY=str(runtime)))
+        stage = self.stage()
+        stage.post.will(mapping=["500,for=600"])
+        self.assertEqual(self.send_map(stage, "r1", 1).status_code, 200)
+        for signal_of_a_fault in (signal.SIGSEGV, signal.SIGABRT, signal.SIGSEGV):
+            self.assertEqual(stage.box.stop(signal_of_a_fault), -signal_of_a_fault)
+            self.assertTrue(list((runtime / "waiting").iterdir()))
+            self.assertFalse((runtime / "waiting.aside").exists())
+            stage.restart_box()
+        self.sees(stage, "queue_put_aside", "ask", "box", "waiting.aside", panel=False)
+        self.assertTrue(list((runtime / "waiting.aside").iterdir()))
+        is_taken(stage, another(1))
+        self.assertEqual(stage.box.stop(), 0)
+        stage.restart_box()
+        self.assertIsNone(self.alarm(stage, "queue_put_aside"))
 
     def test_maps_and_states_cannot_be_kept(self):
         """In a runtime folder that is a file system of its own, as with systemd."""

@@ -67,7 +67,7 @@ class Ends(unittest.TestCase):
     def test_a_client_that_waits_is_told_when_the_service_stops(self):
         with Stage(post_options=None) as stage, concurrent.futures.ThreadPoolExecutor(1) as client:
             waiting = client.submit(submit, stage)
-            wait_until(lambda: stage.box.on_disk() == ["waiting"], "the report to be on disk")
+            wait_until(lambda: stage.box.on_disk() == ["queued"], "the report to be on disk")
             self.assertEqual(stage.box.stop(), 0)
             self.assertEqual((waiting.result().status_code, waiting.result().headers["Adit-Report"]), (503, "1"))
 
@@ -92,4 +92,4 @@ class Ends(unittest.TestCase):
             self.assertIn("was not accepted", late.json())
             self.assertIn("Adit-Report", waiting.result().headers)
             self.assertEqual(stage.box.stop(), 0)
-            self.assertEqual(stage.box.on_disk(), ["answered", "waiting"])
+            self.assertEqual(stage.box.on_disk(), ["answered", "queued"])

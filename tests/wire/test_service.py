@@ -89,7 +89,9 @@ class Service(unittest.TestCase):
         self.assertIn("The scoring token is missing", self.heard("READY=1"))
 
     def test_sets_a_damaged_ledger_aside_and_shows_it(self):
-        (self.folder / "state" / "ledger.sqlite").write_bytes(b"no ledger at all" * 100)
+        ledger = self.folder / "state" / "ledger"
+        ledger.mkdir()
+        (ledger / "log-00000001.0123456789abcdef").write_bytes(b"no ledger at all" * 100)
         self.start()
         self.assertIn("may be lost from the ledger", self.heard("READY=1"))
-        self.assertTrue(list((self.folder / "state").glob("ledger.sqlite.damaged*")))
+        self.assertEqual([each.name for each in (ledger / "damaged-1").iterdir()], ["log-00000001.0123456789abcdef"])

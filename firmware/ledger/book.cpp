@@ -1,0 +1,178 @@
+#include "ledger/book.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "icd/sentence.hpp"
+#include "store/frame.hpp"
+
+namespace adit::ledger {
+namespace {
+
+using dispatch::Report;
+using dispatch::Run;
+using store::Error;
+
+constexpr std::uint8_t kSteps = static_cast<std::uint8_t>(Kind::Steps);
+
+std::string doing(std::int64_t number) {
+  return "recording a step of report " + std::to_string(number);
+}
+
+bool is_number(const std::optional<icd::RunStatus>& status) {
+  return !status || !std::isnan(status->run_clock);
+}
+
+bool is_number(const Report& report) {
+  const icd::Point& at = report.report.position;
+  return !std::isnan(at.x) && !std::isnan(at.y) && !std::isnan(at.z) && is_number(report.before);
+}
+
+/// What makes a report what it is never changes.
+bool is_same(const Report& one, const Report& other) {
+  const icd::Point &at = one.report.position, &there = other.report.position;
+  return one.report.type == other.report.type && at.x == there.x && at.y == there.y && at.z == there.z &&
+         one.received == other.received;
+}
+
+}  // namespace
+
+bool Book::apply(std::uint8_t kind, std::string_view body) {
+  if (kind != kSteps) {
+    unknown_.emplace_back(kind, body);
+    return true;
+  }
+  const auto steps = steps_record_in(body);
+  if (!steps) return false;
+  highest_ = std::max(highest_, steps->highest);
+  for (const Steps::Entry& entry : steps->reports) {
+    const std::int64_t number = report_in(entry.report)->number;
+    Kept& kept = reports_[number];
+    kept.said = entry.report;
+    kept.history += entry.history;
+    highest_ = std::max(highest_, number);
+  }
+  for (const std::string_view run : steps->runs) runs_[run_in(run)->number] = run;
+  return true;
+}
+
+std::vector<std::pair<std::uint8_t, std::string>> Book::records() const {
+  auto records = unknown_;
+  for (const auto& [number, kept] : reports_) {
+    records.emplace_back(
+        kSteps, said(Steps{.highest = highest_, .reports = {{kept.said, kept.history}}, .runs = {}}));
+  }
+  for (const auto& [number, run] : runs_)
+    records.emplace_back(kSteps, said(Steps{.highest = highest_, .reports = {}, .runs = {run}}));
+  return records;
+}
+
+std::string Book::copy() const {
+  Steps all{.highest = highest_, .reports = {}, .runs = {}};
+  for (const auto& [number, kept] : reports_) all.reports.push_back({kept.said, kept.history});
+  for (const auto& [number, run] : runs_) all.runs.push_back(run);
+  return said(all);
+}
+
+store::Result<std::string> Book::record(std::span<const Report> steps, const Run* run) const {
+  std::map<std::int64_t, Kept> written;
+  for (const Report& step : steps) {
+    Kept& kept = written[step.number];
+    if (const auto known = reports_.find(step.number); kept.said.empty() && known != reports_.end())
+      kept.said = known->second.said;
+    if (step.number < 1 || !is_number(step))
+      return std::unexpected(Error{.what = doing(step.number) + ": a value is not a number"});
+    if (!kept.said.empty() && !is_same(*report_in(kept.said), step))
+      return std::unexpected(Error{.what = doing(step.number) + ": another report has this number"});
+    kept.said = said(step, more_of_report(kept.said));
+    kept.history += step_of(step);
+  }
+  if (run != nullptr && (run->number < 1 || !is_number(run->last)))
+    return std::unexpected(
+        Error{.what = "recording run " + std::to_string(run->number) + ": a value is not a number"});
+  Steps all{.highest = highest_, .reports = {}, .runs = {}};
+  for (const auto& [number, kept] : written) {
+    all.highest = std::max(all.highest, number);
+    all.reports.push_back({kept.said, kept.history});
+  }
+  const std::string run_said = run == nullptr ? "" : said_again(*run);
+  if (run != nullptr) all.runs.push_back(run_said);
+  return said(all);
+}
+
+store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const Book& there) const {
+  std::vector<Kept> reports;
+  std::vector<std::string> runs;
+  for (const dispatch::TakenOver& each : taken.reports) {
+    const bool is_new = each.there != 0;
+    const auto& from = is_new ? there.reports_ : reports_;
+    const auto before = from.find(is_new ? each.there : each.report.number);
+    Kept kept;
+    if (before != from.end()) kept = before->second;
+    if (!is_new) kept.history.clear();
+    kept.said = said(each.report, more_of_report(kept.said));
+    if (each.has_stepped) kept.history += step_of(each.report);
+    reports.push_back(std::move(kept));
+  }
+  runs.reserve(taken.runs.size());
+  for (const Run& run : taken.runs) runs.push_back(said_again(run));
+  Steps all{.highest = highest_, .reports = {}, .runs = {}};
+  for (const dispatch::TakenOver& each : taken.reports)
+    all.highest = std::max(all.highest, each.report.number);
+  for (const Kept& kept : reports) all.reports.push_back({kept.said, kept.history});
+  for (const std::string& run : runs) all.runs.push_back(run);
+  return said(all);
+}
+
+std::string Book::said_again(const Run& run) const {
+  const auto known = runs_.find(run.number);
+  return said(run, known == runs_.end() ? std::string_view() : more_of_run(known->second));
+}
+
+std::vector<Report> Book::reports() const {
+  std::vector<Report> all;
+  all.reserve(reports_.size());
+  for (const auto& [number, kept] : reports_) all.push_back(*report_in(kept.said));
+  return all;
+}
+
+std::vector<Run> Book::runs() const {
+  std::vector<Run> all;
+  all.reserve(runs_.size());
+  for (const auto& [number, said] : runs_) all.push_back(*run_in(said));
+  return all;
+}
+
+std::vector<Step> Book::history(std::int64_t number) const {
+  const auto kept = reports_.find(number);
+  return kept == reports_.end() ? std::vector<Step>() : *steps_in(kept->second.history);
+}
+
+store::Result<Reading> read(const store::Contents& contents) {
+  Reading reading;
+  bool is_cut = false;  // a log is shorter than it was: what its end held is unknown
+  for (const store::Item& item : contents.items) {
+    if (const auto* const gap = std::get_if<store::Gap>(&item)) {
+      reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "records are missing in ", gap->file);
+      reading.end_is_lost = true;
+      is_cut = is_cut || (gap->first != 0 && !gap->last);
+      continue;
+    }
+    const auto& record = std::get<store::Record>(item);
+    if (record.kind != kSteps && (record.kind & store::kMustUnderstand) != 0) {
+      return std::unexpected(
+          Error{Error::Cause::Newer, icd::sentence("a later version wrote record ", record.sequence,
+                                                   "; this one cannot use the ledger")});
+    }
+    if (!reading.book.apply(record.kind, record.body)) {
+      reading.gap +=
+          icd::sentence(reading.gap.empty() ? "" : ", ", "record ", record.sequence, " cannot be understood");
+      reading.end_is_lost = true;
+    } else if (record.kind == kSteps) {
+      reading.end_is_lost = is_cut;  // it says how many numbers were given out
+    }
+  }
+  return reading;
+}
+
+}  // namespace adit::ledger

@@ -1,0 +1,116 @@
+#include "simulation/ledger_reading.hpp"
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <stdexcept>
+
+#include "store/second_reader.hpp"
+
+namespace adit::simulation {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Cursor {
+ public:
+  explicit Cursor(std::string bytes) : bytes_(std::move(bytes)) {}
+
+  std::int64_t number() {
+    std::int64_t number = 0;
+    std::memcpy(&number, take(8), 8);
+    return number;
+  }
+  double real() {
+    double real = 0;
+    std::memcpy(&real, take(8), 8);
+    return real;
+  }
+  std::string text() {
+    const auto size = static_cast<std::size_t>(number());
+    return {take(size), size};
+  }
+  std::optional<icd::RunStatus> status() {
+    const bool is_there = number() == 1;
+    icd::RunStatus status;
+    status.score = number();
+    status.run_clock = real();
+    status.remaining_reports = number();
+    status.current_team = text();
+    return is_there ? std::optional(status) : std::nullopt;
+  }
+
+ private:
+  const char* take(std::size_t size) {
+    if (size > bytes_.size() - at_) throw std::runtime_error("a record of the ledger is cut");
+    at_ += size;
+    return bytes_.data() + at_ - size;
+  }
+
+  std::string bytes_;
+  std::size_t at_ = 0;
+};
+
+dispatch::ReportState state_of(const std::string& word) {
+  using enum dispatch::ReportState;
+  static const std::map<std::string, dispatch::ReportState> kStates = {
+      {"held", Held},         {"queued", Queued},    {"sending", Sending}, {"answered", Answered},
+      {"rejected", Rejected}, {"in_doubt", InDoubt}, {"settled", Settled}, {"withdrawn", Withdrawn}};
+  return kStates.at(word);
+}
+
+dispatch::Report report_of(Cursor members) {
+  dispatch::Report report;
+  report.number = members.number();
+  report.report.type = members.text();
+  report.report.position.x = members.real();
+  report.report.position.y = members.real();
+  report.report.position.z = members.real();
+  report.report.robot = icd::RobotName::parse(members.text());
+  report.sender = members.text();
+  report.received = members.real();
+  report.changed = members.real();
+  report.state = state_of(members.text());
+  report.note = members.text();
+  report.run = members.number();
+  report.asked = members.number() == 1;
+  report.same_as = members.number();
+  report.tries = members.number();
+  report.sending = members.number();
+  report.sent = members.real();
+  report.before = members.status();
+  report.status = static_cast<int>(members.number());
+  report.content_type = members.text();
+  report.answer = members.text();
+  report.reconciled = members.number() == 1;
+  return report;
+}
+
+}  // namespace
+
+LedgerReading read_ledger(const std::string& directory) {
+  std::map<std::string, std::string> files;
+  if (!fs::exists(directory)) return {};
+  for (const auto& file : fs::directory_iterator(directory)) {
+    std::ifstream bytes(file.path(), std::ios::binary);
+    if (file.is_regular_file()) files[file.path().filename()] = {std::istreambuf_iterator<char>(bytes), {}};
+  }
+  std::map<std::int64_t, dispatch::Report> reports;
+  const store::SecondReading read = store::read_again(files);
+  for (const std::string& body : read.bodies()) {
+    Cursor record(body);
+    record.number();  // the highest number
+    for (std::int64_t left = record.number(); left > 0; --left) {
+      dispatch::Report report = report_of(Cursor(record.text()));
+      record.text();  // its history
+      reports[report.number] = std::move(report);
+    }
+  }
+  LedgerReading all{.reports = {}, .missing = read.missing.size()};
+  for (auto& [number, report] : reports) all.reports.push_back(std::move(report));
+  return all;
+}
+
+}  // namespace adit::simulation

@@ -68,6 +68,8 @@ class Flow final : public intake::Desk {
 
   /// Goes on where the life before ended, and connects.
   void start();
+  /// Which queued maps were put aside, and why; or "".
+  const std::string& put_aside() const { return spool_.ended_processes(); }
   /// Why a file without which nothing may be sent cannot be read, as a sentence; or "".
   std::string unread() const { return clocks_.unread(); }
   /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who

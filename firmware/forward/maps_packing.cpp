@@ -42,6 +42,9 @@ void Maps::pack(const Place& prepared) {
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
   const Packing packing = packing_for(prepared->waiting);
   const auto unread = unread_in(prepared->waiting);
+  std::vector<std::uint64_t> own;
+  lanes::add_own_numbers(own, prepared->waiting);
+  spool_.work_begins(own);
   workers_.submit(
       loop::Urgency::OnTheWay,
       [prepared, leaving_out, packing, unread, &loop = loop_] {
@@ -57,6 +60,7 @@ void Maps::pack(const Place& prepared) {
       },
       [this, began, prepared, unread] {
         preparing_ = false;
+        spool_.work_ends();
         if (prepared->damaged.empty()) {
           for (const std::uint64_t number : unread) unread_.erase(number);
           if (prepared->packed.effort != pack::Effort::None) slot_.packing_took(loop_.now() - began);
@@ -149,6 +153,7 @@ void Maps::is_packed(const Place& prepared) {
 
 void Maps::not_packed(const Place& prepared) {
   preparing_ = false;
+  spool_.work_ends();
   pace_.failed(loop_.now());
   prepared->packed = {};
   if (Place* const place = place_of(prepared)) {

@@ -85,7 +85,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
                 host::free_bytes(parts_.state_folder)};
   facts.time_set = clock_.is_set();
   facts.ntp_trouble = clock_.ntp_trouble();
-  facts.put_aside = parts_.put_aside;
+  facts.put_aside = parts_.put_aside.empty() ? flow_.put_aside() : parts_.put_aside;
   facts.change_trouble = parts_.trouble;
   facts.settings_trouble = parts_.loaded.trouble;
   facts.board_trouble = parts_.board_trouble;

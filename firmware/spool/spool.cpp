@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 #include <string_view>
 
 #include "host/log.hpp"
@@ -42,6 +43,10 @@ std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64
 Spool::Spool(std::string folder, std::uint64_t left_to_others)
     : folder_(std::move(folder)), left_to_others_(left_to_others) {
   make_folder_of_ours(folder_);
+}
+
+Spool::~Spool() {
+  work_ends();
 }
 
 std::string Spool::trouble() const {
@@ -88,8 +93,41 @@ void Spool::set_aside(std::uint64_t number, const std::string& why) {
   host::set_damaged_aside(file_of(number), "a queued map", why);
 }
 
+void Spool::work_begins(const std::vector<std::uint64_t>& numbers) {
+  std::string text;
+  for (const std::uint64_t number : numbers) {
+    const auto before = ends_.find(number);
+    text += icd::sentence(number, " ", before == ends_.end() ? 0 : before->second, "\n");
+  }
+  (void)host::write_file(work_file(), text, host::kOursAlone);  // without it a map is only tried once more
+}
+
+void Spool::work_ends() const {
+  ::unlink(work_file().c_str());
+}
+
+/// The process before ended in the work that the file names.
+void Spool::count_ends() {
+  if (!host::may_exist(work_file())) return;
+  const auto text = host::read_file(work_file());
+  if (!text)
+    return host::log(host::Level::Warning, "cannot read which map was packed", {{"why", text.error()}});
+  std::istringstream lines(*text);
+  for (std::uint64_t number = 0, ends = 0; lines >> number >> ends;) {
+    if (ends == 0) {
+      ends_[number] = 1;
+      continue;
+    }
+    set_aside(number, "two processes ended while they packed it");
+    ended_processes_ += icd::sentence(ended_processes_.empty() ? "aditd ended twice while it packed " : ", ",
+                                      file_of(number));
+  }
+  work_ends();
+}
+
 Spool::Kept Spool::read() {
   remove_parts(folder_);
+  count_ends();
   Kept kept;
   const auto numbers = host::numbers_in(folder_, kMap, kEnding);
   unread_ = numbers ? "" : numbers.error();

@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -22,6 +23,9 @@ class Spool {
   /// Makes the folder, for this user alone. Of the room that its file system has, so much is left to others,
   /// but no more than a quarter of all: what is to be written there beside maps must not be refused for them.
   explicit Spool(std::string folder, std::uint64_t left_to_others = 0);
+  ~Spool();
+  Spool(const Spool&) = delete;
+  Spool& operator=(const Spool&) = delete;
 
   /// So much from now on, whoever asks.
   void leave_to_others(std::uint64_t bytes) { left_to_others_ = bytes; }
@@ -43,6 +47,13 @@ class Spool {
   /// Why no map could be kept, or "".
   std::string trouble() const;
 
+  /// Work on these maps begins, and ends. If two processes in a row have ended in it, the next read() sets
+  /// the maps aside.
+  void work_begins(const std::vector<std::uint64_t>& numbers);
+  void work_ends() const;
+  /// Which maps read() has set aside for that: a sentence, or "".
+  const std::string& ended_processes() const { return ended_processes_; }
+
   /// All maps that are kept. A damaged file is logged and set aside. If a file cannot be read, it stays, and
   /// keep() refuses every map until the next start.
   Kept read();
@@ -51,8 +62,12 @@ class Spool {
 
  private:
   std::string file_of(std::uint64_t number) const;
+  std::string work_file() const { return folder_ + "/at-work"; }
+  void count_ends();
 
-  std::string folder_, unread_;                // why read() could not
+  std::string folder_, unread_;        // why read() could not
+  std::map<std::uint64_t, int> ends_;  // of processes in work on a map, by its number
+  std::string ended_processes_;
   std::atomic<std::uint64_t> left_to_others_;  // the writer asks, too
 };
 

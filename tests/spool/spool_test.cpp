@@ -96,6 +96,34 @@ TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
   EXPECT_TRUE(fs::exists(folder_ / "map-00000002.cbor.damaged"));
 }
 
+TEST_F(SpoolTest, SetsAMapAsideInWorkOnWhichTwoProcessesEnded) {
+  const fs::path folder = folder_ / "waiting";
+  const auto kill_in_work_on = [&folder](const std::vector<std::uint64_t>& numbers) {
+    Spool spool(folder);
+    const auto kept = spool.read();
+    spool.work_begins(numbers);
+    fs::copy(folder, folder.string() + ".killed");
+    return std::pair(kept.size(), spool.ended_processes());
+  };
+  const auto again = [&folder] {
+    fs::remove_all(folder);
+    fs::rename(folder.string() + ".killed", folder);
+  };
+  {
+    Spool spool(folder);
+    for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep(number, grid("r1", 1), 0));
+    spool.work_begins({1, 2, 3});  // an orderly end
+  }
+  EXPECT_EQ(kill_in_work_on({1, 2}), std::pair(std::size_t{3}, std::string()));
+  again();
+  EXPECT_EQ(kill_in_work_on({2}), std::pair(std::size_t{3}, std::string()));
+  again();
+  const auto [left, sentence] = kill_in_work_on({1});
+  EXPECT_EQ(left, 2u) << "the second one is put aside, and the first is tried again";
+  EXPECT_EQ(sentence, "aditd ended twice while it packed " + (folder / "map-00000002.cbor").string());
+  EXPECT_TRUE(fs::exists(folder / "map-00000002.cbor.damaged"));
+}
+
 TEST_F(SpoolTest, IsReadableByNobodyElse) {
   Spool spool(folder_ / "waiting");
   struct stat status{};

@@ -1,6 +1,5 @@
 /// aditd.
 
-#include <fcntl.h>
 #include <malloc.h>
 #include <sys/prctl.h>
 
@@ -24,7 +23,5 @@ int main(int argc, char** argv) {
     adit::host::log(adit::host::Level::Error, "unhandled exception", {{"ended", where}, {"why", what}});
   });
   adit::loop::end_by_uncaught();
-  const std::string faults = adit::gateway::Service::faults_file(*options);
-  adit::loop::count_faults(::open(faults.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
-  return adit::gateway::Service(*options, argv).run();
+  return adit::gateway::Service(*options, argv).run(&adit::loop::count_faults);
 }

@@ -124,7 +124,7 @@ Service::Service(const Options& options, char* const* arguments)
   if (file_rest_ < FileReturn::kRest) file_rest_ = FileReturn::kRest;
 }
 
-int Service::run() {
+int Service::run(void (*count_faults)(const char* file) noexcept) {
   const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
   const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
   // First: the lights show a start that fails.
@@ -133,6 +133,7 @@ int Service::run() {
   if (auto made = make_folder(options_.state); !made) {
     host::log(host::Level::Error, "cannot create the state directory", {{"why", made.error()}});
   }
+  count_faults(faults_file().c_str());
   for (const std::string& folder :
        {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
     host::remove_unwritten(folder);
@@ -148,21 +149,21 @@ int Service::run() {
   return 0;
 }
 
-std::string Service::faults_file(const Options& options) {
-  return runtime_folder(options) + "/faults";
+std::string Service::faults_file() const {
+  return runtime_folder(options_) + "/faults";
 }
 
 /// A sentence, or "".
 std::string Service::put_queue_aside() {
   std::error_code error;
-  const std::uintmax_t faults = std::filesystem::file_size(faults_file(options_), error);
+  const std::uintmax_t faults = std::filesystem::file_size(faults_file(), error);
   if (error || faults < kMostFaults) return "";
   std::string why = icd::sentence("aditd ended ", faults,
                                   " times by a fault, soon after its start; queued maps, states and "
                                   "markers were put aside: ");
   for (const char* const directory : {forward::Flow::kJournal, forward::Flow::kWaiting})
     why += renamed_aside(runtime_folder(options_) + directory);
-  std::filesystem::resize_file(faults_file(options_), 0, error);
+  std::filesystem::resize_file(faults_file(), 0, error);
   why.resize(why.size() - 2);
   host::log(host::Level::Error, why);
   return why;
@@ -214,7 +215,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
   running_ = &gateway;
   const auto forget_faults = [this] {
     std::error_code none;
-    std::filesystem::resize_file(faults_file(options_), 0, none);
+    std::filesystem::resize_file(faults_file(), 0, none);
   };
   loop::Source well = loop_.timer(forget_faults);
   well.call_at(loop_.now() + kWell);

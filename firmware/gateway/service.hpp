@@ -27,17 +27,18 @@ class Service {
   /// is queued: it may be the reason.
   static constexpr std::uintmax_t kMostFaults = 3;
   static constexpr std::chrono::seconds kWell{60};
-  /// Has a byte for each of them (loop::count_faults).
-  static std::string faults_file(const Options& options);
 
   /// Until SIGTERM or SIGINT: 0; 1: it could not start, and has said why. Else it ends in exec.
-  int run();
+  /// `count_faults`: loop::count_faults(), which is told the file of them.
+  int run(void (*count_faults)(const char* file) noexcept);
 
  private:
   std::expected<bool, std::string> run_gateway();
   std::expected<bool, std::string> run(Gateway& gateway, const settings::Settings& settings);
   std::expected<void, std::string> take_over_sockets();
   std::string finish_taking_over();
+  /// Has a byte for each fault.
+  std::string faults_file() const;
   std::string put_queue_aside();
   [[noreturn]] void start_again(const std::string& trouble);
 

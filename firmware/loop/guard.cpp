@@ -1,5 +1,6 @@
 #include "loop/guard.hpp"
 
+#include <fcntl.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -48,8 +49,8 @@ void end_by_uncaught() noexcept {
   });
 }
 
-void count_faults(int fd) noexcept {
-  faults_file.store(fd);
+void count_faults(const char* file) noexcept {
+  faults_file.store(::open(file, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
   struct sigaction action{};
   action.sa_flags =
       static_cast<int>(SA_RESETHAND);  // then the signal ends the process as it does without this

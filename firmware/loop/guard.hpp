@@ -20,8 +20,8 @@ void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 void end_by_uncaught() noexcept;
 
 /// From now on each end of the process by such an exception, or by a signal of its own fault (SIGSEGV,
-/// SIGABRT and others), adds a byte to the open file `fd`.
-void count_faults(int fd) noexcept;
+/// SIGABRT and others), adds a byte to this file.
+void count_faults(const char* file) noexcept;
 
 /// Calls `work`; an exception, whichever library it is from, ends `work` and nothing else. False: it did.
 /// Requests and jobs of workers go through here, so that each of them fails alone.

@@ -43,7 +43,8 @@ class Watched {
     for (ssize_t at = 0; at < count;) {
       inotify_event event{};
       std::memcpy(&event, read.data() + at, sizeof event);
-      names_.emplace_back(read.data() + at + sizeof event);
+      const std::string_view name = read.data() + at + sizeof event;
+      if (name != "at-work") names_.emplace_back(name);  // the map is packed
       at += static_cast<ssize_t>(sizeof event + event.len);
     }
     return names_;

@@ -120,7 +120,7 @@ struct Facts {
   std::uint64_t newest_rejected = 0;  // number of the newest of them; later ones have larger numbers
 
   std::string ledger_refusal = {}, ledger_damage = {};
-  std::string put_aside = {};     // what was queued and is put aside, and why; or ""
+  std::string put_aside = {};     // a sentence: which queued messages are put aside, and why; or ""
   bool ledger_is_closed = false;  // it cannot be read
   Disk disk = {};
   std::optional<bool> time_set = {};                // nothing: the box cannot tell

@@ -48,10 +48,10 @@ struct Tokens {
 /// and Telemetry send them.
 class Flow final : public intake::Desk {
  public:
-  /// Upkeep of the ledger begins so long after the start, because what comes then goes first, and so long
-  /// after one that failed.
+  /// Upkeep of the ledger begins so long after the start, because the first messages have priority, and
+  /// again so long after a failure.
   static constexpr std::chrono::seconds kUpkeepEvery{60};
-  /// Below the runtime folder: what is queued.
+  /// Directories of queued messages below the runtime folder.
   static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting";
   struct Folders {
     std::string runtime, state;

@@ -52,7 +52,7 @@ struct Parts {
   ListenSockets& sockets;          // and this
   admin::Store::Loaded loaded;
   std::string trouble;    // for the operator: why the settings are not those that were wanted; or ""
-  std::string put_aside;  // what was queued and is put aside, and why; or ""
+  std::string put_aside;  // a sentence: which queued messages are put aside, and why; or ""
   std::string stuck;      // why a take-over is not finished, so that the box has to be on standby; or ""
   ledger::Ledger ledger;
   std::chrono::seconds file_rest;  // before files that cannot be read are tried again

@@ -157,6 +157,9 @@ std::string Service::faults_file() const {
 std::string Service::put_queue_aside() {
   std::error_code error;
   const std::uintmax_t faults = std::filesystem::file_size(faults_file(), error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    host::log(host::Level::Warning, "cannot read how often aditd ended by a fault",
+              {{"why", error.message()}});
   if (error || faults < kMostFaults) return "";
   std::string why = icd::sentence("aditd ended ", faults,
                                   " times by a fault, soon after its start; queued maps, states and "

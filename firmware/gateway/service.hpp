@@ -29,7 +29,7 @@ class Service {
   static constexpr std::chrono::seconds kWell{60};
 
   /// Until SIGTERM or SIGINT: 0; 1: it could not start, and has said why. Else it ends in exec.
-  /// `count_faults`: loop::count_faults(), which is told the file of them.
+  /// `count_faults`: loop::count_faults(); it gets the name of the file.
   int run(void (*count_faults)(const char* file) noexcept);
 
  private:

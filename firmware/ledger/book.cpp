@@ -68,14 +68,21 @@ std::vector<std::pair<std::uint8_t, std::string>> Book::records() const {
 }
 
 std::string Book::copy() const {
+  return record_of(reports_, runs_);
+}
+
+std::string Book::record_of(const Reports& reports, const Runs& runs) const {
   Steps all{.highest = highest_, .reports = {}, .runs = {}};
-  for (const auto& [number, kept] : reports_) all.reports.push_back({kept.said, kept.history});
-  for (const auto& [number, run] : runs_) all.runs.push_back(run);
+  for (const auto& [number, kept] : reports) {
+    all.highest = std::max(all.highest, number);
+    all.reports.push_back({kept.said, kept.history});
+  }
+  for (const auto& [number, run] : runs) all.runs.push_back(run);
   return said(all);
 }
 
 store::Result<std::string> Book::record(std::span<const Report> steps, const Run* run) const {
-  std::map<std::int64_t, Kept> written;
+  Reports written;
   for (const Report& step : steps) {
     Kept& kept = written[step.number];
     if (const auto known = reports_.find(step.number); kept.said.empty() && known != reports_.end())
@@ -90,38 +97,26 @@ store::Result<std::string> Book::record(std::span<const Report> steps, const Run
   if (run != nullptr && (run->number < 1 || !is_number(run->last)))
     return std::unexpected(
         Error{.what = "recording run " + std::to_string(run->number) + ": a value is not a number"});
-  Steps all{.highest = highest_, .reports = {}, .runs = {}};
-  for (const auto& [number, kept] : written) {
-    all.highest = std::max(all.highest, number);
-    all.reports.push_back({kept.said, kept.history});
-  }
-  const std::string run_said = run == nullptr ? "" : said_again(*run);
-  if (run != nullptr) all.runs.push_back(run_said);
-  return said(all);
+  Runs runs;
+  if (run != nullptr) runs[run->number] = said_again(*run);
+  return record_of(written, runs);
 }
 
 store::Result<std::string> Book::record(const dispatch::TakeOver& taken, const Book& there) const {
-  std::vector<Kept> reports;
-  std::vector<std::string> runs;
+  Reports reports;
+  Runs runs;
   for (const dispatch::TakenOver& each : taken.reports) {
     const bool is_new = each.there != 0;
     const auto& from = is_new ? there.reports_ : reports_;
     const auto before = from.find(is_new ? each.there : each.report.number);
-    Kept kept;
+    Kept& kept = reports[each.report.number];
     if (before != from.end()) kept = before->second;
     if (!is_new) kept.history.clear();
     kept.said = said(each.report, more_of_report(kept.said));
     if (each.has_stepped) kept.history += step_of(each.report);
-    reports.push_back(std::move(kept));
   }
-  runs.reserve(taken.runs.size());
-  for (const Run& run : taken.runs) runs.push_back(said_again(run));
-  Steps all{.highest = highest_, .reports = {}, .runs = {}};
-  for (const dispatch::TakenOver& each : taken.reports)
-    all.highest = std::max(all.highest, each.report.number);
-  for (const Kept& kept : reports) all.reports.push_back({kept.said, kept.history});
-  for (const std::string& run : runs) all.runs.push_back(run);
-  return said(all);
+  for (const Run& run : taken.runs) runs[run.number] = said_again(run);
+  return record_of(reports, runs);
 }
 
 std::string Book::said_again(const Run& run) const {

@@ -33,7 +33,7 @@ class Book {
   /// The record of these steps. An error: it would put a report in another's place, or what it says is no
   /// number.
   store::Result<std::string> record(std::span<const dispatch::Report> steps, const dispatch::Run* run) const;
-  /// The record of what is taken over from `there`.
+  /// The record of a take-over from `there`.
   store::Result<std::string> record(const dispatch::TakeOver& taken, const Book& there) const;
   bool knows(std::int64_t report) const { return reports_.contains(report); }
 
@@ -42,19 +42,23 @@ class Book {
   std::vector<Step> history(std::int64_t number) const;
   std::int64_t highest() const { return highest_; }
 
-  /// Records are missing: what may have been sent since is the operator's, and reports are said to be lost
-  /// whose numbers are not there. `end_is_lost`: it is not known how many came last. `expected`: so many
-  /// numbers were given out at least. A sentence about what was read and what is lost.
+  /// For a log with missing records: each report without a final state is in doubt, and a report stands for
+  /// each missing number. `expected`: at least so many numbers were given out. `end_is_lost`: the count of
+  /// the last reports is unknown. A sentence about the reports that were read and those that are lost.
   std::string salvage(double now, std::int64_t expected, bool end_is_lost);
 
  private:
+  using Reports = std::map<std::int64_t, Kept>;
+  using Runs = std::map<std::int64_t, std::string>;
+  /// One record of all these.
+  std::string record_of(const Reports& reports, const Runs& runs) const;
   /// With the members of a later version that the run has here.
   std::string said_again(const dispatch::Run& run) const;
   void put(const dispatch::Report& report);
   void lose(std::int64_t last, const std::string& note, double now);
 
-  std::map<std::int64_t, Kept> reports_;
-  std::map<std::int64_t, std::string> runs_;
+  Reports reports_;
+  Runs runs_;
   std::int64_t highest_ = 0;
   std::vector<std::pair<std::uint8_t, std::string>> unknown_;  // records of a later version
 };

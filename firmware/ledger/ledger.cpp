@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
 #include <optional>
 #include <utility>
 
@@ -73,7 +71,7 @@ class Ledger::Impl {
     return ready;
   }
 
-  /// Goes on behind what was read. A ledger that was damaged begins with a snapshot of what is left.
+  /// Goes on behind the records that were read. A damaged ledger begins with a snapshot of the rest.
   Result<void> begin() {
     if (has_begun_) return {};
     if (!directory_) return std::unexpected(Error{.what = refusal_});
@@ -110,13 +108,12 @@ class Ledger::Impl {
     spare_ = next_spare_;
   }
 
-  /// Those that damage has cost, and those that a worker uses, outlive this.
-  std::shared_ptr<store::Directory> directory_;  // null: closed
+  std::shared_ptr<store::Directory> directory_;  // null: closed. A worker may use it longer
   store::Contents contents_;                     // until log_ goes on behind it
   std::optional<store::Log> log_;
   Book book_;
   std::string damage_, refusal_;
-  Known known_;  // by who opened it
+  Known known_;  // the argument of open()
   bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
   bool is_under_way_ = false;                       // upkeep
   std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // the log with which the last one began
@@ -124,7 +121,7 @@ class Ledger::Impl {
   std::shared_ptr<std::atomic<bool>> enough_ = std::make_shared<std::atomic<bool>>(false);
 
  private:
-  /// What was done stays done if a later step fails and all is tried again.
+  /// If a step fails, the next try begins with that step.
   Result<void> begin_log() {
     if (!log_) {
       store::Log log(*directory_, kKeeping);
@@ -165,7 +162,7 @@ Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 Ledger::~Ledger() = default;
 
 Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
-  auto directory = store::Directory::lock(state + kDirectory);
+  auto directory = store::Directory::lock(state + '/' + kDirectory);
   if (!directory) return std::unexpected(directory.error());
   auto contents = store::Contents::read(*directory, kKeeping);
   if (!contents) return std::unexpected(contents.error());
@@ -182,7 +179,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
   const bool is_damaged = !reading->gap.empty();
   if (is_damaged) {
     const std::string found = book.salvage(now(), known.reports, reading->end_is_lost);
-    damage = icd::sentence("The ledger was damaged (", reading->gap, "). Its files are kept in ", state,
+    damage = icd::sentence("The ledger was damaged (", reading->gap, "). Its files are kept in ", state, "/",
                            kDirectory, "/damaged-*; ", found, ".");
   } else if (!contents->notes.empty()) {
     damage = "The ledger's files were damaged and were repaired: ";
@@ -201,14 +198,14 @@ Ledger Ledger::closed(std::string why, const Known& known) {
 }
 
 bool Ledger::can_be_read(const std::string& state) {
-  const auto directory = store::Directory::lock(state + kDirectory);
+  const auto directory = store::Directory::lock(state + '/' + kDirectory);
   return directory && store::Contents::read(*directory, kKeeping);
 }
 
 Result<std::string> Ledger::set_aside(const std::string& state) {
   const auto folder = store::Directory::look(state);
   if (!folder) return std::unexpected(folder.error());
-  return folder->rename_aside(kDirectory + 1);
+  return folder->rename_aside(kDirectory);
 }
 
 Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,

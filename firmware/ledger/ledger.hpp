@@ -20,26 +20,27 @@ namespace adit::ledger {
 using store::Error;
 using store::Result;
 
-/// What is known of a ledger elsewhere than in it: if it has less, it is damaged.
+/// Facts about a ledger that are stored elsewhere. A ledger that has less is damaged.
 struct Known {
   std::int64_t reports = 0;  // so many numbers were given out
-  std::uint64_t log = 0;     // number of its last log; 0: nothing is known
+  std::uint64_t log = 0;     // number of its last log; 0: unknown
 };
 
 /// All artifact reports with every step of their lives, and all runs, in a log on the disk (store/README.md;
-/// README.md has its records). If a write has returned without an error, what it wrote is on disk; if it has
-/// returned one, nothing of it counts.
+/// README.md has its records). A write that returns without an error is on the disk; one that returns an
+/// error has no effect.
 class Ledger {
  public:
   static constexpr store::Keeping kKeeping{store::kOnDisk, 4u << 20, true};
-  static constexpr const char* kDirectory = "/ledger";  // below the state directory
+  static constexpr const char* kDirectory = "ledger";  // below the state directory
   /// A report is taken only if so much of the file is left behind it: for steps of the known reports.
   static constexpr std::size_t kForKnown = 64u << 10;  // bytes
 
-  /// Opens the ledger of a state directory; makes one if none is there and nothing is known of one. If
-  /// records are missing, what may have been sent is the operator's, and damage() says so. If the directory
-  /// cannot be written, all can be read, and refusal() says why; a write may succeed later. An error: it
-  /// cannot be read, another process has it open, or a later version wrote it. Then no file has changed.
+  /// Opens the ledger of a state directory; makes one if the directory has none and `known` names none. If
+  /// records are missing, each report that may have been sent is in doubt, and damage() says so. If the
+  /// directory cannot be written, all reports can be read, and refusal() says why; a write may succeed later.
+  /// An error if it cannot be read, another process has it open, or a later version wrote it; then no file
+  /// has changed.
   static Result<Ledger> open(const std::string& state, const Known& known = {});
   /// One that cannot be read, for `why`: it has no report, and takes none.
   static Ledger closed(std::string why, const Known& known);
@@ -58,7 +59,7 @@ class Ledger {
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run = nullptr,
                      dispatch::Flush flush = dispatch::Flush::Now);
   Result<void> write(const dispatch::Run& run) { return write({}, &run); }
-  /// Syncs what was written with Soon.
+  /// Syncs the writes with Soon.
   Result<void> flush();
   /// An error: a report that is new could not be written now.
   Result<void> make_ready();
@@ -88,7 +89,7 @@ class Ledger {
   /// its result before asking again.
   std::function<Result<void>()> upkeep();
   void upkeep_done(const Result<void>& done);
-  /// Work that is under way ends soon, and does nothing.
+  /// Work that is under way stops early, without effect.
   void end_upkeep();
 
  private:

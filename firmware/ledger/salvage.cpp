@@ -3,7 +3,7 @@
 #include "icd/sentence.hpp"
 #include "ledger/book.hpp"
 
-/// What follows from missing records (README.md, "Damage").
+/// The rules for missing records (README.md, "Damage").
 namespace adit::ledger {
 namespace {
 

@@ -95,10 +95,8 @@ void Spool::set_aside(std::uint64_t number, const std::string& why) {
 
 void Spool::work_begins(const std::vector<std::uint64_t>& numbers) {
   std::string text;
-  for (const std::uint64_t number : numbers) {
-    const auto before = ends_.find(number);
-    text += icd::sentence(number, " ", before == ends_.end() ? 0 : before->second, "\n");
-  }
+  for (const std::uint64_t number : numbers)
+    text += icd::sentence(number, " ", ended_once_.contains(number) ? 1 : 0, "\n");
   (void)host::write_file(work_file(), text, host::kOursAlone);  // without it a map is only tried once more
 }
 
@@ -115,7 +113,7 @@ void Spool::count_ends() {
   std::istringstream lines(*text);
   for (std::uint64_t number = 0, ends = 0; lines >> number >> ends;) {
     if (ends == 0) {
-      ends_[number] = 1;
+      ended_once_.insert(number);
       continue;
     }
     set_aside(number, "two processes ended while they packed it");

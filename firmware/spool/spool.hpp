@@ -2,8 +2,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,8 +65,8 @@ class Spool {
   std::string work_file() const { return folder_ + "/at-work"; }
   void count_ends();
 
-  std::string folder_, unread_;        // why read() could not
-  std::map<std::uint64_t, int> ends_;  // of processes in work on a map, by its number
+  std::string folder_, unread_;         // why read() could not
+  std::set<std::uint64_t> ended_once_;  // maps that the process before was working on when it ended
   std::string ended_processes_;
   std::atomic<std::uint64_t> left_to_others_;  // the writer asks, too
 };

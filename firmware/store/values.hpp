@@ -20,7 +20,7 @@ class Writer {
   std::string bytes_;
 };
 
-/// Reads what a Writer wrote. What is not there reads as 0, and ok() is false.
+/// Reads the bytes of a Writer. A value behind their end reads as 0 or "", and ok() is false from then on.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : left_(bytes) {}

@@ -11,8 +11,8 @@ using dispatch::Report;
 using dispatch::ReportState;
 using ledger::Book;
 
-/// Of each a byte that is its kind, two that are its length, and its body. What is understood can be written
-/// and read again to the same.
+/// The input is a list of records: a byte for the kind, two for the length, and the body. A record that is
+/// understood is the same after it is written and read again.
 void try_records(Input input) {
   Book book;
   while (input.size() >= 3) {

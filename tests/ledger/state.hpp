@@ -50,7 +50,7 @@ class State {
   State& operator=(const State&) = delete;
 
   const std::string& path() const { return path_; }
-  std::string ledger() const { return path_ + Ledger::kDirectory; }
+  std::string ledger() const { return path_ + '/' + Ledger::kDirectory; }
 
  private:
   std::string path_;

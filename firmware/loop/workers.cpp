@@ -1,6 +1,8 @@
 #include "loop/workers.hpp"
 
 #include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <condition_variable>
@@ -19,6 +21,14 @@ namespace {
 unsigned threads_for(unsigned asked) {
   if (asked > 0) return asked;
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
+}
+
+/// The calling thread yields the processor to the loop and to the writer, which others wait for. If the
+/// system does not allow it, the thread keeps their priority.
+void lower_priority() {
+  constexpr int kNice = 10;
+  const auto thread = static_cast<id_t>(gettid());
+  if (getpriority(PRIO_PROCESS, thread) < kNice) (void)setpriority(PRIO_PROCESS, thread, kNice);
 }
 
 /// Signals are the loop's: threads begun while this lives take none.
@@ -133,6 +143,7 @@ class Workers::Impl {
 
   void serve(Life& life) noexcept {
     of_this_thread_ = &life;
+    if (at_end_ == AtEnd::Drop) lower_priority();
     while (auto next = wait_for_next(life)) {
       run(next->job);
       const std::lock_guard lock(mutex_);

@@ -11,8 +11,9 @@
 namespace adit::loop {
 
 /// A few threads that do nothing but CPU work on data handed over to them, and hand the result back to the
-/// loop. JobQueue says which job is next. What touches a file is a Writer's, or that of
-/// a thread for which nobody waits: the journal's.
+/// loop. JobQueue says which job is next. They run at nice 10 (setpriority(2)), so that a report does not
+/// compete with them. What touches a file is a Writer's, or that of a thread for which nobody waits: the
+/// journal's.
 class Workers {
  public:
   /// `count` threads; 0: the machine's cores minus one, at least one.
@@ -48,9 +49,9 @@ class Workers {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The one thread that writes files: one job after the other, in the order in which they were submitted, so
-/// that the loop waits for no disk and no file waits for CPU work. At its end all that was submitted is done
-/// (though no `done` runs any more): whatever a job uses outlives it.
+/// The one thread that writes files, at the loop's priority: one job after the other, in the order in which
+/// they were submitted, so that the loop waits for no disk and no file waits for CPU work. At its end all
+/// that was submitted is done (though no `done` runs any more): whatever a job uses outlives it.
 class Writer final : public Workers {
  public:
   explicit Writer(Loop& loop) : Workers(loop, 1, AtEnd::Finish) {}

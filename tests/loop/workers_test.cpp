@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 #include <pthread.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <csignal>
@@ -198,6 +200,25 @@ TEST(Workers, AreAtLeastOne) {
   Workers workers(loop, 0);
   workers.submit(Urgency::OnTheWay, [] {}, [&] { loop.stop(); });
   loop.run();
+}
+
+template <class Threads>
+int nice_of(Threads&& threads_for) {
+  Loop loop;
+  auto threads = threads_for(loop);
+  int nice = -1;
+  threads->submit(
+      Urgency::OnTheWay, [&] { nice = getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); },
+      [&] { loop.stop(); });
+  loop.run();
+  return nice;
+}
+
+TEST(Workers, YieldTheProcessorToTheLoopAndTheWriter) {
+  const int of_loop = getpriority(PRIO_PROCESS, 0);
+  EXPECT_EQ(nice_of([](Loop& loop) { return std::make_unique<Workers>(loop, 1); }), std::max(of_loop, 10));
+  EXPECT_EQ(nice_of([](Loop& loop) -> std::unique_ptr<Workers> { return std::make_unique<Writer>(loop); }),
+            of_loop);
 }
 
 TEST(Workers, LeaveSignalsToTheLoop) {

@@ -6,7 +6,6 @@
 #include "codec/bulk_data.hpp"
 #include "codec/cbor_splitter.hpp"
 #include "codec/content_decoder.hpp"
-#include "codec/json_at_once.hpp"
 #include "codec/json_splitter.hpp"
 
 namespace adit::codec {
@@ -15,7 +14,6 @@ namespace {
 std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits& limits, BulkData& data) {
   const Most most{.text = limits.text_bytes, .values = limits.values};
   if (format == Format::Cbor) return std::make_unique<CborSplitter>(split, most, data);
-  if (split == Split::Nothing) return std::make_unique<JsonAtOnce>(most);
   return std::make_unique<JsonSplitter>(split, most, data);
 }
 

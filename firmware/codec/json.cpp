@@ -65,12 +65,6 @@ std::expected<Value, std::string> parse_json(std::string_view text) {
   return std::move(*root);
 }
 
-bool is_json(std::string_view text) {
-  BulkData none(0);
-  JsonSplitter splitter(Split::Nothing, {.text = text.size()}, none);
-  return splitter.feed(text) && splitter.end();
-}
-
 std::string write_json(const Value& value) {
   std::string text;
   std::visit(Writer{text}, value.is);

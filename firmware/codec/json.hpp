@@ -12,9 +12,6 @@ namespace adit::codec {
 /// about.
 std::expected<Value, std::string> parse_json(std::string_view text);
 
-/// True for one well-formed JSON document and nothing else.
-bool is_json(std::string_view text);
-
 /// The value on one line; Bytes, UnderTag and SplitOut as null. A number keeps its kind: 11.0 is not
 /// written 11.
 std::string write_json(const Value& value);

@@ -1,10 +1,12 @@
 #include "codec/json_splitter.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "codec/byte_name.hpp"
 #include "codec/json_characters.hpp"
 #include "codec/json_value.hpp"
+#include "icd/require.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
@@ -23,6 +25,19 @@ JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data)
     : split_(split), most_(most), data_(data), path_(split) {}
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
+  const bool is_first = at_ == 0 && !root_;
+  if (is_first && split_ == Split::Nothing && bytes.size() <= most_.text)
+    root_ = json_value(bytes, most_.values);
+  if (is_first && root_) {
+    first_ = bytes;
+    return {};
+  }
+  root_.reset();
+  if (auto read_first = read(std::exchange(first_, {})); !read_first) return read_first;
+  return read(bytes);
+}
+
+icd::Checked<void> JsonSplitter::read(std::string_view bytes) {
   if (at_ == 0) rest_.reserve(std::min(bytes.size(), kSmallText));
   while (!bytes.empty()) {
     const auto taken = step(bytes);
@@ -46,11 +61,13 @@ icd::Checked<void> JsonSplitter::end() {
 }
 
 icd::Checked<Value> JsonSplitter::finish() {
+  if (root_) return *std::move(root_);
   if (auto whole = end(); !whole) return std::unexpected(whole.error());
   if (split_ == Split::Lists) return json_value_with_lists(std::move(rest_));
-  Value root = json_value(rest_);
-  if (data_.form() != DataForm::Absent) mark_split_out(root);
-  return root;
+  auto root = json_value(rest_);
+  icd::require(root.has_value());
+  if (data_.form() != DataForm::Absent) mark_split_out(*root);
+  return *std::move(root);
 }
 
 icd::Checked<std::size_t> JsonSplitter::step(std::string_view in) {

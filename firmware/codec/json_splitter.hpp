@@ -17,6 +17,8 @@
 namespace adit::codec {
 
 /// JSON (RFC 8259) as a pushdown automaton. A byte order mark before it is ignored (8.1).
+/// If no data is split off, most documents come in one piece, which json_value() reads at once. The automaton
+/// reads all others from their first piece, so that it refuses them as soon as they are wrong.
 class JsonSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
@@ -24,13 +26,15 @@ class JsonSplitter final : public Splitter {
 
   icd::Checked<void> feed(std::string_view bytes) override;
   icd::Checked<Value> finish() override;
-  /// After the last feed: is the document whole?
-  icd::Checked<void> end();
 
  private:
   enum class Expect : std::uint8_t { Value, FirstElement, FirstKey, Key, Colon, Separator };
   enum class Token : std::uint8_t { None, Key, String, Number, Literal };
   enum class Diverted : std::uint8_t { No, Base64, Elements };
+
+  icd::Checked<void> read(std::string_view bytes);
+  /// After the last feed: is the document whole?
+  icd::Checked<void> end();
 
   /// Each takes some of `in` (not empty) and says how much.
   icd::Checked<std::size_t> step(std::string_view in);
@@ -67,6 +71,9 @@ class JsonSplitter final : public Splitter {
   std::size_t values_ = 0;  // kept
   BulkData& data_;
   DataPath path_;
+
+  std::optional<Value> root_;  // the document, if the first piece was all of it
+  std::string first_;          // that piece
 
   Expect expect_ = Expect::Value;
   Token token_ = Token::None;

@@ -1,85 +1,165 @@
 #include "codec/json_value.hpp"
 
 #include <cmath>
+#include <iterator>
 #include <memory>
+#include <utility>
+#include <vector>
 
+#include "codec/body_decoder.hpp"
+#include "codec/json_characters.hpp"
 #include "codec/json_number.hpp"
 #include "codec/json_string.hpp"
 #include "codec/splitter.hpp"
+#include "icd/require.hpp"
 
 namespace adit::codec {
 namespace {
 
-/// Reads text that is known to be well-formed and without white space. Recursion ends at
-/// BodyDecoder::kDeepest.
+/// Each function reads what its name says and moves on behind it; false: the document cannot be read.
 class JsonReader {
  public:
-  JsonReader(std::string_view text, Lists* lists) : left_(text), lists_(lists) {}
+  /// `lists`: stand for the arrays, which are empty; null: there are none such.
+  JsonReader(std::string_view text, std::size_t most_values, Lists* lists)
+      : at_(text.data()), end_(text.data() + text.size()), values_left_(most_values), lists_(lists) {}
 
-  Value value() {
-    switch (left_[0]) {
-      case '"':
-        return {string()};
-      case '{':
-        return object();
-      case '[':
-        return array();
-      case 't':
-        return literal("true", {true});
-      case 'f':
-        return literal("false", {false});
-      case 'n':
-        return literal("null", {});
-      default:
-        return json_number_value(take_json_number(left_));
-    }
+  bool document(Value& into) {
+    if (!value(into)) return false;
+    skip_blanks();
+    return at_ == end_;
   }
 
  private:
-  Value literal(std::string_view word, Value meaning) {
-    left_.remove_prefix(word.size());
-    return meaning;
+  char next() const { return at_ == end_ ? '\0' : *at_; }
+  void skip_blanks() {
+    while (at_ != end_ && is_blank(*at_)) ++at_;
+  }
+  bool take(char c) {
+    skip_blanks();
+    if (next() != c) return false;
+    ++at_;
+    return true;
   }
 
-  std::string string() {
-    left_.remove_prefix(1);
-    std::string text;
+  bool value(Value& into) {
+    skip_blanks();
+    if (values_left_ == 0) return false;
+    --values_left_;
+    switch (next()) {
+      case '"':
+        return string(into.is.emplace<std::string>());
+      case '{':
+        return nested([&] { return object(into); });
+      case '[':
+        return nested([&] { return array(into); });
+      case 't':
+        return word("true", {true}, into);
+      case 'f':
+        return word("false", {false}, into);
+      case 'n':
+        return word("null", {}, into);
+      default:
+        return number(into);
+    }
+  }
+
+  template <class Read>
+  bool nested(Read read) {
+    if (depth_ == BodyDecoder::kDeepest) return false;
+    ++at_;
+    ++depth_;
+    const bool is_read = read();
+    --depth_;
+    return is_read;
+  }
+
+  bool word(std::string_view word, Value meaning, Value& into) {
+    if (!std::string_view(at_, end_).starts_with(word)) return false;
+    at_ += word.size();
+    into = std::move(meaning);
+    return true;
+  }
+
+  bool string(std::string& into) {
+    const char* const begin = ++at_;
+    while (at_ != end_ && is_plain(*at_)) ++at_;
+    into.assign(begin, at_);
+    if (next() != '"') return rest_of_string(into);
+    ++at_;
+    return true;
+  }
+
+  /// From the first escape, or the first character that is not ASCII.
+  bool rest_of_string(std::string& into) {
     JsonString characters;
     for (bool ended = false; !ended;) {
-      const auto piece = characters.next(left_);
-      text += piece->text;
+      if (at_ == end_) return false;
+      const auto piece = characters.next({at_, end_});
+      if (!piece) return false;
+      into += piece->text;
+      at_ += piece->taken;
       ended = piece->ended;
-      left_.remove_prefix(piece->taken);
     }
-    return text;
+    return true;
   }
 
-  /// Takes the bracket or the comma before the next one; false: the last bracket.
-  bool take_before_next(char last) {
-    const bool is_over = left_[0] == last || (left_[0] != ',' && left_[1] == last);
-    left_.remove_prefix(is_over && left_[0] != last ? 2 : 1);
-    return !is_over;
+  bool number(Value& into) {
+    JsonNumber grammar;
+    std::string_view text(at_, grammar.next({at_, end_}));
+    at_ += text.size();
+    if (!grammar.complete()) return false;
+    const double number = take_json_number(text);
+    into = json_number_value(number);
+    return !std::isinf(number);
   }
 
-  Value array() {
-    Value::Array array;
-    while (take_before_next(']')) array.push_back(value());
-    if (lists_ != nullptr) return lists_->next();  // of a Cut, it is empty
-    return {std::move(array)};
+  /// The last ones of `waiting`, from `first` on, which have no other place there.
+  template <class Item>
+  static std::vector<Item> take_from(std::vector<Item>& waiting, std::size_t first) {
+    const auto begin = waiting.begin() + static_cast<std::ptrdiff_t>(first);
+    std::vector<Item> taken(std::make_move_iterator(begin), std::make_move_iterator(waiting.end()));
+    waiting.erase(begin, waiting.end());
+    return taken;
   }
 
-  Value object() {
-    Value::Object object;
-    while (take_before_next('}')) {
-      std::string name = string();
-      left_.remove_prefix(1);  // the colon
-      object.emplace_back(std::move(name), value());
+  bool array(Value& into) {
+    const std::size_t first = elements_.size();
+    if (!take(']')) {
+      do {
+        Value element;
+        if (!value(element)) return false;
+        elements_.push_back(std::move(element));
+      } while (take(','));
+      if (!take(']')) return false;
     }
-    return {std::move(object)};
+    into = lists_ != nullptr ? lists_->next() : Value{take_from(elements_, first)};
+    return true;
   }
 
-  std::string_view left_;
+  bool object(Value& into) {
+    const std::size_t first = members_.size();
+    if (!take('}')) {
+      do {
+        std::string name;
+        Value meant;
+        skip_blanks();
+        if (next() != '"' || !string(name) || !take(':') || !value(meant)) return false;
+        members_.emplace_back(std::move(name), std::move(meant));
+      } while (take(','));
+      if (!take('}')) return false;
+    }
+    into.is.emplace<Value::Object>(take_from(members_, first));
+    return true;
+  }
+
+  const char* at_;
+  const char* end_;
+  std::size_t values_left_;
   Lists* lists_;
+  int depth_ = 0;
+  // Of all that are open, so that each gets room for what it holds and no more.
+  std::vector<Value> elements_;
+  std::vector<Value::Member> members_;
 };
 
 /// The value from `begin` to `end`.
@@ -87,7 +167,9 @@ icd::Checked<Value> with_lists(const SharedText& text, std::size_t begin, std::s
   Cut cut = cut_json(*text, begin, end);
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
   Lists lists(text, std::move(cut.arrays), with_lists, 1);
-  return JsonReader(cut.rest, &lists).value();
+  Value root;
+  icd::require(JsonReader(cut.rest, cut.rest.size(), &lists).document(root));
+  return root;
 }
 
 }  // namespace
@@ -100,8 +182,10 @@ Value json_number_value(double number) {
   return {number};
 }
 
-Value json_value(std::string_view text) {
-  return JsonReader(text, nullptr).value();
+std::optional<Value> json_value(std::string_view text, std::size_t most_values) {
+  Value root;
+  if (!JsonReader(text, most_values, nullptr).document(root)) return std::nullopt;
+  return root;
 }
 
 icd::Checked<Value> json_value_with_lists(std::string text) {

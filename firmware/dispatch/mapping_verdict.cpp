@@ -17,7 +17,7 @@ constexpr int kHandlerFailed = 500;
 Body body_of(std::string_view body) {
   constexpr std::string_view kSpace = " \t\r\n";
   if (body.find_first_not_of(kSpace) == std::string_view::npos) return Body::Empty;
-  return codec::is_json(body) ? Body::Json : Body::Other;
+  return codec::parse_json(body) ? Body::Json : Body::Other;
 }
 
 bool may_be_the_command_post(int status, Body body) {

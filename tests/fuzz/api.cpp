@@ -67,7 +67,7 @@ void require_answer(const intake::Answer& answer, bool is_same) {
     require_refusal(answer);
     require(is_same);
   } else if (answer.content_type == "application/json" && !answer.body.empty()) {
-    require(codec::is_json(answer.body));
+    require(codec::parse_json(answer.body).has_value());
   }
 }
 

@@ -30,6 +30,10 @@ double half(std::uint16_t bits) {
 
 std::size_t CborHead::next(std::string_view in) {
   icd::require(!complete());
+  if (size_ == 0 && in.size() >= bytes_.size()) {  // the usual case
+    std::ranges::copy(in.substr(0, bytes_.size()), bytes_.data());
+    return size_ = length();
+  }
   std::size_t taken = 0;
   if (size_ == 0 && !in.empty()) bytes_[size_++] = static_cast<std::uint8_t>(in[taken++]);
   const std::string_view rest = in.substr(taken, length() - size_);

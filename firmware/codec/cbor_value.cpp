@@ -1,5 +1,6 @@
 #include "codec/cbor_value.hpp"
 
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -130,11 +131,42 @@ class CborReader {
   Lists* lists_;
 };
 
+std::optional<double> real_of(const CborHead& head) {
+  if (head.major() == Major::Unsigned) return static_cast<double>(head.argument());
+  if (head.major() == Major::Negative) return -1.0 - static_cast<double>(head.argument());
+  constexpr std::uint8_t kHalf = 25, kDouble = 27;
+  if (head.major() != Major::Simple || head.info() < kHalf || head.info() > kDouble) return std::nullopt;
+  return head.number();
+}
+
+/// List::reals() of well-formed bytes.
+bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into) {
+  const auto next = [&] {
+    CborHead head;
+    object.remove_prefix(head.next(object));
+    return head;
+  };
+  if (const CborHead map = next(); map.major() != Major::Map || map.argument() != names.size()) return false;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const CborHead name = next();
+    if (name.major() != Major::Text || name.argument() != names[i].size() || !object.starts_with(names[i]))
+      return false;
+    object.remove_prefix(names[i].size());
+    const auto number = real_of(next());
+    if (!number || !std::isfinite(*number)) return false;
+    into[i] = *number;
+  }
+  return object.empty();
+}
+
+icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t end);
+constexpr Lists::Format kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
+
 /// The value from `begin` on.
 icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t /*end*/) {
   Cut cut = cut_cbor(*text, begin);
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
-  Lists lists(text, std::move(cut.arrays), with_lists_at, 0);
+  Lists lists(text, std::move(cut.arrays), kCborLists);
   return CborReader(cut.rest, &lists).value();
 }
 

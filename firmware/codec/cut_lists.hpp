@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,19 +29,22 @@ Cut cut_cbor(std::string_view text, std::size_t begin);
 /// What stands for the arrays of a Cut, one after the other.
 class Lists {
  public:
-  using Read = icd::Checked<Value> (*)(const SharedText& text, std::size_t begin, std::size_t end);
+  /// How the elements of a format are read.
+  struct Format {
+    icd::Checked<Value> (*element)(const SharedText& text, std::size_t begin, std::size_t end);
+    bool (*reals)(std::string_view element, std::span<const std::string_view> names, std::span<double> into);
+    std::size_t gap;  // bytes between two elements
+  };
 
-  /// `read` reads an element; between two of them are `gap` bytes.
-  Lists(SharedText text, std::vector<Starts> arrays, Read read, std::size_t gap)
-      : text_(std::move(text)), arrays_(std::move(arrays)), read_(read), gap_(gap) {}
+  Lists(SharedText text, std::vector<Starts> arrays, const Format& format)
+      : text_(std::move(text)), arrays_(std::move(arrays)), format_(format) {}
   /// Requires that there is one more.
   Value next();
 
  private:
   SharedText text_;
   std::vector<Starts> arrays_;
-  Read read_;
-  std::size_t gap_;
+  const Format& format_;
   std::size_t next_ = 0;
 };
 

@@ -93,6 +93,11 @@ Field Field::element(std::size_t index, Reading& reading) const& {
   return {&std::get<Value::Array>(value_->is)[index], this, {}, index, reading};
 }
 
+bool Field::reals(std::size_t index, std::span<const std::string_view> names, std::span<double> into) const {
+  if (!is<std::shared_ptr<const List>>()) return false;
+  return std::get<std::shared_ptr<const List>>(value_->is)->reals(index, names, into);
+}
+
 bool Field::is_absent() const {
   return !value_ || is<std::nullptr_t>();
 }

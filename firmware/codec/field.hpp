@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -61,6 +62,9 @@ class Field {
   Field element(std::size_t index) const& { return element(index, reading_); }
   Field element(std::size_t index, Reading& reading) const&& = delete;
   Field element(std::size_t index) const&& = delete;
+
+  /// List::reals() of an element of an array that is left as text; false of any other array.
+  bool reals(std::size_t index, std::span<const std::string_view> names, std::span<double> into) const;
 
   /// What is there; null where nothing is given. For readers that tell more than one refusal.
   const Value* value() const { return value_; }

@@ -5,11 +5,18 @@
 #include <string>
 #include <system_error>
 
+#include "codec/json_characters.hpp"
+
 namespace adit::codec {
 
 std::size_t JsonNumber::next(std::string_view in) {
   std::size_t n = 0;
-  while (n < in.size() && accept(in[n])) ++n;
+  while (n < in.size() && accept(in[n])) {
+    ++n;
+    const bool is_among_digits =
+        place_ == Place::Integer || place_ == Place::Fraction || place_ == Place::Exponent;
+    while (is_among_digits && n < in.size() && is_digit(in[n])) ++n;
+  }
   return n;
 }
 

@@ -1,4 +1,5 @@
 // The JSON splitter's numbers, and the values that it diverts from the rest: the map's data.
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -81,9 +82,9 @@ icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
 }
 
 icd::Checked<void> JsonSplitter::keep_number() {
-  constexpr std::size_t kSurelySmall = 15;  // characters: with an exponent looked for apart
-  const bool surely_small =
-      number_.size() <= kSurelySmall && number_.find_first_of("eE") == std::string::npos;
+  constexpr std::size_t kSurelySmall = 308;  // digits, without an exponent: below 1e308
+  const bool surely_small = number_.size() <= kSurelySmall &&
+                            std::ranges::none_of(number_, [](char c) { return c == 'e' || c == 'E'; });
   if (std::string_view text = number_; !surely_small && std::isinf(take_json_number(text)))
     return std::unexpected(fault_at(number_at_, "a number too large for a double"));
   keep(number_);

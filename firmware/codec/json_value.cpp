@@ -1,5 +1,6 @@
 #include "codec/json_value.hpp"
 
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <memory>
@@ -162,11 +163,31 @@ class JsonReader {
   std::vector<Value::Member> members_;
 };
 
+/// List::reals() of well-formed text without white space.
+bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into) {
+  const auto takes = [&](std::string_view what) {
+    if (!object.starts_with(what)) return false;
+    object.remove_prefix(what.size());
+    return true;
+  };
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!takes(i == 0 ? "{\"" : ",\"") || !takes(names[i]) || !takes("\":")) return false;
+    const char* const end = object.data() + object.size();
+    const auto [after, error] = std::from_chars(object.data(), end, into[i]);
+    if (error != std::errc()) return false;
+    object = {after, end};
+  }
+  return object == "}";
+}
+
+icd::Checked<Value> with_lists(const SharedText& text, std::size_t begin, std::size_t end);
+constexpr Lists::Format kJsonLists = {.element = with_lists, .reals = reals_in, .gap = 1};
+
 /// The value from `begin` to `end`.
 icd::Checked<Value> with_lists(const SharedText& text, std::size_t begin, std::size_t end) {
   Cut cut = cut_json(*text, begin, end);
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
-  Lists lists(text, std::move(cut.arrays), with_lists, 1);
+  Lists lists(text, std::move(cut.arrays), kJsonLists);
   Value root;
   icd::require(JsonReader(cut.rest, cut.rest.size(), &lists).document(root));
   return root;

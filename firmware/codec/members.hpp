@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <concepts>
 #include <cstdint>
 #include <limits>
@@ -110,8 +111,9 @@ struct NamedMember {
       if (count > most) return field.refuse("expected at most ", most, unit, ", got ", count);
       value.reserve(count);
       for (std::size_t i = 0; i < count && !field.reading().refused(); ++i) {
+        if (read_reals(field, i, value.emplace_back())) continue;
         const Field element = field.element(i);
-        read_members(element, value.emplace_back(), rules);
+        read_members(element, value.back(), rules);
       }
     } else if constexpr (requires { value.emplace(); }) {
       read_members(field, value.emplace(), rules);
@@ -169,6 +171,37 @@ struct Group {
         members);
   }
 };
+
+/// The names of a struct whose members are all numbers that a message always has; none if another is among
+/// them.
+template <class Struct>
+inline constexpr auto kNamesOfReals = std::apply(
+    []<class... Members>(const Members&... each) {
+      if constexpr ((std::same_as<Members, NamedMember<Struct, double>> && ...))
+        return std::array<std::string_view, sizeof...(Members)>{each.name...};
+      else
+        return std::array<std::string_view, 0>{};
+    },
+    members_of<Struct>);
+
+/// Reads such a struct from the element `index` of `list`, if it holds these members alone, each within its
+/// bounds. False: the general reader has to look at the element.
+template <class Struct>
+bool read_reals(const Field& list, std::size_t index, Struct& into) {
+  constexpr auto& names = kNamesOfReals<Struct>;
+  if constexpr (names.empty()) {
+    return false;
+  } else {
+    std::array<double, names.size()> reals;
+    if (!list.reals(index, names, reals)) return false;
+    const double* next = reals.data();
+    const auto take = [&](const auto& member) {
+      into.*member.at = *next++;
+      return into.*member.at >= member.least && into.*member.at <= member.most;
+    };
+    return std::apply([&](const auto&... each) { return (take(each) && ...); }, members_of<Struct>);
+  }
+}
 
 template <class... Members>
 constexpr Group<Members...> group(std::string_view name, Members... members) {

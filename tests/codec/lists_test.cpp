@@ -61,6 +61,51 @@ TEST(Lists, AreNotParsedBeforeAnElementIsAskedFor) {
   EXPECT_EQ(reading.outcome(0).error().sentence, "a: expected a string, got an array");
 }
 
+/// One way for objects of numbers, which must say no of everything that the general way reads otherwise.
+TEST(Lists, GiveTheNumbersOfAnObjectThatHoldsTheseMembersAlone) {
+  constexpr std::string_view kNames[] = {"x", "y"};
+  struct Element {
+    BodyKind kind;
+    std::string body;
+    bool is_read;
+  };
+  const std::string y = "\x61y"s, x = "\x61x"s, half = "\xf9\x38\x00"s;
+  const Element elements[] = {
+      {kJsonBody, R"([{"x": 0.5, "y": -2e1}])", true},
+      {kJsonBody, R"([{"x": 0.5, "y": -20}])", true},
+      {kJsonBody, R"([{"y": -20, "x": 0.5}])", false},
+      {kJsonBody, R"([{"x": 0.5}])", false},
+      {kJsonBody, R"([{"x": 0.5, "y": -20, "z": 0}])", false},
+      {kJsonBody, R"([{"x": 0.5, "y": "-20"}])", false},
+      {kJsonBody, R"([{"x": 0.5, "y": null}])", false},
+      {kJsonBody, R"([{"x": 0.5, "y": [-20]}])", false},
+      {kJsonBody, R"([{"x": 0.5, "yy": -20}])", false},
+      {kJsonBody, R"([[0.5, -20]])", false},
+      {kJsonBody, "[5]", false},
+      {kCborBody, "\x81\xa2" + x + half + y + "\x33", true},
+      {kCborBody, "\x81\xa2" + x + "\xfa\x3f\x00\x00\x00"s + y + "\xfb\xc0\x34\x00\x00\x00\x00\x00\x00"s,
+       true},
+      {kCborBody, "\x81\xa2" + y + "\x33" + x + half, false},
+      {kCborBody, "\x81\xbf" + x + half + y + "\x33\xff", false},
+      {kCborBody, "\x81\xa1" + x + half, false},
+      {kCborBody, "\x81\xa2" + x + half + y + "\xf4", false},
+      {kCborBody, "\x81\xa2" + x + half + y + "\xf9\x7e\x00"s, false},  // NaN
+      {kCborBody, "\x81\xa2" + x + half + "\x41y\x33", false},
+      {kCborBody, "\x81\xa2" + x + half + y + "\x81\x33", false},
+      {kCborBody, "\x81\x05", false},
+  };
+  for (const auto& [kind, body, is_read] : elements) {
+    const auto document = decode(kind, Split::Lists, body);
+    ASSERT_TRUE(document) << body;
+    Reading reading;
+    const Field list(document->root, reading);
+    double numbers[2] = {};
+    ASSERT_EQ(list.reals(0, kNames, numbers), is_read) << body;
+    if (is_read) EXPECT_EQ(std::pair(numbers[0], numbers[1]), std::pair(0.5, -20.0)) << body;
+    EXPECT_FALSE(reading.refused()) << body;
+  }
+}
+
 /// However long its lists are, of a message there is no more than this as a tree.
 TEST(Lists, LeaveFewValuesOutsideThem) {
   const auto members = [](std::size_t count, std::string_view before, std::string_view after) {

@@ -11,7 +11,7 @@ bool in_any_order(const WaitingMap& one, const WaitingMap& other) {
   return !one.map.is_grid() && !one.is_whole && !other.is_whole;
 }
 
-/// Until one that went ahead was taken, that is a trial, whose end is awaited.
+/// The first map that goes ahead is a trial: until it is accepted, no other map goes ahead.
 bool Ahead::may_go(const WaitingMap& next, const Before& before, Instant now) const {
   if (taken_ < well_ || now > before.arrived + kLate) return false;
   if (before.went_ahead && !tried_) return false;

@@ -6,20 +6,24 @@
 
 namespace adit::lanes {
 
-/// Whether the next map may go ahead: be sent before the Command Post has answered the one before, so that
-/// the link is not idle until then. At most two are under way, and the first has arrived.
+/// Decides whether the next map may be sent before the Command Post has answered the previous one, so that
+/// the link is not idle meanwhile. At most two maps are in flight, and the first one has arrived.
 ///
-/// Only where it is of no consequence which of the two is taken first, or that the first one fails and is
-/// sent again after the second one: maps of different senders, and clouds of one that are parts. Only at a
-/// Command Post that has taken the last kWell maps, of one that was never failed at, and that is not late
-/// with its answer: else it is no help to give it more. After each failure while two were under way it takes
-/// twice as many, so that one to which two are too much has one at a time, as a rule.
+/// A map goes ahead if all of this holds:
+/// - The order of the two does not matter, even if the first one fails and is retried after the second one:
+///   they are maps of different senders, or clouds of one sender that are parts.
+/// - The Command Post has accepted the last kWell maps, and its answer is not late by kLate. Otherwise more
+///   maps would not help it.
+/// - The previous map has never failed.
+///
+/// After each failure with two maps in flight, twice as many maps have to be accepted in a row. A Command
+/// Post that cannot handle two maps therefore mostly gets one at a time.
 class Ahead {
  public:
   static constexpr int kWell = 2, kMostWell = 128;
   static constexpr std::chrono::milliseconds kLate{500};
 
-  /// The map before, which arrived at `arrived`.
+  /// The previous map, and when it had arrived.
   struct Before {
     const WaitingMap& map;
     Instant arrived;
@@ -27,18 +31,18 @@ class Ahead {
   };
   bool may_go(const WaitingMap& next, const Before& before, Instant now) const;
 
-  /// One was taken. `ahead`: it had gone ahead.
+  /// A map was accepted. `ahead`: it was sent before the previous map was answered.
   void taken(bool ahead);
-  /// One was not, whatever happened. `two`: while two were under way.
+  /// A map was not accepted, for any reason. `two`: two maps were in flight.
   void failed(bool two);
 
  private:
   int taken_ = 0;       // in a row
-  int well_ = kWell;    // so many are enough
-  bool tried_ = false;  // one that went ahead is among them
+  int well_ = kWell;    // as many are needed
+  bool tried_ = false;  // a map that went ahead is among them
 };
 
-/// Whether it is of no consequence which of the two a Command Post takes first.
+/// Whether a Command Post may accept the two maps in either order.
 bool in_any_order(const WaitingMap& one, const WaitingMap& other);
 
 }  // namespace adit::lanes

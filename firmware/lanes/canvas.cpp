@@ -9,7 +9,7 @@
 namespace adit::lanes {
 namespace {
 
-/// Beyond it no cell of a grid lies (cells_in()).
+/// No cell of a grid is farther away (cells_in()).
 constexpr double kFarthest = 1e15;
 
 std::int64_t cell_at(double metres, double origin, double resolution) {
@@ -17,7 +17,7 @@ std::int64_t cell_at(double metres, double origin, double resolution) {
       std::clamp(std::floor((metres - origin) / resolution), -kFarthest, kFarthest));
 }
 
-/// At least those of `extent`.
+/// Cells that hold `extent`; may be more.
 Cells cells_about(const icd::OccupancyGrid& lattice, const Extent& extent) {
   const auto& [left, bottom, z] = lattice.origin.position;
   const std::int64_t x = cell_at(extent.left, left, lattice.resolution) - 1;
@@ -26,7 +26,7 @@ Cells cells_about(const icd::OccupancyGrid& lattice, const Extent& extent) {
           cell_at(extent.top, bottom, lattice.resolution) + 2 - y};
 }
 
-/// Of all tiles whose cells are not known.
+/// The one tile that stands for all tiles with unknown cells.
 const std::shared_ptr<const CanvasTile>& not_known() {
   static const auto tile = [] {
     auto made = std::make_shared<CanvasTile>();

@@ -16,48 +16,48 @@
 
 namespace adit::lanes {
 
-/// What was packed to be sent of one name's grids of one lattice, in the order of packing.
+/// The cells that were last sent of the grids of one name and lattice, as far as they are known.
 class Canvas {
  public:
-  /// Most tiles that one map may touch: what is drawn at once is bounded.
+  /// The most tiles that one map may touch, so that one drawing step is bounded.
   static constexpr std::int64_t kMostTouched = 1200;
 
-  /// `lattice`: a grid of it. `before`: where something was sent that is not known any more.
+  /// `lattice`: any grid of the lattice. `before`: where cells were sent whose values are no longer known.
   Canvas(std::uint64_t number, const icd::OccupancyGrid& lattice, const std::optional<Extent>& before);
 
-  /// Whether what is sent of it can be known: it is not turned, and not too large.
+  /// Whether a canvas can hold the grid: it is not rotated, and not too large.
   static bool can_draw(const icd::OccupancyGrid& grid);
 
-  /// Whether its cells lie along the frame's axes.
+  /// Whether the grid's cells lie along the axes of the frame.
   static bool is_straight(const icd::OccupancyGrid& grid);
 
   std::uint64_t number() const { return number_; }
-  /// Nothing where it is of another lattice.
+  /// The grid's cells on this lattice, or nothing if the grid has another lattice.
   std::optional<Cells> cells_of(const icd::OccupancyGrid& grid) const { return cells_in(lattice_, grid); }
 
-  /// Whether it is known of each cell of `all` that none of `grids` has what was last sent there, if anything
-  /// was; all are counted from the lower left cell of `from`. Each look at a tile, or at a grid in it, is one
-  /// of `looks`; false once there are no more.
+  /// Whether the last sent value is known for each cell of `all` that is in none of `grids`. All cells are
+  /// counted from the lower left cell of `from`. Each look at a tile, or at a grid in it, takes one of
+  /// `looks`; false if none is left.
   bool knows(const Cells& from, Cells all, std::span<const Cells> grids, std::size_t& looks) const;
 
-  /// What is known to lie there.
+  /// The known cells there.
   Ground under(const Cells& cells) const;
-  /// What is sent there now is not known until it is laid. Requires kMostTouched at most.
+  /// Marks cells that are being sent as unknown, until lay(). Requires at most kMostTouched tiles.
   void forget(const Cells& cells);
-  /// What was drawn over under(), `when` by a count of what is laid. Where tiles were forgotten since, they
-  /// stay so.
+  /// Sets what was drawn over under(). `when`: the number of this lay(), a count. Tiles that were forgotten
+  /// since then stay unknown.
   void lay(const Ground& drawn, std::uint64_t when) noexcept;
 
   std::size_t tiles() const { return tiles_.size(); }
-  /// When those with cells were laid, at the end of `when`.
+  /// Appends to `when` the number of each tile with known cells.
   void add_times(std::vector<std::uint64_t>& when) const;
-  /// Forgets the cells of those that were laid before.
+  /// Forgets the cells of tiles with a lower number.
   void forget_before(std::uint64_t when) noexcept;
 
  private:
   struct Laid {
     std::shared_ptr<const CanvasTile> tile;
-    std::uint64_t when = 0;  // 0: its cells are not known
+    std::uint64_t when = 0;  // 0: the cells are unknown
   };
   bool has_before(const Cells& cells) const { return before_ && before_->overlaps(cells); }
 

@@ -24,7 +24,7 @@ void add(Canvases::Posted& to, const Canvases::Posted& from) {
   for (const auto& [name, extent] : from) add(to, name, extent);
 }
 
-/// Where something of that name is, or may be; nothing: nowhere.
+/// Where grids of that name are, or may be; nothing if there are none.
 std::optional<Extent> extent_in(const Canvases::Posted& sent, const std::string& name) {
   std::optional<Extent> all;
   for (const std::string& key : {std::string(Canvases::kAnyName), name}) {
@@ -57,7 +57,7 @@ std::optional<std::pair<std::string, Extent>> Canvases::grows(const icd::MapUpda
   return {{name, around(before->second, extent)}};
 }
 
-/// What a life before sent may have arrived just before this one began.
+/// Grids of an earlier process may have arrived just before this process start.
 Canvases::Sent& Canvases::here() {
   const auto found = sent_.find(command_post_);
   if (found != sent_.end()) return found->second;
@@ -73,7 +73,7 @@ void Canvases::heard(std::span<const icd::MapUpdate* const> under_way) {
   sent.older = std::exchange(sent.newer, std::move(newer));
 }
 
-/// A life to come takes for sent what was posted in earlier runs, too: it does not know when they ended.
+/// A later process also treats grids of earlier runs as sent, because it does not know when the runs ended.
 void Canvases::begin_run() {
   canvases_.clear();
   Sent& sent = here();
@@ -92,7 +92,7 @@ const Canvas* Canvases::find(const std::optional<icd::RobotName>& name) const {
   return found == canvases_.end() ? nullptr : &found->second;
 }
 
-/// A whole map that grows is not drawn: nothing is ever stitched to it that it does not cover.
+/// A whole map that grows is not drawn, because it covers all grids that could be stitched to it.
 void Canvases::sends(WaitingMap& next) {
   const auto& grid = std::get<icd::OccupancyGrid>(next.map.msg);
   const Extent extent = extent_of(grid);
@@ -125,7 +125,7 @@ void Canvases::lay(const std::optional<icd::RobotName>& name, const Ground& draw
   forget_oldest();
 }
 
-/// Down to three quarters, so that this is done now and then.
+/// Forgets a quarter at once, so that this is rare.
 void Canvases::forget_oldest() {
   std::vector<std::uint64_t> when;
   std::size_t all = 0;

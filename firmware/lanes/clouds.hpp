@@ -5,11 +5,11 @@
 
 namespace adit::lanes {
 
-/// What a robot's clouds are to each other.
+/// How a robot's clouds relate to each other.
 enum class Clouds : std::uint8_t {
-  Auto,   // a newer one replaces an older one where it has each of its points
-  Whole,  // each says all that those before it said: it replaces them
-  Parts,  // each is to arrive
+  Auto,   // a newer cloud replaces an older one if it has all its points
+  Whole,  // each cloud contains all earlier ones and replaces them
+  Parts,  // each cloud must be delivered
 };
 inline constexpr std::string_view kCloudsWords[] = {"auto", "whole", "parts"};
 

@@ -9,14 +9,13 @@
 namespace adit::lanes {
 namespace {
 
-/// An origin is compared in thousandths of a cell, so that what floating point makes of a multiple of the
-/// resolution (ROS sends it as a float32) is one lattice still. Rounding both to these steps, instead of
-/// allowing a difference, keeps `covers` transitive.
+/// Origins are compared in thousandths of a cell, because a multiple of the resolution (a float32 in ROS) has
+/// rounding errors. Both are rounded to these steps; a tolerance would not keep `covers` transitive.
 constexpr std::int64_t kStepsPerCell = 1000;
-/// Above it a double has no thousandths left.
+/// Larger doubles cannot express thousandths.
 constexpr double kMostSteps = 9007199254740992.0;
 
-/// Where a grid's lower left corner lies, in steps along the grid's own axes.
+/// The position of a grid's lower left corner, in steps along the grid's own axes.
 struct Corner {
   std::int64_t x = 0, y = 0, z = 0;
 };
@@ -29,19 +28,17 @@ icd::Point turned_back(const icd::Pose& origin) {
           turn[0][2] * p.x + turn[1][2] * p.y + turn[2][2] * p.z};
 }
 
-/// Nothing where the grid lies so far out that its cells cannot be told apart.
+/// Nothing if the grid is so far away that doubles cannot distinguish its cells.
 std::optional<Corner> corner_of(const icd::OccupancyGrid& grid) {
   const icd::Point p = turned_back(grid.origin);
   const double scale = static_cast<double>(kStepsPerCell) / grid.resolution;
   const double x = p.x * scale, y = p.y * scale, z = p.z * scale;
-  const auto tellable = [](double steps) {
-    return std::abs(steps) < kMostSteps;
-  };  // false for what is no number
+  const auto tellable = [](double steps) { return std::abs(steps) < kMostSteps; };  // false for NaN
   if (!tellable(x) || !tellable(y) || !tellable(z)) return {};
   return Corner{std::llround(x), std::llround(y), std::llround(z)};
 }
 
-/// Steps as cells; nothing where they end within one.
+/// Steps as cells; nothing if they are not a whole number of cells.
 std::optional<std::int64_t> whole_cells(std::int64_t steps) {
   if (steps % kStepsPerCell != 0) return {};
   return steps / kStepsPerCell;
@@ -51,8 +48,8 @@ Cells cells_at(std::int64_t x, std::int64_t y, const icd::OccupancyGrid& grid) {
   return {x, y, grid.width, grid.height};
 }
 
-/// Whether the corner of `older` is certainly not in `newer`. Far cheaper than corner_of(): each new grid is
-/// compared with each queued one of its name.
+/// Whether the corner of `older` is certainly outside `newer`. Much cheaper than corner_of(), because each
+/// new grid is compared with each queued grid of its name.
 bool is_far(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
   const icd::Point &a = newer.origin.position, &b = older.origin.position;
   const double x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
@@ -79,7 +76,7 @@ bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
   return inner && cells_at(0, 0, newer).holds(*inner);
 }
 
-/// On the middle of its step, so that what floating point makes of it is rounded to the same one.
+/// In the middle of its step, so that rounding errors do not change the step.
 std::optional<icd::Pose> corner_at(const icd::OccupancyGrid& of, std::int64_t x, std::int64_t y) {
   const auto from = corner_of(of);
   if (!from) return {};

@@ -21,14 +21,14 @@ struct Extent {
   friend bool operator==(const Extent&, const Extent&) = default;
 };
 
-/// The smallest that holds both.
+/// The smallest rectangle that holds both.
 inline Extent around(const Extent& a, const Extent& b) {
   return {std::min(a.left, b.left), std::min(a.bottom, b.bottom), std::max(a.right, b.right),
           std::max(a.top, b.top)};
 }
 
-/// Holds all cells of `grid`, and at least one more on each side. It is larger than that where the grid is
-/// turned; everywhere where numbers end.
+/// A rectangle that holds all cells of `grid` and at least one more cell on each side. It is larger if the
+/// grid is rotated, and everywhere() if it has no finite bounds.
 Extent extent_of(const icd::OccupancyGrid& grid);
 
 }  // namespace adit::lanes

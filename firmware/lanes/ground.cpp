@@ -17,7 +17,7 @@ std::size_t place_in(const Cells& all, std::int64_t x, std::int64_t y) {
   return static_cast<std::size_t>((y - all.y) * all.width + (x - all.x));
 }
 
-/// A tile of which nothing was sent, as far as that is known.
+/// A new tile: no cell was sent, or the sent cells are unknown.
 CanvasTile empty_tile(const Cells& its, const std::optional<Cells>& before) {
   CanvasTile tile;
   tile.cells.fill(icd::kUnknownCell);

@@ -14,40 +14,41 @@
 
 namespace adit::lanes {
 
-/// A square of a canvas: the newest values that were packed to be sent there.
+/// A square of a canvas with the values that were last packed for it.
 struct CanvasTile {
   static constexpr std::int64_t kSide = 64;         // cells
-  static constexpr std::uint8_t kNotKnown = 254;    // no value of a cell: what was sent there is not known
-  std::array<std::uint8_t, kSide * kSide> cells{};  // row by row from the lower left one
-  bool is_known = false;                            // each of them
+  static constexpr std::uint8_t kNotKnown = 254;    // the last sent value is unknown; no cell has this value
+  std::array<std::uint8_t, kSide * kSide> cells{};  // row by row from the lower left cell
+  bool is_known = false;                            // all cells are known
 };
 
-/// What lies under a rectangle of a canvas. Shares the tiles, which do not change, so that a worker can read
+/// The cells of a canvas in a rectangle. Shares the tiles, which are immutable, so that a worker can read
 /// them.
 struct Ground {
-  std::uint64_t canvas = 0;     // its number
+  std::uint64_t canvas = 0;     // number of the canvas
   Cells cells;                  // the rectangle, on the canvas's lattice
-  std::optional<Cells> before;  // within it, a cell without a tile is not known; elsewhere nothing was sent
-  std::vector<std::shared_ptr<const CanvasTile>> tiles;  // that it touches, row by row; null: none
+  std::optional<Cells> before;  // a cell without a tile is unknown within it, and was never sent outside
+  std::vector<std::shared_ptr<const CanvasTile>> tiles;  // the touched tiles, row by row; null: no tile
 };
 
-/// The tiles that `cells` touches, counted in tiles.
+/// The tiles that `cells` touches, in units of tiles.
 Cells tiles_of(const Cells& cells);
-/// The cells of the tile in that place.
+/// The cells of the tile (x, y).
 inline Cells cells_of_tile(std::int64_t x, std::int64_t y) {
   return {x * CanvasTile::kSide, y * CanvasTile::kSide, CanvasTile::kSide, CanvasTile::kSide};
 }
 
-/// The cells of `ground`, row by row: unknown where nothing was sent, and where it is not known what was.
+/// The cells of `ground`, row by row. Cells that were never sent, or whose sent value is unknown, are ROS's
+/// unknown.
 std::vector<std::uint8_t> cells_under(const Ground& ground);
 
-/// A map's cells over what lies under it.
+/// Draws a map's cells over a Ground.
 class Drawing {
  public:
   explicit Drawing(Ground under);
-  /// The next cells of the map, row by row. Requires that the rectangle has room for them.
+  /// Draws the next cells of the map, row by row. Requires that they fit into the rectangle.
   void feed(std::span<const std::uint8_t> cells);
-  /// With new tiles. Requires all cells of the map.
+  /// The ground with new tiles. Requires that all cells of the map were fed.
   Ground finish();
 
  private:

@@ -7,7 +7,7 @@
 
 namespace adit::lanes {
 
-/// Keeps the sums of all queues; where `change` throws, it has changed nothing.
+/// Updates the sums over all queues. If `change` throws, it must have changed nothing.
 template <class Change>
 auto MapLane::change(MapQueue& queue, Change change) {
   const std::size_t count = queue.count(), bytes = queue.bytes();
@@ -22,7 +22,7 @@ const MapQueue* MapLane::queue_of(const Sender& sender) const {
   return found == senders_.end() ? nullptr : &found->second.queue;
 }
 
-/// The sender's, which waits from now on.
+/// The queue of a sender that is about to get a map.
 MapLane::Waiting& MapLane::joins(const Sender& sender) {
   Waiting& its = senders_[sender];
   if (its.queue.count() == 0) its.turn = turns_.joins(its.turn);
@@ -56,8 +56,8 @@ void MapLane::restore(std::uint64_t number, icd::MapUpdate map, Instant now) {
   });
 }
 
-/// Of those that have a map which may go, the one whose turn it is; where all rest, that of the map that
-/// rested longest.
+/// The sender whose turn it is, among those with a map that may go. If all maps rest, the sender of the map
+/// that has rested longest.
 MapLane::Senders::iterator MapLane::next(Instant now) {
   auto next = senders_.end();
   for (auto each = senders_.begin(); each != senders_.end(); ++each) {

@@ -19,100 +19,103 @@
 
 namespace adit::lanes {
 
-/// The maps that wait for the Command Post.
+/// The queued maps.
 ///
-/// Each sender, a robot's maps of one kind, has its turn (Turns): if N of them wait, each is served within N
-/// messages, whatever one of them does. A try is a turn, whatever became of it.
+/// Turns: a sender is a robot's maps of one kind. If N senders have queued maps, each is served within N
+/// messages (Turns). Each try is a turn, whatever its outcome.
 ///
-/// Within a sender the oldest news goes first. A newer grid replaces one that it covers, and inherits its
-/// age. Grids of that name that it does not cover still go ahead of it, so that old cells are never sent
-/// after newer ones. Clouds are kept in order; take() merges clouds that follow each other, and stitches
-/// grids of one lattice that fill a rectangle, with what was last sent in the gaps between them where that is
-/// known (stitch.hpp, canvases.hpp). A cloud replaces those before it where its
-/// robot's clouds are said to be whole (Clouds); where nothing is said, the one before it, once somebody has
-/// seen that it has all its points (to_compare(), replace()). Nothing else is ever dropped.
+/// Order and replacement within a sender:
+/// - The oldest map goes first.
+/// - A newer grid replaces an older grid that it covers, and inherits its age. Grids of that name that it
+/// does
+///   not cover go ahead of it, so that old cells are never sent after newer ones.
+/// - take() stitches grids of one lattice that fill a rectangle. It fills gaps between them with the cells
+/// that
+///   were last sent there, if these are known (stitch.hpp, canvases.hpp).
+/// - Clouds stay in order. take() merges clouds that follow each other.
+/// - A cloud replaces all earlier ones if the robot's clouds are Clouds::Whole. With Clouds::Auto it replaces
+///   the previous one if a comparison shows that it has all its points (to_compare(), replace()).
+/// - No other map is dropped.
 ///
-/// So what a Command Post has in the end, of the grids of one name and lattice, is in each cell the newest
-/// value that was posted for it, unknown included, where it overwrites cells by what it is sent. Where it
-/// overlays (unknown overwrites nothing), that is so of each cell whose newest value is known; of the others
-/// it has a value that was posted, or none.
+/// Result for the grids of one name and lattice: a Command Post that overwrites cells ends with the newest
+/// posted value in each cell, unknown included. A Command Post that overlays (unknown overwrites nothing)
+/// ends with the newest value wherever that value is known.
 ///
-/// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back the later grids of
-/// its name for its first kInPlace failures, counting those of grids that it replaced; then they go ahead of
-/// it, to see whether they pass.
-///
-/// If take() or a function that puts back throws for lack of memory, everything waits as before.
+/// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back later grids of its
+/// name for its first kInPlace failures, including failures of grids that it replaced. After that they go
+/// ahead of it.
 class MapLane {
  public:
-  /// Most bytes of points that take() merges into one message.
+  /// `merge_bytes`: the most bytes of points that take() merges into one message.
   explicit MapLane(std::size_t merge_bytes) : merge_bytes_(merge_bytes) {}
 
   void merge_at_most(std::size_t bytes) { merge_bytes_ = bytes; }
-  /// Bytes of a message that the link carries in the time between two messages; at least 1.
+  /// The bytes that the link carries between two messages; at least 1.
   void a_slot_carries(std::size_t bytes) { slot_bytes_ = bytes; }
 
-  /// Of the robots that are not named, Clouds::Auto. Holds for clouds that are added from now on.
+  /// Applies to clouds that are added from now on. Robots that are not named have Clouds::Auto.
   void clouds_are(std::map<icd::RobotName, Clouds> clouds) { clouds_ = std::move(clouds); }
 
   Clouds clouds_of(const Sender& sender) const;
 
-  /// Of the robots that are not named, Precision::Exact. Holds for clouds that are taken from now on.
+  /// Applies to clouds that are taken from now on. Robots that are not named have Precision::Exact.
   void precisions_are(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
-  /// What the link carries of points in one message: no more are merged into one. Where a robot's precision
-  /// is Auto, the finest at which that is all of its clouds that wait.
+  /// The bytes of points that fit into one message; take() merges no more. With Precision::Auto, take()
+  /// chooses the finest precision at which all queued clouds of the robot fit.
   void a_message_holds(const PointsAt& points) { holds_ = points; }
 
-  /// The numbers of the updates whose maps `map` replaced; it stands for them from now on. No number is given
-  /// twice.
+  /// Adds a map. Returns the numbers of the updates whose maps it replaced; the map stands for them from now
+  /// on. Requires a number that was not used before.
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
-  /// Adds a map that was queued before a restart, in the order of the numbers. It is compared with no other:
-  /// a comparison with each would cost time until Adit listens.
+  /// Adds a map that was queued before a restart; call in the order of the numbers. It replaces no other map,
+  /// because comparisons would delay the start.
   void restore(std::uint64_t number, icd::MapUpdate map, Instant now);
 
   static constexpr int kInPlace = MapQueue::kInPlace;
 
-  /// The next to be sent, taken out of the lane. Without `now`, nothing rests.
+  /// Takes the next map to be sent out of the queue. Without `now`, maps that rest are taken as well.
   std::optional<WaitingMap> take(Instant now = Instant::max());
 
-  /// What was sent of each robot's grids: it is to be told what becomes of a grid that was taken.
+  /// The sent cells of each robot's grids. The caller reports there how a grid was drawn.
   Canvases& canvases() { return canvases_; }
 
-  /// A message of that sender took so many bytes of the link: it pays for what is beyond one slot.
+  /// A message of `sender` used `bytes` of the link. The sender pays for the part beyond one slot with turns.
   void carried(const Sender& sender, std::size_t bytes);
 
-  /// Puts back a map that could not be sent, or is sent again: first of its sender's, but behind older ones
-  /// that are sent again. If a newer grid that waits covers it, that one takes its updates and its age
-  /// instead. Gives the numbers of those that are no longer needed, as add() does.
+  /// Queues a map again that was not delivered, or that the operator sends again: as the sender's first map,
+  /// but behind older ones that are sent again. If a newer queued grid covers it, that grid inherits its
+  /// updates and age instead. Returns the numbers of updates that are no longer needed, as add() does.
   std::vector<std::uint64_t> put_back(WaitingMap map);
 
-  /// Puts back the parts of what was merged or stitched, first of its sender's and never to be joined again,
-  /// so that the part that the Command Post cannot take is found, and the others arrive. Requires parts.
+  /// Queues the parts of a merged or stitched map again, each by itself, as the sender's first maps. They are
+  /// not joined again, so that only the part that the Command Post rejects fails. Requires parts.
   void put_back_apart(WaitingMap map);
 
-  /// Two clouds of which it is not known whether the newer one has each point of the older one; nothing where
-  /// there are none. replace() or keep_both() is to follow.
+  /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with
+  /// the outcome.
   std::optional<Successive> to_compare() const;
-  /// It has: it stands for the older one from now on, if both wait as they did. Gives numbers as add() does.
+  /// The newer cloud has all points of the older one and replaces it, if both are still queued unchanged.
+  /// Returns numbers as add() does.
   std::vector<std::uint64_t> replace(const Successive& two);
-  /// It has not, or nobody knows.
+  /// The newer cloud lacks points of the older one, or the comparison failed.
   void keep_both(const Successive& two);
 
-  /// Whether add() would replace one that waits.
+  /// Whether add() would replace a queued map.
   bool replaces_any(const icd::MapUpdate& map) const;
-  /// Whether it can be merged or stitched with the last that waits of its sender, within take()'s bounds.
+  /// Whether take() could merge or stitch it with the last queued map of its sender.
   bool joins(const icd::MapUpdate& map) const;
-  /// Whether put_back() would find a newer grid that covers it.
+  /// Whether a newer queued grid covers it.
   bool is_replaced(const WaitingMap& map) const;
 
   std::size_t count() const { return count_; }
   std::size_t count(const Sender& sender) const;
-  /// When the oldest news of that sender was accepted; nothing if none waits.
+  /// When the oldest queued map of that sender was accepted, or nothing.
   std::optional<Instant> oldest(const Sender& sender) const;
-  std::size_t bytes() const { return bytes_; }  // of memory held by all that wait
-  /// Bytes of the data of a grid or a whole cloud: what one that replaces it may need.
+  std::size_t bytes() const { return bytes_; }  // of memory, held by all queued maps
+  /// The size of the largest queued grid or whole cloud, in bytes: a map that replaces it may need as much.
   std::size_t largest_replaceable() const;
-  /// Senders that it knows of: those that wait, and those that have still to pay for what they sent.
+  /// The number of known senders: those with queued maps, and those that still pay with turns.
   std::size_t senders() const { return senders_.size(); }
 
  private:

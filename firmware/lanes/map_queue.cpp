@@ -10,15 +10,15 @@
 namespace adit::lanes {
 namespace {
 
-/// Since when it rests, and how old it is.
+/// When it failed, and when it was accepted.
 std::pair<Instant, Instant> rest_of(const WaitingMap& waiting) {
   return {waiting.trial.failed.value_or(Instant{}), waiting.accepted};
 }
 
-/// At what is known of gaps, for one message: this bounds the work.
+/// The most looks at a canvas for one message: bounds the work.
 constexpr std::size_t kMostLooks = 4096;
 
-/// If not, a newer one need not be looked at beside each that waits.
+/// Whether it can replace queued maps at all.
 bool may_replace(const WaitingMap& newer) {
   return newer.map.is_grid() || newer.is_whole;
 }
@@ -45,8 +45,8 @@ void MapQueue::append(WaitingMap added) {
   waiting_.push_back(std::move(added));
 }
 
-/// A grid that was made before goes first: sent after, its old cells would overwrite newer ones. Clouds wait
-/// in the order of their age.
+/// An older grid goes first, because its cells must not overwrite newer ones. Clouds go in the order of their
+/// age.
 MapQueue::Maps::const_iterator MapQueue::ready(Instant now) const {
   const auto rests = [now](const WaitingMap& waiting) { return waiting.trial.rests(now); };
   const auto lets_others_pass = [&](const WaitingMap& waiting) {
@@ -75,7 +75,7 @@ WaitingMap MapQueue::take(Instant now, std::size_t merge_bytes, Canvases& canvas
   const auto may_go = ready(now);
   const auto chosen = may_go == waiting_.end() ? rested_longest() : may_go;
   const auto place = static_cast<std::size_t>(chosen - waiting_.begin());
-  // It, and what goes with it: they leave at last, when nothing can fail.
+  // The chosen map and those that go with it. They are removed at the end, when nothing can fail any more.
   std::vector<bool> leaves(waiting_.size());
   leaves[place] = true;
   WaitingMap next = *chosen;
@@ -99,7 +99,7 @@ void MapQueue::merge_followers(WaitingMap& next, std::size_t merge_bytes, std::v
   for (std::size_t i = 0; i < waiting_.size() && first != nullptr; ++i) {
     const WaitingMap& other = waiting_[i];
     if (leaves[i]) continue;
-    if (other.trial.failures > 0) continue;  // what is on trial goes by itself
+    if (other.trial.failures > 0) continue;  // a map on trial goes alone
     const icd::PointCloud2* cloud = loose_cloud_in(other.map);
     const bool fits = cloud != nullptr && may_join(other) && mergeable(*first, *cloud) &&
                       next.map.data.raw_size + other.map.data.raw_size <= merge_bytes;
@@ -111,8 +111,8 @@ void MapQueue::merge_followers(WaitingMap& next, std::size_t merge_bytes, std::v
   }
 }
 
-/// The places of the grid at `place` and of those behind it that may be stitched to it: up to the first one
-/// that may not, for what goes ahead of that could overlap it.
+/// The indices of the grid at `place` and of those behind it that may be stitched to it. Ends at the first
+/// grid that may not, because a grid that goes ahead of it could overlap it.
 std::vector<std::size_t> MapQueue::that_follow(std::size_t place) const {
   const auto& first = std::get<icd::OccupancyGrid>(waiting_[place].map.msg);
   std::vector<std::size_t> places;
@@ -124,8 +124,8 @@ std::vector<std::size_t> MapQueue::that_follow(std::size_t place) const {
   return places;
 }
 
-/// What failed, or is sent by itself, may go behind newer ones: while such a one waits, what lies under the
-/// others is not relied on.
+/// A map that failed, or that goes alone, may be sent after newer ones. While one is queued, the canvas is
+/// not used for the others.
 void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, const Canvas* canvas,
                                 std::vector<bool>& leaves) const {
   const auto grid_at = [this](std::size_t i) { return &std::get<icd::OccupancyGrid>(waiting_[i].map.msg); };
@@ -158,7 +158,7 @@ void MapQueue::stitch_followers(WaitingMap& next, std::size_t place, const Canva
   next.has_gaps = found.has_gaps;
 }
 
-/// Where what comes back belongs.
+/// The place of a map that was not delivered.
 MapQueue::Maps::const_iterator MapQueue::before_newer(const WaitingMap& back) const {
   return std::ranges::find_if(waiting_, [&](const WaitingMap& waiting) { return is_newer(waiting, back); });
 }
@@ -166,7 +166,7 @@ MapQueue::Maps::const_iterator MapQueue::before_newer(const WaitingMap& back) co
 std::vector<std::uint64_t> MapQueue::put_back(WaitingMap map) {
   map.ground.reset();
   if (map.has_gaps) {
-    // What lay between its parts may be older than what is there by the next try.
+    // At the next try, newer cells may have been sent between its parts.
     const bool may_join_again = may_join(map);
     const auto place = before_newer(map);
     insert(place, parts_of(std::move(map), may_join_again));

@@ -13,36 +13,33 @@
 
 namespace adit::lanes {
 
-/// The maps of one sender that wait, in the order in which they were made: see MapLane, which says what its
-/// functions do.
+/// The queued maps of one sender, in the order in which they were made. MapLane describes the functions.
 class MapQueue {
  public:
-  /// A grid lets later ones of its name pass after so many failures.
+  /// After so many failures of a grid, later grids of its name go ahead of it.
   static constexpr int kInPlace = 3;
 
   std::vector<std::uint64_t> add(WaitingMap added);
-  void append(WaitingMap added);  // replaces none
-  /// Whether one may go now: none does that rests, nor a grid behind one that rests.
+  void append(WaitingMap added);  // replaces no map
+  /// Whether a map may be sent now. A map that rests may not, nor a grid behind a grid that rests.
   bool is_ready(Instant now) const;
-  /// Since when one rests and how old it is, of the one that rested longest. Requires a map.
+  /// Of the map that has rested longest: when it failed, and when it was accepted. Requires a map.
   std::pair<Instant, Instant> resting() const;
-  /// The oldest news of those that may go; if none may, what rested longest. Requires a map.
+  /// The oldest map that may be sent. If there is none, the map that has rested longest. Requires a map.
   WaitingMap take(Instant now, std::size_t merge_bytes, Canvases& canvases);
   std::vector<std::uint64_t> put_back(WaitingMap map);
   void put_back_apart(WaitingMap map);
-  void step_forward();  // nothing steps behind any more
+  void step_forward();  // clears Trial::steps_behind of all maps
 
-  /// Takes the older of the two out, where both still wait as they were, for the newer one has all its
-  /// points.
   std::vector<std::uint64_t> replace(const Successive& two);
-  /// The last two clouds, where it is not known yet whether the newer one has all points of the older one.
+  /// The last two clouds, if they have not been compared yet.
   std::optional<Successive> to_compare() const;
-  void keep_both(const Successive& two);  // it is now
+  void keep_both(const Successive& two);
 
   bool replaces_any(const WaitingMap& map) const;
   bool is_replaced(const WaitingMap& map) const;
   bool joins(const WaitingMap& map) const;
-  /// When the oldest news was accepted; nothing if none waits.
+  /// When the oldest queued map was accepted, or nothing.
   std::optional<Instant> oldest() const;
   std::size_t count() const { return waiting_.size(); }
   std::size_t bytes() const { return bytes_; }
@@ -53,7 +50,7 @@ class MapQueue {
   Maps::const_iterator ready(Instant now) const;
   Maps::const_iterator rested_longest() const;
   Maps::const_iterator before_newer(const WaitingMap& back) const;
-  /// Each adds to `leaves`, in the order of waiting_, what goes with the next.
+  /// Each marks in `leaves`, which has the order of waiting_, the maps that go with `next`.
   void merge_followers(WaitingMap& next, std::size_t merge_bytes, std::vector<bool>& leaves) const;
   void stitch_followers(WaitingMap& next, std::size_t place, const Canvas* canvas,
                         std::vector<bool>& leaves) const;

@@ -10,7 +10,7 @@ bool MarkerChanges::begins_with_delete_all() const {
   return !empty() && by_place_.begin()->second.action == icd::MarkerAction::DeleteAll;
 }
 
-/// 0: no change of that ns and id waits.
+/// 0 if no change of that ns and id is queued.
 std::size_t MarkerChanges::bytes_at(const Key& key) const {
   const auto known = places_.find(key);
   return known == places_.end() ? 0 : icd::bytes_of(by_place_.at(known->second));
@@ -55,7 +55,7 @@ MarkerChanges::Place MarkerChanges::apply(icd::Marker marker) {
   const auto known = places_.lower_bound(marker);
   const bool is_known = known != places_.end() && !ByKey()(marker, known->first);
   if (marker.action == icd::MarkerAction::Delete && begins_with_delete_all()) {
-    // Nothing of it is left to delete: what added it is all that goes.
+    // The DeleteAll removes the marker at the Command Post. Only its queued change is dropped.
     if (is_known) extract(known->second);
     return by_place_.begin()->first;
   }
@@ -107,13 +107,13 @@ std::vector<icd::Marker> MarkerChanges::take(Size most) {
 }
 
 MarkerChanges::Size MarkerChanges::size_with(const std::vector<icd::Marker>& newer) const {
-  // What stands before the last DeleteAll leaves nothing.
+  // Changes before the last DeleteAll have no effect.
   const auto wipe = std::find_if(newer.rbegin(), newer.rend(), [](const icd::Marker& marker) {
     return marker.action == icd::MarkerAction::DeleteAll;
   });
   const bool wiped = wipe != newer.rend();
   Size size = wiped ? Size{1, icd::bytes_of(*wipe)} : size_;
-  std::map<Key, std::size_t, ByKey> bytes_now;  // of those that `newer` changes; 0: none
+  std::map<Key, std::size_t, ByKey> bytes_now;  // of the markers that `newer` changes; 0: not queued
   for (auto marker = wiped ? wipe.base() : newer.begin(); marker != newer.end(); ++marker) {
     const Key key{marker->ns, marker->id};
     std::size_t& bytes = bytes_now.try_emplace(key, wiped ? 0 : bytes_at(key)).first->second;

@@ -13,11 +13,11 @@
 
 namespace adit::lanes {
 
-/// Changes of the markers' scene (ICD 6.6) in the order in which they are to be sent, with no needless ones:
-/// a newer change of the same ns and id replaces an older one, DeleteAll replaces all before it, and nothing
-/// is deleted that a DeleteAll before it has deleted. Law: replaying them on any scene gives the same as
-/// replaying all that were applied. Each has a place, a number that rises along the order. Only the first can
-/// be a DeleteAll.
+/// Queued changes of the marker scene (ICD 6.6) in sending order, without needless ones. A newer change of
+/// the same ns and id replaces an older one. DeleteAll replaces all earlier changes. A Delete behind a
+/// DeleteAll is dropped. Law: on any scene, these changes have the same result as all changes that were
+/// applied. Each change has a place, a number that rises in sending order. Only the first change can be a
+/// DeleteAll.
 class MarkerChanges {
  public:
   using Place = std::int64_t;
@@ -25,35 +25,37 @@ class MarkerChanges {
   MarkerChanges() = default;
 
   struct Size {
-    std::size_t count = 0;  // of changes
-    std::size_t bytes = 0;  // icd::bytes_of all of them
+    std::size_t count = 0;  // changes
+    std::size_t bytes = 0;  // the sum of icd::bytes_of()
     friend bool operator==(const Size&, const Size&) = default;
   };
 
-  /// Adds a change that comes after all others; gives the place of the change that stands for it, or of the
+  /// Adds a change behind all others. Returns the place of the change that now stands for it, or of the
   /// DeleteAll that made it needless.
   Place apply(icd::Marker marker);
-  /// The same for a DeleteAll, and gives what it made needless: to free much of that takes long.
+  /// The same for a DeleteAll. Returns the changes that became needless, because freeing many of them takes
+  /// long.
   MarkerChanges wipe(icd::Marker delete_all);
-  /// As if all of `older` had been applied before the others; gives a place that is after all that came of
-  /// it, and before all others. Costs by what is in `older`, not by what waits.
+  /// The same as if `older` had been applied first. Returns a place behind the changes of `older` and before
+  /// all others. The cost grows with `older`, not with the queue.
   Place apply_before(MarkerChanges older);
 
-  /// Takes out the change of the same ns and id, or the DeleteAll, where there is one.
+  /// Takes out the change of the same ns and id, or the DeleteAll, if there is one.
   std::optional<icd::Marker> remove(const icd::Marker& like);
-  /// Takes the first `most.count` out, and no more than `most.bytes` of them, but at least one.
+  /// Takes out the first changes: at most `most.count`, and at most `most.bytes` unless the first is larger.
   std::vector<icd::Marker> take(Size most);
 
   Size size() const { return size_; }
-  /// What size() would be after `newer` had been applied.
+  /// size() as it would be after applying `newer`.
   Size size_with(const std::vector<icd::Marker>& newer) const;
   bool empty() const { return by_place_.empty(); }
-  /// Whether what waits makes an earlier change of that marker needless.
+  /// Whether a queued change makes an earlier change of that marker needless.
   bool says_more_than(const icd::Marker& earlier) const {
     return begins_with_delete_all() ||
            (earlier.action != icd::MarkerAction::DeleteAll && places_.contains(earlier));
   }
-  /// Whether a change of the same ns and id waits, or it is a DeleteAll: applying it adds no change.
+  /// Whether apply() would add no change: a change of the same ns and id is queued, or `marker` is a
+  /// DeleteAll.
   bool holds(const icd::Marker& marker) const {
     return marker.action == icd::MarkerAction::DeleteAll || places_.contains(marker);
   }
@@ -61,7 +63,7 @@ class MarkerChanges {
   bool begins_with_delete_all() const;
 
  private:
-  /// Of ns and id (ICD 6.6), as a marker has them; the id first, which alone tells most of them apart.
+  /// A marker's identity (ICD 6.6). The id is compared first because most ids differ.
   struct Key {
     std::string ns;
     std::int32_t id = 0;
@@ -77,7 +79,7 @@ class MarkerChanges {
   using Places = std::map<Key, Place, ByKey>;
 
   std::size_t bytes_at(const Key& key) const;
-  /// `next`: the first in places_ that is after it, of a marker that is not there.
+  /// Requires a marker that is not in places_; `next`: the first key there that follows.
   void insert(Place place, icd::Marker&& marker, Places::const_iterator next);
   void insert(Place place, icd::Marker&& marker) {
     const auto next = places_.lower_bound(marker);
@@ -89,7 +91,7 @@ class MarkerChanges {
 
   InOrder by_place_;
   Places places_;
-  std::set<Place> deletes_;  // that are no DeleteAll
+  std::set<Place> deletes_;  // the places of Delete changes
   Place next_ = 0;
   Size size_;
 };

@@ -104,8 +104,8 @@ void MarkerLane::put_behind(const WaitingMarkers& markers) {
   if (markers.updates > 0) {
     updates_.add(last, markers.updates, markers.accepted);
   } else if (!is_needless && !updates_.empty()) {
-    // It is the end of the update that it came in, which is the first that waits: otherwise nothing would
-    // wait for it any more when the others have gone.
+    // The change becomes the end of its update, which is the first one. Otherwise its update would be done
+    // when the other changes are gone.
     updates_.move_first_to(last);
   }
 }

@@ -17,65 +17,63 @@ namespace adit::lanes {
 struct WaitingMarkers {
   icd::MarkersUpdate update;
   Instant accepted;           // when the oldest news in it was accepted
-  std::uint64_t updates = 0;  // how many accepted updates it is the last message of
-  bool is_ahead = false;      // it goes ahead of what waits, and waits still itself
+  std::uint64_t updates = 0;  // how many accepted updates are complete with this message
+  bool is_ahead = false;      // a copy of a queued change, sent ahead of the others
 };
 
-/// The most that a lane of markers holds and gives out; bytes as icd::bytes_of counts them.
+/// Limits of the marker queue. Bytes are those of icd::bytes_of().
 struct MarkerBounds {
   std::size_t per_message = 2000;           // markers; at least 1
   std::size_t bytes_per_message = 1 << 20;  // unless a single marker is larger
-  std::size_t bytes = 32 << 20;             // of all that wait
+  std::size_t bytes = 32 << 20;             // of all queued changes
 };
 
-/// The changes of markers that wait for the Command Post, oldest first.
+/// The queued changes of markers, oldest first.
 class MarkerLane {
  public:
   static constexpr std::size_t kMostMarkers = 100'000;
 
   explicit MarkerLane(MarkerBounds bounds) : bounds_(bounds), most_now_(bounds.per_message) {}
 
-  /// The limits from now on; what waits already stays.
+  /// Sets new limits. Queued changes stay.
   void keep_within(MarkerBounds bounds);
 
-  /// Bounded, so that no sender can fill the memory while the Command Post is away. A quarter of the bytes is
-  /// kept for updates that only replace changes that wait: a path that grows is taken when new markers are
-  /// not. If nothing waits, there is room for any update.
+  /// Whether the limits allow `update`, so that no sender can fill the memory while the Command Post is away.
+  /// A quarter of the bytes is reserved for updates that only replace queued changes: a growing path is
+  /// accepted after new markers are not. An empty queue has room for any update.
   bool has_room_for(const icd::MarkersUpdate& update) const;
-  /// Of an update for which there is no room: what changes markers that wait already, so that a full lane
-  /// holds the newest of each. Without what stands before its last DeleteAll, which is needless.
+  /// For an update without room: its changes of markers that are queued already, so that a full queue holds
+  /// the newest change of each. Changes before the last DeleteAll are left out.
   icd::MarkersUpdate those_that_wait(const icd::MarkersUpdate& update) const;
   void add(icd::MarkersUpdate update, Instant now);
-  /// The same in parts, where it is so large that all at once would take long: `some` of its markers, which
-  /// are moved from, and `last` as the part before gave it, or kNowhere; after the last part,
-  /// end_of_update(). Nothing is taken meanwhile.
+  /// Adds a part of a large update, because all of it at once would block the loop. Moves from `some`.
+  /// `last`: the result of the previous part, or kNowhere. Call end_of_update() after the last part, and no
+  /// take() before.
   MarkerChanges::Place add_part(std::span<icd::Marker> some, MarkerChanges::Place last);
   void end_of_update(MarkerChanges::Place last, Instant now);
-  /// What a DeleteAll made needless since this was asked last: to free much of that takes long, and any
-  /// thread may do it.
+  /// The changes that a DeleteAll made needless since the last call. Freeing them takes long; any thread may
+  /// do it.
   std::vector<MarkerChanges> needless() { return std::exchange(needless_, {}); }
-  /// The oldest pending changes, in order. Updates are counted in the message that sends the last of their
-  /// markers.
+  /// Takes the oldest changes out, in order. Nothing if none is queued.
   std::optional<WaitingMarkers> take();
-  /// Puts back what take() gave last and could not be sent: ahead of what came meanwhile, and merged with it.
-  /// Costs by what is put back, not by what waits.
+  /// Queues the result of the last take() again, which was not delivered: ahead of newer changes, and merged
+  /// with them. The cost grows with `markers`, not with the queue.
   void put_back(const WaitingMarkers& markers);
-  /// The same, and sends half as many at a time from now on: if the Command Post does not take several, the
-  /// one at fault is found.
+  /// The same, and halves the number of markers in a message, so that the marker that the Command Post
+  /// rejects is found.
   void put_back_narrower(const WaitingMarkers& markers);
-  /// Puts a single change that could not be sent behind all others, unless these make it needless. A
-  /// DeleteAll stays first, because what follows depends on it: instead, one of those that follow is given
-  /// out once ahead of it, in turn, and still waits. That changes nothing in the end, and shows whether
-  /// others pass.
+  /// Queues a single failed change behind all others, unless they make it needless. A DeleteAll stays first,
+  /// because later changes depend on it. Instead, take() gives a copy of one later change once, in turn, to
+  /// find out whether others are accepted. The result at the Command Post is the same.
   void put_behind(const WaitingMarkers& markers);
-  /// Whether what waits makes an earlier change of that marker needless.
+  /// Whether a queued change makes an earlier change of that marker needless.
   bool says_more_than(const icd::Marker& earlier) const { return changes_.says_more_than(earlier); }
-  /// They were taken: twice as many may go next.
+  /// The last message was accepted: the next one may have twice as many markers.
   void passed() { most_now_ = std::min(bounds_.per_message, most_now_ * 2); }
 
-  std::size_t count() const { return changes_.size().count; }  // of markers
+  std::size_t count() const { return changes_.size().count; }  // queued changes
   std::size_t bytes() const { return changes_.size().bytes; }
-  /// All that wait, in order.
+  /// All queued changes, in order.
   std::vector<icd::Marker> pending() const;
   std::optional<Instant> oldest() const { return updates_.oldest(); }
   bool empty() const { return updates_.empty(); }
@@ -85,8 +83,8 @@ class MarkerLane {
 
   MarkerBounds bounds_;
   std::size_t most_now_;       // markers in the next message
-  bool may_go_ahead_ = false;  // the DeleteAll that is first has failed: something else goes once
-  MarkerChanges::Place ahead_ = WaitingUpdates::kNowhere;  // of the last that went ahead
+  bool may_go_ahead_ = false;  // the first change is a DeleteAll that failed: another one goes once
+  MarkerChanges::Place ahead_ = WaitingUpdates::kNowhere;  // of the last change that went ahead
   MarkerChanges changes_;
   WaitingUpdates updates_;
   std::vector<MarkerChanges> needless_;

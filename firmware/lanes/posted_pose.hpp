@@ -7,15 +7,15 @@
 
 namespace adit::lanes {
 
-/// A robot's pose, and when it was posted.
+/// A robot's pose and the time stamp of its post.
 struct PostedPose {
   icd::RobotName name;
   icd::Pose pose;
   std::optional<icd::Stamp> stamp = {};  // on the gateway's clock
-  std::string address = {};              // of the client that stamped it; "": no client did
+  std::string address = {};              // of the client that stamped it; "": not stamped by a client
 
-  /// The order of two poses of one robot: by their stamps if one client stamped both, for it did so by one
-  /// clock; else `held`, which came first, is the older one.
+  /// Whether this pose is older than `held`, which came before it. Two stamps are compared only if one client
+  /// set both, because only then they are from one clock. Otherwise false.
   bool is_older_than(const PostedPose& held) const {
     return !address.empty() && address == held.address && stamp < held.stamp;
   }

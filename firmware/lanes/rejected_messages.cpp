@@ -30,7 +30,7 @@ bool says_all(const icd::MarkersUpdate& newer, const icd::MarkersUpdate& older) 
   });
 }
 
-/// To delete all would delete what came since, too.
+/// A late DeleteAll would also delete newer markers.
 bool deletes_newer(const Message& older, const Message& newer) {
   const auto* const markers = std::get_if<icd::MarkersUpdate>(&older);
   return markers != nullptr && std::holds_alternative<icd::MarkersUpdate>(newer) &&

@@ -16,12 +16,12 @@ namespace adit::lanes {
 
 using Message = std::variant<icd::MapUpdate, icd::StateUpdate, icd::MarkersUpdate>;
 
-/// Whether `newer` says all that `older` said (promise 2): a grid of the same name that covers it, poses of
-/// all its robots, changes of all its markers. Nothing covers a cloud; nor does an older map cover a newer
-/// one: a message that is sent again by hand may be older than other rejected messages.
+/// Whether `newer` contains all of `older` (promise 2): it is a grid of the same name that covers `older`, or
+/// has poses of all its robots, or changes of all its markers. False for clouds, and if `newer` has the older
+/// stamp: a message that the operator sends again may be older than other rejected messages.
 bool replaces(const Message& newer, const Message& older);
 
-/// A message that the Command Post would not take, and why.
+/// A message that the Command Post rejected, and why.
 struct RejectedMessage {
   std::uint64_t number = 0;
   Message message;
@@ -29,23 +29,24 @@ struct RejectedMessage {
   std::string why;        // its sentence
   double at = 0;          // seconds since 1970, on the gateway's clock
   std::size_t bytes = 0;  // as it is held
-  bool replaced = false;  // something newer was taken that says all of it, or that it would delete
+  bool replaced = false;  // a newer accepted message contains it, or is one that it would delete
 };
 
-/// The messages that were rejected: kept to be seen, and to be sent again by hand. Holds at most kMostItems
-/// and kMostBytes (but always one), the newest.
+/// The rejected messages, kept for the operator to look at and to send again. Holds the newest: at most
+/// kMostItems and kMostBytes, but always one.
 class RejectedMessages {
  public:
   static constexpr std::size_t kMostItems = 100, kMostBytes = std::size_t{64} << 20;
 
-  /// Numbers it. Gives the numbers of those that went for it: what it says all of, and then the oldest.
+  /// Adds `item` under the next number. Returns the numbers of the messages that were dropped for it: those
+  /// that it contains, then the oldest.
   std::vector<std::uint64_t> add(RejectedMessage item);
-  /// What was kept by an earlier life keeps its number.
+  /// Adds a message of an earlier process under its own number.
   void restore(RejectedMessage item);
 
-  /// The numbers of those that this replaces and nothing has before.
+  /// The numbers of the messages that `newer` replaces and that are not replaced yet.
   std::vector<std::uint64_t> replaced_by(const Message& newer) const;
-  /// The Command Post took what replaces these.
+  /// The Command Post accepted a message that replaces these.
   void mark_replaced(const std::vector<std::uint64_t>& numbers);
 
   const RejectedMessage* find(std::uint64_t number) const;

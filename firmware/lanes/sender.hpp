@@ -7,9 +7,9 @@
 
 namespace adit::lanes {
 
-/// Whose turn it is: a robot's maps of one kind.
+/// A sender in Turns: the maps of one robot and one kind.
 struct Sender {
-  std::optional<icd::RobotName> name;  // absent: maps that are merged, for all robots
+  std::optional<icd::RobotName> name;  // absent: merged maps of all robots
   bool is_grid = false;
   static Sender of(const icd::MapUpdate& map) { return {map.name, map.is_grid()}; }
   friend auto operator<=>(const Sender&, const Sender&) = default;

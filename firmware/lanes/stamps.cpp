@@ -39,7 +39,7 @@ icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optiona
     clock->theirs = clock->latest = *stamp;
   }
   if (!std::exchange(clock->has_changed, true)) changed_.push_back(stamper);
-  // A difference is taken first: a stamp far from the gateway's would lose its fractions in a sum.
+  // The difference comes first, because the sum with a distant stamp would lose fractions of a second.
   icd::Stamp shifted = clock->ours + (*stamp - clock->theirs);
   const bool set_back = clock->step_back.shown_by(*stamp, connection);
   if (set_back || *stamp < clock->latest - kJump || shifted > now + kJump) {

@@ -19,63 +19,65 @@
 
 namespace adit::lanes {
 
-/// Whether the client stamped the message: 0 is ROS's "none".
+/// Whether the client set a time stamp. In ROS, 0 means none.
 inline bool is_set(const std::optional<icd::Stamp>& stamp) {
   return stamp && *stamp != 0;
 }
 
-/// Whose stamps one clock makes: what a client posts to one URI about one robot. Maps come late by their
-/// upload, so their stamps say nothing of a state's.
+/// Identifies a clock: the stamps that a client posts to one URI about one robot. URIs are kept apart because
+/// maps arrive late by the time of their upload.
 struct Stamper {
   std::string address;
   icd::Uri uri = icd::Uri::StateUpdate;
-  std::string robot = {};  // "": of several or none, as markers are
+  std::string robot = {};  // "": several robots or none, as for markers
   friend auto operator<=>(const Stamper&, const Stamper&) = default;
 };
 
-/// How a sender's stamps become the gateway's: a stamp so much later than `theirs` is as much later than
-/// `ours`.
+/// Converts a sender's stamps to the gateway's clock: `theirs + t` becomes `ours + t`.
 struct SenderClock {
-  icd::Stamp theirs = 0, ours = 0;  // one moment, by both clocks
-  icd::Stamp latest = 0;            // the sender's own
+  icd::Stamp theirs = 0, ours = 0;  // one moment on both clocks
+  icd::Stamp latest = 0;            // the latest stamp, on the sender's clock
 
   icd::Stamp latest_given() const { return ours + (latest - theirs); }
 };
 
-/// ICD 6.2 and promise 5: brings each sender's stamps to the gateway's clock, keeping the spacing it gave
-/// them.
+/// Converts each sender's time stamps to the gateway's clock and keeps their spacing (ICD 6.2, promise 5).
 ///
-/// A sender's first stamp counts as now. From then on its offset is kept, so that two messages that it
-/// stamped 0.3 s apart stay 0.3 s apart, however late they came. If a sender's clock jumps (back by more than
-/// kJump, or by less if StepBack shows it, or to more than kJump after now), its offset is taken again: its
-/// stamp counts as now, or as the latest that it was given if that is later, so that what it says next is
-/// newer than all before. A message without a stamp is stamped in the same way.
+/// - A sender's first stamp becomes now. Its offset is kept from then on: two messages that it stamped 0.3 s
+/// apart
+///   stay 0.3 s apart, however late they arrive.
+/// - If a sender's clock steps, its offset is set again: the stamp becomes now, or the sender's latest
+/// converted
+///   stamp if that is later. So no stamp goes back. A step is a jump back by more than kJump, a smaller one
+///   that StepBack detects, or a stamp more than kJump after now.
+/// - A message without a stamp gets its stamp in the same way.
+/// - An address has at most kMostOfAddress clocks; further robots share one clock for each URI. Beyond
+///   kMostAddresses, the address that was silent longest is dropped.
 ///
-/// An address has at most kMostOfAddress clocks: once it has them, all robots that are new share one for each
-/// URI. Of more than kMostAddresses, the one that was silent longest is forgotten. A stamp costs the same
-/// however many clocks there are.
+/// The cost of a stamp does not depend on the number of clocks.
 class StampShift {
  public:
   static constexpr double kJump = 5.0;  // seconds
   static constexpr std::size_t kMostOfAddress = 64, kMostAddresses = 64;
 
-  /// `now`: the gateway's clock, seconds since 1970. `connection`: what the message came on.
+  /// The converted stamp. `now`: the gateway's clock, seconds since 1970. `connection`: the message's
+  /// connection.
   icd::Stamp shift(const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
                    Connection connection = 0);
-  /// The markers of one message have stamps of their own, which are in no order.
+  /// Converts the stamps of the markers of one message, which may be in any order.
   void shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now);
 
   using Clocks = std::vector<std::pair<Stamper, SenderClock>>;
-  /// Those that have told a stamp since this was asked last, each as it is now.
+  /// The clocks that had a stamp since the last call, with their present values.
   Clocks changed();
-  /// All of them, the address that was silent longest first.
+  /// All clocks; the address that was silent longest comes first.
   Clocks clocks() const;
-  /// What the sender's clock shows now that spoke within kSpeaks, and for as long by a clock that runs as the
-  /// gateway's does; of several, the earliest that is not before `from` and is before `until`: others are not
-  /// set.
+  /// The time that a sender's clock shows now, seconds since 1970. Considers senders that posted within
+  /// kSpeaks, and whose clock has run at the gateway's rate for as long. Of several, the earliest in [from,
+  /// until), because a clock outside is not set. Nothing if there is none.
   static constexpr double kSpeaks = 10;  // seconds
   std::optional<double> told(double now, double from, double until) const;
-  /// A clock of an earlier life goes on.
+  /// Adds a clock of an earlier process.
   void carry_on(const Stamper& stamper, const SenderClock& clock);
 
  private:
@@ -86,15 +88,15 @@ class StampShift {
   using Named = std::pair<icd::Uri, std::string>;
   struct Address {
     std::map<Named, Clock> clocks;
-    std::uint64_t used = 0;  // the higher, the later
+    std::uint64_t used = 0;  // the value of uses_ at the last use
   };
 
   Address& address_of(const std::string& address);
-  /// By its own name, or by the one that it shares.
+  /// The name of the stamper's own clock, or of the shared one.
   static Named name_in(const Address& address, const Stamper& stamper);
-  /// Null: it has told no stamp yet.
+  /// Null if the stamper has no clock yet.
   Clock* find(const Stamper& stamper);
-  /// `clock`: the stamper's, or null; afterwards the one that its first stamp has begun.
+  /// `clock`: the stamper's, or null. Sets it if the first stamp creates the clock.
   icd::Stamp shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp, double now,
                    Connection connection);
 
@@ -103,12 +105,12 @@ class StampShift {
   std::uint64_t uses_ = 0;
 };
 
-/// The stamps that go upstream for one URI: never backward.
+/// Keeps the stamps that are sent to one URI from going back.
 class StampOrder {
  public:
-  /// `stamp`, or the last one given out if that is later.
+  /// `stamp`, or the previous result if that is later.
   icd::Stamp next(icd::Stamp stamp);
-  /// `last` was the last of an earlier life.
+  /// `last`: the last stamp of an earlier process.
   void carry_on(icd::Stamp last) { last_ = std::max(last_, last); }
 
  private:

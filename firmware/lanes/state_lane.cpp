@@ -57,7 +57,7 @@ void StateLane::add_unless_known(const icd::StateUpdate& update, Instant now) {
   }
 }
 
-/// Of those that go apart and have news, the one that failed longest ago; first those that do not rest.
+/// The robot that goes apart, has news, and failed longest ago. Robots that do not rest come first.
 StateLane::Robots::iterator StateLane::next_apart(Instant now) {
   auto chosen = robots_.end();
   const auto rank = [&](const Held& held) {
@@ -98,7 +98,7 @@ std::optional<WaitingState> StateLane::take(Instant now) {
 }
 
 void StateLane::put_back(const WaitingState& state) {
-  // The poses that were news are all here still.
+  // All poses that were news are still held.
   for (const icd::NamedPose& pose : state.update.poses) {
     const auto held = robots_.find(pose.name);
     if (held != robots_.end() && std::exchange(held->second.is_under_way, false)) held->second.is_news = true;

@@ -14,56 +14,58 @@ namespace adit::lanes {
 
 /// A /state/update to be sent.
 struct WaitingState {
-  icd::StateUpdate update;           // every robot of the run, by name; header.stamp: the newest of them
-  std::vector<icd::NamedPose> news;  // those that were posted and not sent yet; the others go along
-  Instant accepted;                  // of the oldest news in it
+  icd::StateUpdate update;           // each robot of the run, by name; header.stamp: the newest stamp
+  std::vector<icd::NamedPose> news;  // the poses that were not sent before
+  Instant accepted;                  // when the oldest of `news` was accepted
 };
 
-/// The robots' newest poses (ICD 6.5). Each robot may post alone; all of the run go out together, also those
-/// without news.
+/// The robots' newest poses (ICD 6.5). Each robot may post alone. A sent state has the poses of all robots of
+/// the run, also of those without news.
 ///
-/// If the Command Post does not take a state of several robots, each of them goes in a message of its own
-/// until it has been taken once: the one at fault is found, and the others arrive.
+/// If the Command Post does not accept a state of several robots, each robot goes apart, in a message of its
+/// own, until its pose is accepted once. So only the robot at fault fails.
 class StateLane {
  public:
-  /// How long a robot waits after its own state was given up.
+  /// How long a robot rests after its own state was given up.
   static constexpr std::chrono::seconds kRest{10};
 
-  /// What the lane holds at most, so that no sender can fill the memory. A robot without news makes room.
+  /// A limit, so that no sender can fill the memory. A robot without news is dropped to make room.
   static constexpr std::size_t kMostRobots = 1000;
   bool has_room_for(const icd::StateUpdate& update) const;
 
-  /// Those that are not older than the poses held.
+  /// The poses that are not older than the held pose of their robot.
   std::vector<PostedPose> news_in(std::span<const PostedPose> poses) const;
-  /// They replace the poses held.
+  /// Replaces the held poses by `news`.
   void add(std::span<const PostedPose> news, Instant now);
 
-  /// Makes poses that were given up news again. For a known robot that is its newest pose, if it was given
-  /// up; a pose that waits, is under way or was taken stays as it is.
+  /// Queues poses again that were given up. A known robot's newest pose is queued if it was given up. A pose
+  /// that is queued, in flight or accepted is not changed.
   void add_unless_known(const icd::StateUpdate& update, Instant now);
 
-  /// The newest poses of all robots that go together, or of one that goes apart; nothing if no news came
-  /// since the last take(). Without `now`, nobody rests.
+  /// The newest poses of all robots that go together, or of one robot that goes apart. Nothing if there is no
+  /// news. Without `now`, robots that rest are included.
   std::optional<WaitingState> take(Instant now = Instant::max());
-  /// The next Command Post knows no robot, and is told only of those that have news. Nothing is under way.
+  /// Drops robots without news, because another Command Post knows no robot. Requires that no state is in
+  /// flight.
   void forget_what_was_taken();
-  /// Another run is on: poses that wait go once, those that were taken do not. They were posted before it.
+  /// Another run has begun. Queued poses are sent once, because they were posted before it; accepted poses
+  /// are not sent again.
   void begin_run();
-  /// What was news and could not be sent is news again; newer poses that came meanwhile stay.
+  /// Queues the news of a state again that was not delivered. Newer poses stay.
   void put_back(const WaitingState& state);
-  /// The same, and from now on each of its robots goes apart.
+  /// The same, and each of its robots goes apart from now on.
   void put_back_apart(const WaitingState& state);
-  /// It was taken: its robots go together again.
+  /// The state was accepted: its robots go together again.
   void passed(const WaitingState& state);
-  /// A robot's own state is not sent again; its next one waits for kRest.
+  /// Drops a robot's own state. Its next state rests for kRest.
   void give_up(const icd::RobotName& name, Instant now);
-  /// Of a robot in a state that take() gave.
+  /// Requires a robot of a state that take() gave.
   Trial& trial_of(const icd::RobotName& name) { return robots_.at(name).trial; }
 
-  /// The newest poses of those robots that have news.
+  /// The newest pose of each robot that has news.
   std::vector<PostedPose> unsent() const;
 
-  /// Whether the Command Post lacks this robot's pose: it waits, or is under way.
+  /// Whether the robot's pose is queued or in flight.
   bool waits(const icd::RobotName& name) const {
     const auto robot = robots_.find(name);
     return robot != robots_.end() && robot->second.waits();
@@ -79,7 +81,7 @@ class StateLane {
     PostedPose posted;
     bool is_news = true;
     bool is_of_run = true;
-    bool is_under_way = false;  // what was news when it was taken
+    bool is_under_way = false;  // it is in flight, and was news before
     bool apart = false;
     bool is_given_up = false;
     Trial trial{};

@@ -9,27 +9,24 @@
 
 namespace adit::lanes {
 
-/// Names a connection that messages come on, for as long as the process lives; 0: not known, or of no
-/// meaning.
+/// Identifies a client's connection within this process; 0: unknown.
 using Connection = std::uint64_t;
 
-/// Tells a clock that was set back from messages that overtook each other on their way.
+/// Distinguishes a clock that was set back from messages that overtook each other.
 ///
-/// On one connection, messages come in the order in which they were sent. On several connections they may
-/// overtake each other, but a client waits for each answer: of two connections only one can be behind, by one
-/// message, and its next message is news. So if a message is older than the one before by more than
-/// kOutOfOrder, its clock was set back if
-/// - its own connection has already brought a later stamp, or
-/// - the message before it was late too, and this one was stamped after that.
-/// A message that is late by less is not taken for one: robots do not send poses so often that it would
-/// matter.
+/// Messages on one connection arrive in sending order. Messages on several connections may overtake each
+/// other, but a client waits for each answer: only one of two connections can be behind, by one message. So
+/// if a message is older than the previous one by more than kOutOfOrder, the clock was set back if
+/// - its own connection has already had a later stamp, or
+/// - the previous message was late as well, and this one has a later stamp than that.
+/// Smaller steps are ignored: poses are not so frequent that they matter.
 class StepBack {
  public:
   static constexpr double kOutOfOrder = 1.0;           // seconds
-  static constexpr std::size_t kMostConnections = 16;  // that are told apart
+  static constexpr std::size_t kMostConnections = 16;  // the connections that are distinguished
 
-  /// Whether a message with this stamp, by the sender's own clock, shows that. If it does, all that was known
-  /// of the clock before is forgotten.
+  /// Whether a message with this stamp, on the sender's clock, shows that the clock was set back. If so,
+  /// earlier stamps are forgotten.
   bool shown_by(icd::Stamp stamp, Connection connection);
 
  private:
@@ -40,9 +37,9 @@ class StepBack {
   bool shows(icd::Stamp stamp, const Heard* on_it) const;
   bool is_late(icd::Stamp stamp, icd::Stamp than) const { return stamp < than - kOutOfOrder; }
 
-  std::vector<Heard> heard_;  // the one heard last at the end
+  std::vector<Heard> heard_;  // the most recent one is last
   std::optional<icd::Stamp> latest_;
-  std::optional<icd::Stamp> late_;  // of the message before, where that was late
+  std::optional<icd::Stamp> late_;  // the previous message's stamp, if that message was late
 };
 
 }  // namespace adit::lanes

@@ -6,10 +6,10 @@
 namespace adit::lanes {
 namespace {
 
-/// Bounds the work: each try costs the square of the grids at most.
+/// Bounds the work. A try costs at most the square of the number of grids.
 constexpr std::size_t kMostTries = 64;
 
-/// Whether `tiles`, all within it, leave no gap in the row of cells at `y`. They are sorted by x.
+/// Whether `tiles` fill the row of cells at `y` without a gap. Requires tiles within `all`, sorted by x.
 bool fill_row(const Cells& all, const std::vector<Cells>& tiles, std::int64_t y) {
   std::int64_t filled = all.x;
   for (const Cells& tile : tiles) {
@@ -20,7 +20,7 @@ bool fill_row(const Cells& all, const std::vector<Cells>& tiles, std::int64_t y)
   return filled == all.right();
 }
 
-/// Whether those within `all` have as many cells as it, or, `with_gaps`, are not too few for it.
+/// Whether the grids within `all` have enough cells to fill it; with gaps, enough for kMostFilled.
 bool may_fill(const Cells& all, std::span<const Cells> grids, bool with_gaps) {
   if (all.width > kMostStitchedCells / all.height) return false;
   std::int64_t most = 0;
@@ -31,7 +31,7 @@ bool may_fill(const Cells& all, std::span<const Cells> grids, bool with_gaps) {
   return most * (with_gaps ? kMostFilled : 1) >= all.width * all.height;
 }
 
-/// Those within `all` that overlap nothing older which stays behind.
+/// The grids within `all` that overlap no older grid that is left out.
 std::vector<std::size_t> that_may_go(const Cells& all, std::span<const Cells> grids) {
   std::vector<std::size_t> which;
   std::vector<Cells> behind;
@@ -53,7 +53,7 @@ std::vector<Cells> of_those(std::span<const Cells> grids, const std::vector<std:
   return cells;
 }
 
-/// What fills `all`; nothing where it cannot be filled.
+/// The grids that fill `all`; nothing if they cannot.
 std::optional<Stitch> filling(const Cells& all, std::span<const Cells> grids, const Known& known) {
   auto which = that_may_go(all, grids);
   const auto those = of_those(grids, which);
@@ -64,7 +64,7 @@ std::optional<Stitch> filling(const Cells& all, std::span<const Cells> grids, co
 
 }  // namespace
 
-/// The same tiles lie in all rows between two of their edges.
+/// All rows between two successive edges have the same tiles.
 bool fill(const Cells& all, std::vector<Cells> tiles) {
   std::ranges::sort(tiles, {}, &Cells::x);
   if (!fill_row(all, tiles, all.y)) return false;
@@ -74,7 +74,7 @@ bool fill(const Cells& all, std::vector<Cells> tiles) {
   });
 }
 
-/// Grows the rectangle by one grid after the other, and by all that lie within it then.
+/// Grows the rectangle by one grid at a time, and includes all grids that are within it then.
 Stitch stitch(std::span<const Cells> grids, const Known& known) {
   grids = grids.first(std::min(grids.size(), kMostStitched));
   Stitch best{{0}, grids.front()};

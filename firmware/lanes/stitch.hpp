@@ -12,35 +12,36 @@
 
 namespace adit::lanes {
 
-/// So many grids are looked at to find those that become one.
+/// The most grids that stitch() looks at.
 inline constexpr std::size_t kMostStitched = 64;
-/// A stitched grid has at most so many cells, and so many bytes in memory while it is packed.
+/// The most cells of a stitched grid. Each takes a byte of memory while the grid is packed.
 inline constexpr std::int64_t kMostStitchedCells = 4 << 20;
 
-/// With gaps it has at most so many cells for each cell of its grids, those that overlap counted each time.
+/// A stitched grid with gaps has at most so many times the cells of its grids; a cell of two grids counts
+/// twice.
 inline constexpr std::int64_t kMostFilled = 4;
 
-/// Grids that become one: which, in their order, and the rectangle that they fill.
+/// Grids that become one grid: their indices, in order, and the rectangle that they fill.
 struct Stitch {
   std::vector<std::size_t> which;
   Cells cells;
-  bool has_gaps = false;  // but for gaps
+  bool has_gaps = false;  // they do not fill it completely
 };
 
-/// Whether it is known what was last sent of those cells of `all` that none of `grids` has.
+/// Whether the last sent value is known for each cell of `all` that is in none of `grids`.
 using Known = std::function<bool(const Cells& all, std::span<const Cells> grids)>;
 
-/// Of `grids`, in the order they were made and counted on one lattice, the first and those that together with
-/// it fill a larger rectangle. It has gaps only where `known` says that what was sent there is: without that,
-/// what a server has there is not known. What stays behind overlaps nothing newer that goes, so that it can
-/// follow: no old cell is sent after a newer one.
+/// Finds the grids that fill a larger rectangle together with the first one. `grids`: on one lattice, in the
+/// order in which they were made. A gap is allowed only if `known` is true of it, because the server's cells
+/// there would be unknown otherwise. Grids that are left out overlap no newer grid that goes, so that no old
+/// cell is sent after a newer one.
 Stitch stitch(std::span<const Cells> grids, const Known& known = {});
 
-/// Whether `tiles`, all within `all`, leave no gap in it.
+/// Whether `tiles` fill `all` without a gap. Requires tiles within `all`.
 bool fill(const Cells& all, std::vector<Cells> tiles);
 
-/// `which` as one grid, without its data: the newest's header, and a corner on the lattice of all. Nothing
-/// where a double cannot say that corner.
+/// The stitched grid without its data: it has the header of the newest one, and its origin on their lattice.
+/// Nothing if the origin cannot be expressed in doubles.
 std::optional<icd::OccupancyGrid> stitched(std::span<const icd::OccupancyGrid* const> which);
 
 }  // namespace adit::lanes

@@ -46,8 +46,8 @@ bool replaces(const WaitingMap& newer, const WaitingMap& older) {
   return is_newer(newer, older) && says_all_of(newer, older);
 }
 
-/// A clock that was set back gives many maps one stamp: of these, which are sent again oldest first, the
-/// later one is newer.
+/// A clock that was set back gives many maps the same stamp. They are sent again oldest first, so the later
+/// one is newer.
 bool is_newer(const WaitingMap& waiting, const WaitingMap& back) {
   if (!waiting.again) return true;
   return back.again &&
@@ -68,7 +68,8 @@ void join(WaitingMap& to, const WaitingMap& from) {
   to.accepted = std::min(to.accepted, from.accepted);
 }
 
-/// What it has replaced since it was put together, no part alone may say all of: it goes with the last.
+/// A single part may not contain the maps that the whole replaced since it was merged, so their updates go
+/// with the last part.
 std::vector<WaitingMap> parts_of(WaitingMap map, bool may_join_again) {
   icd::require(!map.parts.empty());
   std::vector<std::uint64_t> of_parts, others;
@@ -99,7 +100,8 @@ void take_over(WaitingMap& to, WaitingMap from) {
   to.updates = std::move(from.updates);
   std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
   to.accepted = std::min(to.accepted, from.accepted);
-  // Its place and its rests, too, but it is to fail by itself before it is blamed.
+  // It also inherits the place, the rest and the strikes, but never the last two: it must fail itself to be
+  // rejected.
   if (to.trial.failures > 0) return;
   to.trial = from.trial;
   to.trial.strikes = std::min(to.trial.strikes, Blame::kMostStrikes - 2);

@@ -13,76 +13,77 @@
 
 namespace adit::lanes {
 
-/// ICD 6.3.1 and promise 2: whether `newer` says all that `older` said, so that `older` need not be sent: the
-/// same lattice (resolution, orientation and height alike, origins a whole number of cells apart, to a
-/// thousandth of a cell) and older's extent within newer's. Reflexive and transitive.
+/// Whether `newer` contains all cells of `older`, so that `older` need not be sent (ICD 6.3.1, promise 2).
+/// They have one lattice, and older's extent is within newer's. One lattice: the same resolution, orientation
+/// and height, and origins that are a whole number of cells apart, to a thousandth of a cell. Reflexive and
+/// transitive.
 bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
 
-/// Whether the points of both can be in one message: fields, point_step, byte order and origin are the same.
+/// Whether one message can have the points of both: fields, point_step, byte order and origin are the same.
 bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
 
-/// Older's points and then newer's, in one update with newer's header. Requires mergeable clouds of one name
-/// with uncompressed data. Shares their bytes.
+/// One update with older's points, then newer's, and newer's header. Shares their bytes. Requires mergeable
+/// clouds of one name with uncompressed data.
 icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
 
-/// A map that waits, and which accepted updates it stands for (itself, what it replaced, what was merged into
-/// it).
+/// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
+/// it.
 struct WaitingMap {
   icd::MapUpdate map;
-  Instant accepted;                    // when the oldest news in it was accepted
-  std::vector<std::uint64_t> updates;  // their numbers, oldest first
-  /// What was merged or stitched into it, in the order they were made; else empty. The cells of a stitched
-  /// grid are in its parts alone, until it is packed.
+  Instant accepted;                    // when the oldest of `updates` was accepted
+  std::vector<std::uint64_t> updates;  // numbers, oldest first
+  /// The maps that were merged or stitched into it, in the order in which they were made; else empty. Until a
+  /// stitched grid is packed, only its parts have its cells.
   std::vector<WaitingMap> parts{};
-  bool alone = false;  // not to be merged or stitched with others
-  /// Of a stitched grid: its parts do not fill it, and the cells between them are those of `ground`.
+  bool alone = false;  // not to be merged or stitched
+  /// A stitched grid whose parts do not fill it. The cells between them are those of `ground`.
   bool has_gaps = false;
-  /// Of a grid that was taken to be sent: what lies under it. Null: it is not drawn (Canvases).
+  /// For a grid that is being sent: the cells sent before. Null: it is not drawn (Canvases).
   std::shared_ptr<const Ground> ground{};
-  /// Of a cloud: it says all that those said which came before it.
+  /// For a cloud: it contains all earlier ones.
   bool is_whole = false;
-  /// Of a cloud: it is known whether it has all points of the one before it.
+  /// For a cloud: it was compared with the previous one.
   bool is_compared = false;
-  /// Of a cloud that was taken to be sent: how far it may be rounded; not Auto.
+  /// For a cloud that is being sent: how far it may be rounded; not Auto.
   Precision precision = Precision::Exact;
-  Trial trial{};  // where the Command Post's handler failed at it
-  /// Only of a map that was rejected and is sent again by hand: the stamp that it had. By it the map is
-  /// older than all that were never rejected, and is told from others that are sent again.
+  Trial trial{};  // its failures at the Command Post
+  /// Only for a rejected map that the operator sends again: its original stamp. It orders the map before all
+  /// maps that were never rejected, and identifies it.
   std::optional<icd::Stamp> again{};
 };
 
-/// The maps of which the Command Post has all once it took `taken`: that one; of one with gaps its parts, for
-/// what is in a gap is no news of that place.
+/// The maps that are delivered if `taken` is accepted: the map itself, or the parts of a map with gaps,
+/// because a gap has no news.
 std::vector<const icd::MapUpdate*> said_by(const WaitingMap& taken);
-/// Whether `newer`, which has just come, says all that `older` said: a grid that covers it (of one with gaps
-/// a part of it), or a whole cloud.
+/// Whether `newer`, which was just accepted, contains all of `older`: it is a grid that covers it, has a part
+/// that covers it (if it has gaps), or is a whole cloud.
 bool says_all_of(const WaitingMap& newer, const WaitingMap& older);
-/// Whether `newer`, which is under way or waits, is newer and says all that `older` said, which comes back.
+/// The same for a retry: `newer` is queued or in flight, and must be newer than `older`, which was not
+/// delivered.
 bool replaces(const WaitingMap& newer, const WaitingMap& older);
 
-/// Whether `waiting` is newer than `back`, which comes back to it.
+/// Whether `waiting` is newer than `back`, which was not delivered.
 bool is_newer(const WaitingMap& waiting, const WaitingMap& back);
 
-/// What it keeps in memory beside its data: itself, its fields, and what allocators add.
+/// The bytes of memory that it takes, without its data: itself, its fields, and the allocator's overhead.
 std::size_t bytes_held(const WaitingMap& waiting);
 
-/// Adds the numbers of the maps that would be sent with it: not of those that these have replaced.
+/// Appends the numbers of the maps that are sent with it, without those that they replaced.
 void add_own_numbers(std::vector<std::uint64_t>& numbers, const WaitingMap& of);
 
-/// `from`, which `to` replaces, is older news: its updates become `to`'s as well, and its age counts.
+/// `to` replaces `from`, and takes its updates and age.
 void take_over(WaitingMap& to, WaitingMap from);
 
-/// `from` is sent within `to`, which stands for its updates from now on, and keeps both as its parts: their
-/// bytes are shared, so that this costs next to nothing.
+/// Merges `from` into `to`, which takes its updates and keeps both as parts. The parts share their bytes.
 void join(WaitingMap& to, const WaitingMap& from);
 
-/// Takes `map` apart: each part with its updates, to be joined again or sent by itself. Requires parts.
+/// The parts of `map`, each with its updates. `may_join_again`: they may be merged again. Requires parts.
 std::vector<WaitingMap> parts_of(WaitingMap map, bool may_join_again);
 
-/// Whether it may be sent within another one, or another one within it.
+/// Whether it may be merged or stitched with others.
 bool may_join(const WaitingMap& map);
 
-/// The cloud whose points can be joined to others; null for a grid and for packed points.
+/// The cloud, if its points can be joined to others; null for a grid and for packed points.
 const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map);
 
 }  // namespace adit::lanes

@@ -12,21 +12,21 @@
 
 namespace adit::lanes {
 
-/// The accepted updates whose changes wait, by the last place that any of their changes has: an update is
-/// done when all up to there have been taken.
+/// The accepted marker updates with queued changes, by the place of their last change. An update is done once
+/// all changes up to that place were taken out of the queue.
 class WaitingUpdates {
  public:
   using Place = MarkerChanges::Place;
   static constexpr auto kNowhere = std::numeric_limits<Place>::min();
 
-  /// So many that end at `last`; `accepted`: the oldest of them.
+  /// Adds `count` updates that end at `last`; `accepted`: when the oldest of them was accepted.
   void add(Place last, std::uint64_t count, Instant accepted);
-  /// The first of them end at `last` instead.
+  /// Moves the end of the first updates to `last`.
   void move_first_to(Place last);
-  /// Takes out those that end before the first of `changes`; gives how many.
+  /// Removes the updates that end before the first of `changes`, and returns their number.
   std::uint64_t take_done(const MarkerChanges& changes);
-  /// Where the change at their end is gone, they are done with the one before it: there are never many more
-  /// ends than changes.
+  /// If the last change of an update is gone, the update ends at the change before it. This bounds the number
+  /// of ends by that of changes.
   void join(const MarkerChanges& changes);
 
   bool empty() const { return by_end_.empty(); }
@@ -37,7 +37,7 @@ class WaitingUpdates {
  private:
   struct Updates {
     std::uint64_t count = 0;
-    Instant accepted;  // the oldest of them
+    Instant accepted;  // of the oldest
   };
   using ByEnd = std::map<Place, Updates>;
 

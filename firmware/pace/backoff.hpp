@@ -4,14 +4,14 @@
 
 namespace adit::pace {
 
-/// How long to wait before the next try after failures: doubling from `first` to `most`, each with up to a
-/// quarter more by chance so that many do not come back at once.
+/// The pause before the next try. It doubles from `first` to `most` with each failure. Each pause is up to a
+/// quarter longer by chance, so that many clients do not retry at the same time.
 class Backoff {
  public:
   Backoff(std::chrono::milliseconds first, std::chrono::milliseconds most)
       : first_(first), most_(most), wait_(first) {}
 
-  /// `random`: uniform in [0, 1).
+  /// Returns the pause. `random`: uniform in [0, 1).
   std::chrono::nanoseconds failed(double random);
   void succeeded() { wait_ = first_; }
 

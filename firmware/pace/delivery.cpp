@@ -9,22 +9,22 @@ namespace {
 using Seconds = std::chrono::duration<double>;
 
 constexpr double kMore = 1.25, kLess = 0.5;
-/// Of what is given: where less is delivered, or more, it came into a queue or out of one.
+/// Parts of the pace. A lower delivery rate shows a growing queue, a higher one a shrinking queue.
 constexpr double kKept = 0.9, kNearly = 0.98, kDrawn = 1.1;
-/// What a quarter more has to find, so that it was not in vain.
+/// A probe succeeds above this multiple of the known rate.
 constexpr double kFound = 1.05;
-/// So much longer than without a queue takes a round trip where one stands.
+/// A round trip that is at least this much longer than the shortest one shows a queue.
 constexpr std::chrono::milliseconds kQueue{5};
-/// Intervals: a queue that stands so long shows what the link carries where that is nearly all, too.
+/// After this many intervals with a queue, even a rate just below the pace is the rate of the link.
 constexpr int kStands = 4;
-/// What is shorter says little of a rate.
+/// A shorter interval gives no reliable rate.
 constexpr std::chrono::milliseconds kTelling{20};
 
-/// Bytes. If Adit gives all the time and TCP has nothing left to send, the socket's buffer is full of bytes
+/// Bytes. If Adit writes all the time and TCP has no more bytes to send, the socket's buffer is full of bytes
 /// in flight, which are far more.
 constexpr std::size_t kFew = 64u << 10;
 
-/// The link may carry more.
+/// TCP has too little to send, so the link may carry more.
 bool is_starved(const Progress& now) {
   return now.unsent == 0 && now.in_flight < kFew;
 }
@@ -62,7 +62,7 @@ double Delivery::rate_until(const Progress& now) const {
   return static_cast<double>(bytes) / Seconds(now.at - began_.at).count();
 }
 
-/// Until then the link was full.
+/// The link was full until now.
 void Delivery::queue_ended_probe(const Progress& now) {
   if (!starved_ && now.at - began_.at >= kTelling) link_ = std::clamp(rate_until(now), link_, most_);
   end_probe(true, now.at);
@@ -80,7 +80,7 @@ void Delivery::judge(double rate, Instant now) {
   } else if (queued_ && rate < given * kKept) {
     carries(rate, now);
     drains_ = true;
-  } else if (drains_) {  // a round trip that is long for another reason draws nothing out
+  } else if (drains_) {  // a round trip that is long for another reason drains no bytes
     if (rate > given * kDrawn) carries(rate, now);
     drains_ = rate > given * kDrawn;
   } else if (stands_ >= kStands) {
@@ -90,8 +90,8 @@ void Delivery::judge(double rate, Instant now) {
   }
 }
 
-/// Just that: a queue stood all the time. A moment that passes looks like another link, so that more is tried
-/// soon.
+/// A queue existed during the whole interval, so `rate` is the rate of the link. A short disturbance looks
+/// like a slower link, so the next probe comes soon.
 void Delivery::carries(double rate, Instant now) {
   const double before = std::exchange(link_, std::clamp(rate, most_ * kSlowest, most_));
   if (link_ > before * kKept) return;

@@ -8,42 +8,44 @@
 
 namespace adit::pace {
 
-/// How a connection sends, as its TCP says at one moment (TCP_INFO).
+/// The state of a TCP connection at one time (TCP_INFO).
 struct Progress {
   Instant at{};
-  std::uint64_t delivered = 0;                // bytes, since the connection began
-  std::size_t unsent = 0;                     // bytes that TCP still has to send
-  std::size_t in_flight = 0;                  // bytes that it has sent and the peer has not acknowledged
-  Duration round_trip{}, least_round_trip{};  // now, and without a queue
+  std::uint64_t delivered = 0;                // bytes since the connection began
+  std::size_t unsent = 0;                     // bytes that TCP holds and has not sent yet
+  std::size_t in_flight = 0;                  // bytes sent and not acknowledged
+  Duration round_trip{}, least_round_trip{};  // now; without a queue
 };
 
-/// What a link delivers of what one connection gives it, and how fast to give: no faster than that, for what
-/// is given too fast waits in a queue before the slow part of the link, and a report would wait behind it.
+/// Measures how fast the link delivers one connection's bytes, and sets the pace at which to write them.
+/// Bytes that are written faster queue before the slow part of the link, and a report would queue behind
+/// them. All rates are in bytes per second.
 ///
-/// Like BBR (draft-ietf-ccwg-bbr), with longer intervals. What was delivered while a queue stood is what the
-/// link carries. While one stands, half is given. Now and then a quarter more is given, until a queue stands,
-/// so that a link that is faster again is found out. An interval in which TCP was given too little to send
-/// says nothing of the link, however late the peer acknowledges. All rates in bytes a second.
+/// Works like BBR (draft-ietf-ccwg-bbr) with longer intervals. The delivery rate while a queue exists is the
+/// rate of the link. While a queue exists, the pace is half of that rate. From time to time a probe adds a
+/// quarter until a queue forms, because the link may have become faster. An interval in which TCP had too
+/// little to send does not lower the rate, however late the peer acknowledges.
 class Delivery {
  public:
-  static constexpr std::chrono::milliseconds kInterval{50};  // or two round trips, where that is longer
+  static constexpr std::chrono::milliseconds kInterval{50};  // or two round trips, if they take longer
   static constexpr std::chrono::seconds kRemembered{1};
-  /// From one quarter more to the next, doubling while it is in vain.
+  /// Pause between two probes. It doubles after each probe that finds no faster link.
   static constexpr std::chrono::milliseconds kFirstWait{100}, kLongestWait{800};
-  static constexpr double kSlowest = 0.01;  // of `most`
+  static constexpr double kSlowest = 0.01;  // part of `most`
 
-  /// `most` > 0: so fast at the most.
+  /// `most`: the highest pace, > 0.
   explicit Delivery(double most) : most_(most), link_(most) {}
 
-  /// Bytes are given from now on, after a while of none, or on a new connection.
+  /// Call this when writing starts after a pause or on a new connection.
   void begins(const Progress& now);
-  /// To be told while bytes are given, at least once in kInterval.
+  /// Call this at least once in kInterval while bytes are written.
   void goes_on(const Progress& now);
 
-  /// How fast to give.
+  /// The pace at which to write.
   double pace() const;
-  /// The most that was delivered in any interval of this second and the one before, of those in which bytes
-  /// were given all the time; `most` where nothing is known.
+  /// The highest delivery rate of an interval in this second and the previous one. An interval in which TCP
+  /// had too little to send counts only if it was faster than the link's known rate. `most` if no rate is
+  /// known.
   double delivers() const;
 
  private:
@@ -55,16 +57,16 @@ class Delivery {
   void end_probe(bool in_vain, Instant now);
 
   double most_;
-  double link_;                            // carries that without a queue
-  double most_now_ = 0, most_before_ = 0;  // delivered in a second
+  double link_;                            // its rate without a queue
+  double most_now_ = 0, most_before_ = 0;  // highest rates of this second and the previous one
   Instant second_began_{};
-  Progress began_{};     // the interval
-  bool queued_ = false;  // all through it
-  int stands_ = 0;       // a queue, for so many intervals
-  bool drains_ = false;  // the queue
+  Progress began_{};     // the state at the start of the interval
+  bool queued_ = false;  // a queue existed during the whole interval
+  int stands_ = 0;       // successive intervals with a queue
+  bool drains_ = false;  // a queue is being drained
   bool starved_ = false;
   bool probes_ = false;
-  Instant probe_at_{};  // not before
+  Instant probe_at_{};  // the earliest time of the next probe
   Duration wait_ = kFirstWait;
 };
 

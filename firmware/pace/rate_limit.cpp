@@ -8,19 +8,19 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-/// Longer spacing where a 429 comes again at once, where one comes now and then, and shorter for a trial.
+/// Factors for the spacing: a 429 comes at once after a storm; a 429 comes soon; a trial step.
 constexpr double kFarOff = 1.5, kSlightlyOff = 1.25, kFaster = 0.67;
-/// What worked once is taken a little slower from then on: networks do not keep time to the millisecond.
+/// Factor for a pause that worked once: networks do not keep time to the millisecond.
 constexpr double kMargin = 1.05;
-/// Part of the spacing that two requests are further apart, where it counts from when the first one left.
+/// This part of the spacing is added if the spacing counts from when the first request left.
 constexpr int kUneven = 50;
-/// Part of the spacing that is left besides before and after what goes by another connection: it has to be
-/// made first, and the two do not keep in step.
+/// This part of the spacing is kept free before and after a claimed request: its connection must be made
+/// first, and the two connections do not keep in step.
 constexpr int kBeside = 4;
-/// So many such 429s are no chance.
+/// This many single 429s are no coincidence.
 constexpr int kOfAKind = 2;
 
-/// Between two requests at `hertz`; a rate too low to matter in any run does not overflow.
+/// Between two requests at `hertz`. A very low rate does not overflow.
 Duration spacing_at(double hertz) {
   constexpr Seconds kLongest = std::chrono::hours{24};
   return std::chrono::duration_cast<Duration>(std::min(Seconds{1 / hertz}, kLongest));
@@ -62,7 +62,7 @@ void RateLimit::sent(Instant now, bool ahead) {
   count({.first = now, .last = now});
 }
 
-/// Of two, the later counts, whichever was answered first.
+/// The later of two requests counts, even if it is answered first.
 void RateLimit::count(const Span& sent) {
   const Span before = counted_.value_or(sent);
   counted_ = {.first = std::max(before.first, sent.first), .last = std::max(before.last, sent.last)};
@@ -77,7 +77,7 @@ void RateLimit::left(const Span& sent) {
   count({.first = sent.first + uneven, .last = sent.last + uneven});
 }
 
-/// Whether it was sent before the storm that goes on.
+/// Counts the end of one request in flight. True if it was sent before the present storm.
 bool RateLimit::end_one() {
   under_way_ = std::max(under_way_ - 1, 0);
   if (!storm_ || storm_->sent_before == 0) return false;
@@ -139,7 +139,7 @@ void RateLimit::begin_storm(Instant now) {
   const bool counted_from_answers = rule_.from_answers;
   soon_again_ = calm_since_ && now - *calm_since_ <= kSoonAgain ? soon_again_ + 1 : 0;
   const auto tried_from = std::exchange(tried_from_, std::nullopt);
-  if (tried_from && now - learned_at_ <= kSoonAgain) {  // the step up was one too many
+  if (tried_from && now - learned_at_ <= kSoonAgain) {  // the last step was one too many
     rule_ = *tried_from;
     learned_at_ = now;
     hold_ = std::min<Duration>(hold_ * 2, kLongestHold);
@@ -162,7 +162,8 @@ bool RateLimit::is_a_limit() const {
 
 void RateLimit::slow_down(Instant now) {
   const Duration slowest = std::max(allowed_, spacing_at(kSlowest));
-  // What the server let through before it refused again, and how long it then refused, is its rate.
+  // The pause that worked last, or the average time per accepted request including the storm, shows the
+  // server's rate.
   const Duration as_seen = taken_since_ == 0 ? worked_ : soon_again_ > 1 ? on_average_ : Duration{0};
   const double factor = taken_since_ == 0 ? kFarOff : kSlightlyOff;
   rule_.spacing = std::min(slowest, std::max(times(rule_.spacing, factor), times(as_seen, kMargin)));
@@ -196,7 +197,7 @@ void RateLimit::carry_on(const Learned& learned, Instant now) {
   if (learned.spacing > allowed_) rule_.spacing = learned.spacing;
   if (learned.from_answers || learned.spacing > allowed_) learned_at_ = now;
   const Instant latest =
-      now + std::max<Duration>(rule_.spacing, kLongestPause);  // a later one is of another clock
+      now + std::max<Duration>(rule_.spacing, kLongestPause);  // a later time comes from another clock
   floor_.first = std::max(floor_.first, std::min(learned.earliest.first, latest));
   floor_.last = std::max(floor_.last, std::min(learned.earliest.last, latest));
   if (learned.under_way) counted_ = {.first = now, .last = now};

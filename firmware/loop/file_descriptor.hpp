@@ -6,7 +6,7 @@ namespace adit::loop {
 
 void close_descriptor(int fd) noexcept;
 
-/// Owns a file descriptor.
+/// Owns a file descriptor and closes it. If it is empty, get() is -1.
 class FileDescriptor {
  public:
   FileDescriptor() = default;

@@ -26,7 +26,7 @@ void caught(const char* where, const char* what) noexcept {
   so_far.fetch_add(1, std::memory_order_relaxed);
   try {
     if (auto* const told = tell.load()) return told(where, what);
-  } catch (...) {  // no memory for the log either: stderr needs none
+  } catch (...) {  // no memory for the log; stderr needs no memory
   }
   std::fprintf(stderr, "%s: unhandled exception: %s\n", where, what);
 }
@@ -41,7 +41,7 @@ void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept 
 
 void end_by_uncaught() noexcept {
   std::set_terminate([] {
-    tell_of_caught(nullptr);  // stderr alone: this thread may hold the log's lock
+    tell_of_caught(nullptr);  // stderr only: this thread may hold the log's lock
     if (const auto thrown = std::current_exception())
       guarded("the process", [&] { std::rethrow_exception(thrown); });
     count_fault();
@@ -52,8 +52,7 @@ void end_by_uncaught() noexcept {
 void count_faults(const char* file) noexcept {
   faults_file.store(::open(file, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
   struct sigaction action{};
-  action.sa_flags =
-      static_cast<int>(SA_RESETHAND);  // then the signal ends the process as it does without this
+  action.sa_flags = static_cast<int>(SA_RESETHAND);  // the signal that is raised again ends the process
   action.sa_handler = [](int signal) {
     count_fault();
     (void)::raise(signal);

@@ -5,26 +5,28 @@
 
 namespace adit::loop {
 
-/// Notes an exception that got as far as the edge of the program: counted, and told to whoever asked to be
-/// told, else to stderr. Thread-safe. `where`: what ended by it, as in "a job of a worker".
+/// Counts an exception that no code of the program handled, and reports it to the function of
+/// tell_of_caught(), or to stderr if there is no such function or it throws. `where`: the aborted work, as in
+/// "a job of a worker". Thread-safe.
 void caught(const char* where, const char* what) noexcept;
 
-/// How many were caught since the program began.
+/// The number of calls of caught() since the process start. Thread-safe.
 std::uint64_t caught_so_far() noexcept;
 
-/// Who is told of them from now on; called on the thread that caught it, and may throw.
+/// Sets the function that reports such exceptions. It is called on the thread that caught the exception, and
+/// may throw. Null: stderr. Thread-safe.
 void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 
-/// From now on an exception of a loop's callback or of a noexcept function ends the process with status 1,
-/// after a line on stderr. Accepted messages are on the disk, and the next start reads them.
+/// From now on an exception that leaves a callback of the loop or a noexcept function ends the process with
+/// status 1, after a line on stderr. Accepted messages are on disk, and the next start reads them.
 void end_by_uncaught() noexcept;
 
-/// From now on each end of the process by such an exception, or by a signal of its own fault (SIGSEGV,
-/// SIGABRT and others), adds a byte to this file.
+/// From now on each such end, and each end by SIGSEGV, SIGBUS, SIGILL, SIGFPE or SIGABRT, appends a byte to
+/// `file`. If `file` cannot be opened, ends are not counted.
 void count_faults(const char* file) noexcept;
 
-/// Calls `work`; an exception, whichever library it is from, ends `work` and nothing else. False: it did.
-/// Requests and jobs of workers go through here, so that each of them fails alone.
+/// Calls `work`. If `work` throws, reports that by caught() and returns false. Requests and jobs of workers
+/// are called by guarded(), so that each fails alone.
 template <class Work>
 bool guarded(const char* where, Work&& work) noexcept {
   try {

@@ -12,23 +12,23 @@
 
 namespace adit::loop {
 
-/// How soon a job is to be done.
+/// The priority of a job.
 enum class Urgency : std::uint8_t {
-  OnTheWay,  // a message, or the answer to one, waits for it
-  CanWait,   // it is only looked at, or only freed
+  OnTheWay,  // a message or its answer is delayed until the job is done
+  CanWait,   // the result is only shown, or memory is freed
 };
 
-/// The jobs that wait for a few workers, and which of them is next. Reads no clock, and locks nothing.
+/// Queues jobs for a few workers and decides which job is next. Reads no clock and does not lock.
 ///
-/// Those of one urgency begin in the order in which they came. What is on the way goes before what can wait,
-/// until that has waited for kPatience since it came, and since the last of its kind ended: then one has its
-/// turn. So each begins after its number's patience at the latest, and what is on the way has all of that in
-/// between. Where there are several workers, one is always free of what can wait.
+/// Jobs of one urgency start in order of arrival. OnTheWay jobs go first. A CanWait job goes first if it is
+/// at the front, and kPatience has passed since its arrival and since the end of the last CanWait job. So the
+/// n-th queued CanWait job waits at most n times kPatience plus the time that other jobs run. With several
+/// workers, one always stays free of CanWait jobs.
 template <class Job>
 class JobQueue {
  public:
   static constexpr std::chrono::milliseconds kPatience{100};
-  /// So long a job that can wait works, before it gives way to what came meanwhile.
+  /// A CanWait job runs for this long before it gives way to OnTheWay jobs.
   static constexpr std::chrono::milliseconds kTurn{10};
 
   struct Next {
@@ -46,7 +46,8 @@ class JobQueue {
     }
   }
 
-  /// For a worker that is idle. Nothing: none waits, or enough of those that can are at work.
+  /// The next job for an idle worker. nullopt if no job is queued, or if only CanWait jobs are queued and
+  /// enough workers run such jobs.
   std::optional<Next> take(Instant now) {
     const bool may_wait = !can_wait_.empty() && at_work_ < most_that_can_wait_;
     if (may_wait && (on_the_way_.empty() || has_waited_long(now))) {
@@ -60,21 +61,22 @@ class JobQueue {
     return Next{std::move(*job), Urgency::OnTheWay};
   }
 
-  /// For a worker amid a job that can wait, which works since `began` and gives way since `since`: the one to
-  /// be done first. Nothing: it goes on.
+  /// The OnTheWay job to run within a CanWait job that has run since `began` and has given way since `since`.
+  /// nullopt: the CanWait job goes on.
   std::optional<Job> take_amid(Instant began, Instant since, Instant now) {
     if (since - began < kTurn || now - since >= kPatience) return std::nullopt;
     return take_on_the_way();
   }
 
-  /// To be told of each that take() gave.
+  /// Call this when a job from take() has ended.
   void ended(Urgency urgency, Instant now) {
     if (urgency == Urgency::OnTheWay) return;
     --at_work_;
     last_ended_ = now;
   }
 
-  /// Hands over all that wait, so that what they hold may be freed elsewhere.
+  /// Moves all queued jobs to `other`, which must be empty, so that the caller can free them outside its
+  /// lock.
   void hand_over_to(JobQueue& other) {
     std::swap(other.on_the_way_, on_the_way_);
     std::swap(other.can_wait_, can_wait_);
@@ -99,10 +101,10 @@ class JobQueue {
   }
 
   const std::size_t most_that_can_wait_;
-  std::size_t at_work_ = 0;  // of those that can wait
+  std::size_t at_work_ = 0;  // running CanWait jobs
   std::deque<Job> on_the_way_;
   std::deque<Patient> can_wait_;
-  Instant last_ended_{};  // of those that can wait
+  Instant last_ended_{};  // of a CanWait job
 };
 
 }  // namespace adit::loop

@@ -21,13 +21,13 @@
 namespace adit::loop {
 namespace {
 
-/// Timers fire at most this late. sd-event's own default, 250 ms, is for saving batteries.
+/// Timers are at most this late. The default of sd-event is 250 ms, to save power.
 constexpr std::uint64_t kAccuracyUsec = 1000;
 constexpr std::uint64_t kNever = UINT64_MAX;
-constexpr std::chrono::milliseconds kReadTogether{1};  // two clocks
+constexpr std::chrono::milliseconds kReadTogether{1};  // the largest time between reading two clocks
 
-/// Without its loop the process is nothing: where sd-event fails (out of memory, or a descriptor that cannot
-/// be watched) the process ends, and systemd restarts it.
+/// Ends the process if sd-event fails (no memory, or a descriptor that cannot be watched). systemd restarts
+/// it.
 void must(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "event loop: %s: %s\n", doing, std::strerror(-result));
@@ -38,7 +38,7 @@ double system_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// Rounded up, so that a timer never fires early.
+/// Rounded up, so that a timer is never early.
 std::uint64_t to_usec(Instant when) {
   const auto since_boot = std::chrono::ceil<std::chrono::microseconds>(when.time_since_epoch()).count();
   return static_cast<std::uint64_t>(std::max<std::int64_t>(since_boot, 0));
@@ -57,7 +57,8 @@ struct Source::State : std::enable_shared_from_this<Source::State> {
 
   void end() { source = sd_event_source_disable_unref(source); }
 
-  /// Holds the callback while it runs, for it may destroy its own Source. An exception ends the process.
+  /// Keeps the callback alive while it runs, because it may destroy its own Source. An exception ends the
+  /// process.
   static int run(void* userdata, std::uint32_t events) noexcept {
     const auto alive = static_cast<State*>(userdata)->weak_from_this().lock();
     alive->call(events);
@@ -122,15 +123,15 @@ class Loop::Impl {
     {
       const std::lock_guard lock(mutex_);
       first = posted_.empty();
-      posted_.push_back(std::move(task));  // moves only once there is room
+      posted_.push_back(std::move(task));  // moves `task` only after the allocation
     }
     if (!first) return;
-    // What the loop's own thread posts runs at the end of its turn, and needs no system call. But a task that
-    // posts another takes its turn among the sockets.
+    // A task posted from the loop's own thread runs at the end of the turn and needs no system call. A task
+    // that a task posts takes its turn among the sockets.
     if (std::this_thread::get_id() == thread_ && !running_tasks_) {
       own_posts_ = true;
     } else {
-      ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far from its end
+      ::eventfd_write(wake_.get(), 1);  // cannot fail: the counter is far below its maximum
     }
   }
 
@@ -164,7 +165,7 @@ class Loop::Impl {
     running_tasks_ = true;
     for (auto& task : tasks) {
       task();
-      task = nullptr;  // what it holds is freed before the next one runs
+      task = nullptr;  // frees the task's data before the next task runs
     }
     running_tasks_ = false;
   }
@@ -174,10 +175,10 @@ class Loop::Impl {
   WallClock wall_{stamp_at_start_, started_};
   FileDescriptor wake_;
   sd_event* event_ = nullptr;
-  std::atomic<std::thread::id> thread_{};  // the loop's own, once it has run
+  std::atomic<std::thread::id> thread_{};  // the loop's thread, once it has run
   bool stopping_ = false;
   bool running_tasks_ = false;
-  bool own_posts_ = false;  // its own thread posted, and no eventfd tells of it
+  bool own_posts_ = false;  // the loop's thread posted, and the eventfd was not written
   std::mutex mutex_;
   std::vector<std::function<void()>> posted_;
 };
@@ -208,7 +209,7 @@ double Loop::look_at_wall(bool system_is_right) {
   const Instant before = now();
   const double system = system_now();
   const Instant after = now();
-  // Who was held up between the two clocks looks again in a second.
+  // The thread was paused between the two readings; the next second's call decides.
   return after - before > kReadTogether ? 0 : impl_->wall().look(system, after, system_is_right);
 }
 

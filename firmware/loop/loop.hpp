@@ -10,9 +10,9 @@ namespace adit::loop {
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
-/// A thing the loop watches; destroying it ends the watch, also from within its own callback. A callback that
-/// throws has ended there (guard.hpp), and is called again as if it had returned. For watch(): destroy the
-/// Source before closing its file descriptor.
+/// A watched descriptor, timer or signal. Destroying it ends the watch, even within its own callback. An
+/// exception that leaves the callback ends the process. For watch(): destroy the Source before you close its
+/// file descriptor.
 class Source {
  public:
   Source() = default;
@@ -20,9 +20,9 @@ class Source {
   Source& operator=(Source&&) noexcept;
   ~Source();
 
-  /// For watch(): the EPOLL* events to wait for from now on; 0: none at all, not even EPOLLHUP.
+  /// For watch(): sets the awaited EPOLL* events; 0: no event, not even EPOLLHUP.
   void wait_for(std::uint32_t events);
-  /// For timer(): calls once at `when`; an earlier setting is forgotten.
+  /// For timer(): calls once at `when`, and replaces an earlier setting.
   void call_at(Instant when);
   /// For timer(): no call until the next call_at().
   void cancel();
@@ -32,10 +32,10 @@ class Source {
   friend class Loop;
   struct State;
   explicit Source(std::shared_ptr<State> state);
-  std::shared_ptr<State> state_;  // shared with the callback while that runs
+  std::shared_ptr<State> state_;  // shared with the running callback
 };
 
-/// The one event loop (sd-event). Everything but post() is for the loop's own thread.
+/// The event loop (sd-event) of the process. Only post() may be called from other threads.
 class Loop {
  public:
   Loop();
@@ -43,40 +43,40 @@ class Loop {
   Loop(const Loop&) = delete;
   Loop& operator=(const Loop&) = delete;
 
-  /// The one way to take the time for policy: monotonic.
+  /// Monotonic time, for all rules.
   Instant now() const;
-  /// The gateway's clock for stamps: seconds since 1970 as of start, carried on by the monotonic clock, so
-  /// that it never steps but by set_stamp(), whatever becomes of the system's.
+  /// The clock of time stamps, in seconds since 1970. It is set from the system's clock at process start and
+  /// then follows monotonic time. Only set_stamp() steps it.
   double stamp_now() const;
-  /// Sets that clock: an earlier process has given out stamps by it.
+  /// Sets that clock, because time stamps of an earlier process may be ahead of it.
   void set_stamp(double now);
 
-  /// The time of day, for people: seconds since 1970 by the system's clock (wall_clock.hpp).
+  /// The time of day for people: seconds since 1970 (wall_clock.hpp).
   double wall_now() const;
-  /// Where the system's clock is known to be wrong: it is `now`, until somebody sets the system's or finds it
-  /// right.
+  /// Sets the time of day to `now`, because the system's clock is wrong. This holds until look_at_wall()
+  /// finds that the system's clock was set or is right.
   void set_wall(double now);
-  /// By how many seconds it is ahead of the system's.
+  /// Seconds by which wall_now() is ahead of the system's clock.
   double wall_ahead() const;
-  /// Looks whether somebody set the system's clock, either way: by how many seconds wall_now() jumps for it.
-  /// `system_is_right`: whatever set_wall() was told. To be called each second.
+  /// Checks whether the system's clock was set. Returns the seconds by which wall_now() steps.
+  /// `system_is_right`: drop the correction of set_wall(). Call this each second.
   double look_at_wall(bool system_is_right);
 
-  /// Calls `ready` with the EPOLL* events that came on `fd`, which stays the caller's.
+  /// Calls `ready` with the EPOLL* events of `fd`. The caller keeps `fd`.
   Source watch(int fd, std::uint32_t events, std::function<void(std::uint32_t)> ready);
-  /// A timer, not yet set.
+  /// A timer that is not set.
   Source timer(std::function<void()> expired);
-  /// Blocks the signal for the process (call before starting threads) and calls `came` for it.
+  /// Blocks the signal in the calling thread and calls `came` when it arrives. Call this before starting
+  /// threads, because they inherit the block.
   Source signal(int number, std::function<void()> came);
-  /// Runs `task` on the loop's thread, soon, in the order of posting. Thread-safe. What a task posts runs in
-  /// a later turn, so that tasks never keep the loop from its sockets. Where it throws (no memory), `task` is
-  /// as it was.
+  /// Runs `task` on the loop's thread, soon, in the order of posting. Thread-safe. A task that a task posts
+  /// runs in a later turn, so that tasks do not starve the sockets. If post() throws, `task` is unchanged.
   void post(std::function<void()>&& task);
 
-  /// Until stop(), which may also have been called before.
+  /// Runs until stop(). Returns at once if stop() was called before.
   void run();
   void stop();
-  /// One turn, waiting at most `most`; for tests.
+  /// One turn that waits at most `most`; for tests.
   void turn(Duration most);
 
  private:

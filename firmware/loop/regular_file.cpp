@@ -14,8 +14,7 @@ std::string text_of(int error) {
 FileDescriptor open_regular(const std::string& path, int flags, int folder) {
   FileDescriptor file(::openat(folder, path.c_str(), flags | O_NONBLOCK | O_NOCTTY | O_CLOEXEC, 0600));
   struct stat found{};
-  if (!file && errno != ENXIO && errno != EISDIR)
-    return file;  // ENXIO: a FIFO that has no reader, or a socket
+  if (!file && errno != ENXIO && errno != EISDIR) return file;  // ENXIO: a FIFO without a reader, or a socket
   if (file && ::fstat(file.get(), &found) != 0) return {};
   if (file && S_ISREG(found.st_mode)) return file;
   file = {};

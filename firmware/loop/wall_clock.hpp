@@ -5,27 +5,27 @@
 
 namespace adit::loop {
 
-/// The time of day as the program tells it: the system's clock, or another where that is known to be wrong.
-/// Somebody may set the system's, either way, or find that it is right: that counts from the next look() on,
-/// so that whoever looks can bring along what he has noted of the time before. Reads no clock.
+/// The time of day of the program: the system's clock plus a correction if that clock is wrong. look() drops
+/// the correction if the system's clock was set or is right. The caller of look() can then correct earlier
+/// times. Reads no clock.
 class WallClock {
  public:
   using Instant = std::chrono::steady_clock::time_point;
-  /// Seconds: both clocks run at one rate, so that by more than this somebody set the system's. Less is how
-  /// far apart the two were read, and may wait.
+  /// Seconds. A larger difference from monotonic time means that the system's clock was set. A smaller one is
+  /// the time between two readings.
   static constexpr double kSet = 0.01;
 
-  /// `system`: seconds since 1970 by the system's clock, at that instant of the monotonic one; below too.
+  /// `system`: seconds since 1970 by the system's clock at the monotonic time `at`; so in look().
   WallClock(double system, Instant at) : seen_(system), seen_at_(at) {}
 
   double now(Instant at) const { return seen_ + seconds(at) + ahead_; }
-  /// By how many seconds now() is ahead of the system's.
+  /// Seconds by which now() is ahead of the system's clock.
   double ahead() const { return ahead_; }
-  /// It is `now`, until somebody sets the system's or finds it right.
+  /// Makes now() return `now` at `at`, until look() drops the correction.
   void set(double now, Instant at) { ahead_ += now - this->now(at); }
 
-  /// By how many seconds now() jumps for this look; 0: it does not. `is_right`: the system's is, whatever was
-  /// known before. To be called each second.
+  /// Returns the seconds by which now() steps; 0: no step. `is_right`: the system's clock is right, so drop
+  /// the correction. Call this each second.
   double look(double system, Instant at, bool is_right) {
     const double step = system - seen_ - seconds(at), before = ahead_;
     const bool gives_way = is_right && before != 0;

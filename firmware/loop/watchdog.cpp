@@ -19,7 +19,7 @@ void Watchdog::ask() {
   for (Workers* const each : workers_) each->ask();
 }
 
-/// Whoever has not answered for a whole round is not asked again before it has.
+/// A worker that has not answered for a whole round is not asked again before it answers.
 void Watchdog::look() {
   due_.call_at(loop_.now() + every_);
   if (!std::ranges::all_of(workers_, [](Workers* each) { return each->are_well(kLongestJob); })) return;

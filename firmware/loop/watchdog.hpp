@@ -9,22 +9,22 @@
 
 namespace adit::loop {
 
-/// Gives signs of life while the loop turns and every worker answers.
+/// Gives signs of life while the loop turns and each worker answers.
 ///
-/// A worker may be at one job for a while: the largest map is the longest. So a loop that hangs is found out
-/// after the `within` of whoever listens, and a worker that hangs `longest_job` later.
+/// A worker may run one job for up to kLongestJob; the largest map takes longest. So a hung loop is found
+/// after `within`, and a hung worker kLongestJob later.
 class Watchdog {
  public:
-  /// A cloud of 256 MB that cannot be compressed is packed in 12 s on a PC's core; the largest that the
-  /// settings allow is four times as large, and a small box ten times as slow.
+  /// A cloud of 256 MB that cannot be compressed takes 12 s on a PC's core. The largest cloud that the
+  /// settings allow is four times as large, and a small box is ten times as slow.
   static constexpr std::chrono::minutes kLongestJob{10};
 
-  /// Calls `feed` four times in each `within` from now on.
+  /// Calls `feed` at once, and then four times in each `within`.
   Watchdog(Loop& loop, Duration within, std::function<void()> feed);
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Whose answers count from now on beside the loop's. They outlive this, or are replaced first.
+  /// Sets the workers whose answers are also required. They must outlive this object or its next call.
   void ask_also(std::vector<Workers*> workers);
 
  private:

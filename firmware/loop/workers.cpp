@@ -23,15 +23,15 @@ unsigned threads_for(unsigned asked) {
   return std::max(std::thread::hardware_concurrency(), 2u) - 1;
 }
 
-/// The calling thread yields the processor to the loop and to the writer, which others wait for. If the
-/// system does not allow it, the thread keeps their priority.
+/// Lowers the calling thread's priority below the loop's and the writer's. If the system does not allow it,
+/// the thread keeps its priority.
 void lower_priority() {
   constexpr int kNice = 10;
   const auto thread = static_cast<id_t>(gettid());
   if (getpriority(PRIO_PROCESS, thread) < kNice) (void)setpriority(PRIO_PROCESS, thread, kNice);
 }
 
-/// Signals are the loop's: threads begun while this lives take none.
+/// While this object lives, new threads block all signals, because signals belong to the loop.
 class SignalsBlocked {
  public:
   SignalsBlocked() {
@@ -64,10 +64,10 @@ class Workers::Impl {
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
-  /// A job may use the Workers until it is at its end.
+  /// A running job may use the Workers until the job ends.
   void end() {
     *alive_ = false;
-    JobQueue<Job> dropped(lives_.size());  // outlives the lock: what a job holds is freed outside it
+    JobQueue<Job> dropped(lives_.size());  // outlives the lock, so that the jobs' data is freed without it
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
@@ -114,7 +114,7 @@ class Workers::Impl {
   }
 
  private:
-  /// What follows a job on the loop, and is touched and freed there alone but for `well`.
+  /// The callbacks after a job. Only the loop calls and frees them; the worker sets `well`.
   struct Ends {
     std::function<void()> done, failed;
     bool well = false;
@@ -122,7 +122,7 @@ class Workers::Impl {
   struct Job {
     std::function<void()> work;
     std::function<void()> end;
-    Ends* ends = nullptr;  // end's own
+    Ends* ends = nullptr;  // owned by `end`
   };
 
   Job job_of(std::function<void()> work, Ends ends) const {
@@ -134,11 +134,11 @@ class Workers::Impl {
             held.get()};
   }
 
-  /// What is known of a worker.
+  /// The state of a worker.
   struct Life {
-    std::uint64_t answered = 0;  // the last ask() that it has heard
+    std::uint64_t answered = 0;  // the last ask() that it has seen
     bool at_work = false;
-    Instant began{};  // its job, or goes on with it
+    Instant began{};  // when its job began or continued
   };
 
   void serve(Life& life) noexcept {
@@ -151,7 +151,7 @@ class Workers::Impl {
     }
   }
 
-  /// Nothing: there are no more, for it stops.
+  /// nullopt: the Workers stop.
   std::optional<JobQueue<Job>::Next> wait_for_next(Life& life) {
     std::unique_lock lock(mutex_);
     life.at_work = false;
@@ -178,13 +178,13 @@ class Workers::Impl {
 
   void run(Job& job) noexcept {
     job.ends->well = guarded("a job of a worker", job.work);
-    job.work = nullptr;  // freed here, so that `done` finds its data its own
+    job.work = nullptr;  // freed here, so that `done` is the only owner of its data
     loop_.post(std::move(job.end));
   }
 
   Loop& loop_;
   const AtEnd at_end_;
-  const std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // read and written on the loop alone
+  const std::shared_ptr<bool> alive_ = std::make_shared<bool>(true);  // read and written on the loop only
   std::mutex mutex_;
   std::condition_variable came_;
   JobQueue<Job> jobs_;

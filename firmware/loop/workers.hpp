@@ -10,37 +10,36 @@
 
 namespace adit::loop {
 
-/// A few threads that do nothing but CPU work on data handed over to them, and hand the result back to the
-/// loop. JobQueue says which job is next. They run at nice 10 (setpriority(2)), so that a report does not
-/// compete with them. What touches a file is a Writer's, or that of a thread for which nobody waits: the
-/// journal's.
+/// Threads that compute on data given to them and return the result to the loop. JobQueue decides which job
+/// is next. The threads run at nice 10 (setpriority(2)), so that a report does not compete with them. Jobs
+/// that use files belong to a Writer or to the journal's thread.
 class Workers {
  public:
-  /// `count` threads; 0: the machine's cores minus one, at least one.
+  /// `count`: threads; 0: one fewer than the machine's cores, at least one.
   Workers(Loop& loop, unsigned count) : Workers(loop, count, AtEnd::Drop) {}
-  /// Jobs that run are waited for; jobs that have not begun are dropped, and no `done` runs any more.
+  /// Waits for running jobs. Drops queued jobs. `done` and `failed` are not called any more.
   ~Workers();
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  /// Runs `work` on a worker, then `done` on the loop, or `failed` where `work` threw (guard.hpp): whatever
-  /// was left half done is not used then. For the loop's thread. Of one urgency first in, first out.
+  /// Runs `work` on a worker, then `done` on the loop, or `failed` if `work` threw (guard.hpp). Call it on
+  /// the loop's thread. Jobs of one urgency start in order.
   void submit(Urgency urgency, std::function<void()> work, std::function<void()> done,
               std::function<void()> failed);
-  /// For work whose result is a failure until it says otherwise: `done` runs in either case.
+  /// The same with `done` in place of `failed`, for work whose result is a failure until `work` sets it.
   void submit(Urgency urgency, std::function<void()> work, std::function<void()> done);
 
-  /// To be called now and then by `work` that can wait and takes long: what is on the way is done meanwhile,
-  /// on the same thread.
+  /// Runs queued OnTheWay jobs on this thread. Only for `work`: a long CanWait job calls it from time to
+  /// time.
   void give_way();
 
-  /// Asks each worker for a sign of life, which it gives between two jobs.
+  /// Asks each worker for a sign of life. Workers answer between jobs.
   void ask();
-  /// Whether each has answered the last ask(), or is at a job that it began at most `longest` ago.
+  /// True if each worker has answered the last ask(), or has run its present job for at most `longest`.
   bool are_well(Duration longest) const;
 
  protected:
-  /// What becomes of jobs that have not begun.
+  /// What happens to jobs that have not started.
   enum class AtEnd : std::uint8_t { Drop, Finish };
   Workers(Loop& loop, unsigned count, AtEnd at_end);
 
@@ -49,9 +48,9 @@ class Workers {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The one thread that writes files, at the loop's priority: one job after the other, in the order in which
-/// they were submitted, so that the loop waits for no disk and no file waits for CPU work. At its end all
-/// that was submitted is done (though no `done` runs any more): whatever a job uses outlives it.
+/// The thread that writes files, at the loop's priority. It runs jobs in order, so that the loop does not
+/// wait for a disk and files do not wait for computing. The destructor runs all submitted jobs, but no
+/// `done`. Data that a job uses must outlive the Writer.
 class Writer final : public Workers {
  public:
   explicit Writer(Loop& loop) : Workers(loop, 1, AtEnd::Finish) {}

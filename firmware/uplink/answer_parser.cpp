@@ -1,7 +1,6 @@
-// The one place that includes Boost.Beast, whose headers take seconds to compile.
-// What ships has none of its assertions, and one is wrong: of "0\r\n", the last chunk of an empty body, and
-// one byte more it says that they cannot be (basic_parser.ipp, parse_chunk_header()), though it has read them
-// well.
+// Only this file includes Boost.Beast, because its headers take seconds to compile. Disables its assertions,
+// which a release does not have. One of them is wrong: for "0\r\n", the last chunk of an empty body, and one
+// more byte, it fails although the bytes were parsed correctly (basic_parser.ipp, parse_chunk_header()).
 #define BOOST_DISABLE_ASSERTS
 
 #include "uplink/answer_parser.hpp"
@@ -14,7 +13,7 @@
 #include "loop/guard.hpp"
 #include "uplink/http_date.hpp"
 
-// GCC 12 sees boost::optional as uninitialised where the sanitizers keep it from inlining.
+// GCC 12 warns of an uninitialised boost::optional if the sanitizers prevent inlining.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
@@ -32,8 +31,8 @@ namespace {
 
 namespace http = boost::beast::http;
 
-/// The body of an answer, held as it comes. Beast's own string_body reserves whatever length is announced
-/// before it looks at the limit.
+/// The body of an answer, kept as it arrives. Beast's string_body reserves the announced length before it
+/// checks the limit.
 struct BoundedBody {
   struct value_type {
     std::string text;
@@ -70,13 +69,13 @@ struct BoundedBody {
 };
 using Parser = http::response_parser<BoundedBody>;
 
-/// Of the head and of all interim answers before it, and what chunks add to a body.
+/// The limit for the head, all interim answers before it, the body and its chunk headers.
 constexpr std::size_t kMostBytes(std::size_t longest_body) {
   return 2 * AnswerParser::kLongestHead + 2 * longest_body;
 }
 constexpr unsigned kFirstFinal = 200, kLast = 599, kSwitchingProtocols = 101;
 
-/// Seconds, or nothing where it is absent or a date (RFC 9110 10.2.3).
+/// Seconds, or nullopt if the field is absent or a date (RFC 9110 10.2.3).
 std::optional<std::chrono::seconds> retry_after(std::string_view value) {
   std::int32_t seconds = 0;
   const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), seconds);
@@ -93,7 +92,7 @@ std::string to_string(boost::beast::string_view text) {
 struct AnswerParser::Impl {
   std::unique_ptr<Parser> parser;
   const std::size_t longest_body;
-  std::string unread;  // what the parser has not consumed
+  std::string unread;  // not yet consumed by the parser
   std::size_t read = 0;
   std::string fault;
   int too_long_status = 0;
@@ -118,18 +117,18 @@ struct AnswerParser::Impl {
     return malformed("the answer is not HTTP: " + error.message());
   }
 
-  /// Its status is known once its body has begun, or would have.
+  /// The status is known if the head was parsed. body_limit is reported after the head.
   State too_long(boost::beast::error_code error) {
     const bool has_status = error == http::error::body_limit || parser->is_header_done();
     if (has_status) too_long_status = static_cast<int>(parser->get().result_int());
     return malformed("the answer is too long");
   }
 
-  /// Whole, or Incomplete where a 1xx has made place for the answer proper.
+  /// Whole, or Incomplete after a 1xx, which the final answer follows.
   State head_and_body_done() {
     const unsigned status = parser->get().result_int();
     if (status >= kFirstFinal && status <= kLast) return State::Whole;
-    // 101 would end HTTP on this connection; we never asked for that.
+    // 101 would end HTTP on this connection. Adit never asks for that.
     if (status == kSwitchingProtocols || status < 100 || status > kLast)
       return malformed("the answer has status " + std::to_string(status));
     begin();
@@ -159,7 +158,7 @@ AnswerParser::~AnswerParser() = default;
 AnswerParser::State AnswerParser::feed(std::string_view bytes) {
   icd::require(impl_->fault.empty() && !impl_->parser->is_done());
   impl_->read += bytes.size();
-  // Interim answers and chunk extensions could go on for ever without ever reaching the body's limit.
+  // Interim answers and chunk extensions could go on for ever and never reach the body's limit.
   if (impl_->read > kMostBytes(impl_->longest_body)) return impl_->too_long({});
   State state = State::Malformed;
   const bool well = loop::guarded("reading an answer", [&] {
@@ -172,7 +171,7 @@ AnswerParser::State AnswerParser::feed(std::string_view bytes) {
 AnswerParser::State AnswerParser::feed_end() {
   if (!has_begun()) return impl_->malformed("the peer closed the connection and did not answer");
   boost::beast::error_code error;
-  // A parser that has seen nothing since an interim answer would take the end for a whole 200.
+  // After an interim answer the new parser has read no bytes, and put_eof() would make it a whole 200.
   if (impl_->parser->is_header_done()) impl_->parser->put_eof(error);
   if (error || !impl_->parser->is_done())
     return impl_->malformed("the peer closed the connection in the middle of its answer");
@@ -184,7 +183,7 @@ int AnswerParser::status() const {
 }
 
 std::string AnswerParser::take_part() {
-  impl_->read = impl_->unread.size() + 1;  // it has begun
+  impl_->read = impl_->unread.size() + 1;  // not 0, so that has_begun() stays true
   impl_->parser->body_limit(impl_->longest_body);
   return std::exchange(impl_->parser->get().body().text, {});
 }

@@ -9,39 +9,39 @@
 
 namespace adit::uplink {
 
-/// The bytes of an HTTP/1 answer to one request, as they come (RFC 9112). Interim answers (1xx) are skipped.
+/// Parses an HTTP/1 answer to one request as its bytes arrive (RFC 9112). Skips interim answers (1xx).
 ///
-/// Nothing that the peer says makes it take memory: it holds what has come, and that is bounded (its body by
-/// `longest_body`, each head by kLongestHead, all of it by kMostBytes()), whatever lengths are announced.
+/// Memory is bounded whatever lengths the peer announces: only received bytes are held, at most
+/// `longest_body` of the body, kLongestHead of each head, and kMostBytes() in all.
 class AnswerParser {
  public:
   enum class State : std::uint8_t { Incomplete, Whole, Malformed };
   static constexpr std::size_t kLongestHead = 16 * 1024;  // bytes
 
-  /// `longest_body`: bytes; a longer one is Malformed, as soon as that is known.
+  /// `longest_body`: bytes. A longer body is Malformed as soon as its length is known.
   explicit AnswerParser(std::size_t longest_body);
   ~AnswerParser();
 
-  /// Requires that no call before said Whole or Malformed.
+  /// Requires that no earlier call returned Whole or Malformed.
   State feed(std::string_view bytes);
-  /// The peer has sent all that it will, which is the end of an answer that has no length (RFC 9112 6.3).
+  /// The peer has closed its direction. This ends an answer without a length (RFC 9112 6.3).
   State feed_end();
 
-  /// Once the head has come; before, 0.
+  /// The status; 0 until the head has arrived.
   int status() const;
-  /// What has come of the body since the last call, for an answer that goes on: it is not in take(), and all
-  /// limits are of what comes from now on.
+  /// Returns and removes the body received since the last call, for an endless answer. take() does not return
+  /// these bytes, and all limits start again.
   std::string take_part();
 
   /// For Whole, before take(): the field Location, or "".
   std::string location() const;
   /// For Whole.
   Answered take();
-  /// For Whole: both sides may go on using the connection, and nothing came after the answer.
+  /// For Whole: both sides allow reuse of the connection, and no bytes followed the answer.
   bool may_keep_alive() const;
-  /// For Malformed: its status where all that is wrong is that it is too long; else 0.
+  /// For Malformed: the status if the only fault is the length; else 0.
   int too_long_status() const;
-  /// For Malformed: what is wrong with it, in words of our own.
+  /// For Malformed: a sentence on the fault.
   const std::string& fault() const;
   bool has_begun() const;
 

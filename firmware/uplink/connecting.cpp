@@ -1,4 +1,4 @@
-// Connecting, being idle, and the end of a connection.
+// Connecting, idling and closing.
 #include <algorithm>
 #include <cstring>
 #include <utility>
@@ -28,7 +28,7 @@ void Connection::Impl::open() {
   if (phase_ == Phase::Closed) connect();
 }
 
-/// As drop(), where nothing was under way.
+/// As drop(), if the connection is not closed.
 void Connection::Impl::end() {
   if (phase_ != Phase::Closed) drop();
 }
@@ -45,7 +45,7 @@ void Connection::Impl::connect() {
   source_ = loop_.watch(fd_.get(), watched_, [this](std::uint32_t) { call(&Impl::ready); });
 }
 
-/// Now, or when the pause since the last time is over.
+/// Connects now, or when the pause since the last attempt is over.
 void Connection::Impl::connect_in_time() {
   const loop::Instant when = began_ + pause_;
   if (when <= loop_.now()) return connect();
@@ -71,14 +71,14 @@ void Connection::Impl::connecting_failed(const std::string& why) {
   if (exchange_) deliver(NeverSent{trouble_});
 }
 
-/// Waits for the next request: an idle connection is given up before the peer does.
+/// Waits for the next request, and closes an idle connection before the peer does.
 void Connection::Impl::rest() {
   watch(kComing);
   timer_.call_at(loop_.now() + kIdle);
 }
 
-/// It has been idle for long enough, or the peer closed it, or sent what nobody asked for. The old
-/// connection goes before the new one comes, for the sake of servers that serve one connection at a time.
+/// The connection was idle for kIdle, the peer closed it, or the peer sent bytes without a request. Closes it
+/// before it connects again, because some servers serve one connection at a time.
 void Connection::Impl::idle_ended() {
   close();
   if (warm_) connect_in_time();

@@ -21,7 +21,7 @@ std::shared_ptr<Connection::Impl> Connection::Impl::another() const {
   return std::make_shared<Impl>(loop_, endpoint_, token_, pace_);
 }
 
-/// Calls one of its own parts, and lives until that has ended.
+/// Calls a member function and keeps this object alive until it returns.
 void Connection::Impl::call(void (Impl::*part)()) {
   const auto alive = shared_from_this();
   (this->*part)();
@@ -78,7 +78,7 @@ void Connection::Impl::time_came() {
   if (has_more) write();
 }
 
-/// How it goes on where the kernel takes no more for a while.
+/// Updates the pace while the kernel's buffer is full.
 void Connection::Impl::look() {
   if (!exchange_ || phase_ != Phase::Open || !exchange_->wants_to_write()) return;
   pace_->goes_on(fd_.get(), loop_.now());
@@ -86,15 +86,16 @@ void Connection::Impl::look() {
 }
 
 void Connection::Impl::begin() {
-  // The peer may have closed a kept connection meanwhile, or a new one at once. Nothing of this request has
-  // been sent, so that it is still safe to say so, or to try once more.
+  // The peer may have closed a kept connection, or a new one at once. No byte of this request was sent, so
+  // NeverSent is true, and a retry on a new connection is safe.
   if (!is_quiet(fd_.get()))
     return fresh_ ? never_sent("the peer closed the new connection, or sent bytes before the request")
                   : begin_again();
   if (std::exchange(gives_up_after_, exchange_->longest_silence()) != exchange_->longest_silence()) {
     give_up_after(fd_.get(), exchange_->longest_silence());
   }
-  // What is given up must not arrive after what follows it on another connection, nor be recorded unseen.
+  // A request that is given up must not arrive after the next request on another connection, and must not be
+  // recorded later.
   reset_on_close(fd_.get(), true);
   exchange_->begin(fd_.get(), loop_.now());
   listen_again();
@@ -118,12 +119,12 @@ void Connection::Impl::write() {
 
 void Connection::Impl::began_to_leave() {
   exchange_->began_to_leave(loop_.now());
-  if (!exchange_->wants_to_write()) return;  // too short to tell anything of the link
+  if (!exchange_->wants_to_write()) return;  // too short to measure the link
   pace_->begins(fd_.get(), loop_.now());
   look_.call_at(loop_.now() + LinkPace::kLook);
 }
 
-/// Reads; true where that ended the exchange.
+/// Reads. True if that ended the exchange.
 bool Connection::Impl::answer_came() {
   switch (exchange_->read(fd_.get())) {
     case Exchange::Answer::Waiting:
@@ -159,7 +160,7 @@ void Connection::Impl::answered() {
   const Transmission seen = transmission(fd_.get());
   answer.sent = exchange_->left(seen, loop_.now());
   reset_on_close(fd_.get(), exchange_->sent() < exchange_->total());
-  // The measured mapping server promises keep-alive with a 4xx and closes all the same.
+  // The measured mapping server promises keep-alive with a 4xx and still closes.
   const bool keep = exchange_->may_keep_alive() && answer.status < 400;
   if (keep) {
     fresh_ = false;
@@ -167,7 +168,7 @@ void Connection::Impl::answered() {
   } else {
     drop();
   }
-  token_.strike_from(answer.body);  // a server that echoes what it was asked
+  token_.strike_from(answer.body);  // a server may echo the request
   deliver(std::move(answer));
 }
 
@@ -182,7 +183,7 @@ void Connection::Impl::never_sent(const std::string& reason) {
   deliver(NeverSent{std::move(why)});
 }
 
-/// Ends the exchange. `done` is called last, for it may send the next request or destroy all this.
+/// Ends the exchange. Calls `done` last, because it may send the next request or destroy this object.
 void Connection::Impl::deliver(Outcome outcome) {
   sent_ = exchange_->sent();
   exchange_.reset();

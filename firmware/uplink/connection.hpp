@@ -14,12 +14,12 @@
 
 namespace adit::uplink {
 
-/// Where a connection goes and how.
+/// The address of an endpoint, and the options of a connection to it.
 struct Endpoint {
   std::string address;  // IPv4 or IPv6, numeric
   std::uint16_t port = 0;
   std::string interface;               // SO_BINDTODEVICE; "": not bound
-  std::uint64_t bytes_per_second = 0;  // at the most, less where the link delivers less; 0: not paced
+  std::uint64_t bytes_per_second = 0;  // the highest rate; lower if the link delivers less; 0: not paced
   std::chrono::milliseconds connect_within{3000};
 };
 
@@ -28,28 +28,29 @@ struct Request {
   std::string target;        // "/map/update"
   std::string content_type;  // "" without a body
   icd::ChunkedBytes body;
-  /// How long the peer's TCP may acknowledge no more of the request, and then how long the whole answer may
-  /// take. Halves of an answer do not make it longer.
+  /// How long the peer's TCP may acknowledge no more bytes of the request, and then how long the whole answer
+  /// may take. A part of an answer does not extend this time.
   std::chrono::milliseconds answer_within{10000};
-  std::size_t longest_answer = kLongestAnswer;  // bytes of its body; a longer one is InDoubt
-  /// The last kHeldBack bytes of the body wait until then; the peer's silence does not count meanwhile.
+  std::size_t longest_answer = kLongestAnswer;  // bytes of its body; the outcome of a longer one is InDoubt
+  /// The last kHeldBack bytes of the body are not sent before this time. The peer's silence does not count
+  /// until then.
   loop::Instant last_byte_not_before{};
-  /// The peer has still to answer another request, on another connection, and may read no more before it has:
-  /// its silence does not count until Connection::is_next().
+  /// The peer has not yet answered another request on another connection, and may not read this one before.
+  /// Its silence does not count until Connection::is_next().
   bool goes_ahead = false;
 
   static constexpr std::size_t kLongestAnswer = 64u << 10;
   static constexpr std::size_t kHeldBack = 1024;
 };
 
-/// When the bytes of a request left: the first and the last, to some 10 ms, in doubt the later. If some were
-/// sent twice, or not all were sent, the last is as late as the answer; if some were sent twice, the first
-/// too: it may be one of these.
+/// When the first and the last byte of a request left, to about 10 ms, rather too late than too early. If
+/// bytes were sent twice or not all were sent, `last` is the time of the answer. If bytes were sent twice, so
+/// is `first`, because the first byte may be one of them.
 struct Sent {
   loop::Instant first{}, last{};
 };
 
-/// A whole HTTP answer came. Its body may be anything. If it is a 2xx, the peer's TCP has acknowledged the
+/// A whole HTTP answer arrived, with any body. If its status is 2xx, the peer's TCP has acknowledged the
 /// whole request.
 struct Answered {
   int status = 0;
@@ -60,63 +61,64 @@ struct Answered {
   bool wants_slash = false;                           // redirects_to_slash()
   Sent sent = {};
 };
-/// No byte of the request was given to the kernel: it is safe to send it again.
+/// No byte of the request was given to the kernel. A retry is safe.
 struct NeverSent {
   std::string why;  // "connecting to 10.100.1.200:8000: Connection refused"
 };
-/// Bytes may have left and no whole answer came, or a 2xx came and the rest of the request never arrived:
-/// nobody here knows what became of it.
+/// Bytes may have left, and no whole answer arrived, or a 2xx arrived and the rest of the request was not
+/// acknowledged. The result of the request is unknown.
 struct InDoubt {
   std::string why;
-  int too_long_status = 0;  // of an answer that came and was longer than a Command Post's; else 0
+  int too_long_status = 0;  // the status of an answer that was too long; else 0
 };
 using Outcome = std::variant<Answered, NeverSent, InDoubt>;
 
-/// One HTTP/1.1 connection (RFC 9112) to the Command Post, one request at a time, kept alive between
-/// requests.
+/// One HTTP/1.1 connection (RFC 9112) to the Command Post. It sends one request at a time and stays open
+/// between requests.
 ///
-/// It connects ahead of need (keep_warm()), gives up an idle connection before the Command Post does, drops
-/// the connection after any answer of 400 or more (the measured server promises keep-alive and closes), after
-/// an answer that says close and after anything odd, and never sends `Expect`.
+/// It connects before a request needs it (keep_warm()), closes an idle connection before the Command Post
+/// does, and never sends `Expect`. It drops the connection after an answer of 400 or more, because the
+/// measured server promises keep-alive and closes; after an answer that says close; and after any fault.
 class Connection {
  public:
   static constexpr std::chrono::seconds kIdle{25};  // a server closes after 60
 
   Connection(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token);
-  /// One more to the same place, that shares what is known of the link: only one of them is to have bytes to
-  /// send at a time.
+  /// A second connection to the same endpoint that shares the measurements of the link. Only one of them may
+  /// have bytes to send at a time.
   std::unique_ptr<Connection> another() const;
   ~Connection();
   Connection(const Connection&) = delete;
   Connection& operator=(const Connection&) = delete;
 
-  /// Connects now and again after each close, so that a request finds the connection open.
+  /// Connects now and after each close, so that a request finds an open connection.
   void keep_warm();
-  /// The way there may be back: what is being connected begins again, and no pause is waited for.
+  /// Call this when the link may be back: restarts a pending attempt to connect, and skips the pause.
   void hurry();
-  /// Connects, if it is closed.
+  /// Connects if the connection is closed.
   void open();
-  /// Closes it. Requires !busy().
+  /// Closes the connection. Requires !busy().
   void close();
-  /// Closes it, by a reset. `done` of the request under way is never called, and its answer is never read.
+  /// Closes the connection by a reset. `done` of the request in flight is not called, and its answer is not
+  /// read.
   void give_up();
 
-  /// Requires !busy(). `done` is called once, from the loop, never from within send(); it may send the next
-  /// request and may destroy this connection. Destroyed while busy, the connection never calls it.
+  /// Sends a request. Requires !busy(). `done` is called once, from the loop and never within send(). It may
+  /// send the next request and may destroy this connection. The destructor does not call it.
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const;
-  /// No request goes ahead of the one that is under way any more: from now on the peer's silence counts.
+  /// The earlier request on the other connection has ended. From now on the peer's silence counts.
   void is_next();
-  /// When the request under way left, once the peer's TCP has acknowledged all of it.
+  /// When the request in flight left; nullopt until the peer's TCP has acknowledged all of it.
   std::optional<Sent> has_arrived() const;
   bool connected() const;
-  /// Why the last connecting failed, or "".
+  /// Why the last attempt to connect failed, or "".
   const std::string& trouble() const;
 
-  /// Bytes of the request under way, or of the last one, that the kernel has taken so far, head included.
+  /// Bytes of the present or last request, with its head, that the kernel has accepted.
   std::size_t sent_bytes() const;
-  /// Bytes a second that the link takes, as its last requests showed, at most Endpoint::bytes_per_second; 0
-  /// where it is not paced.
+  /// Bytes per second that the link delivered during the last requests, at most Endpoint::bytes_per_second; 0
+  /// if it is not paced.
   std::uint64_t delivers() const;
 
  private:

@@ -16,7 +16,7 @@
 
 namespace adit::uplink {
 
-/// What a Connection is. Callbacks hold it while they run: `done` may destroy the Connection.
+/// The state of a Connection. A running callback keeps it alive, because `done` may destroy the Connection.
 class Connection::Impl : public std::enable_shared_from_this<Impl> {
  public:
   Impl(loop::Loop& loop, Endpoint endpoint, icd::BearerToken token, std::shared_ptr<LinkPace> pace);
@@ -30,7 +30,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   void is_next();
   std::optional<Sent> has_arrived() const;
   void give_up();
-  /// The Connection is gone, though a callback may still hold this.
+  /// The Connection is destroyed. A running callback may still hold this object.
   void abandon();
 
   bool busy() const { return done_ != nullptr; }
@@ -41,18 +41,18 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
 
  private:
   enum class Phase : std::uint8_t { Closed, Connecting, Open };
-  /// A connection that is kept warm is begun at most this often, and less often while it fails.
+  /// The shortest pause between two attempts to keep the connection warm, and the longest while they fail.
   static constexpr std::chrono::seconds kFirstPause{1}, kLongestPause{5};
   static constexpr std::uint32_t kComing = EPOLLIN | EPOLLRDHUP;
 
   void call(void (Impl::*part)());
 
-  // What the socket and the timers call.
+  // Callbacks of the socket and the timers.
   void ready();
   void time_came();
   void look();
 
-  // Connecting, and idle (connecting.cpp).
+  // Connecting and idling (connecting.cpp).
   void connect();
   void connect_in_time();
   void connecting_ended(int error);
@@ -84,25 +84,25 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
 
   Phase phase_ = Phase::Closed;
   loop::FileDescriptor fd_;
-  std::chrono::milliseconds gives_up_after_{};  // as fd_ was told; 0: not yet
-  loop::Source source_;                         // of fd_; ends before it
+  std::chrono::milliseconds gives_up_after_{};  // TCP_USER_TIMEOUT of fd_; 0: not set
+  loop::Source source_;                         // of fd_; destroyed before it
   std::uint32_t watched_ = 0;
-  loop::Source timer_;  // the end of the phase: a pause, connecting, resting, the peer's silence
+  loop::Source timer_;  // the end of a pause, connecting, idling or waiting for the peer
   bool warm_ = false;
-  bool fresh_ = false;   // connected for the very request that is under way
-  loop::Instant began_;  // to connect, last
+  bool fresh_ = false;   // connected for the request in flight
+  loop::Instant began_;  // the last attempt to connect
   std::chrono::seconds pause_ = kFirstPause;
   std::string trouble_;
 
   std::unique_ptr<Exchange> exchange_;
   std::function<void(Outcome)> done_;
   bool within_send_ = false;
-  std::optional<Outcome> outcome_;  // known within send(), to be told after it
+  std::optional<Outcome> outcome_;  // known within send(); delivered after it
   loop::Source tell_;
   std::size_t sent_ = 0;
 
   const std::shared_ptr<LinkPace> pace_;
-  loop::Source look_;  // while there is more to give
+  loop::Source look_;  // while bytes wait to be written
 };
 
 }  // namespace adit::uplink

@@ -14,7 +14,7 @@ void Connections::hurry() {
   if (second_) second_->hurry();
 }
 
-/// Null where none is, or both.
+/// Null if no request is in flight, or two.
 const Connection* Connections::the_busy_one() const {
   const bool is_second = second_ && second_->busy();
   if (first_.busy()) return is_second ? nullptr : &first_;
@@ -42,7 +42,7 @@ std::optional<Sent> Connections::has_arrived() const {
   return busy == nullptr ? std::nullopt : busy->has_arrived();
 }
 
-/// If both are idle, at most one is open.
+/// If both connections are idle, at most one is open.
 Connection& Connections::one_for_the_next() {
   if (const Connection* const busy = the_busy_one()) return *other_than(*busy);
   return second_ && second_->connected() ? *second_ : first_;
@@ -54,7 +54,7 @@ void Connections::send(Request request, std::function<void(Outcome)> done) {
   request.goes_ahead = busy();
   one.send(std::move(request), [this, &one, done = std::move(done)](Outcome outcome) {
     ended(one);
-    done(std::move(outcome));  // which may destroy all this
+    done(std::move(outcome));  // may destroy this object
   });
   latest_ = &one;
   has_tried_ = false;

@@ -9,12 +9,12 @@
 
 namespace adit::uplink {
 
-/// A connection to the Command Post, and at times a second one, on which a request goes ahead: it begins once
-/// the one before it has arrived, and does not wait for its answer.
+/// A connection to the Command Post, and sometimes a second one. A request on the second one goes ahead: it
+/// is sent when the earlier request has arrived, and before its answer.
 ///
-/// For the sake of servers that serve one connection at a time there are two no longer than that takes: the
-/// second one is made for a request (get_ready()), and as soon as one of the two is answered, its connection
-/// ends, or that on which nothing is under way. Such a server goes on with the other one then, and its
+/// Some servers serve one connection at a time, so there are two connections no longer than necessary. The
+/// second one is made for a request (get_ready()). When a request ends, its connection is closed if the other
+/// one is busy; otherwise the other one is closed. Such a server then reads the other connection, and its
 /// silence counts only from then on (Request::goes_ahead).
 class Connections {
  public:
@@ -23,24 +23,24 @@ class Connections {
   void keep_warm() { first_.keep_warm(); }
   void hurry();
 
-  /// Requires !busy() or is_ready(). `done` as in Connection::send().
+  /// Requires !busy() or is_ready(). `done`: as in Connection::send().
   void send(Request request, std::function<void(Outcome)> done);
   bool busy() const { return first_.busy() || (second_ && second_->busy()); }
 
-  /// Connection::give_up() of the request under way, if there is one.
+  /// Connection::give_up() of the last request, if a request is in flight.
   void give_up() {
     if (busy()) latest_->give_up();
   }
 
-  /// Makes a connection for the next request, if one is under way: tries it once for each.
+  /// Opens a connection for the next request if one request is in flight. Tries once for each request.
   void get_ready();
-  /// Whether one request is under way, and a connection for the next one is open.
+  /// True if one request is in flight and a connection for the next one is open.
   bool is_ready() const;
-  /// When the only request that is under way left, once all of it has arrived.
+  /// When the only request in flight left; nullopt until all of it has arrived.
   std::optional<Sent> has_arrived() const;
 
   bool connected() const { return first_.connected() || (second_ && second_->connected()); }
-  /// These as in Connection, of the one on which a request was sent last.
+  /// As in Connection, for the connection of the last request.
   const std::string& trouble() const { return latest_->trouble(); }
   std::size_t sent_bytes() const { return latest_->sent_bytes(); }
   std::uint64_t delivers() const { return first_.delivers(); }
@@ -52,9 +52,9 @@ class Connections {
   void ended(Connection& one);
 
   Connection first_;
-  std::unique_ptr<Connection> second_;  // null until it was needed
-  Connection* latest_ = &first_;        // on which a request was sent last
-  bool has_tried_ = false;              // to make the other one, since then
+  std::unique_ptr<Connection> second_;  // null until it is needed
+  Connection* latest_ = &first_;        // the connection of the last request
+  bool has_tried_ = false;              // get_ready() has tried since the last request
 };
 
 }  // namespace adit::uplink

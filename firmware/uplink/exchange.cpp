@@ -12,13 +12,14 @@
 namespace adit::uplink {
 namespace {
 
-/// Chunks given to the kernel at once: about a megabyte, so that the loop stays quick for others.
+/// Chunks written at once: about a megabyte, so that the loop stays quick.
 constexpr std::size_t kChunksAtOnce = 16;
-/// An exchange listens for acknowledgements eight times before it calls the peer silent.
+/// Calls of listen() within answer_within.
 constexpr int kListenings = 8;
 
-/// RFC 9112 2.1. No Expect (the measured mapping server never answers it) and no chunking: the length is
-/// known. The measured servers want a canonical `Bearer` and a content type without parameters.
+/// RFC 9112 2.1. Sends no Expect, because the measured mapping server never answers it. Sends no chunks,
+/// because the length is known. The measured servers want a canonical `Bearer` and a content type without
+/// parameters.
 std::string head_of(const std::string& authority, const icd::BearerToken& token, const Request& request) {
   std::string head = request.method + " " + request.target + " HTTP/1.1\r\n";
   head += "Host: " + authority + "\r\n";
@@ -34,7 +35,7 @@ iovec piece(const void* data, std::size_t size) {
   return {const_cast<void*>(data), size};
 }
 
-/// The first `bytes` of the pieces, or all.
+/// The first `bytes` bytes of the pieces, or all pieces.
 std::span<iovec> first_of(std::span<iovec> pieces, std::size_t bytes) {
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     pieces[i].iov_len = std::min(pieces[i].iov_len, bytes);
@@ -119,8 +120,8 @@ Exchange::Answer Exchange::read(int fd) {
     if (error == EINTR) continue;
     if (error == EAGAIN || error == EWOULDBLOCK) return Answer::Waiting;
     if (error != 0) return lost(std::strerror(error));
-    // The failed write has taken the connection's error with it, so that this end may be a reset, and no
-    // honest end of an answer without a length.
+    // The failed write has consumed the socket's error, so this end may be a reset and does not prove the end
+    // of an answer without a length.
     if (*got == 0 && write_broken_) return lost("the peer closed the connection during the request");
     if (is_early_) return lost(*got == 0 ? "it closed the connection" : "it sent bytes after the answer");
     const auto state = *got == 0 ? parser_.feed_end() : parser_.feed({bytes.data(), *got});

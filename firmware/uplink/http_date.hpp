@@ -6,8 +6,8 @@
 
 namespace adit::uplink {
 
-/// Of "Sun, 06 Nov 1994 08:49:37 GMT" (IMF-fixdate, RFC 9110 5.6.7); nothing where it is none. The day's name
-/// is not looked at.
+/// Parses "Sun, 06 Nov 1994 08:49:37 GMT" (IMF-fixdate, RFC 9110 5.6.7). nullopt if `text` is no such date.
+/// Does not check the name of the day.
 std::optional<std::chrono::sys_seconds> http_date(const std::string& text);
 
 }  // namespace adit::uplink

@@ -18,22 +18,22 @@
 namespace adit::uplink {
 namespace {
 
-/// Keep-alive probes find a pulled cable while no request is under way: after 5 s, then each 2 s.
+/// Keep-alive probes find a pulled cable while no request is in flight: after 5 s, then every 2 s.
 constexpr int kKeepAliveIdle = 5, kKeepAliveInterval = 2, kKeepAliveProbes = 3;
 
-/// What the kernel may hold beyond what is on its way, so that progress is true. It asks for more when half
-/// of that is left.
+/// The most unsent bytes that the kernel holds, so that sent_bytes() is close to the truth. The kernel asks
+/// for more when half are left.
 constexpr std::uint64_t kMostUnsent = 65536;
-/// Of a paced connection, where it waits in the socket and in no queue of the link: 10 ms at 100 Mbit/s are
-/// left when more is asked for, in which the loop may have other things to do.
+/// The same for a paced connection, whose bytes queue in the socket and not in the link. When the kernel asks
+/// for more, 10 ms are left at 100 Mbit/s, which gives the loop time.
 constexpr std::uint64_t kMostUnsentPaced = 256 * 1024;
-/// Of a paced connection: what is unsent, and what is on its way.
+/// For a paced connection: bytes unsent and in flight.
 constexpr int kPacedSendBuffer = 512 * 1024;
 
-/// Two full segments of Ethernet: what MSG_EOR ends stays apart. So many at once are some 180 KB.
+/// Two full Ethernet segments. MSG_EOR keeps each burst separate. All bursts of one call are about 180 kB.
 constexpr std::size_t kBurst = 2 * 1448, kMostBursts = 64;
 
-/// The kernel notes times to a tick of its clock: 10 ms where CONFIG_HZ is 100.
+/// The kernel's times have the resolution of its tick: 10 ms if CONFIG_HZ is 100.
 constexpr std::chrono::milliseconds kTick{10};
 
 struct FreeAddresses {
@@ -41,8 +41,8 @@ struct FreeAddresses {
 };
 using Addresses = std::unique_ptr<addrinfo, FreeAddresses>;
 
-/// Numeric addresses alone: no name is ever looked up. getaddrinfo() knows zones ("fe80::1%darpa0"), but
-/// would take "10.100.1" for 10.100.0.1, too.
+/// Accepts numeric addresses only and never looks up a name. getaddrinfo() parses zones ("fe80::1%darpa0"),
+/// but would also read "10.100.1" as 10.100.0.1.
 Addresses parse(const Endpoint& endpoint) {
   in_addr ipv4{};
   const bool is_ipv6 = endpoint.address.find(':') != std::string::npos;
@@ -61,7 +61,8 @@ int set(int fd, int level, int option, const T& value) {
   return ::setsockopt(fd, level, option, &value, sizeof value) == 0 ? 0 : errno;
 }
 
-/// A quarter of a second of a slow pace, so that progress is seen often enough to tell slow from silent.
+/// A quarter of a second of a slow pace, so that progress is seen often enough to distinguish slow from
+/// silent.
 int most_unsent(std::uint64_t bytes_per_second) {
   if (bytes_per_second == 0) return static_cast<int>(kMostUnsent);
   return static_cast<int>(std::clamp<std::uint64_t>(bytes_per_second / 4, 4096, kMostUnsentPaced));
@@ -69,13 +70,13 @@ int most_unsent(std::uint64_t bytes_per_second) {
 
 /// 0 or an errno.
 int set_most(int fd, std::uint64_t bytes_per_second) {
-  // An unsigned long to the kernel; all ones would mean no pace.
+  // The kernel reads an unsigned long. All ones would mean no pace.
   const auto rate = static_cast<unsigned long>(
       std::min<std::uint64_t>(bytes_per_second, std::numeric_limits<unsigned long>::max() - 1));
   return set(fd, SOL_SOCKET, SO_MAX_PACING_RATE, rate);
 }
 
-/// 0 or an errno. Options that only make it better are not checked.
+/// 0 or an errno. Errors of options that only improve the pace are ignored.
 int begin_pace(int fd, std::uint64_t bytes_per_second) {
   set(fd, IPPROTO_TCP, TCP_NOTSENT_LOWAT, most_unsent(bytes_per_second));
   if (bytes_per_second == 0) return 0;

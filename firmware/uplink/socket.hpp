@@ -15,59 +15,60 @@
 
 namespace adit::uplink {
 
-/// "10.100.1.200:8000" or "[fd00::1]:8000": for the Host header (RFC 9110 7.2) and for sentences.
+/// "10.100.1.200:8000" or "[fd00::1]:8000", for the Host header (RFC 9110 7.2) and messages.
 std::string authority_of(const Endpoint& endpoint);
 
 struct NoSocket {
   std::string why;
-  int error = 0;  // an errno; 0: the address is none
+  int error = 0;  // an errno; 0: the address is not an IP address
 };
 
-/// A non-blocking TCP socket of the endpoint's settings that has begun to connect, or why there is none:
-/// "Connection refused", "binding to interface darpa0: No such device".
+/// Returns a non-blocking TCP socket with the endpoint's options that has begun to connect. The error says
+/// what failed: "Connection refused", "binding to interface darpa0: No such device".
 std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endpoint);
 
-/// Gives the kernel as much of `pieces` as it takes at once: how many bytes that were, or an errno (EAGAIN:
-/// none now).
+/// Writes as many bytes of `pieces` as the kernel accepts at once. Returns their number or an errno (EAGAIN:
+/// no room now).
 std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces);
 
-/// The same, so that the kernel lets no more than two full segments leave at once, at the socket's pace in
-/// between (SO_MAX_PACING_RATE): else it lets up to 64 KB leave, as one, where the round trip is short
+/// As write(), but the kernel sends at most two full segments at once, at the socket's pace
+/// (SO_MAX_PACING_RATE). Otherwise it sends up to 64 KB at once if the round trip is short
 /// (net.ipv4.tcp_tso_rtt_log), and a report on the same link waits 5 ms behind them at 100 Mbit/s.
 std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces);
 
-/// What has come: how many bytes, 0 once the peer has ended its direction, or an errno (EAGAIN: nothing yet).
+/// Reads into `bytes`. Returns the number of bytes, 0 after the peer has closed its direction, or an errno
+/// (EAGAIN: no bytes yet).
 std::expected<std::size_t, int> read(int fd, std::span<char> bytes);
 
-/// How connecting ended: 0 or an errno.
+/// The result of connecting: 0 or an errno.
 int connect_error(int fd);
 
-/// TCP_USER_TIMEOUT: how long bytes may stay without the peer's acknowledgement.
+/// Sets TCP_USER_TIMEOUT: how long the peer may leave bytes unacknowledged.
 void give_up_after(int fd, std::chrono::milliseconds silence);
 
-/// SO_LINGER: whether closing the socket, also by the death of this process, throws away what the peer has
-/// not taken and resets the connection, in place of sending the rest of it from the kernel.
+/// Sets SO_LINGER. True: when the socket is closed, even by the end of this process, the kernel discards
+/// unsent bytes and resets the connection. False: the kernel sends the rest.
 void reset_on_close(int fd, bool reset);
 
-/// Whether an idle connection is still there: neither closed, nor has anything come that nobody asked for.
+/// True if an idle connection is open and has received no bytes.
 bool is_quiet(int fd);
 
-/// How bytes leave, as the kernel says (TCP_INFO).
+/// How bytes leave, according to the kernel (TCP_INFO).
 struct Transmission {
-  loop::Duration since_last_byte{};  // at least so long ago the last one left, first or again
+  loop::Duration since_last_byte{};  // at least this long ago, also for bytes sent twice
   std::uint64_t sent_twice = 0;      // segments of this connection so far
-  std::uint64_t delivered = 0;       // bytes of this connection so far, about: whole segments
+  std::uint64_t delivered = 0;       // bytes of this connection so far, in whole segments
   std::size_t unsent = 0;            // bytes that the kernel holds and has not sent yet
-  std::size_t in_flight = 0;         // bytes that it has sent and the peer has not acknowledged, about
+  std::size_t in_flight = 0;         // bytes sent and not acknowledged, in whole segments
   loop::Duration round_trip{}, least_round_trip{};
 };
 Transmission transmission(int fd);
 
-/// SO_MAX_PACING_RATE, in bytes a second; > 0.
+/// Sets SO_MAX_PACING_RATE: bytes per second, > 0.
 void set_pace(int fd, std::uint64_t bytes_per_second);
 
-/// Bytes that the kernel holds and the peer has not acknowledged; if the kernel does not say, more than were
-/// sent.
+/// Bytes that the kernel holds and the peer has not acknowledged. If the kernel does not answer, more than
+/// were sent.
 std::size_t unacknowledged_bytes(int fd);
 
 }  // namespace adit::uplink

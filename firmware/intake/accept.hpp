@@ -7,11 +7,11 @@ struct sockaddr;
 
 namespace adit::intake {
 
-/// Takes in a connection of the peer at that address, of `size` bytes; the descriptor is then the taker's.
+/// Adds an accepted connection `fd`. `peer` is its address, of `size` bytes. The callee owns `fd`.
 using Admit = std::function<void(int fd, const sockaddr* peer, unsigned size)>;
 
-/// What takes the connections to `listening` out of its queue. Null: libmicrohttpd itself does. Otherwise the
-/// object gives each of them to `admit` for as long as it lives.
+/// Accepts the connections of the socket `listening` in place of libmicrohttpd. The returned object gives
+/// each connection to `admit` while it lives. Null: libmicrohttpd accepts them itself.
 std::shared_ptr<void> accept_instead(int listening, Admit admit);
 
 }  // namespace adit::intake

@@ -9,19 +9,18 @@ struct MHD_Response;
 
 namespace adit::intake {
 
-/// True for a field value that cannot end its line: visible ASCII, blanks, and bytes over 0x7f (RFC
-/// 9110 5.5).
+/// True if `text` is a field value: not empty, without control characters except the tab (RFC 9110 5.5).
 bool is_field_value(std::string_view text);
 
-/// 503, with the sentence and when to try again.
+/// 503 with the sentence and Retry-After: 1.
 Answer no_room(std::string_view sentence);
 
-/// For libmicrohttpd; fields that are none are left out. Null where there is no memory. The body is taken out
-/// of the answer, not copied: it may be megabytes.
+/// Makes the response for libmicrohttpd, and leaves out invalid fields. Null if there is no memory. Moves the
+/// body out of `answer`, because it may be megabytes.
 MHD_Response* make_response(Answer& answer);
 
-/// The whole answer as it goes over the wire, after which the connection ends. For when libmicrohttpd takes
-/// no answer: in the middle of a body, or of the head.
+/// The whole answer as bytes, after which the connection is closed. Use this when libmicrohttpd cannot queue
+/// an answer: in the middle of a head or a body.
 std::string last_answer_text(const Answer& answer, bool with_body);
 
 }  // namespace adit::intake

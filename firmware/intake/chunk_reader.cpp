@@ -51,7 +51,7 @@ void ChunkReader::whole_line() {
   }
 }
 
-/// RFC 9112 7.1, 7.1.1: 1*HEXDIG, and extensions behind a semicolon.
+/// RFC 9112 7.1, 7.1.1: 1*HEXDIG, and extensions after a semicolon.
 void ChunkReader::size_line() {
   const std::string_view line = line_;
   const std::string_view digits = line.substr(0, line.find_first_not_of("0123456789abcdefABCDEF"));

@@ -7,19 +7,18 @@
 
 namespace adit::intake {
 
-/// Reads a chunked body (RFC 9112 7.1) as it comes. Extensions and trailers are read over; what is not just
-/// as the grammar has it is refused, bare LF and blanks among it.
+/// Parses a chunked body (RFC 9112 7.1) as it arrives. Skips extensions and trailers. Refuses each deviation
+/// from the grammar, such as a bare LF or extra blanks.
 class ChunkReader {
  public:
   enum class State : std::uint8_t { More, Whole, Refused };
-  static constexpr std::size_t kMostLine = 4096;           // bytes of a chunk's size with its extensions
+  static constexpr std::size_t kMostLine = 4096;           // bytes of a size line with its extensions
   static constexpr std::size_t kMostTrailers = 16 * 1024;  // bytes
 
-  /// Goes on with `bytes`, and appends what is the body's own to `data`. What follows a whole body is not
-  /// looked at.
+  /// Parses `bytes` and appends the bytes of the body to `data`. Ignores bytes after the end of the body.
   State feed(std::string_view bytes, std::string& data);
   State state() const { return state_; }
-  /// Once refused: a sentence.
+  /// For Refused: a sentence.
   std::string_view trouble() const { return trouble_; }
 
  private:
@@ -34,8 +33,8 @@ class ChunkReader {
 
   State state_ = State::More;
   In in_ = In::Size;
-  std::uint64_t left_ = 0;  // of the chunk, bytes
-  std::string line_;        // so far
+  std::uint64_t left_ = 0;  // bytes of the chunk that have not arrived
+  std::string line_;        // the part of the line that has arrived
   std::size_t trailers_ = 0;
   std::string_view trouble_;
 };

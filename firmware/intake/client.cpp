@@ -19,16 +19,17 @@
 namespace adit::intake {
 namespace {
 
-/// How long libmicrohttpd has for the last bytes of a client that sends no more.
+/// How long libmicrohttpd may take to read the last bytes of a client that has closed its direction.
 constexpr std::chrono::milliseconds kAfterEnd(100);
 
-/// A process may have several servers, and tests have several loops.
+/// Unique in the process, because a process may have several servers, and tests have several loops.
 std::uint64_t next_number() {
   static std::atomic<std::uint64_t> last = 0;
   return ++last;
 }
 
-/// What epoll would tell: who hung up before he was let in holds no place of those who wait.
+/// The events that epoll would report. So a client that hung up while its connection was added does not hold
+/// a place.
 std::uint32_t state_of(int fd) {
   pollfd asked{.fd = fd, .events = POLLIN | POLLRDHUP, .revents = 0};
   static_assert(POLLIN == EPOLLIN && POLLHUP == EPOLLHUP && POLLERR == EPOLLERR && POLLRDHUP == EPOLLRDHUP);
@@ -47,8 +48,8 @@ Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int
       peer_(std::move(peer)),
       local_(std::move(local)),
       gate_(fd) {
-  // libmicrohttpd does not look at the sockets of suspended connections, and misses an end that comes
-  // together with the last bytes. Edge-triggered, because what is not read would be reported over and over.
+  // libmicrohttpd does not watch the sockets of suspended connections, and misses an end that arrives
+  // together with the last bytes. Edge-triggered, because unread bytes would be reported again and again.
   arrivals_ =
       loop.watch(fd, EPOLLIN | EPOLLRDHUP | EPOLLET, [this](std::uint32_t events) { happened(events); });
   enter(Phase::Head);
@@ -135,8 +136,8 @@ void Client::enter(Phase phase) {
 
 void Client::head_begun(std::string_view target) {
   target_ = target;
-  // A field before the client's own, which libmicrohttpd obeys: it knows no such coding, and gives the body
-  // as it comes. Its own reading of chunks takes more than RFC 9112 allows.
+  // Adds a field before the client's own field. libmicrohttpd obeys the first one, does not know this coding,
+  // and passes on the body as it arrives. Its own parser of chunks accepts more than RFC 9112 allows.
   if (gate_.next_is_chunked()) {
     MHD_set_connection_value(connection_, MHD_HEADER_KIND, MHD_HTTP_HEADER_TRANSFER_ENCODING, "as-it-comes");
   }
@@ -271,8 +272,8 @@ void Client::resume() {
 
 void Client::say_last(std::string_view text) {
   if (phase_ != Phase::Request) gate_.read_away();
-  // A few hundred bytes into an empty send buffer: what does not fit at once is for a client that does not
-  // read, and is lost to it.
+  // A few hundred bytes into an empty send buffer. A client that does not read loses the bytes that do not
+  // fit.
   ::send(fd_, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   ::shutdown(fd_, SHUT_WR);
 }

@@ -15,54 +15,54 @@
 
 namespace adit::intake {
 
-/// Who sent a message, and its size as it came.
+/// The sender of a message, and the message's size.
 struct Sender {
   std::string address;
   std::size_t bytes = 0;         // of the body as received
   std::uint64_t connection = 0;  // RequestHead::connection()
-  bool resubmits = false;        // a report: to be sent as a new one, though it be the same as an earlier one
+  bool resubmits = false;        // a report to send as a new one, even if it equals an earlier one
 };
 
-/// A map on its way in. Dropped before it is taken, nothing of it is left.
+/// A map that is arriving. The destructor discards it unless take() was called.
 class MapArrival {
  public:
   virtual ~MapArrival() = default;
 
-  /// Stores `bytes` of its data, which follow those before, so that they need not be held in memory. Then
-  /// calls `done` on the loop with the rest for which there was no room.
+  /// Stores `bytes` of the map's data after the earlier bytes, so that they need not stay in memory. Then
+  /// calls `done` on the loop with the bytes for which there was no room.
   virtual void store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) = 0;
-  /// All that was stored. For any thread, while nothing is being stored.
+  /// All stored bytes. For any thread, but not while store() is running.
   virtual icd::Checked<icd::ChunkedBytes> stored() = 0;
 
-  /// It is whole and checked. Keeps and queues it, and calls `done` on the loop once it is kept, so that it
-  /// outlives the service, or with why not (a queue is full: 429; there is no room: 503). Then its sender is
-  /// answered. Costs least where its data begins with stored().
+  /// Stores and queues the whole, checked map. Then calls `done` on the loop: the map survives a process
+  /// restart, or the refusal says why not (a queue is full: 429; there is no room: 503). The sender is
+  /// answered after that. Costs least if the map's data begins with stored().
   virtual void take(icd::MapUpdate update, const Sender& sender,
                     std::function<void(icd::Checked<void>)> done) = 0;
 };
 
-/// Takes the team's messages once they have passed every check. Called on the loop.
+/// Accepts the team's messages after all checks. Called on the loop.
 class Desk {
  public:
   virtual ~Desk() = default;
 
-  /// A map begins to come.
+  /// A map begins to arrive.
   virtual std::shared_ptr<MapArrival> map_arrives() = 0;
-  /// Queues the message, or says why not (a queue is full: 429). On success the sender is answered 200
+  /// Queues the message, or returns the refusal (a queue is full: 429). On success the sender gets 200
   /// `null`.
   virtual icd::Checked<void> take(icd::StateUpdate update, const Sender& sender) = 0;
-  /// The same; says so by `done` on the loop, maybe later.
+  /// The same. Calls `done` on the loop, at once or later.
   virtual void take(icd::MarkersUpdate update, const Sender& sender,
                     std::function<void(icd::Checked<void>)> done) = 0;
 
-  /// Answers later, with the Command Post's own answer.
+  /// Answers later, with the Command Post's answer.
   virtual void take(const icd::ArtifactReport& report, const Sender& sender,
                     std::shared_ptr<Responder> responder) = 0;
   virtual void status(const Sender& sender, std::shared_ptr<Responder> responder) = 0;
 
-  /// Something of a message that is about to be taken was left out, and why; the sender is not told.
+  /// Records that a part of a message was dropped, and why. take() follows. The sender does not learn of it.
   virtual void left_out(icd::Uri uri, const Sender& sender, const std::string& why) = 0;
-  /// A message was refused with this; the sender has been told.
+  /// Records that a message was rejected. The sender has the answer.
   virtual void refused(icd::Uri uri, const Sender& sender, const icd::Refusal& refusal) = 0;
 };
 

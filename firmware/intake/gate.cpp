@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t kMostThrownAway = 256 * 1024;
 
-/// The kernel copies all that it shows, each time. What comes in small pieces is looked at again only where a
-/// sixteenth has been added, or after this time: 17 times the head, and 100 times a second, at the most.
+/// The kernel copies all unread bytes for each check. If they arrive in small pieces, the gate checks again
+/// only after a sixteenth more bytes or after this time. So at most 17 times the head is copied, plus 100
+/// copies a second.
 constexpr std::size_t kWorthALook = 16;
 constexpr std::chrono::milliseconds kBetweenLooks(10);
 
@@ -23,8 +24,8 @@ std::size_t unread(int fd) {
   return ::ioctl(fd, FIONREAD, &bytes) == 0 && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
 }
 
-/// How much of all that the client has sent has been read from its socket, or more, where something comes in
-/// the middle of this; nothing where it is no TCP socket (a socketpair of the simulation).
+/// The bytes of the client that were read from its socket. Too large if bytes arrive during the call. nullopt
+/// if the socket is no TCP socket (a socketpair of the simulation).
 std::optional<std::uint64_t> read_so_far(int fd) {
   const std::size_t waits = unread(fd);
   tcp_info info{};
@@ -76,7 +77,8 @@ Gate::Finding Gate::look(loop::Instant now, bool at_once) {
   return Finding::Refused;
 }
 
-/// The first request's, and those of whole requests behind it: libmicrohttpd reads them together.
+/// Notes the valid heads of the first request and of whole requests after it, because libmicrohttpd reads
+/// them together.
 void Gate::take_sound_heads(std::string_view bytes) {
   sound_.clear();
   next_ = 0;

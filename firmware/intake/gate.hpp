@@ -8,45 +8,45 @@
 
 namespace adit::intake {
 
-/// Stands before libmicrohttpd on one connection: lets it read a request only once the request's head lies
-/// whole and sound in the socket, where it is checked without being taken out.
+/// Lets libmicrohttpd read a request on one connection only after the request's head has arrived whole and is
+/// valid. The gate peeks at the head in the socket and does not remove it.
 class Gate {
  public:
   enum class Finding : std::uint8_t {
-    Nothing,  // has come of the next request
-    Begun,    // and the head is not whole
-    Later,    // it comes in small pieces: to be looked at again at again_at()
-    Whole,    // libmicrohttpd may take it
-    Refused,  // by refusal()
+    Nothing,  // no byte of the next request has arrived
+    Begun,    // the head is not whole
+    Later,    // the head arrives in small pieces; call look() again at again_at()
+    Whole,    // libmicrohttpd may read it
+    Refused,  // head().refusal() says why
   };
 
   explicit Gate(int fd) : fd_(fd) {}
 
-  /// A request is over. Waits for the head of the next one, unless that was checked with the one before (the
-  /// client does not wait for answers).
+  /// A request has ended. Waits for the next head, unless that was checked together with the previous one
+  /// because the client does not wait for answers.
   void request_over();
   bool is_waiting() const { return stage_ == Stage::Waiting; }
-  /// The first bytes were not looked at yet, or libmicrohttpd may read them and has not yet.
+  /// True if the first bytes were not checked yet, or libmicrohttpd has not yet read a valid head.
   bool has_unseen() const;
-  /// `at_once`: even if the head comes in small pieces.
+  /// Checks the bytes in the socket. `at_once`: do not wait for more pieces.
   Finding look(loop::Instant now, bool at_once);
   loop::Instant again_at() const { return again_at_; }
-  /// The head that is looked at.
+  /// The present head.
   const HeadChecker& head() const { return head_; }
 
-  /// Whether the request that is let in next has a body in chunks.
+  /// True if the next request to let in has a chunked body.
   bool next_is_chunked() const { return next_ < sound_.size() && !sound_[next_].framing.length; }
   /// libmicrohttpd begins a request. False: its head was not checked.
   bool let_in();
-  /// Of the request that was let in last.
+  /// Of the last request that was let in.
   const Framing& framing() const { return framing_; }
-  /// libmicrohttpd has read further than the end of the request that was let in, which had a length: a part
-  /// of the next head would get past the gate. To be asked once the request has been read.
+  /// True if libmicrohttpd has read beyond the end of the last request that was let in, so that a part of the
+  /// next head would not be checked. Only for a request with a length that has been read.
   bool is_passed_by() const;
 
   bool has_refused() const { return stage_ == Stage::Refused; }
-  /// Throws away the bytes that have come: a socket that is closed with bytes unread is reset, and its last
-  /// answer lost. False if there were too many.
+  /// Discards the received bytes, because closing a socket with unread bytes resets it, and the last answer
+  /// would be lost. False if there were too many bytes.
   bool read_away();
 
  private:
@@ -60,13 +60,13 @@ class Gate {
   int fd_;
   Stage stage_ = Stage::Waiting;
   HeadChecker head_;
-  std::vector<Sound> sound_;  // requests with heads that libmicrohttpd may take
-  std::size_t next_ = 0;      // of those
+  std::vector<Sound> sound_;  // requests whose heads libmicrohttpd may read
+  std::size_t next_ = 0;      // the next one of sound_
   Framing framing_;
-  std::size_t looked_at_ = 0;  // bytes of the head
-  loop::Instant looked_ = {};  // when
+  std::size_t looked_at_ = 0;  // checked bytes of the head
+  loop::Instant looked_ = {};  // the time of the last check
   loop::Instant again_at_ = {};
-  std::uint64_t requests_end_ = 0;  // offset in all that the client sends: where the last one let in ends
+  std::uint64_t requests_end_ = 0;  // the end of the last request let in, from the client's first byte
   std::size_t thrown_away_ = 0;
 };
 

@@ -10,7 +10,7 @@ struct MHD_Connection;
 
 namespace adit::intake {
 
-/// The head of a request as libmicrohttpd keeps it.
+/// The head of a request. libmicrohttpd keeps its fields.
 class Head final : public RequestHead {
  public:
   Head(MHD_Connection* connection, std::string_view method, Target target, const std::string& peer,

@@ -11,13 +11,13 @@
 namespace adit::intake {
 namespace {
 
-/// RFC 6585 5 and RFC 9110 15.6.6, which nobody else answers.
+/// RFC 6585 5 and RFC 9110 15.6.6. Only this file answers with them.
 constexpr icd::Status kFieldsTooLarge{431}, kVersionNotSupported{505};
 
 constexpr std::string_view kRequestLine =
     "request line: expected a method, a target and HTTP/1.1, with one blank between them";
 
-/// Visible ASCII, and what is over it: parse_target() takes UTF-8.
+/// Visible ASCII and bytes above it, because parse_target() accepts UTF-8.
 bool is_target_text(std::string_view text) {
   return has_no_controls(text) && !text.contains('\t');
 }
@@ -56,13 +56,13 @@ HeadChecker::Verdict HeadChecker::look(std::string_view so_far) {
 }
 
 void HeadChecker::line(std::string_view so_far, std::string_view line) {
-  if (!line.ends_with('\r')) {  // RFC 9112 2.2 lets a recipient take it; others in front of this one may not
+  if (!line.ends_with('\r')) {  // RFC 9112 2.2 allows a bare LF; a proxy may differ
     refuse("the head of the request: each line must end in CRLF");
     return;
   }
   line.remove_suffix(1);
   if (!request_line_came_) {
-    if (!line.empty()) request_line(so_far, line);  // RFC 9112 2.2: empty lines before it are ignored
+    if (!line.empty()) request_line(so_far, line);  // RFC 9112 2.2: ignore empty lines before it
   } else if (line.empty()) {
     end(so_far);
   } else {
@@ -127,8 +127,9 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
   }
 }
 
-/// RFC 9110 5.3: a field that is no list stands once. The same again is read in one way by everybody, but of
-/// Content-Encoding (8.4), a list: there it would be another coding over the first.
+/// RFC 9110 5.3: a field that is not a list occurs once. A repeated equal value has one meaning for all
+/// readers, except in Content-Encoding (8.4): that is a list, and the repeated value would mean a second
+/// coding.
 void HeadChecker::single(std::string_view so_far, const FieldLine& field) {
   static constexpr std::array<std::string_view, 4> kNames = {"Content-Type", "Authorization", "Origin",
                                                              "Content-Encoding"};
@@ -177,7 +178,7 @@ void HeadChecker::transfer_encoding(std::string_view value) {
   }
 }
 
-/// libmicrohttpd has one memory for the head, a record of each part, and a copy of the cookies.
+/// libmicrohttpd has one block of memory for the head, a record for each part, and a copy of the cookies.
 void HeadChecker::cookie(std::string_view value) {
   count(count_of(value, ';') + count_of(value, ','));
   cookie_bytes_ += value.size();
@@ -210,7 +211,7 @@ void HeadChecker::count(std::size_t parts) {
   }
 }
 
-/// The first trouble counts.
+/// The first refusal is kept.
 void HeadChecker::refuse(std::string_view sentence, icd::Status status) {
   if (std::exchange(verdict_, Verdict::Refused) == Verdict::Refused) return;
   refusal_ = {.status = status, .sentence = std::string(sentence)};

@@ -11,36 +11,36 @@
 
 namespace adit::intake {
 
-/// How a request's body ends (RFC 9112 6).
+/// How the end of a request's body is found (RFC 9112 6).
 struct Framing {
   bool has_body = false;
-  std::optional<std::uint64_t> length = 0;  // absent where chunked
+  std::optional<std::uint64_t> length = 0;  // absent if chunked
 };
 
-/// Checks the head of one request as it comes, before libmicrohttpd reads it, which is more lenient than RFC
-/// 9112 allows: refuses what two readers could read in two ways. Keeps no bytes, and looks at each a fixed
-/// number of times, in however many pieces they come.
+/// Checks the head of one request before libmicrohttpd reads it, because libmicrohttpd accepts more than RFC
+/// 9112 allows. Refuses heads that two readers could read in two ways. Keeps no bytes, and reads each byte a
+/// fixed number of times even if the head arrives in many pieces.
 class HeadChecker {
  public:
-  static constexpr std::size_t kMostBytes = 16 * 1024;  // of the head, with the blank line that ends it
+  static constexpr std::size_t kMostBytes = 16 * 1024;  // of the head, with the blank line after it
   static constexpr std::size_t kMostParts = 128;        // fields, query parameters and cookies
   static constexpr std::size_t kMostCookieBytes = 4096;
 
   enum class Verdict : std::uint8_t { More, Whole, Refused };
 
-  /// `so_far`: what was looked at before, and what has come since. More: the head is not whole; what follows
-  /// a whole one is not looked at.
+  /// `so_far`: all bytes of the head that have arrived, the earlier ones included. More: the head is not
+  /// whole. Ignores bytes after a whole head.
   Verdict look(std::string_view so_far);
 
-  /// Once whole: bytes of the head, and how its body ends.
+  /// For Whole: the bytes of the head, and how its body ends.
   std::size_t size() const { return looked_at_; }
   const Framing& framing() const { return framing_; }
-  /// Once refused: 400, 431 or 505.
+  /// For Refused: 400, 431 or 505.
   const icd::Refusal& refusal() const { return refusal_; }
   bool is_head_method() const { return is_head_method_; }
 
  private:
-  /// A part of the head, as its offset: the bytes may lie elsewhere the next time.
+  /// A part of the head as an offset, because the bytes may have moved at the next call.
   struct Place {
     std::size_t at = 0, size = 0;
   };
@@ -68,7 +68,7 @@ class HeadChecker {
   bool is_head_method_ = false;
   std::optional<Place> authority_;  // of a target in absolute form
   std::optional<Place> host_;
-  std::array<std::optional<Place>, 4> single_;  // the values of those that may stand once
+  std::array<std::optional<Place>, 4> single_;  // values of the fields that may occur once
   bool has_length_ = false, has_coding_ = false;
   std::size_t parts_ = 0, cookie_bytes_ = 0;
   Framing framing_;

@@ -18,12 +18,12 @@ namespace {
 
 constexpr std::size_t kSmallBody = codec::Limits{}.text_bytes;
 
-/// A field's value for a sentence.
+/// A field's value as shown in a sentence.
 std::string shown(std::string_view text) {
   return text.empty() ? "none" : icd::in_quotes(text);
 }
 
-/// GET /api/status. A body, which means nothing there, is read away.
+/// GET /api/status. Ignores a body.
 class StatusVisit final : public BodySink {
  public:
   explicit StatusVisit(Visit visit) : visit_(std::move(visit)) {}
@@ -34,7 +34,7 @@ class StatusVisit final : public BodySink {
   Visit visit_;
 };
 
-/// ICD 4: JSON or CBOR for mapping, JSON alone for scoring.
+/// ICD 4: JSON or CBOR for mapping, JSON only for scoring.
 icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
   const std::string_view type = head.header("Content-Type");
   const auto format = codec::format_of(type);
@@ -52,7 +52,7 @@ icd::Checked<codec::BodyKind> kind_of(icd::Uri uri, const RequestHead& head) {
   return codec::BodyKind{.format = *format, .coding = *coding};
 }
 
-/// Adit-Resubmit: yes, in any letter case, or absent.
+/// True for Adit-Resubmit: yes, in any letter case. False if it is absent.
 icd::Checked<bool> resubmits_of(const RequestHead& head) {
   const std::string_view word = head.header("Adit-Resubmit");
   if (word.empty()) return false;
@@ -60,8 +60,8 @@ icd::Checked<bool> resubmits_of(const RequestHead& head) {
   return icd::unprocessable("Adit-Resubmit: expected yes or no such header, got ", icd::in_quotes(word));
 }
 
-/// Whether a page of the box's own sent it, or one of `origins`. Without the look at the Host, a page whose
-/// name leads to the box (DNS rebinding) would be its own.
+/// Accepts pages of this box and of `origins`. Without the check of Host, a page whose name resolves to the
+/// box (DNS rebinding) would count as a page of the box.
 icd::Checked<void> check_origin(const RequestHead& head, const std::vector<std::string>& origins) {
   const std::string_view origin = head.header("Origin"), host = head.header("Host");
   const auto needs_token = [](std::string why, std::string_view setting = "") {
@@ -109,7 +109,6 @@ bool IcdRoutes::has_token(const RequestHead& head) const {
   return icd::is_one_of(options_.tokens, icd::token_in(head.header("Authorization")));
 }
 
-/// Whether it needs no token.
 bool IcdRoutes::is_free(const RequestHead& head) const {
   if (options_.asks_token) return false;
   return head.header("Origin").empty() || check_origin(head, options_.origins);

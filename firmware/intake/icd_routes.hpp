@@ -21,27 +21,27 @@ namespace adit::intake {
 class UploadBudget;
 struct Visit;
 
-/// What the team's side of the ICD is served with.
+/// Settings of the team's side of the ICD.
 struct IcdOptions {
-  std::vector<icd::BearerToken> tokens;  // any of them is good
-  bool asks_token = true;                // whether a client has to show one: without any, none is let in
-  std::vector<std::string> origins;      // whose pages need none where clients need none
+  std::vector<icd::BearerToken> tokens;  // each is valid
+  bool asks_token = true;  // true: a client must show a token; if `tokens` is empty, each client gets 401
+  std::vector<std::string> origins;  // their pages need no token if clients need no token
   icd::Rules rules;
-  std::size_t upload_bytes = 512u << 20;  // most that all maps and markers under way may take: UploadBudget
-  std::size_t small_bytes = 32u << 20;    // and all states and reports
+  std::size_t upload_bytes = 512u << 20;  // limit for all arriving maps and markers together: UploadBudget
+  std::size_t small_bytes = 32u << 20;    // limit for all arriving states and reports together
 };
 
-/// The ICD's five URIs for the team: tokens, methods, content types, CORS, decoding (maps on a worker, chunk
-/// by chunk with back-pressure; large markers on one, too; the rest on the loop), and the answer. Any other
-/// path goes to `other`.
+/// Serves the ICD's five URIs to the team: checks tokens, methods and content types, handles CORS, decodes
+/// the body and answers. Workers decode maps, chunk by chunk with back-pressure, and large markers. The loop
+/// decodes the rest. Other paths go to `other`.
 ///
-/// Where clients need no token, a web page (whose browser sends an Origin) still does, unless it is the box's
-/// own or of IcdOptions::origins: else any page that is open in a teammate's browser could spend reports.
+/// Even if clients need no token, a web page (whose browser sends an Origin) needs one, unless it is a page
+/// of the box or of IcdOptions::origins. Otherwise each page in a teammate's browser could use up reports.
 ///
-/// Every error is a JSON string. CORS preflights (OPTIONS) are answered 204 without a token; every answer of
-/// an ICD URI carries Access-Control-Allow-Origin.
+/// Each error is a JSON string. CORS preflights (OPTIONS) get 204 without a token. Each answer of an ICD URI
+/// has Access-Control-Allow-Origin.
 ///
-/// `desk`, `workers` and `other` outlive every Server that this serves.
+/// `desk`, `workers` and `other` must outlive each Server that uses this handler.
 class IcdRoutes final : public Handler {
  public:
   IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Handler& other);
@@ -50,20 +50,21 @@ class IcdRoutes final : public Handler {
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
-  /// Whoever comes from now on is served so. `upload_bytes` and `small_bytes` stay what they were.
+  /// Sets the options for new requests. `upload_bytes` and `small_bytes` do not change.
   void serve_with(IcdOptions options) { options_ = std::move(options); }
 
-  /// Takes no message in any more: who is in the middle of one, or comes with a map, a state or markers, is
-  /// told 503. (A report whose body is whole is the desk's to refuse.)
+  /// Accepts no more messages: clients that are sending one, or send a map, a state or markers later, get
+  /// 503. The desk rejects reports whose body is whole.
   void stop();
 
  private:
-  /// 401 or 403 if the request has to have a token and has none that is good.
+  /// True if the request needs no token.
   bool is_free(const RequestHead& head) const;
   bool has_token(const RequestHead& head) const;
+  /// 401 or 403 if the request needs a right token and has none.
   icd::Checked<void> check_entry(const RequestHead& head) const;
   std::unique_ptr<BodySink> take_in(Visit visit, const RequestHead& head, std::shared_ptr<Flow> flow);
-  /// The most that a body sent to `uri` may have.
+  /// The most bytes of a body sent to `uri`.
   std::size_t most_bytes(icd::Uri uri) const;
 
   IcdOptions options_;
@@ -78,7 +79,7 @@ class IcdRoutes final : public Handler {
   bool stopping_ = false;
 };
 
-/// An error answer of this gateway: `sentence` as a JSON string.
+/// An error answer with `sentence` as a JSON string.
 Answer error_answer(icd::Status status, std::string_view sentence);
 
 }  // namespace adit::intake

@@ -7,8 +7,8 @@
 
 namespace adit::intake {
 
-/// Whether bytes move at least as fast as on a slow radio: kLeast over any `window`, checked twice in each. A
-/// client that stops altogether is found out within one and a half windows.
+/// Checks that bytes move at least as fast as on a slow radio: kLeast over each `window`, checked twice per
+/// window. A client that stops is found within one and a half windows.
 class LeastRate {
  public:
   static constexpr std::uint64_t kLeast = 1000;  // bytes a second
@@ -17,7 +17,7 @@ class LeastRate {
 
   void moved(std::uint64_t bytes) { in_this_half_ += bytes; }
   loop::Instant look_at() const { return look_at_; }
-  /// At look_at() or later, once for each.
+  /// Call this once for each look_at(), at that time or later.
   bool is_too_slow(loop::Instant now) {
     const bool is_full = std::exchange(has_half_, true);
     const std::uint64_t moved = in_last_half_ + in_this_half_;
@@ -31,7 +31,7 @@ class LeastRate {
   loop::Duration half_;
   loop::Instant look_at_;
   std::uint64_t in_last_half_ = 0, in_this_half_ = 0;
-  bool has_half_ = false;  // in_last_half_ is one
+  bool has_half_ = false;  // in_last_half_ is set
 };
 
 }  // namespace adit::intake

@@ -18,10 +18,9 @@
 namespace adit::intake {
 namespace {
 
-/// Those who connect while the service is restarted wait here: two seconds at 200 a second, and as many
-/// again.
+/// Clients that connect during a process restart queue here: two seconds at 200 a second, and a reserve.
 constexpr int kBacklog = 1024;
-constexpr int kProbes = 3;  // unanswered ones until the kernel gives a silent peer up
+constexpr int kProbes = 3;  // unanswered probes before the kernel closes a connection
 
 using Seconds = std::chrono::seconds;
 
@@ -33,7 +32,7 @@ bool set(int fd, int level, int option, int value) {
   return ::setsockopt(fd, level, option, &value, sizeof value) == 0;
 }
 
-/// Inherited by the accepted sockets (tcp(7)).
+/// Accepted sockets inherit these options (tcp(7)).
 void set_keepalive(int fd, std::chrono::milliseconds idle) {
   const auto probe = std::max<Seconds>(std::chrono::duration_cast<Seconds>(idle) / (kProbes + 1), Seconds(1));
   set(fd, SOL_SOCKET, SO_KEEPALIVE, 1);
@@ -54,7 +53,7 @@ bool is_any(const std::string& address) {
   return address == "0.0.0.0" || address == "::";
 }
 
-/// One way to write each address.
+/// The same text for equal IPv6 addresses.
 std::string canonical(const std::string& address) {
   std::array<unsigned char, sizeof(in6_addr)> bytes{};
   std::array<char, INET6_ADDRSTRLEN> text{};
@@ -135,7 +134,7 @@ bool is_deaf(int fd) {
 
 bool covers(const Bound& bound, const Listen& listen) {
   if (bound.port != listen.port) return false;
-  // Bound to no interface, it would answer others as well.
+  // A socket that is bound to no interface would also answer on others.
   if (!listen.interface.empty() && bound.interface != listen.interface) return false;
   const bool wants_v6 = listen.address.find(':') != std::string::npos;
   if (bound.address == "::") return wants_v6 || !bound.only_v6;

@@ -19,7 +19,7 @@ namespace {
 
 using Pieces = std::deque<std::vector<std::uint8_t>>;
 
-/// The worker's part: touched by nobody else while a piece of work is under way.
+/// The worker's part. During a job only the worker uses it.
 class Decoding {
  public:
   Decoding(codec::BodyKind kind, const icd::Rules& rules)
@@ -28,14 +28,14 @@ class Decoding {
                                                                     : MapUpload::kStored / kGrowth),
         decoder_(kind, codec::Split::MapData, {.values = kSmallValues, .data_bytes = rules.map_bytes}) {}
 
-  /// What was taken out of it before the end.
+  /// The data that was removed before the end.
   struct Before {
-    std::shared_ptr<MapArrival> stored;  // null: nothing
-    icd::ChunkedBytes left;              // follows what was stored
+    std::shared_ptr<MapArrival> stored;  // null: no data was stored
+    icd::ChunkedBytes left;              // data after the stored data
   };
 
-  /// Decodes kStored of data and little more; has_more() tells whether that was all that came.
-  /// `before`: where the body is whole.
+  /// Decodes about kStored bytes of data. has_more(): received bytes are left. `before`: set if the body is
+  /// whole.
   void work(Pieces& pieces, std::optional<Before> before) {
     for (auto& piece : pieces) pieces_.push_back(std::move(piece));
     pieces.clear();
@@ -54,7 +54,7 @@ class Decoding {
   std::size_t data_held() const { return decoder_.data_held(); }
   icd::ChunkedBytes take_data() { return decoder_.take_data(); }
 
-  /// Nothing while more of the body is to come.
+  /// nullopt while more of the body is to come.
   std::optional<icd::Checked<icd::MapUpdate>>& result() { return result_; }
 
  private:
@@ -85,17 +85,16 @@ class Decoding {
   }
 
   static constexpr std::size_t kGrowth =
-      1032;  // most that deflate makes of a byte (RFC 1951 3.2.5: 258 by 2 bits)
+      1032;  // the most bytes that deflate makes of one byte (RFC 1951 3.2.5: 258 by 2 bits)
 
-  /// So much of a body is a piece of work, inflated: cells are pressed as they come and may never be enough
-  /// to be stored.
+  /// The most inflated bytes of a body in one job, because gzipped cells may never reach kStored.
   static constexpr std::size_t kMostOfBody = 8 * MapUpload::kStored;
 
   icd::Rules rules_;
   std::size_t most_at_once_;
   codec::BodyDecoder decoder_;
-  Pieces pieces_;        // of the body, in its order
-  std::size_t fed_ = 0;  // of the first
+  Pieces pieces_;        // of the body, in order
+  std::size_t fed_ = 0;  // bytes of the first piece
   std::optional<icd::Checked<icd::MapUpdate>> result_;
 };
 
@@ -147,16 +146,16 @@ class MapUpload::State final : public Taking, public std::enable_shared_from_thi
   UploadShare without_room_;
   std::shared_ptr<Flow> flow_;
   loop::Workers& workers_;
-  std::shared_ptr<MapArrival> arrival_;  // null once over, as the next
+  std::shared_ptr<MapArrival> arrival_;  // null if over; so is the next
   std::shared_ptr<Decoding> decoding_;
   Pieces pending_;
   std::size_t pending_bytes_ = 0;
-  std::size_t data_ = 0;  // what has been decoded of it, and how much of that was taken from decoding_
+  std::size_t data_ = 0;  // decoded bytes of the map's data, and the part taken from decoding_
   std::size_t taken_ = 0;
-  bool at_work_ = false;  // a worker is, and decoding_ is its own
+  bool at_work_ = false;  // a worker runs, and only it uses decoding_
   bool storing_ = false;
   bool has_stored_ = false;
-  icd::ChunkedBytes left_;  // there was no room for it
+  icd::ChunkedBytes left_;  // there was no room to store it
   bool held_back_ = false;
   bool whole_ = false;
 };
@@ -177,15 +176,14 @@ bool MapUpload::State::take(std::span<const std::uint8_t> piece) {
   return !held_back_;
 }
 
-/// Takes of the budget what its body is, or where that is more what its data has grown to. False: it is
-/// refused.
+/// Charges the budget for the body, or for its decoded data if that is larger. False: the map is rejected.
 bool MapUpload::State::charge() {
   if (share_.grow_to(std::max(visit_.sender.bytes, data_))) return true;
   turn_away({icd::Status::TooManyRequests, "too many maps at once; send this map again later"});
   return false;
 }
 
-/// The worker is not at it. Whether what there was no room for is held in memory; false: it is refused.
+/// Charges the budget for data that cannot be stored. Not while the worker runs. False: the map is rejected.
 bool MapUpload::State::is_held() {
   const std::size_t holds = left_.empty() ? 0 : left_.size() + decoding_->data_held();
   if (without_room_.grow_to(holds)) return true;
@@ -193,8 +191,8 @@ bool MapUpload::State::is_held() {
   return false;
 }
 
-/// The worker is not at it. The beginning is looked at at once, for it may be refused; then a worker is not
-/// woken for every few bytes.
+/// Not while the worker runs. The beginning is decoded at once, because it may be rejected. After that the
+/// worker does not start for a few bytes.
 bool MapUpload::State::is_worth_it() const {
   if (whole_ || decoding_->has_more()) return true;
   const bool is_first = pending_bytes_ == visit_.sender.bytes;
@@ -203,7 +201,7 @@ bool MapUpload::State::is_worth_it() const {
 
 void MapUpload::State::give_to_worker() {
   if (at_work_ || over_ || !is_worth_it()) return;
-  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() goes on
+  if (storing_ && (whole_ || decoding_->data_held() >= kStored)) return;  // stored() continues
   at_work_ = true;
   auto pieces = std::make_shared<Pieces>();
   if (!decoding_->has_more()) {
@@ -212,7 +210,7 @@ void MapUpload::State::give_to_worker() {
   }
   std::optional<Decoding::Before> before;
   if (whole_ && pending_.empty()) before.emplace(has_stored_ ? arrival_ : nullptr, left_);
-  // What comes after holds the arrival, too, so that the loop is the last to do so.
+  // `done` also holds the arrival, so that the loop is the last to release it.
   workers_.submit(
       loop::Urgency::OnTheWay,
       [decoding = decoding_, pieces, before = std::move(before)] { decoding->work(*pieces, before); },
@@ -238,7 +236,7 @@ void MapUpload::State::take_result(icd::Checked<icd::MapUpdate> result) {
                 [self = shared_from_this()](const icd::Checked<void>& taken) { self->visit_.answer(taken); });
 }
 
-/// The worker is not at it.
+/// Not while the worker runs.
 void MapUpload::State::go_on() {
   data_ = taken_ + decoding_->data_held();
   if (!charge() || !is_held()) return;
@@ -247,7 +245,7 @@ void MapUpload::State::go_on() {
   if (pending_bytes_ <= kPending && std::exchange(held_back_, false)) flow_->resume();
 }
 
-/// Where there was no room, there is none for the rest: it is held until the end, which judges it.
+/// If there was no room once, the rest is held in memory until the end, when the map is checked.
 void MapUpload::State::store_what_came() {
   if (storing_ || !left_.empty() || decoding_->data_held() < kStored) return;
   has_stored_ = storing_ = true;

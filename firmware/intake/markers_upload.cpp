@@ -16,7 +16,7 @@ namespace {
 using Body = std::vector<std::vector<std::uint8_t>>;
 using Parts = icd::Checked<codec::InParts<icd::MarkersUpdate>>;
 
-/// What the loop reads itself takes it less than a millisecond.
+/// The loop decodes updates up to kAtOnce itself, in less than a millisecond.
 constexpr codec::Limits kAtOnce = {.text_bytes = 32u << 10, .values = kSmallValues},
                         kSmall = {.values = kSmallValues},
                         kLarge = {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues};
@@ -31,7 +31,7 @@ bool is_too_large(const icd::Refusal& refusal) {
   return refusal.status == icd::Status::ContentTooLarge;
 }
 
-/// The worker's parts. Of what is large, what has been fed is freed.
+/// The worker's part. read_large() frees each piece after it was parsed.
 Parts read_small(codec::BodyKind kind, const icd::Rules& rules, const Body& body) {
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kSmall);
   const MemoryGivenBack at_the_end(decoder);
@@ -74,7 +74,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void let_go() override { body_.clear(); }
   void keep(std::span<const std::uint8_t> piece);
   void feed(std::span<const std::uint8_t> piece);
-  /// For what it holds.
+  /// Charges the budget for the held bytes.
   void charge();
   void give_to_worker();
   void small_was_read(std::shared_ptr<Body> body, Parts parts);
@@ -87,7 +87,7 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   void end_turn() {
     if (const auto turns = turns_.lock()) turns->end();
   }
-  /// Gives the good ones to the desk. If they are taken, the answer is about the others.
+  /// Gives the accepted markers to the desk. If the desk accepts them, the answer is about the rejected ones.
   void decoded(Parts parts) {
     abandon();
     if (!parts) return visit_.refuse(parts.error());
@@ -103,13 +103,13 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   }
   void failed() { turn_away(not_held()); }
 
-  MemoryGivenBack at_the_end_{false};  // the first, and so after the rest
+  MemoryGivenBack at_the_end_{false};  // first, so that it is destroyed last
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
-  std::weak_ptr<OneAtATime> turns_;            // whose turns hold this
-  Body body_;                                  // as it came
-  std::optional<codec::BodyDecoder> at_once_;  // nothing: it is for a worker
+  std::weak_ptr<OneAtATime> turns_;            // its turns hold this object
+  Body body_;                                  // as received
+  std::optional<codec::BodyDecoder> at_once_;  // nullopt: a worker decodes the update
 };
 
 void MarkersUpload::State::charge() {

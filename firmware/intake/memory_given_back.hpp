@@ -6,8 +6,8 @@
 
 namespace adit::intake {
 
-/// Gives memory back to the system after a large document was read: what was freed in many small pieces would
-/// stay the process's, once for each thread.
+/// Returns memory to the system after a large document. Otherwise memory that was freed in many small pieces
+/// stays with the process, once for each thread.
 class MemoryGivenBack {
  public:
   explicit MemoryGivenBack(bool is_large) : is_large_(is_large) {}
@@ -18,7 +18,7 @@ class MemoryGivenBack {
   MemoryGivenBack(const MemoryGivenBack&) = delete;
   MemoryGivenBack& operator=(const MemoryGivenBack&) = delete;
 
-  /// What is read turns out to be large.
+  /// The document is large.
   void expect_much() { is_large_ = true; }
 
  private:

@@ -8,11 +8,11 @@
 
 namespace adit::intake {
 
-/// Gives turns, to one address after the other, and to each in the order in which it came: for what takes too
-/// much memory to be done twice at once. For the loop alone.
+/// Gives turns for work that needs too much memory to be done twice at once. Addresses take turns; each
+/// address has its turns in order of arrival. For the loop only.
 class OneAtATime {
  public:
-  /// Calls `begin` when it is its turn, maybe at once. Whoever has a turn ends it.
+  /// Calls `begin` when its turn comes, maybe at once. The caller ends the turn with end().
   void wait(const std::string& address, std::function<void()> begin) {
     auto line = std::ranges::find(lines_, address, &Line::address);
     if (line == lines_.end()) line = lines_.insert(line, {.address = address, .waiting = {}});

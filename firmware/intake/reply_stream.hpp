@@ -15,7 +15,7 @@ namespace adit::intake {
 
 class Client;
 
-/// What a Stream has been given and the client has not yet been sent.
+/// The bytes of a Stream that the client has not been sent.
 class ReplyStream {
  public:
   void attach(Client& client, std::string_view content_type) {
@@ -25,26 +25,26 @@ class ReplyStream {
   bool append(std::string_view bytes);
   bool replace(std::string_view bytes);
   std::size_t waiting() const { return waiting_ - read_; }
-  /// Nothing follows what has been appended.
+  /// Ends the answer after the queued bytes.
   void end();
   /// The client is gone.
   void detach() { client_ = nullptr; }
 
-  /// The answer for libmicrohttpd, which suspends its connection whenever there is nothing to send.
+  /// The response for libmicrohttpd. Its connection is suspended while no bytes are queued.
   static MHD_Response* make_response(const std::shared_ptr<ReplyStream>& stream);
 
  private:
   ssize_t read(char* into, std::size_t most);
 
-  Client* client_ = nullptr;  // null where it is gone
+  Client* client_ = nullptr;  // null if the client is gone
   std::string content_type_;
   std::deque<std::string> pieces_;  // as they were given
-  std::size_t waiting_ = 0;         // bytes of them
-  std::size_t read_ = 0;            // of the first
+  std::size_t waiting_ = 0;         // bytes of pieces_, with those of the first that were read
+  std::size_t read_ = 0;            // bytes of the first piece
   bool ended_ = false;
 };
 
-/// The handler's end of it. Dropping it ends the answer.
+/// The handler's end of a stream. Its destructor ends the answer.
 class ReplyStreamEnd final : public Stream {
  public:
   explicit ReplyStreamEnd(std::shared_ptr<ReplyStream> stream) : stream_(std::move(stream)) {}

@@ -12,11 +12,11 @@
 namespace adit::intake {
 namespace {
 
-/// A body that is answered before it is whole is read away where this is all that is left of it and it comes
-/// soon, so that the connection can be kept. Otherwise the answer goes out at once, and what comes after it
-/// is thrown away, because closing a socket with bytes unread resets it, and the client would lose the
-/// answer: most libraries look for one once all is sent. Of a known client that is all that a map may have,
-/// at the least rate; of a stranger not much.
+/// The rest of a body that is answered early is read if it is at most kReadAway and arrives within
+/// kReadAwayWithin, so that the connection can be kept. Otherwise the answer is sent at once, and later bytes
+/// are discarded, because closing a socket with unread bytes resets it, and the client would lose the answer:
+/// most libraries read it only after they have sent everything. From an authenticated client as much as the
+/// largest map is discarded, at the least rate; from an unauthenticated one much less.
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
 constexpr std::size_t kLinger = 256 << 20, kLingerOfStranger = 256 << 10;
@@ -26,8 +26,8 @@ Answer failure() {
                       "Adit could not finish this request and may have accepted it; send it again");
 }
 
-/// What the handler is given to answer by. Whoever drops it unanswered, by an exception too, has answered
-/// 500: no client waits for somebody who has forgotten it.
+/// The handler's Responder. If the handler drops it without an answer, even by an exception, the request gets
+/// a 500, so that its client does not wait for ever.
 class Owed final : public Responder {
  public:
   explicit Owed(std::shared_ptr<Responder> request) : request_(std::move(request)) {}
@@ -88,12 +88,12 @@ Next Request::body(std::span<const std::uint8_t> piece) {
     return throw_away(piece.size());
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
-  if (answered()) return Next::GoOn;  // being read away
+  if (answered()) return Next::GoOn;  // the rest is read and ignored
   return chunks_ ? take_chunks(piece) : take(piece);
 }
 
 Next Request::throw_away(std::size_t bytes) {
-  if (answered()) sink_.reset();  // what it holds is needed no more, however long this takes
+  if (answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
   client_->body_came(bytes);
   return thrown_away_ > (client_->is_known() ? kLinger : kLingerOfStranger) ? Next::Close : Next::GoOn;
@@ -148,7 +148,7 @@ Next Request::end() {
 
 void Request::turn_away() {
   if (stream_) {
-    client_->cut();  // a stream in the middle of a body: not for such requests
+    client_->cut();  // a stream in the middle of a body is not supported
   } else if (left_ && *left_ <= kReadAway) {
     client_->expect_bytes(kReadAwayWithin);
     client_->resume();
@@ -169,14 +169,14 @@ void Request::refuse(const Answer& answer) {
 }
 
 Next Request::hand_over() {
-  if (chunks_) {  // to libmicrohttpd, its body goes on for as long as the connection
+  if (chunks_) {  // for libmicrohttpd the body lasts as long as the connection
     turn_away();
     return Next::GoOn;
   }
   MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
   if (response == nullptr) return Next::Close;
   const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);
-  // What has been read of the next request did not pass the gate.
+  // The gate has not checked the bytes of the next request that were read.
   if (client_->gate().is_passed_by()) MHD_add_response_header(response, MHD_HTTP_HEADER_CONNECTION, "close");
   const MHD_Result queued = MHD_queue_response(client_->connection(), status, response);
   MHD_destroy_response(response);
@@ -239,7 +239,7 @@ std::shared_ptr<Stream> Request::stream(std::string_view content_type) {
 }
 
 void Request::answer_came() {
-  if (in_call_) return;  // the call under way sees to it
+  if (in_call_) return;  // the running call handles the answer
   if (stage_ == Stage::Body || chunks_) {
     turn_away();
   } else {

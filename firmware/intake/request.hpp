@@ -14,40 +14,39 @@ namespace adit::intake {
 
 class Client;
 
-/// What is to become of the connection after one of libmicrohttpd's callbacks. Again: once the connection has
-/// been resumed, the piece's last byte comes again.
+/// What libmicrohttpd does with the connection after a callback. Again: when the connection is resumed, pass
+/// the last byte of the piece again.
 enum class Next : std::uint8_t { GoOn, Again, Close };
 
-/// The life of one request: driven by libmicrohttpd's callbacks on one side, and by whoever holds it as a
-/// Responder or a Flow on the other. Outlives its connection for as long as they do.
+/// One request, from its head to the end of its answer. libmicrohttpd's callbacks drive it on one side, and
+/// holders of its Responder or Flow on the other. It outlives its connection while they hold it.
 class Request final : public Responder, public Flow, public std::enable_shared_from_this<Request> {
  public:
   Request(Client& client, std::string_view method);
 
-  /// The connection's side.
-  /// Its head is whole.
+  /// The connection's side. The head is whole.
   void begin(std::string_view method, Target target, const Framing& framing);
   const RequestHead& head() const { return *head_; }
   void open(Handler& handler);
-  /// Answers 400 without asking a handler, and ends the connection.
+  /// Answers 400 without a handler and closes the connection.
   void refuse_head(std::string_view sentence);
-  /// Answers 503 without asking a handler, and ends the connection.
+  /// Answers 503 without a handler and closes the connection.
   void refuse_for_room(std::string_view sentence);
-  /// A piece of it; of a chunked one, as it came.
+  /// A piece of the body; of a chunked body with its chunk headers.
   Next body(std::span<const std::uint8_t> piece);
-  /// The body is whole; called again each time that the connection has been resumed.
+  /// The body is whole. Called again each time the connection is resumed.
   Next end();
   void late();
-  /// Its head or body is not whole, and more of it is wanted.
+  /// True while more of the head or the body is to come.
   bool is_sending() const {
     return stage_ == Stage::Head || stage_ == Stage::Body || stage_ == Stage::Refusing;
   }
-  /// libmicrohttpd has nothing of an answer to it yet.
+  /// True if libmicrohttpd has no part of an answer yet.
   bool is_unanswered() const { return !answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
-  /// A callback of the handler's threw: answered 500, unless an answer was on its way, and the connection
-  /// ends.
+  /// A callback of the handler threw. Answers 500, unless an answer was being sent, and closes the
+  /// connection.
   Next failed();
-  /// libmicrohttpd is done with it, in whatever way.
+  /// libmicrohttpd has finished the request, in any way.
   void completed();
 
   /// The handler's side.
@@ -58,20 +57,20 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
 
  private:
   enum class Stage : std::uint8_t {
-    Head,       // in Handler::open
-    Body,       // more of it is to come
-    Whole,      // the body has been taken; the handler answers now or later
+    Head,       // in Handler::open()
+    Body,       // more of the body is to come
+    Whole,      // the handler has the whole body and answers now or later
     Answering,  // libmicrohttpd has the answer
-    Refusing,   // answered past libmicrohttpd, in the middle of the body; the rest is thrown away
+    Refusing,   // answered past libmicrohttpd before the body was whole; the rest is discarded
     Over,
   };
 
   bool answered() const { return answer_ || stream_; }
   Next take(std::span<const std::uint8_t> piece);
-  /// Of a body that was answered before it was whole.
+  /// Discards a piece of a body that was answered before it was whole.
   Next throw_away(std::size_t bytes);
   Next take_chunks(std::span<const std::uint8_t> piece);
-  /// The answer is there before the body is.
+  /// Sends an answer that came before the body was whole.
   void turn_away();
   void refuse(const Answer& answer);
   Next hand_over();
@@ -83,12 +82,12 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   std::optional<Answer> answer_;
   std::shared_ptr<ReplyStream> stream_;
   Stage stage_ = Stage::Head;
-  bool is_head_;  // the method HEAD
+  bool is_head_;  // the method is HEAD
   bool has_body_ = false;
-  bool in_call_ = false;               // of the handler
+  bool in_call_ = false;               // a call of the handler is running
   bool resumed_ = false;               // since the last piece
-  std::optional<ChunkReader> chunks_;  // where the body comes in chunks
-  std::optional<std::uint64_t> left_;  // of the body; absent where chunked
+  std::optional<ChunkReader> chunks_;  // set if the body is chunked
+  std::optional<std::uint64_t> left_;  // of the body; absent if chunked
   std::size_t thrown_away_ = 0;
 };
 

@@ -21,16 +21,15 @@
 namespace adit::intake {
 namespace {
 
-/// libmicrohttpd's memory for one connection, of which a body piece gets about half. It is cleared for each
-/// request: more would cost a small one its place in the processor's caches.
+/// libmicrohttpd's memory for one connection; a piece of a body gets about half. It is cleared for each
+/// request, so more memory would push small requests out of the processor's caches.
 constexpr std::size_t kConnectionMemory = 32 * 1024;
 
-/// libmicrohttpd reads so little of each body at a time that a turn of the loop costs as much: so often in
-/// one.
+/// Runs of libmicrohttpd per turn of the loop. It reads little of each body in a run, and a turn costs as
+/// much as a run.
 constexpr int kReads = 4;
 
-/// Connections that gave way and that libmicrohttpd has not ended yet. It takes in no more than eleven at
-/// once.
+/// Connections that gave way and that libmicrohttpd has not ended yet. It accepts at most eleven at once.
 constexpr unsigned kOnTheirWayOut = 32;
 
 }  // namespace
@@ -69,7 +68,7 @@ class Server::Impl final : public Engine {
   static void connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
                                  MHD_ConnectionNotificationCode what);
   static void* head_begun(void* cls, const char* target, MHD_Connection* connection);
-  /// Targets are decoded by parse_target(), once; libmicrohttpd is to leave them as they are.
+  /// parse_target() decodes targets, so libmicrohttpd must not.
   static std::size_t leave_escaped(void* cls, MHD_Connection* connection, char* text);
   static void say_nothing(void*, const char*, va_list) {}
 
@@ -77,9 +76,9 @@ class Server::Impl final : public Engine {
   void first_call(Client& client, std::string_view method);
   void connected(MHD_Connection* connection, void** client_cls);
   std::vector<Held> held_but(const Client* one) const;
-  /// Those who are more than their share.
+  /// Closes unauthenticated connections above their share.
   void send_strangers_away();
-  /// For a request that shows a token. False: it is to be refused.
+  /// For a request with a right token. False: refuse the request.
   bool make_room_for(Client& client);
   void run();
   void hold_back();
@@ -95,12 +94,12 @@ class Server::Impl final : public Engine {
   bool stopping_ = false;
   bool listening_ = false;
   bool run_is_due_ = false;
-  std::map<std::uint64_t, std::unique_ptr<Client>> clients_;  // by Client::number(): the oldest first
+  std::map<std::uint64_t, std::unique_ptr<Client>> clients_;  // by Client::number(): oldest first
   std::vector<std::uint64_t> to_hold_back_;                   // numbers of clients
   std::shared_ptr<void> accepts_;
   loop::Instant look_due_ = loop::Instant::max();
   loop::Source readable_, deadline_timer_;
-  const std::shared_ptr<Impl*> alive_ = std::make_shared<Impl*>(this);  // for what is posted
+  const std::shared_ptr<Impl*> alive_ = std::make_shared<Impl*>(this);  // for posted tasks
 };
 
 std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given) {
@@ -137,11 +136,12 @@ Server::Impl::~Impl() {
   stopping_ = true;
   readable_ = {};
   stop_listening();
-  for (const auto& [number, client] : clients_) client->resume();  // else libmicrohttpd aborts
+  for (const auto& [number, client] : clients_) client->resume();  // otherwise libmicrohttpd aborts
   MHD_stop_daemon(daemon_);
 }
 
-/// libmicrohttpd may not end it: a socket that it shuts down is deaf for everybody who has a copy.
+/// Closes the socket without shutdown(), because shutdown() of libmicrohttpd would also stop copies of the
+/// socket.
 void Server::Impl::stop_listening() {
   if (!std::exchange(listening_, false)) return;
   accepts_.reset();
@@ -151,7 +151,7 @@ void Server::Impl::stop_listening() {
 
 void Server::Impl::run_soon() {
   if (stopping_ || std::exchange(run_is_due_, true)) return;
-  // Not by a timer: it would be late by what the loop allows itself to gather timers.
+  // A timer would be late by the accuracy of the loop's timers.
   loop_.post([weak = std::weak_ptr(alive_)] {
     if (const auto alive = weak.lock(); alive && (*alive)->run_is_due_) (*alive)->run();
   });
@@ -170,7 +170,7 @@ void Server::Impl::run() {
   send_strangers_away();
 }
 
-/// Those that libmicrohttpd has taken in, or has answered: it has read nothing of them since.
+/// For connections that libmicrohttpd has added or answered. It has not read from them since.
 void Server::Impl::hold_back() {
   for (const std::uint64_t number : std::exchange(to_hold_back_, {})) {
     if (const auto found = clients_.find(number); found != clients_.end()) found->second->hold_back();
@@ -308,7 +308,7 @@ void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, voi
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
     loop::guarded("a connection of the team", [&] {
       server.clients_.erase(client->number());
-      server.run_soon();  // libmicrohttpd looks only then whether there is room for another connection
+      server.run_soon();  // libmicrohttpd checks only then if there is room for another connection
     });
   }
 }

@@ -9,7 +9,7 @@
 namespace adit::intake {
 namespace {
 
-/// Of the whole. A browser that is not logged in opens six.
+/// Part of all connections. A browser that is not logged in opens six.
 constexpr std::uint32_t kPartOfStrangers = 4, kMostStrangers = 32;
 
 using Counts = std::map<std::string_view, std::size_t>;
@@ -28,13 +28,13 @@ std::optional<std::uint64_t> longest(const std::vector<Held>& held, Held::Doing 
   return found == nullptr ? std::nullopt : std::optional(found->number);
 }
 
-/// Who costs least to send away.
+/// The connection that costs least to close.
 std::optional<std::uint64_t> easiest(const std::vector<Held>& held) {
   const auto idle = longest(held, Held::Doing::Idle);
   return idle ? idle : longest(held, Held::Doing::Left);
 }
 
-/// Of the address that has most, where one more of `address` would have less than its share.
+/// A connection of the address with most, if `address` would still have fewer with one more.
 std::optional<std::uint64_t> of_greedy(std::string_view address, const std::vector<Held>& known) {
   Counts counts = by_address(known);
   const std::size_t own = counts[address] + 1;

@@ -8,7 +8,7 @@
 
 namespace adit::intake {
 
-/// Takes a state or a report: at most a megabyte, decoded on the loop as it arrives.
+/// Receives a state or a report of at most a megabyte. The loop decodes it as it arrives.
 class SmallUpload final : public Upload {
  public:
   SmallUpload(Visit visit, codec::BodyKind kind, const icd::Rules& rules,

@@ -7,8 +7,8 @@
 
 namespace adit::intake {
 
-/// Gives the good parts of a state or of markers to the desk. If they are taken, the answer is about the
-/// others.
+/// Gives the accepted parts of a state or of markers to the desk. If the desk accepts them, the answer is
+/// about the rejected parts.
 template <class Message>
 void take_parts(const Visit& visit, icd::Checked<codec::InParts<Message>> read) {
   if (!read) return visit.refuse(read.error());

@@ -37,7 +37,7 @@ std::optional<std::string> decode(std::string_view raw, Plus plus) {
   return text;
 }
 
-/// What is left of the absolute form (RFC 9112 3.2.2) without its scheme and authority.
+/// The absolute form (RFC 9112 3.2.2) without its scheme and authority.
 std::string_view origin_form(std::string_view raw) {
   const auto scheme_end = raw.find("://");
   if (raw.starts_with('/') || scheme_end == std::string_view::npos) return raw;

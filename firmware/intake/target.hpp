@@ -14,8 +14,7 @@ struct Target {
   std::vector<std::pair<std::string, std::string>> query;  // in the order given
 };
 
-/// Takes the origin form, the absolute form and `*`. Nothing where the target is of no such form, or decodes
-/// to a NUL or to what is not UTF-8.
+/// Parses the origin form, the absolute form and `*`. nullopt for another form, a NUL or invalid UTF-8.
 std::optional<Target> parse_target(std::string_view raw);
 
 }  // namespace adit::intake

@@ -17,7 +17,7 @@ TokenGuesses::Verdict TokenGuesses::right(const std::string& address, loop::Inst
 TokenGuesses::Verdict TokenGuesses::wrong(const std::string& address, std::string_view token,
                                           loop::Instant now) {
   Count& count = count_of(address, now);
-  const std::string_view kept = token.substr(0, icd::BearerToken::kLongest + 1);  // none longer is any token
+  const std::string_view kept = token.substr(0, icd::BearerToken::kLongest + 1);  // longer: no token
   if (std::ranges::find(count.wrong, kept) == count.wrong.end()) {
     if (!count.guesses.has_one(now)) return {Looked::NotLookedAt, true};
     count.guesses.use(now);

@@ -12,33 +12,33 @@
 
 namespace adit::intake {
 
-/// Slows down who guesses bearer tokens, and nobody else.
+/// Slows down clients that guess bearer tokens.
 ///
-/// Of each address, kFree wrong tokens are checked and answered at once, then one each kEach. The same wrong
-/// token again is no guess, because it tells its sender nothing new, but its answer comes late: a robot with
-/// an old token uses up no guesses of others behind the same router. A right token is always let in, unless
-/// its address has guessed too much and has never shown a right one: then no token is checked, because each
-/// answer would tell whether a guess was right.
+/// Each address may try kFree wrong tokens at once, then one each kEach. The same wrong token again is no
+/// guess, because it gives its sender no information, but its answer may be late. So a robot with an old
+/// token does not use up the guesses of others behind the same router. A right token is always accepted, with
+/// one exception: an address that has guessed too often and has never shown a right token. Then no token is
+/// checked, because each answer would show whether a guess was right.
 class TokenGuesses {
  public:
   static constexpr int kFree = 10;
   static constexpr std::chrono::seconds kEach{1};
   static constexpr std::size_t kMostAddresses =
-      256;  // at one more, one goes that has never shown a right one
+      256;  // above it, an address is removed, if possible one without a right token
 
   enum class Looked : std::uint8_t { Right, Wrong, NotLookedAt };
   struct Verdict {
     Looked looked = Looked::Right;
-    bool late = false;  // its answer is to come late
+    bool late = false;  // delay its answer
 
     friend bool operator==(const Verdict&, const Verdict&) = default;
   };
 
-  /// What to do with a request from `address` that shows a right token.
+  /// For a request from `address` with a right token.
   Verdict right(const std::string& address, loop::Instant now);
-  /// What to do with one that shows `token`, which is wrong; "": it shows none, and should.
+  /// For a request from `address` with the wrong `token`; "": without the required token.
   Verdict wrong(const std::string& address, std::string_view token, loop::Instant now);
-  /// The tokens have changed.
+  /// Call this when the tokens have changed.
   void forget() { counts_.clear(); }
 
  private:
@@ -55,8 +55,8 @@ class TokenGuesses {
     bool has_been_right = false;
     loop::Instant last{};
     Allowance guesses, answers;
-    std::array<std::string, 8> wrong;  // the last ones, each of at most a token's length
-    std::size_t next = 0;              // of these to be replaced
+    std::array<std::string, 8> wrong;  // the last ones, cut to a token's length
+    std::size_t next = 0;              // the next one to replace
   };
   Count& count_of(const std::string& address, loop::Instant now);
 

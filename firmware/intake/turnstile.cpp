@@ -13,7 +13,7 @@ namespace {
 
 using Looked = TokenGuesses::Looked;
 
-/// Passes the answer on after a while. Kept by its Late, which lives as long as the request.
+/// Delays the answer. Owned by its Late, which lives as long as the request.
 class LateResponder final : public Responder {
  public:
   LateResponder(loop::Loop& loop, std::shared_ptr<Responder> responder, std::chrono::milliseconds late)
@@ -39,7 +39,7 @@ class LateResponder final : public Responder {
   loop::Source timer_;
 };
 
-/// Takes the body for `sink`, or none of it once there is an answer.
+/// Passes the body on to `sink` until there is an answer.
 class Late final : public BodySink {
  public:
   Late(std::shared_ptr<LateResponder> responder, std::unique_ptr<BodySink> sink)

@@ -11,7 +11,7 @@
 namespace adit::intake {
 namespace {
 
-/// Its letters, small.
+/// The letters of `text` in lower case.
 std::string letters_of(std::string_view text) {
   std::string letters;
   for (const char each : text) {

@@ -5,8 +5,8 @@
 
 namespace adit::intake {
 
-/// "; did you mean Cell Phone?" if the type resembles one of the ICD's ten: without letter case and
-/// characters other than letters, it is a part of that one or differs by a few letters. Otherwise "".
+/// "; did you mean Cell Phone?" if `type` resembles one of the ICD's ten types, otherwise "". Compares
+/// letters only, in any case: one text is a part of the other, or they differ by a few letters.
 std::string type_hint(std::string_view type);
 
 }  // namespace adit::intake

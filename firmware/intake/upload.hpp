@@ -9,13 +9,13 @@
 
 namespace adit::intake {
 
-/// How many values a document may have that is read like any small one (codec::Limits): 25 MiB at the worst.
+/// The most values of a small document (codec::Limits): 25 MiB at worst.
 inline constexpr std::size_t kSmallValues = 100'000;
 
-/// Takes the body of a message, and can be told in the middle of it that nothing more is taken.
+/// Receives the body of a message. It can be rejected before the body is whole.
 class Upload : public BodySink {
  public:
-  /// All that are under way. For the loop alone.
+  /// All uploads that are not over. For the loop only.
   using UnderWay = std::set<Upload*>;
 
   explicit Upload(std::shared_ptr<UnderWay> under_way) : under_way_(std::move(under_way)) {
@@ -25,7 +25,7 @@ class Upload : public BodySink {
   Upload(const Upload&) = delete;
   Upload& operator=(const Upload&) = delete;
 
-  /// Refuses the message, unless it has gone to the desk, which answers it.
+  /// Rejects the message, unless the desk has it and will answer it.
   virtual void turn_away(const icd::Refusal& refusal) = 0;
 
  private:

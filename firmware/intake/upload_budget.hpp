@@ -8,14 +8,13 @@
 
 namespace adit::intake {
 
-/// How much the bodies under way together may take, so that many at once cannot use up the memory. The last
-/// quarter is for addresses that hold no more than is left after them: however much one sends, another that
-/// comes finds room. For the loop alone.
+/// Limits the memory of all uploads together. Above three quarters, an address may take bytes only if it then
+/// holds no more than is left. So an address that sends much leaves room for others. For the loop only.
 class UploadBudget {
  public:
   explicit UploadBudget(std::size_t bytes) : whole_(bytes), left_(bytes) {}
 
-  /// Of the share of `address`, of which as much may be given back. False: it has no more, or none is left.
+  /// Takes bytes for `address`. False: the budget or the share of `address` is used up.
   bool take(const std::string& address, std::size_t bytes) {
     if (!is_fair(address, bytes)) return false;
     left_ -= bytes;
@@ -43,7 +42,7 @@ class UploadBudget {
   std::map<std::string, std::size_t> held_;  // by address
 };
 
-/// What one upload has taken of the budget. Its end gives it back.
+/// The part of the budget that one upload holds. The destructor gives it back.
 class UploadShare {
  public:
   UploadShare(std::shared_ptr<UploadBudget> budget, std::string address)
@@ -52,7 +51,7 @@ class UploadShare {
   UploadShare(const UploadShare&) = delete;
   UploadShare& operator=(const UploadShare&) = delete;
 
-  /// Takes what is missing to `bytes`. False: not so much is left for it, and nothing more is taken.
+  /// Grows the part to `bytes`. False: the budget does not allow it, and the part stays as it is.
   bool grow_to(std::size_t bytes) {
     if (bytes <= taken_) return true;
     if (!budget_->take(address_, bytes - taken_)) return false;

@@ -8,7 +8,7 @@
 
 namespace adit::intake {
 
-/// One request to one of the ICD's URIs: who asks, and where the answer goes.
+/// One request to one of the ICD's URIs: its sender, and the responder for the answer.
 struct Visit {
   Desk& desk;
   icd::Uri uri;
@@ -20,13 +20,13 @@ struct Visit {
   void answer(const icd::Checked<void>& taken) const;
 };
 
-/// Passes answers on with Access-Control-Allow-Origin, and nothing else, added.
+/// Passes answers on and adds only Access-Control-Allow-Origin.
 std::shared_ptr<Responder> with_cors(std::shared_ptr<Responder> responder);
 
-/// What a CORS preflight is answered (Fetch, CORS protocol): the methods of `uri`, and the headers asked for.
+/// The answer to a CORS preflight (Fetch, CORS protocol): the methods of `uri` and the requested headers.
 Answer preflight_answer(icd::Uri uri, std::string_view asked_headers);
 
-/// Whether `uri` is asked by that method: HEAD goes with GET (RFC 9110 9.3.2).
+/// True if `uri` allows the method. HEAD goes with GET (RFC 9110 9.3.2).
 bool is_allowed(icd::Uri uri, std::string_view method);
 /// "GET, HEAD, OPTIONS"
 std::string allowed_methods(icd::Uri uri);

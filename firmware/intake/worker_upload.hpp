@@ -9,10 +9,10 @@
 
 namespace adit::intake {
 
-/// An upload that a worker reads.
+/// An upload that a worker decodes.
 class WorkerUpload : public Upload {
  public:
-  /// The loop's part: outlives the exchange for as long as a worker is at it.
+  /// The loop's part. It outlives the upload while a worker runs.
   class Taking {
    public:
     Taking(Visit visit, std::shared_ptr<UploadBudget> budget)
@@ -37,7 +37,7 @@ class WorkerUpload : public Upload {
     }
 
    protected:
-    /// What was to end it has failed, be it the desk: whoever has not been answered yet is told so now.
+    /// Rejects the message after the last step has failed, even if the desk has it.
     void fail(const icd::Refusal& refusal) {
       abandon();
       visit_.refuse(refusal);
@@ -45,10 +45,10 @@ class WorkerUpload : public Upload {
 
     Visit visit_;
     UploadShare share_;
-    bool over_ = false;  // answered, the client is gone, or it is the desk's
+    bool over_ = false;  // answered, the client is gone, or the desk has it
 
    private:
-    /// Of what is held of the body.
+    /// Frees the held parts of the body.
     virtual void let_go() = 0;
   };
 

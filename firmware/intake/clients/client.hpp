@@ -1,5 +1,4 @@
-/// A client that asks until it knows: right with Adit, and, told that it is `bare`, with a Command Post that
-/// no Adit stands before.
+/// A client that retries until the outcome is known. `bare`: it posts to a Command Post without Adit.
 #pragma once
 
 #include <curl/curl.h>
@@ -25,7 +24,7 @@ struct Unknown : std::runtime_error {
 class Client {
   using json = nlohmann::json;
   using clock = std::chrono::steady_clock;
-  static constexpr long kNeverLeft = -1, kLost = 0;  // in a status's place
+  static constexpr long kNeverLeft = -1, kLost = 0;  // instead of a status
 
  public:
   Client(std::string url, std::string token, bool bare)
@@ -49,16 +48,16 @@ class Client {
   struct Answer {
     long status = kLost;
     std::string body = {};
-    curl_off_t again_after = 0;  // seconds; 0: it does not say
+    curl_off_t again_after = 0;  // seconds; 0: not given
   };
 
-  /// What a 2xx says. Sends the same again for ten minutes, as long as that can do no harm.
+  /// Returns the body of a 2xx. Retries for ten minutes if a retry is safe.
   json until_answered(const std::string& uri, const std::string& body = "", const std::string& type = "") {
     for (const auto end = clock::now() + std::chrono::minutes(10); clock::now() < end;) {
       const Answer answer = ask(uri, body, type);
       const long status = answer.status;
       if (status / 100 == 2) return json::parse(answer.body);
-      if (status == kLost || status == 408 || status >= 500) {  // Adit knows a report that is posted again
+      if (status == kLost || status == 408 || status >= 500) {  // Adit recognises a retried report
         if (bare_ && uri == "/api/artifact_reports")
           throw Unknown("no answer: see whether remaining_reports went down before you post it again");
       } else if (status == 409) {
@@ -71,22 +70,22 @@ class Client {
     throw Unknown("no answer for ten minutes");
   }
 
-  /// One request on a connection of its own, for a bare Command Post closes old ones without a word: 3 s to
-  /// connect, 30 s in all, for Adit answers within 20.
+  /// Sends one request on a new connection, because a bare Command Post closes old ones without notice. Waits
+  /// 3 s for the connection and 30 s in all, because Adit answers within 20 s.
   Answer ask(const std::string& uri, const std::string& body, const std::string& type) {
-    if (bare_) std::this_thread::sleep_until(turn_);  // it takes one request a second
+    if (bare_) std::this_thread::sleep_until(turn_);  // it accepts one request a second
     Answer answer;
     CURL* const curl = curl_easy_init();
     curl_slist* headers = curl_slist_append(nullptr, ("Authorization: Bearer " + token_).c_str());
     headers = curl_slist_append(headers, ("Content-Type: " + type).c_str());
-    headers = curl_slist_append(headers, "Expect:");  // which a bare Command Post never answers
+    headers = curl_slist_append(headers, "Expect:");  // a bare Command Post never answers Expect
     curl_easy_setopt(curl, CURLOPT_URL, (url_ + uri).c_str());
     curl_easy_setopt(curl, CURLOPT_HTTPHEADER, headers);
     curl_easy_setopt(curl, CURLOPT_CONNECTTIMEOUT, 3L);
     curl_easy_setopt(curl, CURLOPT_TIMEOUT, 30L);
     curl_easy_setopt(curl, CURLOPT_WRITEFUNCTION, append);
     curl_easy_setopt(curl, CURLOPT_WRITEDATA, &answer.body);
-    if (!body.empty()) {  // else it is a GET
+    if (!body.empty()) {  // otherwise a GET
       curl_easy_setopt(curl, CURLOPT_POSTFIELDSIZE, static_cast<long>(body.size()));
       curl_easy_setopt(curl, CURLOPT_POSTFIELDS, body.data());
     }
@@ -96,7 +95,7 @@ class Client {
     curl_easy_getinfo(curl, CURLINFO_RESPONSE_CODE, &status);
     curl_easy_getinfo(curl, CURLINFO_RETRY_AFTER, &answer.again_after);
     if (sent == 0) answer.status = kNeverLeft;
-    // Half an answer is none, and so are a redirection and a 2xx without JSON: another machine's.
+    // Half an answer does not count. A redirection or a 2xx without JSON comes from another machine.
     if (whole && (status >= 400 || (status / 100 == 2 && json::accept(answer.body)))) answer.status = status;
     curl_slist_free_all(headers);
     curl_easy_cleanup(curl);

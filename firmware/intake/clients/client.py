@@ -1,4 +1,4 @@
-"""A client that asks until it knows: right with Adit, and with a Command Post that no Adit stands before (`bare`)."""
+"""A client that retries until the outcome is known. `bare`: it posts to a Command Post without Adit."""
 import json
 import time
 
@@ -6,7 +6,7 @@ import requests
 from urllib3.exceptions import NewConnectionError
 
 REPORTS = "/api/artifact_reports"
-NEVER_LEFT, LOST = -1, 0  # in a status's place
+NEVER_LEFT, LOST = -1, 0  # instead of a status
 
 
 class Refused(Exception):
@@ -34,7 +34,7 @@ class Client:
         return self.until_answered("POST", f"/{what}/update", message)
 
     def until_answered(self, method, uri, message=None, patience=600):
-        """What a 2xx says. Sends the same again for `patience` seconds, as long as that can do no harm."""
+        """Returns the body of a 2xx. Retries for `patience` seconds if a retry is safe."""
         try:
             content = None if message is None else json.dumps(message, allow_nan=False).encode()
         except ValueError as why:
@@ -44,7 +44,7 @@ class Client:
             status, body, again_after = self._ask(method, uri, content)
             if 200 <= status < 300:
                 return body
-            if status in (LOST, 408) or status >= 500:  # Adit knows a report that is posted again
+            if status in (LOST, 408) or status >= 500:  # Adit recognises a retried report
                 if self.bare and uri == REPORTS:
                     raise Unknown("no answer: see whether remaining_reports went down before you post it again")
             elif status == 409:
@@ -55,17 +55,17 @@ class Client:
         raise Unknown(f"no answer for {patience} s")
 
     def _ask(self, method, uri, content):
-        """Status, body and Retry-After of one request: 3 s to connect, 30 s for the answer, which Adit gives within 20."""
-        if self.bare:  # which takes one request a second
+        """Status, body and Retry-After of one request. Waits 3 s for the connection and 30 s for the answer; Adit needs up to 20 s."""
+        if self.bare:  # it accepts one request a second
             time.sleep(max(0.0, self.turn - time.monotonic()))
-        try:  # each on a new connection: a bare Command Post closes old ones without a word
+        try:  # on a new connection, because a bare Command Post closes old ones without notice
             answer = requests.request(method, self.url + uri, data=content, headers=self.headers, timeout=(3, 30),
                                       allow_redirects=False)
-            body = answer.json() if answer.ok else answer.text  # a redirection, and a 2xx without JSON, is another machine's
+            body = answer.json() if answer.ok else answer.text  # a redirection or a 2xx without JSON comes from another machine
             return answer.status_code, body, answer.headers.get("Retry-After", "1")
         except requests.ConnectTimeout:
             return NEVER_LEFT, "", "1"
-        except (requests.RequestException, ValueError) as why:  # the latter from requests before 2.27, of JSON
+        except (requests.RequestException, ValueError) as why:  # ValueError: invalid JSON, in versions of requests before 2.27
             not_connected = why.args and isinstance(getattr(why.args[0], "reason", None), NewConnectionError)
             return NEVER_LEFT if not_connected else LOST, "", "1"
         finally:

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
-"""ADIT_TOKEN=... example.py http://10.0.0.1:8000 report 10.5 -3.25 0.4 Backpack (or: status, map, state, markers; with --bare,
-of a Command Post that no Adit stands before). Prints the answer; ends with 1 where it was refused, with 3 where a person has to
-decide."""
+"""ADIT_TOKEN=... example.py http://10.0.0.1:8000 report 10.5 -3.25 0.4 Backpack (or: status, map, state, markers; with --bare
+for a Command Post without Adit). Prints the answer. Exit status: 1 if the message was rejected, 3 if a person must decide."""
 import base64
 import gzip
 import json

@@ -1,14 +1,14 @@
-"""What messages of ROS 1 and ROS 2 become: what update() and report() of a Client are given."""
+"""Converts messages of ROS 1 and ROS 2 to the arguments of a Client's update() and report()."""
 import array
 import base64
 import gzip
 import logging
 
-log = logging.getLogger("rosout.adit")  # which rospy shows
+log = logging.getLogger("rosout.adit")  # rospy shows it
 
 
 def plain(value):
-    """A message, or a part of one, of ROS 1 or ROS 2 in the ICD's form: a time in seconds, bytes in base64."""
+    """A ROS message, or a part of it, in the ICD's form: times in seconds, bytes in base64."""
     if isinstance(value, (bytes, array.array)):
         return base64.b64encode(bytes(value)).decode() if isinstance(value, bytes) or value.itemsize == 1 else list(value)
     if isinstance(value, (list, tuple)):
@@ -16,20 +16,20 @@ def plain(value):
     for seconds, nanoseconds in (("secs", "nsecs"), ("sec", "nanosec")):
         if hasattr(value, seconds):
             return getattr(value, seconds) + getattr(value, nanoseconds) / 1e9
-    if hasattr(value, "get_fields_and_field_types"):  # ROS 2, whose __slots__ have other names
+    if hasattr(value, "get_fields_and_field_types"):  # ROS 2: its __slots__ have other names
         return {name: plain(getattr(value, name)) for name in value.get_fields_and_field_types()}
     return {name: plain(getattr(value, name)) for name in value.__slots__} if hasattr(value, "__slots__") else value
 
 
 class Robot:
-    """Its messages. None: it is of another frame than `frame`, which is the Command Post's "darpa"."""
+    """The messages of one robot. None if the frame is not `frame`, the Command Post's "darpa"."""
 
     def __init__(self, name, frame):
         self.name, self.frame = name, frame
 
     def of_frame(self, message):
         given = message.header.frame_id.lstrip("/")
-        deletes = getattr(message, "action", 0) != 0 and not given  # RViz asks for no frame there
+        deletes = getattr(message, "action", 0) != 0 and not given  # RViz needs no frame to delete
         if given != self.frame and not deletes:
             log.error("not sent: expected frame %s, got %s", self.frame, given)
             return None

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""A node for ROS 1 and ROS 2: what one robot says on topics goes to Adit, with the token in ADIT_TOKEN.
+"""A node for ROS 1 and ROS 2: sends one robot's topics to Adit, with the token in ADIT_TOKEN.
 
 Parameters: ~url (http://10.0.0.1:8000), ~robot (its name at the Command Post), ~frame (the team's frame that is the Command
-Post's "darpa"; nothing else is sent). Topics: map (OccupancyGrid), points (PointCloud2), odometry (Odometry), markers
-(MarkerArray), report (Marker: the type of the artifact in its text, the place in its pose)."""
+Post's "darpa"; messages of other frames are not sent). Topics: map (OccupancyGrid), points (PointCloud2), odometry (Odometry), markers
+(MarkerArray), report (Marker: the artifact's type in its text, the position in its pose)."""
 import collections
 import importlib.util
 import logging
@@ -17,7 +17,7 @@ from ros_messages import Robot, log
 
 
 class Outbox(threading.Thread):
-    """Sends what waits, one after the other: of a robot's maps and states only the newest (`most` 1), of others all."""
+    """Sends queued messages in order: only the newest of a robot's maps and states (`most` 1), and all others."""
 
     def __init__(self, make, send, most=None):
         super().__init__(daemon=True)
@@ -30,20 +30,20 @@ class Outbox(threading.Thread):
 
     def run(self):
         while self.given.acquire():
-            if not self.waiting:  # a newer one took its place, and was sent
+            if not self.waiting:  # a newer message replaced it and was sent
                 continue
             try:
                 made = self.make(self.waiting.popleft())
                 if made is not None:
                     log.info("answered: %s", self.send(*made))
-            except Exception as why:  # the next one may be good
+            except Exception as why:  # the next message may be valid
                 log.error("%s: %s", type(why).__name__, why)
             if self.waiting.maxlen:
-                time.sleep(1)  # the Command Post takes one a second
+                time.sleep(1)  # the Command Post accepts one a second
 
 
 def outboxes(parameter):
-    """By topic: its message's package and type, and where what comes goes."""
+    """For each topic: the package and type of its message, and its outbox."""
     url, name, frame = (parameter(name) or sys.exit(f"adit: the parameter {name} is missing") for name in ("url", "robot", "frame"))
     client, robot = Client(url, os.environ["ADIT_TOKEN"]), Robot(name, frame)
     return {"map": ("nav_msgs", "OccupancyGrid", Outbox(robot.map, client.update, 1)),
@@ -68,7 +68,7 @@ def ros_2(rclpy):
     logging.basicConfig(level=logging.INFO)
     rclpy.init()
     node = rclpy.create_node("adit")
-    newest = rclpy.qos.qos_profile_sensor_data  # which publishers of either reliability reach
+    newest = rclpy.qos.qos_profile_sensor_data  # receives from publishers of either reliability
     subscribe(lambda name: node.declare_parameter(name, "").value,
               lambda kind, topic, box: node.create_subscription(kind, topic, box.put, newest if box.waiting.maxlen else 100))
     rclpy.spin(node)

@@ -12,14 +12,21 @@ using codec::Row;
 using codec::Schema;
 using codec::Value;
 
-struct OwnAddress : codec::OnlyWritten {
+struct OwnAddress {
   static Value write(const NetworkView& view) {
     return view.team ? network::AddressText::write(view.team->address) : Value{};
   }
+  static void read(const codec::Field& field, NetworkView& view) {
+    view.team.reset();
+    if (!field.is_absent()) network::AddressText::read(field, view.team.emplace().address);
+  }
   static constexpr Schema schema = network::AddressText::schema.nullable();
 };
-struct OwnPrefix : codec::OnlyWritten {
+struct OwnPrefix {
   static Value write(const NetworkView& view) { return view.team ? codec::json(view.team->prefix) : Value{}; }
+  static void read(const codec::Field& field, NetworkView& view) {
+    if (view.team) codec::KindOf<std::uint8_t>::read(field, view.team->prefix);
+  }
   static constexpr Schema schema = {.type = "integer", .or_null = true};
 };
 
@@ -39,9 +46,20 @@ constexpr Member kCommandPostSideMembers[] = {
 };
 constexpr Row kCommandPostSide = {"CommandPostSide", kCommandPostSideMembers};
 
+/// The numbers among the other members of PendingNetwork.
+struct Wanted : codec::KindOf<network::Numbers> {
+  static void read(const codec::Field& field, network::Numbers& numbers) {
+    const codec::Field team = field.member("team"), post = field.member("command_post");
+    if (!team.is<Value::Object>()) return team.refuse_kind("an object");
+    if (!post.is<Value::Object>()) return post.refuse_kind("an object");
+    const Value both{Value::Object{{"team", *team.value()}, {"command_post", *post.value()}}};
+    codec::KindOf<network::Numbers>::read(codec::Field(both, field.reading()), numbers);
+  }
+};
+
 constexpr Member kPendingMembers[] = {
     member<&PendingNetwork::until>("until", "seconds since 1970"),
-    member<&PendingNetwork::wanted>(""),
+    member<&PendingNetwork::wanted>("").as(codec::kind_as<network::Numbers, Wanted>),
     member<&PendingNetwork::previous>("previous", "addresses to which the box returns"),
     member<&PendingNetwork::page>("page", "address of the page to confirm on"),
 };

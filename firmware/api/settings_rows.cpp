@@ -52,11 +52,18 @@ struct KindOf<settings::Change> : KindOfRow<settings::Change, api::kChangeRow> {
 
 /// An object with a member for each.
 template <>
-struct KindOf<std::vector<api::TokenRow>> : OnlyWritten {
+struct KindOf<std::vector<api::TokenRow>> {
   static Value write(const std::vector<api::TokenRow>& tokens) {
     Value::Object object;
     for (const api::TokenRow& token : tokens) object.emplace_back(token.name, Value{token.set});
     return {std::move(object)};
+  }
+  static void read(const Field& field, std::vector<api::TokenRow>& tokens) {
+    if (!field.is<Value::Object>()) return field.refuse_kind("an object");
+    for (const auto& [name, set] : std::get<Value::Object>(field.value()->is)) {
+      const Field token = field.member(name);
+      tokens.push_back({.name = name, .set = token.truth()});
+    }
   }
   static constexpr Schema schema = {.type = "object", .more = R"("additionalProperties":{"type":"boolean"})"};
 };

@@ -46,14 +46,16 @@ std::expected<Numbers, std::vector<settings::Error>> read_numbers(const codec::V
 /// A host's own address with its prefix, as it is written.
 extern const codec::Row kHost;
 /// Kinds of an address: as text, and "" where there is none.
-struct AddressText : codec::OnlyWritten {
+struct AddressText {
   static codec::Value write(std::uint32_t address) { return {settings::ipv4_text(address)}; }
+  static void read(const codec::Field& field, std::uint32_t& address);
   static constexpr codec::Schema schema = {.type = "string"};
 };
-struct AddressOrNone : codec::OnlyWritten {
+struct AddressOrNone {
   static codec::Value write(const std::optional<std::uint32_t>& address) {
     return {address ? settings::ipv4_text(*address) : ""};
   }
+  static void read(const codec::Field& field, std::optional<std::uint32_t>& address);
   static constexpr codec::Schema schema = {.type = "string"};
 };
 

@@ -17,10 +17,11 @@ constexpr Member kHostMembers[] = {
     member<&Subnet::prefix>("prefix"),
 };
 
-struct StaticAddress : AddressText {
+struct StaticAddress : codec::OnlyWritten {
   static Value write(const Numbers& numbers) {
     return numbers.mode == Mode::Static ? AddressText::write(numbers.team.address) : Value{};
   }
+  static constexpr Schema schema = AddressText::schema;
 };
 struct StaticPrefix : codec::OnlyWritten {
   static Value write(const Numbers& numbers) {
@@ -51,6 +52,17 @@ constexpr Member kNumbersMembers[] = {group<Numbers, kTeam>("team"),
                                       group<Numbers, kCommandPost>("command_post")};
 
 }  // namespace
+
+void AddressText::read(const codec::Field& field, std::uint32_t& address) {
+  const auto read = settings::ipv4_of(field.text());
+  if (!read) field.refuse("expected an IPv4 address");
+  address = read.value_or(0);
+}
+
+void AddressOrNone::read(const codec::Field& field, std::optional<std::uint32_t>& address) {
+  address.reset();
+  if (!field.text().empty()) AddressText::read(field, address.emplace());
+}
 
 constexpr Row kHost = {"Host", kHostMembers};
 constexpr Row Numbers::kRow = {"Numbers", kNumbersMembers};

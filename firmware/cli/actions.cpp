@@ -1,121 +1,91 @@
-#include "cli/actions.hpp"
-
 #include <algorithm>
 
-#include "cli/doubt.hpp"
-#include "cli/reading.hpp"
-#include "cli/where.hpp"
-#include "host/log.hpp"
+#include "api/run_view.hpp"
+#include "cli/handlers.hpp"
+#include "dispatch/report_life.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::cli {
 namespace {
 
-/// Asks for an action, and gives the number that Adit answers under `name`. `check`: the command that tells
-/// whether an action was done whose answer was lost.
-std::expected<std::int64_t, Failure> ask(const Adit& adit, const std::string& target, const char* name,
-                                         const std::string& check) {
-  const auto body = post(adit, target, "", check);
-  if (!body) return std::unexpected(body.error());
-  auto number = read<std::int64_t>(
-      adit, *body, [name](const codec::Field& object) { return whole<std::int64_t>(object, name); });
-  if (number) return *number;
-  return std::unexpected(Failure{Exit::Unable, number.error()});
+/// Adit's answer to a decision on a report: `report` is the number of the new one, if there is one.
+struct DecidedReport {
+  std::int64_t report = 0;
+  static const codec::Row kRow;
+};
+constexpr codec::Member kDecided[] = {codec::member<&DecidedReport::report>("report")};
+
+struct BegunRun {
+  std::int64_t run = 0;
+  static const codec::Row kRow;
+};
+constexpr codec::Member kBegun[] = {codec::member<&BegunRun::run>("run")};
+
+/// What was done to a report, by the subcommand.
+struct Decision {
+  std::string_view verb;
+  const char* done;
+};
+constexpr Decision kDecisions[] = {{"send", " is queued"},
+                                   {"hold", " is held until you send it"},
+                                   {"withdraw", " is withdrawn"},
+                                   {"settle", " is settled"},
+                                   {"resubmit", " is sent again as report "}};
+
+/// Asks the operator about a report in doubt.
+Result<void> confirm_sending(const Call& call, const std::string& target, std::int64_t number) {
+  const auto told = fetch<api::ReportDetail>(call.adit, target);
+  if (!told) return std::unexpected(told.error());
+  const api::ReportRow& report = told->row.row;
+  if (dispatch::state_named(report.state) != dispatch::ReportState::InDoubt) return {};
+  return confirm(call.options, call.console,
+                 icd::sentence("report ", number, " (", report.type,
+                               ") is in doubt: if the Command Post recorded it, sending it again uses up a "
+                               "second report.",
+                               report.asking ? " Adit is asking the run's status to find out." : ""),
+                 "Send it again?", icd::sentence("report ", number, " was not sent"));
 }
 
-std::string path_of(Verb verb) {
-  switch (verb) {
-    case Verb::Send:
-      return "send";
-    case Verb::Hold:
-      return "hold";
-    case Verb::Withdraw:
-      return "withdraw";
-    case Verb::Settle:
-      return "settle";
-    default:
-      return "resubmit";
+Result<Outcome> decide_on(const Call& call, std::int64_t number) {
+  const std::string verb = call.options.word(), target = icd::sentence("/adit/reports/", number);
+  if (verb == "send" && !call.options.yes) {
+    if (auto meant = confirm_sending(call, target, number); !meant) return std::unexpected(meant.error());
   }
-}
-
-/// What was done to report `number`; `moved` is what Adit answered.
-std::string done(Verb verb, std::int64_t number, std::int64_t moved) {
-  const std::string report = "report " + std::to_string(number);
-  switch (verb) {
-    case Verb::Send:
-      return report + " is queued";
-    case Verb::Hold:
-      return report + " is held until you send it";
-    case Verb::Withdraw:
-      return report + " is withdrawn";
-    case Verb::Settle:
-      return report + " is settled";
-    default:
-      return report + " is sent again as report " + std::to_string(moved);
-  }
-}
-
-std::string json_line(const char* name, std::int64_t number) {
-  return codec::write_json({codec::Value::Object{{name, {number}}}}) + '\n';
-}
-
-void add(Outcome& outcome, const Failure& failure) {
-  outcome.exit = std::max(outcome.exit, failure.exit);
-  outcome.err += unable(failure.sentence).err;
+  const bool is_new = verb == "resubmit";
+  const std::string check = is_new ? "adit reports" : icd::sentence("adit reports show ", number);
+  const auto answer =
+      told<DecidedReport>(call.adit, post(call.adit, {.target = target + "/" + verb, .check = check}));
+  if (!answer) return std::unexpected(answer.error());
+  const char* const done = std::ranges::find(kDecisions, verb, &Decision::verb)->done;
+  const std::string moved = is_new ? std::to_string(answer->row.report) : "";
+  return said(call, answer->json, icd::sentence("report ", number, done, moved, "\n"));
 }
 
 }  // namespace
 
-Outcome judge(const Adit& adit, const Options& options, const Console& console) {
-  Outcome outcome;
-  for (const std::int64_t number : options.numbers) {
-    const std::string text = std::to_string(number);
-    if (options.verb == Verb::Send && !options.yes) {
-      if (const auto hindrance = doubt(adit, number, console)) {
-        add(outcome, *hindrance);
-        if (hindrance->exit == Exit::Unable) break;
-        continue;
-      }
-    }
-    const auto moved = ask(adit, "/adit/reports/" + text + "/" + path_of(options.verb), "report",
-                           options.verb == Verb::Resubmit ? "adit reports" : "adit reports show " + text);
-    if (moved) {
-      outcome.out += options.json ? json_line("report", *moved) : done(options.verb, number, *moved) + '\n';
-      continue;
-    }
-    add(outcome, moved.error());
-    if (moved.error().exit == Exit::Unable) break;
-  }
-  return outcome;
+constexpr codec::Row DecidedReport::kRow = {"", kDecided};
+constexpr codec::Row BegunRun::kRow = {"", kBegun};
+
+Result<Outcome> decide_on_reports(const Call& call) {
+  return act_on_each(call, [&call](std::int64_t number) { return decide_on(call, number); });
 }
 
-Outcome begin_run(const Options& options) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  const auto run = ask(*adit, "/adit/runs", "run", "adit reports");
-  Outcome outcome;
-  if (!run) {
-    add(outcome, run.error());
-  } else if (options.json) {
-    outcome.out = json_line("run", *run);
-  } else {
-    outcome.out = "run " + std::to_string(*run) +
-                  " begins; unsent reports of earlier runs are held: see adit reports\n";
-  }
-  return outcome;
+Result<Outcome> begin_run(const Call& call) {
+  const auto answer =
+      told<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"}));
+  if (!answer) return std::unexpected(answer.error());
+  return said(call, answer->json,
+              icd::sentence("run ", answer->row.run,
+                            " begins; unsent reports of earlier runs are held: see adit reports\n"));
 }
 
-Outcome identify(const Options& options) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  const std::string seconds = std::to_string(options.seconds);
-  const auto answer = post(*adit, "/adit/identify", "{\"seconds\":" + seconds + "}", "adit status");
-  Outcome outcome;
-  if (!answer) {
-    add(outcome, answer.error());
-  } else {
-    outcome.out = options.json ? *answer + '\n' : "all lights flash for " + seconds + " s\n";
-  }
-  return outcome;
+Result<Outcome> identify(const Call& call) {
+  const std::int64_t seconds = call.options.numbers.empty() ? 10 : call.options.numbers.front();
+  return act(call,
+             {.target = "/adit/identify",
+              .check = "adit status",
+              .body = icd::sentence("{\"seconds\":", seconds, "}")},
+             icd::sentence("all lights flash for ", seconds, " s\n"));
 }
 
 }  // namespace adit::cli

@@ -2,13 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <thread>
 
-#include "alarms/board.hpp"
-#include "api/run_view.hpp"
-#include "cli/http_client.hpp"
-#include "cli/reading.hpp"
-#include "cli/status_text.hpp"
 #include "cli/where.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
@@ -16,12 +10,6 @@
 
 namespace adit::cli {
 namespace {
-
-constexpr std::chrono::seconds kActionPatience{10};  // an action is on the disk before it is answered
-
-bool all_is_well(const api::RunView& view) {
-  return std::ranges::none_of(view.alarms, alarms::calls);
-}
 
 /// The option's value, or else the variable's; "" if neither is set.
 std::string given(const std::string& option, const char* variable) {
@@ -51,59 +39,64 @@ std::expected<settings::Address, std::string> address_of(const Options& options)
   return address_in(saved ? options.saved_settings : options.settings);
 }
 
-}  // namespace
-
-std::expected<Adit, std::string> adit_of(const Options& options) {
-  const auto address = address_of(options);
-  if (!address) return std::unexpected(address.error());
-  const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
-  auto token = find_token(given(options.token_file, "ADIT_TOKEN_FILE"), folders);
-  if (!token) return std::unexpected(token.error());
-  if (*token) return Adit{*address, std::move(**token)};
-  return std::unexpected("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
-                         ": set the team's token on the page, run adit as root, or name a token file by "
-                         "--token-file FILE");
-}
-
-std::expected<std::string, std::string> get(const Adit& adit, const std::string& target) {
-  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, kReadPatience);
-  if (!reply) return std::unexpected(reply.error().sentence);
-  if (reply->status == 200) return std::move(reply->body);
-  return std::unexpected(failure(adit, *reply).sentence);
-}
-
-Failure failure(const Adit& adit, const HttpReply& reply) {
-  if (reply.status == 401) return {Exit::Unable, "Adit rejects the token in " + adit.token.file};
+/// For an answer that is not 200.
+Failure failure_of(const Adit& adit, const HttpReply& reply) {
+  if (reply.status == 401)
+    return {Exit::Unable, "Adit rejects the token in " + adit.token.file, reply.status};
   const std::string sentence = sentence_in(reply.body);
   if (sentence.empty())
-    return {Exit::Unable, "the server at " + written(adit.address) +
-                              " is not Adit, or is another version (HTTP status " +
-                              std::to_string(reply.status) + ")"};
+    return {Exit::Unable,
+            "the server at " + written(adit.address) + " is not Adit, or is another version (HTTP status " +
+                std::to_string(reply.status) + ")",
+            reply.status};
   const bool decided =
       reply.status == 404 || reply.status == 409 || reply.status == 413 || reply.status == 422;
-  return {decided ? Exit::Attention : Exit::Unable, sentence};
+  return {decided ? Exit::Attention : Exit::Unable, sentence, reply.status};
 }
 
-std::expected<std::string, Failure> find(const Adit& adit, const std::string& target,
-                                         std::chrono::milliseconds within) {
-  auto reply = http_ask(adit.address, {.target = target, .token = adit.token.token}, within);
-  if (!reply) return std::unexpected(Failure{Exit::Unable, reply.error().sentence});
-  if (reply->status != 200) return std::unexpected(failure(adit, *reply));
+Result<std::string> body_of(const Adit& adit, std::expected<HttpReply, NoReply> reply,
+                            const std::string& if_sent) {
+  if (!reply) return failed(reply.error().sentence + (reply.error().sent ? if_sent : ""));
+  if (reply->status != 200) return std::unexpected(failure_of(adit, *reply));
   return std::move(reply->body);
 }
 
-std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
-                                         const std::string& check) {
-  auto reply = http_ask(
-      adit.address,
-      {.method = HttpRequest::Method::Post, .target = target, .token = adit.token.token, .body = body},
-      kActionPatience);
-  if (!reply) {
-    const std::string unsure = reply.error().sent ? "; the action may have been done: see " + check : "";
-    return std::unexpected(Failure{Exit::Unable, reply.error().sentence + unsure});
-  }
-  if (reply->status != 200) return std::unexpected(failure(adit, *reply));
-  return std::move(reply->body);
+std::unexpected<Failure> not_understood(const Adit& adit, const std::string& why) {
+  return failed("cannot read the answer of Adit at " + written(adit.address) + ": " + why);
+}
+
+}  // namespace
+
+std::unexpected<Failure> failed(std::string sentence, Exit exit) {
+  return std::unexpected(Failure{exit, std::move(sentence)});
+}
+
+Result<Adit> adit_of(const Options& options) {
+  const auto address = address_of(options);
+  if (!address) return failed(address.error());
+  const std::vector<std::string> folders = {options.saved_secrets, options.secrets};
+  auto token = find_token(given(options.token_file, "ADIT_TOKEN_FILE"), folders);
+  if (!token) return failed(token.error());
+  if (*token) return Adit{*address, std::move(**token)};
+  return failed("cannot read a token in " + options.saved_secrets + " or " + options.secrets +
+                ": set the team's token on the page, run adit as root, or name a token file by "
+                "--token-file FILE");
+}
+
+Result<std::string> get(const Adit& adit, const std::string& target, std::chrono::milliseconds within) {
+  return body_of(adit, http_ask(adit.address, {.target = target, .token = adit.token.token}, within), "");
+}
+
+Result<std::string> post(const Adit& adit, Post action) {
+  return body_of(adit,
+                 http_ask(adit.address,
+                          {.method = HttpRequest::Method::Post,
+                           .target = std::move(action.target),
+                           .token = adit.token.token,
+                           .body = std::move(action.body),
+                           .content_type = std::move(action.content_type)},
+                          action.within),
+                 "; the action may have been done: see " + action.check);
 }
 
 std::string sentence_in(const std::string& body) {
@@ -112,38 +105,56 @@ std::string sentence_in(const std::string& body) {
   return sentence == nullptr ? "" : *sentence;
 }
 
-bool wait_for(std::chrono::milliseconds within, std::chrono::milliseconds every,
-              const std::function<bool()>& is_over) {
-  for (const auto end = std::chrono::steady_clock::now() + within; !is_over();) {
-    if (std::chrono::steady_clock::now() >= end) return false;
-    std::this_thread::sleep_for(every);
+Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::Kind& kind,
+                       void* row) {
+  if (!answer) return std::unexpected(answer.error());
+  codec::Reading reading;
+  kind.read(codec::Field(*answer, reading), row);
+  if (const auto outcome = reading.outcome(true); !outcome)
+    return not_understood(adit, "it is another version: " + outcome.error().sentence);
+  return {};
+}
+
+Result<codec::Value> json_in(const Adit& adit, std::string_view body) {
+  auto value = codec::parse_json(body);
+  if (!value) return not_understood(adit, "its answer is not JSON: " + value.error());
+  return *std::move(value);
+}
+
+Outcome said(const Call& call, const std::string& json, const std::string& text, Exit exit) {
+  return {exit, call.options.json ? json + '\n' : text, ""};
+}
+
+Result<Outcome> act(const Call& call, Post action, const std::string& done) {
+  const auto answer = post(call.adit, std::move(action));
+  if (!answer) return std::unexpected(answer.error());
+  return said(call, *answer, done);
+}
+
+Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on) {
+  Outcome all;
+  for (const std::int64_t number : call.options.numbers) {
+    const auto one = act_on(number);
+    const Outcome outcome = one ? *one : unable(one.error());
+    all.exit = std::max(all.exit, outcome.exit);
+    all.out += outcome.out;
+    all.err += outcome.err;
+    if (outcome.exit == Exit::Unable) break;
   }
-  return true;
+  return all;
 }
 
-std::expected<api::RunView, std::string> run_view(const Adit& adit) {
-  const auto json = get(adit, "/adit/run");
-  if (!json) return std::unexpected(json.error());
-  return read<api::RunView>(adit, *json);
-}
-
-Outcome unable(const std::string& why) {
-  return {Exit::Unable, "", "adit: " + host::escaped(why) + '\n'};
+Result<void> confirm(const Options& options, const Console& console, const std::string& why,
+                     const std::string& question, const std::string& undone) {
+  if (options.yes) return {};
+  const auto meant = console.ask(host::escaped(why) + '\n' + question);
+  if (!meant) return failed(why + " It was not done; to do it, add --yes", Exit::Attention);
+  if (!*meant) return failed(undone, Exit::Attention);
+  return {};
 }
 
 Outcome unable(const Failure& failure) {
-  return {failure.exit, "", unable(failure.sentence).err};
-}
-
-Outcome status(const Options& options, bool colour) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  const auto json = get(*adit, "/adit/run");
-  if (!json) return unable(json.error());
-  const auto view = read<api::RunView>(*adit, *json);
-  if (!view) return unable(view.error());
-  const Exit exit = all_is_well(*view) ? Exit::Fine : Exit::Attention;
-  return {exit, options.json ? *json + '\n' : status_text(*view, colour), ""};
+  return {failure.exit, "", "adit: " + host::escaped(failure.sentence) + '\n'};
 }
 
 }  // namespace adit::cli

@@ -4,63 +4,135 @@
 #include <expected>
 #include <functional>
 #include <string>
+#include <thread>
 
-#include "api/run_view.hpp"
+#include "cli/console.hpp"
 #include "cli/http_client.hpp"
 #include "cli/options.hpp"
 #include "cli/outcome.hpp"
+#include "codec/row.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::cli {
 
 inline constexpr std::chrono::milliseconds kReadPatience{3000};
+/// An action is on the disk before it is answered.
+inline constexpr std::chrono::milliseconds kActionPatience{10000};
 
-/// The Adit that the options mean: where it is, and what it is asked with.
+/// The Adit that the options mean: its address and the token for it.
 struct Adit {
   settings::Address address;
   Token token;
 };
 
-/// Without a token, the sentence says how to name one.
-std::expected<Adit, std::string> adit_of(const Options& options);
-
-/// The body of a 200, or a sentence.
-std::expected<std::string, std::string> get(const Adit& adit, const std::string& target);
-
-/// What the page shows of the run: GET /adit/run. A sentence if Adit does not answer or its answer cannot be
-/// read.
-std::expected<api::RunView, std::string> run_view(const Adit& adit);
-
-/// An action that was not done, or of which that is not known.
+/// Why a command failed.
 struct Failure {
-  Exit exit = Exit::Unable;  // Attention: Adit rejected the action
+  Exit exit = Exit::Unable;  // Attention: Adit rejected the action, or the thing asked for does not exist
   std::string sentence;
+  int status = 0;  // of Adit's answer; 0: there was none
+};
+template <class T>
+using Result = std::expected<T, Failure>;
+
+std::unexpected<Failure> failed(std::string sentence, Exit exit = Exit::Unable);
+
+/// What a command that asks Adit works with.
+struct Call {
+  const Adit& adit;
+  const Options& options;
+  const Console& console;
 };
 
-/// The body of an action's 200. `body`: JSON, or nothing. `check`: the command that tells whether an action
-/// was done whose answer was lost.
-std::expected<std::string, Failure> post(const Adit& adit, const std::string& target, const std::string& body,
-                                         const std::string& check);
+/// Without a token, the sentence says how to name one.
+Result<Adit> adit_of(const Options& options);
 
-/// The body of a 200, where the answer may be that there is no such thing.
-std::expected<std::string, Failure> find(const Adit& adit, const std::string& target,
-                                         std::chrono::milliseconds within = kReadPatience);
+/// The body of a 200.
+Result<std::string> get(const Adit& adit, const std::string& target,
+                        std::chrono::milliseconds within = kReadPatience);
 
-/// For an answer that is not 200.
-Failure failure(const Adit& adit, const HttpReply& reply);
+struct Post {
+  std::string target;
+  std::string check;      // the command that tells whether an action was done whose answer was lost
+  std::string body = "";  // JSON, or nothing
+  std::chrono::milliseconds within = kActionPatience;
+  std::string content_type = "application/json";
+};
+/// The body of an action's 200.
+Result<std::string> post(const Adit& adit, Post action);
 
-/// Whether `is_over` became true within so long. It is called at once, and then again after each `every`.
-bool wait_for(std::chrono::milliseconds within, std::chrono::milliseconds every,
-              const std::function<bool()>& is_over);
-
-/// The sentence that an error's body is (a JSON string); "" where it is none.
+/// The sentence that an error's body is (a JSON string); "" if it is none.
 std::string sentence_in(const std::string& body);
 
-/// `why` on standard error.
-Outcome unable(const std::string& why);
-Outcome unable(const Failure& failure);
+Result<codec::Value> json_in(const Adit& adit, std::string_view body);
+/// Reads the answer into a row of that kind, or says why this Adit does not write such an answer.
+Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::Kind& kind,
+                       void* row);
 
-/// `adit status`: asks the running Adit and shows its answer.
-Outcome status(const Options& options, bool colour);
+/// What Adit answers, and the row (or the rows) that it is.
+template <class Row>
+struct Told {
+  std::string json;
+  Row row = {};
+};
+template <class Row>
+Result<Told<Row>> told(const Adit& adit, Result<std::string> json) {
+  if (!json) return std::unexpected(std::move(json.error()));
+  Told<Row> told{*std::move(json)};
+  const auto is_read = read_into(adit, json_in(adit, told.json), codec::kind_of<Row>, &told.row);
+  if (!is_read) return std::unexpected(is_read.error());
+  return told;
+}
+template <class Row>
+Result<Told<Row>> fetch(const Adit& adit, const std::string& target) {
+  return told<Row>(adit, get(adit, target));
+}
+
+/// How long, and how often, Adit is asked for the outcome of an action.
+struct Waiting {
+  std::chrono::milliseconds within, every;
+  bool may_be_away = false;  // Adit need not answer meanwhile
+  const char* late = "";     // the sentence if the time is over
+};
+/// Fetches the row until `is_over` says so of it.
+template <class Row, class IsOver>
+Result<Told<Row>> fetch_until(const Adit& adit, const std::string& target, const Waiting& waiting,
+                              IsOver is_over) {
+  const auto end = std::chrono::steady_clock::now() + waiting.within;
+  while (true) {
+    auto answer = fetch<Row>(adit, target);
+    if (answer ? is_over(answer->row) : !waiting.may_be_away) return answer;
+    if (std::chrono::steady_clock::now() >= end)
+      return answer ? Result<Told<Row>>(failed(waiting.late)) : answer;
+    std::this_thread::sleep_for(waiting.every);
+  }
+}
+
+/// With --json, `json` (without the end of its line), else `text`.
+Outcome said(const Call& call, const std::string& json, const std::string& text, Exit exit = Exit::Fine);
+
+/// Shows a row of Adit's. The exit status is 1 unless `is_fine`.
+template <class Row>
+Result<Outcome> show(
+    const Call& call, const std::string& target, std::string (*text_of)(const Row& row, bool colour),
+    bool (*is_fine)(const Row& row) = [](const Row& /*row*/) { return true; }) {
+  const auto answer = fetch<Row>(call.adit, target);
+  if (!answer) return std::unexpected(answer.error());
+  return said(call, answer->json, text_of(answer->row, call.console.colour),
+              is_fine(answer->row) ? Exit::Fine : Exit::Attention);
+}
+
+/// Does an action, and prints Adit's JSON or `done`.
+Result<Outcome> act(const Call& call, Post action, const std::string& done);
+
+/// Does an action for each number of the options, as far as Adit can be asked.
+Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on);
+
+/// Nothing if --yes is given or the operator confirms. `why` is the reason to ask. A failure says that it was
+/// not done: `undone` if the operator says no.
+Result<void> confirm(const Options& options, const Console& console, const std::string& why,
+                     const std::string& question, const std::string& undone = "it was not done");
+
+/// The failure on standard error.
+Outcome unable(const Failure& failure);
 
 }  // namespace adit::cli

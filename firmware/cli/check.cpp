@@ -1,7 +1,8 @@
-#include "cli/check.hpp"
+#include "network/check.hpp"
 
 #include <algorithm>
 
+#include "cli/handlers.hpp"
 #include "cli/table.hpp"
 #include "cli/where.hpp"
 #include "cli/words.hpp"
@@ -10,7 +11,6 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
-#include "network/check.hpp"
 #include "settings/saved.hpp"
 #include "settings/settings.hpp"
 #include "settings/subnet.hpp"
@@ -132,16 +132,19 @@ std::string as_json(const std::vector<settings::Error>& errors, const std::vecto
 
 }  // namespace
 
-Outcome check(const Options& options, bool colour) {
-  const auto text = host::read_file(options.settings);
-  if (!text) return {Exit::Unable, "", "adit: " + text.error() + '\n'};
+Result<Outcome> check(const Options& options, const Console& console) {
+  const std::string file = options.argument().empty() ? options.settings : options.argument();
+  const auto text = host::read_file(file);
+  if (!text) return failed(text.error());
   const auto settings = settings::parse(*text);
   const auto errors = settings ? std::vector<settings::Error>() : settings.error();
   const auto warnings = settings ? warnings_of(options, *settings) : std::vector<std::string>();
   const Exit exit = settings ? Exit::Fine : Exit::Attention;
-  if (options.json) return {exit, as_json(errors, warnings), ""};
-  if (settings) return {exit, summary(options.settings, *settings, warnings, colour), ""};
-  return {exit, sentences(options.settings, errors, colour), ""};
+  if (options.json) return Outcome{exit, as_json(errors, warnings), ""};
+  return Outcome{
+      exit,
+      settings ? summary(file, *settings, warnings, console.colour) : sentences(file, errors, console.colour),
+      ""};
 }
 
 }  // namespace adit::cli

@@ -1,115 +1,116 @@
 #include "cli/commands.hpp"
 
+#include "cli/handlers.hpp"
+
 namespace adit::cli {
 namespace {
 
 constexpr std::size_t kMany = 1000;
 constexpr Argument kNothing{"", "", 0, 0, 0};
-constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX, Among::Reports};
-constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX, Among::Reports};
-constexpr Argument kRejectedNumber{"NUMBER...",    "a rejected message's number", 1, kMany, INT64_MAX,
-                                   Among::Rejected};
+constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX};
+constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX};
+constexpr Argument kRejectedNumber{"NUMBER...", "a rejected message's number", 1, kMany, INT64_MAX};
 constexpr Argument kSeconds{"[SECONDS]", "seconds, a whole number from 1 to 60", 0, 1, 60};
-constexpr Argument kName{"[NAME]", "a course's name", 0, 1, 0, Among::Courses};
-constexpr Argument kRunKey{"KEY", "a run's key", 1, 1, 0, Among::Runs};
-constexpr Argument kKey{"[KEY]", "a settings key", 0, 1, 0, Among::Keys};
-constexpr Argument kKeyAndValue{"KEY VALUE", "a settings key or its value", 2, 2, 0, Among::Keys};
-constexpr Argument kFile{"FILE", "a file", 1, 1, 0, Among::Files};
-constexpr Argument kBundle{"[FILE]", "a file", 0, 1, 0, Among::Files};
-constexpr Argument kExport{"[FILE]", "a file", 0, 1, 0, Among::Files};
-constexpr Argument kDirectory{"[DIRECTORY]", "a directory", 0, 1, 0, Among::Files};
-constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0, Among::Files};
-constexpr Argument kCommand{"[COMMAND]", "a command", 0, 1, 0, Among::Commands};
+constexpr Argument kName{"[NAME]", "a course's name", 0, 1, 0};
+constexpr Argument kRunKey{"KEY", "a run's key", 1, 1, 0};
+constexpr Argument kKey{"[KEY]", "a settings key", 0, 1, 0};
+constexpr Argument kKeyAndValue{"KEY VALUE", "a settings key or its value", 2, 2, 0};
+constexpr Argument kFile{"FILE", "a file", 1, 1, 0};
+constexpr Argument kFileIfAny{"[FILE]", "a file", 0, 1, 0};
+constexpr Argument kDirectory{"[DIRECTORY]", "a directory", 0, 1, 0};
+constexpr Argument kSettingsFile{"[SETTINGS]", "a file", 0, 1, 0};
 constexpr Argument kWord{"[WORD]", "a subcommand of `adit reports`", 0, 1, 0};
 
-constexpr Form kPlain[] = {{"", Verb::List, kNothing, "", "", true}};
+constexpr Form kStatusForms[] = {{"", status, kNothing, "", "", true}};
+constexpr Form kWatchForms[] = {{"", watch, kNothing, "", "", true}};
 constexpr Form kReportForms[] = {
-    {"", Verb::List, kNothing, "", "--run --last", true},
-    {"show", Verb::Show, kReport, "show one report, its history and the possible actions"},
-    {"send", Verb::Send, kReports,
+    {"", list_reports, kNothing, "", "--run --last", true},
+    {"show", show_report, kReport, "show one report, its history and the possible actions"},
+    {"send", decide_on_reports, kReports,
      "send a held, rejected or withdrawn report; or one in doubt, if the Command Post did not record it "
      "(otherwise this uses up a second report)",
      "--yes"},
-    {"hold", Verb::Hold, kReports, "hold a queued report until you send it"},
-    {"withdraw", Verb::Withdraw, kReports, "withdraw a held or queued report. You can still send it later"},
-    {"settle", Verb::Settle, kReports, "settle a report in doubt without sending it again"},
-    {"resubmit", Verb::Resubmit, kReport,
+    {"hold", decide_on_reports, kReports, "hold a queued report until you send it"},
+    {"withdraw", decide_on_reports, kReports,
+     "withdraw a held or queued report. You can still send it later"},
+    {"settle", decide_on_reports, kReports, "settle a report in doubt without sending it again"},
+    {"resubmit", decide_on_reports, kReport,
      "send a finished report again, as a new report with its own number"},
-    {"export", Verb::Export, kNothing, "print all reports of all runs as CSV, or with --json as JSON",
+    {"export", export_reports, kNothing, "print all reports of all runs as CSV, or with --json as JSON",
      "--csv"}};
 constexpr Form kRejectedForms[] = {
-    {"show", Verb::Show, kNothing, "list them (default)", "", true},
-    {"send", Verb::Send, kRejectedNumber,
+    {"show", list_rejected, kNothing, "list them (default)", "", true},
+    {"send", decide_on_rejected, kRejectedNumber,
      "send a message again. Adit rejects this if it has sent a newer message that replaces it"},
-    {"discard", Verb::Discard, kRejectedNumber, "delete a message"}};
-constexpr Form kRunForms[] = {{"show", Verb::Show, kNothing, "show the present run (default)", "", true},
-                              {"new", Verb::New, kNothing, "declare that a new run begins"}};
+    {"discard", decide_on_rejected, kRejectedNumber, "delete a message"}};
+constexpr Form kRunForms[] = {
+    {"show", show_present_run, kNothing, "show the present run (default)", "", true},
+    {"new", begin_run, kNothing, "declare that a new run begins"}};
 constexpr Form kRunsForms[] = {
-    {"", Verb::List, kNothing, "", "", true},
-    {"show", Verb::Show, kRunKey, "show one run"},
-    {"report", Verb::Report, kRunKey,
+    {"", list_runs, kNothing, "", "", true},
+    {"show", show_run, kRunKey, "show one run"},
+    {"report", print_run, kRunKey,
      "print the run's report as one HTML file: score, reports, map, coverage, robots, alarms", "--to"},
-    {"delete", Verb::Delete, kRunKey,
+    {"delete", delete_run, kRunKey,
      "delete the run's map, tracks and plots for good. Its reports stay in the ledger", "--yes"}};
 constexpr Form kSettingsForms[] = {
-    {"show", Verb::Show, kKey,
+    {"show", show_settings, kKey,
      "show the settings that differ from the defaults, and the tokens that are set (default); with KEY: its "
      "value, meaning and range",
      "", true},
-    {"set", Verb::Set, kKeyAndValue, "change one setting and apply it at once"},
-    {"check", Verb::Check, kFile, "list the errors in FILE, or the changes that it would make"},
-    {"apply", Verb::Apply, kFile, "replace all settings by FILE and apply them at once"},
-    {"export", Verb::Export, kNothing, "print the settings file for `apply`. It contains no tokens"}};
-constexpr Form kCourseForms[] = {{"", Verb::List, kName, "", "", true}};
-constexpr Form kIdentifyForms[] = {{"", Verb::List, kSeconds, "", "", true}};
+    {"set", set_setting, kKeyAndValue, "change one setting and apply it at once"},
+    {"check", check_settings, kFile, "list the errors in FILE, or the changes that it would make"},
+    {"apply", apply_settings, kFile, "replace all settings by FILE and apply them at once"},
+    {"export", export_settings, kNothing, "print the settings file for `apply`. It contains no tokens"}};
+constexpr Form kCourseForms[] = {{"", course, kName, "", "", true}};
+constexpr Form kIdentifyForms[] = {{"", identify, kSeconds, "", "", true}};
 constexpr Form kNetworkForms[] = {
-    {"show", Verb::Show, kNothing, "show the addresses of both ports, and a change to be confirmed (default)",
-     "", true},
-    {"confirm", Verb::Confirm, kNothing,
+    {"show", show_network, kNothing,
+     "show the addresses of both ports, and a change to be confirmed (default)", "", true},
+    {"confirm", decide_on_network, kNothing,
      "keep the change. The box accepts this at its new address only; adit finds that address by "
      "team.interface or --at"},
-    {"revert", Verb::Revert, kNothing, "return to the old addresses now"}};
+    {"revert", decide_on_network, kNothing, "return to the old addresses now"}};
 constexpr Form kClockForms[] = {
-    {"show", Verb::Show, kNothing,
+    {"show", show_clock, kNothing,
      "show the box's time of day, its source, and the difference to this computer (default)", "", true},
-    {"set", Verb::Set, kNothing,
+    {"set", set_clock, kNothing,
      "set the time to this computer's. Stamps, sessions and reports are not affected"}};
 constexpr Form kSpareForms[] = {
-    {"show", Verb::Show, kNothing,
+    {"show", show_spare, kNothing,
      "show whether the box is on standby, and the export that it imported (default)", "", true},
-    {"export", Verb::Export, kExport,
+    {"export", export_spare, kFileIfAny,
      "put the box on standby: it accepts and sends no messages, even after a power cut. Write its ledger, "
      "settings and tokens to FILE, and print the code that opens it",
      "--stick --yes"},
-    {"take", Verb::Take, kExport,
+    {"take", take_spare, kFileIfAny,
      "on the spare: import FILE, show its content, and take over once you confirm. With --stick, FILE may be "
      "left out if the stick holds one export",
      "--stick --code --yes"},
-    {"resume", Verb::Resume, kNothing,
+    {"resume", resume_service, kNothing,
      "end the standby. If a spare has taken over from this box, reports may be sent twice", "--yes"}};
 constexpr Form kLedgerForms[] = {
-    {"new", Verb::New, kNothing,
+    {"new", begin_ledger, kNothing,
      "begin another ledger instead of one that cannot be read. Adit keeps its files, but does not know its "
      "reports: one may be sent twice",
      "--yes"},
-    {"dump", Verb::Dump, kDirectory,
+    {"dump", dump_ledger, kDirectory,
      "print each record of the ledger in DIRECTORY (/var/lib/adit/ledger if not given) as a line of JSON, "
      "without asking Adit"}};
 constexpr Form kTestForms[] = {
-    {"", Verb::List, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
+    {"", test, kNothing, "", "--course --scoring --mapping --scoring-token --mapping-token", true}};
 constexpr Form kUpdateForms[] = {
-    {"", Verb::List, kBundle, "", "--stick --restart --back --stay --again --anyway", true}};
-constexpr Form kHelpForms[] = {{"", Verb::List, kCommand, "", "", true}};
+    {"", update, kFileIfAny, "", "--stick --restart --back --stay --again --anyway", true}};
 constexpr Form kCompleteForms[] = {
-    {"reports", Verb::Reports, kWord, "list the reports that `adit reports WORD` applies to"},
-    {"rejected", Verb::Rejected, kNothing, "list the rejected messages"},
-    {"courses", Verb::Courses, kNothing, "list the courses"},
-    {"runs", Verb::Runs, kNothing, "list the kept runs"},
-    {"keys", Verb::Keys, kNothing, "list the settings keys, without asking Adit"}};
-constexpr Form kCheckForms[] = {{"", Verb::List, kSettingsFile, "", "", true}};
+    {"reports", complete_reports, kWord, "list the reports that `adit reports WORD` applies to"},
+    {"rejected", complete_rejected, kNothing, "list the rejected messages"},
+    {"courses", complete_courses, kNothing, "list the courses"},
+    {"runs", complete_runs, kNothing, "list the kept runs"},
+    {"keys", complete_keys, kNothing, "list the settings keys, without asking Adit", "--at --token-file"}};
+constexpr Form kCheckForms[] = {{"", check, kSettingsFile, "", "", true}};
 
 constexpr CommandRow kCommands[] = {
-    {Command::Status, "status", "show alarms, run, Command Post, reports and each robot's maps", kPlain,
+    {"status", "show alarms, run, Command Post, reports and each robot's maps", kStatusForms,
      "Alarms:\n"
      "  x bad    a fault\n"
      "  ? ask    the operator must decide\n"
@@ -127,7 +128,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit status\n"
      "  adit status --at 10.0.0.1 --token-file team.token\n"
      "  sudo adit status --json | jq '.run.remaining_reports'"},
-    {Command::Watch, "watch", "show `adit status` continuously", kPlain,
+    {"watch", "show `adit status` continuously", kWatchForms,
      "On a terminal: redraw at most once a second until q or Ctrl-C. In a pipe or a file: print the status "
      "once, then a line for each change. With --json: print the view on one line, at most once a second. If "
      "Adit does not answer, print the error and try again.",
@@ -135,7 +136,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit watch\n"
      "  sudo adit watch | tee run.log\n"
      "  sudo adit watch --json | jq --unbuffered '.run.score'"},
-    {Command::Reports, "reports", "list artifact reports; send, hold, withdraw or settle them", kReportForms,
+    {"reports", "list artifact reports; send, hold, withdraw or settle them", kReportForms,
      "Without a subcommand: list the reports of the present run and the unfinished ones of other runs, the "
      "newest first. A report in doubt delays no other report.\n"
      "\n"
@@ -151,32 +152,31 @@ constexpr CommandRow kCommands[] = {
      "                    the operator settled it\n"
      "  withdrawn         the operator withdrew it, or it repeats an earlier report and got that answer",
      "no report is held or waits for a decision, or the action succeeded",
-     "a report is held, or in doubt and for you to decide, or the action was rejected",
+     "a report is held, or in doubt and for you to decide, or does not exist, or the action was rejected",
      "  sudo adit reports --last 5\n"
      "  sudo adit reports show 14\n"
      "  sudo adit reports send 15 16\n"
      "  sudo adit reports export > reports.csv\n"
      "  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'"},
-    {Command::Rejected, "rejected", "list maps, states and markers that the Command Post rejected",
-     kRejectedForms,
+    {"rejected", "list maps, states and markers that the Command Post rejected", kRejectedForms,
      "A message is listed if the Command Post rejected it (400, 413, 422), or failed at it repeatedly (500) "
      "while others were delivered. Adit keeps the newest 100.",
      "no message needs a decision, or the action succeeded",
      "a message is listed that no newer one has replaced, or the action was rejected", ""},
-    {Command::Run, "run", "show the present run, or begin a new one", kRunForms,
+    {"run", "show the present run, or begin a new one", kRunForms,
      "Adit detects a new run if the run's name or team changes, more reports are left, or the run clock goes "
      "back. If only the clock shows it, a report that repeats one of the old run is held until an answer "
      "names the run. Otherwise declare it with `adit run new`. Unsent reports of the old run are then held, "
      "and a report that repeats one of an old run is a new report.",
      "the command succeeded", "", "  sudo adit run new"},
-    {Command::Runs, "runs", "list the kept runs; show, print or delete one", kRunsForms,
+    {"runs", "list the kept runs; show, print or delete one", kRunsForms,
      "Without a subcommand: list the runs whose map, tracks and plots are kept, the latest first. KEY is the "
      "first column.",
      "the command succeeded", "the run does not exist, or was not deleted",
      "  sudo adit runs\n"
      "  sudo adit runs report 3 --to run-3.html\n"
      "  sudo adit runs --json | jq -r '.runs[] | [.key, .course, .score] | @tsv'"},
-    {Command::Settings, "settings", "show or change Adit's settings", kSettingsForms,
+    {"settings", "show or change Adit's settings", kSettingsForms,
      "New settings are in use within a second, and cut only connections to a removed address. If Adit cannot "
      "use them, it keeps the old ones, and `adit status` says why.\n"
      "An item of a list is named by its name or its index: robots[ugv1].alias, team.listen[0].port. VALUE is "
@@ -185,24 +185,24 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit settings set reports.review all\n"
      "  sudo adit settings export > box.json\n"
      "  sudo adit settings check box.json && sudo adit settings apply box.json"},
-    {Command::Course, "course", "list the courses, or switch to another course's Command Post", kCourseForms,
+    {"course", "list the courses, or switch to another course's Command Post", kCourseForms,
      "Without NAME: list the courses of the settings and mark the one in use. \"\" as NAME switches to the "
      "endpoints of command_post itself.\n"
      "Unfinished reports stay with the old Command Post until you switch back; `adit reports send` sends one "
      "to the new one instead. If the old Command Post never answered, queued reports go to the first that "
      "does.",
      "the command succeeded", "the course does not exist", "  sudo adit course B"},
-    {Command::Identify, "identify", "flash the box's lights, to tell it from others", kIdentifyForms,
+    {"identify", "flash the box's lights, to tell it from others", kIdentifyForms,
      "All lights flash together, twice a second, for SECONDS (1 to 60; 10 if not given).", "the lights flash",
      "", "  sudo adit identify 30"},
-    {Command::Network, "network", "show the box's own addresses; confirm or revert a change", kNetworkForms,
+    {"network", "show the box's own addresses; confirm or revert a change", kNetworkForms,
      "The page changes addresses. The box applies the change at once and returns to the old addresses unless "
      "you confirm within network.confirm_within_ms.",
      "no change is to be confirmed, or the action succeeded",
      "a change is to be confirmed, or the action was rejected",
      "  sudo adit network\n"
      "  sudo adit network confirm --at 192.168.8.11"},
-    {Command::Clock, "clock", "show or set the box's time of day", kClockForms,
+    {"clock", "show or set the box's time of day", kClockForms,
      "After boot a box without a battery continues from the last time that it knew, until the Command Post's "
      "answers, "
      "robots' stamps, the page or `adit clock set` set it. While the NTP server of clock.ntp_server answers, "
@@ -210,7 +210,7 @@ constexpr CommandRow kCommands[] = {
      "the time is set, or is being set", "the time is not set, or setting it failed",
      "  adit clock\n"
      "  adit clock set --at 10.0.0.1 --token-file team.token"},
-    {Command::Test, "test", "test each endpoint of the Command Post; uses up no report", kTestForms,
+    {"test", "test each endpoint of the Command Post; uses up no report", kTestForms,
      "Steps:\n"
      "  link     the Command Post's port has a carrier\n"
      "  address  the port has an address, and no other machine has the same\n"
@@ -224,7 +224,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit test\n"
      "  sudo adit test --scoring 10.100.2.200 --mapping 10.100.2.201\n"
      "  sudo adit test --json | jq '.endpoints[].steps[] | select(.state == \"bad\")'"},
-    {Command::Spare, "spare", "replace this box by a spare one, without sending a report twice", kSpareForms,
+    {"spare", "replace this box by a spare one, without sending a report twice", kSpareForms,
      "Steps:\n"
      "  1. on the first box: adit spare export FILE (or --stick)\n"
      "  2. unplug the first box\n"
@@ -237,7 +237,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit spare export /media/stick/box.adit-spare\n"
      "  sudo adit spare take /media/stick/box.adit-spare --code '1234 5678 9012 3456'\n"
      "  adit spare export --stick --at 10.0.0.1 --token-file team.token"},
-    {Command::Ledger, "ledger", "print the ledger's records, or begin another ledger", kLedgerForms,
+    {"ledger", "print the ledger's records, or begin another ledger", kLedgerForms,
      "The ledger has all reports and runs, each step of them as a record. A record that is missing is "
      "printed "
      "as {\"gap\": ...}.",
@@ -245,7 +245,7 @@ constexpr CommandRow kCommands[] = {
      "a record is missing or damaged, or the ledger can be read, so that Adit begins no other",
      "  sudo adit ledger dump | jq -c '.reports[]?'\n"
      "  sudo adit ledger new"},
-    {Command::Update, "update", "show the box's version, or install another", kUpdateForms,
+    {"update", "show the box's version, or install another", kUpdateForms,
      "Without FILE or an option: show the running version, its slot, and the result of the last update. FILE "
      "is adit-BOARD-VERSION.raucb. The box checks it and installs it in the other slot, which takes some "
      "minutes; reports and maps go on.\n"
@@ -257,17 +257,17 @@ constexpr CommandRow kCommands[] = {
      "the update was rejected or failed, an unexpected slot runs, a report is queued or being sent, or the\n"
      "     box cannot be updated",
      "  sudo adit update adit-qemu-virt-0.2.0.raucb && sudo adit update --restart"},
-    {Command::Check, "check", "list all errors of a settings file", kCheckForms,
+    {"check", "list all errors of a settings file", kCheckForms,
      "Read SETTINGS (/etc/adit/settings.json if not given) as aditd does, and name each error by the path of "
      "its key. Summarise correct settings, and warn if a Command Post's token does not have 16 characters or "
      "the team's network overlaps the Command Post's.",
      "the settings are correct", "they are wrong",
      "  adit check\n"
      "  adit check new.json && sudo install -m 644 new.json /etc/adit/settings.json"},
-    {Command::Complete, "complete", "list the words that shells complete", kCompleteForms,
+    {"complete", "list the words that shells complete", kCompleteForms,
      "Each line is a word, a tab, and its description.", "the command succeeded", "",
      "  adit complete reports send"},
-    {Command::Help, "help", "explain a command: adit help COMMAND", kHelpForms, "", "", "", ""}};
+    {"help", "explain a command: adit help COMMAND", {}, "", "", "", ""}};
 
 }  // namespace
 

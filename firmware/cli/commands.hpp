@@ -5,92 +5,52 @@
 #include <span>
 #include <string_view>
 
+#include "cli/ask.hpp"
+
 namespace adit::cli {
-
-enum class Command : std::uint8_t {
-  Status,
-  Watch,
-  Reports,
-  Rejected,
-  Run,
-  Runs,
-  Settings,
-  Course,
-  Identify,
-  Network,
-  Clock,
-  Spare,
-  Ledger,
-  Test,
-  Update,
-  Check,
-  Complete,
-  Help
-};
-
-/// What a command is to do.
-enum class Verb : std::uint8_t {
-  List,
-  Show,
-  Send,
-  Hold,
-  Withdraw,
-  Settle,
-  Resubmit,
-  Export,
-  Discard,
-  New,
-  Check,
-  Apply,
-  Confirm,
-  Set,
-  Revert,
-  Reports,
-  Rejected,
-  Courses,
-  Runs,
-  Keys,
-  Report,
-  Delete,
-  Take,
-  Resume,
-  Dump
-};
-
-/// What an argument may be, for the completion of shells: `adit complete` lists all but files.
-enum class Among : std::uint8_t { Anything, Files, Reports, Rejected, Courses, Runs, Keys, Commands };
 
 /// What stands behind a command, or behind its word.
 struct Argument {
-  const char* shown;  // in the help: "NUMBER..."
+  const char* shown;  // in the help, and for completion: "NUMBER..."
   const char* noun;   // "a report's number"
   std::size_t least, most;
   std::int64_t largest;  // of a number; 0: it is a text
-  Among among = Among::Anything;
+};
+
+/// The function of a command: one that asks Adit, or one that does not.
+struct Run {
+  using Asks = Result<Outcome> (*)(const Call& call);
+  using Alone = Result<Outcome> (*)(const Options& options, const Console& console);
+
+  constexpr Run(Asks run) : asks(run) {}    // NOLINT(google-explicit-constructor): for the table
+  constexpr Run(Alone run) : alone(run) {}  // NOLINT(google-explicit-constructor)
+
+  Asks asks = nullptr;
+  Alone alone = nullptr;
 };
 
 /// What a command does at a word of its own; "": without one.
 struct Form {
   const char* word;
-  Verb verb;
+  Run run;
   Argument argument;
   const char* sentence;
   std::string_view options = "";  // that other commands do not take
-  bool usual = false;             // also where no word is said
+  bool usual = false;             // also if the line has no word
 };
 
-/// All that is to be known of a command, to read and to explain it.
+/// A command: what reads, runs, explains, documents and completes it comes from here.
 struct CommandRow {
-  Command command;
   const char* name;
   const char* sentence;
-  std::span<const Form> forms;
-  const char* details;    // as `about` of command_line::Program
-  const char* fine;       // what exit status 0 means
-  const char* attention;  // and 1; "": it is none of its
+  std::span<const Form> forms;  // none: it is help
+  const char* details;          // as `about` of command_line::Program
+  const char* fine;             // what exit status 0 means
+  const char* attention;        // and 1; "": it is none of its
   const char* examples;
 };
 
+/// The last is help.
 std::span<const CommandRow> commands();
 
 }  // namespace adit::cli

@@ -1,15 +1,12 @@
-#include "cli/complete.hpp"
-
 #include <algorithm>
 
 #include "api/kept_runs.hpp"
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
 #include "api/settings_rows.hpp"
-#include "cli/ask.hpp"
-#include "cli/reading.hpp"
-#include "cli/report_verbs.hpp"
+#include "cli/handlers.hpp"
 #include "cli/reports_text.hpp"
+#include "cli/settings_key.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 
@@ -20,78 +17,6 @@ namespace {
 struct Candidate {
   std::string word, what;
 };
-using Candidates = std::expected<std::vector<Candidate>, std::string>;
-
-bool can_be_said(std::string_view word, const api::ReportRow& report) {
-  return word.empty() || word == "show" || std::ranges::count(verbs_for(report), word) > 0;
-}
-
-Candidates reports_by_number(const Adit& adit, const std::string& word) {
-  const auto json = get(adit, "/adit/reports");
-  if (!json) return std::unexpected(json.error());
-  const auto rows = read<std::vector<api::ReportRow>>(adit, *json);
-  if (!rows) return std::unexpected(rows.error());
-  std::vector<Candidate> all;
-  for (const api::ReportRow& report : *rows) {
-    if (can_be_said(word, report))
-      all.push_back({std::to_string(report.number), report.type + ", " + life_of(report)});
-  }
-  return all;
-}
-
-Candidates rejected_by_number(const Adit& adit) {
-  const auto json = get(adit, "/adit/run");
-  if (!json) return std::unexpected(json.error());
-  const auto view = read<api::RunView>(adit, *json);
-  if (!view) return std::unexpected(view.error());
-  std::vector<Candidate> all;
-  for (const api::RejectedRow& row : view->rejected)
-    all.push_back({std::to_string(row.number), row.kind + (row.robot.empty() ? "" : " of " + row.robot)});
-  return all;
-}
-
-Candidates courses_by_name(const Adit& adit) {
-  const auto json = get(adit, "/adit/settings");
-  if (!json) return std::unexpected(json.error());
-  return read<std::vector<Candidate>>(adit, *json, [](const codec::Field& root) {
-    const codec::Field settings = root.member("settings"), list = settings.member("courses");
-    std::vector<Candidate> all;
-    for (std::size_t i = 0; i < list.size(); ++i) {
-      const codec::Field course = list.element(i), scoring = course.member("scoring");
-      all.push_back({text(course, "name"), text(scoring, "address")});
-    }
-    return all;
-  });
-}
-
-Candidates runs_by_key(const Adit& adit) {
-  const auto json = get(adit, "/adit/runs");
-  if (!json) return std::unexpected(json.error());
-  const auto list = read<api::RunList>(adit, *json);
-  if (!list) return std::unexpected(list.error());
-  std::vector<Candidate> all;
-  for (const api::RunRow& run : list->runs)
-    all.push_back({run.key, run.is_present ? "the present run" : api::iso_time(run.began)});
-  return all;
-}
-
-Candidates asked_for(const Options& options) {
-  const auto adit = adit_of(options);
-  if (!adit) return std::unexpected(adit.error());
-  if (options.verb == Verb::Rejected) return rejected_by_number(*adit);
-  if (options.verb == Verb::Courses) return courses_by_name(*adit);
-  if (options.verb == Verb::Runs) return runs_by_key(*adit);
-  return reports_by_number(*adit, options.word);
-}
-
-/// Each with the beginning of what it means.
-std::vector<Candidate> keys_by_path(const std::vector<api::KeyRow>& rows) {
-  std::vector<Candidate> all;
-  all.reserve(rows.size());
-  for (const api::KeyRow& key : rows)
-    all.push_back({key.path, key.meaning.substr(0, key.meaning.find_first_of(".:;"))});
-  return all;
-}
 
 /// Whether no shell takes it for more than a word.
 bool is_plain(std::string_view word) {
@@ -109,23 +34,74 @@ std::string lines(const std::vector<Candidate>& all) {
   return text;
 }
 
-std::string as_json(const std::vector<Candidate>& all) {
+std::string json_of(const std::vector<Candidate>& all) {
   codec::Value::Array list;
   for (const Candidate& each : all)
     list.push_back({codec::Value::Object{{"word", {each.word}}, {"what", {each.what}}}});
-  return codec::write_json({list}) + '\n';
+  return codec::write_json({list});
+}
+
+/// The words that `candidates_of` finds in Adit's answer.
+template <class Row>
+Result<Outcome> listed(const Call& call, const char* target,
+                       const std::function<std::vector<Candidate>(const Row&)>& candidates_of) {
+  const auto told = fetch<Row>(call.adit, target);
+  if (!told) return std::unexpected(told.error());
+  const auto all = candidates_of(told->row);
+  return said(call, json_of(all), lines(all));
 }
 
 }  // namespace
 
-Outcome complete(const Options& options) {
-  if (options.verb == Verb::Keys) {
-    const auto rows = api::key_rows();
-    return {Exit::Fine, options.json ? codec::to_json(rows) + '\n' : lines(keys_by_path(rows)), ""};
-  }
-  const Candidates all = asked_for(options);
-  if (!all) return unable(all.error());
-  return {Exit::Fine, options.json ? as_json(*all) : lines(*all), ""};
+Result<Outcome> complete_reports(const Call& call) {
+  using Reports = std::vector<api::ReportRow>;
+  const std::string word = call.options.argument();
+  return listed<Reports>(call, "/adit/reports", [&word](const Reports& reports) {
+    std::vector<Candidate> all;
+    for (const api::ReportRow& report : reports) {
+      if (word.empty() || word == "show" || std::ranges::count(verbs_for(report), word) > 0)
+        all.push_back({std::to_string(report.number), report.type + ", " + life_of(report)});
+    }
+    return all;
+  });
+}
+
+Result<Outcome> complete_rejected(const Call& call) {
+  return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
+    std::vector<Candidate> all;
+    for (const api::RejectedRow& row : view.rejected)
+      all.push_back({std::to_string(row.number), row.kind + (row.robot.empty() ? "" : " of " + row.robot)});
+    return all;
+  });
+}
+
+Result<Outcome> complete_courses(const Call& call) {
+  const auto setup = fetch<api::SetupView>(call.adit, "/adit/settings");
+  if (!setup) return std::unexpected(setup.error());
+  const auto settings = settings_in(setup->row);
+  if (!settings) return std::unexpected(settings.error());
+  std::vector<Candidate> all;
+  for (const settings::Course& course : settings->courses)
+    all.push_back({course.name, course.scoring.address});
+  return said(call, json_of(all), lines(all));
+}
+
+Result<Outcome> complete_runs(const Call& call) {
+  return listed<api::RunList>(call, "/adit/runs", [](const api::RunList& list) {
+    std::vector<Candidate> all;
+    for (const api::RunRow& run : list.runs)
+      all.push_back({run.key, run.is_present ? "the present run" : api::iso_time(run.began)});
+    return all;
+  });
+}
+
+/// Each with the beginning of its meaning.
+Result<Outcome> complete_keys(const Options& options, const Console& /*console*/) {
+  const auto rows = api::key_rows();
+  std::vector<Candidate> all;
+  for (const api::KeyRow& key : rows)
+    all.push_back({key.path, key.meaning.substr(0, key.meaning.find_first_of(".:;"))});
+  return Outcome{Exit::Fine, options.json ? codec::to_json(rows) + '\n' : lines(all), ""};
 }
 
 }  // namespace adit::cli

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "cli/reading.hpp"
 #include "cli/where.hpp"
 #include "codec/apply_patch.hpp"
 #include "codec/json.hpp"
@@ -11,9 +10,10 @@ namespace adit::cli {
 namespace {
 
 Look seen(const Adit& adit, const codec::Value& told) {
-  auto view = read<api::RunView>(adit, told);
-  if (!view) return std::unexpected(std::move(view.error()));
-  return Seen{told, *std::move(view)};
+  Seen seen{told, {}};
+  const auto is_read = read_into(adit, told, codec::kind_of<api::RunView>, &seen.view);
+  if (!is_read) return std::unexpected(is_read.error().sentence);
+  return seen;
 }
 
 }  // namespace
@@ -61,11 +61,9 @@ std::optional<Look> Follower::lost(const std::string& why) {
 
 Look Follower::ask() const {
   const auto json = get(adit_, "/adit/run");
-  if (!json) return std::unexpected(json.error());
-  const auto told = codec::parse_json(*json);
-  if (!told)
-    return std::unexpected("cannot read the answer of Adit at " + written(adit_.address) + ": " +
-                           told.error());
+  if (!json) return std::unexpected(json.error().sentence);
+  const auto told = json_in(adit_, *json);
+  if (!told) return std::unexpected(told.error().sentence);
   return seen(adit_, *told);
 }
 

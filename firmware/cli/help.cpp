@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <deque>
 
-#include "cli/options.hpp"
+#include "cli/commands.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::cli {
@@ -15,6 +15,9 @@ using command_line::Row;
 constexpr const char* kUnable =
     "\n  2  if Adit cannot be reached, or the token, a file or the command line is wrong\n";
 
+/// Options that most commands take.
+constexpr std::string_view kUsual = "--at --settings --token-file --json --version --help";
+
 /// Rows that are only read by people, before the options.
 void put_first(Program& program, const std::vector<Row>& rows) {
   program.rows.insert(program.rows.begin(), rows.begin(), rows.end());
@@ -22,11 +25,10 @@ void put_first(Program& program, const std::vector<Row>& rows) {
 
 /// Leaves the options that the command takes. That of the settings is a word of check's own.
 void limit_to(Program& program, const CommandRow& command) {
-  const bool checks = command.command == Command::Check;
+  const bool checks = command.name == std::string_view("check");
   std::erase_if(program.rows, [&](const Row& row) {
     return (checks && row.word == std::string_view("--settings")) ||
-           std::ranges::none_of(command.forms,
-                                [&](const Form& form) { return takes(command, form, row.word); });
+           std::ranges::none_of(command.forms, [&](const Form& form) { return takes(form, row.word); });
   });
 }
 
@@ -36,7 +38,7 @@ std::string takers_of(const CommandRow& command, const char* option) {
   std::string words;
   bool by_all = true;
   for (const Form& form : command.forms) {
-    if (!takes(command, form, option)) {
+    if (!takes(form, option)) {
       by_all = false;
     } else if (*form.word != '\0') {
       words.append(words.empty() ? "" : ", ").append(form.word);
@@ -61,7 +63,7 @@ std::string usage_of(const CommandRow& command) {
 void explain_all(Program& program) {
   std::vector<Row> rows;
   for (const CommandRow& row : commands()) rows.push_back({row.name, "", row.sentence, command_line::Take()});
-  limit_to(program, commands().back());  // help's own
+  std::erase_if(program.rows, [](const Row& row) { return !is_among(row.word, kUsual); });
   put_first(program, rows);
   program.ending =
       "Exit status:\n  0  if the command succeeded and no alarm needs the operator\n"
@@ -99,20 +101,19 @@ void explain(Program& program, const CommandRow& command, std::deque<std::string
 
 }  // namespace
 
-std::string see_help(Command about) {
-  if (about == Command::Help) return "see \"adit help\"\n";
-  return icd::sentence("see \"adit help ", std::ranges::find(commands(), about, &CommandRow::command)->name,
+std::string see_help(const CommandRow* about) {
+  return icd::sentence("see \"adit help", about == nullptr ? "" : " ", about == nullptr ? "" : about->name,
                        "\"\n");
 }
 
-std::string help_about(Command about) {
+std::string help_about(const CommandRow* about) {
   Options options;
   Program program = command_line_of(options);
   std::deque<std::string> sentences;
-  if (about == Command::Help) {
+  if (about == nullptr) {
     explain_all(program);
   } else {
-    explain(program, *std::ranges::find(commands(), about, &CommandRow::command), sentences);
+    explain(program, *about, sentences);
   }
   return command_line::help(program);
 }

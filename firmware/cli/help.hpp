@@ -2,14 +2,14 @@
 
 #include <string>
 
-#include "cli/commands.hpp"
+#include "cli/options.hpp"
 
 namespace adit::cli {
 
-/// What `adit --help`, or `adit COMMAND --help`, prints.
-[[gnu::cold]] std::string help_about(Command command);
+/// What `adit COMMAND --help` prints; null: `adit --help`.
+[[gnu::cold]] std::string help_about(const CommandRow* command);
 
 /// The line below an error of a command line: which help to read.
-[[gnu::cold]] std::string see_help(Command command);
+[[gnu::cold]] std::string see_help(const CommandRow* command);
 
 }  // namespace adit::cli

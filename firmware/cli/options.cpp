@@ -4,9 +4,11 @@
 #include <charconv>
 #include <utility>
 
+#include "cli/commands.hpp"
 #include "cli/where.hpp"
 #include "codec/row.hpp"
 #include "command_line/read.hpp"
+#include "icd/sentence.hpp"
 #include "spelling/nearest.hpp"
 
 namespace adit::cli {
@@ -32,7 +34,7 @@ std::vector<std::string_view> words_of(const CommandRow& command) {
 std::vector<std::string_view> names_of_commands() {
   std::vector<std::string_view> names;
   for (const CommandRow& row : commands()) {
-    if (row.command != Command::Help) names.emplace_back(row.name);
+    if (!row.forms.empty()) names.emplace_back(row.name);
   }
   return names;
 }
@@ -43,33 +45,26 @@ class Words {
   explicit Words(Options& options) : options_(options) {}
 
   [[gnu::cold]] Wrong take(const std::string& word) {
-    if (command_ == nullptr || command_->command == Command::Help) return take_command(word);
-    if (form_ == nullptr && !words_of(*command_).empty()) return take_form(word);
-    if (form_ == nullptr) form_ = command_->forms.data();
+    if (options_.command == nullptr) return take_command(word);
+    if (options_.form == nullptr && !words_of(*options_.command).empty()) return take_form(word);
+    if (options_.form == nullptr) options_.form = options_.command->forms.data();
     return take_argument(word);
   }
 
-  /// Help, if the line named no command.
-  Command command() const { return command_ == nullptr ? Command::Help : command_->command; }
-
   /// `given`: the options.
   [[gnu::cold]] Wrong finish(std::span<const std::string> given) {
-    if (options_.version) return std::nullopt;
-    if (options_.help || helps_) {
-      if (command_ != nullptr) options_.about = command_->command;
-      return std::nullopt;
-    }
-    if (command_ == nullptr) return "a command is missing: " + codec::in_turn(names_of_commands());
-    options_.command = command_->command;
+    const CommandRow* const command = options_.command;
+    const Form*& form = options_.form;
+    if (options_.version || options_.help) return std::nullopt;
+    if (command == nullptr) return "a command is missing: " + codec::in_turn(names_of_commands());
+    if (form == nullptr && !command->forms.front().usual)
+      return "a subcommand is missing after " + spoken() + ": " + codec::in_turn(words_of(*command));
     const std::string spoken = this->spoken();
-    if (form_ == nullptr && !command_->forms.front().usual)
-      return "a subcommand is missing after " + spoken + ": " + codec::in_turn(words_of(*command_));
-    if (form_ == nullptr) form_ = command_->forms.data();
-    options_.verb = form_->verb;
+    if (form == nullptr) form = command->forms.data();
     for (const std::string& option : given) {
-      if (!takes(*command_, *form_, option)) return spoken + " does not take " + option;
+      if (!takes(*form, option)) return spoken + " does not take " + option;
     }
-    if (count_ < form_->argument.least) return missing_argument();
+    if (count_ < form->argument.least) return missing_argument();
     return disagreement();
   }
 
@@ -79,84 +74,74 @@ class Words {
     if (row == commands().end())
       return std::string("no such command: ").append(word) +
              spelling::did_you_mean(word, names_of_commands());
-    command_ = &*row;
-    helps_ = helps_ || row->command == Command::Help;
+    if (row->forms.empty()) {
+      options_.help = true;
+    } else {
+      options_.command = &*row;
+    }
     return std::nullopt;
   }
 
   Wrong take_form(const std::string& word) {
-    for (const Form& form : command_->forms) {
+    for (const Form& form : options_.command->forms) {
       if (word.empty() || word != form.word) continue;
-      form_ = &form;
+      options_.form = &form;
       return std::nullopt;
     }
-    const auto words = words_of(*command_);
+    const auto words = words_of(*options_.command);
     return "expected " + codec::in_turn(words) + ", got " + word + spelling::did_you_mean(word, words);
   }
 
   Wrong take_argument(const std::string& word) {
-    const Argument& argument = form_->argument;
+    const Argument& argument = options_.form->argument;
     if (count_ == argument.most) return "one word too many: " + word;
     ++count_;
     if (argument.largest == 0) {
-      text() = word;
+      options_.arguments.push_back(word);
       return std::nullopt;
     }
     const auto number = number_in(word, argument.largest);
     if (!number) return std::string("expected ") + argument.noun + ", got " + word;
     options_.numbers.push_back(*number);
-    if (command_->command == Command::Identify) options_.seconds = *number;
     return std::nullopt;
   }
 
-  std::string& text() {
-    if (command_->command == Command::Course) return options_.course.emplace();
-    if (command_->command == Command::Complete) return options_.word;
-    if (command_->command == Command::Runs) return options_.run_key;
-    if (form_->argument.among == Among::Keys) return count_ == 1 ? options_.key : options_.value;
-    return command_->command == Command::Check ? options_.settings : options_.file;
-  }
-
   Wrong missing_argument() const {
-    const std::string missing = std::string(form_->argument.noun) + " is missing";
-    return *form_->word == '\0' ? missing : missing + " after " + form_->word;
+    const std::string missing = std::string(options_.form->argument.noun) + " is missing";
+    return options_.word().empty() ? missing : missing + " after " + options_.word();
   }
 
   /// Two options of which the command takes only one.
   Wrong disagreement() const {
     if (options_.csv && options_.json) return "give --csv or --json, not both";
-    if (command_->command == Command::Spare) return spare_disagreement();
-    if (command_->command != Command::Update) return std::nullopt;
-    const int asked = int{options_.stick} + int{options_.restart} + int{options_.back} + int{options_.stay} +
-                      int{!options_.file.empty()};
+    if (options_.command->name == std::string_view("spare")) return spare_disagreement();
+    if (options_.command->name != std::string_view("update")) return std::nullopt;
+    const bool has_file = !options_.argument().empty();
+    const int asked =
+        int{options_.stick} + int{options_.restart} + int{options_.back} + int{options_.stay} + int{has_file};
     if (asked > 1) return "give only one of FILE, --stick, --restart, --back and --stay";
-    if (options_.again && !options_.stick && options_.file.empty()) return "update does not take --again";
+    if (options_.again && !options_.stick && !has_file) return "update does not take --again";
     if (options_.anyway && !options_.restart && !options_.back) return "update does not take --anyway";
     return std::nullopt;
   }
 
   /// An export is in a file here, or on the box's stick, where the file is named only to tell it from others.
   Wrong spare_disagreement() const {
-    const bool takes_file = options_.verb == Verb::Export || options_.verb == Verb::Take;
-    if (takes_file && !options_.stick && options_.file.empty())
-      return "a file or --stick is missing after " + std::string(form_->word);
-    if (options_.verb == Verb::Export && options_.stick && !options_.file.empty())
-      return "give FILE or --stick, not both";
+    const bool takes_file = options_.form->argument.most > 0, has_file = !options_.argument().empty();
+    if (takes_file && !options_.stick && !has_file)
+      return "a file or --stick is missing after " + options_.word();
+    if (options_.word() == "export" && options_.stick && has_file) return "give FILE or --stick, not both";
     return std::nullopt;
   }
 
   /// "reports send"
   std::string spoken() const {
-    std::string words = command_->name;
-    if (form_ != nullptr && *form_->word != '\0') words.append(" ").append(form_->word);
-    return words;
+    const std::string name = options_.command->name, word = options_.word();
+    return word.empty() ? name : name + ' ' + word;
   }
 
   Options& options_;
-  const CommandRow* command_ = nullptr;
-  const Form* form_ = nullptr;
   std::size_t count_ = 0;  // of arguments
-  bool helps_ = false;     // by the command help
 };
 
 /// An endpoint's address, to be tried.
@@ -182,12 +167,17 @@ Wrong take_last(Options& options, const std::string& value) {
 
 }  // namespace
 
-bool takes(const CommandRow& command, const Form& form, std::string_view option) {
-  if (option == "--json" || option == "--settings" || option == "--help") return true;
-  if (option == "--version") return command.command == Command::Help;
-  if (option == "--at" || option == "--token-file")
-    return command.command != Command::Check && form.verb != Verb::Dump;
-  return form.options.contains(option);
+std::string Options::word() const {
+  return form == nullptr ? "" : form->word;
+}
+
+bool is_among(std::string_view option, std::string_view options) {
+  return icd::sentence(" ", options, " ").contains(icd::sentence(" ", option, " "));
+}
+
+bool takes(const Form& form, std::string_view option) {
+  return is_among(option, "--json --settings --help") || is_among(option, form.options) ||
+         (form.run.asks != nullptr && is_among(option, "--at --token-file"));
 }
 
 command_line::Program command_line_of(Options& options) {
@@ -255,7 +245,7 @@ std::expected<Options, WrongLine> parse_options(std::span<const std::string_view
       command_line::take<[](Words& all, const std::string& word) { return all.take(word); }>(others);
   auto wrong = command_line::read(program, arguments);
   if (!wrong) wrong = others.finish(given);
-  if (wrong) return std::unexpected(WrongLine{*std::move(wrong), others.command()});
+  if (wrong) return std::unexpected(WrongLine{*std::move(wrong), options.command});
   return options;
 }
 

@@ -1,12 +1,8 @@
-#include "cli/rejected.hpp"
-
 #include <algorithm>
 
 #include "api/run_view.hpp"
-#include "cli/ask.hpp"
-#include "cli/reading.hpp"
+#include "cli/handlers.hpp"
 #include "cli/table.hpp"
-#include "cli/where.hpp"
 #include "cli/words.hpp"
 
 namespace adit::cli {
@@ -35,40 +31,25 @@ std::string table_of(const api::RunView& view, bool colour) {
   return table.written(colour);
 }
 
-Outcome list_rejected(const Adit& adit, const Options& options, bool colour) {
-  const auto view = run_view(adit);
-  if (!view) return unable(view.error());
-  const bool waits =
-      std::ranges::any_of(view->rejected, [](const api::RejectedRow& row) { return !row.replaced; });
-  const Exit exit = waits ? Exit::Attention : Exit::Fine;
-  if (options.json) return {exit, codec::to_json(view->rejected) + '\n', ""};
-  return {exit, table_of(*view, colour), ""};
-}
-
 }  // namespace
 
-Outcome rejected(const Options& options, bool colour) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  if (options.verb == Verb::Show) return list_rejected(*adit, options, colour);
-  Outcome outcome;
-  for (const std::int64_t number : options.numbers) {
-    const std::string text = std::to_string(number);
-    const auto answer =
-        post(*adit, "/adit/rejected/" + text + (options.verb == Verb::Send ? "/send" : "/discard"), "",
-             "adit rejected");
-    if (!answer) {
-      outcome.exit = std::max(outcome.exit, answer.error().exit);
-      outcome.err += unable(answer.error().sentence).err;
-      if (answer.error().exit == Exit::Unable) break;
-    } else if (options.json) {
-      outcome.out += *answer + '\n';
-    } else {
-      outcome.out +=
-          "message " + text + (options.verb == Verb::Send ? " is queued again\n" : " is deleted\n");
-    }
-  }
-  return outcome;
+Result<Outcome> list_rejected(const Call& call) {
+  const auto told = fetch<api::RunView>(call.adit, "/adit/run");
+  if (!told) return std::unexpected(told.error());
+  const api::RunView& view = told->row;
+  const bool waits =
+      std::ranges::any_of(view.rejected, [](const api::RejectedRow& row) { return !row.replaced; });
+  return said(call, codec::to_json(view.rejected), table_of(view, call.console.colour),
+              waits ? Exit::Attention : Exit::Fine);
+}
+
+Result<Outcome> decide_on_rejected(const Call& call) {
+  const std::string verb = call.options.word();
+  return act_on_each(call, [&](std::int64_t number) {
+    return act(call,
+               {.target = icd::sentence("/adit/rejected/", number, "/", verb), .check = "adit rejected"},
+               icd::sentence("message ", number, verb == "send" ? " is queued again\n" : " is deleted\n"));
+  });
 }
 
 }  // namespace adit::cli

@@ -1,8 +1,5 @@
-#include "cli/report_text.hpp"
-
 #include "api/reports_csv.hpp"
 #include "cli/ask.hpp"
-#include "cli/report_verbs.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
 #include "dispatch/report_life.hpp"
@@ -20,26 +17,23 @@ std::string place_of(const icd::Point& point) {
   return decimal(point.x, 3) + ", " + decimal(point.y, 3) + ", " + decimal(point.z, 3) + " m";
 }
 
-std::string facts(const api::ReportDetail& detail, bool colour) {
+std::string facts_of(const api::ReportDetail& detail, bool colour) {
   const api::ReportRow& report = detail.row;
-  Table table({{}, {}});
-  const auto add = [&table](const char* name, const std::string& text, Tone tone = Tone::Plain) {
-    if (!text.empty()) table.add({{name, Tone::Faint}, {text, tone}});
-  };
-  add("report", std::to_string(report.number), Tone::Strong);
-  add("type", report.type, Tone::Strong);
-  add("at", report.position ? place_of(*report.position) : "lost");
-  add("state", life_of(report), tone_of(report));
-  add("reason", report.note);
-  add("answer", said_of(report));
-  add("score", gained_by(report));
-  add("run", std::to_string(report.run));
-  add("sender", report.sender);
-  add("robot", report.robot);
-  add("received", api::iso_time(report.received));
-  add("message", sentence_in(detail.answer));
-  add("actions", actions_for(report));
-  return table.written(colour);
+  Facts facts;
+  facts.add("report", std::to_string(report.number), Tone::Strong);
+  facts.add("type", report.type, Tone::Strong);
+  facts.add("at", report.position ? place_of(*report.position) : "lost");
+  facts.add("state", life_of(report), tone_of(report));
+  facts.add("reason", report.note);
+  facts.add("answer", said_of(report));
+  facts.add("score", gained_by(report));
+  facts.add("run", std::to_string(report.run));
+  facts.add("sender", report.sender);
+  facts.add("robot", report.robot);
+  facts.add("received", api::iso_time(report.received));
+  facts.add("message", sentence_in(detail.answer));
+  facts.add("actions", actions_for(report));
+  return facts.written(colour);
 }
 
 std::string shown(const std::string& state) {
@@ -58,7 +52,7 @@ std::string history(const api::ReportDetail& detail, bool colour) {
 }  // namespace
 
 std::string report_text(const api::ReportDetail& detail, bool colour) {
-  return facts(detail, colour) + history(detail, colour);
+  return facts_of(detail, colour) + history(detail, colour);
 }
 
 }  // namespace adit::cli

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "api/run_view.hpp"
@@ -21,6 +22,9 @@ std::string said_of(const api::ReportRow& report);
 /// "+1", "0", or "" where it is not known.
 std::string gained_by(const api::ReportRow& report);
 
+/// The subcommands of `adit reports` that apply to the report: the transitions from its state.
+std::vector<std::string_view> verbs_for(const api::ReportRow& report);
+
 /// How many reports `adit reports` leaves out.
 struct NotListed {
   std::size_t older = 0;  // than the reports of --last
@@ -30,5 +34,8 @@ struct NotListed {
 /// What `adit reports` prints.
 std::string reports_text(const std::vector<api::ReportRow>& reports, const NotListed& rest, api::Time now,
                          bool colour);
+
+/// What `adit reports show` prints.
+std::string report_text(const api::ReportDetail& detail, bool colour);
 
 }  // namespace adit::cli

@@ -1,13 +1,10 @@
-#include "cli/runs.hpp"
-
 #include <algorithm>
 #include <fstream>
 
 #include "api/kept_runs.hpp"
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
-#include "cli/ask.hpp"
-#include "cli/reading.hpp"
+#include "cli/handlers.hpp"
 #include "cli/table.hpp"
 #include "cli/words.hpp"
 #include "host/log.hpp"
@@ -34,7 +31,7 @@ std::string course_of(const RunRow& run) {
   return run.course.empty() ? run.post : run.course;
 }
 
-std::string table_of(const api::RunList& list, bool colour) {
+std::string text_of(const api::RunList& list, bool colour) {
   std::string text;
   if (!list.trouble.empty())
     text = painted("Runs are not being kept: " + host::escaped(list.trouble), Tone::Bad, colour) + '\n';
@@ -60,92 +57,22 @@ std::string table_of(const api::RunList& list, bool colour) {
   return text + table.written(colour);
 }
 
-Outcome list_runs(const Adit& adit, const Options& options, bool colour) {
-  const auto json = get(adit, "/adit/runs");
-  if (!json) return unable(json.error());
-  const auto list = read<api::RunList>(adit, *json);
-  if (!list) return unable(list.error());
-  return {Exit::Fine, options.json ? *json + '\n' : table_of(*list, colour), ""};
-}
-
 std::string text_of(const RunRow& run, bool colour) {
   std::string robots;
   for (const std::string& name : run.robots) robots.append(robots.empty() ? "" : ", ").append(name);
-  Table table({{}, {}});
-  const auto add = [&table](const char* name, const std::string& text, Tone tone = Tone::Plain) {
-    if (!text.empty()) table.add({{name, Tone::Faint}, {text, tone}});
-  };
-  add("run", run.key + (run.is_present ? " (now)" : ""), Tone::Strong);
-  add("name", run.id);
-  add("course", run.course);
-  add("Command Post", run.post);
-  add("team", run.team);
-  add("began", begin_of(run));
-  add("last", api::iso_time(run.last));
-  add("score", number_or_none(run.score), Tone::Strong);
-  add("reports left", number_or_none(run.remaining_reports));
-  add("robots", robots);
-  add("size", size(run.bytes));
-  return table.written(colour);
-}
-
-/// A run's key is part of a path: digits, and a hyphen where two runs have the same number.
-bool is_key(const std::string& key) {
-  return !key.empty() && key.find_first_not_of("0123456789-") == std::string::npos;
-}
-
-std::string path_of(const Options& options) {
-  return "/adit/runs/" + options.run_key;
-}
-
-Outcome show(const Adit& adit, const Options& options, bool colour) {
-  const auto json = find(adit, path_of(options));
-  if (!json) return unable(json.error());
-  const auto run = read<RunRow>(adit, *json);
-  if (!run) return unable(run.error());
-  return {Exit::Fine, options.json ? *json + '\n' : text_of(*run, colour), ""};
-}
-
-Outcome report(const Adit& adit, const Options& options) {
-  const auto html = find(adit, path_of(options) + "/report.html", kPrinted);
-  if (!html) return unable(html.error());
-  if (options.to.empty()) return {Exit::Fine, *html, ""};
-  std::ofstream file(options.to, std::ios::binary);
-  if (!file || !(file << *html).flush()) return unable(options.to + ": cannot be written");
-  if (!options.json)
-    return {
-        Exit::Fine,
-        icd::sentence("wrote the report of run ", options.run_key, " to ") + host::escaped(options.to) + '\n',
-        ""};
-  const codec::Value said{codec::Value::Object{
-      {"key", {options.run_key}}, {"file", {options.to}}, {"bytes", {std::uint64_t{html->size()}}}}};
-  return {Exit::Fine, codec::write_json(said) + '\n', ""};
-}
-
-/// Why it is not deleted; nothing if the operator confirms.
-std::optional<Failure> doubt(const Adit& adit, const Options& options, const Console& console) {
-  const auto json = find(adit, path_of(options));
-  if (!json) return json.error();
-  const auto run = read<RunRow>(adit, *json);
-  if (!run) return Failure{Exit::Unable, run.error()};
-  const std::string began = run->began > 0 ? icd::sentence("began ", begin_of(*run), ", ") : "";
-  const std::string score = run->score ? icd::sentence("score ", *run->score, ", ") : "";
-  const std::string why =
-      icd::sentence("run ", run->key, " (", began, score, size(run->bytes),
-                    "): its map, tracks and plots will be deleted for good; its reports stay in the ledger.");
-  const auto meant = console.ask(host::escaped(why) + "\nDelete it?");
-  if (!meant) return Failure{Exit::Attention, why + " It was not deleted; to delete it, add --yes"};
-  if (!*meant) return Failure{Exit::Attention, "run " + run->key + " was not deleted"};
-  return std::nullopt;
-}
-
-Outcome remove(const Adit& adit, const Options& options, const Console& console) {
-  if (!options.yes) {
-    if (const auto why = doubt(adit, options, console)) return unable(*why);
-  }
-  const auto done = post(adit, path_of(options) + "/delete", "", "adit runs");
-  if (!done) return unable(done.error());
-  return {Exit::Fine, options.json ? *done + '\n' : "run " + options.run_key + " was deleted\n", ""};
+  Facts facts;
+  facts.add("run", run.key + (run.is_present ? " (now)" : ""), Tone::Strong);
+  facts.add("name", run.id);
+  facts.add("course", run.course);
+  facts.add("Command Post", run.post);
+  facts.add("team", run.team);
+  facts.add("began", begin_of(run));
+  facts.add("last", api::iso_time(run.last));
+  facts.add("score", number_or_none(run.score), Tone::Strong);
+  facts.add("reports left", number_or_none(run.remaining_reports));
+  facts.add("robots", robots);
+  facts.add("size", size(run.bytes));
+  return facts.written(colour);
 }
 
 std::string json_of(const api::RunView& view) {
@@ -156,43 +83,80 @@ std::string json_of(const api::RunView& view) {
     run.emplace_back("score", codec::Value{view.run->score});
     run.emplace_back("remaining_reports", codec::Value{view.run->remaining_reports});
   }
-  return codec::write_json({std::move(run)}) + '\n';
+  return codec::write_json({std::move(run)});
 }
 
 std::string text_of(const api::RunView& view, bool colour) {
-  Table table({{}, {}});
-  const auto add = [&table](const char* name, const std::string& text) {
-    if (!text.empty()) table.add({{name, Tone::Faint}, {text, Tone::Strong}});
-  };
-  add("run", std::to_string(view.run_number));
-  add("name", view.run_id);
-  if (!view.run) return table.written(colour) + "no status from the Command Post yet\n";
-  add("team", view.run->current_team);
-  add("clock", clock(view.run->run_clock));
-  add("score", std::to_string(view.run->score));
-  add("reports left", std::to_string(view.run->remaining_reports));
-  return table.written(colour);
+  Facts facts;
+  facts.add("run", std::to_string(view.run_number), Tone::Strong);
+  facts.add("name", view.run_id, Tone::Strong);
+  if (!view.run) return facts.written(colour) + "no status from the Command Post yet\n";
+  facts.add("team", view.run->current_team, Tone::Strong);
+  facts.add("clock", clock(view.run->run_clock), Tone::Strong);
+  facts.add("score", std::to_string(view.run->score), Tone::Strong);
+  facts.add("reports left", std::to_string(view.run->remaining_reports), Tone::Strong);
+  return facts.written(colour);
+}
+
+/// Its path. A key is digits, with a hyphen if two runs have the same number.
+Result<std::string> path_of(const std::string& key) {
+  if (!key.empty() && key.find_first_not_of("0123456789-") == std::string::npos) return "/adit/runs/" + key;
+  return failed("there is no run " + key + ": see adit runs", Exit::Attention);
+}
+
+Result<void> confirm_deletion(const Call& call, const std::string& path) {
+  const auto told = fetch<RunRow>(call.adit, path);
+  if (!told) return std::unexpected(told.error());
+  const RunRow& run = told->row;
+  const std::string began = run.began > 0 ? icd::sentence("began ", begin_of(run), ", ") : "";
+  const std::string score = run.score ? icd::sentence("score ", *run.score, ", ") : "";
+  return confirm(
+      call.options, call.console,
+      icd::sentence("run ", run.key, " (", began, score, size(run.bytes),
+                    "): its map, tracks and plots will be deleted for good; its reports stay in the ledger."),
+      "Delete it?", "run " + run.key + " was not deleted");
 }
 
 }  // namespace
 
-Outcome present_run(const Options& options, bool colour) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  const auto view = run_view(*adit);
-  if (!view) return unable(view.error());
-  return {Exit::Fine, options.json ? json_of(*view) : text_of(*view, colour), ""};
+Result<Outcome> show_present_run(const Call& call) {
+  const auto told = fetch<api::RunView>(call.adit, "/adit/run");
+  if (!told) return std::unexpected(told.error());
+  return said(call, json_of(told->row), text_of(told->row, call.console.colour));
 }
 
-Outcome runs(const Options& options, const Console& console) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  if (options.verb == Verb::List) return list_runs(*adit, options, console.colour);
-  if (!is_key(options.run_key))
-    return unable(Failure{Exit::Attention, "there is no run " + options.run_key + ": see adit runs"});
-  if (options.verb == Verb::Show) return show(*adit, options, console.colour);
-  if (options.verb == Verb::Report) return report(*adit, options);
-  return remove(*adit, options, console);
+Result<Outcome> list_runs(const Call& call) {
+  return show<api::RunList>(call, "/adit/runs", text_of);
+}
+
+Result<Outcome> show_run(const Call& call) {
+  const auto path = path_of(call.options.argument());
+  if (!path) return std::unexpected(path.error());
+  return show<RunRow>(call, *path, text_of);
+}
+
+Result<Outcome> print_run(const Call& call) {
+  const std::string key = call.options.argument(), to = call.options.to;
+  const auto path = path_of(key);
+  if (!path) return std::unexpected(path.error());
+  const auto html = get(call.adit, *path + "/report.html", kPrinted);
+  if (!html) return std::unexpected(html.error());
+  if (to.empty()) return Outcome{Exit::Fine, *html, ""};
+  std::ofstream file(to, std::ios::binary);
+  if (!file || !(file << *html).flush()) return failed(to + ": cannot be written");
+  const codec::Value json{
+      codec::Value::Object{{"key", {key}}, {"file", {to}}, {"bytes", {std::uint64_t{html->size()}}}}};
+  return said(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));
+}
+
+Result<Outcome> delete_run(const Call& call) {
+  const std::string key = call.options.argument();
+  const auto path = path_of(key);
+  if (!path) return std::unexpected(path.error());
+  if (!call.options.yes) {
+    if (auto meant = confirm_deletion(call, *path); !meant) return std::unexpected(meant.error());
+  }
+  return act(call, {.target = *path + "/delete", .check = "adit runs"}, "run " + key + " was deleted\n");
 }
 
 }  // namespace adit::cli

@@ -62,34 +62,24 @@ void put_values(const Value& value, std::string_view pattern, const std::string&
     put_values(*next, pattern.substr(name.size()), icd::sentence(path, path.empty() ? "" : ".", name), into);
 }
 
-std::string allowed_of(const Value& key) {
-  const Value* const required = member_of(key, "required");
-  const auto* const is_required = required == nullptr ? nullptr : std::get_if<bool>(&required->is);
-  const Value* const usual = member_of(key, "default");
-  std::string text = "  allowed: " + host::escaped(text_at(key, "range"));
-  if (is_required != nullptr && *is_required) return text + "; required\n";
-  return usual == nullptr ? text + "\n" : text + "; default: " + host::escaped(plain(*usual)) + "\n";
+std::string allowed_of(const api::KeyRow& key) {
+  return line("  allowed: ", key.range,
+              key.required ? "; required" : "; default: " + plain(key.default_value));
 }
 
 }  // namespace
 
-std::expected<std::vector<ShownKey>, std::string> keys_named(const Value& answer, const std::string& name) {
-  const Value* const list = member_of(answer, "keys");
-  const Value* const settings = member_of(answer, "settings");
-  const auto* const all = list == nullptr ? nullptr : std::get_if<Value::Array>(&list->is);
-  if (all == nullptr || settings == nullptr)
-    return std::unexpected("cannot read Adit's answer: it has no keys");
+Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std::string& name) {
   std::vector<ShownKey> found;
-  std::vector<std::string> paths;
-  for (const Value& key : *all) {
-    paths.push_back(text_at(key, "path"));
-    if (!begins(paths.back(), name)) continue;
+  std::vector<std::string_view> known;
+  for (const api::KeyRow& key : setup.keys) {
+    known.push_back(key.path);
+    if (!begins(key.path, name)) continue;
     found.push_back({key, {}});
-    put_values(*settings, paths.back(), "", found.back().values);
+    put_values(setup.settings, key.path, "", found.back().values);
   }
   if (!found.empty()) return found;
-  const std::vector<std::string_view> known(paths.begin(), paths.end());
-  return std::unexpected("no such settings key: " + name + spelling::did_you_mean(name, known));
+  return failed("no such settings key: " + name + spelling::did_you_mean(name, known));
 }
 
 Value* value_at(Value& settings, std::string_view path) {
@@ -116,9 +106,9 @@ std::string text_of(const std::vector<ShownKey>& keys, bool colour) {
   for (const ShownKey& key : keys) {
     Table values({{}, {}});
     for (const auto& [path, value] : key.values) values.add({{path, Tone::Strong}, {plain(value)}});
-    if (key.values.empty()) values.add({{text_at(key.described, "path"), Tone::Strong}, {"(none)"}});
-    text += (text.empty() ? "" : "\n") + values.written(colour) + "  " +
-            host::escaped(text_at(key.described, "meaning")) + "\n" + allowed_of(key.described);
+    if (key.values.empty()) values.add({{key.described.path, Tone::Strong}, {"(none)"}});
+    text += (text.empty() ? "" : "\n") + values.written(colour) + line("  ", key.described.meaning) +
+            allowed_of(key.described);
   }
   return text;
 }
@@ -126,7 +116,7 @@ std::string text_of(const std::vector<ShownKey>& keys, bool colour) {
 Value json_of(const std::vector<ShownKey>& keys) {
   Value::Array list;
   for (const ShownKey& key : keys) {
-    Value row = key.described;
+    Value row = codec::json(key.described);
     if (auto* const members = std::get_if<Value::Object>(&row.is))
       members->emplace_back("values", Value{key.values});
     list.push_back(std::move(row));

@@ -1,25 +1,27 @@
 #pragma once
 
-#include <expected>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "codec/value.hpp"
+#include "api/settings_rows.hpp"
+#include "cli/ask.hpp"
 
 namespace adit::cli {
 
-/// One key of the settings, as GET /adit/settings describes it, with its value for each place that it has: of
-/// an item of a list "robots[0].alias".
+/// Why Adit's settings cannot be read is a failure.
+Result<settings::Settings> settings_in(const api::SetupView& setup);
+
+/// One key of the settings, with its value for each place that it has: of an item of a list
+/// "robots[0].alias".
 struct ShownKey {
-  codec::Value described;
+  api::KeyRow described;
   codec::Value::Object values;  // by path
 };
 
-/// The keys that `name` is, or that begin with it ("reports" of "reports.review"), of Adit's answer; or that
-/// there is none, and which was likely meant.
-std::expected<std::vector<ShownKey>, std::string> keys_named(const codec::Value& answer,
-                                                             const std::string& name);
+/// The keys that `name` is, or that begin with it ("reports" of "reports.review"). If there is none, the
+/// failure names the key that was likely meant.
+Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std::string& name);
 
 /// The value at "reports.review", "team.listen[0].port" or "robots[ugv1].alias"; null if there is none.
 codec::Value* value_at(codec::Value& settings, std::string_view path);

@@ -1,9 +1,12 @@
 #include "cli/status_text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "alarms/board.hpp"
+#include "cli/handlers.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
 #include "cli/words.hpp"
@@ -190,6 +193,11 @@ std::string status_text(const RunView& view, bool colour) {
   return alarms_table(view, colour) + run_line(view, colour) + verdict_line(view, colour) + link_line(view) +
          reports_line(view, colour) + endpoints_table(view, colour) + activities_table(view, colour) +
          refusals_table(view, colour);
+}
+
+Result<Outcome> status(const Call& call) {
+  return show<RunView>(call, "/adit/run", status_text,
+                       [](const RunView& view) { return std::ranges::none_of(view.alarms, alarms::calls); });
 }
 
 }  // namespace adit::cli

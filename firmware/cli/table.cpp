@@ -8,8 +8,8 @@
 namespace adit::cli {
 namespace {
 
-std::string line(const std::vector<Cell>& cells, const std::vector<Table::Column>& columns,
-                 const std::vector<std::size_t>& widths, bool colour) {
+std::string row_text(const std::vector<Cell>& cells, const std::vector<Table::Column>& columns,
+                     const std::vector<std::size_t>& widths, bool colour) {
   std::string text;
   std::size_t owed = 0;  // spaces, written only before something that shows: lines do not end in any
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -42,9 +42,13 @@ std::string Table::written(bool colour) const {
     for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], width_of(row[i].text));
   }
   const bool named = std::ranges::any_of(columns_, [](const Column& column) { return !column.name.empty(); });
-  std::string text = named ? line(names, columns_, widths, colour) : "";
-  for (const auto& row : rows_) text += line(row, columns_, widths, colour);
+  std::string text = named ? row_text(names, columns_, widths, colour) : "";
+  for (const auto& row : rows_) text += row_text(row, columns_, widths, colour);
   return text;
+}
+
+void Facts::add(const char* name, const std::string& text, Tone tone) {
+  if (!text.empty()) table_.add({{name, Tone::Faint}, {text, tone}});
 }
 
 }  // namespace adit::cli

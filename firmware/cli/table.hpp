@@ -35,4 +35,15 @@ class Table {
   std::vector<std::vector<Cell>> rows_;
 };
 
+/// Lines of a name and its value.
+class Facts {
+ public:
+  /// Adds no line if `text` is empty.
+  void add(const char* name, const std::string& text, Tone tone = Tone::Plain);
+  std::string written(bool colour) const { return table_.written(colour); }
+
+ private:
+  Table table_{{{}, {}}};
+};
+
 }  // namespace adit::cli

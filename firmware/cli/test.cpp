@@ -1,14 +1,8 @@
-#include "cli/test.hpp"
-
 #include <algorithm>
-#include <thread>
 #include <vector>
 
 #include "api/self_test.hpp"
-#include "cli/ask.hpp"
-#include "cli/http_client.hpp"
-#include "cli/reading.hpp"
-#include "cli/where.hpp"
+#include "cli/handlers.hpp"
 #include "cli/words.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
@@ -16,9 +10,10 @@
 namespace adit::cli {
 namespace {
 
-constexpr std::chrono::seconds kTestPatience{10};
-constexpr std::chrono::milliseconds kTestEvery{250};
-constexpr int kTestTimes = 480;  // two minutes, far longer than all steps may take
+/// Far longer than all steps may take.
+constexpr Waiting kTesting{.within = std::chrono::minutes(2),
+                           .every = std::chrono::milliseconds(250),
+                           .late = "the test has not ended after 2 minutes: see journalctl -u adit"};
 
 bool has_ended(const api::TestStep& step) {
   return step.state == "good" || step.state == "bad" || step.state == "skipped";
@@ -76,21 +71,20 @@ bool is_whole(const api::TestView& view) {
 
 using codec::Value;
 
-/// An endpoint to try, as POST /adit/test takes it; null where none is named.
-std::expected<Value, std::string> endpoint_to_try(const std::optional<settings::Address>& at,
-                                                  const std::string& token_file) {
+/// An endpoint to try, as POST /adit/test takes it; null if none is named.
+Result<Value> endpoint_to_try(const std::optional<settings::Address>& at, const std::string& token_file) {
   Value::Object endpoint;
   if (at) endpoint = {{"address", {at->address}}, {"port", {std::int64_t{at->port}}}};
   if (!token_file.empty()) {
     const auto token = token_in_file(token_file);
-    if (!token) return std::unexpected(token.error());
+    if (!token) return failed(token.error());
     endpoint.emplace_back("token", Value{token->token.reveal()});
   }
   return endpoint.empty() ? Value{} : Value{std::move(endpoint)};
 }
 
 /// The body of POST /adit/test; "" for what is in use.
-std::expected<std::string, std::string> body_of(const Trial& trial) {
+Result<std::string> body_for(const Trial& trial) {
   if (trial.is_of_what_is_in_use()) return "";
   const auto scoring = endpoint_to_try(trial.scoring, trial.scoring_token);
   if (!scoring) return std::unexpected(scoring.error());
@@ -101,47 +95,31 @@ std::expected<std::string, std::string> body_of(const Trial& trial) {
   return codec::write_json({std::move(body)});
 }
 
-/// Begins the test. If one is running, test() joins it, provided that it tests the settings in use.
-std::expected<void, Outcome> begin(const Adit& adit, const Trial& trial) {
-  auto body = body_of(trial);
-  if (!body) return std::unexpected(unable(body.error()));
-  const auto begun = http_ask(adit.address,
-                              {.method = HttpRequest::Method::Post,
-                               .target = "/adit/test",
-                               .token = adit.token.token,
-                               .body = *std::move(body)},
-                              kTestPatience);
-  if (!begun) return std::unexpected(unable(begun.error().sentence));
-  if (begun->status == 200) return {};
-  if (begun->status == 409 && trial.is_of_what_is_in_use()) return {};
-  return std::unexpected(unable(failure(adit, *begun)));
-}
-
 }  // namespace
 
-Outcome test(const Options& options, bool colour, const std::function<void(const std::string&)>& print) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
-  if (auto begun = begin(*adit, options.trial); !begun) return std::move(begun.error());
-  Progress progress(colour, print);
-  for (int i = 0; i < kTestTimes; ++i) {
-    const auto json = get(*adit, "/adit/test");
-    if (!json) return unable(json.error());
-    const auto view = read<api::TestView>(*adit, *json);
-    if (!view) return unable(view.error());
-    if (view->applied != options.trial.is_of_what_is_in_use())
-      return unable("a test of other values is running: try again when it has ended");
-    if (view->outdated) return unable("the settings changed during the test: start it again");
-    if (!options.json) progress.show(*view);
-    if (!view->running) {
-      if (options.json) print(*json + '\n');
-      if (!is_whole(*view))
-        return unable("the test was interrupted, perhaps by a restart of Adit: start it again");
-      return {is_bad(*view) ? Exit::Attention : Exit::Fine, "", ""};
-    }
-    std::this_thread::sleep_for(kTestEvery);
-  }
-  return unable("the test has not ended after 2 minutes: see journalctl -u adit");
+Result<Outcome> test(const Call& call) {
+  const auto& [adit, options, console] = call;
+  const bool is_of_use = options.trial.is_of_what_is_in_use();
+  auto body = body_for(options.trial);
+  if (!body) return std::unexpected(body.error());
+  const auto begun = post(adit, {.target = "/adit/test", .check = "adit test", .body = *std::move(body)});
+  const bool is_joined = !begun && begun.error().status == 409 && is_of_use;
+  if (!begun && !is_joined) return std::unexpected(begun.error());
+  Progress progress(console.colour, console.print);
+  const auto is_other = [&](const api::TestView& view) { return view.applied != is_of_use || view.outdated; };
+  const auto told = fetch_until<api::TestView>(adit, "/adit/test", kTesting, [&](const api::TestView& view) {
+    if (!is_other(view) && !options.json) progress.show(view);
+    return is_other(view) || !view.running;
+  });
+  if (!told) return std::unexpected(told.error());
+  const api::TestView& view = told->row;
+  if (view.applied != is_of_use)
+    return failed("a test of other values is running: try again when it has ended");
+  if (view.outdated) return failed("the settings changed during the test: start it again");
+  if (options.json) console.print(told->json + '\n');
+  if (!is_whole(view))
+    return failed("the test was interrupted, perhaps by a restart of Adit: start it again");
+  return Outcome{is_bad(view) ? Exit::Attention : Exit::Fine, "", ""};
 }
 
 }  // namespace adit::cli

@@ -1,5 +1,3 @@
-#include "cli/watch.hpp"
-
 #include <unistd.h>
 
 #include <algorithm>
@@ -9,8 +7,8 @@
 
 #include "api/reports_csv.hpp"
 #include "api/run_view.hpp"
-#include "cli/ask.hpp"
 #include "cli/follower.hpp"
+#include "cli/handlers.hpp"
 #include "cli/screen.hpp"
 #include "cli/status_text.hpp"
 #include "cli/watch_text.hpp"
@@ -97,23 +95,22 @@ std::unique_ptr<Shown> shown_for(const Options& options, const Console& console,
 
 }  // namespace
 
-Outcome watch(const Options& options, const Console& console) {
-  const auto adit = adit_of(options);
-  if (!adit) return unable(adit.error());
+Result<Outcome> watch(const Call& call) {
+  const auto& [adit, options, console] = call;
   const bool drawn = console.screen && !options.json;
   Patience patience(drawn && isatty(STDIN_FILENO) == 1);
-  Follower follower(*adit);
+  Follower follower(adit);
   std::unique_ptr<Shown> shown;  // once there is something to show
   std::optional<Look> seen;
   bool is_news = false;
   Clock::time_point next{};
   while (true) {
     if (auto look = follower.look()) {
-      if (!seen && !*look) return unable(look->error());
+      if (!seen && !*look) return failed(look->error());
       seen = std::move(look);
       is_news = true;
     }
-    if (!shown && seen) shown = shown_for(options, console, *adit);
+    if (!shown && seen) shown = shown_for(options, console, adit);
     if (is_news && Clock::now() >= next) {
       shown->show(*seen);
       next = Clock::now() + shown->spacing();
@@ -122,7 +119,7 @@ Outcome watch(const Options& options, const Console& console) {
     const auto until = is_news ? std::min(next, follower.due()) : follower.due();
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
     const auto woken = patience.wait(std::max(left, std::chrono::milliseconds(0)), follower.fd());
-    if (woken == Patience::Woken::ToEnd) return {};
+    if (woken == Patience::Woken::ToEnd) return Outcome{};
     if (woken == Patience::Woken::ByChange && drawn && shown) shown->show(*seen);
   }
 }

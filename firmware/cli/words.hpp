@@ -4,6 +4,9 @@
 #include <string>
 #include <string_view>
 
+#include "host/log.hpp"
+#include "icd/sentence.hpp"
+
 namespace adit::cli {
 
 /// How a piece of text is to be taken. What it says never hangs on the colour alone.
@@ -14,6 +17,12 @@ std::string painted(const std::string& text, Tone tone, bool colour);
 
 /// How many characters of UTF-8 a text has.
 std::size_t width_of(std::string_view text);
+
+/// A line of these parts, strings and numbers. What others wrote is escaped.
+template <class... Parts>
+std::string line(const Parts&... parts) {
+  return host::escaped(icd::sentence(parts...)) + '\n';
+}
 
 /// "0.4 s", "12 s", "3 min", "2 h"
 std::string duration(double seconds);

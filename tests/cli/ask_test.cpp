@@ -6,10 +6,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "cli/command.hpp"
-#include "cli/server.hpp"
+#include "cli/say.hpp"
 #include "cli/status_text.hpp"
-#include "cli/token_file.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -18,12 +16,12 @@ namespace {
 using testing::HasSubstr;
 
 Outcome asked(const std::string& json, const std::vector<std::string_view>& words) {
-  const Server server(Server::ok(json));
-  const std::string at = server.at();
-  std::vector<std::string_view> all = words;
-  const TokenFile token;
-  all.insert(all.end(), {"--at", at, "--token-file", token.path()});
-  return run(all);
+  return say(Server(Server::ok(json)), words);
+}
+
+/// `adit status` with the options of the environment of a box.
+Options status_of_a_box() {
+  return parse_options(std::vector<std::string_view>{"status"}).value();
 }
 
 TEST(Status, ShowsWhatAditAnswers) {
@@ -74,36 +72,22 @@ TEST(Ask, SaysThatTheAnswerIsNotAdits) {
 }
 
 TEST(Ask, PassesOnWhatAnErrorSays) {
-  const TokenFile token;
-  const auto status_of = [&token](const Server& server) {
-    const std::string at = server.at();
-    return run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()}).err;
-  };
-  EXPECT_THAT(status_of(Server(Server::reply("404 Not Found", "{}"))),
+  const auto status_of = [](const std::string& reply) { return say(Server(reply), {"status"}).err; };
+  EXPECT_THAT(status_of(Server::reply("404 Not Found", "{}")),
               HasSubstr("is not Adit, or is another version (HTTP status 404)"));
-  EXPECT_EQ(status_of(Server(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\""))),
+  EXPECT_EQ(status_of(Server::reply("503 Service Unavailable", "\"the ledger is away\\u001b[2J\"")),
             "adit: the ledger is away\\x1b[2J\n");
-  EXPECT_EQ(status_of(Server(Server::reply("401 Unauthorized", "\"log in\""))),
-            "adit: Adit rejects the token in " + token.path() + "\n");
-}
-
-TEST(Ask, ShowsItsTokenToAditAlone) {
-  const TokenFile token;
-  const Server server(Server::ok(codec::to_json(sample_view())));
-  const std::string at = server.at();
-  const Outcome outcome =
-      run(std::vector<std::string_view>{"status", "--at", at, "--token-file", token.path()});
-  EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
-  EXPECT_THAT(outcome.out + outcome.err, testing::Not(HasSubstr("sesame")));
+  EXPECT_THAT(status_of(Server::reply("401 Unauthorized", "\"log in\"")),
+              HasSubstr("adit: Adit rejects the token in /"));
 }
 
 TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
   const Server server(Server::ok(codec::to_json(sample_view())));
-  Options options;
+  Options options = status_of_a_box();
   options.at = server.at();
   options.secrets = "/nowhere";
   options.saved_secrets = "/nothing";
-  const Outcome outcome = status(options, false);
+  const Outcome outcome = run(options, {});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(
       outcome.err,
@@ -121,12 +105,12 @@ TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
   std::ofstream(saved) << R"({"version": 1, "command_post": {"scoring": {"address": "::1", "port": 1},)"
                        << R"("mapping": {"address": "::1", "port": 2}},)"
                        << R"("team": {"listen": [{"address": "127.0.0.1", "port": )" << port << "}]}}";
-  Options options;
+  Options options = status_of_a_box();
   options.token_file = token.path();
   options.saved_settings = saved;
-  EXPECT_NE(status(options, false).exit, Exit::Unable);
+  EXPECT_NE(run(options, {}).exit, Exit::Unable);
   options.settings = "/none.json";
-  EXPECT_EQ(status(options, false).exit, Exit::Unable) << "a file that is named is the one that is meant";
+  EXPECT_EQ(run(options, {}).exit, Exit::Unable) << "a file that is named is the one that is meant";
   std::filesystem::remove(saved);
 }
 

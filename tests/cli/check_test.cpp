@@ -1,5 +1,3 @@
-#include "cli/check.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -119,20 +117,19 @@ TEST_F(Check, WarnsOfATokenOfTheCommandPostsThatHasNot16Characters) {  // ICD 4
   keep("scoring", "flux230{showroom");
   keep("mapping", "flux230{showroo");
   keep("team", "any-length-at-all");
-  Options options;
+  Options options = parse_options(std::vector<std::string_view>{"check"}).value();
   options.settings = folder_ / "settings.json";
   std::ofstream(options.settings) << json;
   options.secrets = secrets;
   options.saved_secrets = folder_ / "none";
   options.json = true;
-  const Outcome outcome = cli::check(options, false);
+  const Outcome outcome = run(options, {});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out,
             "{\"good\":true,\"errors\":[],\"warnings\":[\"the token mapping has 15 characters; the Command "
             "Post's tokens have 16 (ICD 4); is it complete?\"]}\n");
   std::filesystem::permissions(secrets + "/mapping.token", std::filesystem::perms::all);
-  EXPECT_THAT(cli::check(options, false).out,
-              HasSubstr("cannot check the tokens: " + secrets + "/mapping.token"));
+  EXPECT_THAT(run(options, {}).out, HasSubstr("cannot check the tokens: " + secrets + "/mapping.token"));
 }
 
 TEST_F(Check, SaysThatItCannotReadTheFile) {

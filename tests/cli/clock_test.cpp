@@ -1,13 +1,9 @@
-#include "cli/clock.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
 
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 
 namespace adit::cli {
 namespace {
@@ -25,18 +21,7 @@ std::string clock_view(double now, const char* source, bool is_set, const char* 
                     R"(","ntp":"","is_kept":false})");
 }
 
-class ClockCommand : public testing::Test {
- protected:
-  Outcome say(const Server& server, std::vector<std::string_view> words) {
-    const std::string at = server.at();
-    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
-    return run(words);
-  }
-  TokenFile file_;
-  const std::string token_file_ = file_.path();
-};
-
-TEST_F(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
+TEST(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here(), "command_post", true)}});
   const Outcome outcome = say(server, {"clock"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
@@ -45,7 +30,7 @@ TEST_F(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
   EXPECT_THAT(say(server, {"clock", "--json"}).out, HasSubstr("\"source\":\"command_post\""));
 }
 
-TEST_F(ClockCommand, SaysHowToSetItWhereItIsNot) {
+TEST(ClockCommand, SaysHowToSetItWhereItIsNot) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here() - 7300, "last_known", false)}});
   const Outcome outcome = say(server, {"clock", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
@@ -53,13 +38,13 @@ TEST_F(ClockCommand, SaysHowToSetItWhereItIsNot) {
   EXPECT_THAT(outcome.out, HasSubstr("adit clock set"));
 }
 
-TEST_F(ClockCommand, TellsWhyItWasNotSet) {
+TEST(ClockCommand, TellsWhyItWasNotSet) {
   const Server server(
       {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "cannot set the clock: no")}});
   EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: cannot set the clock: no"));
 }
 
-TEST_F(ClockCommand, SetsItToThisComputersTime) {
+TEST(ClockCommand, SetsItToThisComputersTime) {
   const Server server({{"POST /adit/clock", clock_view(time_of_here(), "operator", true)}});
   const Outcome outcome = say(server, {"clock", "set"});
   EXPECT_EQ(outcome.exit, Exit::Fine);

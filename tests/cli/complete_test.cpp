@@ -1,11 +1,8 @@
-#include "cli/complete.hpp"
-
 #include <gmock/gmock.h>
 
+#include "api/kept_runs.hpp"
 #include "api/settings_rows.hpp"
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -29,25 +26,26 @@ class Completion : public testing::Test {
     state.number = 9;
     state.kind = "state";
     view.rejected = {cloud, state};
+    api::RunList runs;
+    runs.runs = {{.key = "2", .is_present = true}, {.key = "$HOME"}};
     return {{"GET /adit/reports", Server::ok(codec::to_json(reports))},
             {"GET /adit/run", Server::ok(codec::to_json(view))},
+            {"GET /adit/runs", Server::ok(codec::to_json(runs))},
             {"GET /adit/settings",
-             Server::ok(R"({"settings":{"courses":[{"name":"B","scoring":{"address":"10.100.2.200"}},)"
-                        R"({"name":"$HOME","scoring":{"address":"10.100.3.200"}}]
-}
-})")}};
+             Server::ok(setup_json(
+                 R"({"version":1,"command_post":{"scoring":{"address":"10.100.1.200","port":8000},)"
+                 R"("mapping":{"address":"10.100.1.201","port":8000}},)"
+                 R"("team":{"listen":[{"address":"10.0.0.1","port":8000}]},)"
+                 R"("courses":[{"name":"B","scoring":{"address":"10.100.2.200","port":8000},)"
+                 R"("mapping":{"address":"10.100.2.201","port":8000}}]})"))}};
   }
 
   Outcome listed(std::vector<std::string_view> words) const {
-    const std::string at = server_.at();
     words.insert(words.begin(), "complete");
-    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
-    return run(words);
+    return say(server_, words);
   }
 
   Server server_{answers()};
-  TokenFile file_;
-  const std::string token_file_ = file_.path();
 };
 
 TEST_F(Completion, ListsReportsThatAWordCanBeSaidOf) {
@@ -61,9 +59,10 @@ TEST_F(Completion, ListsReportsThatAWordCanBeSaidOf) {
             "[{\"word\":\"4\",\"what\":\"Survivor, in doubt\"}]\n");
 }
 
-TEST_F(Completion, ListsWhatIsRejectedMessagesAndCourses) {
+TEST_F(Completion, ListsRejectedMessagesCoursesAndRuns) {
   EXPECT_EQ(listed({"rejected"}).out, "8\tcloud of r2\n9\tstate\n");
-  EXPECT_EQ(listed({"courses"}).out, "B\t10.100.2.200\n") << "and none that a shell would run";
+  EXPECT_EQ(listed({"courses"}).out, "B\t10.100.2.200\n");
+  EXPECT_EQ(listed({"runs"}).out, "2\tthe present run\n") << "and none that a shell would run";
 }
 
 TEST(CompletionOfKeys, AsksNobody) {

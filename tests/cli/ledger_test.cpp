@@ -4,9 +4,7 @@
 
 #include <filesystem>
 
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 #include "host/folder.hpp"
 #include "store/log.hpp"
 
@@ -105,13 +103,10 @@ TEST_F(LedgerDump, IsNeverEmptyBecauseAFileCannotBeRead) {
 
 TEST(LedgerNew, IsAskedForOnceTheOperatorConfirms) {
   const Server server({{"POST /adit/ledger/new", Server::ok(R"({"kept_as":"ledger.damaged-1"})")}});
-  const TokenFile file;
-  const std::string at = server.at(), token = file.path();
-  std::vector<std::string_view> words{"ledger", "new", "--at", at, "--token-file", token};
-  EXPECT_THAT(run(words).err, HasSubstr("a report may be sent twice. It was not done; to do it, add --yes"));
+  EXPECT_THAT(say(server, {"ledger", "new"}).err,
+              HasSubstr("a report may be sent twice. It was not done; to do it, add --yes"));
   EXPECT_EQ(server.posted(), "");
-  words.push_back("--yes");
-  const Outcome outcome = run(words);
+  const Outcome outcome = say(server, {"ledger", "new", "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_EQ(outcome.out, "aditd restarts with another ledger: see adit status\n");
 }

@@ -2,9 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/commands.hpp"
 #include "cli/help.hpp"
 
 namespace adit::cli {
@@ -18,11 +20,21 @@ Options parsed(const Words& words) {
   return options.value_or(Options{});
 }
 
+/// "reports send"
+std::string command_of(const Options& options) {
+  const std::string word = options.word();
+  return options.command->name + (word.empty() ? "" : " " + word);
+}
+
+const CommandRow* command(std::string_view name) {
+  return &*std::ranges::find(commands(), name, &CommandRow::name);
+}
+
 TEST(Options, TakeACommandAndItsOptionsInAnyOrder) {
   for (const Words& words :
        {Words{"status", "--json", "--at", "10.0.0.1:80"}, {"--at", "10.0.0.1:80", "--json", "status"}}) {
     const Options options = parsed(words);
-    EXPECT_EQ(options.command, Command::Status);
+    EXPECT_EQ(command_of(options), "status");
     EXPECT_TRUE(options.json);
     EXPECT_EQ(options.at, "10.0.0.1:80");
     EXPECT_EQ(options.settings, "/etc/adit/settings.json");
@@ -31,26 +43,20 @@ TEST(Options, TakeACommandAndItsOptionsInAnyOrder) {
 }
 
 TEST(Options, TakeTheFileToCheckAsAWord) {
-  EXPECT_EQ(parsed({"check", "new.json"}).settings, "new.json");
-  EXPECT_EQ(parsed({"check"}).settings, "/etc/adit/settings.json");
+  EXPECT_EQ(parsed({"check", "new.json"}).argument(), "new.json");
+  EXPECT_EQ(parsed({"check"}).argument(), "");
 }
 
 TEST(Options, TakeTheOperatorsWord) {
   const Options options = parsed({"reports", "settle", "7", "--token-file", "t", "12"});
-  EXPECT_EQ(options.command, Command::Reports);
-  EXPECT_EQ(options.verb, Verb::Settle);
+  EXPECT_EQ(command_of(options), "reports settle");
   EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
   EXPECT_EQ(options.token_file, "t");
-  EXPECT_EQ(parsed({"reports", "send", "7"}).verb, Verb::Send);
-  EXPECT_EQ(parsed({"reports", "hold", "7", "8"}).verb, Verb::Hold);
-  EXPECT_EQ(parsed({"reports", "withdraw", "7"}).verb, Verb::Withdraw);
-  EXPECT_EQ(parsed({"reports", "resubmit", "7"}).verb, Verb::Resubmit);
-  EXPECT_EQ(parsed({"reports", "show", "7"}).verb, Verb::Show);
-  EXPECT_EQ(parsed({"run", "new"}).verb, Verb::New);
-  EXPECT_EQ(parsed({"run"}).verb, Verb::Show);
-  EXPECT_EQ(parsed({"identify"}).command, Command::Identify);
-  EXPECT_EQ(parsed({"identify"}).seconds, 10);
-  EXPECT_EQ(parsed({"identify", "60"}).seconds, 60);
+  for (const char* const verb : {"send", "hold", "withdraw", "resubmit", "show"})
+    EXPECT_EQ(parsed({"reports", verb, "7"}).word(), verb);
+  EXPECT_EQ(parsed({"run", "new"}).word(), "new");
+  EXPECT_EQ(parsed({"run"}).word(), "show");
+  EXPECT_EQ(parsed({"identify", "60"}).numbers, std::vector<std::int64_t>{60});
 }
 
 TEST(Options, TakeWhichReportsAndHow) {
@@ -64,21 +70,18 @@ TEST(Options, TakeWhichReportsAndHow) {
 }
 
 TEST(Options, TakeWhatIsToBeDoneToTheSettings) {
-  EXPECT_EQ(parsed({"settings"}).verb, Verb::Show);
-  EXPECT_EQ(parsed({"settings", "show", "--json"}).verb, Verb::Show);
-  EXPECT_EQ(parsed({"settings", "export"}).verb, Verb::Export);
+  EXPECT_EQ(parsed({"settings"}).word(), "show");
+  for (const char* const verb : {"show", "export"}) EXPECT_EQ(parsed({"settings", verb}).word(), verb);
   const Options options = parsed({"settings", "apply", "box.json", "--at", "10.0.0.1:80"});
-  EXPECT_EQ(options.command, Command::Settings);
-  EXPECT_EQ(options.verb, Verb::Apply);
-  EXPECT_EQ(options.file, "box.json");
-  EXPECT_EQ(parsed({"settings", "check", "box.json"}).verb, Verb::Check);
-  EXPECT_EQ(parsed({"course", "B"}).course, "B");
-  EXPECT_EQ(parsed({"course", ""}).course, "");
-  EXPECT_EQ(parsed({"course"}).course, std::nullopt);
-  const Options set = parsed({"settings", "set", "reports.review", "all"});
-  EXPECT_EQ(set.verb, Verb::Set);
-  EXPECT_EQ(set.key, "reports.review");
-  EXPECT_EQ(set.value, "all");
+  EXPECT_EQ(command_of(options), "settings apply");
+  EXPECT_EQ(options.argument(), "box.json");
+  EXPECT_EQ(parsed({"settings", "check", "box.json"}).word(), "check");
+  using Arguments = std::vector<std::string>;
+  EXPECT_EQ(parsed({"course", "B"}).arguments, Arguments{"B"});
+  EXPECT_EQ(parsed({"course", ""}).arguments, Arguments{""});
+  EXPECT_EQ(parsed({"course"}).arguments, Arguments{});
+  EXPECT_EQ(parsed({"settings", "set", "reports.review", "all"}).arguments,
+            (Arguments{"reports.review", "all"}));
 }
 
 TEST(Options, NameTheWordThatIsWrong) {
@@ -129,6 +132,7 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"reports", "--last", "0"}, "--last: expected a number of reports, got 0"},
       {{"reports", "export", "--last", "5"}, "reports export does not take --last"},
       {{"reports", "export", "--csv", "--json"}, "give --csv or --json, not both"},
+      {{"reports", "--to", "x"}, "reports does not take --to"},
       {{"reports", "send", "7", "--token-file", ""}, "--token-file wants a value"},
       {{"complete"}, "a subcommand is missing after complete: reports, rejected, courses, runs or keys"},
       {{"run", "old"}, "expected show or new, got old"},
@@ -146,13 +150,13 @@ TEST(Options, NameTheWordThatIsWrong) {
 
 TEST(Options, AreOfTheWordsThatTakeThem) {
   EXPECT_TRUE(parsed({"reports", "send", "7", "--yes"}).yes);
-  EXPECT_EQ(parsed({"settings", "show", "reports.review"}).key, "reports.review");
-  EXPECT_EQ(parsed({"complete", "reports", "settle"}).word, "settle");
-  EXPECT_EQ(parsed({"watch", "--json"}).command, Command::Watch);
-  EXPECT_THAT(help_about(Command::Reports),
+  EXPECT_EQ(parsed({"settings", "show", "reports.review"}).argument(), "reports.review");
+  EXPECT_EQ(parsed({"complete", "reports", "settle"}).argument(), "settle");
+  EXPECT_EQ(command_of(parsed({"watch", "--json"})), "watch");
+  EXPECT_THAT(help_about(command("reports")),
               testing::HasSubstr("without a subcommand: list the reports of this run"));
-  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with export: print CSV"));
-  EXPECT_THAT(help_about(Command::Reports), testing::HasSubstr("with send: do not ask"));
+  EXPECT_THAT(help_about(command("reports")), testing::HasSubstr("with export: print CSV"));
+  EXPECT_THAT(help_about(command("reports")), testing::HasSubstr("with send: do not ask"));
 }
 
 TEST(Version, IsToldWhateverElseIsSaid) {
@@ -165,16 +169,16 @@ TEST(Version, IsToldWhateverElseIsSaid) {
 
 TEST(Help, IsGivenForTheCommandAskedAbout) {
   for (const Words& words : {Words{"--help"}, {"-h"}, {"help"}})
-    EXPECT_EQ(run(words).out, help_about(Command::Help));
+    EXPECT_EQ(run(words).out, help_about(nullptr));
   for (const Words& words : {Words{"check", "--help"}, {"help", "check"}, {"check", "--at", "x", "-h"}}) {
-    EXPECT_EQ(run(words).out, help_about(Command::Check));
+    EXPECT_EQ(run(words).out, help_about(command("check")));
     EXPECT_EQ(run(words).exit, Exit::Fine);
   }
-  EXPECT_EQ(run(Words{"help", "reports"}).out, help_about(Command::Reports));
-  EXPECT_EQ(run(Words{"reports", "send", "--help"}).out, help_about(Command::Reports));
-  EXPECT_EQ(run(Words{"help", "run"}).out, help_about(Command::Run));
-  EXPECT_EQ(run(Words{"help", "identify"}).out, help_about(Command::Identify));
-  EXPECT_EQ(run(Words{"help", "status"}).out, help_about(Command::Status));
+  EXPECT_EQ(run(Words{"help", "reports"}).out, help_about(command("reports")));
+  EXPECT_EQ(run(Words{"reports", "send", "--help"}).out, help_about(command("reports")));
+  EXPECT_EQ(run(Words{"help", "run"}).out, help_about(command("run")));
+  EXPECT_EQ(run(Words{"help", "identify"}).out, help_about(command("identify")));
+  EXPECT_EQ(run(Words{"help", "status"}).out, help_about(command("status")));
 }
 
 TEST(Command, OfAWrongLineSaysSoAndWhereHelpIs) {

@@ -1,13 +1,9 @@
-#include "cli/reports.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "api/reports_csv.hpp"
-#include "cli/command.hpp"
 #include "cli/reports_text.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -43,10 +39,7 @@ Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_v
                        {"GET /adit/reports.csv", Server::ok(csv_of(rows))},
                        {"GET /adit/reports/4", Server::ok(codec::to_json(detail))},
                        {"GET /adit/reports/5", Server::reply("404 Not Found", "\"there is no report 5\"")}});
-  const std::string at = server.at();
-  const TokenFile token;
-  words.insert(words.end(), {"--at", at, "--token-file", token.path()});
-  return run(words);
+  return say(server, std::move(words));
 }
 
 TEST(Reports, ListThePresentRunAndWhatIsLeftOfEarlierOnes) {
@@ -101,7 +94,7 @@ TEST(Reports, ShowOneOrSayThatThereIsNone) {
   EXPECT_THAT(asked(two_runs(), {"reports", "show", "4", "--json"}).out,
               testing::StartsWith("{\"number\":4,"));
   const Outcome none = asked(two_runs(), {"reports", "show", "5"});
-  EXPECT_EQ(none.exit, Exit::Unable);
+  EXPECT_EQ(none.exit, Exit::Attention);
   EXPECT_EQ(none.err, "adit: there is no report 5\n");
 }
 
@@ -116,10 +109,7 @@ TEST(Reports, AreExportedAsTheyAre) {
 TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
   const Server server({{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
                        {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
-  const TokenFile token;
-  const std::string at = server.at();
-  const Outcome outcome =
-      run(std::vector<std::string_view>{"reports", "--at", at, "--token-file", token.path()});
+  const Outcome outcome = say(server, {"reports"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_THAT(outcome.err, HasSubstr("it is another version"));
 }

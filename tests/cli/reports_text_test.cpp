@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/help.hpp"
-#include "cli/report_text.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/view.hpp"
 #include "dispatch/report_life.hpp"
@@ -100,9 +98,9 @@ TEST(SaidOf, IsTheAnswerInWords) {
 TEST(LifeOf, IsExplainedInTheHelp) {
   for (const auto& row : dispatch::report_life()) {
     api::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
-    EXPECT_THAT(help_about(Command::Reports), HasSubstr("\n  " + life_of(report) + " "));
+    EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
     report.reconciled = report.asking = true;
-    EXPECT_THAT(help_about(Command::Reports), HasSubstr("\n  " + life_of(report) + " "));
+    EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
   }
 }
 

@@ -1,13 +1,9 @@
-#include "cli/runs.hpp"
-
 #include <gmock/gmock.h>
 
 #include <filesystem>
 
 #include "api/kept_runs.hpp"
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 #include "cli/view.hpp"
 #include "host/folder.hpp"
 #include "host/service.hpp"
@@ -44,13 +40,11 @@ TEST(PresentRun, IsShown) {
   api::RunView view = sample_view();
   view.run_number = 2;
   view.run_id = "beta";
-  const TokenFile file;
   const auto shown = [&](bool json) {
     const Server server({{"GET /adit/run", Server::ok(codec::to_json(view))}});
-    const std::string at = server.at();
-    std::vector<std::string_view> words{"run", "--at", at, "--token-file", file.path()};
-    if (json) words.emplace_back("--json");
-    return run(words).out;
+    return say(server,
+               json ? std::vector<std::string_view>{"run", "--json"} : std::vector<std::string_view>{"run"})
+        .out;
   };
   EXPECT_EQ(shown(false),
             "  run           2\n"
@@ -69,10 +63,8 @@ TEST(PresentRun, IsShown) {
 class Runs : public testing::Test {
  protected:
   Outcome say(std::vector<std::string_view> words, const Console& console = {}) const {
-    const std::string at = server_.at();
     words.insert(words.begin(), "runs");
-    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
-    return run(words, console);
+    return cli::say(server_, words, console);
   }
 
   const Server server_{
@@ -82,8 +74,6 @@ class Runs : public testing::Test {
        {"GET /adit/runs/1-2/report.html", Server::ok("<!doctype html><title>Run 1</title>")},
        {"POST /adit/runs/1-2/delete", Server::ok(R"({"key":"1-2"})")},
        {"POST /adit/runs/2/delete", Server::reply("409 Conflict", "\"run 2 is the present one\"")}}};
-  TokenFile file_;
-  const std::string token_file_ = file_.path();
   host::Folder folder_;
 };
 
@@ -125,13 +115,7 @@ TEST_F(Runs, HaveAReportThatIsPrintedOrWrittenToAFile) {
 
 TEST_F(Runs, AreDeletedOnlyWhereThatIsMeant) {
   std::string asked;
-  const auto answering = [&asked](bool answer) {
-    return Console{.ask = [&asked, answer](const std::string& question) {
-      asked = question;
-      return std::optional(answer);
-    }};
-  };
-  const Outcome kept = say({"delete", "1-2"}, answering(false));
+  const Outcome kept = say({"delete", "1-2"}, answering(false, asked));
   EXPECT_EQ(
       asked,
       "run 1-2 (began 2019-08-20T14:03:05.500Z, score 7, 3.4 MB): its map, tracks and plots will be deleted "
@@ -141,10 +125,10 @@ TEST_F(Runs, AreDeletedOnlyWhereThatIsMeant) {
   EXPECT_THAT(server_.request(), StartsWith("GET ")) << "nothing was deleted";
 
   const Outcome nobody = say({"delete", "1-2"});
-  EXPECT_THAT(nobody.err, HasSubstr("It was not deleted; to delete it, add --yes"));
+  EXPECT_THAT(nobody.err, HasSubstr("It was not done; to do it, add --yes"));
   EXPECT_THAT(server_.request(), StartsWith("GET "));
 
-  EXPECT_EQ(say({"delete", "1-2"}, answering(true)).out, "run 1-2 was deleted\n");
+  EXPECT_EQ(say({"delete", "1-2"}, answering(true, asked)).out, "run 1-2 was deleted\n");
   EXPECT_EQ(say({"delete", "1-2", "--yes", "--json"}).out, "{\"key\":\"1-2\"}\n");
   const Outcome present = say({"delete", "2", "--yes"});
   EXPECT_EQ(present.err, "adit: run 2 is the present one\n");

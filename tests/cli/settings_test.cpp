@@ -1,14 +1,11 @@
-#include "cli/settings.hpp"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>
 
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
+#include "cli/view.hpp"
 
 namespace adit::cli {
 namespace {
@@ -21,11 +18,11 @@ constexpr const char* kFile =
     R"("mapping":{"address":"10.100.1.201","port":8000}},)"
     R"("team":{"listen":[{"address":"10.0.0.1","port":8000}]},"robots":[{"name":"ugv1"}]})";
 
-std::string shown() {
-  return std::string(R"({"settings":)") + kFile +
-         R"(,"tag":"0123456789abcdef","saved":true,"tokens":{"scoring":true,"team":false},"keys":[]})";
+std::string shown(const std::string& trouble = "") {
+  return setup_json(kFile, trouble);
 }
 
+constexpr const char* kNone = R"({"errors":[],"changes":[],"warnings":[]})";
 constexpr const char* kChanges =
     R"({"errors":[],"changes":[{"path":"team.listen[0].port","from":8000,"to":8080}],)"
     R"("warnings":["Adit and this page move"]})";
@@ -39,13 +36,7 @@ class SettingsCommand : public testing::Test {
     close(mkstemp(settings_.data()));
     std::ofstream(settings_) << kFile;
   }
-  Outcome say(const Server& server, std::vector<std::string_view> words) const {
-    const std::string at = server.at();
-    words.insert(words.end(), {"--at", at, "--token-file", file_.path()});
-    return run(words);
-  }
 
-  TokenFile file_;
   std::string settings_ = "/tmp/adit-settings-XXXXXX";
 };
 
@@ -77,7 +68,7 @@ TEST_F(SettingsCommand, ChecksAFileWithoutChangingAnything) {
 TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
   const Server server({{"GET /adit/settings", Server::ok(shown())},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
-                       {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
+                       {"POST /adit/settings", Server::ok(kNone)}});
   const Outcome outcome = say(server, {"settings", "apply", settings_});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_EQ(outcome.out, "  team.listen[0].port  8000  -> 8080\nwarning: Adit and this page move\n");
@@ -85,8 +76,7 @@ TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
 }
 
 TEST_F(SettingsCommand, SaysWhyAnAcceptedChangeIsNotInUse) {
-  const std::string reverted = shown().substr(0, shown().size() - 1) +
-                               R"(,"applying":false,"trouble":"the last change was reverted: x"})";
+  const std::string reverted = shown("the last change was reverted: x");
   const Server server({{"GET /adit/settings", Server::ok(reverted)},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
                        {"POST /adit/settings", Server::ok(kChanges)},
@@ -100,9 +90,7 @@ TEST_F(SettingsCommand, SaysWhyAnAcceptedChangeIsNotInUse) {
 }
 
 TEST_F(SettingsCommand, TellsNoTroubleOfAnEarlierChangeIfNothingChanges) {
-  const std::string earlier = shown().substr(0, shown().size() - 1) +
-                              R"(,"applying":false,"trouble":"the last change was reverted: x"})";
-  constexpr const char* kNone = R"({"errors":[],"changes":[],"warnings":[]})";
+  const std::string earlier = shown("the last change was reverted: x");
   const Server server({{"GET /adit/settings", Server::ok(earlier)},
                        {"POST /adit/settings/check", Server::ok(kNone)},
                        {"POST /adit/settings", Server::ok(kNone)}});
@@ -114,7 +102,7 @@ TEST_F(SettingsCommand, TellsNoTroubleOfAnEarlierChangeIfNothingChanges) {
 TEST_F(SettingsCommand, SetsOneKey) {
   const Server server({{"GET /adit/settings", Server::ok(shown())},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
-                       {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
+                       {"POST /adit/settings", Server::ok(kNone)}});
   const auto sent = [&](std::string_view key, std::string_view value) {
     const Outcome outcome = say(server, {"settings", "set", key, value});
     EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
@@ -140,7 +128,7 @@ TEST_F(SettingsCommand, NamesEachErrorOfAFileAndAppliesNothing) {
        {"POST /adit/settings/check",
         Server::ok(
             R"({"errors":[{"path":"a.b","what":"is wrong"},{"path":"","what":"too"}],"changes":[],"warnings":[]})")},
-       {"POST /adit/settings", Server::ok(R"({"changes":[]})")}});
+       {"POST /adit/settings", Server::ok(kNone)}});
   for (const std::string_view verb : {"check", "apply"}) {
     const Outcome outcome = say(server, {"settings", verb, settings_});
     EXPECT_EQ(outcome.exit, Exit::Attention);
@@ -174,10 +162,10 @@ TEST_F(SettingsCommand, ListsTheCourses) {
       R"("command_post":{"scoring":{"address":"10.100.1.200","port":8000},"mapping":{"address":"10.100.1.201","port":8000},"course":"B"},)";
   constexpr const char* kCourses =
       R"([{"name":"B","scoring":{"address":"10.100.2.200","port":8000},"mapping":{"address":"10.100.2.201","port":8000}}])";
-  const std::string settings = std::string(R"({"settings":{"version":1,)") + kPost +
+  const std::string settings = std::string(R"({"version":1,)") + kPost +
                                R"("team":{"listen":[{"address":"10.0.0.1","port":8000}]},"courses":)" +
-                               kCourses + R"(},"keys":[]})";
-  const Server server({{"GET /adit/settings", Server::ok(settings)}});
+                               kCourses + "}";
+  const Server server({{"GET /adit/settings", Server::ok(setup_json(settings))}});
   const Outcome outcome = say(server, {"course"});
   EXPECT_EQ(outcome.exit, Exit::Fine) << outcome.err;
   EXPECT_EQ(outcome.out,

@@ -1,13 +1,9 @@
-#include "cli/spare.hpp"
-
 #include <gmock/gmock.h>
 
 #include <fstream>
 #include <iterator>
 
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 #include "host/folder.hpp"
 
 namespace adit::cli {
@@ -35,14 +31,10 @@ constexpr const char* kNoStick =
 
 class SpareCommand : public testing::Test {
  protected:
-  Outcome say(const Server& server, std::vector<std::string_view> words) {
-    const std::string at = server.at();
+  Outcome say(const Server& server, std::vector<std::string_view> words) const {
     words.insert(words.begin(), "spare");
-    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
-    return run(words);
+    return cli::say(server, words);
   }
-  TokenFile file_;
-  const std::string token_file_ = file_.path();
   const host::Folder folder_;
   const std::string export_ = folder_ / "box.adit-spare";
 };

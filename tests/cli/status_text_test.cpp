@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cli/help.hpp"
+#include "cli/say.hpp"
 #include "cli/view.hpp"
 
 namespace adit::cli {
@@ -113,7 +113,7 @@ TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
 TEST(StatusText, IsExplainedInTheHelp) {
   for (const std::string_view word : alarms::kArrivalWords) {
     const std::string shown(word == "late" ? "behind" : word);
-    EXPECT_THAT(help_about(Command::Status), testing::ContainsRegex("  .*" + shown + ".*  "));
+    EXPECT_THAT(help_of("status"), testing::ContainsRegex("  .*" + shown + ".*  "));
   }
 }
 

@@ -1,11 +1,7 @@
-#include "cli/update.hpp"
-
 #include <gmock/gmock.h>
 
 #include "api/updates.hpp"
-#include "cli/command.hpp"
-#include "cli/server.hpp"
-#include "cli/token_file.hpp"
+#include "cli/say.hpp"
 
 namespace adit::cli {
 namespace {
@@ -23,55 +19,48 @@ api::UpdateView a_box(const std::string& stray) {
   return view;
 }
 
-class Update : public testing::Test {
- protected:
-  Outcome say(const Server& server, std::vector<std::string_view> words) const {
-    const std::string at = server.at();
-    words.insert(words.begin(), "update");
-    words.insert(words.end(), {"--at", at, "--token-file", token_file_});
-    return run(words);
-  }
+Outcome say_update(const Server& server, std::vector<std::string_view> words) {
+  words.insert(words.begin(), "update");
+  return say(server, words);
+}
 
-  TokenFile file_;
-  const std::string token_file_ = file_.path();
-};
-
-TEST_F(Update, SaysWhichSlotRuns) {
+TEST(Update, SaysWhichSlotRuns) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box("")))}});
-  const Outcome told = say(server, {});
+  const Outcome told = say_update(server, {});
   EXPECT_EQ(told.out, "0.1.0 runs, in slot A (an update goes into slot B) of adit-a-board\n");
   EXPECT_EQ(told.exit, Exit::Fine);
 }
 
-TEST_F(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
+TEST(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box(kWhy)))}});
-  const Outcome told = say(server, {});
+  const Outcome told = say_update(server, {});
   EXPECT_THAT(told.out, HasSubstr("An unexpected slot runs: " + std::string(kWhy)));
   EXPECT_THAT(told.out, HasSubstr("adit update --back "));
   EXPECT_THAT(told.out, HasSubstr("adit update --stay "));
   EXPECT_EQ(told.exit, Exit::Attention);
 }
 
-TEST_F(Update, GoesBackOrStaysWhereItIsAskedTo) {
+TEST(Update, GoesBackOrStaysWhereItIsAskedTo) {
   const std::string after = Server::ok(codec::to_json(a_box("")));
   const Server server({{"POST /adit/update/back", after}, {"POST /adit/update/stay", after}});
-  EXPECT_EQ(say(server, {"--back"}).out, "the box restarts into the slot that was good last\n");
+  EXPECT_EQ(say_update(server, {"--back"}).out, "the box restarts into the slot that was good last\n");
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{}"));
-  say(server, {"--back", "--anyway"});
+  say_update(server, {"--back", "--anyway"});
   EXPECT_THAT(server.request(), EndsWith("\r\n\r\n{\"anyway\": true}"));
-  EXPECT_EQ(say(server, {"--stay"}).out, "the box keeps the slot that runs\n");
+  EXPECT_EQ(say_update(server, {"--stay"}).out, "the box keeps the slot that runs\n");
   const Server none(
       {{"POST /adit/update/stay", Server::reply("409 Conflict", "\"no unexpected slot is running\"")}});
-  const Outcome refused = say(none, {"--stay"});
+  const Outcome refused = say_update(none, {"--stay"});
   EXPECT_EQ(refused.err, "adit: no unexpected slot is running\n");
   EXPECT_EQ(refused.exit, Exit::Attention);
 }
 
-TEST_F(Update, DoesOneThingAtATime) {
+TEST(Update, DoesOneThingAtATime) {
   const Server server(Server::Answers{});
   for (const char* other : {"--restart", "--stick", "--stay", "a.raucb"})
-    EXPECT_THAT(say(server, {"--back", other}).err, HasSubstr("give only one of FILE, --stick")) << other;
-  EXPECT_THAT(say(server, {"--stay", "--anyway"}).err, HasSubstr("update does not take --anyway"));
+    EXPECT_THAT(say_update(server, {"--back", other}).err, HasSubstr("give only one of FILE, --stick"))
+        << other;
+  EXPECT_THAT(say_update(server, {"--stay", "--anyway"}).err, HasSubstr("update does not take --anyway"));
 }
 
 }  // namespace

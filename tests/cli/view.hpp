@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "api/run_view.hpp"
 
 namespace adit::cli {
@@ -52,6 +54,13 @@ inline api::RunView sample_view() {
   grid.word = "up to date";
   view.activities = {grid};
   return view;
+}
+
+/// Adit's answer of these settings, to GET /adit/settings.
+inline std::string setup_json(const std::string& settings, const std::string& trouble = "") {
+  return R"({"settings":)" + settings +
+         R"(,"tag":"0123456789abcdef","saved":true,"applying":false,"trouble":")" + trouble +
+         R"(","tokens":{"scoring":true,"team":false},"odd_tokens":[],"keys":[]})";
 }
 
 }  // namespace adit::cli

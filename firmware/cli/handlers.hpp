@@ -1,0 +1,65 @@
+#pragma once
+
+#include "cli/ask.hpp"
+
+namespace adit::cli {
+
+// What the commands and subcommands of commands.cpp do.
+
+Result<Outcome> status(const Call& call);
+Result<Outcome> watch(const Call& call);
+
+Result<Outcome> list_reports(const Call& call);
+Result<Outcome> show_report(const Call& call);
+/// send, hold, withdraw, settle and resubmit. Asks before it sends a report in doubt.
+Result<Outcome> decide_on_reports(const Call& call);
+Result<Outcome> export_reports(const Call& call);
+
+Result<Outcome> list_rejected(const Call& call);
+/// send and discard
+Result<Outcome> decide_on_rejected(const Call& call);
+
+Result<Outcome> show_present_run(const Call& call);
+Result<Outcome> begin_run(const Call& call);
+Result<Outcome> list_runs(const Call& call);
+Result<Outcome> show_run(const Call& call);
+Result<Outcome> print_run(const Call& call);
+Result<Outcome> delete_run(const Call& call);
+
+Result<Outcome> show_settings(const Call& call);
+Result<Outcome> check_settings(const Call& call);
+Result<Outcome> apply_settings(const Call& call);
+Result<Outcome> set_setting(const Call& call);
+Result<Outcome> export_settings(const Call& call);
+/// Lists the courses, or switches to one.
+Result<Outcome> course(const Call& call);
+
+Result<Outcome> identify(const Call& call);
+Result<Outcome> show_network(const Call& call);
+/// confirm and revert: waits for the outcome.
+Result<Outcome> decide_on_network(const Call& call);
+Result<Outcome> show_clock(const Call& call);
+Result<Outcome> set_clock(const Call& call);
+
+Result<Outcome> show_spare(const Call& call);
+Result<Outcome> export_spare(const Call& call);
+Result<Outcome> take_spare(const Call& call);
+Result<Outcome> resume_service(const Call& call);
+
+Result<Outcome> begin_ledger(const Call& call);
+Result<Outcome> dump_ledger(const Options& options, const Console& console);
+
+/// Begins the test, or joins one that runs, and prints each step as it ends.
+Result<Outcome> test(const Call& call);
+/// Shows the update; or installs one from a file or the stick, and waits for its end; or restarts the box.
+Result<Outcome> update(const Call& call);
+
+Result<Outcome> check(const Options& options, const Console& console);
+
+Result<Outcome> complete_reports(const Call& call);
+Result<Outcome> complete_rejected(const Call& call);
+Result<Outcome> complete_courses(const Call& call);
+Result<Outcome> complete_runs(const Call& call);
+Result<Outcome> complete_keys(const Options& options, const Console& console);
+
+}  // namespace adit::cli

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <expected>
 #include <optional>
 #include <string>
 
 #include "admin/ntp_watch.hpp"
 #include "api/clock.hpp"
 #include "clock/messages.hpp"
+#include "host/root_program.hpp"
 #include "loop/loop.hpp"
 
 namespace adit::admin {
@@ -25,9 +25,7 @@ class ClockSetting final : public api::Clock {
   ClockSetting(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
                std::uint16_t chronyd)
       : loop_(loop),
-        request_(state_folder + '/' + clock::kRequestFile),
-        ntp_request_(state_folder + '/' + clock::kNtpFile),
-        status_file_(status_folder + '/' + clock::kStatusFile),
+        adit_clock_(loop, "adit-clock", state_folder, status_folder, kTakenUpWithin),
         watch_(loop, chronyd) {}
 
   api::ClockView clock() const override;
@@ -44,23 +42,20 @@ class ClockSetting final : public api::Clock {
 
  private:
   std::expected<void, std::string> ask(clock::Source source, double time);
-  void note_what_became_of_it();
-  void give_up();
+  /// Why the last request was not read; or "".
+  std::string trouble() const { return not_written_.empty() ? adit_clock_.trouble() : not_written_; }
   void ask_for_ntp();
   void follow_ntp();
   bool is_kept_by_ntp() const;
   std::string ntp_said() const;
 
   loop::Loop& loop_;
-  std::string request_, ntp_request_, status_file_;
+  host::RootProgram<clock::Status> adit_clock_;
   NtpWatch watch_;
   clock::Ntp ntp_;  // as the settings have it
   loop::Instant ntp_asked_at_{}, ntp_since_{};
-  std::expected<clock::Status, std::string> status_ = std::unexpected("its status has not been read yet");
-  std::string asked_;   // the nonce of what was asked for last; "": nothing
-  bool waits_ = false;  // for it to be in the status
   loop::Instant asked_at_{};
-  std::string not_taken_up_;
+  std::string not_written_;  // why the last request could not be written; or ""
 };
 
 }  // namespace adit::admin

@@ -5,11 +5,11 @@
 
 #include "admin/accounts.hpp"
 #include "admin/acknowledged_file.hpp"
-#include "admin/network_requests.hpp"
-#include "admin/nonce.hpp"
 #include "admin/taking_over.hpp"
 #include "host/log.hpp"
+#include "host/root_program.hpp"
 #include "host/service.hpp"
+#include "network/messages.hpp"
 
 namespace adit::admin {
 
@@ -26,9 +26,9 @@ std::expected<bool, std::string> FactoryReset::finish() {
   if (unknown) return std::unexpected(begun() + ": " + unknown.message());
   if (!is_begun) return false;
   if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
-  NetworkRequests network(state_, "", "");
-  if (const auto asked = network.ask(network::Forget{draw_nonce()}); !asked)
-    return std::unexpected(asked.error());
+  const network::Forget forget{host::draw_nonce()};
+  if (auto asked = host::leave_request(state_, network::kForgetFile, forget); !asked)
+    return std::unexpected(std::move(asked.error()));
   for (const char* kept : {"journal", "waiting", "rejected"}) {
     std::error_code error;
     std::filesystem::remove_all(runtime_ + '/' + kept, error);

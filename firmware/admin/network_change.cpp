@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "admin/nonce.hpp"
 #include "admin/refuse.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
@@ -38,33 +37,19 @@ api::PortRow port_of(const char* side, const std::string& interface) {
 
 }  // namespace
 
-void NetworkChange::refresh() const {
+void NetworkChange::read_taken() const {
   const loop::Instant now = loop_.now();
-  if (read_at_ && now < *read_at_ + kFresh) return;
-  read_at_ = now;
-  status_ = requests_.status();
-  taken_ = requests_.taken();
-}
-
-bool NetworkChange::is_asked() const {
-  if (!asked_) return false;
-  const std::string& nonce = asked_->wanted.nonce;
-  return !status_ ||
-         ((!status_->pending || status_->pending->nonce != nonce) && status_->ended_nonce != nonce);
-}
-
-void NetworkChange::note_what_became_of_it() {
-  if (!is_asked()) return asked_.reset();
-  if (loop_.now() < asked_->at + kTakenUpWithin) return;
-  requests_.forget_wanted();
-  asked_.reset();
-  not_taken_up_ = "adit-network did not read the request: see journalctl -u adit-network";
-  host::log(host::Level::Error, "adit-network did not read a change of the addresses");
+  if (taken_read_at_ && now < *taken_read_at_ + host::kFresh) return;
+  taken_read_at_ = now;
+  auto read = host::read_row<network::Taken>(taken_file_);
+  if (read) taken_ = std::move(*read).value_or(network::Taken{});
+  const std::string trouble = read ? "" : std::move(read.error());
+  if (std::exchange(taken_trouble_, trouble) != trouble && !trouble.empty())
+    host::log(host::Level::Error, "cannot read which addresses another machine uses", {{"why", trouble}});
 }
 
 void NetworkChange::every_second() {
-  refresh();
-  note_what_became_of_it();
+  adit_network_.check();
   lead_to_endpoints();
 }
 
@@ -74,25 +59,30 @@ std::string NetworkChange::hindrance() const {
   if (team.empty() || post.empty()) {
     return icd::sentence("the settings name no ", team.empty() ? "team.interface" : "command_post.interface");
   }
-  if (!status_) return "adit-network does not run here: " + status_.error();
-  if (status_->team_interface != team || status_->command_post_interface != post) {
-    return icd::sentence("adit-network has ", status_->team_interface, " and ",
-                         status_->command_post_interface, ", but the settings name ", team, " and ", post);
+  const auto status = adit_network_.status();
+  if (!status) return adit_network_.why();
+  if (status->team_interface != team || status->command_post_interface != post) {
+    return icd::sentence("adit-network has ", status->team_interface, " and ", status->command_post_interface,
+                         ", but the settings name ", team, " and ", post);
   }
   return "";
 }
 
 std::optional<network::Pending> NetworkChange::pending() const {
-  refresh();
-  if (status_ && status_->pending) return status_->pending;
-  if (!is_asked()) return std::nullopt;
-  const network::Wanted& wanted = asked_->wanted;
-  return network::Pending{wanted.nonce, wanted.numbers, asked_->at + wanted.confirm_within,
-                          wanted.confirm_within};
+  const auto status = adit_network_.status();
+  if (status && status->pending) return status->pending;
+  if (!adit_network_.waits()) return std::nullopt;
+  return network::Pending{wanted_.nonce, wanted_.numbers, wanted_at_ + wanted_.confirm_within,
+                          wanted_.confirm_within};
+}
+
+std::optional<network::Numbers> NetworkChange::kept() const {
+  const auto status = adit_network_.status();
+  return status ? status->kept : std::nullopt;
 }
 
 std::optional<network::Numbers> NetworkChange::present() const {
-  if (status_ && status_->kept) return status_->kept;
+  if (auto kept = this->kept()) return kept;
   const auto team = host::own_address(settings_.team.interface);
   if (!team) return std::nullopt;
   return network::Numbers{.team = *team,
@@ -100,7 +90,6 @@ std::optional<network::Numbers> NetworkChange::present() const {
 }
 
 api::NetworkView NetworkChange::network() const {
-  refresh();
   api::NetworkView view;
   view.now = loop_.wall_now();
   view.why = hindrance();
@@ -112,30 +101,29 @@ api::NetworkView NetworkChange::network() const {
   if (!view.team_interface.empty()) view.ports.push_back(port_of("team", view.team_interface));
   if (!view.command_post_interface.empty())
     view.ports.push_back(port_of("command_post", view.command_post_interface));
-  if (status_ && status_->kept) {
-    view.mode = status_->kept->mode;
-    view.gateway = status_->kept->gateway;
+  const auto kept = this->kept();
+  if (kept) {
+    view.mode = kept->mode;
+    view.gateway = kept->gateway;
   }
   if (const auto waits = pending()) {
     const double left = std::chrono::duration<double>(waits->until - loop_.now()).count();
-    view.pending = {.until = view.now + left,
-                    .wanted = waits->wanted,
-                    .previous = status_ ? status_->kept : std::nullopt,
-                    .page = page_at(waits->wanted)};
+    view.pending = {
+        .until = view.now + left, .wanted = waits->wanted, .previous = kept, .page = page_at(waits->wanted)};
   }
   if (view.pending) return view;  // how the one before ended says nothing of this one
-  if (!not_taken_up_.empty()) {
+  view.last_why = adit_network_.trouble();
+  const auto status = adit_network_.status();
+  if (!view.last_why.empty()) {
     view.last = name_of(network::Ended::Reverted);
-    view.last_why = not_taken_up_;
-  } else if (status_) {
-    view.last = name_of(status_->ended);
-    view.last_why = status_->why;
+  } else if (status) {
+    view.last = name_of(status->ended);
+    view.last_why = status->why;
   }
   return view;
 }
 
 network::Findings NetworkChange::check(const network::Numbers& wanted, const std::string& asker) const {
-  refresh();
   return network::check(wanted, present(),
                         {.allow_overlap = settings_.network.allow_overlap,
                          .confirm_within = settings_.network.confirm_within,
@@ -149,13 +137,12 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
   if (pending()) return refuse_now("another change is not yet confirmed or reverted");
   if (const std::string why = hindrance(); !why.empty()) return refuse_now(why);
-  network::Wanted request{draw_nonce(), settings_.network.confirm_within, wanted};
-  if (const auto asked = requests_.ask(request); !asked)
+  wanted_ = {host::draw_nonce(), settings_.network.confirm_within, wanted};
+  wanted_at_ = loop_.now();
+  if (const auto asked = adit_network_.ask(network::kWantedFile, wanted_); !asked)
     return refuse_now("cannot request the change: " + asked.error());
   host::log(host::Level::Notice, "change of the addresses requested",
             {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
-  asked_ = Asked{std::move(request), loop_.now()};
-  not_taken_up_.clear();
   return {};
 }
 
@@ -170,9 +157,9 @@ icd::Checked<void> NetworkChange::confirm(const std::string& local) {
 icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& wanted,
                                                     const std::string& local) const {
   const bool fixed = wanted.mode == network::Mode::Static;
-  const auto kept = status_ ? status_->kept : std::nullopt;
+  const auto kept = this->kept();
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
-  if ((stays || !fixed) && is_asked())
+  if ((stays || !fixed) && adit_network_.waits())
     return refuse_now("the change is not applied yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
@@ -196,15 +183,15 @@ void NetworkChange::lead_to_endpoints() {
   std::ranges::sort(all.addresses);
   const auto twice = std::ranges::unique(all.addresses);
   all.addresses.erase(twice.begin(), twice.end());
-  if (status_->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
+  const auto status = adit_network_.status();
+  if (!status || status->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
   told_at_ = loop_.now();
-  if (const auto asked = requests_.ask(all); !asked) {
+  if (const auto asked = adit_network_.leave(network::kEndpointsFile, all); !asked) {
     host::log(host::Level::Error, "cannot tell adit-network the endpoints", {{"why", asked.error()}});
   }
 }
 
 std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
-  refresh();
   const auto number = settings::ipv4_of(endpoint.address);
   const auto numbers = present();
   if (!number || !numbers) return "";
@@ -219,7 +206,8 @@ icd::Checked<void> NetworkChange::revert() {
 }
 
 icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {
-  if (const auto asked = requests_.ask(network::Word{pending.nonce, what}); !asked) {
+  if (const auto asked = adit_network_.leave(network::kWordFile, network::Word{pending.nonce, what});
+      !asked) {
     return refuse_now("cannot tell adit-network: " + asked.error());
   }
   return {};
@@ -255,8 +243,10 @@ std::string NetworkChange::page_at(const network::Numbers& numbers) const {
 
 alarms::NetworkFact NetworkChange::fact() const {
   alarms::NetworkFact fact;
+  read_taken();
   const auto waits = pending();
-  const bool bare = status_ && status_->kept && status_->kept->command_post.empty();
+  const auto kept = this->kept();
+  const bool bare = kept && kept->command_post.empty();
   fact.no_address = !waits && bare && hindrance().empty();
   if (waits) {
     fact.confirm_within = std::chrono::duration<double>(waits->until - loop_.now()).count();

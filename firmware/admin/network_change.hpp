@@ -3,10 +3,11 @@
 #include <optional>
 #include <string>
 
-#include "admin/network_requests.hpp"
 #include "alarms/facts.hpp"
 #include "api/network.hpp"
+#include "host/root_program.hpp"
 #include "loop/loop.hpp"
+#include "network/messages.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::admin {
@@ -16,15 +17,17 @@ class NetworkChange final : public api::Network {
  public:
   /// adit-network asks the network first whether an address is free, which takes some seconds.
   static constexpr std::chrono::seconds kTakenUpWithin{30};
-  /// How old what was read of its status, and of the watch, may be.
-  static constexpr std::chrono::milliseconds kFresh{50};
   /// adit-network is told again where the endpoints are, where it does not know, this long after the last
   /// time.
   static constexpr std::chrono::seconds kTellAgain{10};
 
-  /// All outlive this.
-  NetworkChange(loop::Loop& loop, const settings::Settings& settings, NetworkRequests& requests)
-      : loop_(loop), settings_(settings), requests_(requests) {}
+  /// `watch_folder`: where adit-network --watch tells what it hears. All others outlive this.
+  NetworkChange(loop::Loop& loop, const settings::Settings& settings,
+                host::RootProgram<network::Status>& adit_network, const std::string& watch_folder)
+      : loop_(loop),
+        settings_(settings),
+        adit_network_(adit_network),
+        taken_file_(watch_folder + '/' + network::kTakenFile) {}
 
   api::NetworkView network() const override;
   network::Findings check(const network::Numbers& wanted, const std::string& asker) const override;
@@ -43,16 +46,9 @@ class NetworkChange final : public api::Network {
   alarms::NetworkFact fact() const;
 
  private:
-  /// What was asked for and is not in the status yet.
-  struct Asked {
-    network::Wanted wanted;
-    loop::Instant at;
-  };
-  /// Reads the status again where what is known of it is old.
-  void refresh() const;
-  /// Whether what was asked for is not in the status yet, and may still be.
-  bool is_asked() const;
-  void note_what_became_of_it();
+  /// Reads the watch's file if what is known of it is old. If the file cannot be read, the addresses that
+  /// were read last stay, for network::kTakenFor.
+  void read_taken() const;
   void lead_to_endpoints();
   std::optional<alarms::ExchangedAddress> exchanged() const;
   std::optional<alarms::TakenAddress> taken(const std::string& interface, bool is_team) const;
@@ -60,6 +56,7 @@ class NetworkChange final : public api::Network {
   std::string hindrance() const;
   std::string page_at(const network::Numbers& numbers) const;
   std::optional<network::Pending> pending() const;
+  std::optional<network::Numbers> kept() const;
   std::optional<network::Numbers> present() const;
   /// Where `local` is an address by which the confirmation of a change to `wanted` may come.
   icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
@@ -67,13 +64,14 @@ class NetworkChange final : public api::Network {
 
   loop::Loop& loop_;
   const settings::Settings& settings_;
-  NetworkRequests& requests_;
-  mutable std::expected<network::Status, std::string> status_;
+  host::RootProgram<network::Status>& adit_network_;
+  const std::string taken_file_;
   mutable network::Taken taken_;
-  mutable std::optional<loop::Instant> read_at_;
-  std::optional<Asked> asked_;            // its last word is had by is_asked()
+  mutable std::string taken_trouble_;  // why the file could not be read last, which is logged once
+  mutable std::optional<loop::Instant> taken_read_at_;
+  network::Wanted wanted_;  // last
+  loop::Instant wanted_at_{};
   std::optional<loop::Instant> told_at_;  // where the endpoints are
-  std::string not_taken_up_;              // why the last change came to nothing
 };
 
 }  // namespace adit::admin

@@ -17,33 +17,15 @@ namespace {
 
 using icd::Status;
 
-template <std::size_t size>
-std::array<std::uint8_t, size> random() {
-  std::array<std::uint8_t, size> bytes;
-  host::fill_random(bytes);
-  return bytes;
-}
-
-std::string draw_box() {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string box;
-  for (const std::uint8_t byte : random<8>()) {
-    box += kDigits[byte >> 4];
-    box += kDigits[byte & 15];
-  }
-  return box;
-}
-
 }  // namespace
 
 Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
-             std::string status_folder, const std::string& stuck, Asked asked)
+             const std::string& status_folder, const std::string& stuck, Asked asked)
     : loop_(loop),
       workers_(workers),
       taking_over_(taking_over),
       state_(std::move(state_folder)),
-      stick_(loop, state_, std::move(status_folder),
-             [this](std::string file) { taken_from_stick(std::move(file)); }),
+      stick_(loop, state_, status_folder, [this](std::string file) { taken_from_stick(std::move(file)); }),
       stuck_(stuck),
       asked_(std::move(asked)),
       restart_(loop.timer([this] { asked_.restart(); })) {
@@ -108,9 +90,9 @@ icd::Checked<void> Spare::stand_by() {
   if (!standby_.empty() || goes_on_standby_) return {};
   if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
   SpareFile next = file_;
-  if (next.box.empty()) next.box = draw_box();
+  if (next.box.empty()) next.box = host::random_digits<8>();
   const double now = loop_.wall_now();
-  next.rest = {.code = spare::draw_code(random<spare::kCodeDigits>()),
+  next.rest = {.code = spare::draw_code(host::random_bytes<spare::kCodeDigits>()),
                .since = now,
                .stamp = loop_.stamp_now(),
                .told = asked_.is_time_set() ? std::optional(now) : std::nullopt};
@@ -166,7 +148,7 @@ void Spare::seal(const Named& done) {
     return refused(Status::Conflict, "the ledger is larger than an export may be");
   auto sealed = std::make_shared<std::expected<std::string, std::string>>(
       std::unexpected("the export could not be sealed"));
-  const spare::Seed seed{.salt = random<16>(), .nonce = random<24>()};
+  const spare::Seed seed{.salt = host::random_bytes<16>(), .nonce = host::random_bytes<24>()};
   workers_.submit(
       loop::Urgency::CanWait,
       [text, sealed, seed, code = file_.rest->code] { *sealed = spare::seal(*text, code, seed); },

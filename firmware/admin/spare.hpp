@@ -32,7 +32,7 @@ class Spare final : public api::Spare {
   /// its own file says (a take-over is not finished, the settings cannot be read), or "". `workers`: for what
   /// costs 0.1 s. All outlive this.
   Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
-        std::string status_folder, const std::string& stuck, Asked asked);
+        const std::string& status_folder, const std::string& stuck, Asked asked);
 
   /// Why the box takes nothing and sends nothing; "": it does.
   const std::string& standby() const { return standby_; }

@@ -9,8 +9,6 @@
 namespace adit::admin {
 namespace {
 
-constexpr codec::FileFormat kFormat = {"format", 1};
-
 constexpr codec::Member kRestMembers[] = {
     codec::member<&Rest::code>("code"),         codec::member<&Rest::since>("since"),
     codec::member<&Rest::stamp>("stamp"),       codec::member<&Rest::told>("told"),
@@ -40,12 +38,11 @@ std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_f
 }
 
 std::expected<SpareFile, std::string> SpareFile::read(const std::string& state_folder, std::string& unread) {
-  const auto parse = [](std::string_view text) { return codec::read_file<SpareFile>(text, kFormat); };
-  return read_kept_file(state_folder + '/' + kName, parse, unread);
+  return read_kept_file(state_folder + '/' + kName, &codec::read_file<SpareFile>, unread);
 }
 
 std::expected<void, std::string> SpareFile::write(const std::string& state_folder) const {
-  return host::write_kept(state_folder + '/' + kName, codec::write_file(*this, kFormat));
+  return host::write_kept(state_folder + '/' + kName, codec::write_file(*this));
 }
 
 std::string SpareFile::hindrance(const spare::About& about) const {

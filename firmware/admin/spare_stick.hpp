@@ -6,6 +6,7 @@
 #include <string>
 
 #include "api/spare.hpp"
+#include "host/root_program.hpp"
 #include "loop/loop.hpp"
 #include "spare/stick.hpp"
 
@@ -23,7 +24,8 @@ class SpareStick {
 
   /// `state_folder`: where requests are left; `status_folder`: where they are answered. `taken` is given each
   /// export that was read from a stick. `loop` outlives this.
-  SpareStick(loop::Loop& loop, std::string state_folder, std::string status_folder, Taken taken);
+  SpareStick(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
+             Taken taken);
 
   /// Nothing: adit-spare does not run here.
   std::optional<api::StickRow> view() const;
@@ -35,24 +37,19 @@ class SpareStick {
 
  private:
   using What = spare::StickRequest::What;
-  struct Asked {
-    spare::StickRequest request;
-    loop::Instant at;
-  };
-  std::expected<spare::StickStatus, std::string> status() const;
   /// Why no export can be written now.
   std::optional<icd::Refusal> hindrance_to_write() const;
   icd::Checked<void> ask(What what, const std::string& name);
   void look();
   void finish(const spare::StickStatus& status);
-  void forget();
+  std::string for_stick() const { return adit_spare_.requests() + '/' + spare::kForStickFile; }
 
   loop::Loop& loop_;
-  std::string state_, status_;
+  host::RootProgram<spare::StickStatus> adit_spare_;
   Taken taken_;
   loop::Source timer_;
-  std::optional<Asked> asked_;  // and not finished yet
-  std::string refusal_;         // why the last came to nothing
+  std::optional<What> asked_;  // and not finished yet
+  std::string refusal_;        // why the last came to nothing
 };
 
 }  // namespace adit::admin

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "admin/nonce.hpp"
+#include "admin/refuse.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "update/health.hpp"
@@ -40,56 +40,41 @@ std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t siz
 
 }  // namespace
 
-Updates::Updates(loop::Loop& loop, loop::Writer& writer, UpdateRequests requests,
-                 std::function<std::string()> under_way)
-    : loop_(loop), writer_(writer), requests_(std::move(requests)), under_way_(std::move(under_way)) {
-  unlink(requests_.part_file().c_str());  // of an upload that a power cut broke off
-}
-
-void Updates::refresh() const {
-  const loop::Instant now = loop_.now();
-  if (read_at_ && now < *read_at_ + kFresh) return;
-  read_at_ = now;
-  status_ = requests_.status();
-}
-
-bool Updates::is_asked() const {
-  return asked_ && (!status_ || status_->nonce != asked_->request.nonce);
+Updates::Updates(loop::Loop& loop, loop::Writer& writer, const std::string& state_folder,
+                 const std::string& status_folder, std::function<std::string()> under_way)
+    : writer_(writer),
+      adit_update_(loop, "adit-update", state_folder, status_folder, kTakenUpWithin),
+      under_way_(std::move(under_way)) {
+  unlink(part_file().c_str());  // of an upload that a power cut broke off
 }
 
 void Updates::every_second() {
-  refresh();
-  if (!is_asked()) return asked_.reset();
-  if (loop_.now() < asked_->at + kTakenUpWithin) return;
-  requests_.forget();
-  asked_.reset();
-  not_taken_up_ = "adit-update did not read the request: see journalctl -u adit-update";
-  host::log(host::Level::Error, "adit-update did not read the request");
+  if (adit_update_.check()) unlink(bundle_file().c_str());
 }
 
 api::UpdateView Updates::update() const {
-  refresh();
+  const auto status = adit_update_.status();
   api::UpdateView view;
-  view.why = status_ ? status_->trouble : "adit-update does not run here: " + status_.error();
+  view.why = status ? status->trouble : adit_update_.why();
   view.managed = view.why.empty();
-  if (status_) {
-    view.running = status_->running;
-    view.doing = status_->doing;
-    view.progress = status_->progress;
-    view.refusal = status_->refusal;
-    view.last = status_->last;
-    view.trial = status_->trial;
-    view.stray = status_->stray;
-    view.stick = status_->stick;
-    view.stick_why = status_->stick_trouble;
+  if (status) {
+    view.running = status->running;
+    view.doing = status->doing;
+    view.progress = status->progress;
+    view.refusal = status->refusal;
+    view.last = status->last;
+    view.trial = status->trial;
+    view.stray = status->stray;
+    view.stick = status->stick;
+    view.stick_why = status->stick_trouble;
   }
-  if (!not_taken_up_.empty()) view.refusal = not_taken_up_;
+  if (auto trouble = adit_update_.trouble(); !trouble.empty()) view.refusal = std::move(trouble);
   if (receiving_ != nullptr) {
     view.doing = "receiving";
     view.progress = static_cast<int>(100 * receiving_->received() / expected_);
     view.refusal.clear();
-  } else if (is_asked()) {
-    view.doing = doing_of(asked_->request.what);
+  } else if (adit_update_.waits()) {
+    view.doing = doing_of(asked_);
     view.refusal.clear();
   }
   return view;
@@ -118,10 +103,10 @@ std::optional<icd::Refusal> Updates::no_stray() const {
 icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,
                                                             std::function<void()> resume) {
   if (auto why = nothing_installed_now()) return std::unexpected(std::move(*why));
-  if (auto why = no_room(requests_.state_folder(), size)) return std::unexpected(std::move(*why));
+  if (auto why = no_room(adit_update_.requests(), size)) return std::unexpected(std::move(*why));
   auto upload = UpdateUpload::begin(
-      writer_, {.part = requests_.part_file(),
-                .whole = requests_.bundle_file(),
+      writer_, {.part = part_file(),
+                .whole = bundle_file(),
                 .size = size,
                 .resume = std::move(resume),
                 .asked = [this, again] { return ask(update::Request::What::Install, again); },
@@ -130,7 +115,6 @@ icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, 
   host::log(host::Level::Notice, "receiving an update", {{"bytes", std::to_string(size)}});
   receiving_ = upload->get();
   expected_ = size;
-  not_taken_up_.clear();
   return std::unique_ptr<api::Upload>(std::move(*upload));
 }
 
@@ -162,13 +146,10 @@ icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool any
 }
 
 icd::Checked<void> Updates::ask(update::Request::What what, bool again) {
-  update::Request request{.nonce = draw_nonce(), .what = what, .again = again};
-  if (const auto asked = requests_.ask(request); !asked) {
-    return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
-                                        "cannot request it from adit-update: " + asked.error()});
-  }
-  asked_ = Asked{std::move(request), loop_.now()};
-  not_taken_up_.clear();
+  const update::Request request{.nonce = host::draw_nonce(), .what = what, .again = again};
+  asked_ = what;
+  if (const auto asked = adit_update_.ask(update::kRequestFile, request); !asked)
+    return refuse(icd::Status::ServiceUnavailable, "cannot request it from adit-update: " + asked.error());
   return {};
 }
 

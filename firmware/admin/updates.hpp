@@ -4,11 +4,12 @@
 #include <optional>
 #include <string>
 
-#include "admin/update_requests.hpp"
 #include "admin/update_upload.hpp"
 #include "api/updates.hpp"
+#include "host/root_program.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
+#include "update/messages.hpp"
 
 namespace adit::admin {
 
@@ -17,14 +18,13 @@ class Updates final : public api::Updates {
  public:
   /// adit-update begins within that time, unless it does not run here.
   static constexpr std::chrono::seconds kTakenUpWithin{60};
-  /// How old what was read of its status may be.
-  static constexpr std::chrono::milliseconds kFresh{100};
   /// What stays free on the disk beside a bundle: for the ledger above all.
   static constexpr std::uint64_t kSpared = 16 << 20;
 
+  /// `state_folder`: where requests and bundles are left; `status_folder`: where adit-update answers.
   /// `under_way`: a sentence about the report that the Command Post is being sent, or "". All outlive this.
-  Updates(loop::Loop& loop, loop::Writer& writer, UpdateRequests requests,
-          std::function<std::string()> under_way);
+  Updates(loop::Loop& loop, loop::Writer& writer, const std::string& state_folder,
+          const std::string& status_folder, std::function<std::string()> under_way);
 
   api::UpdateView update() const override;
   icd::Checked<std::unique_ptr<api::Upload>> receive(std::uint64_t size, bool again,
@@ -41,15 +41,9 @@ class Updates final : public api::Updates {
   bool running() const { return !update().doing.empty(); }
 
  private:
-  /// What was asked for and is not in the status yet.
-  struct Asked {
-    update::Request request;
-    loop::Instant at;
-  };
-  /// Reads the status again where what is known of it is old.
-  void refresh() const;
-  /// Whether what was asked for is not in the status yet, and may still be.
-  bool is_asked() const;
+  /// Where a bundle is left, and where it is while it comes in.
+  std::string bundle_file() const { return adit_update_.requests() + '/' + update::kBundleFile; }
+  std::string part_file() const { return bundle_file() + ".part"; }
   /// Why nothing can be asked for now; nothing: it can.
   std::optional<icd::Refusal> hindrance() const;
   /// Why nothing is installed now.
@@ -60,16 +54,12 @@ class Updates final : public api::Updates {
   icd::Checked<void> ask_for_restart(update::Request::What what, bool anyway);
   icd::Checked<void> ask(update::Request::What what, bool again);
 
-  loop::Loop& loop_;
   loop::Writer& writer_;
-  UpdateRequests requests_;
+  host::RootProgram<update::Status> adit_update_;
   std::function<std::string()> under_way_;
   std::uint64_t expected_ = 0;               // bytes of what is being received; 0: nothing is
   const UpdateUpload* receiving_ = nullptr;  // while it is
-  mutable std::expected<update::Status, std::string> status_;
-  mutable std::optional<loop::Instant> read_at_;
-  std::optional<Asked> asked_;  // its last word is had by is_asked()
-  std::string not_taken_up_;    // why the last request came to nothing
+  update::Request::What asked_{};            // last
 };
 
 }  // namespace adit::admin

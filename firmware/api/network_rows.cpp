@@ -84,7 +84,9 @@ constexpr Member kNetworkMembers[] = {
     group<NetworkView, kCommandPostSide>("command_post"),
     member<&NetworkView::pending>("pending"),
     member<&NetworkView::ports>("ports"),
-    member<&NetworkView::last>("last").as(codec::kTextOrNull).one_of(network::kEndedWords),
+    member<&NetworkView::last>("last")
+        .as(codec::kTextOrNull)
+        .one_of(std::span(network::kEndedWords).subspan(1)),
     member<&NetworkView::last_why>("last_why"),
 };
 

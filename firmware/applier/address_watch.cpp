@@ -49,7 +49,7 @@ std::expected<void, std::string> AddressWatch::start() {
     if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
     look();
   });
-  if (auto told = file_.tell(network::write(network::Taken{})); !told) return std::unexpected(told.error());
+  if (auto told = file_.tell(network::Taken{}); !told) return std::unexpected(told.error());
   look();
   return {};
 }
@@ -178,7 +178,7 @@ void AddressWatch::say(Side& side, Instant now) {
 void AddressWatch::tell(Instant now) {
   if (written_at_ && now < *written_at_ + kBetweenTellings) return;
   written_at_.reset();
-  const auto is_written = file_.tell(network::write(taken(now)));
+  const auto is_written = file_.tell(taken(now));
   if (!is_written || *is_written) written_at_ = now;
 }
 

@@ -10,8 +10,8 @@
 #include "applier/exchanged.hpp"
 #include "applier/options.hpp"
 #include "applier/sought.hpp"
-#include "applier/status_file.hpp"
 #include "applier/takers.hpp"
+#include "host/root_program.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 #include "network/messages.hpp"
@@ -68,7 +68,7 @@ class AddressWatch {
   std::array<Side, 2> sides_;
   Exchanged exchanged_;
   ToldStatus told_;
-  StatusFile file_;
+  host::StatusFile file_;
   std::optional<Instant> written_at_;
   const loop::FileDescriptor kernel_;
   loop::Source changed_, due_;

@@ -15,52 +15,36 @@
 #include "network/messages.hpp"
 
 namespace adit::applier {
-namespace {
 
 using host::Level;
-
-void refused(const char* file, const std::string& why) {
-  host::log(Level::Warning, "request rejected", {{"file", file}, {"why", why}});
-}
-
-}  // namespace
 
 Applier::Applier(loop::Loop& loop, const Options& options)
     : loop_(loop),
       options_(options),
       files_(options),
-      file_(options.status + '/' + network::kStatusFile),
+      file_(options.status + '/' + host::kStatusFile),
       due_(loop.timer([this] { look(); })) {}
 
 std::expected<void, std::string> Applier::start() {
-  const bool first = access((options_.status + '/' + network::kStatusFile).c_str(), F_OK) != 0;
+  const auto before = file_.told<network::Status>();
   if (auto settled = files_.settle(); !settled) return settled;
   change_.emplace(files_, files_.kept());
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
-  if (found_a_change()) {
+  // Or the start before this one found it, and could not tell networkd.
+  const bool was_pending = before && before->pending && before->pending->wanted != files_.kept();
+  if (files_.found_a_change() || was_pending) {
     host::log(Level::Warning, "a change that was not confirmed was reverted");
     change_->interrupted();
   }
-  auto folder = host::UntrustedFolder::open(options_.wanted);
-  if (folder) {
-    folder_ = std::move(*folder);
-    watch_folder();
-    if (first) drop_requests();
-  } else {
-    host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
-  }
   if (!tell()) return std::unexpected("cannot write the status");
+  auto folder = host::open_requests(options_.wanted);
+  if (!folder) return std::unexpected(std::move(folder.error()));
+  folder_ = std::move(*folder);
+  if (folder_) watch_folder();
+  if (folder_ && !before) drop_requests();
   look();
   return {};
-}
-
-/// Or the start before this one found it, and could not tell networkd.
-bool Applier::found_a_change() const {
-  const auto text = host::read_file(options_.status + '/' + network::kStatusFile);
-  const auto told = network::read<network::Status>(text.value_or(""));
-  const bool was_pending = told && told->pending && told->pending->wanted != files_.kept();
-  return files_.found_a_change() || was_pending;
 }
 
 void Applier::stop() {
@@ -97,7 +81,7 @@ void Applier::look() {
 
 /// But for those that are as right now as they were then.
 void Applier::drop_requests() {
-  for (const char* name : {network::kWantedFile, network::kWordFile, network::kProbeFile}) taken(name);
+  for (const char* name : {network::kWantedFile, network::kWordFile, network::kProbeFile}) remove(name);
 }
 
 void Applier::take_requests() {
@@ -109,12 +93,19 @@ void Applier::take_requests() {
 
 template <class Request>
 std::optional<Request> Applier::asked(const char* name) {
-  const auto text = taken(name);
-  if (!text) return std::nullopt;
-  auto request = network::read<Request>(*text);
+  auto request = host::take_request<Request>(*folder_, name);
   if (request) return *std::move(request);
-  refused(name, request.error());
+  cannot_take(request.error());
   return std::nullopt;
+}
+
+void Applier::remove(const char* name) {
+  if (const auto removed = folder_->remove(name); !removed) cannot_take(removed.error());
+}
+
+void Applier::cannot_take(const std::string& why) {
+  is_stuck_ = true;
+  host::log(Level::Error, "cannot take a request", {{"why", why}});
 }
 
 void Applier::take_wanted() {
@@ -142,14 +133,14 @@ bool Applier::take_forget() {
     is_stuck_ = true;
     return false;
   }
-  taken(network::kForgetFile);
+  remove(network::kForgetFile);
   return true;
 }
 
 /// Whether there is nothing more to do about it.
 bool Applier::forget(const std::string& text) {
-  if (const auto forget = network::read<network::Forget>(text); !forget) {
-    refused(network::kForgetFile, forget.error());
+  if (const auto forget = codec::read_file<network::Forget>(text); !forget) {
+    host::log_rejected_request(network::kForgetFile, forget.error());
     return true;
   }
   if (const auto forgotten = change_->forget(loop_.now()); !forgotten) {
@@ -169,15 +160,6 @@ void Applier::take_endpoints() {
   change_->set_endpoints(*endpoints);
 }
 
-std::optional<std::string> Applier::taken(const char* name) {
-  auto text = folder_->take(name);
-  if (text) return std::move(*text);
-  is_stuck_ = is_stuck_ || text.error().stays;
-  host::log(text.error().stays ? Level::Error : Level::Warning, "request rejected",
-            {{"why", text.error().why}});
-  return std::nullopt;
-}
-
 void Applier::answer_probe(const network::Probe& probe) {
   network::Probed probed{.nonce = probe.nonce};
   std::vector<std::uint32_t> own;
@@ -194,8 +176,8 @@ void Applier::answer_probe(const network::Probe& probe) {
     }
   }
   if (const auto sought = settings::ipv4_of(probe.sought)) probed.found_on = side_of(*sought);
-  const auto written =
-      host::write_file(options_.status + '/' + network::kProbedFile, network::write(probed), host::kForAll);
+  const auto written = host::write_file(options_.status + '/' + network::kProbedFile,
+                                        codec::write_file(probed), host::kForAll);
   if (!written) host::log(Level::Error, "cannot write an answer", {{"why", written.error()}});
 }
 
@@ -211,7 +193,7 @@ std::string Applier::side_of(std::uint32_t address) const {
 /// The status, where it is another than was told last.
 bool Applier::tell() {
   const network::Status& status = change_->status();
-  const auto told = file_.tell(network::write(status));
+  const auto told = file_.tell(status);
   if (!told || !*told) return told.has_value();
   if (status.pending) {
     host::log(Level::Notice, "change applied: confirm it");

@@ -5,7 +5,7 @@
 
 #include "applier/networkd_files.hpp"
 #include "applier/options.hpp"
-#include "applier/status_file.hpp"
+#include "host/root_program.hpp"
 #include "host/untrusted_folder.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
@@ -40,21 +40,21 @@ class Applier {
   void take_endpoints();
   bool take_forget();
   bool forget(const std::string& text);
-  bool found_a_change() const;
   void after();
   bool tell();
   void answer_probe(const network::Probe& probe);
   std::string side_of(std::uint32_t address) const;
-  std::optional<std::string> taken(const char* name);
   /// What is asked for in the file of that name, which is taken away; nothing: nothing that can be done.
   template <class Request>
   std::optional<Request> asked(const char* name);
+  void remove(const char* name);
+  void cannot_take(const std::string& why);
   void watch_folder();
 
   loop::Loop& loop_;
   const Options& options_;
   NetworkdFiles files_;
-  StatusFile file_;
+  host::StatusFile file_;
   std::optional<network::Change> change_;
   std::optional<host::UntrustedFolder> folder_;
   loop::FileDescriptor notices_;

@@ -100,14 +100,14 @@ class Reader {
     found_.brought.numbers = *numbers;
   }
 
-  /// The numbers alone, or with their version, as the image's own and adit-network's file have them.
+  /// The numbers alone, or with their format, as the image's own and adit-network's file have them.
   static std::expected<network::Numbers, std::vector<settings::Error>> numbers_of(const codec::Value& value,
                                                                                   const std::string& text) {
     const auto* object = std::get_if<codec::Value::Object>(&value.is);
-    const bool has_version =
+    const bool has_format =
         object != nullptr &&
-        std::ranges::find(*object, "version", &codec::Value::Member::first) != object->end();
-    if (!has_version) return network::read_numbers(value);
+        std::ranges::find(*object, "format", &codec::Value::Member::first) != object->end();
+    if (!has_format) return network::read_numbers(value);
     auto numbers = network::read_kept(text);
     if (!numbers) return std::unexpected(std::vector<settings::Error>{{"", std::move(numbers.error())}});
     return *numbers;

@@ -26,50 +26,27 @@ bool agrees(const std::string& chip, double now) {
 }  // namespace
 
 std::expected<void, std::string> ClockSetter::work() {
-  const auto before = host::read_file(options_.status + '/' + clock::kStatusFile);
-  const auto known = before ? clock::read<clock::Status>(*before) : std::unexpected(before.error());
-  if (known) {
-    status_ = *known;
+  if (const auto before = file_.told<clock::Status>()) {
+    status_ = *before;
   } else if (agrees(options_.chip, clocks_.wall())) {
     status_.source = clock::Source::Chip;
   }
   status_.boot = clocks_.boot;
-  if (const auto told = file_.tell(clock::write(status_)); !told) return std::unexpected(told.error());
-  auto folder = host::UntrustedFolder::open(options_.wanted);
-  if (!folder) {
-    host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
-    return {};
-  }
-  while (true) {
-    const auto ntp =
-        take<clock::Ntp>(*folder, clock::kNtpFile, [this](const auto& asked) { status_.ntp = asked; });
-    const auto time =
-        take<clock::Request>(*folder, clock::kRequestFile, [this](const auto& asked) { answer(asked); });
-    if (!ntp || !time) return std::unexpected(ntp ? time.error() : ntp.error());
-    if (*ntp == Taken::Nothing && *time == Taken::Nothing) return {};
+  if (const auto told = file_.tell(status_); !told) return std::unexpected(told.error());
+  auto folder = host::open_requests(options_.wanted);
+  if (!folder) return std::unexpected(std::move(folder.error()));
+  while (*folder) {
+    const auto ntp = host::take_request<clock::Ntp>(**folder, clock::kNtpFile);
+    if (!ntp) return std::unexpected(ntp.error());
+    if (*ntp) status_.ntp = **ntp;
+    const auto time = host::take_request<clock::Request>(**folder, clock::kRequestFile);
+    if (!time) return std::unexpected(time.error());
+    if (*time) answer(**time);
+    if (!*ntp && !*time) break;
     status_.trouble = chronyd_.run_with(status_.ntp, status_.trusted());
-    tell();
+    (void)file_.tell(status_);
   }
-}
-
-template <class Asked>
-std::expected<ClockSetter::Taken, std::string> ClockSetter::take(
-    host::UntrustedFolder& folder, const char* name, const std::function<void(const Asked&)>& done) {
-  const auto text = folder.take(name);
-  if (text && !*text) return Taken::Nothing;
-  if (!text && text.error().stays) return std::unexpected(text.error().why);
-  const auto asked = text ? clock::read<Asked>(**text) : std::unexpected(text.error().why);
-  if (asked) {
-    done(*asked);
-  } else {
-    host::log(Level::Warning, "request rejected", {{"why", asked.error()}});
-  }
-  return Taken::One;
-}
-
-/// What hinders it is logged.
-void ClockSetter::tell() {
-  (void)file_.tell(clock::write(status_));
+  return {};
 }
 
 void ClockSetter::answer(const clock::Request& request) {

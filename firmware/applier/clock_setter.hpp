@@ -1,14 +1,13 @@
 #pragma once
 
-#include <cstdint>
 #include <expected>
 #include <functional>
 #include <string>
 
 #include "applier/chronyd.hpp"
 #include "applier/clock_options.hpp"
-#include "applier/status_file.hpp"
 #include "clock/messages.hpp"
+#include "host/root_program.hpp"
 #include "host/untrusted_folder.hpp"
 
 namespace adit::applier {
@@ -32,7 +31,7 @@ class ClockSetter {
   ClockSetter(const ClockOptions& options, Clocks clocks)
       : options_(options),
         clocks_(std::move(clocks)),
-        file_(options.status + '/' + clock::kStatusFile),
+        file_(options.status + '/' + host::kStatusFile),
         chronyd_(options.status, options.team, options.systemctl) {}
 
   /// Until nothing is asked for. An error: its own folder is not as it should be, or what is asked for cannot
@@ -40,18 +39,12 @@ class ClockSetter {
   std::expected<void, std::string> work();
 
  private:
-  enum class Taken : std::uint8_t { Nothing, One };
-  /// Takes what of that name is asked for, if anything, to `done`. An error: it cannot be taken away.
-  template <class Asked>
-  std::expected<Taken, std::string> take(host::UntrustedFolder& folder, const char* name,
-                                         const std::function<void(const Asked&)>& done);
   void answer(const clock::Request& request);
-  void tell();
 
   const ClockOptions& options_;
   Clocks clocks_;
   clock::Status status_;
-  StatusFile file_;
+  host::StatusFile file_;
   Chronyd chronyd_;
 };
 

@@ -1,9 +1,7 @@
 #include "applier/kept.hpp"
 
-#include <cerrno>
-
-#include "host/files.hpp"
 #include "host/log.hpp"
+#include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "update/messages.hpp"
 
@@ -13,10 +11,8 @@ namespace {
 /// `what`: for the log, as "... is not known" and "... cannot be kept".
 template <class Message>
 Message load(const std::string& path, std::string_view what) {
-  const auto text = host::slurp(path);
-  if (!text && text.error() == ENOENT) return {};
-  auto kept = text ? update::read<Message>(text->text) : std::unexpected(host::trouble(path, text.error()));
-  if (kept) return *std::move(kept);
+  auto kept = host::read_row<Message>(path);
+  if (kept) return (*std::move(kept)).value_or(Message{});
   host::log(host::Level::Error, "cannot read " + std::string(what), {{"why", kept.error()}});
   return {};
 }
@@ -45,7 +41,7 @@ update::LastUpdate load_last_update(const std::string& folder) {
 }
 
 bool save(const std::string& folder, const update::LastUpdate& last_update) {
-  return save(last_update_in(folder), update::write(last_update), kLast);
+  return save(last_update_in(folder), codec::write_file(last_update), kLast);
 }
 
 update::Proven load_proven(const std::string& folder) {
@@ -53,7 +49,7 @@ update::Proven load_proven(const std::string& folder) {
 }
 
 bool save(const std::string& folder, const update::Proven& proven) {
-  return save(proven_in(folder), update::write(proven), kGood);
+  return save(proven_in(folder), codec::write_file(proven), kGood);
 }
 
 }  // namespace adit::applier

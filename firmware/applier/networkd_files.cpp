@@ -9,6 +9,7 @@
 
 #include "host/files.hpp"
 #include "host/log.hpp"
+#include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
 #include "network/networkd.hpp"
@@ -69,10 +70,10 @@ std::expected<void, std::string> NetworkdFiles::read() {
 }
 
 std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
-  const auto text = host::slurp(confirmed_file());
-  if (!text && text.error() == ENOENT) return false;
-  if (!text) return std::unexpected(host::trouble(confirmed_file(), text.error()));
-  const auto confirmed = network::read_kept(text->text);
+  const auto text = host::read_if_there(confirmed_file());
+  if (!text) return std::unexpected(text.error());
+  if (!*text) return false;
+  const auto confirmed = network::read_kept(**text);
   if (confirmed) {
     kept_ = *confirmed;
     return true;
@@ -84,10 +85,9 @@ std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
 /// Where there are none, somebody else set the addresses, and that stays.
 void NetworkdFiles::use_factory() {
   kept_.reset();
-  const auto text = host::slurp(options_.factory);
-  if (!text && text.error() == ENOENT) return;
-  const auto factory =
-      text ? network::read_kept(text->text) : std::unexpected(host::trouble(options_.factory, text.error()));
+  const auto text = host::read_if_there(options_.factory);
+  if (text && !*text) return;
+  const auto factory = text ? network::read_kept(**text) : std::unexpected(text.error());
   if (factory) {
     kept_ = *factory;
   } else {
@@ -98,7 +98,7 @@ void NetworkdFiles::use_factory() {
 
 /// Where they cannot be read, aditd tells them again.
 void NetworkdFiles::read_endpoints() {
-  const auto endpoints = network::read<network::Endpoints>(text_of(endpoints_file()));
+  const auto endpoints = codec::read_file<network::Endpoints>(text_of(endpoints_file()));
   endpoints_ = endpoints.value_or(network::Endpoints{});
 }
 
@@ -198,7 +198,7 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forge
 
 std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints& endpoints) {
   if (endpoints == endpoints_ && !reload_.is_due()) return {};
-  if (auto kept = host::write_file(endpoints_file(), network::write(endpoints), host::kForAll); !kept)
+  if (auto kept = host::write_file(endpoints_file(), codec::write_file(endpoints), host::kForAll); !kept)
     return kept;
   endpoints_ = endpoints;
   if (kept_) {

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "applier/takers.hpp"
-#include "host/service.hpp"
+#include "host/root_program.hpp"
 
 namespace adit::applier {
 
@@ -49,8 +49,8 @@ void ToldStatus::watch_folder() {
 }
 
 network::Status ToldStatus::read() const {
-  const auto text = host::read_file(folder_ + '/' + network::kStatusFile);
-  return text ? network::read<network::Status>(*text).value_or(network::Status{}) : network::Status{};
+  const host::StatusFile file(folder_ + '/' + host::kStatusFile);
+  return file.told<network::Status>().value_or(network::Status{});
 }
 
 }  // namespace adit::applier

@@ -1,7 +1,5 @@
 #include "applier/spare_keeper.hpp"
 
-#include <unistd.h>
-
 #include "applier/export_file.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -27,40 +25,16 @@ std::expected<std::string, std::string> take_export(host::UntrustedFolder& folde
 }  // namespace
 
 std::expected<void, std::string> SpareKeeper::work() {
-  const std::string file = options_.status + '/' + spare::kStickStatusFile;
-  const bool first = access(file.c_str(), F_OK) != 0;
-  if (const auto before = host::read_file(file)) {
-    const auto known = spare::read_message<spare::StickStatus>(*before);
-    if (known) status_ = *known;
-    if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
-    status_.doing.clear();
-  }
+  const auto before = file_.told<spare::StickStatus>();
+  status_ = before.value_or(spare::StickStatus{});
+  if (!status_.doing.empty()) status_.refusal = "the last action was interrupted: try again";
+  status_.doing.clear();
   sticks_.settle();
   look();
   if (!tell()) return std::unexpected("cannot write the status");
-  auto folder = host::UntrustedFolder::open(options_.wanted);
-  if (folder) return take_requests(*folder, first);
-  host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
-  return {};
-}
-
-/// `drop`: they are taken away and not done.
-std::expected<void, std::string> SpareKeeper::take_requests(host::UntrustedFolder& folder, bool drop) {
-  while (true) {
-    const auto text = folder.take(spare::kStickRequestFile);
-    if (text && !*text) break;
-    if (!text && text.error().stays) return std::unexpected(text.error().why);
-    const auto request =
-        text ? spare::read_message<spare::StickRequest>(**text) : std::unexpected(text.error().why);
-    if (drop) continue;
-    if (request) {
-      answer(*request, folder);
-    } else {
-      host::log(Level::Warning, "request rejected", {{"why", request.error()}});
-    }
-  }
-  if (drop) (void)folder.remove(spare::kForStickFile);
-  return {};
+  return host::answer_requests<spare::StickRequest>(
+      {options_.wanted, spare::kStickRequestFile, spare::kForStickFile}, !before,
+      [this](const spare::StickRequest& request, host::UntrustedFolder& folder) { answer(request, folder); });
 }
 
 void SpareKeeper::answer(const spare::StickRequest& request, host::UntrustedFolder& folder) {
@@ -139,7 +113,7 @@ void SpareKeeper::look() {
 }
 
 bool SpareKeeper::tell() {
-  return file_.tell(spare::write_message(status_)).has_value();
+  return file_.tell(status_).has_value();
 }
 
 }  // namespace adit::applier

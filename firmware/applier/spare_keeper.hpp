@@ -3,8 +3,8 @@
 #include <expected>
 #include <string>
 
-#include "applier/status_file.hpp"
 #include "applier/sticks.hpp"
+#include "host/root_program.hpp"
 #include "host/untrusted_folder.hpp"
 #include "spare/stick.hpp"
 
@@ -16,7 +16,7 @@ class SpareKeeper {
  public:
   /// Outlives this.
   explicit SpareKeeper(const SpareOptions& options)
-      : options_(options), sticks_(options), file_(options.status + '/' + spare::kStickStatusFile) {}
+      : options_(options), sticks_(options), file_(options.status + '/' + host::kStatusFile) {}
 
   /// Until nothing is asked for. An error: its own folder is not as it should be, or what is asked for cannot
   /// be taken away. What was asked before the machine was restarted is dropped: whoever asked has seen that
@@ -24,7 +24,6 @@ class SpareKeeper {
   std::expected<void, std::string> work();
 
  private:
-  std::expected<void, std::string> take_requests(host::UntrustedFolder& folder, bool drop);
   void answer(const spare::StickRequest& request, host::UntrustedFolder& folder);
   /// "", or why it is not done.
   std::string write(const std::string& name, const std::expected<std::string, std::string>& bytes);
@@ -38,7 +37,7 @@ class SpareKeeper {
   const SpareOptions& options_;
   Sticks sticks_;
   spare::StickStatus status_;
-  StatusFile file_;
+  host::StatusFile file_;
 };
 
 }  // namespace adit::applier

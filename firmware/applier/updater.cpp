@@ -1,7 +1,5 @@
 #include "applier/updater.hpp"
 
-#include <unistd.h>
-
 #include <utility>
 
 #include "applier/kept.hpp"
@@ -24,19 +22,19 @@ constexpr const char* kNotKept = "cannot store the state of the update";
 }  // namespace
 
 std::expected<void, std::string> Updater::work() {
-  const std::string file = options_.status + '/' + update::kStatusFile;
-  const bool first = access(file.c_str(), F_OK) != 0;
-  if (const auto before = host::read_file(file)) {
-    if (const auto status = update::read<update::Status>(*before)) status_.nonce = status->nonce;
-  }
+  const auto before = file_.told<update::Status>();
+  if (before) status_.nonce = before->nonce;
   boot_ = host::boot();
   find_out();
   look_at_sticks();
   if (!tell()) return std::unexpected("cannot write the status");
-  auto folder = host::UntrustedFolder::open(options_.wanted);
-  if (folder) return take_requests(*folder, first);
-  host::log(Level::Info, "no requests: cannot open their directory", {{"why", folder.error()}});
-  return {};
+  auto done = host::answer_requests<update::Request>(
+      {options_.wanted, update::kRequestFile, update::kBundleFile}, !before,
+      [this](const update::Request& request, host::UntrustedFolder& folder) { answer(request, folder); });
+  if (done) return done;
+  status_.trouble = done.error();
+  tell();
+  return done;
 }
 
 /// Which slot runs, and what that says of the last update.
@@ -71,28 +69,6 @@ void Updater::look_at_sticks() {
   status_.stick = std::move(found.offer);
   on_stick_ = std::move(found.path);
   status_.stick_trouble = std::move(found.trouble);
-}
-
-/// `drop`: they are taken away and not done.
-std::expected<void, std::string> Updater::take_requests(host::UntrustedFolder& folder, bool drop) {
-  while (true) {
-    auto text = folder.take(update::kRequestFile);
-    if (text && !*text) break;
-    if (!text && text.error().stays) {
-      status_.trouble = text.error().why;
-      tell();
-      return std::unexpected(status_.trouble);
-    }
-    const auto request = text ? update::read<update::Request>(**text) : std::unexpected(text.error().why);
-    if (drop) continue;
-    if (request) {
-      answer(*request, folder);
-    } else {
-      host::log(Level::Warning, "request rejected", {{"why", request.error()}});
-    }
-  }
-  if (drop) (void)BundleFile::take(folder, update::kBundleFile);  // whatever it is, it is gone
-  return {};
 }
 
 void Updater::answer(const update::Request& request, host::UntrustedFolder& folder) {
@@ -204,7 +180,7 @@ void Updater::tell_of(update::LastUpdate last_update) {
 }
 
 bool Updater::tell() {
-  return file_.tell(update::write(status_)).has_value();
+  return file_.tell(status_).has_value();
 }
 
 }  // namespace adit::applier

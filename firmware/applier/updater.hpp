@@ -5,8 +5,8 @@
 
 #include "applier/bundle_file.hpp"
 #include "applier/rauc.hpp"
-#include "applier/status_file.hpp"
 #include "applier/update_options.hpp"
+#include "host/root_program.hpp"
 #include "update/messages.hpp"
 
 namespace adit::applier {
@@ -16,7 +16,7 @@ class Updater {
  public:
   /// Outlives this.
   explicit Updater(const UpdateOptions& options)
-      : options_(options), rauc_(options.rauc), file_(options.status + '/' + update::kStatusFile) {}
+      : options_(options), rauc_(options.rauc), file_(options.status + '/' + host::kStatusFile) {}
 
   /// Until nothing is asked for. An error: its own folders are not as they should be, or what is asked for
   /// cannot be taken away. What was asked before the machine was restarted is dropped: whoever asked has
@@ -26,7 +26,6 @@ class Updater {
  private:
   void find_out();
   void look_at_sticks();
-  std::expected<void, std::string> take_requests(host::UntrustedFolder& folder, bool drop);
   void answer(const update::Request& request, host::UntrustedFolder& folder);
   /// "", or why it is not done.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
@@ -43,7 +42,7 @@ class Updater {
   std::string boot_;
   update::Status status_;
   std::string on_stick_;  // the file of status_.stick
-  StatusFile file_;
+  host::StatusFile file_;
 };
 
 }  // namespace adit::applier

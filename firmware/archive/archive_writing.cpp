@@ -107,7 +107,7 @@ bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
 void Archive::put_facts(Batch& batch) {
   if (row_.key.empty() || loop_.now() < next_facts_) return;
   next_facts_ = loop_.now() + kFactsEvery;
-  batch.facts = codec::write_file(row_, kFactsFormat);
+  batch.facts = codec::write_file(row_);
   allowance_.spend(batch.facts.size());
 }
 

@@ -62,7 +62,7 @@ std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(cons
     const auto text = host::read_file(file);
     if (!text) {
       all_read = std::unexpected(text.error());
-    } else if (auto read = codec::read_file<api::RunRow>(*text, kFactsFormat)) {
+    } else if (auto read = codec::read_file<api::RunRow>(*text)) {
       row = std::move(*read);
     }
   }

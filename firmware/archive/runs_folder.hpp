@@ -46,6 +46,4 @@ class RunsFolder {
   std::string path_;
 };
 
-inline constexpr codec::FileFormat kFactsFormat{"version", 1};
-
 }  // namespace adit::archive

@@ -6,7 +6,6 @@
 #include <cstring>
 #include <utility>
 
-#include "admin/nonce.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "forward/channel.hpp"
@@ -37,13 +36,13 @@ icd::ChunkedBytes empty_object() {
 
 SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
                    std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
-                   admin::NetworkRequests& requests, const admin::NetworkChange& network,
+                   host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
                    std::function<void()> changed)
     : loop_(loop),
       settings_(settings),
       tried_of_(std::move(tried)),
       turns_(std::move(turns)),
-      requests_(requests),
+      adit_network_(adit_network),
       network_(network),
       changed_(std::move(changed)),
       timer_(loop.timer([this] { std::exchange(when_due_, {})(); })) {}
@@ -143,15 +142,15 @@ void SelfTest::ask_address() {
     return finish(view_.endpoints.front().steps[1]);
   const std::string& interface = tried_.post.interface;
   const auto own = host::own_address(interface);
-  const auto status = requests_.status();
-  std::string why = !status ? "adit-network does not run here: " + status.error()
+  const auto status = adit_network_.status();
+  std::string why = !status                                       ? adit_network_.why()
                     : status->command_post_interface != interface ? "adit-network has " +
                                                                         status->command_post_interface +
                                                                         " instead"
                                                                   : "";
   if (own && why.empty()) {
-    probe_ = {admin::draw_nonce(), network_.next_hop(address())};
-    const auto asked = requests_.ask(probe_);
+    probe_ = {host::draw_nonce(), network_.next_hop(address())};
+    const auto asked = adit_network_.leave(network::kProbeFile, probe_);
     until_ = loop_.now() + kProbeWithin;
     if (asked) return wait_for_probe();
     why = asked.error();
@@ -160,15 +159,17 @@ void SelfTest::ask_address() {
 }
 
 void SelfTest::wait_for_probe() {
-  auto probed = requests_.probed();
-  if (!probed || probed->nonce != probe_.nonce) probed.reset();
+  const auto read = host::read_row<network::Probed>(adit_network_.directory() + '/' + network::kProbedFile);
+  auto probed = read.value_or(std::nullopt);
+  if (probed && probed->nonce != probe_.nonce) probed.reset();
   if (!probed && loop_.now() < until_) {
     when_due_ = [this] { wait_for_probe(); };
     return timer_.call_at(loop_.now() + kProbePoll);
   }
   const std::string& interface = tried_.post.interface;
   probed_ = probed;
-  finish(steps::address(interface, host::own_address(interface), probed, "adit-network did not answer"));
+  finish(steps::address(interface, host::own_address(interface), probed,
+                        read ? "adit-network did not answer" : read.error()));
 }
 
 void SelfTest::look_at_cables() {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "admin/network_change.hpp"
-#include "admin/network_requests.hpp"
 #include "api/self_test.hpp"
 #include "box/candidate.hpp"
 #include "box/test_steps.hpp"
@@ -43,7 +42,7 @@ class SelfTest final : public api::SelfTest {
   /// as steps end. All outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings,
            std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
-           admin::NetworkRequests& requests, const admin::NetworkChange& network,
+           host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
            std::function<void()> changed);
 
   api::TestView test() const override { return view_; }
@@ -89,7 +88,7 @@ class SelfTest final : public api::SelfTest {
   Turns turns_;
   Tried tried_;  // whatever the settings say by now
   std::vector<steps::Asked> asked_;
-  admin::NetworkRequests& requests_;
+  host::RootProgram<network::Status>& adit_network_;
   const admin::NetworkChange& network_;
   std::function<void()> changed_;
   api::TestView view_;

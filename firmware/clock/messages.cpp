@@ -1,6 +1,7 @@
 #include "clock/messages.hpp"
 
 #include "codec/checked_text.hpp"
+#include "codec/nonce.hpp"
 #include "network/messages.hpp"
 #include "settings/subnet.hpp"
 
@@ -10,7 +11,7 @@ namespace {
 constexpr double kOldest = 60;  // seconds
 
 constexpr codec::Member kClockRequest[] = {
-    codec::member<&Request::nonce>("nonce").as(network::kNonce),
+    codec::member<&Request::nonce>("nonce").as(codec::kNonce),
     codec::member<&Request::source>("source"),
     codec::member<&Request::time>("time"),
     codec::member<&Request::at>("at"),

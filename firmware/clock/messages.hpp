@@ -11,11 +11,9 @@
 /// other: README.md.
 namespace adit::clock {
 
-/// What aditd asks for, in its own state folder; adit-clock takes it away. And what adit-clock tells
-/// everybody, in its runtime folder.
+/// What aditd asks for, in its state directory.
 inline constexpr const char* kRequestFile = "clock.json";
 inline constexpr const char* kNtpFile = "ntp.json";
-inline constexpr const char* kStatusFile = "status.json";
 
 /// The words of Source, in its order.
 inline constexpr std::string_view kSourceWords[] = {"none", "last_known", "robots", "command_post",
@@ -30,7 +28,7 @@ struct adit::codec::KindOf<adit::clock::Source>
 namespace adit::clock {
 
 struct Request {
-  std::string nonce = "";  // network::is_nonce()
+  std::string nonce = "";  // codec::is_nonce()
   Source source = Source::None;
   double time = 0;          // seconds since 1970
   double at = 0;            // when that was so: seconds of the machine's monotonic clock
@@ -60,22 +58,10 @@ struct Status {
   /// As far as `source` is to be trusted still: a server that is asked no more has set it once, as the
   /// operator does, and the next one's time is to be taken.
   Source trusted() const { return source == Source::Ntp && server != ntp.server ? Source::Operator : source; }
+  bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
-
-inline constexpr codec::FileFormat kFormat = {"format", 1};
-
-template <class Message>
-std::string write(const Message& message) {
-  return codec::write_file(message, kFormat);
-}
-
-/// Strict, as codec::read_file() is.
-template <class Message>
-std::expected<Message, std::string> read(std::string_view json) {
-  return codec::read_file<Message>(json, kFormat);
-}
 
 /// Why a request is not to be done at that instant of the monotonic clock (seconds), as things stand; "": it
 /// is.

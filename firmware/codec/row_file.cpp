@@ -12,6 +12,9 @@ namespace {
 
 using Whole = std::numeric_limits<std::int64_t>;
 
+constexpr std::string_view kFormatMember = "format";
+constexpr std::int64_t kFormat = 1;
+
 void check_row(const Row& row, const Field& field, std::string_view besides);
 
 void check_value(const Schema& schema, const Field& field) {
@@ -49,20 +52,20 @@ void check_row(const Row& row, const Field& field, std::string_view besides) {
 
 }  // namespace
 
-std::string write_row_file(const Row& row, const void* from, const FileFormat& format) {
+std::string write_row_file(const Row& row, const void* from) {
   Value value = write_row(row, from);
   auto& members = std::get<Value::Object>(value.is);
-  members.insert(members.begin(), {std::string(format.member), {format.number}});
+  members.insert(members.begin(), {std::string(kFormatMember), {kFormat}});
   return write_json(value) + '\n';
 }
 
-std::string read_row_file(const Row& row, void* into, std::string_view json, const FileFormat& format) {
+std::string read_row_file(const Row& row, void* into, std::string_view json) {
   const auto root = parse_json(json);
   if (!root) return "not JSON: " + root.error();
   Reading reading;
   const Field field(*root, reading);
-  field.member(format.member).whole<std::int64_t>(format.number, format.number);
-  check_row(row, field, format.member);
+  field.member(kFormatMember).whole<std::int64_t>(kFormat, kFormat);
+  check_row(row, field, kFormatMember);
   read_row(row, field, into);
   const auto outcome = reading.outcome(true);
   return outcome ? "" : outcome.error().sentence;

@@ -51,7 +51,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
       accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.state_folder,
                 parts_.loaded.secrets.label_code),
-      network_requests_(parts_.state_folder, parts_.network_folder, parts_.watch_folder),
+      adit_network_(loop, "adit-network", parts_.state_folder, parts_.network_folder,
+                    admin::NetworkChange::kTakenUpWithin),
       setup_(
           parts_.store, parts_.reset, parts_.loaded, parts_.trouble,
           [this](const std::string& post) {
@@ -60,7 +61,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
            [this](api::Usage& usage) { add_to(usage); }),
-      network_(loop, settings_, network_requests_),
+      network_(loop, settings_, adit_network_, parts_.watch_folder),
       self_test_(
           loop, settings_,
           [this](const api::Candidate& candidate) {
@@ -68,8 +69,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           },
           {.claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
            .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},
-          network_requests_, network_, [this] { api_.changed(); }),
-      updates_(loop, disk_writer_, admin::UpdateRequests(parts_.state_folder, parts_.update_folder),
+          adit_network_, network_, [this] { api_.changed(); }),
+      updates_(loop, disk_writer_, parts_.state_folder, parts_.update_folder,
                [this] { return report_under_way(); }),
       clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd),
       spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder,

@@ -10,7 +10,6 @@
 #include "admin/acknowledged_file.hpp"
 #include "admin/clock_setting.hpp"
 #include "admin/network_change.hpp"
-#include "admin/network_requests.hpp"
 #include "admin/session_keeper.hpp"
 #include "admin/setup.hpp"
 #include "admin/spare.hpp"
@@ -166,7 +165,7 @@ class Gateway final : public api::Source, public api::Operator {
   Roster roster_;
   admin::SessionKeeper sessions_;
   admin::Accounts accounts_;
-  admin::NetworkRequests network_requests_;
+  host::RootProgram<network::Status> adit_network_;
   admin::Setup setup_;
   box::ThisBox box_;
   admin::NetworkChange network_;

@@ -1,34 +1,14 @@
 #include "network/messages.hpp"
 
 #include "codec/checked_text.hpp"
+#include "codec/nonce.hpp"
 
 namespace adit::network {
 namespace {
 
-constexpr std::size_t kNonceDigits = 2 * kNonceBytes;
-
 constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Word::What
 
 }  // namespace
-
-std::string nonce_of(const std::array<std::uint8_t, kNonceBytes>& random) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string nonce;
-  for (const std::uint8_t byte : random) {
-    nonce += kDigits[byte >> 4];
-    nonce += kDigits[byte & 15];
-  }
-  return nonce;
-}
-
-bool is_nonce(std::string_view text) {
-  return text.size() == kNonceDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-}
-
-std::string_view name_of(Ended ended) {
-  return ended == Ended::NotYet ? "" : kEndedWords[static_cast<std::size_t>(ended) - 1];
-}
-
 }  // namespace adit::network
 
 namespace adit::codec {
@@ -36,21 +16,8 @@ namespace adit::codec {
 template <>
 struct KindOf<network::Word::What> : KindOfWords<network::Word::What, network::kWordWords> {};
 
-/// null for NotYet.
 template <>
-struct KindOf<network::Ended> {
-  static Value write(network::Ended ended) {
-    return ended == network::Ended::NotYet ? Value{} : Value{std::string(name_of(ended))};
-  }
-  static void read(const Field& field, network::Ended& ended) {
-    if (field.is_absent()) return;
-    for (const auto each : {network::Ended::Confirmed, network::Ended::Reverted}) {
-      if (field.text() == name_of(each)) ended = each;
-    }
-    if (ended == network::Ended::NotYet) field.refuse("expected ", in_turn(network::kEndedWords));
-  }
-  static constexpr Schema schema = {.type = "string", .or_null = true};
-};
+struct KindOf<network::Ended> : KindOfWords<network::Ended, network::kEndedWords> {};
 
 template <>
 struct KindOf<std::chrono::milliseconds> {
@@ -86,8 +53,6 @@ using codec::member;
 using codec::Member;
 using codec::Row;
 
-constexpr char kExpectedNonce[] = "expected 32 hexadecimal digits";
-static_assert(kNonceDigits == 32);
 constexpr char kExpectedAddress[] = "expected an IPv4 address";
 constexpr char kExpectedAddressOrNone[] = "expected an IPv4 address, or none";
 constexpr char kExpectedMac[] = "expected a MAC address";
@@ -151,22 +116,22 @@ constexpr Member confirm_within() {
 }
 
 constexpr Member kWantedMembers[] = {
-    member<&Wanted::nonce>("nonce").as(kNonce),
+    member<&Wanted::nonce>("nonce").as(codec::kNonce),
     confirm_within<&Wanted::confirm_within>(),
     member<&Wanted::numbers>("numbers"),
 };
 constexpr Member kWordMembers[] = {
-    member<&Word::nonce>("nonce").as(kNonce),
+    member<&Word::nonce>("nonce").as(codec::kNonce),
     member<&Word::what>("word"),
 };
 constexpr Member kProbeMembers[] = {
-    member<&Probe::nonce>("nonce").as(kNonce),
+    member<&Probe::nonce>("nonce").as(codec::kNonce),
     member<&Probe::sought>("sought").as(kAddressOrNone),
 };
 constexpr Member kEndpointsMembers[] = {member<&Endpoints::addresses>("endpoints").as(kAddresses)};
-constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").as(kNonce)};
+constexpr Member kForgetMembers[] = {member<&Forget::nonce>("nonce").as(codec::kNonce)};
 constexpr Member kPendingMembers[] = {
-    member<&Pending::nonce>("nonce").as(kNonce),
+    member<&Pending::nonce>("nonce").as(codec::kNonce),
     member<&Pending::until>("until_ms").from(0),
     confirm_within<&Pending::confirm_within>(),
     member<&Pending::wanted>("wanted"),
@@ -182,9 +147,12 @@ constexpr Member kStatusMembers[] = {
     member<&Status::why>("why"),
 };
 constexpr Member kProbedMembers[] = {
-    member<&Probed::nonce>("nonce").as(kNonce), member<&Probed::address>("address"),
-    member<&Probed::claimant>("claimant"),      member<&Probed::own>("own"),
-    member<&Probed::found_on>("found_on"),      member<&Probed::trouble>("trouble"),
+    member<&Probed::nonce>("nonce").as(codec::kNonce),
+    member<&Probed::address>("address"),
+    member<&Probed::claimant>("claimant"),
+    member<&Probed::own>("own"),
+    member<&Probed::found_on>("found_on"),
+    member<&Probed::trouble>("trouble"),
 };
 
 constexpr Member kTakenAddressMembers[] = {
@@ -208,7 +176,6 @@ constexpr Row Kept::kRow = {"", kKeptMembers};
 
 }  // namespace
 
-constexpr codec::Kind kNonce = codec::kCheckedText<is_nonce, kExpectedNonce>;
 constexpr codec::Kind kAddressOrNone = codec::kCheckedText<is_address_or_none, kExpectedAddressOrNone>;
 
 constexpr Row Wanted::kRow = {"", kWantedMembers};
@@ -223,11 +190,11 @@ constexpr Row TakenAddress::kRow = {"", kTakenAddressMembers};
 constexpr Row Taken::kRow = {"", kTakenMembers};
 
 std::string write_kept(const Numbers& numbers) {
-  return write(Kept{numbers});
+  return codec::write_file(Kept{numbers});
 }
 
-Read<Numbers> read_kept(std::string_view json) {
-  auto kept = read<Kept>(json);
+std::expected<Numbers, std::string> read_kept(std::string_view json) {
+  auto kept = codec::read_file<Kept>(json);
   if (!kept) return std::unexpected(std::move(kept.error()));
   return std::move(kept->numbers);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <expected>
@@ -25,20 +24,13 @@ inline constexpr const char* kWordFile = "word.json";
 inline constexpr const char* kProbeFile = "probe.json";
 inline constexpr const char* kEndpointsFile = "endpoints.json";
 inline constexpr const char* kForgetFile = "forget.json";
-/// What adit-network tells everybody, in its runtime folder.
-inline constexpr const char* kStatusFile = "status.json";
+/// The answer to a Probe, in adit-network's runtime directory.
 inline constexpr const char* kProbedFile = "probed.json";
 /// What adit-network --watch tells everybody, in a runtime folder of its own.
 inline constexpr const char* kTakenFile = "taken.json";
 
 inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{600000};
 
-/// 32 hexadecimal digits that name one request: the kind of that text.
-extern const codec::Kind kNonce;
-bool is_nonce(std::string_view text);
-inline constexpr std::size_t kNonceBytes = 16;
-/// Never the same twice, where the bytes are random.
-std::string nonce_of(const std::array<std::uint8_t, kNonceBytes>& random);
 /// An IPv4 address, or "": the kind of that text.
 extern const codec::Kind kAddressOrNone;
 
@@ -89,10 +81,10 @@ struct Pending {
 };
 
 enum class Ended : std::uint8_t { NotYet, Confirmed, Reverted };
-/// In their order, from Confirmed.
-inline constexpr std::string_view kEndedWords[] = {"confirmed", "reverted"};
-/// "" for NotYet
-std::string_view name_of(Ended ended);
+inline constexpr std::string_view kEndedWords[] = {"", "confirmed", "reverted"};  // in the order of Ended
+constexpr std::string_view name_of(Ended ended) {
+  return kEndedWords[static_cast<std::size_t>(ended)];
+}
 
 struct Status {
   std::string team_interface = "", command_post_interface = "";
@@ -102,6 +94,9 @@ struct Status {
   Ended ended = Ended::NotYet;   // how the last change of this start ended
   std::string ended_nonce = "";  // its own
   std::string why = "";          // of it
+  bool names(std::string_view change) const {
+    return ended_nonce == change || (pending && pending->nonce == change);
+  }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
@@ -136,24 +131,9 @@ struct Taken {
 };
 inline constexpr std::size_t kMostTaken = 32;
 
-inline constexpr codec::FileFormat kFormat = {"version", 1};
-
-template <class Message>
-std::string write(const Message& message) {
-  return codec::write_file(message, kFormat);
-}
-
-/// Strict, as codec::read_file() is. What this gives has passed all checks.
-template <class Message>
-using Read = std::expected<Message, std::string>;
-template <class Message>
-Read<Message> read(std::string_view json) {
-  return codec::read_file<Message>(json, kFormat);
-}
-
 /// What is kept, in a file of its own in adit-network's state folder: the numbers alone.
 inline constexpr const char* kConfirmedFile = "confirmed.json";
 std::string write_kept(const Numbers& numbers);
-Read<Numbers> read_kept(std::string_view json);
+std::expected<Numbers, std::string> read_kept(std::string_view json);
 
 }  // namespace adit::network

@@ -9,7 +9,6 @@
 namespace adit::spare {
 namespace {
 
-constexpr codec::FileFormat kFormat = {"format", 1};
 constexpr std::string_view kAbout = "about", kSettings = "settings", kLedger = "ledger", kToken = "token:";
 constexpr std::size_t kMostTokens = 256, kLongestHead = 128;
 
@@ -86,7 +85,7 @@ class Reading {
     return std::nullopt;
   }
   std::optional<std::string> take_about(const Part& part) {
-    auto about = codec::read_file<About>(part.bytes, kFormat);
+    auto about = codec::read_file<About>(part.bytes);
     if (!about) return sentence(part, about.error());
     content_.about = *std::move(about);
     return std::nullopt;
@@ -110,7 +109,7 @@ constexpr codec::Row About::kRow = {"", kAboutMembers};
 
 std::string write(const Content& content) {
   std::string text;
-  add(text, kAbout, codec::write_file(content.about, kFormat));
+  add(text, kAbout, codec::write_file(content.about));
   add(text, kSettings, content.settings);
   for (const auto& [name, token] : content.tokens) add(text, icd::sentence(kToken, name), token.reveal());
   add(text, kLedger, content.ledger);

@@ -1,7 +1,6 @@
 #include "spare/stick.hpp"
 
-#include "codec/checked_text.hpp"
-#include "network/messages.hpp"
+#include "codec/nonce.hpp"
 #include "spare/file_name.hpp"
 
 namespace adit::spare {
@@ -28,7 +27,7 @@ namespace {
 using codec::member;
 
 constexpr codec::Member kRequestMembers[] = {
-    member<&StickRequest::nonce>("nonce").as(network::kNonce),
+    member<&StickRequest::nonce>("nonce").as(codec::kNonce),
     member<&StickRequest::what>("what"),
     member<&StickRequest::name>("name").as(codec::kCheckedText<is_file_name, kExpectedName>),
 };

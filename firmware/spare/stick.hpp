@@ -16,13 +16,12 @@ namespace adit::spare {
 /// away.
 inline constexpr const char* kStickRequestFile = "stick.json";
 inline constexpr const char* kForStickFile = "stick.adit-spare";
-/// What adit-spare tells everybody, in its runtime folder, and the export that it read from a stick.
-inline constexpr const char* kStickStatusFile = "status.json";
+/// The export that adit-spare read from a stick, in its runtime directory.
 inline constexpr const char* kFromStickFile = "export.adit-spare";
 
 struct StickRequest {
   enum class What : std::uint8_t { Write, Take };
-  std::string nonce = "";  // network::is_nonce()
+  std::string nonce = "";  // codec::is_nonce()
   What what = What::Take;
   std::string name = "";  // is_file_name(): of the file on the stick
   static const codec::Row kRow;
@@ -35,21 +34,9 @@ struct StickStatus {
   std::string written = "";    // of the last request: the file that is on the stick, read back and the same
   std::string hindrance = "";  // why no export can be written; "": it can
   std::vector<std::string> exports = {};  // names of those on the sticks, the latest first
+  bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;
   friend bool operator==(const StickStatus&, const StickStatus&) = default;
 };
-
-inline constexpr codec::FileFormat kStickFormat = {"format", 1};
-
-template <class Message>
-std::string write_message(const Message& message) {
-  return codec::write_file(message, kStickFormat);
-}
-
-/// Strict, as codec::read_file() is.
-template <class Message>
-std::expected<Message, std::string> read_message(std::string_view json) {
-  return codec::read_file<Message>(json, kStickFormat);
-}
 
 }  // namespace adit::spare

@@ -1,6 +1,6 @@
 #include "update/messages.hpp"
 
-#include "network/messages.hpp"
+#include "codec/nonce.hpp"
 
 namespace adit::update {
 namespace {
@@ -26,7 +26,7 @@ using codec::Member;
 using codec::Row;
 
 constexpr Member kRequestMembers[] = {
-    member<&Request::nonce>("nonce").as(network::kNonce),
+    member<&Request::nonce>("nonce").as(codec::kNonce),
     member<&Request::what>("what"),
     member<&Request::again>("again"),
 };

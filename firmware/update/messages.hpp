@@ -19,8 +19,7 @@ namespace adit::update {
 /// away.
 inline constexpr const char* kRequestFile = "update.json";
 inline constexpr const char* kBundleFile = "update.raucb";
-/// What adit-update tells everybody, in its runtime folder; and what it keeps, in its state folder.
-inline constexpr const char* kStatusFile = "status.json";
+/// What adit-update keeps, in its state directory.
 inline constexpr const char* kLastUpdateFile = "last.json";
 inline constexpr const char* kProvenFile = "proven.json";
 
@@ -35,7 +34,7 @@ struct Request {
     Back,  // into the proven slot, which does not run
     Stay,  // the slot that runs is proven from now on
   };
-  std::string nonce = "";  // network::is_nonce()
+  std::string nonce = "";  // codec::is_nonce()
   What what = What::Restart;
   bool again = false;  // Install, Stick: though that version runs already
   static const codec::Row kRow;
@@ -61,23 +60,9 @@ struct Status {
   std::string stray = "";  // stray()
   std::optional<Offer> stick = {};
   std::string stick_trouble = "";  // why what is on the stick cannot be installed; "" where there is none
+  bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
-
-inline constexpr codec::FileFormat kFormat = {"format", 1};
-
-template <class Message>
-std::string write(const Message& message) {
-  return codec::write_file(message, kFormat);
-}
-
-/// Strict, as codec::read_file() is.
-template <class Message>
-using Read = std::expected<Message, std::string>;
-template <class Message>
-Read<Message> read(std::string_view json) {
-  return codec::read_file<Message>(json, kFormat);
-}
 
 }  // namespace adit::update

@@ -31,13 +31,13 @@ class NetworkChangeTest : public testing::Test {
 
   /// As adit-network does; it is read again once it is no longer fresh.
   void tell() {
-    std::ofstream(folder / network::kStatusFile) << network::write(status);
-    time.pass(NetworkChange::kFresh);
+    std::ofstream(folder / host::kStatusFile) << codec::write_file(status);
+    time.pass(host::kFresh);
   }
   std::optional<network::Endpoints> asked() const {
     std::ifstream file(folder / network::kEndpointsFile);
     const std::string text(std::istreambuf_iterator<char>(file), {});
-    const auto read = network::read<network::Endpoints>(text);
+    const auto read = codec::read_file<network::Endpoints>(text);
     return read ? std::optional(*read) : std::nullopt;
   }
   void wait(const network::Numbers& wanted) {
@@ -51,8 +51,9 @@ class NetworkChangeTest : public testing::Test {
   loop::Loop loop;
   settings::Settings settings;
   network::Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
-  NetworkRequests requests{folder.path(), folder.path(), folder.path()};
-  NetworkChange change{loop, settings, requests};
+  host::RootProgram<network::Status> adit_network{loop, "adit-network", folder.path(), folder.path(),
+                                                  NetworkChange::kTakenUpWithin};
+  NetworkChange change{loop, settings, adit_network, folder.path()};
 };
 
 TEST_F(NetworkChangeTest, TellsWhereAllEndpointsAreUntilAditNetworkKnows) {
@@ -66,7 +67,7 @@ TEST_F(NetworkChangeTest, TellsWhereAllEndpointsAreUntilAditNetworkKnows) {
   EXPECT_EQ(asked(), std::nullopt) << "not again at once";
   status.endpoints = all;
   tell();
-  NetworkChange another(loop, settings, requests);
+  NetworkChange another(loop, settings, adit_network, folder.path());
   another.every_second();
   EXPECT_EQ(asked(), std::nullopt) << "it is known";
 }
@@ -128,8 +129,8 @@ class AddressesTakenTest : public NetworkChangeTest {
   /// As adit-network --watch does.
   void watch_tells(const std::vector<network::TakenAddress>& taken,
                    const std::vector<network::TakenAddress>& exchanged = {}) {
-    std::ofstream(folder / network::kTakenFile) << network::write(network::Taken{taken, exchanged});
-    time.pass(NetworkChange::kFresh);
+    std::ofstream(folder / network::kTakenFile) << codec::write_file(network::Taken{taken, exchanged});
+    time.pass(host::kFresh);
   }
   network::TakenAddress on(const char* interface, const char* address, loop::Duration ago = {}) {
     return {interface, address, "02:00:00:00:00:07",
@@ -181,8 +182,8 @@ TEST_F(AddressesTakenTest, AreTheCommandPostsAtTheTeamsPortWhereTheSettingsNameI
 }
 
 TEST_F(AddressesTakenTest, OfADamagedFileAreNone) {
-  std::ofstream(folder / network::kTakenFile) << R"({"version":1,"taken":[{"interface":"team0")";
-  time.pass(NetworkChange::kFresh);
+  std::ofstream(folder / network::kTakenFile) << R"({"format":1,"taken":[{"interface":"team0")";
+  time.pass(host::kFresh);
   EXPECT_TRUE(taken().empty());
 }
 

@@ -17,13 +17,13 @@ constexpr double kAt = 1795475760;
 
 class SpareStickTest : public testing::Test {
  protected:
-  void say(const spare::StickStatus& status) const {
-    ASSERT_TRUE(host::write_file(run_ / spare::kStickStatusFile, spare::write_message(status), 0644));
+  void say(const spare::StickStatus& status) {
+    ASSERT_TRUE(host::write_file(run_ / host::kStatusFile, codec::write_file(status), 0644));
+    time_.pass(host::kFresh);
   }
   std::optional<spare::StickRequest> asked() const {
     const auto text = host::read_file(state_ / spare::kStickRequestFile);
-    const auto request =
-        text ? spare::read_message<spare::StickRequest>(*text) : std::unexpected(text.error());
+    const auto request = text ? codec::read_file<spare::StickRequest>(*text) : std::unexpected(text.error());
     return request ? std::optional(*request) : std::nullopt;
   }
   /// As adit-spare takes a request away, and then says that.
@@ -74,8 +74,7 @@ TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
   EXPECT_THAT(why(stick_.take(kName)), HasSubstr("the box is already writing"));
   answer({.doing = "checking"});
   EXPECT_EQ(stick_.view()->doing, "checking");
-  say({.nonce =
-           spare::read_message<spare::StickStatus>(*host::read_file(run_ / spare::kStickStatusFile))->nonce,
+  say({.nonce = codec::read_file<spare::StickStatus>(*host::read_file(run_ / host::kStatusFile))->nonce,
        .written = kName});
   EXPECT_TRUE(is_over());
   EXPECT_EQ(stick_.view()->written, kName);

@@ -52,10 +52,10 @@ class Box {
   }
   /// What adit-spare says, and what it is asked: the name of a file, and what is to be in it.
   void say(const spare::StickStatus& status) const {
-    ASSERT_TRUE(host::write_file(stick_ / spare::kStickStatusFile, spare::write_message(status), 0644));
+    ASSERT_TRUE(host::write_file(stick_ / host::kStatusFile, codec::write_file(status), 0644));
   }
   spare::StickRequest asked_of_stick() const {
-    return *spare::read_message<spare::StickRequest>(*host::read_file(state_ / spare::kStickRequestFile));
+    return *codec::read_file<spare::StickRequest>(*host::read_file(state_ / spare::kStickRequestFile));
   }
   std::pair<std::string, std::string> for_stick() const {
     return {asked_of_stick().name, *host::read_file(state_ / spare::kForStickFile)};
@@ -215,8 +215,10 @@ TEST(SpareBox, SaysNothingOfWhatAnEarlierRestWroteToTheStick) {
   box.restart();
   EXPECT_EQ(box.spare().spare().stick->written, file);
   box.say({.written = "adit-192.168.7.11-20200101T000000Z.adit-spare"});
+  box.restart();
   EXPECT_EQ(box.spare().spare().stick->written, "");
   box.say({.written = "named-by-hand.adit-spare"});
+  box.restart();
   EXPECT_EQ(box.spare().spare().stick->written, "");
 }
 

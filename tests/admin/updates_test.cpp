@@ -28,13 +28,13 @@ class UpdatesTest : public testing::Test {
   UpdatesTest() { say({.running = {"adit-board", "0.1.0", "A", "B"}}); }
 
   void say(const update::Status& status) const {
-    ASSERT_TRUE(host::write_file(run_ / update::kStatusFile, update::write(status), 0644));
+    ASSERT_TRUE(host::write_file(run_ / host::kStatusFile, codec::write_file(status), 0644));
   }
   /// Until what was read of the status is too old.
-  void wait() { time_.pass(Updates::kFresh); }
+  void wait() { time_.pass(host::kFresh); }
   std::optional<update::Request> asked() const {
     const auto text = host::read_file(state_ / update::kRequestFile);
-    const auto request = text ? update::read<update::Request>(*text) : std::unexpected(text.error());
+    const auto request = text ? codec::read_file<update::Request>(*text) : std::unexpected(text.error());
     return request ? std::optional(*request) : std::nullopt;
   }
   /// Sends `bytes` in pieces; what it ended in.
@@ -59,12 +59,12 @@ class UpdatesTest : public testing::Test {
   loop::Loop loop_;
   loop::Writer writer_{loop_};
   std::string under_way_;
-  Updates updates_{loop_, writer_, UpdateRequests(state_.path(), run_.path()), [this] { return under_way_; }};
+  Updates updates_{loop_, writer_, state_.path(), run_.path(), [this] { return under_way_; }};
 };
 
 TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
   const std::string half = state_.put(std::string(update::kBundleFile) + ".part", "half of a bundle");
-  const Updates after(loop_, writer_, UpdateRequests(state_.path(), run_.path()), [] { return ""; });
+  const Updates after(loop_, writer_, state_.path(), run_.path(), [] { return ""; });
   EXPECT_FALSE(fs::exists(half));
 }
 
@@ -84,7 +84,7 @@ TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
 }
 
 TEST_F(UpdatesTest, SayWhereThereAreNone) {
-  fs::remove(run_ / update::kStatusFile);
+  fs::remove(run_ / host::kStatusFile);
   EXPECT_FALSE(updates_.update().managed);
   EXPECT_THAT(updates_.update().why, HasSubstr("adit-update does not run here"));
   for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false), updates_.restart(true)}) {

@@ -50,7 +50,7 @@ class ApplierTest : public testing::Test {
   /// As aditd does.
   template <class Request>
   void ask(const char* file, const Request& request) {
-    fs::rename(folder.put("new", network::write(request)), options.wanted + '/' + file);
+    fs::rename(folder.put("new", codec::write_file(request)), options.wanted + '/' + file);
   }
   void want(std::chrono::milliseconds within = std::chrono::minutes(1)) {
     ask(network::kWantedFile, network::Wanted{kNonce, within, tried});
@@ -58,8 +58,9 @@ class ApplierTest : public testing::Test {
   void break_networkd() { folder.put("broken", ""); }
   void mend_networkd() { fs::remove(folder / "broken"); }
   network::Status status() const {
-    std::ifstream file(options.status + '/' + network::kStatusFile);
-    const auto status = network::read<network::Status>(std::string{std::istreambuf_iterator<char>(file), {}});
+    std::ifstream file(options.status + '/' + host::kStatusFile);
+    const auto status =
+        codec::read_file<network::Status>(std::string{std::istreambuf_iterator<char>(file), {}});
     EXPECT_TRUE(status) << status.error();
     return status.value_or(network::Status{});
   }
@@ -83,7 +84,7 @@ class ApplierTest : public testing::Test {
 TEST_F(ApplierTest, TakesAwayThatItIsToForgetOnceItHasForgotten) {
   folder.put("state/confirmed.json", network::write_kept(network::numbers()));
   EXPECT_TRUE(runs_well());
-  folder.put("wanted/forget.json", network::write(network::Forget{kNonce}));
+  folder.put("wanted/forget.json", codec::write_file(network::Forget{kNonce}));
   EXPECT_TRUE(runs_well());
   EXPECT_EQ(seen(), "state:\n\nwanted:\nforget.json\n") << "a power cut now would lose it";
   EXPECT_TRUE(fs::is_empty(options.wanted));
@@ -124,7 +125,7 @@ TEST_F(ApplierTest, HearsAWordThatCameInTimeWhileItWasBusy) {
   want(network::kLeastWithin);
   Life life(options);
   ASSERT_TRUE(status().pending);
-  folder.put("word", network::write(network::Word{kNonce, network::Word::What::Confirm}));
+  folder.put("word", codec::write_file(network::Word{kNonce, network::Word::What::Confirm}));
   ask(network::kEndpointsFile, by_gateway);
   life.loop.run();
   EXPECT_EQ(status().ended, network::Ended::Confirmed) << status().why;

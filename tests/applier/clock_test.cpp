@@ -31,7 +31,7 @@ class ClockSetterTest : public testing::Test {
     folder.put("systemctl", "#!/bin/sh\n" + what + '\n');
     fs::permissions(folder / "systemctl", fs::perms::owner_all);
   }
-  void ask(const clock::Ntp& ntp) { folder.put("wanted/ntp.json", clock::write(ntp)); }
+  void ask(const clock::Ntp& ntp) { folder.put("wanted/ntp.json", codec::write_file(ntp)); }
   /// What systemd was told since the last time.
   std::string orders() {
     const std::string all = host::read_file(folder / "orders").value_or("");
@@ -42,7 +42,7 @@ class ClockSetterTest : public testing::Test {
   void ask(double time, double at, Source source = Source::Operator, const std::string& server = "") {
     folder.put(
         "wanted/clock.json",
-        clock::write(clock::Request{
+        codec::write_file(clock::Request{
             .nonce = kAsker, .source = source, .time = time, .at = at, .boot = boot, .server = server}));
   }
   clock::Status work() {
@@ -58,7 +58,7 @@ class ClockSetterTest : public testing::Test {
                           .work();
     EXPECT_TRUE(done) << done.error();
     EXPECT_TRUE(fs::is_empty(options.wanted));
-    const auto told = clock::read<clock::Status>(*host::read_file(folder / "status/status.json"));
+    const auto told = codec::read_file<clock::Status>(*host::read_file(folder / "status/status.json"));
     return told.value_or(clock::Status{});
   }
 

@@ -145,7 +145,7 @@ TEST_F(ImportTest, TakesNumbersAsTheBoxItselfKeepsThem) {
   bring("network.json", network::write_kept(numbers));
   import();
   EXPECT_EQ(network::read_kept(text(options.network + "/confirmed.json")), numbers);
-  expect_refused("network.json", R"({"version": 2, "numbers": {}})", "adit/network.json: ");
+  expect_refused("network.json", R"({"format": 2, "numbers": {}})", "adit/network.json: ");
 }
 
 TEST_F(ImportTest, SaysNothingWhereNothingWasBrought) {

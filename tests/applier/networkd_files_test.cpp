@@ -251,7 +251,7 @@ TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndHaveWhatTheBoxCameWith)
   come_with(first);
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
-  std::ofstream(options.state + "/confirmed.json") << "{\"version\":1,";
+  std::ofstream(options.state + "/confirmed.json") << "{\"format\":1,";
   restart(true);
   EXPECT_EQ(files->kept(), first);
   EXPECT_THAT(in(options.state), UnorderedElementsAre("confirmed.json.damaged"));

@@ -25,8 +25,7 @@ class RunsFolderTest : public testing::Test {
                             .began = began,
                             .last = began + 10 + clock_ahead,
                             .stamp = began + 10};
-    EXPECT_TRUE(files.write(
-        {.lines = std::string(bytes, 'x'), .facts = codec::write_file(facts, kFactsFormat)}, 1 << 20));
+    EXPECT_TRUE(files.write({.lines = std::string(bytes, 'x'), .facts = codec::write_file(facts)}, 1 << 20));
     return key;
   }
   std::vector<std::string> keys() const {

@@ -18,31 +18,33 @@ Request request() {
 }
 
 TEST(ClockMessages, AreReadAsTheyWereWritten) {
-  const auto read_request = read<Request>(write(request()));
+  const auto read_request = codec::read_file<Request>(codec::write_file(request()));
   ASSERT_TRUE(read_request) << read_request.error();
   EXPECT_EQ(read_request->time, 1.8e9);
   EXPECT_EQ(read_request->source, Source::Operator);
   const Status status{.nonce = "n", .refusal = "why", .source = Source::CommandPost};
-  EXPECT_EQ(read<Status>(write(status)), status);
+  EXPECT_EQ(codec::read_file<Status>(codec::write_file(status)), status);
 }
 
 TEST(ClockMessages, ARequestThatIsNoneIsRefusedWithTheNameOfItsFault) {
-  std::string wrong = write(request());
+  std::string wrong = codec::write_file(request());
   wrong.replace(wrong.find("operator"), 8, "anybodys");
-  EXPECT_THAT(read<Request>(wrong).error(), HasSubstr("source"));
-  EXPECT_FALSE(read<Request>("{}"));
-  EXPECT_FALSE(read<Request>("1.8e9"));
+  EXPECT_THAT(codec::read_file<Request>(wrong).error(), HasSubstr("source"));
+  EXPECT_FALSE(codec::read_file<Request>("{}"));
+  EXPECT_FALSE(codec::read_file<Request>("1.8e9"));
 }
 
 TEST(ClockMessages, NtpIsAskedForByAddressesAlone) {
   const Ntp both{.server = "10.0.0.5", .clients = "10.0.0.0/24"};
-  EXPECT_EQ(read<Ntp>(write(both)), both);
-  EXPECT_EQ(read<Ntp>(write(Ntp{})), Ntp{});
+  EXPECT_EQ(codec::read_file<Ntp>(codec::write_file(both)), both);
+  EXPECT_EQ(codec::read_file<Ntp>(codec::write_file(Ntp{})), Ntp{});
   for (const char* server : {"ntp.example.org", "10.0.0.5\nallow", "::1", "10.0.0.5 "})
-    EXPECT_THAT(read<Ntp>(write(Ntp{.server = server, .clients = ""})).error(), HasSubstr("server"))
+    EXPECT_THAT(codec::read_file<Ntp>(codec::write_file(Ntp{.server = server, .clients = ""})).error(),
+                HasSubstr("server"))
         << server;
   for (const char* clients : {"10.0.0.1/24", "10.0.0.0", "10.0.0.0/24\nallow all", "0.0.0.0/33"})
-    EXPECT_THAT(read<Ntp>(write(Ntp{.server = "", .clients = clients})).error(), HasSubstr("clients"))
+    EXPECT_THAT(codec::read_file<Ntp>(codec::write_file(Ntp{.server = "", .clients = clients})).error(),
+                HasSubstr("clients"))
         << clients;
 }
 

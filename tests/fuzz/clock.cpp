@@ -41,11 +41,11 @@ void is_a_time(Input bytes) {
 
 void try_clock(Input text) {
   is_a_time(text);
-  settles(text, clock::read<clock::Request>);
-  settles(text, clock::read<clock::Status>);
-  settles(text, clock::read<clock::Ntp>);
-  if (const auto ntp = clock::read<clock::Ntp>(text)) tells_no_more(*ntp);
-  if (const auto request = clock::read<clock::Request>(text)) stays_in_bounds(*request);
+  settles(text, codec::read_file<clock::Request>);
+  settles(text, codec::read_file<clock::Status>);
+  settles(text, codec::read_file<clock::Ntp>);
+  if (const auto ntp = codec::read_file<clock::Ntp>(text)) tells_no_more(*ntp);
+  if (const auto request = codec::read_file<clock::Request>(text)) stays_in_bounds(*request);
 }
 
 }  // namespace adit::fuzz

@@ -5,14 +5,14 @@
 namespace adit::fuzz {
 
 void try_network(Input text) {
-  settles(text, network::read<network::Wanted>);
-  settles(text, network::read<network::Word>);
-  settles(text, network::read<network::Probe>);
-  settles(text, network::read<network::Endpoints>);
-  settles(text, network::read<network::Forget>);
-  settles(text, network::read<network::Status>);
-  settles(text, network::read<network::Probed>);
-  settles(text, network::read<network::Taken>);
+  settles(text, codec::read_file<network::Wanted>);
+  settles(text, codec::read_file<network::Word>);
+  settles(text, codec::read_file<network::Probe>);
+  settles(text, codec::read_file<network::Endpoints>);
+  settles(text, codec::read_file<network::Forget>);
+  settles(text, codec::read_file<network::Status>);
+  settles(text, codec::read_file<network::Probed>);
+  settles(text, codec::read_file<network::Taken>);
   settles(text, network::read_kept, network::write_kept);
 }
 

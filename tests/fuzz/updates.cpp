@@ -5,9 +5,9 @@
 namespace adit::fuzz {
 
 void try_updates(Input text) {
-  settles(text, update::read<update::Request>);
-  settles(text, update::read<update::Status>);
-  settles(text, update::read<update::LastUpdate>);
+  settles(text, codec::read_file<update::Request>);
+  settles(text, codec::read_file<update::Status>);
+  settles(text, codec::read_file<update::LastUpdate>);
 }
 
 }  // namespace adit::fuzz

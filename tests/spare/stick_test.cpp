@@ -9,7 +9,7 @@ constexpr const char* kNonce = "0123456789abcdef0123456789abcdef";
 
 TEST(StickMessages, AreReadAsTheyWereWritten) {
   const StickRequest request{.nonce = kNonce, .what = StickRequest::What::Write, .name = "a.adit-spare"};
-  const auto read = read_message<StickRequest>(write_message(request));
+  const auto read = codec::read_file<StickRequest>(codec::write_file(request));
   ASSERT_TRUE(read) << read.error();
   EXPECT_EQ(read->what, StickRequest::What::Write);
   EXPECT_EQ(read->name, "a.adit-spare");
@@ -19,17 +19,17 @@ TEST(StickMessages, AreReadAsTheyWereWritten) {
                            .written = "a.adit-spare",
                            .hindrance = "there is no stick in the box",
                            .exports = {"b.adit-spare", "a.adit-spare"}};
-  EXPECT_EQ(read_message<StickStatus>(write_message(status)), status);
+  EXPECT_EQ(codec::read_file<StickStatus>(codec::write_file(status)), status);
 }
 
 TEST(StickMessages, AskForNothingOutsideOfAStick) {
   for (const char* const name : {"../../etc/passwd", "/etc/shadow", "a/b.adit-spare", ".adit-spare", ""}) {
     const StickRequest request{.nonce = kNonce, .what = StickRequest::What::Take, .name = name};
-    EXPECT_FALSE(read_message<StickRequest>(write_message(request))) << name;
+    EXPECT_FALSE(codec::read_file<StickRequest>(codec::write_file(request))) << name;
   }
   const StickRequest nameless{.nonce = "x", .what = StickRequest::What::Take, .name = "a.adit-spare"};
-  EXPECT_FALSE(read_message<StickRequest>(write_message(nameless)));
-  EXPECT_FALSE(read_message<StickRequest>(
+  EXPECT_FALSE(codec::read_file<StickRequest>(codec::write_file(nameless)));
+  EXPECT_FALSE(codec::read_file<StickRequest>(
       R"({"format":1,"nonce":"0123456789abcdef0123456789abcdef","what":"format","name":"a.adit-spare"})"));
 }
 

@@ -152,7 +152,7 @@ class AditNetwork:
 
     def put(self, file, **members):
         temporary = self.wanted / ".new"
-        temporary.write_text(json.dumps({"version": 1, **members}))
+        temporary.write_text(json.dumps({"format": 1, **members}))
         temporary.rename(self.wanted / file)
 
     def want(self, within_ms=60000, **numbers):

@@ -123,8 +123,8 @@ class AddressWatch(unittest.TestCase):
         return sorted(address for _, address in self.watch.taken("exchanged"))
 
     def tell_of_endpoints(self):
-        told = {"version": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": networkd.AditNetwork.numbers(),
-                "endpoints": [hosts.SCORING, hosts.MAPPING], "pending": None, "last": None, "last_nonce": "", "why": ""}
+        told = {"format": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": networkd.AditNetwork.numbers(),
+                "endpoints": [hosts.SCORING, hosts.MAPPING], "pending": None, "last": "", "last_nonce": "", "why": ""}
         folder = self.watch.folder
         (folder / ".new").write_text(json.dumps(told))
         (folder / ".new").rename(folder / "status.json")

@@ -23,8 +23,8 @@ UPDATE = {"format": 1, "trouble": "", "running": {"compatible": "adit-x", "versi
           "nonce": "", "refusal": "", "doing": "", "progress": None,
           "last": {"stage": "installed", "version": "1.2.0", "slot": "B", "boot": "b", "why": ""},
           "trial": False, "stray": "", "stick": None, "stick_trouble": ""}
-NETWORK = {"version": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": AditNetwork.numbers(),
-           "endpoints": [], "pending": None, "last": None, "last_nonce": "", "why": ""}
+NETWORK = {"format": 1, "team_interface": "team0", "command_post_interface": "darpa0", "kept": AditNetwork.numbers(),
+           "endpoints": [], "pending": None, "last": "", "last_nonce": "", "why": ""}
 
 
 def pending():

@@ -73,7 +73,7 @@ class Appliance(unittest.TestCase):
         return post
 
     def confirmed(self, numbers):
-        (self.folder / "network" / "state" / "confirmed.json").write_text(json.dumps({"version": 1, "numbers": numbers}))
+        (self.folder / "network" / "state" / "confirmed.json").write_text(json.dumps({"format": 1, "numbers": numbers}))
 
     def connected(self):
         return all(each["connected"] for each in self.aditd.ask("GET /adit/run")[1]["endpoints"] if each["name"] == "scoring")

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+
+#include "codec/checked_text.hpp"
+
+namespace adit::codec {
+
+inline constexpr std::size_t kNonceDigits = 32;
+
+/// 32 hexadecimal digits that name one request to a root program.
+constexpr bool is_nonce(std::string_view text) {
+  return text.size() == kNonceDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+inline constexpr char kExpectedNonce[] = "expected 32 hexadecimal digits";
+/// The kind of that text.
+inline constexpr Kind kNonce = kCheckedText<is_nonce, kExpectedNonce>;
+
+}  // namespace adit::codec

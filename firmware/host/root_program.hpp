@@ -1,0 +1,226 @@
+#pragma once
+
+#include <chrono>
+#include <expected>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "codec/row_file.hpp"
+#include "host/service.hpp"
+#include "host/untrusted_folder.hpp"
+#include "loop/loop.hpp"
+
+/// How aditd, which has no privilege, asks a program that runs as root, and how that program answers. A
+/// request is a file in aditd's state directory, which the program takes away. The answer is the program's
+/// status, a file in its runtime directory that every user can read. The status names the last request by its
+/// nonce. Each file is a row (codec/row_file.hpp).
+namespace adit::host {
+
+inline constexpr const char* kStatusFile = "status.json";
+
+/// Names a request: codec::is_nonce(), and never the same twice.
+std::string draw_nonce();
+
+/// A small file's text; nothing if there is no such file. An error names the file.
+std::expected<std::optional<std::string>, std::string> read_if_there(const std::string& path);
+/// The same of a row.
+template <class Row>
+std::expected<std::optional<Row>, std::string> read_row(const std::string& path) {
+  const auto text = read_if_there(path);
+  if (!text) return std::unexpected(text.error());
+  if (!*text) return std::nullopt;
+  auto row = codec::read_file<Row>(**text);
+  if (!row) return std::unexpected(path + ": " + row.error());
+  return *std::move(row);
+}
+
+// aditd's side.
+
+/// Leaves a request in aditd's state directory. It replaces one of that name that was not read yet.
+template <class Request>
+std::expected<void, std::string> leave_request(const std::string& directory, const char* file,
+                                               const Request& request) {
+  return write_file(directory + '/' + file, codec::write_file(request), kOursAlone);
+}
+/// Removes a request that the program did not read in time, and logs that.
+void withdraw_request(const std::string& path, const std::string& program);
+
+/// How old what aditd knows of a status may be.
+inline constexpr std::chrono::milliseconds kFresh{100};
+
+/// A root program as aditd sees it: its status, and the last request. `Status` has
+/// `bool names(std::string_view nonce) const`: the program has read that request.
+template <class Status>
+class RootProgram {
+ public:
+  /// `name`: "adit-clock". `requests`: aditd's state directory. `directory`: the program's runtime directory.
+  /// `within`: how long the program may take to read a request. `loop` outlives this.
+  RootProgram(loop::Loop& loop, std::string name, std::string requests, std::string directory,
+              std::chrono::seconds within)
+      : loop_(loop),
+        name_(std::move(name)),
+        requests_(std::move(requests)),
+        directory_(std::move(directory)),
+        within_(within) {}
+
+  const std::string& requests() const { return requests_; }
+  const std::string& directory() const { return directory_; }
+
+  /// The status, read at most kFresh ago; null: why().
+  std::shared_ptr<const Status> status() const {
+    refresh();
+    return status_.value_or(nullptr);
+  }
+  /// False: the program has no status file. True if the file cannot be read.
+  bool runs_here() const { return status() || !status_; }
+  /// Why there is no status, as a sentence: the program does not run here, or its status cannot be read. "":
+  /// there is one.
+  std::string why() const {
+    if (status()) return "";
+    return status_ ? name_ + " does not run here: it has no status in " + directory_
+                   : "cannot read the status of " + name_ + ": " + status_.error();
+  }
+
+  /// Writes a request that the status does not name.
+  template <class Request>
+  std::expected<void, std::string> leave(const char* file, const Request& request) const {
+    return leave_request(requests_, file, request);
+  }
+  /// Writes a request with a new nonce, and follows it: waits(), trouble().
+  template <class Request>
+  std::expected<void, std::string> ask(const char* file, const Request& request) {
+    auto left = leave(file, request);
+    if (left) asked_ = Asked{.nonce = request.nonce, .file = file, .at = loop_.now()};
+    return left;
+  }
+  /// The status does not name the last request yet, and the request was not withdrawn.
+  bool waits() const {
+    refresh();
+    return asked_ && !asked_->is_withdrawn;
+  }
+  /// Why the last request came to nothing before the program read it, as a sentence; or "".
+  std::string trouble() const {
+    refresh();
+    if (!asked_ || !asked_->is_withdrawn) return "";
+    return name_ + " did not read the request: see journalctl -u " + name_;
+  }
+  /// Call each second. Reads the status. Withdraws a request that the program did not read in time: then
+  /// true.
+  bool check() {
+    read();
+    if (!waits() || loop_.now() < asked_->at + within_) return false;
+    asked_->is_withdrawn = true;
+    withdraw_request(requests_ + '/' + asked_->file, name_);
+    return true;
+  }
+
+ private:
+  struct Asked {
+    std::string nonce;
+    const char* file;
+    loop::Instant at;
+    bool is_withdrawn = false;
+  };
+  void refresh() const {
+    if (!read_at_ || loop_.now() >= *read_at_ + kFresh) read();
+  }
+  /// A request that was named is forgotten: the status of a later start of the program does not name it.
+  void read() const {
+    read_at_ = loop_.now();
+    auto read = read_row<Status>(directory_ + '/' + kStatusFile);
+    if (!read) {
+      status_ = std::unexpected(std::move(read.error()));
+    } else {
+      status_ = *read ? std::make_shared<const Status>(**std::move(read)) : nullptr;
+    }
+    if (asked_ && status_ && *status_ && (*status_)->names(asked_->nonce)) asked_.reset();
+  }
+
+  loop::Loop& loop_;
+  const std::string name_, requests_, directory_;
+  const std::chrono::seconds within_;
+  mutable std::expected<std::shared_ptr<const Status>, std::string> status_;  // null: there is no file
+  mutable std::optional<loop::Instant> read_at_;
+  mutable std::optional<Asked> asked_;  // last, until the status names it
+};
+
+// The program's side.
+
+/// A status that a program tells every user.
+class StatusFile {
+ public:
+  explicit StatusFile(std::string path) : path_(std::move(path)) {}
+
+  /// The status of an earlier start since the machine booted; nothing if this is the first one. A file that
+  /// cannot be read is logged and replaced by the next tell(): then an empty status.
+  template <class Status>
+  std::optional<Status> told() const {
+    auto status = read_row<Status>(path_);
+    if (status) return *std::move(status);
+    log_unreadable(status.error());
+    return Status{};
+  }
+  /// Writes the status if it is not the one that was told last. Whether it was written; an error is logged.
+  template <class Status>
+  std::expected<bool, std::string> tell(const Status& status) {
+    return tell_text(codec::write_file(status));
+  }
+
+ private:
+  static void log_unreadable(const std::string& why);
+  std::expected<bool, std::string> tell_text(std::string text);
+
+  std::string path_, told_;
+};
+
+/// Opens the directory in which aditd leaves requests; nothing, which is logged, if there is none.
+std::expected<std::optional<UntrustedFolder>, std::string> open_requests(const std::string& directory);
+
+void log_rejected_request(const char* file, const std::string& why);
+
+/// Takes a request away and gives it; nothing if there is none of that name. One that is malformed is logged,
+/// and another one is looked for. An error: it cannot be taken away, and would be found again and again.
+template <class Request>
+std::expected<std::optional<Request>, std::string> take_request(UntrustedFolder& folder, const char* file) {
+  while (true) {
+    const auto text = folder.take(file);
+    if (text && !*text) return std::nullopt;
+    if (!text && text.error().stays) return std::unexpected(text.error().why);
+    auto request = text ? codec::read_file<Request>(**text) : std::unexpected(text.error().why);
+    if (request) return *std::move(request);
+    log_rejected_request(file, request.error());
+  }
+}
+
+/// Where a program finds requests of one kind.
+struct RequestPlace {
+  std::string directory;
+  const char* file;
+  const char* beside;  // the file that belongs to a request
+};
+
+/// Gives each request to `answer`, until there is none. `drop`: removes a request and the file beside it
+/// instead: aditd has shown that it came to nothing.
+template <class Request>
+std::expected<void, std::string> answer_requests(
+    const RequestPlace& place, bool drop,
+    const std::function<void(const Request&, UntrustedFolder&)>& answer) {
+  auto folder = open_requests(place.directory);
+  if (!folder) return std::unexpected(std::move(folder.error()));
+  if (!*folder) return {};
+  for (const char* dropped : {place.file, place.beside}) {
+    if (!drop) break;
+    if (auto gone = (*folder)->remove(dropped); !gone) return gone;
+  }
+  while (true) {
+    const auto request = take_request<Request>(**folder, place.file);
+    if (!request) return std::unexpected(request.error());
+    if (!*request) return {};
+    answer(**request, **folder);
+  }
+}
+
+}  // namespace adit::host

@@ -1,0 +1,210 @@
+#include "host/root_program.hpp"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "codec/nonce.hpp"
+#include "host/folder.hpp"
+#include "loop/simulated_time.hpp"
+
+namespace adit::host {
+namespace {
+
+using namespace std::chrono_literals;
+using nlohmann::json;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+constexpr const char* kFile = "request.json";
+constexpr const char* kBeside = "request.data";
+
+struct Request {
+  std::string nonce = draw_nonce();
+  std::string what = "do it";
+  static const codec::Row kRow;
+};
+struct Status {
+  std::string nonce = "";
+  bool names(std::string_view request) const { return nonce == request; }
+  static const codec::Row kRow;
+};
+constexpr codec::Member kRequestMembers[] = {
+    codec::member<&Request::nonce>("nonce").as(codec::kNonce),
+    codec::member<&Request::what>("what"),
+};
+constexpr codec::Member kStatusMembers[] = {codec::member<&Status::nonce>("nonce")};
+constexpr codec::Row Request::kRow = {"", kRequestMembers};
+constexpr codec::Row Status::kRow = {"", kStatusMembers};
+
+TEST(Nonce, IsNeverTheSameTwice) {
+  EXPECT_TRUE(codec::is_nonce(draw_nonce()));
+  EXPECT_NE(draw_nonce(), draw_nonce());
+}
+
+class RootProgramTest : public testing::Test {
+ protected:
+  /// As the program does.
+  void tell(const std::string& nonce) { ASSERT_TRUE(file_.tell(Status{nonce})); }
+  bool is_left() const { return fs::exists(requests_ / kFile); }
+  /// What the program takes.
+  std::optional<Request> taken() {
+    auto folder = open_requests(requests_.path());
+    return take_request<Request>(**folder, kFile).value();
+  }
+
+  Folder requests_, run_;
+  loop::SimulatedTime time_;
+  loop::Loop loop_;
+  StatusFile file_{run_ / kStatusFile};
+  RootProgram<Status> program_{loop_, "adit-x", requests_.path(), run_.path(), 60s};
+};
+
+TEST_F(RootProgramTest, DoesNotRunHereIfItHasNoStatus) {
+  EXPECT_FALSE(program_.runs_here());
+  EXPECT_THAT(program_.why(), HasSubstr("adit-x does not run here"));
+}
+
+TEST_F(RootProgramTest, WhoseStatusCannotBeReadIsNotOneThatDoesNotRun) {
+  run_.put(kStatusFile, "{");
+  EXPECT_TRUE(program_.runs_here());
+  EXPECT_FALSE(program_.status());
+  EXPECT_THAT(program_.why(), HasSubstr("cannot read the status of adit-x: "));
+  fs::remove(run_ / kStatusFile);
+  fs::create_directory(run_ / kStatusFile);
+  time_.pass(kFresh);
+  EXPECT_TRUE(program_.runs_here());
+  EXPECT_THAT(program_.why(), HasSubstr("cannot read the status of adit-x: "));
+}
+
+TEST_F(RootProgramTest, IsReadAgainOnceItsStatusIsOld) {
+  tell("a");
+  EXPECT_EQ(program_.status()->nonce, "a");
+  tell("b");
+  EXPECT_EQ(program_.status()->nonce, "a");
+  time_.pass(kFresh);
+  EXPECT_EQ(program_.status()->nonce, "b");
+}
+
+TEST_F(RootProgramTest, IsWaitedForUntilItsStatusNamesTheRequest) {
+  tell("");
+  const Request request;
+  ASSERT_TRUE(program_.ask(kFile, request));
+  EXPECT_TRUE(program_.waits());
+  EXPECT_EQ(fs::status(requests_ / kFile).permissions(), fs::perms(0600));
+  EXPECT_EQ(taken()->nonce, request.nonce);
+  run_.put(kStatusFile, "{");
+  EXPECT_FALSE(program_.check());
+  EXPECT_TRUE(program_.waits()) << "an unreadable status is no answer";
+  tell(request.nonce);
+  EXPECT_FALSE(program_.check());
+  EXPECT_FALSE(program_.waits());
+  tell("");
+  EXPECT_FALSE(program_.check());
+  EXPECT_FALSE(program_.waits()) << "a later start of the program knows nothing of it";
+}
+
+TEST_F(RootProgramTest, IsNotWaitedForBeyondItsTime) {
+  const Request request;
+  ASSERT_TRUE(program_.ask(kFile, request));
+  time_.pass(60s - 1ms);
+  EXPECT_FALSE(program_.check());
+  EXPECT_TRUE(program_.waits() && is_left());
+  time_.pass(1ms);
+  EXPECT_TRUE(program_.check());
+  EXPECT_FALSE(program_.check()) << "only once";
+  EXPECT_FALSE(program_.waits() || is_left());
+  EXPECT_EQ(program_.trouble(), "adit-x did not read the request: see journalctl -u adit-x");
+  tell(request.nonce);
+  program_.check();
+  EXPECT_EQ(program_.trouble(), "") << "it was late, but it was read";
+}
+
+TEST_F(RootProgramTest, IsAskedAgainAfterItDidNotReadARequest) {
+  ASSERT_TRUE(program_.ask(kFile, Request{}));
+  time_.pass(60s);
+  EXPECT_TRUE(program_.check());
+  ASSERT_TRUE(program_.ask(kFile, Request{}));
+  EXPECT_TRUE(program_.waits());
+  EXPECT_EQ(program_.trouble(), "");
+}
+
+TEST_F(RootProgramTest, WasNotAskedIfTheRequestCannotBeWritten) {
+  fs::remove_all(requests_.path());
+  EXPECT_FALSE(program_.ask(kFile, Request{}));
+  EXPECT_FALSE(program_.waits());
+  fs::create_directory(requests_.path());
+}
+
+TEST_F(RootProgramTest, RejectsEachRequestThatIsMalformed) {
+  const json good = json::parse(codec::write_file(Request{}));
+  for (const char* change :
+       {R"({"format":2})", R"({"format":null})", R"({"more":1})", R"({"what":null})", R"({"what":[["x"]]})",
+        R"({"nonce":"0123"})", R"({"nonce":7})", R"({"nonce":"0123456789ABCDEF0123456789ABCDEF"})",
+        R"({"nonce":"../../../../etc/passwd0000000000"})"}) {
+    json bad = good;
+    bad.update(json::parse(change));
+    requests_.put(kFile, bad.dump());
+    EXPECT_FALSE(taken()) << change;
+    EXPECT_FALSE(is_left()) << change;
+  }
+  for (const char* text : {"", "{", "[]", "null", "7", "{\"format\":1}", "\xff\xfe"}) {
+    requests_.put(kFile, text);
+    EXPECT_FALSE(taken()) << text;
+    EXPECT_FALSE(is_left()) << text;
+  }
+}
+
+class AnsweringTest : public RootProgramTest {
+ protected:
+  std::expected<void, std::string> answer(bool drop) {
+    return answer_requests<Request>({requests_.path(), kFile, kBeside}, drop,
+                                    [this](const Request& request, UntrustedFolder&) {
+                                      answered_.push_back(request.nonce);
+                                      if (answered_.size() == 1)
+                                        requests_.put(kFile, codec::write_file(later_));
+                                    });
+  }
+  const Request first_, later_;
+  std::vector<std::string> answered_;
+};
+
+TEST_F(AnsweringTest, AnswersUntilNothingIsAskedFor) {
+  requests_.put(kFile, codec::write_file(first_));
+  EXPECT_TRUE(answer(false));
+  EXPECT_THAT(answered_, testing::ElementsAre(first_.nonce, later_.nonce));
+  EXPECT_TRUE(fs::is_empty(requests_.path()));
+}
+
+TEST_F(AnsweringTest, DropsWhatWasAskedBeforeTheBoot) {
+  requests_.put(kFile, codec::write_file(first_));
+  requests_.put(kBeside, "data");
+  EXPECT_TRUE(answer(true));
+  EXPECT_TRUE(answered_.empty());
+  EXPECT_TRUE(fs::is_empty(requests_.path()));
+}
+
+TEST_F(AnsweringTest, HasNoRequestsIfTheirDirectoryIsNotThere) {
+  fs::remove_all(requests_.path());
+  EXPECT_TRUE(answer(false));
+  std::ofstream(requests_.path()) << "no directory";
+  EXPECT_FALSE(answer(false)) << "not known to be empty";
+  fs::remove(requests_.path());
+}
+
+TEST(StatusFile, KnowsWhetherItIsTheFirstStartSinceTheBoot) {
+  const Folder run;
+  StatusFile file(run / kStatusFile);
+  EXPECT_FALSE(file.told<Status>());
+  EXPECT_EQ(file.tell(Status{"a"}), true);
+  EXPECT_EQ(file.tell(Status{"a"}), false) << "it was told";
+  EXPECT_EQ(file.told<Status>()->nonce, "a");
+  run.put(kStatusFile, "{");
+  ASSERT_TRUE(file.told<Status>()) << "an unreadable status is not the first start";
+  EXPECT_EQ(file.told<Status>()->nonce, "");
+}
+
+}  // namespace
+}  // namespace adit::host

@@ -1,9 +1,6 @@
 #include "journal/carried.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "codec/body_decoder.hpp"
@@ -26,38 +23,8 @@ std::optional<icd::MarkersUpdate> markers_in(std::string_view said) {
   return std::move(*markers);
 }
 
-std::optional<icd::Uri> uri_in(Reader& reader) {
-  const auto uri = static_cast<icd::Uri>(reader.number());
-  const bool known = std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
-  return reader.ok() && known ? std::optional(uri) : std::nullopt;
-}
-
-pace::Duration duration_in(Reader& reader) {
-  return pace::Duration(static_cast<std::int64_t>(reader.number()));
-}
-
-/// The components of a pose, in the order of a record.
-std::array<double*, 7> parts_of(icd::Pose& pose) {
-  auto& [at, turned] = pose;
-  return {&at.x, &at.y, &at.z, &turned.x, &turned.y, &turned.z, &turned.w};
-}
-
-/// Nothing where they are cut short.
-std::optional<std::vector<lanes::PostedPose>> poses_in(Reader& reader) {
-  std::vector<lanes::PostedPose> poses;
-  while (reader.ok() && !reader.at_end()) {
-    const auto name = icd::RobotName::parse(reader.text());
-    if (!name) return std::nullopt;
-    lanes::PostedPose& posted = poses.emplace_back(*name);
-    posted.address = reader.text();
-    if (const double stamp = reader.real(); !std::isnan(stamp)) posted.stamp = stamp;
-    for (double* const part : parts_of(posted.pose)) *part = reader.real();
-  }
-  return reader.ok() ? std::optional(std::move(poses)) : std::nullopt;
-}
-
-std::uint64_t number_of(pace::Duration duration) {
-  return static_cast<std::uint64_t>(std::int64_t{duration.count()});
+bool is_known(icd::Uri uri) {
+  return std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
 }
 
 }  // namespace
@@ -104,12 +71,8 @@ bool Carried::apply(Kind kind, std::string_view said) {
 }
 
 bool Carried::read_clock(std::string_view said) {
-  Reader reader(said);
-  Clock clock{.boot = std::string(reader.text()), .at = pace::Instant(duration_in(reader)), .stamp = 0};
-  clock.stamp = reader.real();
-  if (!reader.at_end()) clock.leapt_to = reader.real(), clock.leapt_by = reader.real();
-  if (!reader.at_end()) clock.off = reader.real(), clock.off_since = reader.real();
-  if (!reader.ok()) return false;
+  Clock clock;
+  if (!store::read(said, clock)) return false;
   machine_is(clock.boot);
   clock_ = std::move(clock);
   return true;
@@ -124,25 +87,24 @@ void Carried::machine_is(const std::string& boot) {
 }
 
 bool Carried::read_sender(std::string_view said) {
-  Reader reader(said);
-  lanes::Stamper stamper{.address = std::string(reader.text())};
-  const auto uri = uri_in(reader);
-  stamper.uri = uri.value_or(stamper.uri);
-  stamper.robot = reader.text();
+  lanes::Stamper stamper;
   lanes::SenderClock clock;
-  clock.theirs = reader.real();
-  clock.ours = reader.real();
-  clock.latest = reader.real();
-  if (uri && reader.ok()) senders_.carry_on(stamper, clock);
-  return uri && reader.ok();
+  if (!store::read(said, stamper, clock) || !is_known(stamper.uri)) return false;
+  senders_.carry_on(stamper, clock);
+  return true;
 }
 
 /// lanes::StateLane::news_in() has said that they are the newest.
 bool Carried::read_poses(std::string_view said) {
-  Reader reader(said);
-  const auto poses = poses_in(reader);
-  if (!poses) return false;
-  for (const lanes::PostedPose& posted : *poses) {
+  std::vector<std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>> read;
+  if (!store::read(said, read)) return false;
+  std::vector<lanes::PostedPose> poses;
+  for (const auto& [text, address, stamp, pose] : read) {
+    const auto name = icd::RobotName::parse(text);
+    if (!name) return false;
+    poses.push_back({*name, pose, stamp, address});
+  }
+  for (const lanes::PostedPose& posted : poses) {
     Robot& robot = robots_.try_emplace(posted.name, Robot{posted}).first->second;
     robot.posted = posted;
     robot.news = true;
@@ -152,14 +114,15 @@ bool Carried::read_poses(std::string_view said) {
 
 /// One state is under way at a time: what was before, and of which no answer is known, was not taken.
 bool Carried::read_state_sent(std::string_view said) {
-  Reader reader(said);
+  std::vector<std::string> robots;
+  if (!store::read(said, robots)) return false;
   state_comes_back();
-  for (std::uint64_t left = reader.number(); left > 0 && reader.ok(); --left) {
-    const auto name = icd::RobotName::parse(std::string(reader.text()));
+  for (const std::string& robot : robots) {
+    const auto name = icd::RobotName::parse(robot);
     const auto held = name ? robots_.find(*name) : robots_.end();
     if (held != robots_.end()) held->second.under_way = std::exchange(held->second.news, false);
   }
-  return reader.ok();
+  return true;
 }
 
 bool Carried::read_markers(std::string_view said) {
@@ -172,64 +135,48 @@ bool Carried::read_markers(std::string_view said) {
 /// The markers that went are those that wait now; newer changes of them come later. Those before, of which no
 /// answer is known, wait again.
 bool Carried::read_sent(std::string_view said) {
-  Reader reader(said);
+  std::vector<icd::Marker> like;
+  if (!store::read(said, like)) return false;
   markers_come_back();
-  std::vector<icd::Marker> sent;
-  for (std::uint64_t left = reader.number(); left > 0 && reader.ok(); --left) {
-    icd::Marker like;
-    like.ns = reader.text();
-    like.id = static_cast<std::int32_t>(reader.number());
-    like.action = static_cast<icd::MarkerAction>(reader.number());
-    if (auto marker = markers_.remove(like)) sent.push_back(std::move(*marker));
+  markers_under_way_.clear();
+  for (const icd::Marker& each : like) {
+    if (auto marker = markers_.remove(each)) markers_under_way_.push_back(std::move(*marker));
   }
-  markers_under_way_ = std::move(sent);
-  return reader.ok();
+  return true;
 }
 
 bool Carried::read_pace(std::string_view said) {
-  Reader reader(said);
-  const auto uri = uri_in(reader);
+  icd::Uri uri{};
   pace::Learned learned;
-  learned.earliest.first = pace::Instant(duration_in(reader));
-  learned.spacing = duration_in(reader);
-  learned.under_way = reader.number() != 0;
-  const bool is_older = reader.at_end();  // of a version that counted from answers alone
-  learned.earliest.last = is_older ? learned.earliest.first : pace::Instant(duration_in(reader));
-  const std::uint64_t counting = is_older ? 0 : reader.number();
-  learned.from_answers = counting % 2 != 0;
-  learned.single = static_cast<int>(std::min<std::uint64_t>(counting / 2, INT32_MAX));
-  if (uri && reader.ok()) paces_[*uri] = learned;
-  return uri && reader.ok();
+  if (!store::read(said, uri, learned) || !is_known(uri)) return false;
+  paces_[uri] = learned;
+  return true;
 }
 
 bool Carried::read_stamp(std::string_view said) {
-  Reader reader(said);
-  const auto uri = uri_in(reader);
-  const double stamp = reader.real();
-  if (uri && reader.ok()) stamps_[*uri] = stamp;
-  return uri && reader.ok();
+  icd::Uri uri{};
+  icd::Stamp stamp = 0;
+  if (!store::read(said, uri, stamp) || !is_known(uri)) return false;
+  stamps_[uri] = stamp;
+  return true;
 }
 
 /// An empty one begins them: what is sent is told from there on.
 bool Carried::read_grids(std::string_view said) {
   if (!grids_) grids_.emplace();
   if (said.empty()) return true;
-  Reader reader(said);
-  const std::string key(reader.text());
+  std::string name;
   lanes::Extent extent;
-  for (double* const side : {&extent.left, &extent.bottom, &extent.right, &extent.top}) *side = reader.real();
-  if (reader.ok()) (*grids_)[key] = extent;
-  return reader.ok();
+  if (!store::read(said, name, extent)) return false;
+  (*grids_)[name] = extent;
+  return true;
 }
 
 bool Carried::read_heard(std::string_view said) {
-  Reader reader(said);
-  Heard heard{.robot = std::string(reader.text()), .messages = reader.number()};
-  heard.gap = reader.real();
-  heard.last = reader.real();
-  for (auto& [accepted, forwarded] : heard.kinds) accepted = reader.real(), forwarded = reader.real();
-  if (reader.ok()) heard_[heard.robot] = heard;
-  return reader.ok();
+  Heard heard;
+  if (!store::read(said, heard)) return false;
+  heard_[heard.robot] = heard;
+  return true;
 }
 
 void Carried::state_is_done() {
@@ -258,25 +205,25 @@ icd::MarkersUpdate Carried::markers() const {
 }
 
 void Carried::write(const std::function<void(Kind, std::string_view)>& to) const {
-  if (clock_) to(Kind::Clock, said(*clock_));
-  for (const auto& [stamper, clock] : senders_.clocks()) to(Kind::Sender, said(stamper, clock));
-  for (const auto& [uri, learned] : paces_) to(Kind::Pace, said(uri, learned));
-  for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, said(uri, stamp));
+  if (clock_) to(Kind::Clock, store::bytes_of(*clock_));
+  for (const auto& [stamper, clock] : senders_.clocks()) to(Kind::Sender, store::bytes_of(stamper, clock));
+  for (const auto& [uri, learned] : paces_) to(Kind::Pace, store::bytes_of(uri, learned));
+  for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, store::bytes_of(uri, stamp));
   if (grids_) {
     to(Kind::Grids, {});
-    for (const auto& [key, extent] : *grids_) to(Kind::Grids, said(key, extent));
+    for (const auto& [key, extent] : *grids_) to(Kind::Grids, store::bytes_of(key, extent));
   }
-  for (const auto& [robot, heard] : heard_) to(Kind::Heard, said(heard));
+  for (const auto& [robot, heard] : heard_) to(Kind::Heard, store::bytes_of(heard));
   const auto write_robots = [&](bool Robot::* these) {
     std::vector<icd::RobotName> names;
     for (const auto& [name, robot] : robots_) {
       if (!(robot.*these)) continue;
-      to(Kind::Poses, said(std::span(&robot.posted, 1)));
+      to(Kind::Poses, store::bytes_of(std::span(&robot.posted, 1)));
       names.push_back(name);
     }
     return names;
   };
-  to(Kind::StateSent, said_sent(write_robots(&Robot::under_way)));
+  to(Kind::StateSent, store::bytes_of(write_robots(&Robot::under_way)));
   write_robots(&Robot::news);
   const auto write_markers = [&to](const std::vector<icd::Marker>& markers) {
     for (std::size_t i = 0; i < markers.size(); i += kMarkersInARecord) {
@@ -286,7 +233,7 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
     }
   };
   write_markers(markers_under_way_);
-  to(Kind::MarkersSent, said_sent(markers_under_way_));
+  to(Kind::MarkersSent, store::bytes_of(markers_under_way_));
   std::vector<icd::Marker> waiting;
   for (const auto& [place, marker] : markers_.in_order()) waiting.push_back(marker);
   write_markers(waiting);
@@ -313,86 +260,8 @@ std::pair<Carried, std::string> read_records(const store::Contents& contents) {
   return {std::move(carried), std::move(damage)};
 }
 
-std::string said(const Clock& clock) {
-  Writer out;
-  out.text(clock.boot).number(number_of(clock.at.time_since_epoch())).real(clock.stamp);
-  out.real(clock.leapt_to).real(clock.leapt_by);
-  return out.real(clock.off).real(clock.off_since).finish();
-}
-
-std::string said(const lanes::Stamper& stamper, const lanes::SenderClock& clock) {
-  return Writer()
-      .text(stamper.address)
-      .number(static_cast<std::uint64_t>(stamper.uri))
-      .text(stamper.robot)
-      .real(clock.theirs)
-      .real(clock.ours)
-      .real(clock.latest)
-      .finish();
-}
-
-std::string said(icd::Uri uri, const pace::Learned& learned) {
-  return Writer()
-      .number(static_cast<std::uint64_t>(uri))
-      .number(number_of(learned.earliest.first.time_since_epoch()))
-      .number(number_of(learned.spacing))
-      .number(learned.under_way ? 1 : 0)
-      .number(number_of(learned.earliest.last.time_since_epoch()))
-      .number(static_cast<std::uint64_t>(learned.single) * 2 + (learned.from_answers ? 1 : 0))
-      .finish();
-}
-
-std::string said(icd::Uri uri, icd::Stamp stamp) {
-  return Writer().number(static_cast<std::uint64_t>(uri)).real(stamp).finish();
-}
-
-std::string said(const std::string& name, const lanes::Extent& extent) {
-  return Writer()
-      .text(name)
-      .real(extent.left)
-      .real(extent.bottom)
-      .real(extent.right)
-      .real(extent.top)
-      .finish();
-}
-
-std::string said(std::span<const lanes::PostedPose> poses) {
-  Writer out;
-  for (lanes::PostedPose posted : poses) {
-    out.text(posted.name.text()).text(posted.address);
-    out.real(posted.stamp.value_or(std::numeric_limits<double>::quiet_NaN()));
-    for (const double* const part : parts_of(posted.pose)) out.real(*part);
-  }
-  return out.finish();
-}
-
-std::string said(const Heard& heard) {
-  Writer out;
-  out.text(heard.robot).number(heard.messages).real(heard.gap).real(heard.last);
-  for (const auto& [accepted, forwarded] : heard.kinds) out.real(accepted).real(forwarded);
-  return out.finish();
-}
-
 std::string said(const icd::MarkersUpdate& update) {
   return codec::write_markers_update(update).to_string();
-}
-
-std::string said_sent(const std::vector<icd::RobotName>& robots) {
-  Writer out;
-  out.number(robots.size());
-  for (const icd::RobotName& robot : robots) out.text(robot.text());
-  return out.finish();
-}
-
-std::string said_sent(const std::vector<icd::Marker>& markers) {
-  Writer out;
-  out.number(markers.size());
-  for (const icd::Marker& marker : markers) {
-    out.text(marker.ns)
-        .number(static_cast<std::uint64_t>(std::int64_t{marker.id}))
-        .number(static_cast<std::uint64_t>(marker.action));
-  }
-  return out.finish();
 }
 
 }  // namespace adit::journal

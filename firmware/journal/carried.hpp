@@ -6,9 +6,9 @@
 #include <limits>
 #include <map>
 #include <optional>
-#include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,6 +22,7 @@
 #include "lanes/stamps.hpp"
 #include "pace/rate_limit.hpp"
 #include "store/contents.hpp"
+#include "store/values.hpp"
 
 namespace adit::journal {
 
@@ -110,18 +111,57 @@ class Carried {
 /// because the delivered message may be in the gap. Unknown records are logged.
 std::pair<Carried, std::string> read_records(const store::Contents& contents);
 
-/// What the records say.
-std::string said(const Clock& clock);
-std::string said(const lanes::Stamper& stamper, const lanes::SenderClock& clock);
-std::string said(icd::Uri uri, const pace::Learned& learned);
-std::string said(icd::Uri uri, icd::Stamp stamp);
-std::string said(const std::string& name, const lanes::Extent& extent);
-std::string said(std::span<const lanes::PostedPose> poses);
-std::string said(const Heard& heard);
+/// What a record of Kind::Markers says, as it goes upstream.
 std::string said(const icd::MarkersUpdate& update);
-/// Whose poses were sent.
-std::string said_sent(const std::vector<icd::RobotName>& robots);
-/// Which markers were sent: ns, id and action of each.
-std::string said_sent(const std::vector<icd::Marker>& markers);
 
 }  // namespace adit::journal
+
+// The structs in records. All other records are store::bytes_of() what Carried reads them as.
+namespace adit {
+
+template <>
+inline constexpr auto store::kMembers<journal::Clock> =
+    std::tuple(&journal::Clock::boot, &journal::Clock::at, &journal::Clock::stamp, &journal::Clock::leapt_to,
+               &journal::Clock::leapt_by, &journal::Clock::off, &journal::Clock::off_since);
+template <>
+inline constexpr auto store::kMembers<journal::Heard> =
+    std::tuple(&journal::Heard::robot, &journal::Heard::messages, &journal::Heard::gap, &journal::Heard::last,
+               &journal::Heard::kinds);
+template <>
+inline constexpr auto store::kMembers<journal::Heard::Times> =
+    std::tuple(&journal::Heard::Times::accepted, &journal::Heard::Times::forwarded);
+template <>
+inline constexpr auto store::kMembers<lanes::Stamper> =
+    std::tuple(&lanes::Stamper::address, &lanes::Stamper::uri, &lanes::Stamper::robot);
+template <>
+inline constexpr auto store::kMembers<lanes::SenderClock> =
+    std::tuple(&lanes::SenderClock::theirs, &lanes::SenderClock::ours, &lanes::SenderClock::latest);
+template <>
+inline constexpr auto store::kMembers<lanes::Extent> =
+    std::tuple(&lanes::Extent::left, &lanes::Extent::bottom, &lanes::Extent::right, &lanes::Extent::top);
+template <>
+inline constexpr auto store::kMembers<pace::Learned> =
+    std::tuple(&pace::Learned::earliest, &pace::Learned::spacing, &pace::Learned::under_way,
+               &pace::Learned::from_answers, &pace::Learned::single);
+template <>
+inline constexpr auto store::kMembers<pace::Span> = std::tuple(&pace::Span::first, &pace::Span::last);
+template <>
+inline constexpr auto store::kMembers<icd::RobotName> = std::tuple(&icd::RobotName::text);
+template <>
+inline constexpr auto store::kMembers<lanes::PostedPose> =
+    std::tuple(&lanes::PostedPose::name, &lanes::PostedPose::address, &lanes::PostedPose::stamp,
+               &lanes::PostedPose::pose);
+template <>
+inline constexpr auto store::kMembers<icd::Pose> = std::tuple(&icd::Pose::position, &icd::Pose::orientation);
+template <>
+inline constexpr auto store::kMembers<icd::Point> =
+    std::tuple(&icd::Point::x, &icd::Point::y, &icd::Point::z);
+template <>
+inline constexpr auto store::kMembers<icd::Quaternion> =
+    std::tuple(&icd::Quaternion::x, &icd::Quaternion::y, &icd::Quaternion::z, &icd::Quaternion::w);
+/// What tells a marker from others.
+template <>
+inline constexpr auto store::kMembers<icd::Marker> =
+    std::tuple(&icd::Marker::ns, &icd::Marker::id, &icd::Marker::action);
+
+}  // namespace adit

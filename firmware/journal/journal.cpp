@@ -68,26 +68,22 @@ void Journal::begin(const Clock& clock) {
     if (!is_first) compact();
   }
   note(Kind::LifeBegins, {});
-  note(Kind::Clock, said(clock));
-}
-
-Journal::Kept Journal::accepted(std::span<const lanes::PostedPose> poses) {
-  return append(Kind::Poses, said(poses));
+  note(Kind::Clock, store::bytes_of(clock));
 }
 
 void Journal::senders(const lanes::StampShift::Clocks& clocks) {
-  for (const auto& [stamper, clock] : clocks) note(Kind::Sender, said(stamper, clock));
+  for (const auto& [stamper, clock] : clocks) note(Kind::Sender, store::bytes_of(stamper, clock));
 }
 
 void Journal::state_sent(const icd::StateUpdate& update) {
   std::vector<icd::RobotName> robots;
   robots.reserve(update.poses.size());
   for (const icd::NamedPose& pose : update.poses) robots.push_back(pose.name);
-  note(Kind::StateSent, said_sent(robots));
+  note(Kind::StateSent, store::bytes_of(robots));
 }
 
 void Journal::markers_sent(const icd::MarkersUpdate& update) {
-  note(Kind::MarkersSent, said_sent(update.markers));
+  note(Kind::MarkersSent, store::bytes_of(update.markers));
 }
 
 void Journal::state_answered(bool done) {
@@ -96,22 +92,6 @@ void Journal::state_answered(bool done) {
 
 void Journal::markers_answered(bool done) {
   done ? note(Kind::MarkersDone, {}) : comes_back(Kind::MarkersSent, Kind::MarkersBack);
-}
-
-void Journal::paced(icd::Uri uri, const pace::Learned& learned) {
-  note(Kind::Pace, said(uri, learned));
-}
-
-void Journal::stamped(icd::Uri uri, icd::Stamp stamp) {
-  note(Kind::Stamp, said(uri, stamp));
-}
-
-Journal::Kept Journal::grids_begin() {
-  return append(Kind::Grids, {});
-}
-
-Journal::Kept Journal::grids_posted(const std::string& name, const lanes::Extent& extent) {
-  return append(Kind::Grids, said(name, extent));
 }
 
 void Journal::note(Kind kind, std::string said) {

@@ -51,18 +51,20 @@ class Journal {
   /// Call once, after read() and before any other member.
   void begin(const Clock& clock);
   /// More is known of it.
-  void clock(const Clock& clock) { note(Kind::Clock, said(clock)); }
+  void clock(const Clock& clock) { note(Kind::Clock, store::bytes_of(clock)); }
 
   /// An error: it is not kept, and must not be answered as if it were.
   using Kept = std::expected<void, std::string>;
-  Kept accepted(std::span<const lanes::PostedPose> poses);
+  Kept accepted(std::span<const lanes::PostedPose> poses) {
+    return append(Kind::Poses, store::bytes_of(poses));
+  }
   Kept accepted(const icd::MarkersUpdate& update) { return accepted_markers(said(update)); }
   /// As said() made it: any thread may do that.
   Kept accepted_markers(const std::string& said) { return append(Kind::Markers, said); }
 
   void senders(const lanes::StampShift::Clocks& clocks);
   /// For the next process start. If there is no room for it, the next one says the same.
-  void heard(const Heard& heard) { (void)append(Kind::Heard, said(heard)); }
+  void heard(const Heard& heard) { (void)append(Kind::Heard, store::bytes_of(heard)); }
 
   /// These poses, or these markers, are about to be sent.
   void state_sent(const icd::StateUpdate& update);
@@ -71,11 +73,13 @@ class Journal {
   void state_answered(bool done);
   void markers_answered(bool done);
 
-  void paced(icd::Uri uri, const pace::Learned& learned);
-  void stamped(icd::Uri uri, icd::Stamp stamp);
+  void paced(icd::Uri uri, const pace::Learned& learned) { note(Kind::Pace, store::bytes_of(uri, learned)); }
+  void stamped(icd::Uri uri, icd::Stamp stamp) { note(Kind::Stamp, store::bytes_of(uri, stamp)); }
   /// Where grids are posted is told from here on; grids_posted() begins that, too.
-  Kept grids_begin();
-  Kept grids_posted(const std::string& name, const lanes::Extent& extent);
+  Kept grids_begin() { return append(Kind::Grids, {}); }
+  Kept grids_posted(const std::string& name, const lanes::Extent& extent) {
+    return append(Kind::Grids, store::bytes_of(name, extent));
+  }
 
   /// Why the last record could not be kept, or "".
   const std::string& trouble() const { return trouble_; }

@@ -2,8 +2,6 @@
 
 #include <cstdint>
 
-#include "store/values.hpp"
-
 namespace adit::journal {
 
 /// What a record tells. The numbers are in files: they stay.
@@ -24,8 +22,5 @@ enum class Kind : std::uint8_t {
   Poses = 19,  // of a /state/update that was accepted
   Heard = 20,  // when a robot was heard, and how often it posts
 };
-
-using store::Reader;
-using store::Writer;
 
 }  // namespace adit::journal

@@ -6,86 +6,59 @@
 #include "codec/row.hpp"
 #include "store/values.hpp"
 
-namespace adit::ledger {
+namespace adit {
+
+template <>
+inline constexpr auto store::kMembers<dispatch::Clock> =
+    std::tuple(&dispatch::Clock::shows, &dispatch::Clock::runs);
+template <>
+inline constexpr auto store::kMembers<icd::RunStatus> =
+    std::tuple(&icd::RunStatus::score, &icd::RunStatus::run_clock, &icd::RunStatus::remaining_reports,
+               &icd::RunStatus::current_team);
+template <>
+inline constexpr auto store::kMembers<ledger::Step> =
+    std::tuple(&ledger::Step::at, &ledger::Step::state, &ledger::Step::note);
+template <>
+inline constexpr auto store::kMembers<ledger::Steps::Entry> =
+    std::tuple(&ledger::Steps::Entry::report, &ledger::Steps::Entry::history);
+template <>
+inline constexpr auto store::kMembers<ledger::Steps> =
+    std::tuple(&ledger::Steps::highest, &ledger::Steps::reports, &ledger::Steps::runs);
+
+namespace ledger {
 namespace {
 
 using dispatch::Report;
 using dispatch::ReportState;
 using dispatch::Run;
 
-class Put {
+class Put : public store::Writer {
  public:
-  void operator()(std::integral auto number) { out_.number(static_cast<std::uint64_t>(number)); }
-  void operator()(double real) { out_.real(real); }
-  void operator()(std::string_view text) { out_.text(text); }
-  void operator()(const std::string& text) { out_.text(text); }
-  void operator()(ReportState state) { out_.text(dispatch::name_of(state)); }
-  void operator()(const std::optional<icd::RobotName>& robot) { out_.text(robot ? robot->text() : ""); }
-  void operator()(const std::optional<dispatch::Clock>& clock) {
-    (*this)(clock.has_value());
-    const dispatch::Clock put = clock.value_or(dispatch::Clock());
-    (*this)(put.shows);
-    (*this)(put.runs);
-  }
-  void operator()(const std::optional<icd::RunStatus>& status) {
-    (*this)(status.has_value());
-    const icd::RunStatus put = status.value_or(icd::RunStatus());
-    (*this)(put.score);
-    (*this)(put.run_clock);
-    (*this)(put.remaining_reports);
-    (*this)(put.current_team);
-  }
-  void operator()(const char* /*name*/, const auto& value) { (*this)(value); }
-  std::string finish(std::string_view more) { return out_.finish().append(more); }
-
- private:
-  store::Writer out_;
+  using store::Writer::operator();
+  void operator()(ReportState state) { (*this)(dispatch::name_of(state)); }
+  void operator()(const std::optional<icd::RobotName>& robot) { (*this)(robot ? robot->text() : ""); }
+  void operator()(const char* /*name*/, const auto& value) { store::walk(*this, value); }
 };
 
-class Take {
+class Take : public store::Reader {
  public:
-  explicit Take(std::string_view said) : in_(said) {}
-
-  template <std::integral Whole>
-  void operator()(Whole& number) {
-    number = static_cast<Whole>(in_.number());
-  }
-  void operator()(double& real) { real = in_.real(); }
-  void operator()(std::string& text) { text = in_.text(); }
+  using store::Reader::Reader, store::Reader::operator();
   void operator()(ReportState& state) {
-    const std::string_view word = in_.text();
+    const auto word = read<std::string_view>();
     const auto* const known = std::ranges::find(dispatch::kStateWords, word);
     if (known == std::end(dispatch::kStateWords)) unknown_ = word;
     state = unknown_.empty() ? static_cast<ReportState>(known - std::begin(dispatch::kStateWords))
                              : ReportState::InDoubt;
   }
-  void operator()(std::optional<icd::RobotName>& robot) { robot = icd::RobotName::parse(in_.text()); }
-  void operator()(std::optional<dispatch::Clock>& clock) {
-    const bool is_there = in_.number() != 0;
-    dispatch::Clock taken;
-    (*this)(taken.shows);
-    (*this)(taken.runs);
-    if (is_there) clock = taken;
+  void operator()(std::optional<icd::RobotName>& robot) {
+    robot = icd::RobotName::parse(read<std::string_view>());
   }
-  void operator()(std::optional<icd::RunStatus>& status) {
-    const bool is_there = in_.number() != 0;
-    icd::RunStatus taken;
-    (*this)(taken.score);
-    (*this)(taken.run_clock);
-    (*this)(taken.remaining_reports);
-    (*this)(taken.current_team);
-    if (is_there) status = std::move(taken);
-  }
+  void operator()(const char* /*name*/, auto& value) { store::walk(*this, value); }
 
-  void operator()(const char* /*name*/, auto& value) { (*this)(value); }
-
-  bool ok() const { return in_.ok(); }
-  std::string_view left() const { return in_.left(); }
   /// The word of a state that this version does not know, or "".
   std::string_view unknown_state() const { return unknown_; }
 
  private:
-  store::Reader in_;
   std::string_view unknown_;
 };
 
@@ -160,7 +133,7 @@ template <class Of>
 std::string put(const Of& what, std::string_view more) {
   Put put;
   members(put, what);
-  return put.finish(more);
+  return put.finish().append(more);
 }
 
 template <class Of>
@@ -229,7 +202,7 @@ codec::Value shown(const Run& run) {
 }
 
 std::string said(const Step& step) {
-  return store::Writer().real(step.at).text(step.state).text(step.note).finish();
+  return store::bytes_of(step);
 }
 
 std::string step_of(const Report& report) {
@@ -239,38 +212,23 @@ std::string step_of(const Report& report) {
 std::optional<std::vector<Step>> steps_in(std::string_view said) {
   std::vector<Step> steps;
   store::Reader reader(said);
-  while (!reader.at_end()) {
-    const double at = reader.real();
-    const std::string_view state = reader.text(), note = reader.text();
-    if (!reader.ok()) return std::nullopt;
-    steps.push_back({at, std::string(state), std::string(note)});
-  }
-  return steps;
+  while (reader.ok() && !reader.at_end()) steps.push_back(reader.read<Step>());
+  return reader.ok() ? std::optional(std::move(steps)) : std::nullopt;
 }
 
 std::string said(const Steps& steps) {
-  store::Writer out;
-  out.number(static_cast<std::uint64_t>(steps.highest)).number(steps.reports.size());
-  for (const Steps::Entry& entry : steps.reports) out.text(entry.report).text(entry.history);
-  out.number(steps.runs.size());
-  for (const std::string_view run : steps.runs) out.text(run);
-  return out.finish();
+  return store::bytes_of(steps);
 }
 
 std::optional<Steps> steps_record_in(std::string_view said) {
-  store::Reader reader(said);
-  Steps steps{.highest = static_cast<std::int64_t>(reader.number()), .reports = {}, .runs = {}};
-  for (std::uint64_t left = reader.number(); left > 0 && reader.ok(); --left) {
-    const std::string_view report = reader.text(), history = reader.text();
-    if (!report_in(report) || !steps_in(history)) return std::nullopt;
-    steps.reports.push_back({report, history});
-  }
-  for (std::uint64_t left = reader.number(); left > 0 && reader.ok(); --left) {
-    steps.runs.push_back(reader.text());
-    if (!run_in(steps.runs.back())) return std::nullopt;
-  }
-  if (!reader.ok() || !reader.at_end()) return std::nullopt;
-  return steps;
+  Steps steps;
+  const auto is_entry = [](const Steps::Entry& entry) {
+    return report_in(entry.report) && steps_in(entry.history);
+  };
+  const bool is_whole = store::read(said, steps) && std::ranges::all_of(steps.reports, is_entry) &&
+                        std::ranges::all_of(steps.runs, [](std::string_view run) { return !!run_in(run); });
+  return is_whole ? std::optional(std::move(steps)) : std::nullopt;
 }
 
-}  // namespace adit::ledger
+}  // namespace ledger
+}  // namespace adit

@@ -1,41 +1,144 @@
 #pragma once
 
+#include <chrono>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace adit::store {
 
-/// Puts numbers and texts of a record one after the other: a number in 8 bytes, little-endian; a real as the
-/// bits of its IEEE 754 double; a text behind its size, a number.
+/// The members of a struct as a record has them: a tuple of pointers to members, in the order of their bytes.
+/// A room specializes it for the structs of its records. If a record is only written, a pointer may be that
+/// of a function that returns a reference.
+template <class Of>
+inline constexpr auto kMembers = std::tuple();
+
+/// Calls `each` with the plain values in `value`, in their order: of a struct its kMembers; of an optional
+/// whether it has a value, then that or a default one; of a list its size, then its items; of a pair, tuple
+/// or array its items. A value for which `each` has an overload is plain. If `value` is const, `each` writes
+/// it, else `each` reads it and ok() says whether it could.
+template <class Of>
+void walk(auto& each, Of& value) {
+  if constexpr (requires { each(value); }) {
+    each(value);
+  } else if constexpr (requires { value.has_value(); }) {
+    bool is_there = value.has_value();
+    each(is_there);
+    if constexpr (std::is_const_v<Of>) {
+      const typename Of::value_type absent{};
+      walk(each, is_there ? *value : absent);
+    } else {
+      walk(each, value.emplace());
+      if (!is_there) value.reset();
+    }
+  } else if constexpr (requires { std::tuple_size<Of>(); }) {
+    std::apply([&each](auto&... items) { (walk(each, items), ...); }, value);
+  } else if constexpr (requires { value.size(); }) {
+    std::size_t count = value.size();
+    each(count);
+    if constexpr (std::is_const_v<Of>) {
+      for (const auto& item : value) walk(each, item);
+    } else {
+      for (value.clear(); count > 0 && each.ok(); --count) walk(each, value.emplace_back());
+    }
+  } else {
+    static_assert(std::tuple_size_v<decltype(kMembers<std::remove_const_t<Of>>)> > 0,
+                  "what are its members?");
+    std::apply([&](auto... member) { (walk(each, std::invoke(member, value)), ...); },
+               kMembers<std::remove_const_t<Of>>);
+  }
+}
+
+/// Puts plain values one after the other: a number in 8 bytes, little-endian; a real as the bits of its
+/// IEEE 754 double; a text behind its size, a number.
 class Writer {
  public:
-  Writer& number(std::uint64_t number);
-  Writer& real(double real);
-  Writer& text(std::string_view text);
+  void operator()(std::uint64_t number);
+  void operator()(std::integral auto number) { (*this)(static_cast<std::uint64_t>(number)); }
+  template <class Word>
+    requires std::is_enum_v<Word>
+  void operator()(Word word) {
+    (*this)(std::to_underlying(word));
+  }
+  void operator()(double real);
+  void operator()(std::string_view text);
+  void operator()(std::chrono::nanoseconds time) { (*this)(time.count()); }
+  void operator()(std::chrono::steady_clock::time_point at) { (*this)(at.time_since_epoch()); }
   std::string finish() { return std::move(bytes_); }
 
  private:
   std::string bytes_;
 };
 
-/// Reads the bytes of a Writer. A value behind their end reads as 0 or "", and ok() is false from then on.
+/// Reads the bytes of a Writer. A value behind their end reads as 0 or "", and ok() is false from then on, as
+/// it is once a number does not fit its type.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : left_(bytes) {}
-  std::uint64_t number();
-  double real();
-  std::string_view text();
+
+  template <std::integral Whole>
+  void operator()(Whole& number) {
+    const std::uint64_t read = this->number();
+    number = static_cast<Whole>(read);
+    check(static_cast<std::uint64_t>(number) == read);
+  }
+  template <class Word>
+    requires std::is_enum_v<Word>
+  void operator()(Word& word) {
+    std::underlying_type_t<Word> number{};
+    (*this)(number);
+    word = static_cast<Word>(number);
+  }
+  void operator()(double& real);
+  void operator()(std::string_view& text) { text = take(number()); }
+  void operator()(std::string& text) { text = take(number()); }
+  void operator()(std::chrono::nanoseconds& time) { time = std::chrono::nanoseconds(read<std::int64_t>()); }
+  void operator()(std::chrono::steady_clock::time_point& at) {
+    at = std::chrono::steady_clock::time_point(read<std::chrono::nanoseconds>());
+  }
+  /// The next value, of any type that walk() knows.
+  template <class Of>
+  Of read() {
+    Of value{};
+    walk(*this, value);
+    return value;
+  }
+
+  /// Not ok() from now on unless `is_good`.
+  void check(bool is_good) { ok_ = ok_ && is_good; }
   bool ok() const { return ok_; }
   bool at_end() const { return left_.empty(); }
   std::string_view left() const { return left_; }
 
  private:
+  std::uint64_t number();
   std::string_view take(std::size_t size);
 
   std::string_view left_;
   bool ok_ = true;
 };
+
+/// The bytes of these values, one after the other.
+template <class Put = Writer, class... Of>
+std::string bytes_of(const Of&... values) {
+  Put put;
+  (walk(put, values), ...);
+  return put.finish();
+}
+
+/// Reads what bytes_of() wrote of such values. False if a value is missing or wrong, or bytes are left; the
+/// values are any then.
+template <class Take = Reader, class... Of>
+bool read(std::string_view bytes, Of&... values) {
+  Take take(bytes);
+  (walk(take, values), ...);
+  return take.ok() && take.at_end();
+}
 
 }  // namespace adit::store

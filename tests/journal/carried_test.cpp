@@ -40,7 +40,7 @@ void tell(Carried& carried, Kind kind, const std::string& said = {}) {
 std::string sent(std::initializer_list<const char*> robots) {
   std::vector<icd::RobotName> names;
   for (const char* robot : robots) names.push_back(*icd::RobotName::parse(robot));
-  return said_sent(names);
+  return store::bytes_of(names);
 }
 
 std::vector<std::string> names_in(const Carried& carried) {
@@ -58,8 +58,8 @@ Carried again(const Carried& carried) {
 
 TEST(Carried, HasPosesUntilTheyWereTaken) {
   Carried carried;
-  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
-  tell(carried, Kind::Poses, said(state("r2", 2, 11)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
   EXPECT_THAT(names_in(carried), ElementsAre("r1", "r2"));
   tell(carried, Kind::StateSent, sent({"r1", "r2"}));
   EXPECT_THAT(names_in(again(carried)), ElementsAre("r1", "r2")) << "no answer has come";
@@ -73,7 +73,7 @@ TEST(Carried, HasPosesAsTheyWere) {
   for (const lanes::PostedPose& posted :
        {lanes::PostedPose{name, pose, 12.25, "10.0.0.5"}, lanes::PostedPose{name, pose, {}, ""}}) {
     Carried carried;
-    tell(carried, Kind::Poses, said(std::vector{posted}));
+    tell(carried, Kind::Poses, store::bytes_of(std::vector{posted}));
     carried = again(carried);
     ASSERT_THAT(carried.robots(), SizeIs(1));
     EXPECT_EQ(carried.robots().begin()->second.posted, posted);
@@ -82,20 +82,19 @@ TEST(Carried, HasPosesAsTheyWere) {
 
 TEST(Carried, PassesOverPosesThatAreCutShortOrOfNobody) {
   Carried carried;
-  const std::string poses = said(state("r1", 1, 10));
-  for (std::size_t size = 0; size < poses.size(); ++size) {
-    if (size == 0) continue;  // no poses
+  const std::string poses = store::bytes_of(state("r1", 1, 10));
+  for (std::size_t size = 0; size < poses.size(); ++size)
     EXPECT_FALSE(carried.apply(Kind::Poses, poses.substr(0, size))) << size;
-  }
-  EXPECT_FALSE(
-      carried.apply(Kind::Poses, Writer().text("no name").text("").finish() + std::string(64, '\0')));
+  using Posed = std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>;
+  const std::vector<Posed> all{{"r1", "", {}, {}}, {"no name", "", {}, {}}};
+  EXPECT_FALSE(carried.apply(Kind::Poses, store::bytes_of(all)));
   EXPECT_THAT(carried.robots(), IsEmpty());
 }
 
 TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
   Carried carried;
-  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
-  tell(carried, Kind::Poses, said(state("r2", 2, 11)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
   tell(carried, Kind::StateSent, sent({"r1"}));
   carried = again(carried);
   tell(carried, Kind::StateDone);
@@ -104,9 +103,9 @@ TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
 
 TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
   Carried carried;
-  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::Poses, said(state("r1", 2, 11)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r1", 2, 11)));
   carried = again(carried);
   tell(carried, Kind::StateDone);
   ASSERT_THAT(carried.robots(), SizeIs(1));
@@ -115,10 +114,10 @@ TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
 
 TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
   Carried carried;
-  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::Markers, said(icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Add, 1)}}));
   tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::MarkersSent, said_sent({marker("a", 1, icd::MarkerAction::Add, 1)}));
+  tell(carried, Kind::MarkersSent, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
   tell(carried, Kind::LifeBegins);
   tell(carried, Kind::StateDone);  // of the next life: nothing is under way there
   tell(carried, Kind::MarkersDone);
@@ -128,14 +127,14 @@ TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
 
 TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
   Carried carried;
-  tell(carried, Kind::Poses, said(state("r1", 1, 10)));
-  tell(carried, Kind::Poses, said(state("r2", 1, 10)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
+  tell(carried, Kind::Poses, store::bytes_of(state("r2", 1, 10)));
   const auto a = marker("a", 1, icd::MarkerAction::Add, 1), b = marker("b", 1, icd::MarkerAction::Add, 1);
   tell(carried, Kind::Markers, said(icd::MarkersUpdate{{a, b}}));
   tell(carried, Kind::StateSent, sent({"r1"}));
   tell(carried, Kind::StateSent, sent({"r2"}));
-  tell(carried, Kind::MarkersSent, said_sent({a}));
-  tell(carried, Kind::MarkersSent, said_sent({b}));
+  tell(carried, Kind::MarkersSent, store::bytes_of(std::vector{a}));
+  tell(carried, Kind::MarkersSent, store::bytes_of(std::vector{b}));
   tell(carried, Kind::StateDone);
   tell(carried, Kind::MarkersDone);
   EXPECT_THAT(names_in(carried), ElementsAre("r1"));
@@ -153,10 +152,12 @@ TEST(Carried, HasClocksPacesAndStamps) {
   const lanes::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"};
   Carried carried;
   EXPECT_FALSE(carried.clock());
-  tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, Kind::Sender, said(r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}));
-  tell(carried, Kind::Pace, said(icd::Uri::MapUpdate, learned));
-  tell(carried, Kind::Stamp, said(icd::Uri::StateUpdate, 1.5e9 + 4));
+  tell(carried, Kind::Clock,
+       store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
+  tell(carried, Kind::Sender,
+       store::bytes_of(r1, lanes::SenderClock{.theirs = 100, .ours = 1.5e9, .latest = 104}));
+  tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
+  tell(carried, Kind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
   for (const Carried& each : {carried, again(carried)}) {
     EXPECT_EQ(each.clock()->boot, "b1");
     EXPECT_EQ(each.clock()->at, pace::Instant(seconds(5)));
@@ -166,7 +167,8 @@ TEST(Carried, HasClocksPacesAndStamps) {
     ASSERT_THAT(each.senders().clocks(), ElementsAre(Pair(r1, testing::_)));
     EXPECT_EQ(each.senders().clocks()[0].second.latest_given(), 1.5e9 + 4);
   }
-  tell(carried, Kind::Clock, said(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
+  tell(carried, Kind::Clock,
+       store::bytes_of(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));
   EXPECT_THAT(carried.paces(), IsEmpty()) << "instants of another start of the machine";
   EXPECT_THAT(carried.senders().clocks(), IsEmpty());
   EXPECT_THAT(carried.stamps(), SizeIs(1));
@@ -174,12 +176,12 @@ TEST(Carried, HasClocksPacesAndStamps) {
 
 TEST(Carried, KnowsWhenRobotsWereHeardUntilTheMachineStartsAgain) {
   Carried carried;
-  tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
-  tell(carried, Kind::Heard, said(Heard{.robot = "r1", .messages = 1, .last = 10}));
+  tell(carried, Kind::Clock, store::bytes_of(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
+  tell(carried, Kind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
   Heard newest{.robot = "r1", .messages = 4, .gap = 1.5, .last = 20};
   newest.kinds[2] = {.accepted = 20, .forwarded = 19};
-  tell(carried, Kind::Heard, said(newest));
-  EXPECT_FALSE(carried.apply(Kind::Heard, said(newest).substr(1)));
+  tell(carried, Kind::Heard, store::bytes_of(newest));
+  EXPECT_FALSE(carried.apply(Kind::Heard, store::bytes_of(newest).substr(1)));
   for (const Carried& each : {carried, again(carried)}) {
     ASSERT_THAT(each.heard(), ElementsAre(Pair("r1", testing::_)));
     const Heard& heard = each.heard().at("r1");
@@ -195,8 +197,9 @@ TEST(Carried, KnowsWhenRobotsWereHeardUntilTheMachineStartsAgain) {
 TEST(Carried, KnowsNoInstantsOfAnotherStartOfTheMachine) {
   using std::chrono::seconds;
   Carried carried;
-  tell(carried, Kind::Clock, said(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, Kind::Pace, said(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
+  tell(carried, Kind::Clock,
+       store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
+  tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, pace::Learned{.spacing = seconds(7)}));
   carried.machine_is("b1");
   EXPECT_TRUE(carried.clock());
   EXPECT_THAT(carried.paces(), SizeIs(1));
@@ -222,9 +225,9 @@ TEST(Carried, KnowsWhereGridsWerePostedOnceThatIsTold) {
   tell(carried, Kind::Grids);
   EXPECT_THAT(again(carried).grids(), testing::Optional(IsEmpty()));
   const lanes::Extent first{-1, -2, 3, 4}, larger{-1, -2, 30, 4};
-  tell(carried, Kind::Grids, said(std::string("r1"), first));
-  tell(carried, Kind::Grids, said(std::string("r1"), larger));
-  tell(carried, Kind::Grids, said(std::string("*"), lanes::Extent::everywhere()));
+  tell(carried, Kind::Grids, store::bytes_of("r1", first));
+  tell(carried, Kind::Grids, store::bytes_of("r1", larger));
+  tell(carried, Kind::Grids, store::bytes_of("*", lanes::Extent::everywhere()));
   EXPECT_FALSE(carried.apply(Kind::Grids, "torn"));
   carried.machine_is("another start");
   EXPECT_THAT(again(carried).grids(), testing::Optional(testing::ElementsAre(
@@ -259,7 +262,7 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
         if (!under_way.empty() || waiting.empty()) break;
         under_way.assign(waiting.begin(), waiting.begin() + 1 + pick(static_cast<int>(waiting.size())));
         waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(under_way.size()));
-        tell(carried, Kind::MarkersSent, said_sent(under_way));
+        tell(carried, Kind::MarkersSent, store::bytes_of(under_way));
         break;
       case 2:
         under_way.clear();

@@ -2,27 +2,94 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace adit::store {
 namespace {
 
-TEST(Reader, GivesBackWhatAWriterWrote) {
-  const std::string bytes = Writer().number(~std::uint64_t{0}).real(-0.1).text("a\0b").text("").finish();
+enum class Colour : std::uint8_t { Red, Green };
+
+struct Part {
+  int number = 0;
+  std::optional<double> real = {};
+  friend bool operator==(const Part&, const Part&) = default;
+};
+
+struct Whole {
+  std::string text = "";
+  Colour colour = Colour::Red;
+  bool is_so = false;
+  std::vector<Part> parts = {};
+  std::array<std::pair<double, std::uint64_t>, 2> pairs = {};
+  std::chrono::nanoseconds time{};
+  std::chrono::steady_clock::time_point at{};
+  friend bool operator==(const Whole&, const Whole&) = default;
+};
+
+}  // namespace
+
+template <>
+inline constexpr auto kMembers<Part> = std::tuple(&Part::number, &Part::real);
+template <>
+inline constexpr auto kMembers<Whole> = std::tuple(&Whole::text, &Whole::colour, &Whole::is_so, &Whole::parts,
+                                                   &Whole::pairs, &Whole::time, &Whole::at);
+
+namespace {
+
+const Whole kWhole{.text = "a\xff",
+                   .colour = Colour::Green,
+                   .is_so = true,
+                   .parts = {{-3, 0.5}, {4, {}}},
+                   .pairs = {{{-0.1, ~std::uint64_t{0}}, {2, 3}}},
+                   .time = std::chrono::nanoseconds(-5),
+                   .at = std::chrono::steady_clock::time_point(std::chrono::seconds(6))};
+
+TEST(Values, ComeBackAsTheyWere) {
+  Whole other{.text = "x", .parts = {{1, 2}}};
+  double real = 0;
+  ASSERT_TRUE(read(bytes_of(kWhole, 7.5), other, real));
+  EXPECT_EQ(other, kWhole);
+  EXPECT_EQ(real, 7.5);
+}
+
+TEST(Values, AreReadInFullOrNotAtAll) {
+  const std::string bytes = bytes_of(kWhole);
+  Whole other;
+  for (std::size_t cut = 0; cut < bytes.size(); ++cut)
+    EXPECT_FALSE(read(bytes.substr(0, cut), other)) << "cut at " << cut;
+  EXPECT_FALSE(read(bytes + 'x', other));
+}
+
+TEST(Reader, GivesNothingBehindTheEnd) {
+  const std::string bytes = bytes_of(1u);
   Reader reader(bytes);
-  EXPECT_EQ(reader.number(), ~std::uint64_t{0});
-  EXPECT_EQ(reader.real(), -0.1);
-  EXPECT_EQ(reader.text(), "a");
-  EXPECT_EQ(reader.text(), "");
+  EXPECT_EQ(reader.read<std::uint64_t>(), 1u);
   EXPECT_TRUE(reader.ok());
-  EXPECT_EQ(reader.number(), 0u);
+  EXPECT_EQ(reader.read<std::uint64_t>(), 0u);
   EXPECT_FALSE(reader.ok()) << "there is no more";
 }
 
 TEST(Reader, DoesNotReadPastTheEndIfALengthIsWrong) {
-  Reader reader(std::string_view("\xff\xff\xff\xff\xff\xff\xff\xff text", 13));
-  EXPECT_EQ(reader.text(), "");
-  EXPECT_FALSE(reader.ok());
+  for (const std::string_view huge : {std::string_view("\xff\xff\xff\xff\xff\xff\xff\xff text", 13)}) {
+    std::string text;
+    std::vector<int> list;
+    EXPECT_FALSE(read(huge, text));
+    EXPECT_EQ(text, "");
+    EXPECT_FALSE(read(huge, list));
+    EXPECT_LT(list.size(), 2u);
+  }
+}
+
+TEST(Reader, RejectsNumbersThatDoNotFit) {
+  std::int32_t number = 0;
+  bool is_so = false;
+  EXPECT_TRUE(read(bytes_of(std::int64_t{INT32_MIN}), number));
+  EXPECT_EQ(number, INT32_MIN);
+  EXPECT_FALSE(read(bytes_of(std::int64_t{INT32_MIN} - 1), number));
+  EXPECT_FALSE(read(bytes_of(2), is_so));
 }
 
 }  // namespace

@@ -137,23 +137,22 @@ void Archive::move(double seconds) {
   if (wiped_) *wiped_ += seconds;
   due_.move(seconds);
   if (opening_) moved_ += seconds;
-  const std::string step =
-      said(Step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()});
-  line(Kind::Moved, step);
+  const Step step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};
+  line(step);
   keep_lines_below(kLargestRecord);
-  steps_ += framed(Kind::Moved, step);
+  steps_ += record_of(step);
 }
 
 void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
   if (opening_) return;
   for (api::AttentionStep& step : attention_.look(sentences, now)) {
-    line(Kind::Attention, said(step));
+    line(step);
     samples_.add(std::move(step));
   }
 }
 
-void Archive::line(Kind kind, std::string_view said) {
-  lines_bytes_ += lines_.emplace_back(framed(kind, said)).size();
+void Archive::line(const Said& said) {
+  lines_bytes_ += lines_.emplace_back(record_of(said)).size();
   keep_lines_below(kMostWaiting);
 }
 

@@ -89,7 +89,7 @@ class Archive final : public api::KeptRuns {
   void has_folder(const Opening& opening);
   /// Where the disk had no room for one.
   void make_folder();
-  void line(Kind kind, std::string_view said);
+  void line(const Said& said);
   void keep_lines_below(std::size_t most);
   void sample(const Seen& seen);
   void note(const Seen& seen);

@@ -69,7 +69,8 @@ void Archive::sample(const Seen& seen) {
   Sample now = seen.sample();
   const std::uint64_t throttled = std::exchange(throttled_, now.throttled);
   now.throttled -= std::min(throttled, now.throttled);
-  line(Kind::Sample, said(now));
+  if (now.map_ages.size() > kMostRobots) now.map_ages.resize(kMostRobots);
+  line(now);
   samples_.add(std::move(now));
 }
 
@@ -114,9 +115,11 @@ void Archive::put_facts(Batch& batch) {
 /// Call once for each `seen`: if the time of day was set back, a second call would note the same poses again.
 void Archive::note_poses(const Seen& seen) {
   for (const api::Track& track : seen.tracks(last_pose_)) {
-    std::span<const api::TrackPose> poses = track.poses;
-    for (; !poses.empty(); poses = poses.subspan(std::min(poses.size(), kLargestPoses)))
-      line(Kind::Poses, said(track.robot, poses.first(std::min(poses.size(), kLargestPoses))));
+    for (auto from = track.poses.begin(), end = track.poses.end(); from != end;) {
+      const auto to = from + std::min<std::ptrdiff_t>(end - from, kLargestPoses);
+      line(api::Track{track.robot, {from, to}});
+      from = to;
+    }
   }
   last_pose_ = seen.now;
 }
@@ -134,11 +137,11 @@ void Archive::put_layers(const Seen& seen, Batch& batch) {
   const picture::Mosaic& picture = seen.picture;
   if (picture.wiped() && picture.wiped() != wiped_) {
     wiped_ = picture.wiped();
-    batch.beside += framed(Kind::Wiped, said_time(*wiped_));
+    batch.beside += record_of(Wiped{*wiped_});
   }
   if (picture.version() == layers_seen_) return;
-  for (const picture::LayerView& view : picture.layers(layers_seen_)) {
-    if (view.version > layers_seen_ && view.bounds) batch.beside += framed(Kind::Layer, said(view));
+  for (picture::LayerView& view : picture.layers(layers_seen_)) {
+    if (view.version > layers_seen_ && view.bounds) batch.beside += record_of(std::move(view));
   }
   layers_seen_ = picture.version();
   allowance_.spend(batch.beside.size());

@@ -130,8 +130,8 @@ void GrowingFile::remove_first() {
 
 RunFolder::RunFolder(std::string path, const Head& head)
     : path_(std::move(path)),
-      tiles_(path_, kTiles, framed(Kind::Head, said(head))),
-      lines_(path_, kLines, framed(Kind::Head, said(head))) {}
+      tiles_(path_, kTiles, record_of(head)),
+      lines_(path_, kLines, record_of(head)) {}
 
 std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& batch, std::uint64_t most) {
   if (const auto disk = disk_of(path_)) {
@@ -144,7 +144,7 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
   Written written;
   if (!batch.tiles.empty() || !batch.beside.empty()) {
     std::string records = batch.beside;
-    for (const TileState& state : batch.tiles) records += framed(Kind::Tile, said(state));
+    for (const TileState& state : batch.tiles) records += record_of(state);
     const auto file = tiles_.append(records, largest);
     if (!file) return std::unexpected(file.error());
     written.file = *file;

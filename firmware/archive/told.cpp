@@ -6,48 +6,32 @@
 namespace adit::archive {
 
 void Told::tell(std::string_view bytes, std::uint64_t file) {
-  damaged_ += for_each_record(bytes, [&](Kind kind, std::string_view said) { tell(kind, said, file); });
+  damaged_ += for_each_record(bytes, [&](std::string_view record) {
+    const auto said = read(record);
+    if (said && (is_ours_ || std::holds_alternative<Head>(*said)))
+      std::visit([&](const auto& one) { add(one, file); }, *said);
+  });
 }
 
-void Told::tell(Kind kind, std::string_view said, std::uint64_t file) {
-  if (kind == Kind::Head) return tell_head(said);
-  if (!is_ours_) return;
-  switch (kind) {
-    case Kind::Tile:
-      if (auto state = read_tile(said)) tell(std::move(*state), file);
-      return;
-    case Kind::Layer:
-      if (const auto view = read_layer(said); view && tiles_fit_) picture_.take_up(*view);
-      return;
-    case Kind::Wiped:
-      if (const auto stamp = read_time(said)) picture_.was_wiped(*stamp);
-      return;
-    case Kind::Poses:
-      if (const auto track = read_poses(said)) tell(*track);
-      return;
-    case Kind::Sample:
-      if (auto sample = read_sample(said)) {
-        last_line_ = std::max(last_line_, sample->at);
-        samples_.add(std::move(*sample));
-      }
-      return;
-    case Kind::Attention:
-      if (auto step = read_attention(said)) {
-        last_line_ = std::max(last_line_, step->at);
-        samples_.add(std::move(*step));
-      }
-      return;
-    case Kind::Moved:
-      if (const auto step = read_step(said)) tell(*step, file != 0);
-      return;
-    case Kind::Head:
-      return;
-  }
+void Told::add(const picture::LayerView& view, std::uint64_t /*file*/) {
+  if (tiles_fit_) picture_.take_up(view);
+}
+
+void Told::add(const Wiped& wiped, std::uint64_t /*file*/) {
+  picture_.was_wiped(wiped.stamp);
+}
+
+/// A sample, or something that needs the operator.
+template <class Line>
+void Told::add(const Line& line, std::uint64_t /*file*/) {
+  last_line_ = std::max(last_line_, line.at);
+  samples_.add(line);
 }
 
 /// The files of lines and those of tiles are read apart, so each tells it. After a write that failed, its
 /// steps are told again.
-void Told::tell(const Step& step, bool of_tiles) {
+void Told::add(const Step& step, std::uint64_t file) {
+  const bool of_tiles = file != 0;
   std::vector<Step>& told = of_tiles ? tile_steps_ : line_steps_;
   if (std::ranges::find(told, step) != told.end()) return;
   told.push_back(step);
@@ -76,15 +60,13 @@ void Told::move_tiles(double seconds) {
 
 /// The first one says whose run it is. Files of another one, which somebody put there, are not told. A file
 /// whose head is damaged is taken for what the one before was.
-void Told::tell_head(std::string_view said) {
-  const auto read = read_head(said);
-  if (!read) return;
-  if (!head_) head_ = read->head;
-  is_ours_ = head_->run == read->head.run && head_->began == read->head.began;
-  tiles_fit_ = read->tiles_fit;
+void Told::add(const Head& head, std::uint64_t /*file*/) {
+  if (!head_) head_ = head;
+  is_ours_ = head_->run == head.run && head_->began == head.began;
+  tiles_fit_ = head.tiles_fit();
 }
 
-void Told::tell(TileState state, std::uint64_t file) {
+void Told::add(const TileState& state, std::uint64_t file) {
   const auto known = state.tile ? packer_.known_in(*state.tile) : 0;
   if (!tiles_fit_ || !known || !picture_.take_up(state.layer, state.at, state.tile, state.stamp)) return;
   last_tile_ = std::max(last_tile_, state.stamp);
@@ -98,7 +80,7 @@ void Told::tell(TileState state, std::uint64_t file) {
   known_.back().second = known_now_;
 }
 
-void Told::tell(const api::Track& track) {
+void Told::add(const api::Track& track, std::uint64_t /*file*/) {
   auto& poses = tracks_[track.robot];
   for (const api::TrackPose& pose : track.poses) {
     if (poses_ == kMostPoses || (!poses.empty() && pose.at <= poses.back().at)) continue;

@@ -44,11 +44,15 @@ class Told {
   double last() const { return std::max(last_line_, last_tile_); }  // of what is told of
 
  private:
-  void tell(Kind kind, std::string_view said, std::uint64_t file);
-  void tell(TileState state, std::uint64_t file);
-  void tell(const api::Track& track);
-  void tell(const Step& step, bool of_tiles);
-  void tell_head(std::string_view said);
+  // One record each. `file`: 0 if it holds lines, else it holds tiles.
+  void add(const Head& head, std::uint64_t file);
+  void add(const TileState& state, std::uint64_t file);
+  void add(const picture::LayerView& view, std::uint64_t file);
+  void add(const Wiped& wiped, std::uint64_t file);
+  void add(const api::Track& track, std::uint64_t file);
+  template <class Line>
+  void add(const Line& line, std::uint64_t file);
+  void add(const Step& step, std::uint64_t file);
   void move_lines(double seconds);
   void move_tiles(double seconds);
 

@@ -13,20 +13,20 @@ class Damage : public testing::Test {
  protected:
   void SetUp() override {
     run.draw(4);
-    file = framed(Kind::Head, said(run.head));
+    file = record_of(run.head);
     for (const picture::LayerView& layer : run.easel.mosaic.layers()) {
-      file += framed(Kind::Layer, said(layer));
+      file += record_of(layer);
       for (const picture::TileView& tile : layer.tiles) {
         const auto shown = run.easel.mosaic.tile(layer.layer, tile.at, {});
-        file += framed(Kind::Tile, said(TileState{layer.layer, tile.at, shown.stamp, shown.tile}));
+        file += record_of(TileState{layer.layer, tile.at, shown.stamp, shown.tile});
         ++tiles;
       }
     }
     for (int i = 0; i < 5; ++i) {
-      file += framed(Kind::Sample, said(Sample{.at = 1000.0 + i, .map_ages = {{"ugv1", 1}}}));
-      file += framed(Kind::Attention, said(api::AttentionStep{1000.0 + i, true, "it came"}));
+      file += record_of(Sample{.at = 1000.0 + i, .map_ages = {{"ugv1", 1}}});
+      file += record_of(api::AttentionStep{1000.0 + i, true, "it came"});
     }
-    file += framed(Kind::Poses, said("ugv1", run.tracks[0].poses));
+    file += record_of(run.tracks[0]);
   }
   /// Tells the file, and counts the tiles that came back; each is as it was, or absent.
   std::size_t sound(const std::string& bytes) {
@@ -50,7 +50,7 @@ class Damage : public testing::Test {
 
 TEST_F(Damage, OfOneBitTakesOneRecordAtMost) {
   ASSERT_EQ(sound(file), tiles);
-  const std::size_t head = framed(Kind::Head, said(run.head)).size();
+  const std::size_t head = record_of(run.head).size();
   for (std::size_t at = head; at < file.size(); at += 37) {
     std::string damaged = file;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
@@ -102,14 +102,14 @@ TEST_F(Damage, WithARightChecksumIsStillNoTile) {
   for (const std::string_view bytes : {std::string_view("no zlib at all"), std::string_view("x")}) {
     auto lie = std::make_shared<picture::Packed>();
     lie->deflated.assign(bytes.begin(), bytes.end());
-    const std::string record = framed(Kind::Tile, said(TileState{{"ugv1"}, {0, 9, 9}, 1, lie}));
+    const std::string record = record_of(TileState{{"ugv1"}, {0, 9, 9}, 1, lie});
     EXPECT_EQ(sound(file + record), tiles);
   }
 }
 
 TEST_F(Damage, RecordsOfAnotherRunAreNotMixedIn) {
   Told told(picture::Mosaic::kBudget);
-  told.tell(framed(Kind::Head, said(Head{.run = 9, .began = 1})), 1);
+  told.tell(record_of(Head{.run = 9, .began = 1}), 1);
   told.tell(file, 2);
   EXPECT_TRUE(told.files().empty());
 }
@@ -117,14 +117,14 @@ TEST_F(Damage, RecordsOfAnotherRunAreNotMixedIn) {
 // A write that failed halfway tells its lines again.
 TEST_F(Damage, AStepOfTheClockThatWasWrittenTwiceIsOne) {
   constexpr std::uint64_t kLines = 0;
-  const std::string step = framed(Kind::Moved, said(Step{.seconds = 50, .when = 7}));
-  const std::string later = framed(Kind::Moved, said(Step{.seconds = 50, .when = 8}));
+  const std::string step = record_of(Step{.seconds = 50, .when = 7});
+  const std::string later = record_of(Step{.seconds = 50, .when = 8});
   Told told(picture::Mosaic::kBudget);
   told.tell(file + step + step, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1051);
-  told.tell(framed(Kind::Head, said(run.head)) + step + later, kLines);
+  told.tell(record_of(run.head) + step + later, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1101);
-  told.tell(framed(Kind::Head, said(run.head)) + step + later, kLines);
+  told.tell(record_of(run.head) + step + later, kLines);
   EXPECT_EQ(told.tracks()[0].poses[0].at, 1101) << "both were in the write that failed";
 }
 

@@ -1,12 +1,11 @@
 #include "admin/updates.hpp"
 
-#include <sys/statvfs.h>
-
 #include <cerrno>
 #include <cstring>
 #include <utility>
 
 #include "admin/refuse.hpp"
+#include "host/disk.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "update/health.hpp"
@@ -26,12 +25,12 @@ const char* doing_of(update::Request::What what) {
 
 /// Why a bundle of that size has no place in the folder.
 std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t size) {
-  struct statvfs disk{};
-  if (statvfs(folder.c_str(), &disk) != 0) {
+  const auto disk = host::disk_of(folder);
+  if (!disk) {
     return icd::Refusal{icd::Status::ServiceUnavailable,
                         "cannot read the free space of the disk: " + std::string(std::strerror(errno))};
   }
-  const std::uint64_t free = std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  const std::uint64_t free = disk->free;
   if (free >= size + Updates::kSpared) return std::nullopt;
   return icd::Refusal{icd::Status::ServiceUnavailable,
                       icd::sentence("the bundle has ", size, " bytes, but the disk has room for ",

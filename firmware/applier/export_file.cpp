@@ -30,21 +30,11 @@ std::unexpected<std::string> failed(const std::string& name, int error) {
 }
 
 /// 0, or the errno.
-int write_all(int file, const std::string& bytes) {
-  for (std::size_t at = 0; at < bytes.size();) {
-    const ssize_t count = write(file, bytes.data() + at, bytes.size() - at);
-    if (count < 0 && errno != EINTR) return errno;
-    if (count > 0) at += static_cast<std::size_t>(count);
-  }
-  return fsync(file) == 0 ? 0 : errno;
-}
-
-/// The same, of the new file in the folder.
 int put(int folder, const std::string& name, const std::string& bytes) {
   const FileDescriptor file(
       openat(folder, kUnfinished, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, host::kForAll));
   if (!file) return errno;
-  if (const int error = write_all(file.get(), bytes); error != 0) return error;
+  if (loop::write_all(file.get(), bytes, 0) != 0 || fsync(file.get()) != 0) return errno;
   if (renameat(folder, kUnfinished, folder, name.c_str()) != 0) return errno;
   return fsync(folder) == 0 && syncfs(folder) == 0 ? 0 : errno;
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <thread>
 
+#include "host/disk.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
@@ -57,9 +58,7 @@ std::vector<spare::Medium> Sticks::media() const {
     spare::Medium medium{.name = name, .is_mounted = is_mounted(name)};
     medium.disk = (is_partition ? itself.parent_path() : itself).filename();
     medium.is_write_protected = host::read_file(block + "/ro").value_or("").starts_with('1');
-    struct statvfs room{};
-    if (medium.is_mounted && statvfs(folder(name).c_str(), &room) == 0)
-      medium.room = std::uint64_t{room.f_bavail} * room.f_frsize;
+    if (const auto disk = host::disk_of(folder(name)); disk && medium.is_mounted) medium.room = disk->free;
     media.push_back(std::move(medium));
   }
   return media;

@@ -1,16 +1,15 @@
 #include "archive/run_folder.hpp"
 
 #include <fcntl.h>
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <numeric>
 #include <optional>
 #include <utility>
 
+#include "host/disk.hpp"
 #include "host/files.hpp"
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
@@ -31,17 +30,6 @@ std::size_t largest_file(std::uint64_t most) {
   return static_cast<std::size_t>(std::clamp<std::uint64_t>(most / 16, kSmallest, kLargest));
 }
 
-/// What the disk has, in bytes.
-struct Disk {
-  std::uint64_t all = 0, left = 0;
-  bool is_short() const { return left < std::min(RunFolder::kLeave, all / 4); }
-};
-std::optional<Disk> disk_of(const std::string& folder) {
-  struct statvfs disk{};
-  if (statvfs(folder.c_str(), &disk) != 0) return std::nullopt;  // the write says what is wrong
-  return Disk{std::uint64_t{disk.f_blocks} * disk.f_frsize, std::uint64_t{disk.f_bavail} * disk.f_frsize};
-}
-
 }  // namespace
 
 GrowingFile::GrowingFile(std::string folder, std::string prefix, std::string head)
@@ -54,11 +42,10 @@ std::expected<void, std::string> GrowingFile::look() {
   auto numbers = host::numbers_in(folder_, prefix_);
   if (!numbers) return std::unexpected(std::move(numbers.error()));
   has_looked_ = true;
-  numbers_ = std::move(*numbers);
-  for (const std::uint64_t number : numbers_) {
+  for (const std::uint64_t number : *numbers) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path(number), error);
-    sizes_.push_back(error ? 0 : size);
+    files_.push_back({number, error ? 0 : size});
   }
   return {};
 }
@@ -68,64 +55,48 @@ std::string GrowingFile::path(std::uint64_t number) const {
 }
 
 std::uint64_t GrowingFile::bytes() const {
-  return std::accumulate(sizes_.begin(), sizes_.end(), std::uint64_t{0});
-}
-
-std::expected<void, std::string> GrowingFile::open_next() {
-  constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC;
-  const std::uint64_t number = numbers_.empty() ? 1 : numbers_.back() + 1;
-  loop::FileDescriptor next(::open(path(number).c_str(), kFlags, host::kOursAlone));
-  if (!next) return std::unexpected(host::trouble(path(number), errno));
-  file_ = std::move(next);
-  numbers_.push_back(number);
-  sizes_.push_back(0);
-  const loop::FileDescriptor folder(::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  if (!folder || ::fsync(folder.get()) != 0) return std::unexpected(host::trouble(folder_, errno));
-  return {};
-}
-
-std::expected<void, std::string> GrowingFile::write(std::string_view bytes) {
-  ssize_t count = -1;
-  do {
-    count = ::write(file_.get(), bytes.data(), bytes.size());
-  } while (count < 0 && errno == EINTR);
-  if (count == static_cast<ssize_t>(bytes.size())) {
-    sizes_.back() += bytes.size();
-    return {};
-  }
-  const int error = count < 0 ? errno : ENOSPC;
-  if (count > 0) cut_back(sizes_.back());
-  return std::unexpected(host::trouble(path(numbers_.back()), error));
-}
-
-void GrowingFile::cut_back(std::uint64_t size) {
-  sizes_.back() = size;
-  if (::ftruncate(file_.get(), static_cast<off_t>(size)) != 0) file_ = {};
+  std::uint64_t bytes = 0;
+  for (const File& file : files_) bytes += file.size;
+  return bytes;
 }
 
 std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view bytes, std::size_t largest) {
   if (auto looked = look(); !looked) return std::unexpected(std::move(looked.error()));
-  const bool fits = !numbers_.empty() && sizes_.back() + bytes.size() <= largest;
-  if (fits && !file_) {
-    file_ = loop::open_regular(path(numbers_.back()), O_WRONLY | O_APPEND);
+  const bool fits = !files_.empty() && files_.back().size + bytes.size() <= largest;
+  if (fits && !fd_) fd_ = loop::open_regular(path(files_.back().number), O_WRONLY | O_APPEND);
+  if (!fits || !fd_) {
+    constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC;
+    const std::uint64_t number = files_.empty() ? 1 : files_.back().number + 1;
+    loop::FileDescriptor next(::open(path(number).c_str(), kFlags, host::kOursAlone));
+    if (!next) return std::unexpected(host::trouble(path(number), errno));
+    fd_ = std::move(next);
+    files_.push_back({number, 0});
   }
-  if (!fits || !file_) {
-    if (const auto opened = open_next(); !opened) return std::unexpected(opened.error());
+  File& last = files_.back();
+  const bool is_new = last.size == 0;  // or a death left it so
+  const std::string all = (is_new ? head_ : "") + std::string(bytes);
+  const bool is_written = loop::write_all(fd_.get(), all, last.size) == 0 && ::fdatasync(fd_.get()) == 0 &&
+                          (!is_new || host::sync_folder(path(last.number)));
+  if (is_written) {
+    last.size += all.size();
+    return last.number;
   }
-  if (sizes_.back() == 0) {  // new, or a death left it so
-    if (const auto begun = write(head_); !begun) return std::unexpected(begun.error());
-  }
-  if (const auto written = write(bytes); !written) return std::unexpected(written.error());
-  if (::fdatasync(file_.get()) == 0) return numbers_.back();
   const int error = errno;
-  cut_back(sizes_.back() - bytes.size());
-  return std::unexpected(host::trouble(path(numbers_.back()), error));
+  if (::ftruncate(fd_.get(), static_cast<off_t>(last.size)) != 0) fd_ = {};
+  return std::unexpected(host::trouble(path(last.number), error));
 }
 
-void GrowingFile::remove_first() {
-  if (numbers_.size() < 2 || !host::remove_file(path(numbers_.front()))) return;
-  numbers_.erase(numbers_.begin());
-  sizes_.erase(sizes_.begin());
+std::expected<void, std::string> GrowingFile::remove_first() {
+  auto removed = host::remove_file(path(files_.front().number));
+  if (removed) files_.erase(files_.begin());
+  return removed;
+}
+
+std::expected<void, std::string> GrowingFile::shrink(std::uint64_t most) {
+  while (bytes() > most && first() != 0) {
+    if (auto removed = remove_first(); !removed) return removed;
+  }
+  return {};
 }
 
 RunFolder::RunFolder(std::string path, const Head& head)
@@ -134,12 +105,12 @@ RunFolder::RunFolder(std::string path, const Head& head)
       lines_(path_, kLines, record_of(head)) {}
 
 std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& batch, std::uint64_t most) {
-  if (const auto disk = disk_of(path_)) {
-    if (disk->is_short()) return std::unexpected("the disk is nearly full");
-    most = std::min(most, (disk->left + bytes()) / 2);
+  if (const auto disk = host::disk_of(path_)) {  // else the write says what is wrong
+    if (disk->free < std::min(kLeave, disk->all / 4)) return std::unexpected("the disk is nearly full");
+    most = std::min(most, (disk->free + bytes()) / 2);
   }
-  while (tiles_.bytes() > most && tiles_.numbers().size() > 1) tiles_.remove_first();
-  while (lines_.bytes() > most / 8 && lines_.numbers().size() > 1) lines_.remove_first();
+  if (const auto shrunk = tiles_.shrink(most); !shrunk) return std::unexpected(shrunk.error());
+  if (const auto shrunk = lines_.shrink(most / 8); !shrunk) return std::unexpected(shrunk.error());
   const std::size_t largest = largest_file(most);
   Written written;
   if (!batch.tiles.empty() || !batch.beside.empty()) {
@@ -156,13 +127,13 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
   if (!batch.lines.empty()) {
     if (const auto done = lines_.append(batch.lines, largest); !done) return std::unexpected(done.error());
   }
-  written.first_file = tiles_.numbers().size() > 1 ? tiles_.numbers().front() : 0;
+  written.first_file = tiles_.first();
   written.bytes = bytes();
   return written;
 }
 
 void RunFolder::remove_first(std::uint64_t file) {
-  if (!tiles_.numbers().empty() && tiles_.numbers().front() == file) tiles_.remove_first();
+  if (tiles_.first() == file) (void)tiles_.remove_first();  // else it goes with a later write
 }
 
 std::expected<void, std::string> read_run(const std::string& folder, Told& told,

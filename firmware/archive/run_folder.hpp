@@ -34,24 +34,25 @@ class GrowingFile {
   /// All of it or nothing, and on the disk when this returns. Gives the number of the file.
   std::expected<std::uint64_t, std::string> append(std::string_view bytes, std::size_t largest);
   std::uint64_t bytes() const;
-  /// In order.
-  const std::vector<std::uint64_t>& numbers() const { return numbers_; }
-  std::string path(std::uint64_t number) const;
-  /// Never the last one.
-  void remove_first();
+  /// The number of the first of several files; 0: there is one, or none.
+  std::uint64_t first() const { return files_.size() > 1 ? files_.front().number : 0; }
+  /// Removes that one.
+  std::expected<void, std::string> remove_first();
+  /// The first files go, until the others have at most so many bytes.
+  std::expected<void, std::string> shrink(std::uint64_t most);
 
  private:
+  struct File {
+    std::uint64_t number, size;
+  };
   /// At what there is, until it could be read: a number that was given is not given again.
   std::expected<void, std::string> look();
-  std::expected<void, std::string> open_next();
-  std::expected<void, std::string> write(std::string_view bytes);
-  void cut_back(std::uint64_t size);
+  std::string path(std::uint64_t number) const;
 
   std::string folder_, prefix_, head_;
   bool has_looked_ = false;
-  std::vector<std::uint64_t> numbers_;
-  std::vector<std::uint64_t> sizes_;
-  loop::FileDescriptor file_;
+  std::vector<File> files_;  // in order
+  loop::FileDescriptor fd_;  // of the last one
 };
 
 /// The files of one run. For one thread, which waits for the disk.

@@ -1,13 +1,12 @@
 #include "archive/runs_folder.hpp"
 
-#include <sys/statvfs.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
 
 #include "codec/row_file.hpp"
+#include "host/disk.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 
@@ -144,9 +143,7 @@ void RunsFolder::tidy(std::uint64_t most, const std::string& present) {
   auto rows = list();
   std::uint64_t all = 0;
   for (const api::RunRow& row : rows) all += row.bytes;
-  struct statvfs disk{};
-  if (statvfs(path_.c_str(), &disk) == 0)
-    most = std::min(most, (std::uint64_t{disk.f_bavail} * disk.f_frsize + all) / 2);
+  if (const auto disk = host::disk_of(path_)) most = std::min(most, (disk->free + all) / 2);
   for (auto row = rows.rbegin(); row != rows.rend() && all > most; ++row) {
     if (row->key == present) continue;
     if (const auto removed = remove(row->key); !removed) continue;

@@ -81,8 +81,9 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.ledger_refusal = flow_.scoring().trouble();
   facts.ledger_damage = parts_.ledger.damage();
   facts.ledger_is_closed = parts_.ledger.is_closed();
+  const auto disk = host::disk_of(parts_.state_folder);
   facts.disk = {flow_.archive().trouble(), flow_.maps().trouble(), flow_.journal_trouble(),
-                host::free_bytes(parts_.state_folder)};
+                disk ? std::optional(disk->free) : std::nullopt};
   facts.time_set = clock_.is_set();
   facts.ntp_trouble = clock_.ntp_trouble();
   facts.put_aside = parts_.put_aside.empty() ? flow_.put_aside() : parts_.put_aside;

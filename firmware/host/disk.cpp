@@ -4,10 +4,10 @@
 
 namespace adit::host {
 
-std::optional<std::uint64_t> free_bytes(const std::string& folder) {
+std::optional<Disk> disk_of(const std::string& folder) {
   struct statvfs disk{};
   if (statvfs(folder.c_str(), &disk) != 0) return std::nullopt;
-  return std::uint64_t{disk.f_bavail} * disk.f_frsize;
+  return Disk{std::uint64_t{disk.f_blocks} * disk.f_frsize, std::uint64_t{disk.f_bavail} * disk.f_frsize};
 }
 
 }  // namespace adit::host

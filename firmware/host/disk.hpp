@@ -6,7 +6,11 @@
 
 namespace adit::host {
 
-/// Bytes of the file system that a folder is on, free for this user; nothing: it cannot be asked.
-std::optional<std::uint64_t> free_bytes(const std::string& folder);
+/// The file system that a folder is on, in bytes.
+struct Disk {
+  std::uint64_t all = 0, free = 0;  // `free`: for this user
+};
+/// Nothing, with errno: it cannot be asked.
+std::optional<Disk> disk_of(const std::string& folder);
 
 }  // namespace adit::host

@@ -24,26 +24,10 @@ namespace {
 
 using loop::FileDescriptor;
 
-bool write_all(int fd, std::string_view text) {
-  while (!text.empty()) {
-    const ssize_t count = write(fd, text.data(), text.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return false;
-    text.remove_prefix(static_cast<std::size_t>(count));
-  }
-  return true;
-}
-
 std::string folder_of(const std::string& path) {
   const auto slash = path.rfind('/');
   if (slash == std::string::npos) return ".";
   return slash == 0 ? "/" : path.substr(0, slash);
-}
-
-/// A rename outlives a power cut only once its folder is on the disk.
-bool sync_folder(const std::string& path) {
-  const FileDescriptor folder(open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
-  return folder && fsync(folder.get()) == 0;
 }
 
 constexpr const char* kBeingWritten = ".writing";
@@ -67,13 +51,18 @@ std::string checksum_of(const std::string& text) {
 }
 
 bool fill(int fd, const std::string& text, int mode) {
-  return fchmod(fd, static_cast<mode_t>(mode)) == 0 && write_all(fd, text) && fsync(fd) == 0;
+  return fchmod(fd, static_cast<mode_t>(mode)) == 0 && loop::write_all(fd, text, 0) == 0 && fsync(fd) == 0;
 }
 
 }  // namespace
 
 std::string trouble(const std::string& path, int error) {
   return path + ": " + loop::text_of(error);
+}
+
+bool sync_folder(const std::string& path) {
+  const FileDescriptor folder(open(folder_of(path).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  return folder && fsync(folder.get()) == 0;
 }
 
 std::expected<File, int> slurp(const std::string& path, std::size_t most) {
@@ -132,7 +121,7 @@ std::expected<void, std::string> write_kept(const std::string& path, const std::
 
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text) {
   const FileDescriptor fd = loop::open_regular(path, O_WRONLY | O_NOFOLLOW);
-  const bool is_written = fd && write_all(fd.get(), text) &&
+  const bool is_written = fd && loop::write_all(fd.get(), text, 0) == 0 &&
                           ftruncate(fd.get(), static_cast<off_t>(text.size())) == 0 && fsync(fd.get()) == 0;
   if (!is_written) return std::unexpected(trouble(path, errno));
   return {};

@@ -20,6 +20,9 @@ std::expected<File, int> slurp(const std::string& path, std::size_t most = kLarg
 /// A file's text without the line of write_kept(), if that has the right checksum.
 std::string without_checksum(std::string text);
 
+/// Syncs the folder that has this file: only then its name outlives a power cut. False, with errno.
+bool sync_folder(const std::string& path);
+
 /// "PATH: No such file or directory"
 std::string trouble(const std::string& path, int error);
 

@@ -90,12 +90,9 @@ bool UntrustedFolder::wipe(const std::string& name) {
   struct stat status{};
   bool blank = fd && fstat(fd.get(), &status) == 0;
   const std::string zeros(4096, '\0');
-  for (off_t at = 0; blank && at < status.st_size;) {
-    const auto size = std::min(zeros.size(), static_cast<std::size_t>(status.st_size - at));
-    const ssize_t count = pwrite(fd.get(), zeros.data(), size, at);
-    blank = count > 0 || (count < 0 && errno == EINTR);
-    if (count > 0) at += count;
-  }
+  for (std::size_t at = 0, end = static_cast<std::size_t>(status.st_size); blank && at < end;
+       at += zeros.size())
+    blank = loop::write_all(fd.get(), std::string_view(zeros).substr(0, end - at), at) == 0;
   blank = blank && fsync(fd.get()) == 0;
   return unlinkat(folder_.get(), name.c_str(), 0) == 0 && fsync(folder_.get()) == 0 && blank;
 }

@@ -35,4 +35,16 @@ std::expected<std::string, int> read_all(const FileDescriptor& file, std::size_t
   }
 }
 
+int write_all(int file, std::string_view bytes, std::size_t offset) {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pwrite(file, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return errno;
+    if (count == 0) return errno = EIO;
+    bytes.remove_prefix(static_cast<std::size_t>(count));
+    offset += static_cast<std::size_t>(count);
+  }
+  return 0;
+}
+
 }  // namespace adit::loop

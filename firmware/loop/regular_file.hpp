@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <expected>
 #include <string>
+#include <string_view>
 
 #include "loop/file_descriptor.hpp"
 
@@ -22,5 +23,9 @@ FileDescriptor open_regular(const std::string& path, int flags, int folder = AT_
 
 /// Reads from the file's position to its end. Returns the bytes or an errno: EFBIG above `most` bytes.
 std::expected<std::string, int> read_all(const FileDescriptor& file, std::size_t most);
+
+/// Writes all of `bytes` at `offset` of a file. A short write goes on at its place. 0, or the errno, which
+/// errno has then, too.
+int write_all(int file, std::string_view bytes, std::size_t offset);
 
 }  // namespace adit::loop

@@ -33,10 +33,6 @@ MappedFile copy_of(std::span<const std::uint8_t> bytes) {
   return {owner, *owner};
 }
 
-std::span<const std::uint8_t> as_bytes(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
 }  // namespace
 
 std::expected<MappedFile, int> map_file(const std::string& path) {
@@ -68,35 +64,24 @@ PartFile::~PartFile() {
   if (fd_ && !named_) ::unlink(part_.c_str());
 }
 
-int PartFile::write(std::span<const std::uint8_t> bytes, std::size_t place) {
-  while (error_ == 0 && !bytes.empty()) {
-    const ssize_t count = ::pwrite(fd_.get(), bytes.data(), bytes.size(), static_cast<off_t>(place));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return errno;
-    bytes = bytes.subspan(static_cast<std::size_t>(count));
-    place += static_cast<std::size_t>(count);
-  }
-  return error_;
-}
-
 int PartFile::append(icd::ChunkedBytes& bytes) {
   while (!bytes.empty()) {
     const auto chunk = *bytes.chunks().front();
-    if (const int error = write(chunk, size_); error != 0) return error;
-    size_ += chunk.size();
+    if (const int error = append({reinterpret_cast<const char*>(chunk.data()), chunk.size()}); error != 0)
+      return error;
     bytes.pop_front();
   }
   return error_;
 }
 
 int PartFile::append(std::string_view bytes) {
-  const int error = write(as_bytes(bytes), size_);
+  const int error = write(bytes, size_);
   if (error == 0) size_ += bytes.size();
   return error;
 }
 
-int PartFile::begin_with(std::string_view bytes) {
-  return write(as_bytes(bytes), 0);
+int PartFile::write(std::string_view bytes, std::size_t place) const {
+  return error_ != 0 ? error_ : loop::write_all(fd_.get(), bytes, place);
 }
 
 std::expected<MappedFile, int> PartFile::map() const {

@@ -46,13 +46,13 @@ class PartFile {
   int append(icd::ChunkedBytes& bytes);
   int append(std::string_view bytes);
   /// Overwrites what stands at the beginning.
-  int begin_with(std::string_view bytes);
+  int begin_with(std::string_view bytes) const { return write(bytes, 0); }
   std::expected<MappedFile, int> map() const;
   /// From now on it is that file, in the place of the one before.
   int name(const std::string& path);
 
  private:
-  int write(std::span<const std::uint8_t> bytes, std::size_t place);
+  int write(std::string_view bytes, std::size_t place) const;
 
   std::string part_;
   loop::FileDescriptor fd_;

@@ -1,6 +1,5 @@
 #include "spool/spool.hpp"
 
-#include <sys/statvfs.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +9,7 @@
 #include <sstream>
 #include <string_view>
 
+#include "host/disk.hpp"
 #include "host/log.hpp"
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
@@ -32,10 +32,9 @@ std::unexpected<icd::Refusal> not_kept(const std::string& why) {
 
 /// What is left in the folder's file system for this user and for maps; an error is its errno.
 std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64_t left_to_others) {
-  struct statvfs room{};
-  if (::statvfs(folder.c_str(), &room) != 0) return std::unexpected(errno);
-  const std::uint64_t left = std::uint64_t{room.f_bavail} * room.f_frsize;
-  return left - std::min({left, left_to_others, std::uint64_t{room.f_blocks} * room.f_frsize / 4});
+  const auto disk = host::disk_of(folder);
+  if (!disk) return std::unexpected(errno);
+  return disk->free - std::min({disk->free, left_to_others, disk->all / 4});
 }
 
 }  // namespace

@@ -192,18 +192,6 @@ Result<void> Directory::sync_name() const {
   return above->sync();
 }
 
-int write_all(int fd, std::string_view bytes, std::size_t offset) {
-  while (!bytes.empty()) {
-    const ssize_t count = ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
-    if (count < 0 && errno == EINTR) continue;
-    if (count < 0) return errno;
-    if (count == 0) return EIO;
-    bytes.remove_prefix(static_cast<std::size_t>(count));
-    offset += static_cast<std::size_t>(count);
-  }
-  return 0;
-}
-
 Result<std::uint64_t> random_salt() {
   std::uint64_t salt = 0;
   if (::getrandom(&salt, sizeof salt, 0) != sizeof salt) return failed("random numbers", errno);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "loop/file_descriptor.hpp"
+#include "loop/regular_file.hpp"
 #include "store/error.hpp"
 
 namespace adit::store {
@@ -70,8 +71,7 @@ class Directory {
   std::string path_;
 };
 
-/// Writes all of `bytes` at `offset`. A short write goes on at its place; the errno of a failed one, else 0.
-int write_all(int fd, std::string_view bytes, std::size_t offset);
+using loop::write_all;
 
 /// 64 random bits of the kernel's.
 Result<std::uint64_t> random_salt();

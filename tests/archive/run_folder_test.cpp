@@ -79,6 +79,14 @@ TEST_F(RunFolderTest, GoesOnBehindTheFilesThatItCouldNotSeeAtFirst) {
   EXPECT_EQ(written->file, 3U);
 }
 
+TEST_F(RunFolderTest, SaysThatAFileCannotBeRemoved) {
+  std::filesystem::create_directory(folder / "map-00000001");
+  ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(0), kMost));
+  const auto written = RunFolder(folder.path(), run.head).write(tiles(8), 0);
+  ASSERT_FALSE(written);
+  EXPECT_NE(written.error().find("map-00000001"), std::string::npos) << written.error();
+}
+
 TEST_F(RunFolderTest, RemovesItsFirstFileButNeverTheLastOne) {
   RunFolder files(folder.path(), run.head);
   std::uint64_t first = 0;

@@ -46,5 +46,13 @@ TEST_F(RegularFile, IsReadToItsEndUpToTheMostBytes) {
   EXPECT_EQ(read_all(open_regular(folder_ / "file", O_RDONLY), 99'999).error(), EFBIG);
 }
 
+TEST_F(RegularFile, IsWrittenInItsPlaceOrSaysWhyNot) {
+  std::ofstream(folder_ / "file") << std::string(100'000, 'x');
+  EXPECT_EQ(write_all(open_regular(folder_ / "file", O_WRONLY).get(), "yz", 99'999), 0);
+  const std::string text = read_all(open_regular(folder_ / "file", O_RDONLY), 200'000).value();
+  EXPECT_EQ(text, std::string(99'999, 'x') + "yz");
+  EXPECT_EQ(write_all(open_regular(folder_ / "file", O_RDONLY).get(), "z", 0), EBADF);
+}
+
 }  // namespace
 }  // namespace adit::loop

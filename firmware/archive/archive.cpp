@@ -65,9 +65,6 @@ void Archive::begin(const Head& head, GoOn go_on) {
   next_facts_ = loop_.now();
   const auto opening = std::make_shared<Opening>();
   opening->head = head;
-  const auto done = [this, opening, begun = begun_] {
-    if (begun == begun_) opened(*opening);
-  };
   writer_.submit(
       [opening, runs = runs_, enough = enough(), most = limits_.all]() mutable {
         opening->key = runs.begin(opening->head);
@@ -77,7 +74,9 @@ void Archive::begin(const Head& head, GoOn go_on) {
         opening->told.emplace(picture::Mosaic::kBudget);
         tell_all(runs, *opening->key, *opening->told, enough);
       },
-      done, done);
+      [this, opening, begun = begun_] {
+        if (begun == begun_) opened(*opening);
+      });
 }
 
 void Archive::opened(Opening& opening) {
@@ -116,17 +115,16 @@ void Archive::make_folder() {
   const auto opening = std::make_shared<Opening>();
   opening->head = head_;
   ++writing_;
-  const auto done = [this, opening, begun = begun_] {
-    --writing_;
-    if (begun == begun_) has_folder(*opening);
-  };
   writer_.submit(
       [opening, runs = runs_]() mutable {
         opening->key = runs.begin(opening->head);
         if (opening->key)
           opening->folder = std::make_shared<RunFolder>(runs.folder_of(*opening->key), opening->head);
       },
-      done, done);
+      [this, opening, begun = begun_] {
+        --writing_;
+        if (begun == begun_) has_folder(*opening);
+      });
 }
 
 /// Before anything that is told by the new time: of lines that wait, only so many as go at once.

@@ -95,13 +95,12 @@ bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
   writing->folder = folder_;
   writing->most = limits_.run;
   ++writing_;
-  const auto done = [this, writing] { written(*writing); };
   writer_.submit(
       [writing] {
         if (writing->goes) writing->folder->remove_first(*writing->goes);
         writing->outcome = writing->folder->write(writing->batch, writing->most);
       },
-      done, done);
+      [this, writing] { written(*writing); });
   return true;
 }
 

@@ -26,6 +26,19 @@ std::optional<icd::MarkersUpdate> markers_in(std::string_view said) {
 bool is_known(icd::Uri uri) {
   return std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
 }
+bool is_known(const std::string& /*name*/) {
+  return true;
+}
+
+/// Puts a record's key and value in their place.
+template <class Key, class Value>
+bool read_into(std::map<Key, Value>& all, std::string_view said) {
+  Key key{};
+  Value value{};
+  if (!store::read(said, key, value) || !is_known(key)) return false;
+  all[key] = value;
+  return true;
+}
 
 }  // namespace
 
@@ -57,11 +70,12 @@ bool Carried::apply(Kind kind, std::string_view said) {
       markers_come_back();
       return true;
     case Kind::Pace:
-      return read_pace(said);
+      return read_into(paces_, said);
     case Kind::Stamp:
-      return read_stamp(said);
+      return read_into(stamps_, said);
     case Kind::Grids:
-      return read_grids(said);
+      if (!grids_) grids_.emplace();
+      return said.empty() || read_into(*grids_, said);  // an empty one begins them
     case Kind::Poses:
       return read_poses(said);
     case Kind::Heard:
@@ -142,33 +156,6 @@ bool Carried::read_sent(std::string_view said) {
   for (const icd::Marker& each : like) {
     if (auto marker = markers_.remove(each)) markers_under_way_.push_back(std::move(*marker));
   }
-  return true;
-}
-
-bool Carried::read_pace(std::string_view said) {
-  icd::Uri uri{};
-  pace::Learned learned;
-  if (!store::read(said, uri, learned) || !is_known(uri)) return false;
-  paces_[uri] = learned;
-  return true;
-}
-
-bool Carried::read_stamp(std::string_view said) {
-  icd::Uri uri{};
-  icd::Stamp stamp = 0;
-  if (!store::read(said, uri, stamp) || !is_known(uri)) return false;
-  stamps_[uri] = stamp;
-  return true;
-}
-
-/// An empty one begins them: what is sent is told from there on.
-bool Carried::read_grids(std::string_view said) {
-  if (!grids_) grids_.emplace();
-  if (said.empty()) return true;
-  std::string name;
-  lanes::Extent extent;
-  if (!store::read(said, name, extent)) return false;
-  (*grids_)[name] = extent;
   return true;
 }
 

@@ -88,9 +88,6 @@ class Carried {
   bool read_state_sent(std::string_view said);
   bool read_markers(std::string_view said);
   bool read_sent(std::string_view said);
-  bool read_pace(std::string_view said);
-  bool read_stamp(std::string_view said);
-  bool read_grids(std::string_view said);
   bool read_heard(std::string_view said);
   void state_is_done();
   void state_comes_back();

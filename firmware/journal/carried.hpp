@@ -156,7 +156,9 @@ inline constexpr auto store::kMembers<icd::Point> =
 template <>
 inline constexpr auto store::kMembers<icd::Quaternion> =
     std::tuple(&icd::Quaternion::x, &icd::Quaternion::y, &icd::Quaternion::z, &icd::Quaternion::w);
-/// What tells a marker from others.
+/// What tells a robot's pose, or a marker, from others.
+template <>
+inline constexpr auto store::kMembers<icd::NamedPose> = std::tuple(&icd::NamedPose::name);
 template <>
 inline constexpr auto store::kMembers<icd::Marker> =
     std::tuple(&icd::Marker::ns, &icd::Marker::id, &icd::Marker::action);

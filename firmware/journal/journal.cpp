@@ -75,17 +75,6 @@ void Journal::senders(const lanes::StampShift::Clocks& clocks) {
   for (const auto& [stamper, clock] : clocks) note(Kind::Sender, store::bytes_of(stamper, clock));
 }
 
-void Journal::state_sent(const icd::StateUpdate& update) {
-  std::vector<icd::RobotName> robots;
-  robots.reserve(update.poses.size());
-  for (const icd::NamedPose& pose : update.poses) robots.push_back(pose.name);
-  note(Kind::StateSent, store::bytes_of(robots));
-}
-
-void Journal::markers_sent(const icd::MarkersUpdate& update) {
-  note(Kind::MarkersSent, store::bytes_of(update.markers));
-}
-
 void Journal::state_answered(bool done) {
   done ? note(Kind::StateDone, {}) : comes_back(Kind::StateSent, Kind::StateBack);
 }

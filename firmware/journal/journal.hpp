@@ -67,8 +67,10 @@ class Journal {
   void heard(const Heard& heard) { (void)append(Kind::Heard, store::bytes_of(heard)); }
 
   /// These poses, or these markers, are about to be sent.
-  void state_sent(const icd::StateUpdate& update);
-  void markers_sent(const icd::MarkersUpdate& update);
+  void state_sent(const icd::StateUpdate& update) { note(Kind::StateSent, store::bytes_of(update.poses)); }
+  void markers_sent(const icd::MarkersUpdate& update) {
+    note(Kind::MarkersSent, store::bytes_of(update.markers));
+  }
   /// They need no more care, or wait again.
   void state_answered(bool done);
   void markers_answered(bool done);

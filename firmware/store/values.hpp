@@ -48,8 +48,7 @@ void walk(auto& each, Of& value) {
       for (value.clear(); count > 0 && each.ok(); --count) walk(each, value.emplace_back());
     }
   } else {
-    static_assert(std::tuple_size_v<decltype(kMembers<std::remove_const_t<Of>>)> > 0,
-                  "what are its members?");
+    static_assert(std::tuple_size_v<decltype(kMembers<std::remove_const_t<Of>>)> > 0, "specialize kMembers");
     std::apply([&](auto... member) { (walk(each, std::invoke(member, value)), ...); },
                kMembers<std::remove_const_t<Of>>);
   }

@@ -115,14 +115,12 @@ KeyRow row_of(const settings::Key& key, const settings::Settings& defaults) {
              .required = key.required,
              .default_value = key.required ? Value{} : settings::value_of(key.kind, defaults),
              .range = settings::range_of(key.kind)};
-  const auto bound = [&row](const auto& number) {
-    row.least = json(number.least);
-    row.most = json(number.most);
-  };
-  if (const auto* choice = std::get_if<settings::Choice>(&key.kind))
-    row.words.emplace(choice->words.begin(), choice->words.end());
-  if (const auto* whole = std::get_if<settings::Whole>(&key.kind)) bound(*whole);
-  if (const auto* real = std::get_if<settings::Real>(&key.kind)) bound(*real);
+  const settings::Kind& kind = key.kind;
+  if (!kind.words.empty()) row.words.emplace(kind.words.begin(), kind.words.end());
+  if (kind.least < kind.most) {
+    row.least = bound_of(kind, kind.least);
+    row.most = bound_of(kind, kind.most);
+  }
   return row;
 }
 

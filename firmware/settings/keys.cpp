@@ -16,17 +16,17 @@ constexpr std::uint64_t kMiB = 1u << 20;
 constexpr std::string_view kReviews[] = {"off", "duplicates", "all"};  // as dispatch::Review
 
 const Key kKeys[] = {
-    {"version", "The layout of this file.", Version{}, kRequired},
+    {"version", "The layout of this file.", Kind(), kRequired},
 
     {"command_post.scoring.address", "The scoring endpoint, as posted in the Base Station area (ICD 3).",
-     text<MEMBER(command_post.scoring.address)>(Form::Address), kRequired},
+     text<MEMBER(command_post.scoring.address)>(kAddress), kRequired},
     {"command_post.scoring.port", "Its port.", whole<MEMBER(command_post.scoring.port)>(1, 65535), kRequired},
     {"command_post.mapping.address", "The mapping endpoint.",
-     text<MEMBER(command_post.mapping.address)>(Form::Address), kRequired},
+     text<MEMBER(command_post.mapping.address)>(kAddress), kRequired},
     {"command_post.mapping.port", "Its port.", whole<MEMBER(command_post.mapping.port)>(1, 65535), kRequired},
     {"command_post.interface",
      "The only interface to the Command Post (darpa0); empty: the routes select one.",
-     text<MEMBER(command_post.interface)>(Form::Interface)},
+     text<MEMBER(command_post.interface)>(kInterface)},
     {"command_post.budget_mbit", "Megabits a second for both endpoints together, at most (ICD 3).",
      real<MEMBER(command_post.budget_mbit)>(0.1, 100000)},
     {"command_post.rates.reports_hz", "Artifact reports sent a second, at most (ICD 4.1).",
@@ -51,24 +51,24 @@ const Key kKeys[] = {
      "Whether Adit removes padding and sorts points, to make clouds smaller. Points keep their values.",
      flag<MEMBER(command_post.arrange_clouds)>()},
     {"command_post.course", "The course in use, one of courses[].name; empty: the endpoints above.",
-     text<MEMBER(command_post.course)>(Form::CourseOrNone)},
+     text<MEMBER(command_post.course)>(kCourseOrNone)},
 
     {"courses[].name", "The course's name, for command_post.course.",
-     text<MEMBER(courses.back().name)>(Form::Course), kRequired},
+     text<MEMBER(courses.back().name)>(kCourse), kRequired},
     {"courses[].scoring.address", "Its scoring endpoint.",
-     text<MEMBER(courses.back().scoring.address)>(Form::Address), kRequired},
+     text<MEMBER(courses.back().scoring.address)>(kAddress), kRequired},
     {"courses[].scoring.port", "Its port.", whole<MEMBER(courses.back().scoring.port)>(1, 65535), kRequired},
     {"courses[].mapping.address", "Its mapping endpoint.",
-     text<MEMBER(courses.back().mapping.address)>(Form::Address), kRequired},
+     text<MEMBER(courses.back().mapping.address)>(kAddress), kRequired},
     {"courses[].mapping.port", "Its port.", whole<MEMBER(courses.back().mapping.port)>(1, 65535), kRequired},
 
     {"team.listen[].address",
      "An address at which clients reach Adit; 0.0.0.0: every address of team.interface.",
-     text<MEMBER(team.listen.back().address)>(Form::Address), kRequired},
+     text<MEMBER(team.listen.back().address)>(kAddress), kRequired},
     {"team.listen[].port", "Its port; 0: any free port.", whole<MEMBER(team.listen.back().port)>(0, 65535),
      kRequired},
     {"team.interface", "The only interface to the team (team0); empty: any interface.",
-     text<MEMBER(team.interface)>(Form::Interface)},
+     text<MEMBER(team.interface)>(kInterface)},
     {"team.require_token",
      "Whether clients need the team's token or one of the Command Post's. If not, Adit serves all clients of "
      "the team's network, but web pages only of the box and of team.origins.",
@@ -77,7 +77,7 @@ const Key kKeys[] = {
      "Origins whose web pages may post, reports included, and read the run's status without a token if "
      "team.require_token is off, in every browser of the team's network. With a token, pages of any origin "
      "may.",
-     text<MEMBER(team.origins)>(Form::Origins)},
+     text<MEMBER(team.origins)>(kOrigins)},
     {"team.connections",
      "Connections of the team at once, at most. Unauthenticated clients get a quarter of them, at most 32.",
      whole<MEMBER(team.connections)>(1, 1024)},
@@ -88,10 +88,10 @@ const Key kKeys[] = {
     {"robots[].name",
      "The registered name (ICD 2). If any robot is listed, the page reports others; Adit still accepts their "
      "messages.",
-     text<MEMBER(robots.back().name)>(Form::Robot), kRequired},
+     text<MEMBER(robots.back().name)>(kRobot), kRequired},
     {"robots[].alias",
      "The name that this robot uses. Adit forwards its maps and states under robots[].name.",
-     text<MEMBER(robots.back().alias)>(Form::Alias)},
+     text<MEMBER(robots.back().alias)>(kAlias)},
     {"robots[].clouds",
      "How this robot posts clouds. auto: a newer cloud replaces a queued cloud whose points it contains. "
      "whole: each cloud contains the earlier ones and replaces them. parts: every cloud is sent.",
@@ -114,7 +114,7 @@ const Key kKeys[] = {
 
     {"clock.ntp_server",
      "An NTP server on the team's network that sets the box's clock; empty: no server. Not on a PC.",
-     text<MEMBER(clock.ntp_server)>(Form::Ipv4OrNone)},
+     text<MEMBER(clock.ntp_server)>(kIpv4OrNone)},
     {"clock.serve_ntp", "Whether the box, once its own clock is set, is the team's NTP server. Not on a PC.",
      flag<MEMBER(clock.serve_ntp)>()},
 
@@ -175,15 +175,15 @@ const Key kKeys[] = {
      whole<MEMBER(rules.map_bytes)>(1024, icd::kMostMapBytes)},
 
     {"panel.chip", "The GPIO chip (gpiochip0), by name, label or path; empty: any chip with the line.",
-     text<MEMBER(panel.chip)>(Form::Chip)},
+     text<MEMBER(panel.chip)>(kChip)},
     {"panel.health",
      "The line of the health light; empty: no light. Without any line, the panel is simulated.",
-     text<MEMBER(panel.health)>(Form::Line)},
-    {"panel.scoring", "The line of the scoring light.", text<MEMBER(panel.scoring)>(Form::Line)},
-    {"panel.mapping", "The line of the mapping light.", text<MEMBER(panel.mapping)>(Form::Line)},
-    {"panel.attention", "The line of the attention light.", text<MEMBER(panel.attention)>(Form::Line)},
+     text<MEMBER(panel.health)>(kLine)},
+    {"panel.scoring", "The line of the scoring light.", text<MEMBER(panel.scoring)>(kLine)},
+    {"panel.mapping", "The line of the mapping light.", text<MEMBER(panel.mapping)>(kLine)},
+    {"panel.attention", "The line of the attention light.", text<MEMBER(panel.attention)>(kLine)},
     {"panel.active_low", "Whether lights are lit by a low line.", flag<MEMBER(panel.active_low)>()},
-    {"panel.button", "The line of the button; empty: no button.", text<MEMBER(panel.button)>(Form::Line)},
+    {"panel.button", "The line of the button; empty: no button.", text<MEMBER(panel.button)>(kLine)},
     {"panel.button_active_low", "Whether the pressed button pulls its line low.",
      flag<MEMBER(panel.button_active_low)>()},
 };

@@ -4,39 +4,16 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <optional>
 
+#include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "icd/robot_name.hpp"
+#include "icd/sentence.hpp"
 #include "settings/subnet.hpp"
 
 namespace adit::settings {
 namespace {
-
-template <class... Cases>
-struct Each : Cases... {
-  using Cases::operator()...;
-};
-
-std::optional<std::uint64_t> whole_number(const codec::Value& value) {
-  if (const auto* number = std::get_if<std::uint64_t>(&value.is)) return *number;
-  if (const auto* number = std::get_if<std::int64_t>(&value.is)) {
-    return *number < 0 ? std::nullopt : std::optional(static_cast<std::uint64_t>(*number));
-  }
-  if (const auto* number = std::get_if<double>(&value.is)) {  // 8000.0 and 8e3 are whole, too
-    const bool exact = *number >= 0 && *number <= 0x1p53 && std::trunc(*number) == *number;
-    return exact ? std::optional(static_cast<std::uint64_t>(*number)) : std::nullopt;
-  }
-  return std::nullopt;
-}
-
-std::optional<double> real_number(const codec::Value& value) {
-  if (const auto* number = std::get_if<double>(&value.is)) return *number;
-  if (const auto* number = std::get_if<std::int64_t>(&value.is)) return static_cast<double>(*number);
-  if (const auto* number = std::get_if<std::uint64_t>(&value.is)) return static_cast<double>(*number);
-  return std::nullopt;
-}
 
 bool is_address(const std::string& text) {
   if (text.find('\0') != std::string::npos) return false;
@@ -88,61 +65,9 @@ bool is_origin(std::string_view text) {
          (port.empty() || (port.size() > 1 && port.starts_with(':') && is_port(port.substr(1))));
 }
 
-bool are_origins(std::string_view text) {
+bool are_origins(const std::string& text) {
   constexpr std::size_t kLongest = 1000;
   return text.size() <= kLongest && std::ranges::all_of(words(text), is_origin);
-}
-
-bool fits(Form form, const std::string& text) {
-  switch (form) {
-    case Form::Address:
-      return is_address(text);
-    case Form::Interface:
-      return is_name(text, 15, "/:") && text != "." && text != "..";  // the kernel's dev_valid_name()
-    case Form::Chip:
-      return is_name(text, 64);
-    case Form::Robot:
-      return icd::RobotName::parse(text).has_value();
-    case Form::Alias:
-      return is_name(text, 64);
-    case Form::Course:
-      return is_course(text);
-    case Form::CourseOrNone:
-      return text.empty() || is_course(text);
-    case Form::Ipv4OrNone:
-      return text.empty() || ipv4_of(text).has_value();
-    case Form::Origins:
-      return are_origins(text);
-    case Form::Line:
-      return is_name(text, 31);  // GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL
-  }
-  return false;
-}
-
-std::string range_of(Form form) {
-  switch (form) {
-    case Form::Address:
-      return "an IPv4 or IPv6 address";
-    case Form::Interface:
-      return "an interface's name of at most 15 characters, or \"\"";
-    case Form::Chip:
-      return "a GPIO chip's name or path, or \"\"";
-    case Form::Robot:
-      return "1 to 10 letters, digits and underscores";
-    case Form::Alias:
-      return "at most 64 visible ASCII characters, or \"\"";
-    case Form::Course:
-      return "1 to 20 letters, digits, underscores and hyphens";
-    case Form::CourseOrNone:
-      return "a course's name, or \"\"";
-    case Form::Ipv4OrNone:
-      return "an IPv4 address, or \"\"";
-    case Form::Origins:
-      return "origins as browsers write them (http://10.0.0.20:3000) with spaces between them, or \"\"";
-    case Form::Line:
-      return "a GPIO line's name of at most 31 characters, or \"\"";
-  }
-  return "";
 }
 
 /// "off", "duplicates" or "all"
@@ -160,11 +85,100 @@ std::string digits(double number) {
   return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::fixed).ptr};
 }
 
-std::unexpected<std::string> expected_but(const std::string& expected, const codec::Value& value) {
-  return std::unexpected("expected " + expected + ", got " + shown(value));
+/// What the member is to be, as Kind::put() takes it; nothing: `value` is out of range.
+std::optional<codec::Value> meant(const Kind& kind, const codec::Value& value) {
+  const auto* const text = std::get_if<std::string>(&value.is);
+  codec::Reading reading;
+  const codec::Field field(value, reading);
+  switch (kind.of) {
+    case Kind::Of::Flag:
+      return std::holds_alternative<bool>(value.is) ? std::optional(value) : std::nullopt;
+    case Kind::Of::Version:
+    case Kind::Of::Whole: {
+      const auto number =
+          field.whole(static_cast<std::int64_t>(kind.least), static_cast<std::int64_t>(kind.most));
+      if (reading.refused()) return std::nullopt;
+      return codec::Value{static_cast<std::uint64_t>(number)};
+    }
+    case Kind::Of::Real: {
+      const double number = field.number(kind.least, kind.most);
+      return reading.refused() ? std::nullopt : std::optional(codec::Value{number});
+    }
+    case Kind::Of::Text:
+      return text != nullptr && kind.form->fits(*text) ? std::optional(value) : std::nullopt;
+    case Kind::Of::Choice:
+      break;
+  }
+  const auto found = text == nullptr ? kind.words.end() : std::ranges::find(kind.words, *text);
+  if (found == kind.words.end()) return std::nullopt;
+  return codec::Value{static_cast<std::uint64_t>(found - kind.words.begin())};
 }
 
 }  // namespace
+
+constexpr Form kAddress{is_address, "an IPv4 or IPv6 address"};
+/// As the kernel's dev_valid_name().
+constexpr Form kInterface{
+    [](const std::string& text) { return is_name(text, 15, "/:") && text != "." && text != ".."; },
+    "an interface's name of at most 15 characters, or \"\""};
+constexpr Form kChip{[](const std::string& text) { return is_name(text, 64); },
+                     "a GPIO chip's name or path, or \"\""};
+/// GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL.
+constexpr Form kLine{[](const std::string& text) { return is_name(text, 31); },
+                     "a GPIO line's name of at most 31 characters, or \"\""};
+constexpr Form kRobot{[](const std::string& text) { return icd::RobotName::parse(text).has_value(); },
+                      "1 to 10 letters, digits and underscores"};
+constexpr Form kAlias{kChip.fits, "at most 64 visible ASCII characters, or \"\""};
+constexpr Form kCourse{is_course, "1 to 20 letters, digits, underscores and hyphens"};
+constexpr Form kCourseOrNone{[](const std::string& text) { return text.empty() || is_course(text); },
+                             "a course's name, or \"\""};
+constexpr Form kIpv4OrNone{[](const std::string& text) { return text.empty() || ipv4_of(text).has_value(); },
+                           "an IPv4 address, or \"\""};
+constexpr Form kOrigins{
+    are_origins, "origins as browsers write them (http://10.0.0.20:3000) with spaces between them, or \"\""};
+
+std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings) {
+  if (const auto member = meant(kind, value)) {
+    kind.put(settings, *member);
+    return {};
+  }
+  const std::string_view before = kind.of == Kind::Of::Whole  ? "a whole number from "
+                                  : kind.of == Kind::Of::Real ? "a number from "
+                                                              : "";
+  return std::unexpected(icd::sentence("expected ", before, range_of(kind), ", got ", shown(value)));
+}
+
+std::string range_of(const Kind& kind) {
+  switch (kind.of) {
+    case Kind::Of::Flag:
+      return "true or false";
+    case Kind::Of::Whole:
+    case Kind::Of::Real:
+      return digits(kind.least) + " to " + digits(kind.most);
+    case Kind::Of::Text:
+      return std::string(kind.form->range);
+    case Kind::Of::Choice:
+      return range_of(kind.words);
+    case Kind::Of::Version:
+      break;
+  }
+  return "1";
+}
+
+codec::Value value_of(const Kind& kind, const Settings& settings) {
+  codec::Value value = kind.get(settings);
+  if (kind.of != Kind::Of::Choice) return value;
+  return {std::string(kind.words[std::get<std::uint64_t>(value.is)])};
+}
+
+codec::Value bound_of(const Kind& kind, double bound) {
+  return kind.of == Kind::Of::Whole ? codec::Value{static_cast<std::uint64_t>(bound)} : codec::Value{bound};
+}
+
+std::string_view name_of(const Kind& kind) {
+  static constexpr std::string_view kNames[] = {"flag", "whole", "real", "text", "choice", "version"};
+  return kNames[static_cast<std::size_t>(kind.of)];
+}
 
 std::string shown(const codec::Value& value) {
   static constexpr std::size_t kLongest = 48;
@@ -175,87 +189,6 @@ std::string shown(const codec::Value& value) {
   std::string text = codec::write_json(value);
   if (text.size() > kLongest) text = text.substr(0, kLongest) + "...";
   return text;
-}
-
-std::string range_of(const Kind& kind) {
-  return std::visit(
-      Each{[](const Flag&) { return std::string("true or false"); },
-           [](const Whole& k) { return std::to_string(k.least) + " to " + std::to_string(k.most); },
-           [](const Real& k) { return digits(k.least) + " to " + digits(k.most); },
-           [](const Text& k) { return range_of(k.form); }, [](const Choice& k) { return range_of(k.words); },
-           [](const Version&) { return std::string("1"); }},
-      kind);
-}
-
-codec::Value value_of(const Kind& kind, const Settings& settings) {
-  return std::visit(Each{[&](const Flag& k) { return codec::Value{k.get(settings)}; },
-                         [&](const Whole& k) { return codec::Value{k.get(settings)}; },
-                         [&](const Real& k) { return codec::Value{k.get(settings)}; },
-                         [&](const Text& k) { return codec::Value{k.get(settings)}; },
-                         [&](const Choice& k) { return codec::Value{std::string(k.words[k.get(settings)])}; },
-                         [](const Version&) { return codec::Value{std::uint64_t{1}}; }},
-                    kind);
-}
-
-std::string_view name_of(const Kind& kind) {
-  static constexpr std::string_view kNames[] = {"flag", "whole", "real", "text", "choice", "version"};
-  return kNames[kind.index()];
-}
-
-namespace {
-
-using Put = std::expected<void, std::string>;
-
-Put put_one(const Flag& kind, const codec::Value& value, Settings& settings) {
-  const auto* flag = std::get_if<bool>(&value.is);
-  if (flag == nullptr) return expected_but("true or false", value);
-  kind.put(settings, *flag);
-  return {};
-}
-
-Put put_one(const Whole& kind, const codec::Value& value, Settings& settings) {
-  const auto number = whole_number(value);
-  if (!number || *number < kind.least || *number > kind.most) {
-    return expected_but("a whole number from " + range_of(kind), value);
-  }
-  kind.put(settings, *number);
-  return {};
-}
-
-Put put_one(const Real& kind, const codec::Value& value, Settings& settings) {
-  const auto number = real_number(value);
-  if (!number || *number < kind.least || *number > kind.most) {
-    return expected_but("a number from " + range_of(kind), value);
-  }
-  kind.put(settings, *number);
-  return {};
-}
-
-Put put_one(const Text& kind, const codec::Value& value, Settings& settings) {
-  const auto* text = std::get_if<std::string>(&value.is);
-  if (text == nullptr || !fits(kind.form, *text)) return expected_but(range_of(kind.form), value);
-  kind.put(settings, *text);
-  return {};
-}
-
-Put put_one(const Choice& kind, const codec::Value& value, Settings& settings) {
-  const auto* text = std::get_if<std::string>(&value.is);
-  const auto found =
-      text == nullptr ? kind.words.end() : std::ranges::find(kind.words, std::string_view(*text));
-  if (found == kind.words.end()) return expected_but(range_of(kind.words), value);
-  kind.put(settings, static_cast<std::size_t>(found - kind.words.begin()));
-  return {};
-}
-
-Put put_one(const Version& kind, const codec::Value& value, Settings&) {
-  if (whole_number(value) != 1u) return expected_but(range_of(kind), value);
-  return {};
-}
-
-}  // namespace
-
-std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings) {
-  return std::visit([&](const auto& k) { return put_one(k, value, settings); }, kind);
 }
 
 }  // namespace adit::settings

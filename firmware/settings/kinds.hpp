@@ -1,13 +1,11 @@
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <expected>
 #include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
 #include "codec/value.hpp"
@@ -15,55 +13,28 @@
 
 namespace adit::settings {
 
-/// What a value of the settings file may be, and which member of Settings it sets. Each kind is made for a
+/// What a text may be.
+struct Form {
+  bool (*fits)(const std::string& text);
+  std::string_view range;
+};
+extern const Form kAddress, kInterface, kChip, kLine, kRobot, kAlias, kCourse, kCourseOrNone, kIpv4OrNone,
+    kOrigins;
+
+/// What a value of the settings file may be, and which member of Settings it sets. A kind is made for a
 /// member by naming it: whole<[](auto& s) -> auto& { return s.team.connections; }>(1, 1024).
-struct Flag {
-  void (*put)(Settings&, bool);
-  bool (*get)(const Settings&);
+struct Kind {
+  enum class Of : std::uint8_t { Flag, Whole, Real, Text, Choice, Version };
+  /// Sets nothing: the number of the file's layout.
+  Of of = Of::Version;
+  /// The member: true or false, a whole number (also of milliseconds, or the place of a word), a number, a
+  /// text.
+  codec::Value (*get)(const Settings&) = [](const Settings&) { return codec::Value{std::uint64_t{1}}; };
+  void (*put)(Settings&, const codec::Value&) = [](Settings&, const codec::Value&) {};
+  double least = 1, most = 1;                    // of a number
+  const Form* form = nullptr;                    // of a text
+  std::span<const std::string_view> words = {};  // of a choice, in the order of its enumeration
 };
-
-/// A whole number, or milliseconds.
-struct Whole {
-  void (*put)(Settings&, std::uint64_t);
-  std::uint64_t (*get)(const Settings&);
-  std::uint64_t least, most;
-};
-
-struct Real {
-  void (*put)(Settings&, double);
-  double (*get)(const Settings&);
-  double least, most;
-};
-
-enum class Form : std::uint8_t {
-  Address,
-  Interface,
-  Chip,
-  Line,
-  Robot,
-  Alias,
-  Course,
-  CourseOrNone,
-  Ipv4OrNone,
-  Origins
-};
-struct Text {
-  void (*put)(Settings&, std::string);
-  const std::string& (*get)(const Settings&);
-  Form form;
-};
-
-/// One of a few words, in the order of the enumeration that they stand for.
-struct Choice {
-  void (*put)(Settings&, std::size_t);
-  std::size_t (*get)(const Settings&);
-  std::span<const std::string_view> words;
-};
-
-/// Sets nothing: the number of the file's layout.
-struct Version {};
-
-using Kind = std::variant<Flag, Whole, Real, Text, Choice, Version>;
 
 /// Sets the member to `value`, or says what was expected and what was found.
 std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings);
@@ -74,6 +45,9 @@ std::string range_of(const Kind& kind);
 /// The member's value as the settings file has it.
 codec::Value value_of(const Kind& kind, const Settings& settings);
 
+/// `least` or `most` as the settings file has it.
+codec::Value bound_of(const Kind& kind, double bound);
+
 /// "flag", "whole", "real", "text", "choice" or "version"
 std::string_view name_of(const Kind& kind);
 
@@ -81,41 +55,58 @@ std::string_view name_of(const Kind& kind);
 std::string shown(const codec::Value& value);
 
 template <auto member>
-constexpr Flag flag() {
-  return {[](Settings& s, bool value) { member(s) = value; }, [](const Settings& s) { return member(s); }};
-}
-
-template <auto member>
-constexpr Whole whole(std::uint64_t least, std::uint64_t most) {
-  using Member = std::remove_reference_t<decltype(member(std::declval<Settings&>()))>;
-  return {[](Settings& s, std::uint64_t value) { member(s) = static_cast<Member>(value); },
-          [](const Settings& s) {
-            if constexpr (requires { member(s).count(); }) {
-              return static_cast<std::uint64_t>(member(s).count());
+constexpr Kind kind(Kind::Of of) {
+  using Member = std::remove_cvref_t<decltype(member(std::declval<Settings&>()))>;
+  constexpr bool kAsItIs =
+      std::is_same_v<Member, bool> || std::is_same_v<Member, double> || std::is_same_v<Member, std::string>;
+  return {.of = of,
+          .get = [](const Settings& s) -> codec::Value {
+            if constexpr (kAsItIs) {
+              return {member(s)};
+            } else if constexpr (requires { member(s).count(); }) {
+              return {static_cast<std::uint64_t>(member(s).count())};
             } else {
-              return static_cast<std::uint64_t>(member(s));
+              return {static_cast<std::uint64_t>(member(s))};
             }
           },
-          least, most};
+          .put =
+              [](Settings& s, const codec::Value& value) {
+                using Given = std::conditional_t<kAsItIs, Member, std::uint64_t>;
+                member(s) = static_cast<Member>(std::get<Given>(value.is));
+              }};
 }
 
 template <auto member>
-constexpr Real real(double least, double most) {
-  return {[](Settings& s, double value) { member(s) = value; }, [](const Settings& s) { return member(s); },
-          least, most};
+constexpr Kind flag() {
+  return kind<member>(Kind::Of::Flag);
 }
 
 template <auto member>
-constexpr Text text(Form form) {
-  return {[](Settings& s, std::string value) { member(s) = std::move(value); },
-          [](const Settings& s) -> const std::string& { return member(s); }, form};
+constexpr Kind whole(std::uint64_t least, std::uint64_t most) {
+  Kind whole = kind<member>(Kind::Of::Whole);
+  whole.least = static_cast<double>(least), whole.most = static_cast<double>(most);
+  return whole;
 }
 
 template <auto member>
-constexpr Choice choice(std::span<const std::string_view> words) {
-  using Member = std::remove_cvref_t<decltype(member(std::declval<Settings&>()))>;
-  return {[](Settings& s, std::size_t value) { member(s) = static_cast<Member>(value); },
-          [](const Settings& s) { return static_cast<std::size_t>(member(s)); }, words};
+constexpr Kind real(double least, double most) {
+  Kind real = kind<member>(Kind::Of::Real);
+  real.least = least, real.most = most;
+  return real;
+}
+
+template <auto member>
+constexpr Kind text(const Form& form) {
+  Kind text = kind<member>(Kind::Of::Text);
+  text.form = &form;
+  return text;
+}
+
+template <auto member>
+constexpr Kind choice(std::span<const std::string_view> words) {
+  Kind choice = kind<member>(Kind::Of::Choice);
+  choice.words = words;
+  return choice;
 }
 
 }  // namespace adit::settings

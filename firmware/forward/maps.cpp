@@ -73,9 +73,9 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
 void Maps::take_settings() {
   lane_.a_slot_carries(slot_of(settings_.command_post));
   lane_.merge_at_most(settings_.queues.merge_bytes);
-  lane_.clouds_are(settings::clouds_of(settings_.robots));
-  lane_.precisions_are(settings::precisions_of(settings_.robots));
-  points_.edges_are(settings::voxels_of(settings_.robots));
+  lane_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
+  lane_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
+  points_.edges_are(settings::by_robot(settings_.robots, &settings::Robot::voxel_metres));
 }
 
 void Maps::settings_changed() {

@@ -21,12 +21,9 @@ bool is_address(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &parsed) == 1 || inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
 }
 
-/// 1 to 20 letters, digits, `_` and `-`: a course's name stands in the name of a file.
+/// A course's name stands in the name of a file.
 bool is_course(const std::string& text) {
-  constexpr std::size_t kLongest = 20;
-  return !text.empty() && text.size() <= kLongest && std::ranges::all_of(text, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
+  return is_word(text, 20);
 }
 
 /// At most `most` visible ASCII characters and none of `without`.
@@ -178,6 +175,12 @@ codec::Value bound_of(const Kind& kind, double bound) {
 std::string_view name_of(const Kind& kind) {
   static constexpr std::string_view kNames[] = {"flag", "whole", "real", "text", "choice", "version"};
   return kNames[static_cast<std::size_t>(kind.of)];
+}
+
+bool is_word(std::string_view text, std::size_t longest) {
+  return !text.empty() && text.size() <= longest && std::ranges::all_of(text, [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
+  });
 }
 
 std::string shown(const codec::Value& value) {

@@ -51,6 +51,9 @@ codec::Value bound_of(const Kind& kind, double bound);
 /// "flag", "whole", "real", "text", "choice" or "version"
 std::string_view name_of(const Kind& kind);
 
+/// 1 to `longest` letters, digits, `_` and `-`.
+bool is_word(std::string_view text, std::size_t longest);
+
 /// A value for a sentence: as JSON and not too long, or what it is ("an object").
 std::string shown(const codec::Value& value);
 

@@ -13,10 +13,7 @@ using codec::Value;
 
 /// A member's name for a path: as it is, or as a JSON string where it is no plain word.
 std::string shown_name(const std::string& name) {
-  const bool plain = !name.empty() && name.size() <= 48 && std::ranges::all_of(name, [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  });
-  return plain ? name : shown(Value{name});
+  return is_word(name, 48) ? name : shown(Value{name});
 }
 
 /// "a list of 1 to 16 items"

@@ -31,13 +31,13 @@ std::expected<Settings, std::vector<Error>> read(Reader& reader, const Value& ro
   return std::move(reader.settings);
 }
 
+}  // namespace
+
 icd::RobotName name_of(const Robot& robot) {
   auto name = icd::RobotName::parse(robot.name);
   icd::require(name.has_value());
   return *std::move(name);
 }
-
-}  // namespace
 
 std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
   const auto root = codec::parse_json(json);
@@ -80,28 +80,6 @@ Settings in_use(Settings settings) {
     if (!robot.alias.empty()) settings.rules.aliases.emplace(robot.alias, name_of(robot));
   }
   return settings;
-}
-
-std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots) {
-  std::map<icd::RobotName, lanes::Clouds> clouds;
-  for (const Robot& robot : robots) clouds.emplace(name_of(robot), robot.clouds);
-  return clouds;
-}
-
-std::map<icd::RobotName, lanes::Precision> precisions_of(const std::vector<Robot>& robots) {
-  std::map<icd::RobotName, lanes::Precision> precisions;
-  for (const Robot& robot : robots) {
-    if (robot.precision != lanes::Precision::Exact) precisions.emplace(name_of(robot), robot.precision);
-  }
-  return precisions;
-}
-
-std::map<icd::RobotName, double> voxels_of(const std::vector<Robot>& robots) {
-  std::map<icd::RobotName, double> voxels;
-  for (const Robot& robot : robots) {
-    if (robot.voxel_metres > 0) voxels.emplace(name_of(robot), robot.voxel_metres);
-  }
-  return voxels;
 }
 
 std::string sentence_of(const std::vector<Error>& errors) {

@@ -166,12 +166,18 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 /// robot's alias is in the rules. Requires names of robots that RobotName takes, as parse() sees to it.
 Settings in_use(Settings settings);
 
-/// What the clouds of each robot that is named are; names as parse() takes them.
-std::map<icd::RobotName, lanes::Clouds> clouds_of(const std::vector<Robot>& robots);
-/// The precision of each robot's clouds that is not exact; names as parse() takes them.
-std::map<icd::RobotName, lanes::Precision> precisions_of(const std::vector<Robot>& robots);
-/// The voxel_metres of each robot that has any; names as parse() takes them.
-std::map<icd::RobotName, double> voxels_of(const std::vector<Robot>& robots);
+/// A robot's name for the ICD. Requires a name that parse() accepts.
+icd::RobotName name_of(const Robot& robot);
+
+/// A setting of each robot that does not have its default. Requires names that parse() accepts.
+template <class Setting>
+std::map<icd::RobotName, Setting> by_robot(const std::vector<Robot>& robots, Setting Robot::* setting) {
+  std::map<icd::RobotName, Setting> all;
+  for (const Robot& robot : robots) {
+    if (robot.*setting != Robot().*setting) all.emplace(name_of(robot), robot.*setting);
+  }
+  return all;
+}
 
 /// "a: what; b: what"
 std::string sentence_of(const std::vector<Error>& errors);

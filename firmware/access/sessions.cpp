@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "icd/hex.hpp"
+
 namespace adit::access {
 namespace {
 
@@ -16,13 +18,7 @@ std::string plain(std::string_view agent) {
 }  // namespace
 
 icd::BearerToken as_token(const Secret& secret) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string text;
-  for (const std::uint8_t byte : secret) {
-    text.push_back(kDigits[byte >> 4]);
-    text.push_back(kDigits[byte & 15]);
-  }
-  return *icd::BearerToken::parse(text);
+  return *icd::BearerToken::parse(icd::hex(secret));
 }
 
 void Sessions::restore(std::vector<Session> sessions, std::uint64_t last, Instant now) {

@@ -1,5 +1,9 @@
 #include "api/map_json.hpp"
 
+#include <array>
+
+#include "icd/hex.hpp"
+
 namespace adit::api {
 namespace {
 
@@ -56,13 +60,7 @@ struct KindOf<picture::Kind> : OnlyWritten {
 template <>
 struct KindOf<picture::Colour> : OnlyWritten {
   static Value write(const picture::Colour& colour) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string text = "#";
-    for (const std::uint8_t part : {colour.red, colour.green, colour.blue}) {
-      text += kDigits[part >> 4];
-      text += kDigits[part & 15];
-    }
-    return {std::move(text)};
+    return {"#" + icd::hex(std::array{colour.red, colour.green, colour.blue})};
   }
   static constexpr Schema schema = {
       .type = "string", .more = R"("pattern":"^#[0-9a-f]{6}$")", .name = "Colour"};

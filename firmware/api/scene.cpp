@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "icd/hex.hpp"
+
 namespace adit::api {
 namespace {
 
@@ -34,11 +36,9 @@ constexpr Row kGone = {"", kGoneMembers};
 
 /// "#rrggbbaa": a list may have a thousand of them.
 Value as_hex(const icd::Color& color) {
-  constexpr std::string_view kDigits = "0123456789abcdef";
   std::string text = "#";
   for (const double part : {color.r, color.g, color.b, color.a}) {
-    const auto byte = static_cast<std::size_t>(std::lround(255 * std::clamp(part, 0.0, 1.0)));
-    text += {kDigits[byte / 16], kDigits[byte % 16]};
+    text += icd::hex(static_cast<std::uint8_t>(std::lround(255 * std::clamp(part, 0.0, 1.0))));
   }
   return {std::move(text)};
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "icd/hex.hpp"
+
 namespace adit::applier {
 namespace {
 
@@ -21,13 +23,8 @@ std::uint32_t get(std::span<const std::uint8_t> at) {
 }  // namespace
 
 std::string text_of(const Mac& mac) {
-  static constexpr char kDigits[] = "0123456789abcdef";
   std::string text;
-  for (const std::uint8_t byte : mac) {
-    if (!text.empty()) text += ':';
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
+  for (const std::uint8_t byte : mac) text.append(text.empty() ? "" : ":").append(icd::hex(byte));
   return text;
 }
 

@@ -7,7 +7,6 @@
 #include "icd/chunked_bytes.hpp"
 #include "icd/map_update.hpp"
 #include "icd/markers_update.hpp"
-#include "icd/run_status.hpp"
 #include "icd/state_update.hpp"
 
 namespace adit::codec {
@@ -37,8 +36,6 @@ std::string checksum_of(std::string_view before, std::string_view after);
 icd::ChunkedBytes write_state_update(const icd::StateUpdate& update);
 icd::ChunkedBytes write_markers_update(const icd::MarkersUpdate& update);
 std::string write_artifact_report(const icd::ArtifactReport& report);
-
-std::string write_run_status(const icd::RunStatus& status);
 
 /// `text` as a JSON string with its quotation marks (the body of every error reply, ICD 4). Bytes that are
 /// not UTF-8 become U+FFFD.

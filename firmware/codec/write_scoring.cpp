@@ -4,6 +4,7 @@
 
 #include "codec/utf8.hpp"
 #include "codec/write.hpp"
+#include "icd/hex.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
@@ -26,8 +27,6 @@ std::size_t character_size(std::string_view text) {
 }
 
 void append_escaped(std::string& out, char control) {
-  constexpr std::string_view kHex = "0123456789abcdef";
-  const auto code = static_cast<std::uint8_t>(control);
   switch (control) {
     case '\n':
       out += "\\n";
@@ -39,7 +38,7 @@ void append_escaped(std::string& out, char control) {
       out += "\\t";
       return;
     default:
-      out += icd::sentence("\\u00", kHex.substr(code >> 4U, 1), kHex.substr(code & 0xfU, 1));
+      out += "\\u00" + icd::hex(static_cast<std::uint8_t>(control));
   }
 }
 
@@ -54,12 +53,6 @@ std::string write_artifact_report(const icd::ArtifactReport& report) {
       "{\"x\": ", json_number(report.position.x), ", \"y\": ", json_number(report.position.y),
       ", \"z\": ", json_number(report.position.z), ", \"type\": ", json_string(report.type),
       report.robot ? icd::sentence(", \"name\": ", json_string(report.robot->text())) : "", "}");
-}
-
-std::string write_run_status(const icd::RunStatus& status) {
-  return icd::sentence("{\"score\": ", status.score, ", \"run_clock\": ", json_number(status.run_clock),
-                       ", \"remaining_reports\": ", status.remaining_reports,
-                       ", \"current_team\": ", json_string(status.current_team), "}");
 }
 
 std::string json_string(std::string_view text) {

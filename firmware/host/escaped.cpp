@@ -3,6 +3,7 @@
 
 #include "codec/utf8.hpp"
 #include "host/log.hpp"
+#include "icd/hex.hpp"
 
 namespace adit::host {
 namespace {
@@ -40,12 +41,6 @@ std::size_t visible(std::string_view text) {
   return unseen ? 0 : character.size();
 }
 
-void append_escape(std::string& text, char c) {
-  static constexpr std::string_view kDigits = "0123456789abcdef";
-  const auto byte = static_cast<std::uint8_t>(c);
-  text.append("\\x").append(1, kDigits[byte >> 4]).append(1, kDigits[byte & 15]);
-}
-
 }  // namespace
 
 std::string escaped(std::string_view text) {
@@ -58,7 +53,7 @@ std::string escaped(std::string_view text) {
     } else if (length > 0) {
       safe += text.substr(0, length);
     } else {
-      append_escape(safe, text[0]);
+      safe += "\\x" + icd::hex(static_cast<std::uint8_t>(text[0]));
     }
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
@@ -72,7 +67,7 @@ std::string in_ascii(std::string_view text) {
     if (static_cast<std::uint8_t>(c) < 0x80) {
       safe += c;
     } else {
-      append_escape(safe, c);
+      safe += "\\x" + icd::hex(static_cast<std::uint8_t>(c));
     }
   }
   return safe;

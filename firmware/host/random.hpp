@@ -6,6 +6,8 @@
 #include <span>
 #include <string>
 
+#include "icd/hex.hpp"
+
 namespace adit::host {
 
 /// Fills `bytes` with the kernel's randomness, which is good for secrets. Requires at most 256 of them.
@@ -21,13 +23,7 @@ std::array<std::uint8_t, size> random_bytes() {
 /// That many bytes, as two hexadecimal digits each.
 template <std::size_t size>
 std::string random_digits() {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string digits;
-  for (const std::uint8_t byte : random_bytes<size>()) {
-    digits += kDigits[byte >> 4];
-    digits += kDigits[byte & 15];
-  }
-  return digits;
+  return icd::hex(random_bytes<size>());
 }
 
 }  // namespace adit::host

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "codec/json.hpp"
+#include "icd/hex.hpp"
 #include "icd/sentence.hpp"
 #include "settings/keys.hpp"
 
@@ -127,12 +128,8 @@ std::string tag_of(const Settings& settings) {
   for (const char letter : codec::write_json(value_of(settings))) {
     hash = (hash ^ static_cast<std::uint8_t>(letter)) * 0x100000001b3;
   }
-  constexpr std::string_view kDigits = "0123456789abcdef";
-  std::string tag(16, '0');
-  for (char& digit : tag) {
-    digit = kDigits[hash >> 60];
-    hash <<= 4;
-  }
+  std::string tag;
+  for (int shift = 56; shift >= 0; shift -= 8) tag += icd::hex(static_cast<std::uint8_t>(hash >> shift));
   return tag;
 }
 

@@ -1,6 +1,6 @@
 // An answer of the Command Post, or of whoever answers in its place.
 #include "codec/read.hpp"
-#include "codec/write.hpp"
+#include "codec/row.hpp"
 #include "dispatch/mapping_verdict.hpp"
 #include "dispatch/report_verdict.hpp"
 #include "dispatch/said.hpp"
@@ -39,7 +39,7 @@ void judge_body(int status, std::string_view text) {
     require(dispatch::event_of(status, false, body) != dispatch::ReportEvent::Recorded);
   }
   require(dispatch::said(status, text).size() <= kLongestSaid);
-  settles(text, codec::read_run_status, codec::write_run_status);
+  settles(text, codec::read_run_status, codec::to_json<icd::RunStatus>);
 }
 
 }  // namespace

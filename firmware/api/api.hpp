@@ -1,8 +1,26 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
+#include "api/box_routes.hpp"
+#include "api/clock_routes.hpp"
+#include "api/entrance.hpp"
+#include "api/kept_runs_routes.hpp"
+#include "api/live.hpp"
+#include "api/map_routes.hpp"
+#include "api/network_routes.hpp"
+#include "api/page_routes.hpp"
+#include "api/redacted.hpp"
+#include "api/report_list.hpp"
+#include "api/report_routes.hpp"
+#include "api/route.hpp"
+#include "api/run_routes.hpp"
+#include "api/session_routes.hpp"
+#include "api/settings_routes.hpp"
+#include "api/spare_routes.hpp"
+#include "api/update_routes.hpp"
 #include "icd/bearer_token.hpp"
 #include "icd/redaction.hpp"
 #include "intake/server.hpp"
@@ -10,33 +28,20 @@
 
 namespace adit::api {
 
-class Box;
-class Clock;
-class FinerMap;
-class KeptRuns;
-class Keys;
-class Network;
-class Operator;
-class SelfTest;
-class Setup;
-class Source;
-class Spare;
-class Updates;
-
-/// What the API asks. A route whose member is null is not served.
+/// What the API asks.
 struct Served {
   const Source& source;
   Operator& judge;
   Keys& keys;
-  Setup* setup = nullptr;
-  Network* network = nullptr;
-  SelfTest* test = nullptr;  // null only where `network` is
-  Updates* updates = nullptr;
-  Box* box = nullptr;
-  KeptRuns* runs = nullptr;
-  Clock* clock = nullptr;
-  FinerMap* finer = nullptr;  // null: there is no finer level
-  Spare* spare = nullptr;
+  Setup& setup;
+  Network& network;
+  SelfTest& test;
+  Updates& updates;
+  Box& box;
+  KeptRuns& runs;
+  Clock& clock;
+  FinerMap& finer;
+  Spare& spare;
 };
 
 /// The API of the page and of scripts, on the team's side and behind a login, and the page's own files.
@@ -50,22 +55,38 @@ class Api final : public intake::Handler {
   /// answer. The other arguments outlive this, and all work and answers that are under way.
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
-  ~Api() override;
 
-  intake::Shown shown(const intake::RequestHead& head) override;
+  intake::Shown shown(const intake::RequestHead& head) override { return entrance_.shown(head); }
   std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
-                                         std::shared_ptr<intake::Responder> responder,
+                                         std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::Flow> flow) override;
 
   /// From now on.
   void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
 
   /// Something that the page shows has changed.
-  void changed();
+  void changed() { live_.changed(); }
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<intake::BodySink> handle(const Route& route, const Call& call);
+
+  const std::shared_ptr<SharedRedaction> redaction_;
+  Entrance entrance_;
+  Live live_;
+  PageRoutes pages_;
+  SessionRoutes sessions_;
+  RunRoutes run_;
+  MapRoutes maps_;
+  const ReportLists lists_;
+  ReportRoutes reports_;
+  SettingsRoutes settings_;
+  NetworkRoutes network_;
+  UpdateRoutes updates_;
+  BoxRoutes box_;
+  KeptRunsRoutes kept_;
+  ClockRoutes clock_;
+  SpareRoutes spare_;
+  const Handlers handlers_;
 };
 
 }  // namespace adit::api

@@ -15,7 +15,6 @@ intake::Answer ClockRoutes::set(const std::string& body) {
       read_body<double>(body, [](const codec::Field& root) { return root.member("time").number(); });
   if (!time) return refused(time.error());
   const auto done = clock_.set_clock(*time);
-  changed_();
   return done ? shown() : refused(done.error());
 }
 

@@ -56,22 +56,16 @@ std::unique_ptr<intake::BodySink> begin_of(const Handlers& handlers, const Call&
   }
 }
 
-template <class Handler>
-bool has(const Handlers& handlers) {
-  return std::get<Handler*>(handlers) != nullptr;
-}
-
 /// A member function of one of the Handlers. Its parameter's type says what it is called with: the number in
 /// the path (404 if that is no number), the body (std::string), the RequestHead or the whole Call. It returns
 /// the Answer; or nothing, and answers by Call::responder; or the object that takes the body.
 template <auto function>
 consteval Handle by() {
-  constexpr auto served = has<typename Signature<decltype(function)>::Handler>;
   using Gives = std::invoke_result_t<decltype(call_of<function>), const Handlers&, const Call&>;
   if constexpr (std::same_as<Gives, intake::Answer>) {
-    return {served, call_of<function>, nullptr};
+    return {call_of<function>, nullptr};
   } else {
-    return {served, nullptr, begin_of<function>};
+    return {nullptr, begin_of<function>};
   }
 }
 

@@ -36,13 +36,6 @@ intake::Answer printed(std::string html) {
 KeptRunsRoutes::KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source)
     : loop_(loop), runs_(runs), source_(source), forget_(loop.timer([this] { held_.reset(); })) {}
 
-template <class Task>
-auto KeptRunsRoutes::while_alive(Task task) const {
-  return [alive = std::weak_ptr(alive_), task = std::move(task)](auto&&... given) mutable {
-    if (!alive.expired()) task(std::forward<decltype(given)>(given)...);
-  };
-}
-
 const RunRow* KeptRunsRoutes::row_of(const RunList& list, const std::string& key) const {
   const auto found = std::ranges::find(list.runs, key, &RunRow::key);
   return found == list.runs.end() ? nullptr : &*found;
@@ -83,7 +76,7 @@ void KeptRunsRoutes::look(const std::string& key, Waiting asker) {
   }
   waiting.push_back(std::move(asker));
   if (waiting.size() > 1) return;
-  runs_.read(key, while_alive([this, key](const std::shared_ptr<const KeptRun>& run) { came(key, run); }));
+  runs_.read(key, [this, key](const std::shared_ptr<const KeptRun>& run) { came(key, run); });
 }
 
 void KeptRunsRoutes::came(const std::string& key, const std::shared_ptr<const KeptRun>& run) {
@@ -156,7 +149,7 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
     if (auto detail = source_.report(row.number)) gathering->reports.push_back(std::move(*detail));
   }
   if (rows.size() == kDetailsInATurn) {
-    return loop_.post(while_alive([this, gathering] { gather(gathering); }));
+    return loop_.post([this, gathering] { gather(gathering); });
   }
   runs_.report(gathering->key, std::move(gathering->reports),
                [responder = gathering->responder](std::string html) {

@@ -48,9 +48,6 @@ class KeptRunsRoutes {
   void came(const std::string& key, const std::shared_ptr<const KeptRun>& run);
   void gather(const std::shared_ptr<Gathering>& gathering);
   const RunRow* row_of(const RunList& list, const std::string& key) const;
-  /// Runs `task` only while this lives.
-  template <class Task>
-  auto while_alive(Task task) const;
 
   loop::Loop& loop_;
   KeptRuns& runs_;
@@ -58,7 +55,6 @@ class KeptRunsRoutes {
   loop::Source forget_;
   std::shared_ptr<const KeptRun> held_;
   std::map<std::string, std::vector<Waiting>> waiting_;
-  std::shared_ptr<const char> alive_ = std::make_shared<const char>();
 };
 
 }  // namespace adit::api

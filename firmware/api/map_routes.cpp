@@ -14,9 +14,7 @@ intake::Answer MapRoutes::layers(const intake::RequestHead& head) const {
   const auto since = version_asked(head);
   if (!since) return since.error();
   MapView view = map_view(source_.map(), *since);
-  for (picture::LayerView& layer : view.layers) {
-    if (finer_ != nullptr) layer.finer = finer_->finer(layer.layer, *since);
-  }
+  for (picture::LayerView& layer : view.layers) layer.finer = finer_.finer(layer.layer, *since);
   return fresh("application/json", codec::to_json(view));
 }
 
@@ -36,13 +34,13 @@ intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
 /// although there is none.
 std::unique_ptr<intake::BodySink> MapRoutes::tile(const Call& call) const {
   auto asked = tile_asked(call.head, call.parameters);
-  if (!asked || asked->at.level >= 0 || finer_ == nullptr || !picture::is_in_world(asked->at)) {
+  if (!asked || asked->at.level >= 0 || !picture::is_in_world(asked->at)) {
     call.responder->answer(asked ? tile_of(source_.map(), *asked) : asked.error());
     return nullptr;
   }
   return std::make_unique<SmallBody>(
       call.responder, 0, [this, responder = call.responder, asked = *std::move(asked)](const std::string&) {
-        finer_->tile(asked.layer, asked.at, [responder, asked](const icd::Checked<picture::Tile>& tile) {
+        finer_.tile(asked.layer, asked.at, [responder, asked](const icd::Checked<picture::Tile>& tile) {
           responder->answer(tile ? finer_tile(*tile, asked)
                                  : refusal(tile.error().status, tile.error().sentence));
         });

@@ -11,8 +11,8 @@ namespace adit::api {
 /// The picture of the maps, the markers and the robots' tracks: README.md.
 class MapRoutes {
  public:
-  /// Both outlive this; `finer` may be null.
-  MapRoutes(const Source& source, FinerMap* finer) : source_(source), finer_(finer) {}
+  /// Both outlive this.
+  MapRoutes(const Source& source, FinerMap& finer) : source_(source), finer_(finer) {}
 
   intake::Answer layers(const intake::RequestHead& head) const;
   std::unique_ptr<intake::BodySink> tile(const Call& call) const;
@@ -21,7 +21,7 @@ class MapRoutes {
 
  private:
   const Source& source_;
-  FinerMap* finer_;
+  FinerMap& finer_;
 };
 
 }  // namespace adit::api

@@ -1,7 +1,5 @@
 #include "api/network_routes.hpp"
 
-#include <utility>
-
 #include "api/answers.hpp"
 #include "api/settings_rows.hpp"
 #include "codec/json.hpp"
@@ -40,18 +38,11 @@ intake::Answer NetworkRoutes::check(const Call& call) const {
 }
 
 intake::Answer NetworkRoutes::change(const Call& call) {
-  auto answer = changed_to(call);
-  changed_();
-  return answer;
-}
-
-intake::Answer NetworkRoutes::changed_to(const Call& call) {
   const auto wanted = numbers_in(call.body);
   if (!wanted) return unfit(wanted.error());
   const auto findings = network_.check(*wanted, call.head.peer());
   if (!findings.errors.empty()) return unfit(findings.errors);
-  const auto done = network_.change(*wanted);
-  return done ? shown() : refused(done.error());
+  return after(network_.change(*wanted));
 }
 
 intake::Answer NetworkRoutes::confirm(const Call& call) {
@@ -62,17 +53,14 @@ intake::Answer NetworkRoutes::revert() {
   return after(network_.revert());
 }
 
-intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) {
-  auto answer = done ? shown() : refused(done.error());
-  changed_();
-  return answer;
+intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) const {
+  return done ? shown() : refused(done.error());
 }
 
 intake::Answer NetworkRoutes::begin_test(const std::string& body) {
   const auto candidate = read_candidate(body);
   if (!candidate) return refused(candidate.error());
   const auto begun = test_.begin_test(*candidate);
-  changed_();
   return begun ? tested() : refused(begun.error());
 }
 

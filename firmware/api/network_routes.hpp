@@ -1,7 +1,5 @@
 #pragma once
 
-#include <functional>
-
 #include "api/network.hpp"
 #include "api/route.hpp"
 #include "api/self_test.hpp"
@@ -11,9 +9,8 @@ namespace adit::api {
 /// The box's own addresses and the Test: README.md.
 class NetworkRoutes {
  public:
-  /// `changed` is called after each action. All outlive this.
-  NetworkRoutes(Network& network, SelfTest& test, std::function<void()> changed)
-      : network_(network), test_(test), changed_(std::move(changed)) {}
+  /// Both outlive this.
+  NetworkRoutes(Network& network, SelfTest& test) : network_(network), test_(test) {}
 
   intake::Answer shown() const;
   intake::Answer check(const Call& call) const;
@@ -25,13 +22,11 @@ class NetworkRoutes {
   intake::Answer begin_test(const std::string& body);
 
  private:
-  intake::Answer changed_to(const Call& call);
   /// How it stands now, or why the action was refused.
-  intake::Answer after(const icd::Checked<void>& done);
+  intake::Answer after(const icd::Checked<void>& done) const;
 
   Network& network_;
   SelfTest& test_;
-  std::function<void()> changed_;
 };
 
 }  // namespace adit::api

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "codec/field.hpp"
 #include "codec/json.hpp"
@@ -15,6 +16,12 @@ icd::Checked<Message> read_body(const std::string& body, Read read) {
   if (!root) return std::unexpected(icd::Refusal{icd::Status::BadRequest, "expected JSON: " + root.error()});
   codec::Reading reading;
   return reading.outcome<Message>(read(codec::Field(*root, reading)));
+}
+
+/// The text of the member `name` of such a body.
+inline icd::Checked<std::string> read_text(const std::string& body, std::string_view name) {
+  return read_body<std::string>(
+      body, [name](const codec::Field& root) { return std::string(root.member(name).text()); });
 }
 
 }  // namespace adit::api

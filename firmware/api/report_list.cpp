@@ -43,9 +43,7 @@ void ReportLists::go_on(const std::shared_ptr<Listing>& listing) const {
     listing->text += listing->form.row(row);
   }
   if (rows.size() == kInATurn) {
-    return loop_.post([this, listing, alive = std::weak_ptr(alive_)] {
-      if (!alive.expired()) go_on(listing);
-    });
+    return loop_.post([this, listing] { go_on(listing); });
   }
   listing->done(std::move(listing->text.append(listing->form.end)));
 }

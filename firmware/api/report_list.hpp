@@ -22,10 +22,10 @@ struct ListForm {
 /// An array of JSON.
 ListForm json_list();
 
-/// Writes lists of reports. With its end, those that are not finished end without a word.
+/// Writes lists of reports.
 class ReportLists {
  public:
-  /// Both outlive this.
+  /// Both outlive this, and this the turns of the loop.
   ReportLists(loop::Loop& loop, const Source& source) : loop_(loop), source_(source) {}
 
   /// Writes all reports of `run`, or of all runs, oldest first, and calls `done` with them: at once where
@@ -40,7 +40,6 @@ class ReportLists {
 
   loop::Loop& loop_;
   const Source& source_;
-  std::shared_ptr<const char> alive_ = std::make_shared<const char>();
 };
 
 }  // namespace adit::api

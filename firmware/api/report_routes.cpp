@@ -27,10 +27,6 @@ intake::Answer no_such(std::int64_t number) {
 
 }  // namespace
 
-ReportRoutes::ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge,
-                           std::function<void()> changed)
-    : lists_(lists), source_(source), operator_(judge), changed_(std::move(changed)) {}
-
 std::unique_ptr<intake::BodySink> ReportRoutes::listed(const Call& call, ListForm form,
                                                        intake::Answer begun) const {
   std::optional<std::int64_t> run;
@@ -67,21 +63,13 @@ intake::Answer ReportRoutes::one(std::int64_t number) const {
 }
 
 intake::Answer ReportRoutes::judge(std::int64_t number, Action action) {
-  const bool known = source_.report(number).has_value();
-  const auto moved = known ? operator_.judge(number, action) : number;
-  changed_();
-  if (!known) return no_such(number);
+  if (!source_.report(number)) return no_such(number);
+  const auto moved = operator_.judge(number, action);
   if (!moved) return refusal(icd::Status::Conflict, moved.error());
   return object({{"report", json(*moved)}});
 }
 
 intake::Answer ReportRoutes::compose(const std::string& body) {
-  auto answer = composed(body);
-  changed_();
-  return answer;
-}
-
-intake::Answer ReportRoutes::composed(const std::string& body) {
   const auto document = codec::decode({}, codec::Split::Nothing, body);
   if (!document) return refused(document.error());
   const auto read = codec::read_artifact_report(*document, {}, intake::type_hint);

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -14,9 +13,9 @@ namespace adit::api {
 /// What is known of reports, and the operator's actions: README.md.
 class ReportRoutes {
  public:
-  /// `changed` is called after each action. All outlive this.
-  ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge,
-               std::function<void()> changed);
+  /// All outlive this.
+  ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge)
+      : lists_(lists), source_(source), operator_(judge) {}
 
   std::unique_ptr<intake::BodySink> list(const Call& call) const;
   std::unique_ptr<intake::BodySink> csv(const Call& call) const;
@@ -31,12 +30,10 @@ class ReportRoutes {
   /// All of one run, which the request names (its number, "present" or "all"), answered as `begun` with them.
   std::unique_ptr<intake::BodySink> listed(const Call& call, ListForm form, intake::Answer begun) const;
   intake::Answer judge(std::int64_t number, Action action);
-  intake::Answer composed(const std::string& body);
 
   const ReportLists& lists_;
   const Source& source_;
   Operator& operator_;
-  std::function<void()> changed_;
 };
 
 }  // namespace adit::api

@@ -25,7 +25,7 @@ class SettingsRoutes;
 class SpareRoutes;
 class UpdateRoutes;
 
-/// What answers; null: not served here.
+/// What answers.
 using Handlers =
     std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, SettingsRoutes*,
                NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*, ClockRoutes*, SpareRoutes*>;
@@ -64,7 +64,6 @@ struct Call {
 
 /// A member of one of the Handlers: one that answers, or one that begins to.
 struct Handle {
-  bool (*served)(const Handlers& handlers);
   intake::Answer (*answer)(const Handlers& handlers, const Call& call) = nullptr;
   /// Answers later by Call::responder; may give what takes the body.
   std::unique_ptr<intake::BodySink> (*begin)(const Handlers& handlers, const Call& call) = nullptr;

@@ -20,6 +20,6 @@ struct Match {
   std::string allowed;                  // of the path, as in RFC 9110 10.2.1: "GET, HEAD"; "": no such path
   Who who = Who::Operator;              // may ask; where there is no route, and be told so
 };
-Match match(const Handlers& handlers, const intake::RequestHead& head);
+Match match(const intake::RequestHead& head);
 
 }  // namespace adit::api

@@ -1,8 +1,6 @@
 #include "api/run_routes.hpp"
 
-#include "codec/body_decoder.hpp"
-#include "codec/field.hpp"
-#include "codec/json.hpp"
+#include "api/read_body.hpp"
 #include "codec/row.hpp"
 
 namespace adit::api {
@@ -17,9 +15,7 @@ void RunRoutes::events(const Call& call) {
 }
 
 intake::Answer RunRoutes::begin_run() {
-  const std::int64_t number = operator_.begin_run();
-  live_.changed();
-  return object({{"run", json(number)}});
+  return object({{"run", json(operator_.begin_run())}});
 }
 
 intake::Answer RunRoutes::begin_ledger() {
@@ -29,28 +25,19 @@ intake::Answer RunRoutes::begin_ledger() {
 
 intake::Answer RunRoutes::rejected(std::uint64_t number, RejectedAction action) {
   const auto done = operator_.rejected(number, action);
-  live_.changed();
   return done ? object({{"rejected", json(number)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
 intake::Answer RunRoutes::acknowledge(const std::string& body) {
-  const auto document = codec::decode({}, codec::Split::Nothing, body);
-  if (!document) return refused(document.error());
-  codec::Reading reading;
-  const codec::Field root(document->root, reading);
-  const auto id = reading.outcome(std::string(root.member("id").text()));
+  const auto id = read_text(body, "id");
   if (!id) return refused(id.error());
   const auto done = operator_.acknowledge(*id);
-  live_.changed();
   return done ? object({{"acknowledged", json(*id)}}) : refusal(icd::Status::Conflict, done.error());
 }
 
 intake::Answer RunRoutes::identify(const std::string& body) {
-  const auto document = codec::decode({}, codec::Split::Nothing, body);
-  if (!document) return refused(document.error());
-  codec::Reading reading;
-  const codec::Field root(document->root, reading);
-  const auto seconds = reading.outcome(root.member("seconds").number(kLeast, kMost));
+  const auto seconds = read_body<double>(
+      body, [](const codec::Field& root) { return root.member("seconds").number(kLeast, kMost); });
   if (!seconds) return refused(seconds.error());
   return object({{"identify_until", json(operator_.identify(*seconds))}});
 }

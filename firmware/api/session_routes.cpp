@@ -51,11 +51,6 @@ std::string text_in(const codec::Field& object, std::string_view name) {
   return field.is_absent() ? "" : std::string(field.text());
 }
 
-icd::Checked<std::string> read_password(const std::string& body) {
-  return read_body<std::string>(
-      body, [](const codec::Field& root) { return std::string(root.member("password").text()); });
-}
-
 }  // namespace
 
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
@@ -122,7 +117,7 @@ void SessionRoutes::check(const std::string& password, const Poster& poster, Don
 
 void SessionRoutes::log_in(const Call& call) {
   const Poster poster = poster_of(call);
-  const auto password = read_password(call.body);
+  const auto password = read_text(call.body, "password");
   if (!password) return poster.responder->answer(refused(password.error()));
   if (keys_.first_start()) {
     return poster.responder->answer(
@@ -214,16 +209,15 @@ void SessionRoutes::change_password(const Call& call) {
 
 void SessionRoutes::reset(const Call& call) {
   const Poster poster = poster_of(call);
-  const auto password = read_password(call.body);
+  const auto password = read_text(call.body, "password");
   if (!password) return poster.responder->answer(refused(password.error()));
-  if (setup_ == nullptr) return poster.responder->answer(nothing_at(call.head.path()));
   if (keys_.first_start()) {
     return poster.responder->answer(
         refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));
   }
   check(*password, poster, [this, poster](std::optional<Role> role) {
     if (role != Role::Operator) return poster.responder->answer(wrong("the operator's present password"));
-    if (const auto done = setup_->reset(); !done)
+    if (const auto done = setup_.reset(); !done)
       return poster.responder->answer(refused_change(done.error()));
     auto answer =
         object({{"said", {"settings, tokens, passwords and sessions are deleted; the reports are kept"}}});

@@ -20,8 +20,7 @@ class SessionRoutes {
       4;  // of passwords at once: each takes memory, and one after the other is checked
 
   /// All outlive this, and whatever `keys` still answers.
-  /// `setup`: null where nothing can be reset here.
-  SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys, Setup* setup)
+  SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys, Setup& setup)
       : loop_(loop), entrance_(entrance), keys_(keys), setup_(setup) {}
 
   intake::Answer session(const intake::RequestHead& head);
@@ -64,7 +63,7 @@ class SessionRoutes {
   loop::Loop& loop_;
   Entrance& entrance_;
   Keys& keys_;
-  Setup* setup_;
+  Setup& setup_;
   access::Guesses guesses_;
   int checking_ = 0;
 };

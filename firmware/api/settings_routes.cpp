@@ -115,8 +115,7 @@ intake::Answer SettingsRoutes::save(const std::string& body) {
 }
 
 intake::Answer SettingsRoutes::switch_course(const std::string& body) {
-  const auto name =
-      read_body<std::string>(body, [](const Field& root) { return std::string(root.member("name").text()); });
+  const auto name = read_text(body, "name");
   if (!name) return refused(name.error());
   settings::Settings next = setup_.settings();
   next.command_post.course = *name;

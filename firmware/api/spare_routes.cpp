@@ -47,8 +47,7 @@ intake::Answer SpareRoutes::shown() const {
   return fresh("application/json", codec::to_json(spare_.spare()));
 }
 
-intake::Answer SpareRoutes::after(const icd::Checked<void>& done) {
-  changed_();
+intake::Answer SpareRoutes::after(const icd::Checked<void>& done) const {
   return done ? shown() : refused(done.error());
 }
 
@@ -78,8 +77,7 @@ void SpareRoutes::to_stick(const Call& call) {
 }
 
 intake::Answer SpareRoutes::from_stick(const std::string& body) {
-  const auto name = read_body<std::string>(
-      body, [](const codec::Field& root) { return std::string(root.member("name").text()); });
+  const auto name = read_text(body, "name");
   if (!name) return refused(name.error());
   return after(spare_.take_from_stick(*name));
 }
@@ -96,8 +94,7 @@ std::unique_ptr<intake::BodySink> SpareRoutes::take_in(const Call& call) {
 }
 
 void SpareRoutes::open(const Call& call) {
-  const auto code = read_body<std::string>(
-      call.body, [](const codec::Field& root) { return std::string(root.member("code").text()); });
+  const auto code = read_text(call.body, "code");
   if (!code) return call.responder->answer(refused(code.error()));
   spare_.open(*code, [this, responder = call.responder](const icd::Checked<void>& done) {
     responder->answer(after(done));

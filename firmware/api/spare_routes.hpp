@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -13,8 +12,8 @@ namespace adit::api {
 /// A spare box, and the box that it is the spare of. README.md has the routes.
 class SpareRoutes {
  public:
-  /// `spare` outlives this. `changed` is called when the page shows something else.
-  SpareRoutes(Spare& spare, std::function<void()> changed) : spare_(spare), changed_(std::move(changed)) {}
+  /// `spare` outlives this.
+  explicit SpareRoutes(Spare& spare) : spare_(spare) {}
 
   intake::Answer shown() const;
   intake::Answer stand_by();
@@ -28,10 +27,10 @@ class SpareRoutes {
   intake::Answer take_over(const std::string& body);
 
  private:
-  intake::Answer after(const icd::Checked<void>& done);
+  /// How it stands now, or why the action was refused.
+  intake::Answer after(const icd::Checked<void>& done) const;
 
   Spare& spare_;
-  std::function<void()> changed_;
 };
 
 }  // namespace adit::api

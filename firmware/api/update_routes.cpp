@@ -5,15 +5,11 @@
 #include <vector>
 
 #include "api/answers.hpp"
-#include "codec/body_decoder.hpp"
-#include "codec/field.hpp"
+#include "api/read_body.hpp"
 #include "codec/row.hpp"
 
 namespace adit::api {
 namespace {
-
-using codec::json;
-using codec::Value;
 
 /// A body that goes to an Upload as it comes.
 class Receiving final : public intake::BodySink {
@@ -53,14 +49,12 @@ class Receiving final : public intake::BodySink {
 };
 
 /// The one flag that a body may have.
-icd::Checked<bool> flag_in(std::string_view body, std::string_view name) {
+icd::Checked<bool> flag_in(const std::string& body, std::string_view name) {
   if (body.empty()) return false;
-  const auto document = codec::decode({}, codec::Split::Nothing, body);
-  if (!document) return std::unexpected(document.error());
-  codec::Reading reading;
-  const codec::Field root(document->root, reading);
-  const codec::Field field = root.member(name);
-  return reading.outcome(field.is_absent() && root.is<Value::Object>() ? false : field.truth());
+  return read_body<bool>(body, [name](const codec::Field& root) {
+    const codec::Field field = root.member(name);
+    return field.is_absent() && root.is<codec::Value::Object>() ? false : field.truth();
+  });
 }
 
 }  // namespace
@@ -79,7 +73,6 @@ std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const Call& call) {
   if (!again.empty() && again != "0" && again != "1") return refuse(unprocessable("again: expected 0 or 1"));
   auto upload = updates_.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
   if (!upload) return refuse(refused(upload.error()));
-  changed_();
   return std::make_unique<Receiving>(
       std::move(*upload), *size,
       [this, responder = call.responder](const icd::Checked<void>& done) { responder->answer(after(done)); });
@@ -108,10 +101,8 @@ intake::Answer UpdateRoutes::shown() const {
   return fresh("application/json", codec::to_json(updates_.update()));
 }
 
-intake::Answer UpdateRoutes::after(const icd::Checked<void>& done) {
-  auto answer = done ? shown() : refused(done.error());
-  changed_();
-  return answer;
+intake::Answer UpdateRoutes::after(const icd::Checked<void>& done) const {
+  return done ? shown() : refused(done.error());
 }
 
 }  // namespace adit::api

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -12,9 +11,8 @@ namespace adit::api {
 /// The update of the box: README.md.
 class UpdateRoutes {
  public:
-  /// `changed` is called after each action. All outlive this.
-  UpdateRoutes(Updates& updates, std::function<void()> changed)
-      : updates_(updates), changed_(std::move(changed)) {}
+  /// `updates` outlives this.
+  explicit UpdateRoutes(Updates& updates) : updates_(updates) {}
 
   intake::Answer shown() const;
   /// Takes a bundle as it comes.
@@ -26,10 +24,9 @@ class UpdateRoutes {
 
  private:
   /// How it stands now, or why the action was refused.
-  intake::Answer after(const icd::Checked<void>& done);
+  intake::Answer after(const icd::Checked<void>& done) const;
 
   Updates& updates_;
-  std::function<void()> changed_;
 };
 
 }  // namespace adit::api

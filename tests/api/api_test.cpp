@@ -209,13 +209,11 @@ TEST_F(PageTest, StrikesTokensOutOfThePatchesOfAnOpenPage) {
 TEST(PageOnAServer, ServesABrowser) {
   std::unique_ptr<Api> api;
   Forward forward;
-  FakeOperator judge;
-  FakeKeys keys;
   intake::Served served{forward};
-  FakeSource source;
-  source.now = *scene("calm", 1000, 0);
+  Doubles doubles;
+  doubles.source.now = *scene("calm", 1000, 0);
   served.on_loop([&] {
-    api = std::make_unique<Api>(served.loop(), Served{source, judge, keys}, std::vector{token()});
+    api = std::make_unique<Api>(served.loop(), doubles.served(), std::vector{token()});
     forward.to = api.get();
   });
 
@@ -235,7 +233,7 @@ TEST(PageOnAServer, ServesABrowser) {
   EXPECT_TRUE(client.wait_for("text/event-stream"));
   EXPECT_TRUE(client.wait_for("\"score\":7"));
   served.on_loop([&] {
-    source.now.run->score = 8;
+    doubles.source.now.run->score = 8;
     api->changed();
   });
   EXPECT_TRUE(client.wait_for("\"score\":8"));

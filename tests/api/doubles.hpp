@@ -11,6 +11,7 @@
 
 #include "api/fake_keys.hpp"
 #include "api/fake_network.hpp"
+#include "api/no_finer_map.hpp"
 #include "api/played.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"

@@ -16,7 +16,7 @@ inline constexpr const char* kCourses =
     R"( "mapping": {"address": "10.100.2.201", "port": 8000}}])";
 
 /// Remembers what it was told, and refuses where it is to.
-struct FakeSetup final : Setup {
+struct FakeSetup : Setup {
   const settings::Settings& settings() const override { return now; }
   bool saved() const override { return false; }
   bool applying() const override { return is_applying; }

@@ -175,17 +175,10 @@ TEST_F(NetworkRoutesTest, TryNothingElseThanWasMeant) {
 TEST(NetworkRoutesOnAServer, SeeTheAddressThatAConnectionCameTo) {
   std::unique_ptr<Api> api;
   Forward forward;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  FakeNetwork network;
-  FakeTest test;
+  Doubles doubles;
   intake::Served served{forward};
   served.on_loop([&] {
-    api = std::make_unique<Api>(
-        served.loop(),
-        Served{.source = source, .judge = judge, .keys = keys, .network = &network, .test = &test},
-        std::vector{token()});
+    api = std::make_unique<Api>(served.loop(), doubles.served(), std::vector{token()});
     forward.to = api.get();
   });
   intake::RawClient client{served.port()};
@@ -195,7 +188,7 @@ TEST(NetworkRoutesOnAServer, SeeTheAddressThatAConnectionCameTo) {
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 200);
   served.on_loop([&] { forward.to = nullptr, api.reset(); });
-  EXPECT_THAT(network.confirmed, ElementsAre("127.0.0.1"));
+  EXPECT_THAT(doubles.network.confirmed, ElementsAre("127.0.0.1"));
 }
 
 }  // namespace

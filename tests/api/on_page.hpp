@@ -27,8 +27,39 @@ struct FakeFlow final : intake::Flow {
 
 inline const std::vector<intake::Header> kJsonByToken = {kByToken, {"Content-Type", "application/json"}};
 
+/// All that an API asks.
+struct Doubles {
+  Served served() {
+    return {.source = source,
+            .judge = judge,
+            .keys = keys,
+            .setup = setup,
+            .network = network,
+            .test = test,
+            .updates = updates,
+            .box = box,
+            .runs = runs,
+            .clock = clock,
+            .finer = finer,
+            .spare = spare};
+  }
+
+  FakeSource source;
+  FakeOperator judge;
+  FakeKeys keys;
+  FakeSetup setup;
+  FakeNetwork network;
+  FakeTest test;
+  FakeUpdates updates;
+  FakeBox box;
+  FakeKeptRuns runs;
+  FakeClock clock;
+  NoFinerMap finer;
+  FakeSpare spare;
+};
+
 /// A page of doubles, asked without a server.
-struct Page {
+struct Page : Doubles {
   /// Begins a request, to be answered by `responder`.
   std::unique_ptr<intake::BodySink> open(const std::string& method, const std::string& target,
                                          std::vector<intake::Header> headers,
@@ -70,29 +101,8 @@ struct Page {
   std::shared_ptr<FakeFlow> flow = std::make_shared<FakeFlow>();
 
   loop::Loop loop;
-  FakeSource source;
-  FakeOperator judge;
-  FakeKeys keys;
-  FakeSetup setup;
-  FakeNetwork network;
-  FakeTest test;
-  FakeUpdates updates;
-  FakeBox box;
-  FakeKeptRuns runs;
-  FakeClock clock;
-  FakeSpare spare;
   Api api{loop,
-          {.source = source,
-           .judge = judge,
-           .keys = keys,
-           .setup = &setup,
-           .network = &network,
-           .test = &test,
-           .updates = &updates,
-           .box = &box,
-           .runs = &runs,
-           .clock = &clock,
-           .spare = &spare},
+          served(),
           {token("team-1"), token("scoring-1")},
           icd::Redaction({token("team-1"), token("scoring-1")})};
 };

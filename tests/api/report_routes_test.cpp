@@ -86,16 +86,6 @@ TEST_F(ReportRoutesTest, WriteThousandsInManyTurnsOfTheLoop) {
   EXPECT_EQ(reports[999]["number"], 1000);
 }
 
-TEST_F(ReportRoutesTest, EndAListThatIsBeingWrittenWithThePage) {
-  for (std::int64_t number = 1; number <= 1000; ++number) source.details[number].row.number = number;
-  auto lists = std::make_optional<ReportLists>(loop, source);
-  bool is_written = false;
-  lists->write(json_list(), std::nullopt, [&](const std::string&) { is_written = true; });
-  lists.reset();
-  for (int turn = 0; turn < 50; ++turn) loop.turn(std::chrono::seconds(0));
-  EXPECT_FALSE(is_written);
-}
-
 TEST_F(ReportRoutesTest, GiveAllReportsAsAFileForSpreadsheets) {
   const auto answer = get("/adit/reports.csv");
   EXPECT_EQ(answer.content_type, "text/csv; charset=utf-8; header=present");
@@ -212,13 +202,11 @@ TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
 TEST(ReportRoutesOnAServer, DoAActionAndShowIt) {
   std::unique_ptr<Api> api;
   Forward forward;
-  FakeOperator judge;
-  FakeKeys keys;
-  FakeSource source;
-  source.details[7].row.number = 7;
+  Doubles doubles;
+  doubles.source.details[7].row.number = 7;
   intake::Served served{forward};
   served.on_loop([&] {
-    api = std::make_unique<Api>(served.loop(), Served{source, judge, keys}, std::vector{token()});
+    api = std::make_unique<Api>(served.loop(), doubles.served(), std::vector{token()});
     forward.to = api.get();
   });
   intake::RawClient client{served.port()};

@@ -15,7 +15,9 @@
 #include "api/fake_kept_runs.hpp"
 #include "api/fake_keys.hpp"
 #include "api/fake_network.hpp"
+#include "api/fake_setup.hpp"
 #include "api/map_scene.hpp"
+#include "api/no_finer_map.hpp"
 #include "api/played.hpp"
 #include "api/played_spare.hpp"
 #include "api/played_updates.hpp"
@@ -110,6 +112,12 @@ void furnish(FakeBox& box, Time now) {
   box.say(3, "error", "the ledger cannot be written", "disk I/O error");
 }
 
+/// Nothing is left to be set up.
+struct ReadySetup final : FakeSetup {
+  bool saved() const override { return true; }
+  std::vector<TokenRow> tokens() const override { return {{"scoring", true}, {"mapping", true}}; }
+};
+
 int serve(std::uint16_t port, const std::string& first, const std::string& more) {
   loop::Loop loop;
   Stage stage{loop, "empty"};
@@ -118,24 +126,28 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   FakeBox box;
   if (more == "first-start") keys.operator_.reset();
   keys.set_up = more == "set-up-open";
+  ReadySetup setup;
   FakeNetwork network;
   FakeTest test;
   PlayedUpdates updates;
   FakeKeptRuns runs;
   FakeClock clock;
+  NoFinerMap finer;
   PlayedSpare spare;
   clock.view = {.now = loop.wall_now() - 7200, .managed = more == "clock-behind", .why = {}, .refusal = {}};
   Api page{loop,
            {.source = stage,
             .judge = stage,
             .keys = keys,
-            .network = &network,
-            .test = &test,
-            .updates = &updates,
-            .box = &box,
-            .runs = &runs,
-            .clock = &clock,
-            .spare = &spare},
+            .setup = setup,
+            .network = network,
+            .test = test,
+            .updates = updates,
+            .box = box,
+            .runs = runs,
+            .clock = clock,
+            .finer = finer,
+            .spare = spare},
            {token()}};
   furnish(box, loop.wall_now());
   auto server = intake::Server::start(loop, {.address = "127.0.0.1", .port = port, .interface = {}}, page);

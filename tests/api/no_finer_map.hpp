@@ -1,0 +1,14 @@
+#pragma once
+
+#include <optional>
+
+#include "api/finer_map.hpp"
+
+namespace adit::api {
+
+struct NoFinerMap final : FinerMap {
+  std::optional<picture::Finer> finer(const picture::Layer&, std::uint64_t) const override { return {}; }
+  void tile(const picture::Layer&, const picture::TileAt&, Done done) override { done(nullptr); }
+};
+
+}  // namespace adit::api

@@ -3,13 +3,12 @@
 #include <string>
 
 #include "access/whence.hpp"
+#include "icd/refuse.hpp"
 
 namespace adit::access {
 namespace {
 
-std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sentence) {
-  return std::unexpected(icd::Refusal{status, std::move(sentence)});
-}
+using icd::refuse;
 
 bool only_reads(std::string_view method) {
   return method == "GET" || method == "HEAD";
@@ -47,7 +46,7 @@ icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const i
   }
   if (visitor->session != nullptr && !only_reads(request.method) &&
       !visitor->session->csrf.matches(request.csrf)) {
-    return refuse(icd::Status::Forbidden, std::string(kCsrfHeader) + ": expected the session's CSRF token");
+    return refuse(icd::Status::Forbidden, kCsrfHeader, ": expected the session's CSRF token");
   }
   if (visitor->role < role) {
     return refuse(icd::Status::Forbidden, "this needs the operator's role, but you are logged in as viewer");

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/packed.hpp"
 #include "api/routes.hpp"
 #include "api/small_body.hpp"
 #include "codec/body_decoder.hpp"
@@ -56,28 +55,32 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> asked_by,
                                             std::shared_ptr<intake::Flow> flow) {
-  auto responder = redacted(packing(std::move(asked_by), head), redaction_);
+  auto responder = redacted(std::move(asked_by), redaction_, head);
   Match found = match(head);
-  const auto refuse = [&responder](intake::Answer answer) {
+  const auto answer_with = [&responder](intake::Answer answer) {
     responder->answer(std::move(answer));
     return nullptr;
   };
   if (found.allowed.empty() && !found.route && !head.path().starts_with(kGuarded)) {
-    return refuse(pages_.file(head));
+    return answer_with(pages_.file(head));
   }
   const auto asker = entrance_.admit(head, found.who);
-  if (!asker) return refuse(turned_away(asker.error()));
+  if (!asker) return answer_with(turned_away(asker.error()));
   if (!found.route)
-    return refuse(found.allowed.empty() ? nothing_at(head.path()) : wrong_method(found.allowed));
+    return answer_with(found.allowed.empty() ? nothing_at(head.path()) : wrong_method(found.allowed));
   const Route& route = *found.route;
-  if (auto why = unfit(route.body, head)) return refuse(std::move(*why));
+  if (auto why = unfit(route.body, head)) return answer_with(std::move(*why));
   Call call{.head = head,
             .responder = std::move(responder),
             .flow = std::move(flow),
             .asker = *asker,
             .parameters = std::move(found.parameters),
             .body = {}};
-  if (route.body.type.empty() || route.body.as_it_comes) return handle(route, call);
+  if (route.handle.begin != nullptr) return route.handle.begin(handlers_, call);
+  if (route.handle.answer != nullptr && route.body.type.empty()) {
+    handle(route, call);
+    return nullptr;
+  }
   return std::make_unique<SmallBody>(call.responder, route.body.most,
                                      [this, &route, call](std::string body) mutable {
                                        call.body = std::move(body);
@@ -91,11 +94,10 @@ void Api::let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction)
 }
 
 /// After a POST, open pages show what it changed.
-std::unique_ptr<intake::BodySink> Api::handle(const Route& route, const Call& call) {
+void Api::handle(const Route& route, const Call& call) {
   if (route.method == "POST") live_.changed();
-  if (route.handle.answer == nullptr) return route.handle.begin(handlers_, call);
+  if (route.handle.answer == nullptr) return route.handle.answer_later(handlers_, call);
   call.responder->answer(route.handle.answer(handlers_, call));
-  return nullptr;
 }
 
 }  // namespace adit::api

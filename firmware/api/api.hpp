@@ -68,7 +68,7 @@ class Api final : public intake::Handler {
   void changed() { live_.changed(); }
 
  private:
-  std::unique_ptr<intake::BodySink> handle(const Route& route, const Call& call);
+  void handle(const Route& route, const Call& call);
 
   const std::shared_ptr<SharedRedaction> redaction_;
   Entrance entrance_;

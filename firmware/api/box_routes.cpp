@@ -8,7 +8,6 @@
 #include "api/exposition.hpp"
 #include "api/metrics.hpp"
 #include "api/report_list.hpp"
-#include "api/small_body.hpp"
 
 namespace adit::api {
 namespace {
@@ -76,12 +75,10 @@ intake::Answer BoxRoutes::about() const {
   return fresh("application/json", about_json());
 }
 
-std::unique_ptr<intake::BodySink> BoxRoutes::bundle(const Call& call) {
-  return std::make_unique<SmallBody>(
-      call.responder, 0, [this, responder = call.responder](const std::string&) {
-        lists_.write(json_list(), std::nullopt,
-                     [this, responder](std::string reports) { pack(responder, std::move(reports)); });
-      });
+void BoxRoutes::bundle(const Call& call) {
+  lists_.write(json_list(), std::nullopt, [this, responder = call.responder](std::string reports) {
+    pack(responder, std::move(reports));
+  });
 }
 
 void BoxRoutes::pack(const std::shared_ptr<intake::Responder>& responder, std::string reports) {

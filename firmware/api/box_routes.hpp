@@ -25,7 +25,7 @@ class BoxRoutes {
   intake::Answer log(const intake::RequestHead& head) const;
   intake::Answer log_text(const intake::RequestHead& head) const;
   intake::Answer about() const;
-  std::unique_ptr<intake::BodySink> bundle(const Call& call);
+  void bundle(const Call& call);
 
  private:
   void pack(const std::shared_ptr<intake::Responder>& responder, std::string reports);

@@ -9,7 +9,6 @@
 #include "alarms/verdict.cpp"
 #include "api/box.cpp"
 #include "api/clock_rows.cpp"
-#include "api/history.cpp"
 #include "api/kept_runs.cpp"
 #include "api/map_json.cpp"
 #include "api/network_rows.cpp"

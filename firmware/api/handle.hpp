@@ -46,16 +46,6 @@ auto call_of(const Handlers& handlers, const Call& call) {
   }
 }
 
-template <auto function>
-std::unique_ptr<intake::BodySink> begin_of(const Handlers& handlers, const Call& call) {
-  if constexpr (std::is_void_v<decltype(call_of<function>(handlers, call))>) {
-    call_of<function>(handlers, call);
-    return nullptr;
-  } else {
-    return call_of<function>(handlers, call);
-  }
-}
-
 /// A member function of one of the Handlers. Its parameter's type says what it is called with: the number in
 /// the path (404 if that is no number), the body (std::string), the RequestHead or the whole Call. It returns
 /// the Answer; or nothing, and answers by Call::responder; or the object that takes the body.
@@ -63,9 +53,11 @@ template <auto function>
 consteval Handle by() {
   using Gives = std::invoke_result_t<decltype(call_of<function>), const Handlers&, const Call&>;
   if constexpr (std::same_as<Gives, intake::Answer>) {
-    return {call_of<function>, nullptr};
+    return {.answer = call_of<function>};
+  } else if constexpr (std::is_void_v<Gives>) {
+    return {.answer_later = call_of<function>};
   } else {
-    return {nullptr, begin_of<function>};
+    return {.begin = call_of<function>};
   }
 }
 

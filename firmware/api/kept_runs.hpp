@@ -9,13 +9,45 @@
 #include <utility>
 #include <vector>
 
-#include "api/history.hpp"
 #include "api/run_view.hpp"
 #include "api/scene.hpp"
 #include "codec/row.hpp"
 #include "picture/mosaic.hpp"
 
 namespace adit::api {
+
+// What each member says, and its bounds, is in the descriptions: kept_runs.cpp.
+
+/// How old the newest map is that the Command Post has of a robot, at each sample.
+struct MapAges {
+  std::string robot;
+  std::vector<std::optional<double>> ages = {};
+
+  static const codec::Row kRow;
+};
+
+/// Something that needed the operator: it came, or it went.
+struct AttentionStep {
+  Time at = 0;
+  bool came = false;
+  std::string sentence;
+
+  static const codec::Row kRow;
+};
+
+/// The plots of a run. Each list has an item for each sample, oldest first.
+struct History {
+  double spacing = 0;
+  std::vector<Time> at = {};
+  std::vector<double> sent_mbit = {};
+  std::vector<std::uint64_t> queued_bytes = {};
+  std::vector<std::optional<double>> scoring_ms = {}, mapping_ms = {};
+  std::vector<std::uint64_t> throttled = {};
+  std::vector<MapAges> robots = {};
+  std::vector<AttentionStep> attention = {};
+
+  static const codec::Row kRow;
+};
 
 /// A run that is kept: which it was, and how it stood at last.
 struct RunRow {

@@ -5,10 +5,9 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/asked_number.hpp"
 #include "api/map_json.hpp"
 #include "api/map_tile.hpp"
-#include "api/small_body.hpp"
+#include "api/number_in.hpp"
 
 namespace adit::api {
 namespace {
@@ -57,24 +56,17 @@ intake::Answer KeptRunsRoutes::one(const Call& call) const {
   return row != nullptr ? fresh("application/json", codec::to_json(*row)) : no_such_run();
 }
 
-/// What is answered later needs something that takes the body, although there is none.
-std::unique_ptr<intake::BodySink> KeptRunsRoutes::with_run(const Call& call, Answering answer) {
-  return std::make_unique<SmallBody>(
-      call.responder, 0,
-      [this, key = call.parameters.front(),
-       asker = Waiting{call.responder, std::move(answer)}](const std::string&) { look(key, asker); });
-}
-
-void KeptRunsRoutes::look(const std::string& key, Waiting asker) {
+void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
+  const std::string& key = call.parameters.front();
   if (held_ && held_->facts.key == key) {
     forget_.call_at(loop_.now() + kHeld);
-    return asker.responder->answer(asker.answer(*held_));
+    return call.responder->answer(answer(*held_));
   }
   auto& waiting = waiting_[key];
   if (waiting.size() >= kMostWaiting) {
-    return asker.responder->answer(refusal(icd::Status::ServiceUnavailable, "the run is being read"));
+    return call.responder->answer(refusal(icd::Status::ServiceUnavailable, "the run is being read"));
   }
-  waiting.push_back(std::move(asker));
+  waiting.push_back({call.responder, std::move(answer)});
   if (waiting.size() > 1) return;
   runs_.read(key, [this, key](const std::shared_ptr<const KeptRun>& run) { came(key, run); });
 }
@@ -90,34 +82,27 @@ void KeptRunsRoutes::came(const std::string& key, const std::shared_ptr<const Ke
   forget_.call_at(loop_.now() + kHeld);
 }
 
-std::unique_ptr<intake::BodySink> KeptRunsRoutes::layers(const Call& call) {
+void KeptRunsRoutes::layers(const Call& call) {
   const auto since = version_asked(call.head);
-  if (!since) {
-    call.responder->answer(since.error());
-    return nullptr;
-  }
-  return with_run(call, [since = *since](const KeptRun& run) {
+  if (!since) return call.responder->answer(since.error());
+  with_run(call, [since = *since](const KeptRun& run) {
     return fresh("application/json", codec::to_json(map_view(run.picture, since)));
   });
 }
 
-std::unique_ptr<intake::BodySink> KeptRunsRoutes::tile(const Call& call) {
+void KeptRunsRoutes::tile(const Call& call) {
   const auto asked = tile_asked(call.head, std::span(call.parameters).subspan(1));
-  if (!asked) {
-    call.responder->answer(asked.error());
-    return nullptr;
-  }
-  return with_run(call, [asked = *asked](const KeptRun& run) { return tile_of(run.picture, asked); });
+  if (!asked) return call.responder->answer(asked.error());
+  with_run(call, [asked = *asked](const KeptRun& run) { return tile_of(run.picture, asked); });
 }
 
-std::unique_ptr<intake::BodySink> KeptRunsRoutes::tracks(const Call& call) {
-  return with_run(
-      call, [](const KeptRun& run) { return fresh("application/json", codec::to_json(Tracks{run.tracks})); });
+void KeptRunsRoutes::tracks(const Call& call) {
+  with_run(call,
+           [](const KeptRun& run) { return fresh("application/json", codec::to_json(Tracks{run.tracks})); });
 }
 
-std::unique_ptr<intake::BodySink> KeptRunsRoutes::plots(const Call& call) {
-  return with_run(call,
-                  [](const KeptRun& run) { return fresh("application/json", codec::to_json(run.history)); });
+void KeptRunsRoutes::plots(const Call& call) {
+  with_run(call, [](const KeptRun& run) { return fresh("application/json", codec::to_json(run.history)); });
 }
 
 /// The reports of a run, some in each turn of the loop.
@@ -128,17 +113,11 @@ struct KeptRunsRoutes::Gathering {
   std::shared_ptr<intake::Responder> responder;
 };
 
-std::unique_ptr<intake::BodySink> KeptRunsRoutes::report(const Call& call) {
+void KeptRunsRoutes::report(const Call& call) {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  if (row == nullptr) {
-    call.responder->answer(no_such_run());
-    return nullptr;
-  }
-  const auto gathering =
-      std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder);
-  return std::make_unique<SmallBody>(call.responder, 0,
-                                     [this, gathering](const std::string&) { gather(gathering); });
+  if (row == nullptr) return call.responder->answer(no_such_run());
+  gather(std::make_shared<Gathering>(row->key, row->run, 0, std::vector<ReportDetail>(), call.responder));
 }
 
 void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {

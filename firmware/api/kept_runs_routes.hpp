@@ -28,12 +28,12 @@ class KeptRunsRoutes {
 
   intake::Answer list() const;
   intake::Answer one(const Call& call) const;
-  std::unique_ptr<intake::BodySink> layers(const Call& call);
-  std::unique_ptr<intake::BodySink> tile(const Call& call);
-  std::unique_ptr<intake::BodySink> tracks(const Call& call);
-  std::unique_ptr<intake::BodySink> plots(const Call& call);
+  void layers(const Call& call);
+  void tile(const Call& call);
+  void tracks(const Call& call);
+  void plots(const Call& call);
   /// The report to print, as HTML.
-  std::unique_ptr<intake::BodySink> report(const Call& call);
+  void report(const Call& call);
   void remove(const Call& call);
 
  private:
@@ -43,8 +43,7 @@ class KeptRunsRoutes {
     Answering answer;
   };
   struct Gathering;
-  std::unique_ptr<intake::BodySink> with_run(const Call& call, Answering answer);
-  void look(const std::string& key, Waiting asker);
+  void with_run(const Call& call, Answering answer);
   void came(const std::string& key, const std::shared_ptr<const KeptRun>& run);
   void gather(const std::shared_ptr<Gathering>& gathering);
   const RunRow* row_of(const RunList& list, const std::string& key) const;

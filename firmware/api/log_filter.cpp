@@ -6,16 +6,13 @@
 
 #include "api/number_in.hpp"
 #include "icd/letter_case.hpp"
+#include "icd/refuse.hpp"
 
 namespace adit::api {
 namespace {
 
 constexpr std::array<std::pair<std::string_view, int>, 5> kPriorities = {
     {{"error", 3}, {"warning", 4}, {"notice", 5}, {"info", 6}, {"debug", 7}}};
-
-std::unexpected<icd::Refusal> bad_request(std::string sentence) {
-  return std::unexpected(icd::Refusal{icd::Status::BadRequest, std::move(sentence)});
-}
 
 }  // namespace
 
@@ -30,12 +27,12 @@ icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
   if (const auto level = head.query("level"); !level.empty()) {
     const auto known = std::ranges::find(kPriorities, level, [](const auto& each) { return each.first; });
     if (known == kPriorities.end())
-      return bad_request("level: expected error, warning, notice, info or debug");
+      return icd::refuse(icd::Status::BadRequest, "level: expected error, warning, notice, info or debug");
     filter.severity = known->second;
   }
   if (const auto since = head.query("since"); !since.empty()) {
     const auto number = number_in<std::uint64_t>(since);
-    if (!number) return bad_request("since: expected the number of a record");
+    if (!number) return icd::refuse(icd::Status::BadRequest, "since: expected the number of a record");
     filter.after = *number;
   }
   return filter;

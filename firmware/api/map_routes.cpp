@@ -1,12 +1,9 @@
 #include "api/map_routes.hpp"
 
-#include <utility>
-
 #include "api/answers.hpp"
-#include "api/asked_number.hpp"
 #include "api/map_json.hpp"
 #include "api/map_tile.hpp"
-#include "api/small_body.hpp"
+#include "api/number_in.hpp"
 
 namespace adit::api {
 
@@ -30,21 +27,15 @@ intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
   return fresh("application/json", codec::to_json(Tracks{source_.tracks(since.number.value_or(0))}));
 }
 
-/// What is drawn is answered from the head alone. What is answered later needs something that takes the body,
-/// although there is none.
-std::unique_ptr<intake::BodySink> MapRoutes::tile(const Call& call) const {
-  auto asked = tile_asked(call.head, call.parameters);
-  if (!asked || asked->at.level >= 0 || !picture::is_in_world(asked->at)) {
-    call.responder->answer(asked ? tile_of(source_.map(), *asked) : asked.error());
-    return nullptr;
-  }
-  return std::make_unique<SmallBody>(
-      call.responder, 0, [this, responder = call.responder, asked = *std::move(asked)](const std::string&) {
-        finer_.tile(asked.layer, asked.at, [responder, asked](const icd::Checked<picture::Tile>& tile) {
-          responder->answer(tile ? finer_tile(*tile, asked)
-                                 : refusal(tile.error().status, tile.error().sentence));
-        });
-      });
+void MapRoutes::tile(const Call& call) const {
+  const auto asked = tile_asked(call.head, call.parameters);
+  if (!asked) return call.responder->answer(asked.error());
+  if (asked->at.level >= 0 || !picture::is_in_world(asked->at))
+    return call.responder->answer(tile_of(source_.map(), *asked));
+  finer_.tile(asked->layer, asked->at,
+              [responder = call.responder, asked = *asked](const icd::Checked<picture::Tile>& tile) {
+                responder->answer(tile ? finer_tile(*tile, asked) : refused(tile.error()));
+              });
 }
 
 }  // namespace adit::api

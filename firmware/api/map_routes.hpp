@@ -1,7 +1,5 @@
 #pragma once
 
-#include <memory>
-
 #include "api/finer_map.hpp"
 #include "api/route.hpp"
 #include "api/source.hpp"
@@ -15,7 +13,7 @@ class MapRoutes {
   MapRoutes(const Source& source, FinerMap& finer) : source_(source), finer_(finer) {}
 
   intake::Answer layers(const intake::RequestHead& head) const;
-  std::unique_ptr<intake::BodySink> tile(const Call& call) const;
+  void tile(const Call& call) const;
   intake::Answer markers(const intake::RequestHead& head) const;
   intake::Answer tracks(const intake::RequestHead& head) const;
 

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "api/answers.hpp"
-#include "api/asked_number.hpp"
 #include "api/number_in.hpp"
 #include "icd/sentence.hpp"
 #include "picture/png.hpp"

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "codec/gzip_whole.hpp"
 #include "intake/field_text.hpp"
@@ -40,34 +39,6 @@ bool pays(const intake::Answer& answer) {
          !has_header(answer, "ETag");
 }
 
-void pack(intake::Answer& answer) {
-  const std::span bytes(reinterpret_cast<const std::uint8_t*>(answer.body.data()), answer.body.size());
-  const auto member = codec::gzip_whole(bytes, codec::kFastestLevel, bytes.size());
-  if (!member) return;  // it would be longer
-  answer.body = member->to_string();
-  answer.headers.push_back({"Content-Encoding", "gzip"});
-}
-
-class PackingResponder final : public intake::Responder {
- public:
-  explicit PackingResponder(std::shared_ptr<intake::Responder> responder)
-      : responder_(std::move(responder)) {}
-  void answer(intake::Answer answer) override {
-    if (pays(answer)) {
-      answer.headers.push_back({"Vary", "Accept-Encoding"});
-      pack(answer);
-    }
-    responder_->answer(std::move(answer));
-  }
-  std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
-    return responder_->stream(content_type);
-  }
-  bool client_gone() const override { return responder_->client_gone(); }
-
- private:
-  const std::shared_ptr<intake::Responder> responder_;
-};
-
 }  // namespace
 
 bool takes_gzip(std::string_view accept_encoding) {
@@ -86,10 +57,14 @@ bool is_packed(const intake::Answer& answer) {
   return has_header(answer, "Content-Encoding");
 }
 
-std::shared_ptr<intake::Responder> packing(std::shared_ptr<intake::Responder> responder,
-                                           const intake::RequestHead& head) {
-  if (!takes_gzip(head.header("Accept-Encoding"))) return responder;
-  return std::make_shared<PackingResponder>(std::move(responder));
+void pack_if_it_pays(intake::Answer& answer) {
+  if (!pays(answer)) return;
+  answer.headers.push_back({"Vary", "Accept-Encoding"});
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(answer.body.data()), answer.body.size());
+  const auto member = codec::gzip_whole(bytes, codec::kFastestLevel, bytes.size());
+  if (!member) return;  // it would be longer
+  answer.body = member->to_string();
+  answer.headers.push_back({"Content-Encoding", "gzip"});
 }
 
 }  // namespace adit::api

@@ -5,7 +5,7 @@
 
 #include "codec/field.hpp"
 #include "codec/json.hpp"
-#include "icd/status.hpp"
+#include "icd/refuse.hpp"
 
 namespace adit::api {
 
@@ -13,7 +13,7 @@ namespace adit::api {
 template <class Message, class Read>
 icd::Checked<Message> read_body(const std::string& body, Read read) {
   const auto root = codec::parse_json(body);
-  if (!root) return std::unexpected(icd::Refusal{icd::Status::BadRequest, "expected JSON: " + root.error()});
+  if (!root) return icd::refuse(icd::Status::BadRequest, "expected JSON: ", root.error());
   codec::Reading reading;
   return reading.outcome<Message>(read(codec::Field(*root, reading)));
 }

@@ -30,10 +30,11 @@ class RedactedStream final : public intake::Stream {
 
 class RedactedResponder final : public intake::Responder {
  public:
-  RedactedResponder(std::shared_ptr<intake::Responder> responder, PresentRedaction redaction)
-      : responder_(std::move(responder)), redaction_(std::move(redaction)) {}
+  RedactedResponder(std::shared_ptr<intake::Responder> responder, PresentRedaction redaction, bool takes_gzip)
+      : responder_(std::move(responder)), redaction_(std::move(redaction)), takes_gzip_(takes_gzip) {}
   void answer(intake::Answer answer) override {
     if (!is_packed(answer)) redact(**redaction_, answer.content_type, answer.body);
+    if (takes_gzip_) pack_if_it_pays(answer);
     responder_->answer(std::move(answer));
   }
   std::shared_ptr<intake::Stream> stream(std::string_view content_type) override {
@@ -46,6 +47,7 @@ class RedactedResponder final : public intake::Responder {
  private:
   const std::shared_ptr<intake::Responder> responder_;
   const PresentRedaction redaction_;
+  const bool takes_gzip_;
 };
 
 }  // namespace
@@ -62,8 +64,9 @@ void redact(const icd::Redaction& redaction, std::string_view content_type, std:
 }
 
 std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
-                                            PresentRedaction redaction) {
-  return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction));
+                                            PresentRedaction redaction, const intake::RequestHead& head) {
+  return std::make_shared<RedactedResponder>(std::move(responder), std::move(redaction),
+                                             takes_gzip(head.header("Accept-Encoding")));
 }
 
 }  // namespace adit::api

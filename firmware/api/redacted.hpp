@@ -16,8 +16,8 @@ using PresentRedaction = std::shared_ptr<const SharedRedaction>;
 /// Out of a body of that Content-Type; out of pictures, archives and the page's own files nothing.
 void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body);
 
-/// Passes answers and streams on, redacted.
+/// Passes answers and streams on, redacted; answers under gzip if `head` takes it and it pays (packed.hpp).
 std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
-                                            PresentRedaction redaction);
+                                            PresentRedaction redaction, const intake::RequestHead& head);
 
 }  // namespace adit::api

@@ -6,7 +6,6 @@
 #include "api/answers.hpp"
 #include "api/number_in.hpp"
 #include "api/reports_csv.hpp"
-#include "api/small_body.hpp"
 #include "codec/body_decoder.hpp"
 #include "codec/field.hpp"
 #include "codec/read.hpp"
@@ -27,34 +26,29 @@ intake::Answer no_such(std::int64_t number) {
 
 }  // namespace
 
-std::unique_ptr<intake::BodySink> ReportRoutes::listed(const Call& call, ListForm form,
-                                                       intake::Answer begun) const {
+void ReportRoutes::listed(const Call& call, ListForm form, intake::Answer begun) const {
   std::optional<std::int64_t> run;
   if (const auto named = call.head.query("run"); !named.empty() && named != kAll) {
     run = named == kPresent ? source_.view().run_number : number_in<std::int64_t>(named);
-    if (!run) {
-      call.responder->answer(
+    if (!run)
+      return call.responder->answer(
           refusal(icd::Status::BadRequest, "run: expected a run's number, present or all"));
-      return nullptr;
-    }
   }
   const auto answer = [responder = call.responder, begun = std::move(begun)](std::string list) mutable {
     begun.body = std::move(list);
     responder->answer(std::move(begun));
   };
-  return std::make_unique<SmallBody>(
-      call.responder, 0,
-      [this, form = std::move(form), run, answer](const std::string&) { lists_.write(form, run, answer); });
+  lists_.write(std::move(form), run, answer);
 }
 
-std::unique_ptr<intake::BodySink> ReportRoutes::list(const Call& call) const {
-  return listed(call, json_list(), fresh("application/json", ""));
+void ReportRoutes::list(const Call& call) const {
+  listed(call, json_list(), fresh("application/json", ""));
 }
 
-std::unique_ptr<intake::BodySink> ReportRoutes::csv(const Call& call) const {
+void ReportRoutes::csv(const Call& call) const {
   auto begun = fresh("text/csv; charset=utf-8; header=present", "");
   begun.headers.push_back({"Content-Disposition", "attachment; filename=\"adit-reports.csv\""});
-  return listed(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""}, std::move(begun));
+  listed(call, {.begin = csv_header(), .row = csv_line, .between = "", .end = ""}, std::move(begun));
 }
 
 intake::Answer ReportRoutes::one(std::int64_t number) const {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <string>
 
 #include "api/report_list.hpp"
@@ -17,8 +16,8 @@ class ReportRoutes {
   ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge)
       : lists_(lists), source_(source), operator_(judge) {}
 
-  std::unique_ptr<intake::BodySink> list(const Call& call) const;
-  std::unique_ptr<intake::BodySink> csv(const Call& call) const;
+  void list(const Call& call) const;
+  void csv(const Call& call) const;
   intake::Answer one(std::int64_t number) const;
   template <Action action>
   intake::Answer judge(std::int64_t number) {
@@ -28,7 +27,7 @@ class ReportRoutes {
 
  private:
   /// All of one run, which the request names (its number, "present" or "all"), answered as `begun` with them.
-  std::unique_ptr<intake::BodySink> listed(const Call& call, ListForm form, intake::Answer begun) const;
+  void listed(const Call& call, ListForm form, intake::Answer begun) const;
   intake::Answer judge(std::int64_t number, Action action);
 
   const ReportLists& lists_;

@@ -43,7 +43,7 @@ enum class Who : std::uint8_t {
 struct Body {
   std::string_view type;     // Content-Type; "": none, and what comes is read away
   std::size_t most = 0;      // bytes
-  bool as_it_comes = false;  // else the handler is called once it is whole
+  bool as_it_comes = false;  // to Handle::begin; else the handler is called once it is whole
 };
 
 /// Who asks.
@@ -62,10 +62,12 @@ struct Call {
   std::string body;
 };
 
-/// A member of one of the Handlers: one that answers, or one that begins to.
+/// A member of one of the Handlers, of one of three kinds; the others are null.
 struct Handle {
   intake::Answer (*answer)(const Handlers& handlers, const Call& call) = nullptr;
-  /// Answers later by Call::responder; may give what takes the body.
+  /// Answers by Call::responder, at once or later.
+  void (*answer_later)(const Handlers& handlers, const Call& call) = nullptr;
+  /// Gives what takes the body as it comes and answers; null: it has answered.
   std::unique_ptr<intake::BodySink> (*begin)(const Handlers& handlers, const Call& call) = nullptr;
 };
 

@@ -10,8 +10,9 @@ intake::Answer RunRoutes::run() const {
   return fresh("application/json", codec::to_json(source_.view()));
 }
 
-void RunRoutes::events(const Call& call) {
+std::unique_ptr<intake::BodySink> RunRoutes::events(const Call& call) {
   live_.open(*call.responder, entrance_.may_stay(call.asker));
+  return nullptr;
 }
 
 intake::Answer RunRoutes::begin_run() {

@@ -20,7 +20,7 @@ class RunRoutes {
       : source_(source), operator_(judge), live_(live), entrance_(entrance) {}
 
   intake::Answer run() const;
-  void events(const Call& call);
+  std::unique_ptr<intake::BodySink> events(const Call& call);
   intake::Answer begin_run();
   /// Instead of a ledger that cannot be read.
   intake::Answer begin_ledger();

@@ -9,6 +9,7 @@
 #include "api/settings_rows.hpp"
 #include "codec/field.hpp"
 #include "codec/json.hpp"
+#include "icd/refuse.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::api {
@@ -27,7 +28,7 @@ struct Posted {
 
 icd::Checked<Posted> read_posted(const std::string& body, bool with_base) {
   auto root = codec::parse_json(body);
-  if (!root) return std::unexpected(icd::Refusal{icd::Status::BadRequest, "expected JSON: " + root.error()});
+  if (!root) return icd::refuse(icd::Status::BadRequest, "expected JSON: ", root.error());
   codec::Reading reading;
   Posted posted;
   const Field object(*root, reading);

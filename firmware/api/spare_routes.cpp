@@ -5,6 +5,7 @@
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
 #include "api/small_body.hpp"
+#include "icd/sentence.hpp"
 #include "spare/sealed.hpp"
 
 namespace adit::api {
@@ -30,11 +31,10 @@ class ReceivingExport final : public intake::BodySink {
 
  private:
   void refuse_what_is_none() {
-    std::string why = spare::not_an_export(std::string_view(file_).substr(0, spare::kExportHead));
+    const std::string why = spare::not_an_export(std::string_view(file_).substr(0, spare::kExportHead));
     if (why.empty()) return;
     file_.clear();
-    std::exchange(done_,
-                  nullptr)(std::unexpected(icd::Refusal{icd::Status::UnprocessableEntity, std::move(why)}));
+    std::exchange(done_, nullptr)(icd::unprocessable(why));
   }
 
   std::function<void(icd::Checked<std::string>)> done_;
@@ -59,16 +59,14 @@ intake::Answer SpareRoutes::resume() {
   return after(spare_.resume());
 }
 
-std::unique_ptr<intake::BodySink> SpareRoutes::exported(const Call& call) {
-  const auto give = [responder = call.responder](icd::Checked<std::string> file) {
+void SpareRoutes::exported(const Call& call) {
+  spare_.export_to([responder = call.responder](icd::Checked<std::string> file) {
     if (!file) return responder->answer(refused(file.error()));
     auto answer = fresh("application/octet-stream", *std::move(file));
     answer.headers.push_back(
         {"Content-Disposition", std::string("attachment; filename=\"") + kFileName + "\""});
     responder->answer(std::move(answer));
-  };
-  return std::make_unique<SmallBody>(call.responder, 0,
-                                     [this, give](const std::string&) { spare_.export_to(give); });
+  });
 }
 
 void SpareRoutes::to_stick(const Call& call) {

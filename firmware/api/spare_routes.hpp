@@ -18,7 +18,7 @@ class SpareRoutes {
   intake::Answer shown() const;
   intake::Answer stand_by();
   intake::Answer resume();
-  std::unique_ptr<intake::BodySink> exported(const Call& call);
+  void exported(const Call& call);
   void to_stick(const Call& call);
   intake::Answer from_stick(const std::string& body);
   std::unique_ptr<intake::BodySink> take_in(const Call& call);

@@ -7,6 +7,7 @@
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
 #include "codec/row.hpp"
+#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {
@@ -35,10 +36,10 @@ class Receiving final : public intake::BodySink {
  private:
   /// Else it is refused, and nothing more of it is taken.
   bool may_be_a_bundle() {
-    std::string why = update::not_a_bundle(head_, size_);
+    const std::string why = update::not_a_bundle(head_, size_);
     if (why.empty()) return true;
     upload_.reset();
-    done_(std::unexpected(icd::Refusal{icd::Status::UnprocessableEntity, std::move(why)}));
+    done_(icd::unprocessable(why));
     return false;
   }
 

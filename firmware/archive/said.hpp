@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "api/history.hpp"
+#include "api/kept_runs.hpp"
 #include "api/scene.hpp"
 #include "picture/mosaic.hpp"
 

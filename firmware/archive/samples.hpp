@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "api/history.hpp"
+#include "api/kept_runs.hpp"
 #include "archive/said.hpp"
 
 namespace adit::archive {

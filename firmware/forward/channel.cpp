@@ -44,16 +44,8 @@ bool comes_from_another(const uplink::Outcome& outcome, dispatch::Body body) {
 
 }  // namespace
 
-Channel::Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
-                 std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within)
-    : loop_(loop), name_(name) {
-  under_way_.reserve(2);
-  take({std::move(endpoint), std::move(token), answer_within});
-}
-
-void Channel::lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
-                      std::chrono::milliseconds answer_within) {
-  next_ = {std::move(endpoint), std::move(token), answer_within};
+Channel::Channel(loop::Loop& loop, const char* name, Way way) : loop_(loop), name_(name) {
+  take(std::move(way));
 }
 
 bool Channel::leads_elsewhere(const Way& way) const {
@@ -111,7 +103,7 @@ void Channel::send(icd::Uri uri, std::string_view content_type, icd::ChunkedByte
                      .longest_answer = longest_answer_to(uri),
                      .last_byte_not_before = last_byte_not_before},
                     [this, under_way](uplink::Outcome outcome) { ended(under_way, std::move(outcome)); });
-  under_way_.push_back(under_way);  // has room
+  under_way_.push_back(under_way);
 }
 
 void Channel::get_ready() {
@@ -179,6 +171,17 @@ std::string Channel::trouble() const {
   if (!connection_) return std::string("no ") + name_ + " token is set";
   if (!trouble_.empty()) return trouble_;
   return connected() ? "" : connection_->trouble();
+}
+
+Way way_to_scoring(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token) {
+  return {endpoint_of(command_post, command_post.scoring, 0), std::move(token),
+          command_post.timeouts.scoring_answer};
+}
+
+Way way_to_mapping(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token,
+                   std::uint64_t bytes_per_second) {
+  return {endpoint_of(command_post, command_post.mapping, bytes_per_second), std::move(token),
+          command_post.timeouts.mapping_answer};
 }
 
 uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,

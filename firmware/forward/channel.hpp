@@ -13,20 +13,25 @@
 
 namespace adit::forward {
 
-/// The way to an endpoint of the Command Post, and its state: one request at a time, or a second one that
-/// goes ahead (uplink::Connections). Without a token it is not opened.
+/// The way to an endpoint of the Command Post.
+struct Way {
+  uplink::Endpoint endpoint;
+  std::optional<icd::BearerToken> token;
+  std::chrono::milliseconds answer_within;
+};
+
+/// A connection to an endpoint of the Command Post, and its state: one request at a time, or a second one
+/// that goes ahead (uplink::Connections). Without a token it is not opened.
 ///
 /// If an answer redirects to the same path with a slash at its end, each later path has one, until such a
 /// path is unknown there. It sends nothing again itself, and it does not learn from a report.
 class Channel {
  public:
   /// `name`: of the endpoint, "scoring" or "mapping".
-  Channel(loop::Loop& loop, const char* name, uplink::Endpoint endpoint,
-          std::optional<icd::BearerToken> token, std::chrono::milliseconds answer_within);
+  Channel(loop::Loop& loop, const char* name, Way way);
 
-  /// Leads to `endpoint`, by a new connection, once no request is under way.
-  void lead_to(uplink::Endpoint endpoint, std::optional<icd::BearerToken> token,
-               std::chrono::milliseconds answer_within);
+  /// Leads there, by a new connection, once no request is under way.
+  void lead_to(Way way) { next_ = std::move(way); }
   /// If that is another place, ends what is under way now, in doubt: for messages that may be sent again.
   void give_up();
   /// To be asked before each request. True: from this call on it leads to another address, or has another
@@ -84,11 +89,6 @@ class Channel {
   std::uint64_t bytes_sent() const { return finished_bytes_ + (connection_ ? connection_->sent_bytes() : 0); }
 
  private:
-  struct Way {
-    uplink::Endpoint endpoint;
-    std::optional<icd::BearerToken> token;
-    std::chrono::milliseconds answer_within;
-  };
   struct UnderWay {
     loop::Instant sent_at;
     icd::Uri uri;
@@ -121,7 +121,11 @@ class Channel {
   std::string trouble_;
 };
 
-/// Where an endpoint is by the settings; maps are paced within the link's budget.
+/// The ways by the settings; maps are paced within the link's budget.
+Way way_to_scoring(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token);
+Way way_to_mapping(const settings::CommandPost& command_post, std::optional<icd::BearerToken> token,
+                   std::uint64_t bytes_per_second = 0);
+/// Where an endpoint is by the settings.
 uplink::Endpoint endpoint_of(const settings::CommandPost& command_post, const settings::Address& address,
                              std::uint64_t bytes_per_second);
 

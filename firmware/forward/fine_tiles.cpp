@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "icd/refuse.hpp"
+
 namespace adit::forward {
 namespace {
 
@@ -55,10 +57,8 @@ void FineTiles::tile(const picture::Layer& layer, const picture::TileAt& at, Don
   if (const auto* tiles = found(place, now)) return done((*tiles)[picture::place_in_block(at)]);
   std::size_t waiting = 0;
   for (const auto& [each, askers] : askers_) waiting += askers.size();
-  if (waiting == kMostAskers) {
-    return done(std::unexpected(
-        icd::Refusal{icd::Status::ServiceUnavailable, "too many requests for tiles; try again later"}));
-  }
+  if (waiting == kMostAskers)
+    return done(icd::refuse(icd::Status::ServiceUnavailable, "too many requests for tiles; try again later"));
   auto& askers = askers_[place];
   if (askers.empty()) waiting_.push_back(place);
   askers.push_back({at, std::move(done)});
@@ -102,7 +102,7 @@ void FineTiles::drawn(const Job& job) {
     if (job.tiles) {
       asker.done((*job.tiles)[picture::place_in_block(asker.at)]);
     } else {
-      asker.done(std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "no memory"}));
+      asker.done(icd::refuse(icd::Status::ServiceUnavailable, "no memory"));
     }
   }
   pump();

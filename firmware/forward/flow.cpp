@@ -5,23 +5,16 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "icd/refuse.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::forward {
-
-namespace {
-
-std::unexpected<icd::Refusal> unavailable(const std::string& why) {
-  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, why});
-}
-
-}  // namespace
 
 std::shared_ptr<intake::MapArrival> Flow::map_arrives() {
   return maps_.arrives([this](icd::MapUpdate update, const intake::Sender& sender,
                               std::shared_ptr<spool::MapFile> file,
                               std::function<void(icd::Checked<void>)> done) {
-    if (!standby_.empty()) return done(unavailable(standby_));
+    if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
     take(std::move(update), sender, std::move(file), std::move(done));
   });
 }
@@ -34,14 +27,14 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
 }
 
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
-  if (!standby_.empty()) return unavailable(standby_);
+  if (!standby_.empty()) return icd::refuse(icd::Status::ServiceUnavailable, standby_);
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
   if (auto room = telemetry_.has_room_for(update); !room) return room;
   return telemetry_.take(clocks_.stamped(update, sender), sender.bytes);
 }
 
 void Flow::take(icd::MarkersUpdate update, const intake::Sender& sender, MarkerArrivals::Done done) {
-  if (!standby_.empty()) return done(unavailable(standby_));
+  if (!standby_.empty()) return done(icd::refuse(icd::Status::ServiceUnavailable, standby_));
   clocks_.stamp(update, sender);
   telemetry_.take(std::move(update), sender.bytes, std::move(done));
 }

@@ -43,7 +43,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       clocks_(loop, journal_, folders.state),
       rejected_(loop, writer_, folders.runtime + "/rejected"),
       record_([this] { changed(); }),
-      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_),
+      scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, clocks_),
       picture_(loop, workers_, [this] { changed(); }),
       maps_(loop, workers_, writer_, spool_, settings, tokens_.mapping, record_, rejected_, random_, journal_,
             [this](icd::MapUpdate map) { picture_.forwarded(std::move(map)); }),
@@ -76,7 +76,6 @@ void Flow::carry_on() {
   const bool is_first = !carried.clock();
   clocks_.carry_on(carried, host::boot());
   scoring_.carry_on(carried);
-  scoring_.go_by(clocks_);
   maps_.carry_on(carried, clocks_.ran_before());
   telemetry_.carry_on(carried);
   restore(is_first);

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "icd/refuse.hpp"
+
 namespace adit::forward {
 
 MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
@@ -32,10 +34,8 @@ void MapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedB
 icd::Checked<icd::ChunkedBytes> MapArrival::stored() {
   if (!stored_->file || stored_->file->stored_bytes() == 0) return {};
   icd::ChunkedBytes data = stored_->file->stored();
-  if (data.empty()) {
-    return std::unexpected(
-        icd::Refusal{icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"});
-  }
+  if (data.empty())
+    return icd::refuse(icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later");
   return data;
 }
 

@@ -4,6 +4,7 @@
 #include <variant>
 
 #include "host/log.hpp"
+#include "icd/refuse.hpp"
 #include "lanes/map_lane.hpp"
 
 namespace adit::forward {
@@ -22,7 +23,7 @@ bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
 struct MapPicture::Job {
   Waiting waiting;
   picture::Canvas canvas;
-  icd::Checked<picture::Drawing> drawing{};
+  icd::Checked<picture::Drawing> drawing = icd::refuse(icd::Status::ServiceUnavailable, "no memory");
   std::shared_ptr<const picture::ForwardedGrid> forwarded{};  // null: a cloud
 };
 
@@ -95,11 +96,7 @@ void MapPicture::draw(Waiting waiting) {
         job->forwarded = picture::forwarded_grid(job->waiting.map);
         job->waiting.map.data = {};  // here: that takes milliseconds of a file that is mapped
       },
-      [this, job] { drawn(*job); },
-      [this, job] {
-        job->drawing = std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "no memory"});
-        drawn(*job);
-      });
+      [this, job] { drawn(*job); });
 }
 
 void MapPicture::drawn(Job& job) {

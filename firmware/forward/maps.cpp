@@ -50,9 +50,8 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       rejected_(rejected),
       taken_(std::move(taken)),
       channel_(loop, "mapping",
-               endpoint_of(settings.command_post, settings.command_post.mapping,
-                           pace::map_bytes_per_second(settings.command_post.budget_mbit)),
-               std::move(token), settings.command_post.timeouts.mapping_answer),
+               way_to_mapping(settings.command_post, std::move(token),
+                              pace::map_bytes_per_second(settings.command_post.budget_mbit))),
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
@@ -87,8 +86,7 @@ void Maps::settings_changed() {
 
 void Maps::endpoint_changed(std::optional<icd::BearerToken> token) {
   const settings::CommandPost& post = settings_.command_post;
-  channel_.lead_to(endpoint_of(post, post.mapping, pace::map_bytes_per_second(post.budget_mbit)),
-                   std::move(token), post.timeouts.mapping_answer);
+  channel_.lead_to(way_to_mapping(post, std::move(token), pace::map_bytes_per_second(post.budget_mbit)));
   points_.forget();
   channel_.give_up();
   pump();

@@ -94,7 +94,6 @@ class Maps {
   bool packing() const { return preparing_; }
   const Channel& channel() const { return channel_; }
   std::size_t queued_bytes() const { return lane_.bytes(); }
-  bool nearly_full() const { return lane_.bytes() > settings_.queues.map_bytes / 5 * 4; }
   std::size_t waiting(const Traffic& traffic) const;
   /// When the oldest news that waits or is under way was accepted; nothing if there is none.
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;

@@ -21,7 +21,7 @@ void Maps::compare() {
   workers_.submit(
       loop::Urgency::OnTheWay,
       [it] { it->has_all = pack::has_all_points(it->two.newer, it->two.older, it->two.point_step); },
-      [this, it] { compared(it->two, it->has_all); }, [this, it] { compared(it->two, false); });
+      [this, it] { compared(it->two, it->has_all); });
   comparing_ = true;
 }
 

@@ -10,7 +10,7 @@
 namespace adit::forward {
 namespace {
 
-/// For a writer that threw.
+/// Until the writer has kept it.
 icd::Refusal not_kept() {
   return {icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"};
 }
@@ -46,19 +46,18 @@ std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
 void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
                 std::function<void(icd::Checked<void>)> done) {
   const bool replaces = lane_.replaces_any(update);
+  const auto refuse = [&](icd::Refusal why) {
+    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
+    done(std::unexpected(std::move(why)));
+  };
   if (!has_room_for(update, replaces)) {
     record_.no_room(traffic_of(update), loop_.wall_now());
-    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
-    return done(std::unexpected(icd::Refusal{
-        icd::Status::TooManyRequests,
-        icd::sentence("the queue is full: ", lane_.count() + static_cast<std::size_t>(being_kept_), " maps, ",
-                      (lane_.bytes() + bytes_being_kept_) / 1000000,
-                      " MB; this map was not accepted, send it again later")}));
+    return refuse({icd::Status::TooManyRequests,
+                   icd::sentence("the queue is full: ", lane_.count() + static_cast<std::size_t>(being_kept_),
+                                 " maps, ", (lane_.bytes() + bytes_being_kept_) / 1000000,
+                                 " MB; this map was not accepted, send it again later")});
   }
-  if (!is_told(update)) {
-    if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
-    return done(std::unexpected(not_kept()));
-  }
+  if (!is_told(update)) return refuse(not_kept());
   const auto keeping = std::make_shared<Keeping>();
   keeping->bytes_received = bytes_received;
   // Only a grid or a whole cloud is replaced as it comes, and the newer one must find room beside it.
@@ -81,11 +80,7 @@ std::uint64_t Maps::next_number(bool again) {
 void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
   keeping->number = next_number(keeping->again.has_value());
   keeping->size = keeping->update.data.bytes.size();
-  const auto over = [this, keeping, told] {
-    --being_kept_;
-    bytes_being_kept_ -= keeping->size;
-    told(*keeping);
-  };
+  keeping->kept = std::unexpected(not_kept());
   writer_.submit(
       [&spool = spool_, keeping] {
         keeping->says_nothing = !keeping->again && pack::has_only_invalid_points(keeping->update);
@@ -94,10 +89,10 @@ void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<voi
                             : spool.keep(keeping->number, std::move(keeping->update), keeping->spare,
                                          std::move(keeping->file));
       },
-      over,
-      [keeping, over] {
-        keeping->kept = std::unexpected(not_kept());
-        over();
+      [this, keeping, told] {
+        --being_kept_;
+        bytes_being_kept_ -= keeping->size;
+        told(*keeping);
       });
   ++being_kept_;
   bytes_being_kept_ += keeping->size;

@@ -97,14 +97,11 @@ void MarkerArrivals::make_record(const Arrival& arrival) {
       [this, made] {
         arrivals_.front().record = std::move(*made);
         go(&MarkerArrivals::keep);
-      },
-      [this] {
-        fail(arrivals_.front(), no_memory());
-        end();
       });
 }
 
 bool MarkerArrivals::keep(Arrival& arrival) {
+  if (arrival.record.empty()) return fail(arrival, no_memory());
   if (const auto kept = journal_.accepted_markers(arrival.record); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
                           "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});

@@ -12,8 +12,15 @@ class Meter {
   static constexpr std::size_t kSeconds = 5;
 
   /// To be called once a second with the number of bytes that have left in all.
-  void second(std::uint64_t bytes);
-  double mbit() const;
+  void second(std::uint64_t bytes) {
+    bytes_.push_back(bytes);
+    if (bytes_.size() > kSeconds + 1) bytes_.pop_front();
+  }
+  double mbit() const {
+    if (bytes_.size() < 2) return 0;
+    const auto bytes = static_cast<double>(bytes_.back() - bytes_.front());
+    return bytes * 8 / 1e6 / static_cast<double>(bytes_.size() - 1);
+  }
 
  private:
   std::deque<std::uint64_t> bytes_;  // in all, at each of the last seconds

@@ -194,7 +194,7 @@ void RejectedStore::keep(const lanes::RejectedMessage& item, Origin origin) {
                   {{"why", written.error()}});
       },
       [this, well, number = item.number, origin = std::move(origin)] { kept(number, *well, origin); });
-  ++being_written_;  // only now: where it could not be submitted, nothing is
+  ++being_written_;
 }
 
 void RejectedStore::kept(std::uint64_t number, bool well, const Origin& origin) {

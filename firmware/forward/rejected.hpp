@@ -40,7 +40,7 @@ class RejectedStore {
   void add(lanes::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
   /// The Command Post took it: what it says all of is not to be sent again, in a life to come neither.
   /// Whoever keeps the message forgets it only once that is written: then `written` is called, on the loop.
-  /// False: there is nothing to write, and `written` is not called. If this throws, no message is replaced.
+  /// False: there is nothing to write, and `written` is not called.
   bool taken(const lanes::Message& message, std::function<void()> written = [] {});
   bool empty() const { return items_.items().empty(); }
   /// What made place for newer ones and was not replaced, ever.

@@ -33,15 +33,15 @@ intake::Answer no_status_in(const uplink::Answered& answered) {
 
 Scoring::Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
                  std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-                 journal::Journal& journal)
+                 journal::Journal& journal, Clocks& clocks)
     : loop_(loop),
       ledger_(ledger),
       settings_(settings),
       record_(record),
       output_(loop, ledger),
+      clocks_(clocks),
       reports_(std::make_unique<dispatch::Reports>(rules_of(settings.reports), output_)),
-      channel_(loop, "scoring", endpoint_of(settings.command_post, settings.command_post.scoring, 0),
-               std::move(token), settings.command_post.timeouts.scoring_answer),
+      channel_(loop, "scoring", way_to_scoring(settings.command_post, std::move(token))),
       pace_(settings.command_post.rates, random, journal),
       wake_(loop.timer([this] { pump(); })),
       poll_(loop.timer([this] { poll(); })),
@@ -58,7 +58,7 @@ void Scoring::start() {
 /// run.
 void Scoring::open_reports() {
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
-  if (clocks_ != nullptr) next->leapt(clocks_->leap());
+  next->leapt(clocks_.leap());
   next->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address(), *reports_);
   reports_ = std::move(next);
 }
@@ -70,9 +70,8 @@ void Scoring::settings_changed() {
 }
 
 void Scoring::endpoint_changed(std::optional<icd::BearerToken> token) {
-  const settings::CommandPost& post = settings_.command_post;
-  channel_.lead_to(endpoint_of(post, post.scoring, 0), std::move(token), post.timeouts.scoring_answer);
-  if (channel_.busy()) reports_->will_move(address_text(post.scoring), time());
+  channel_.lead_to(way_to_scoring(settings_.command_post, std::move(token)));
+  if (channel_.busy()) reports_->will_move(address_text(settings_.command_post.scoring), time());
   pump();
 }
 
@@ -215,7 +214,7 @@ void Scoring::send(const dispatch::Report& report) {
 /// Before what it says is judged, which goes by how long nothing was heard.
 void Scoring::hear_time() {
   const auto there = channel_.time_there();
-  if (clocks_ != nullptr && there && clocks_->hear(*there)) reports_->leapt(clocks_->leap());
+  if (there && clocks_.hear(*there)) reports_->leapt(clocks_.leap());
 }
 
 void Scoring::report_answered(const uplink::Outcome& outcome) {

@@ -42,9 +42,10 @@ class Scoring {
   /// So long a report waits for the answer to a status that no report needs; then that is given up.
   static constexpr std::chrono::milliseconds kGivesWayAfter{200};
 
+  /// `clocks`: tell how far the clock that the ledger was written by has leapt since. All outlive this.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
-          journal::Journal& journal);
+          journal::Journal& journal, Clocks& clocks);
 
   void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
   /// As if something had just been sent: the flow before may have.
@@ -56,9 +57,6 @@ class Scoring {
   /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
   /// the place is another, what is known of the run is forgotten; clients whose reports wait go on waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// Before start(): what the ledger holds was written by a clock that has leapt since. `clocks` outlives
-  /// this.
-  void go_by(Clocks& clocks) { clocks_ = &clocks; }
   /// Before start(): connects to nobody, and sends nothing.
   void stand_by() { stopping_ = true; }
   /// Begins with what the ledger holds, and connects.
@@ -135,7 +133,7 @@ class Scoring {
   const settings::Settings& settings_;
   Record& record_;
   ReportOutput output_;
-  Clocks* clocks_ = nullptr;                    // without them no clock has leapt
+  Clocks& clocks_;
   std::unique_ptr<dispatch::Reports> reports_;  // never null
   Channel channel_;
   ScoringPace pace_;

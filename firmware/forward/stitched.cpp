@@ -7,6 +7,7 @@
 #include "codec/map_pieces.hpp"
 #include "codec/read.hpp"
 #include "codec/write.hpp"
+#include "icd/refuse.hpp"
 #include "lanes/lattice.hpp"
 #include "pack/pack.hpp"
 #include "pack/pack_cells.hpp"
@@ -26,8 +27,7 @@ std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::M
   std::size_t left = static_cast<std::size_t>(under.cells.width * under.cells.height);
   const auto read =
       codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
-        if (piece.size() > left)
-          return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "it has too many cells"});
+        if (piece.size() > left) return icd::refuse(icd::Status::ServiceUnavailable, "it has too many cells");
         left -= piece.size();
         drawing.feed(piece);
         return {};
@@ -86,8 +86,7 @@ icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting) {
   std::vector<pack::Tile> tiles;
   for (const lanes::WaitingMap& part : waiting.parts) {
     const auto cells = lanes::cells_in(grid, std::get<icd::OccupancyGrid>(part.map.msg));
-    if (!cells)
-      return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable, "it is of another lattice"});
+    if (!cells) return icd::refuse(icd::Status::ServiceUnavailable, "it is of another lattice");
     tiles.push_back({part.map.data, static_cast<std::size_t>(cells->x), static_cast<std::size_t>(cells->y),
                      static_cast<std::size_t>(cells->width), static_cast<std::size_t>(cells->height)});
   }

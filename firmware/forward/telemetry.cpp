@@ -7,20 +7,11 @@
 
 #include "codec/write.hpp"
 #include "dispatch/turn.hpp"
+#include "icd/refuse.hpp"
 
 namespace adit::forward {
 
 namespace {
-
-std::unexpected<icd::Refusal> full(const char* of) {
-  return std::unexpected(icd::Refusal{icd::Status::TooManyRequests,
-                                      std::string("not accepted: ") + of + "; send it again later"});
-}
-
-std::unexpected<icd::Refusal> not_kept(const std::string& why) {
-  return std::unexpected(icd::Refusal{icd::Status::ServiceUnavailable,
-                                      "not accepted: it cannot be stored: " + why + "; send it again later"});
-}
 
 /// Markers that are written in the turn of the loop that takes them.
 constexpr std::size_t kAtOnce = 500;
@@ -42,8 +33,7 @@ Telemetry::Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::S
       rejected_(rejected),
       journal_(journal),
       as_forwarded_(as_forwarded),
-      channel_(loop, "mapping", endpoint_of(settings.command_post, settings.command_post.mapping, 0),
-               std::move(token), settings.command_post.timeouts.mapping_answer),
+      channel_(loop, "mapping", way_to_mapping(settings.command_post, std::move(token))),
       state_pace_(icd::Uri::StateUpdate, settings.command_post.rates.state_hz, random, journal),
       markers_pace_(icd::Uri::MarkersUpdate, settings.command_post.rates.markers_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
@@ -77,8 +67,7 @@ void Telemetry::settings_changed() {
 }
 
 void Telemetry::endpoint_changed(std::optional<icd::BearerToken> token) {
-  const settings::CommandPost& post = settings_.command_post;
-  channel_.lead_to(endpoint_of(post, post.mapping, 0), std::move(token), post.timeouts.mapping_answer);
+  channel_.lead_to(way_to_mapping(settings_.command_post, std::move(token)));
   channel_.give_up();
   pump();
 }
@@ -97,13 +86,15 @@ icd::Checked<void> Telemetry::has_room_for(const icd::StateUpdate& update) {
   if (state_.has_room_for(update)) return {};
   for (const icd::NamedPose& pose : update.poses)
     record_.no_room({Kind::State, pose.name.text()}, loop_.wall_now());
-  return full("too many robots");
+  return icd::refuse(icd::Status::TooManyRequests, "not accepted: too many robots; send it again later");
 }
 
 icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses,
                                    std::size_t bytes_received) noexcept {
   const std::vector<lanes::PostedPose> news = state_.news_in(poses);
-  if (const auto kept = journal_.accepted(news); !kept) return not_kept(kept.error());
+  if (const auto kept = journal_.accepted(news); !kept)
+    return icd::refuse(icd::Status::ServiceUnavailable, "not accepted: it cannot be stored: ", kept.error(),
+                       "; send it again later");
   for (const lanes::PostedPose& pose : poses)
     record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
   state_.add(news, loop_.now());

@@ -82,8 +82,8 @@ class UriPace {
     rate_.lost(now);
     keep();
   }
-  /// It failed, but may have been heard. Allocates no memory: what sent() wrote makes the next life wait as
-  /// long.
+  /// It failed, but may have been heard. The journal need not be told: what sent() wrote makes the next
+  /// process wait as long.
   void lost(pace::Instant now) {
     rate_.lost(now);
     failed(now);

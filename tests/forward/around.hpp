@@ -2,6 +2,7 @@
 
 #include <random>
 
+#include "forward/clocks.hpp"
 #include "forward/record.hpp"
 #include "forward/rejected.hpp"
 #include "host/folder.hpp"
@@ -33,6 +34,7 @@ struct AroundMaps : Around {
 };
 
 struct AroundScoring : Around {
+  Clocks clocks_{loop_, journal_, folder_.path()};
   ledger::Ledger ledger_ = std::move(*ledger::Ledger::open(folder_.path()));
 };
 

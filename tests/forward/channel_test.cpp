@@ -22,8 +22,9 @@ class ChannelTest : public testing::Test {
   /// The channel after one request that was answered so.
   std::unique_ptr<Channel> asked(icd::Uri uri, const std::string& answer) {
     peer_.emplace([answer](uplink::Wire& wire) { wire.read_request(), wire.write(answer); });
-    auto channel = std::make_unique<Channel>(loop_, "mapping", peer_->endpoint(),
-                                             icd::BearerToken::parse("a-token"), std::chrono::seconds{20});
+    auto channel = std::make_unique<Channel>(
+        loop_, "mapping",
+        Way{peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
     bool done = false;
     channel->send(uri, "", {}, [&done](const uplink::Outcome&) { done = true; });
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return done; }));
@@ -101,7 +102,7 @@ TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
     wire.write(uplink::answer("429 TOO MANY REQUESTS", R"("slowly")"));
   });
   const auto token = icd::BearerToken::parse("a-token");
-  Channel channel(loop_, "mapping", peer_->endpoint(), token, std::chrono::seconds{20});
+  Channel channel(loop_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}});
   std::vector<int> answers;
   const auto ask = [&] {
     channel.send(icd::Uri::Status, "", {}, [&](const uplink::Outcome& outcome) {
@@ -110,7 +111,7 @@ TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
     });
   };
   ask();
-  channel.lead_to(there.endpoint(), token, std::chrono::seconds{20});
+  channel.lead_to({there.endpoint(), token, std::chrono::seconds{20}});
   EXPECT_FALSE(channel.turns());
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers.size() == 1; }));
   EXPECT_EQ(channel.last_status(), 429);
@@ -126,16 +127,16 @@ TEST_F(ChannelTest, LeadsElsewhereOnceTheRequestUnderWayHasEnded) {
 TEST_F(ChannelTest, GivesUpWhatIsUnderWayOnlyWhereItIsToLeadElsewhere) {
   peer_.emplace([](uplink::Wire& wire) { wire.read_request(), wire.read_request(); });  // and says nothing
   const auto token = icd::BearerToken::parse("a-token"), another = icd::BearerToken::parse("another-token");
-  Channel channel(loop_, "mapping", peer_->endpoint(), token, std::chrono::seconds{20});
+  Channel channel(loop_, "mapping", {peer_->endpoint(), token, std::chrono::seconds{20}});
   std::vector<uplink::Outcome> outcomes;
   channel.send(icd::Uri::Status, "", {},
                [&](const uplink::Outcome& outcome) { outcomes.push_back(outcome); });
   channel.give_up();
-  channel.lead_to(peer_->endpoint(), token, std::chrono::seconds{10});
+  channel.lead_to({peer_->endpoint(), token, std::chrono::seconds{10}});
   channel.give_up();
   EXPECT_TRUE(channel.busy());
   EXPECT_THAT(outcomes, testing::IsEmpty());
-  channel.lead_to(peer_->endpoint(), another, std::chrono::seconds{10});
+  channel.lead_to({peer_->endpoint(), another, std::chrono::seconds{10}});
   channel.give_up();
   EXPECT_FALSE(channel.busy());
   ASSERT_EQ(outcomes.size(), 1u);
@@ -148,9 +149,9 @@ TEST_F(ChannelTest, GivesUpWhatIsUnderWayOnlyWhereItIsToLeadElsewhere) {
 
 TEST_F(ChannelTest, LeadsNowhereWithoutAToken) {
   peer_.emplace([](uplink::Wire&) {});
-  Channel channel(loop_, "mapping", peer_->endpoint(), std::nullopt, std::chrono::seconds{20});
+  Channel channel(loop_, "mapping", {peer_->endpoint(), std::nullopt, std::chrono::seconds{20}});
   EXPECT_FALSE(channel.has_token());
-  channel.lead_to(peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20});
+  channel.lead_to({peer_->endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
   EXPECT_TRUE(channel.turns());
   EXPECT_TRUE(channel.has_token());
 }
@@ -159,10 +160,10 @@ TEST_F(ChannelTest, TakesAnotherWayToTheSamePlaceAndKnowsWhatItKnew) {
   const auto channel = asked(icd::Uri::Status, uplink::answer("200 OK", "1"));
   uplink::Endpoint slower = peer_->endpoint();
   slower.connect_within = std::chrono::seconds{7};
-  channel->lead_to(slower, icd::BearerToken::parse("a-token"), std::chrono::seconds{20});
+  channel->lead_to({slower, icd::BearerToken::parse("a-token"), std::chrono::seconds{20}});
   EXPECT_FALSE(channel->turns());
   EXPECT_EQ(channel->last_status(), 200);
-  channel->lead_to(slower, icd::BearerToken::parse("another-token"), std::chrono::seconds{20});
+  channel->lead_to({slower, icd::BearerToken::parse("another-token"), std::chrono::seconds{20}});
   EXPECT_TRUE(channel->turns());
   EXPECT_EQ(channel->last_status(), 0);
 }
@@ -180,7 +181,7 @@ class SlashTest : public ChannelTest {
     return status;
   }
   void lead_to(const uplink::Endpoint& endpoint, const char* token) {
-    channel_.lead_to(endpoint, icd::BearerToken::parse(token), std::chrono::seconds{20});
+    channel_.lead_to({endpoint, icd::BearerToken::parse(token), std::chrono::seconds{20}});
     channel_.turns();
   }
 
@@ -195,8 +196,8 @@ class SlashTest : public ChannelTest {
     }
   };
   uplink::ListeningPeer here_{script_}, there_{script_};
-  Channel channel_{loop_, "mapping", here_.endpoint(), icd::BearerToken::parse("a-token"),
-                   std::chrono::seconds{20}};
+  Channel channel_{
+      loop_, "mapping", {here_.endpoint(), icd::BearerToken::parse("a-token"), std::chrono::seconds{20}}};
 };
 
 TEST_F(SlashTest, IsLearntFromEachRequestButAReport) {

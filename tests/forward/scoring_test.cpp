@@ -46,7 +46,7 @@ class ToPost : public testing::Test, protected AroundScoring {
         10min;  // no time-out of Adit's ends what these tests wait for
     journal_.begin({.boot = "b", .at = loop_.now(), .stamp = loop_.stamp_now()});
     scoring_.emplace(loop_, ledger_, settings_, icd::BearerToken::parse("a-token"), record_, random_,
-                     journal_);
+                     journal_, clocks_);
     scoring_->start();
   }
   bool comes(const std::function<bool()>& done) {

@@ -18,13 +18,11 @@ FileReturn::FileReturn(loop::Loop& loop, loop::Writer& writer, std::function<boo
 
 void FileReturn::look() {
   const auto can = std::make_shared<bool>(false);
-  writer_.submit([can, can_be_read = can_be_read_] { *can = can_be_read(); }, [this, can] { looked(*can); },
-                 [this] { looked(false); });
-}
-
-void FileReturn::looked(bool can_be_read) {
-  if (can_be_read) return is_back_();
-  timer_.call_at(loop_.now() + rest_);
+  writer_.submit([can, can_be_read = can_be_read_] { *can = can_be_read(); },
+                 [this, can] {
+                   if (*can) return is_back_();
+                   timer_.call_at(loop_.now() + rest_);
+                 });
 }
 
 }  // namespace adit::gateway

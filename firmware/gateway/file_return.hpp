@@ -21,7 +21,6 @@ class FileReturn {
 
  private:
   void look();
-  void looked(bool can_be_read);
 
   loop::Loop& loop_;
   loop::Writer& writer_;

@@ -38,7 +38,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       parts_(std::move(parts)),
       settings_(settings::in_use(parts_.loaded.settings)),
       disk_writer_(loop),
-      flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.state_folder},
+      flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.options.state},
             {.changed = [this] { api_.changed(); },
              .posted = [this](const std::string& name) { note_robot(name); }}),
       log_ins_(loop, 1),
@@ -49,9 +49,9 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
       roster_(settings_.robots),
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
-      accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.state_folder,
+      accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.options.state,
                 parts_.loaded.secrets.label_code),
-      adit_network_(loop, "adit-network", parts_.state_folder, parts_.network_folder,
+      adit_network_(loop, "adit-network", parts_.options.state, parts_.options.network,
                     admin::NetworkChange::kTakenUpWithin),
       setup_(
           parts_.store, parts_.reset, parts_.loaded, parts_.trouble,
@@ -61,7 +61,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
            [this](api::Usage& usage) { add_to(usage); }),
-      network_(loop, settings_, adit_network_, parts_.watch_folder),
+      network_(loop, settings_, adit_network_, parts_.options.watch),
       self_test_(
           loop, settings_,
           [this](const api::Candidate& candidate) {
@@ -70,10 +70,10 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           {.claim = [this](icd::Uri uri, loop::Instant latest) { return flow_.claim(uri, latest); },
            .claimed = [this](icd::Uri uri) { flow_.claimed(uri); }},
           adit_network_, network_, [this] { api_.changed(); }),
-      updates_(loop, disk_writer_, parts_.state_folder, parts_.update_folder,
+      updates_(loop, disk_writer_, parts_.options.state, parts_.options.update,
                [this] { return report_under_way(); }),
-      clock_(loop, parts_.state_folder, parts_.clock_folder, admin::ClockSetting::kChronyd),
-      spare_(loop, log_ins_, parts_.taking_over, parts_.state_folder, parts_.spare_folder,
+      clock_(loop, parts_.options.state, parts_.options.clock, admin::ClockSetting::kChronyd),
+      spare_(loop, log_ins_, parts_.taking_over, parts_.options.state, parts_.options.spare,
              unread().empty() ? parts_.stuck : unread(),
              {.content = [this] { return content(); },
               .is_time_set = [this] { return clock_.is_set().value_or(false); },
@@ -93,7 +93,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .spare = spare_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
-      acknowledged_(parts_.state_folder, disk_writer_),
+      acknowledged_(parts_.options.state, disk_writer_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
                  [this](intake::Ended why, const std::string& address) {
                    crowding_.ended(why, address, loop_.now());
@@ -103,13 +103,11 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       change_(loop.timer([this] { apply_change(); })) {
   const bool has_ledger = !parts_.ledger.is_closed();
   if (has_ledger && unread().empty()) return;
-  const auto all_can_be_read = [has_ledger, folder = parts_.state_folder, &store = parts_.store] {
+  const auto all_can_be_read = [has_ledger, folder = parts_.options.state, &store = parts_.store] {
     return (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() && can_be_read(folder);
   };
   file_return_.emplace(loop, disk_writer_, all_can_be_read, parts_.file_rest, [this] { state_is_back(); });
 }
-
-Gateway::~Gateway() = default;
 
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
@@ -225,7 +223,7 @@ void Gateway::every_second() {
   look_at_clock();
   flow_.tick(disk_writer_);
   links_.look();
-  notices_ = box::read_notices(parts_.notices_folder);
+  notices_ = box::read_notices(parts_.options.notices);
   look_for_alarms();
   show_lights();
   network_.every_second();

@@ -30,6 +30,7 @@
 #include "gateway/listen_sockets.hpp"
 #include "gateway/listeners.hpp"
 #include "gateway/lookout.hpp"
+#include "gateway/options.hpp"
 #include "gateway/report_rows.hpp"
 #include "gateway/roster.hpp"
 #include "host/service.hpp"
@@ -45,8 +46,9 @@ namespace adit::gateway {
 
 /// What the gateway is made of: all of it has passed its checks.
 struct Parts {
-  admin::Store& store;             // outlives the gateway
-  admin::FactoryReset& reset;      // so does this
+  const Options& options;          // outlives the gateway
+  admin::Store& store;             // so does this
+  admin::FactoryReset& reset;      // this
   admin::TakingOver& taking_over;  // this
   ListenSockets& sockets;          // and this
   admin::Store::Loaded loaded;
@@ -59,22 +61,13 @@ struct Parts {
   std::string board_trouble;  // why what the board's file says does not count; or ""
   std::unique_ptr<panel::Lines> lines;
   std::unique_ptr<panel::ButtonLine> button;  // null: there is none
-  std::string panel_socket = {};              // of adit-panel, which has both; or ""
   std::string runtime_folder;
-  std::string state_folder;
-  std::string update_folder;   // where adit-update tells its status
-  std::string network_folder;  // where adit-network tells its status
-  std::string watch_folder;    // where adit-network --watch tells who else has our addresses
-  std::string clock_folder;    // where adit-clock tells its status
-  std::string spare_folder;    // where adit-spare tells its status
-  std::string notices_folder;  // where root's programs leave notices, at a start or later
 };
 
 /// The whole of Adit at work: the flow, the team's listeners, the page and the box, wired together.
 class Gateway final : public api::Source, public api::Operator {
  public:
   Gateway(loop::Loop& loop, Parts parts);
-  ~Gateway() override;
 
   /// Listens and connects. An error says what could not be done.
   std::expected<void, std::string> start();
@@ -146,9 +139,9 @@ class Gateway final : public api::Source, public api::Operator {
   void add_flow(alarms::Facts& facts) const;
   void add_reports(alarms::Facts& facts) const;
   void add_box(alarms::Facts& facts) const;
-  std::vector<alarms::Alarm> alarms() const;
+  std::vector<alarms::Alarm> alarms() const { return board_.shown(conditions_, looked_at_); }
   void judge(api::RunView& view) const;
-  double look_for_alarms();  // when it looked, as alarms::Facts::now
+  void look_for_alarms();
   std::string report_under_way() const;
   std::expected<spare::Content, std::string> content() const;
   std::vector<api::EndpointRow> endpoints() const;
@@ -178,6 +171,8 @@ class Gateway final : public api::Source, public api::Operator {
   Crowding crowding_;
   Lookout lookout_;
   alarms::Board board_;
+  std::vector<alarms::Condition> conditions_;  // as found at looked_at_
+  double looked_at_ = 0;                       // alarms::Facts::now
   admin::AcknowledgedFile acknowledged_;
   intake::TokenGuesses guesses_;
   Listeners listeners_;

@@ -4,29 +4,25 @@
 
 namespace adit::gateway {
 
-std::vector<alarms::Alarm> Gateway::alarms() const {
-  const alarms::Facts found = facts(flow_.activities());
-  return board_.shown(alarms::conditions_of(found), found.now);
-}
-
-double Gateway::look_for_alarms() {
+void Gateway::look_for_alarms() {
   const auto activities = flow_.activities();
   lookout_.look(flow_, settings_, activities, loop_.stamp_now(), loop_.wall_now());
   const alarms::Facts found = facts(activities);
-  const std::vector<alarms::Condition> conditions = alarms::conditions_of(found);
-  board_.take(conditions, found.now);
+  conditions_ = alarms::conditions_of(found);
+  looked_at_ = found.now;
+  board_.take(conditions_, looked_at_);
   // What goes because the service does is no alarm that went.
   if (!flow_.is_ending()) acknowledged_.keep(board_.acknowledged());
   std::vector<std::string> headlines;
-  for (const alarms::Condition& each : conditions) {
+  for (const alarms::Condition& each : conditions_) {
     if (each.severity != alarms::Severity::Wait) headlines.push_back(each.headline.now());
   }
-  flow_.archive().needs_attention(headlines, found.now);
-  return found.now;
+  flow_.archive().needs_attention(headlines, looked_at_);
 }
 
 std::expected<void, std::string> Gateway::acknowledge(const std::string& id) {
-  auto done = board_.acknowledge(id, look_for_alarms());
+  look_for_alarms();
+  auto done = board_.acknowledge(id, looked_at_);
   acknowledged_.keep(board_.acknowledged());
   show_lights();
   return done;

@@ -81,7 +81,7 @@ void Gateway::add_box(alarms::Facts& facts) const {
   facts.ledger_refusal = flow_.scoring().trouble();
   facts.ledger_damage = parts_.ledger.damage();
   facts.ledger_is_closed = parts_.ledger.is_closed();
-  const auto disk = host::disk_of(parts_.state_folder);
+  const auto disk = host::disk_of(parts_.options.state);
   facts.disk = {flow_.archive().trouble(), flow_.maps().trouble(), flow_.journal_trouble(),
                 disk ? std::optional(disk->free) : std::nullopt};
   facts.time_set = clock_.is_set();

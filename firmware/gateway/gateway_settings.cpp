@@ -5,6 +5,7 @@
 #include "box/open_panel.hpp"
 #include "gateway/gateway.hpp"
 #include "host/log.hpp"
+#include "icd/refuse.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {
@@ -66,7 +67,7 @@ void Gateway::reopen_panel() {
   lights_.let_go();
   button_.let_go();
   auto panel =
-      box::open_panel(settings_.panel, {.socket = parts_.panel_socket, .folder = parts_.runtime_folder});
+      box::open_panel(settings_.panel, {.socket = parts_.options.panel, .folder = parts_.runtime_folder});
   lights_.take(std::move(panel.lines));
   button_.take(std::move(panel.button));
 }
@@ -86,9 +87,9 @@ void Gateway::revert(const std::string& why) {
 icd::Checked<std::string> Gateway::begin_ledger() {
   using enum icd::Status;
   if (!parts_.ledger.is_closed())
-    return std::unexpected(icd::Refusal{Conflict, "the ledger can be read; aditd begins no other"});
-  auto kept_as = ledger::Ledger::set_aside(parts_.state_folder);
-  if (!kept_as) return std::unexpected(icd::Refusal{ServiceUnavailable, std::move(kept_as.error().what)});
+    return icd::refuse(Conflict, "the ledger can be read; aditd begins no other");
+  auto kept_as = ledger::Ledger::set_aside(parts_.options.state);
+  if (!kept_as) return icd::refuse(ServiceUnavailable, kept_as.error().what);
   host::log(host::Level::Warning, "restarting with another ledger", {{"kept_as", *kept_as}});
   make_way();
   return *std::move(kept_as);

@@ -69,43 +69,6 @@ ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   return opened;
 }
 
-std::expected<Parts, std::string> gather(const Options& options, admin::Store& store,
-                                         admin::FactoryReset& reset, admin::TakingOver& taking_over,
-                                         ListenSockets& sockets, loop::FileDescriptor announced) {
-  host::keep_out_of_log(store.redaction());
-  auto loaded = store.load();
-  if (!loaded) return std::unexpected(loaded.error());
-  auto ledger = open_ledger(options);
-  if (!ledger) return std::unexpected(ledger.error().what);
-  auto known = box::read_board(options.board);
-  auto panel =
-      box::open_panel(known.board.panel.value_or(loaded->settings.panel),
-                      {.socket = options.panel, .folder = runtime_folder(options)}, std::move(announced));
-  return Parts{.store = store,
-               .reset = reset,
-               .taking_over = taking_over,
-               .sockets = sockets,
-               .loaded = std::move(*loaded),
-               .trouble = "",
-               .put_aside = "",
-               .stuck = "",
-               .ledger = std::move(*ledger),
-               .file_rest = FileReturn::kRest,
-               .board = std::move(known.board),
-               .board_trouble = std::move(known.trouble),
-               .lines = std::move(panel.lines),
-               .button = std::move(panel.button),
-               .panel_socket = options.panel,
-               .runtime_folder = runtime_folder(options),
-               .state_folder = options.state,
-               .update_folder = options.update,
-               .network_folder = options.network,
-               .watch_folder = options.watch,
-               .clock_folder = options.clock,
-               .spare_folder = options.spare,
-               .notices_folder = options.notices};
-}
-
 int fail(const std::string& why) {
   host::log(host::Level::Error, "cannot start", {{"why", why}});
   return 1;
@@ -183,26 +146,44 @@ std::expected<bool, std::string> Service::run_gateway() {
     trouble_ = "the factory reset is incomplete: " + done.error();
     host::log(host::Level::Error, trouble_);
   }
-  const std::string put_aside = put_queue_aside();
-  const std::string taking_over = finish_taking_over();
-  auto parts = gather(options_, store_, reset_, taking_over_, sockets_, std::exchange(announced_, {}));
-  if (!parts) return std::unexpected(parts.error());
-  if (!taking_over.empty()) parts->stuck = "the take-over is not finished: " + taking_over;
-  const settings::Settings settings = parts->loaded.settings;
-  parts->trouble = trouble_;
-  parts->put_aside = put_aside;
-  parts->file_rest = file_rest_;
-  Gateway gateway(loop_, std::move(*parts));
+  std::string put_aside = put_queue_aside();
+  std::string stuck = finish_taking_over();
+  host::keep_out_of_log(store_.redaction());
+  auto loaded = store_.load();
+  if (!loaded) return std::unexpected(loaded.error());
+  auto ledger = open_ledger(options_);
+  if (!ledger) return std::unexpected(ledger.error().what);
+  auto known = box::read_board(options_.board);
+  const std::string runtime = runtime_folder(options_);
+  auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel),
+                               {.socket = options_.panel, .folder = runtime}, std::exchange(announced_, {}));
+  const settings::Settings settings = loaded->settings;
+  Gateway gateway(loop_, {.options = options_,
+                          .store = store_,
+                          .reset = reset_,
+                          .taking_over = taking_over_,
+                          .sockets = sockets_,
+                          .loaded = std::move(*loaded),
+                          .trouble = trouble_,
+                          .put_aside = std::move(put_aside),
+                          .stuck = std::move(stuck),
+                          .ledger = std::move(*ledger),
+                          .file_rest = file_rest_,
+                          .board = std::move(known.board),
+                          .board_trouble = std::move(known.trouble),
+                          .lines = std::move(panel.lines),
+                          .button = std::move(panel.button),
+                          .runtime_folder = runtime});
   file_rest_ = gateway.awaits_files() ? longer(file_rest_) : FileReturn::kRest;
   return run(gateway, settings);
 }
 
-/// Why it is not finished, or "".
+/// Why it is not finished, as a sentence, or "".
 std::string Service::finish_taking_over() {
   const auto done = taking_over_.finish(loop_);
   if (done) return "";
   host::log(host::Level::Error, "the take-over is incomplete", {{"why", done.error()}});
-  return done.error();
+  return "the take-over is not finished: " + done.error();
 }
 
 std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::Settings& settings) {

@@ -125,15 +125,6 @@ void find_disk_troubles(const Facts& facts, Found& found) {
   }
 }
 
-void find_change_trouble(const std::string& trouble, Found& found) {
-  if (trouble.empty()) return;
-  found.push_back({.id = "settings_not_changed",
-                   .side = Side::Box,
-                   .headline = {"The last change", "not used"},
-                   .why = trouble,
-                   .action = kOpenSetUp});
-}
-
 void find_update_troubles(const UpdateFact& update, Found& found) {
   if (update.on_trial) {
     found.push_back({.id = "update_on_trial",
@@ -176,12 +167,9 @@ void find_box_troubles(const Facts& facts, Found& found) {
                      .action = kOpenSystem});
   }
   add(found, facts.ntp_trouble,
-      {.id = "ntp",
-       .severity = Severity::Wait,
-       .side = Side::Box,
-       .headline = {"NTP", "not working"},
-       .action = kOpenSetUp});
-  find_change_trouble(facts.change_trouble, found);
+      {.id = "ntp", .severity = Severity::Wait, .headline = {"NTP", "not working"}, .action = kOpenSetUp});
+  add(found, facts.change_trouble,
+      {.id = "settings_not_changed", .headline = {"The last change", "not used"}, .action = kOpenSetUp});
   add(found, facts.settings_trouble,
       {.id = "settings_not_used",
        .headline = {"The saved settings", "not used", true},

@@ -1,7 +1,8 @@
-#include "alarms/causes.hpp"
-
 #include <algorithm>
 #include <string_view>
+
+#include "alarms/conditions.hpp"
+#include "alarms/found.hpp"
 
 namespace adit::alarms {
 namespace {
@@ -51,8 +52,8 @@ bool explains(const Condition& cause, const Condition& other) {
   return cause.id == "cable_out:team" && is_robots_silence(other);
 }
 
-}  // namespace
-
+/// Takes out what follows from a larger cause that is there, too, and counts it there. The cable before the
+/// endpoint, the endpoint before the maps and robots.
 void hide_consequences(Found& found) {
   // Larger causes come first in the list, so that each is counted where nothing larger hides it.
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -65,6 +66,19 @@ void hide_consequences(Found& found) {
     }
     found[i].hides += hidden;
   }
+}
+
+}  // namespace
+
+std::vector<Condition> conditions_of(const Facts& facts) {
+  Found found;
+  find_network_troubles(facts, found);
+  find_post_troubles(facts, found);
+  find_report_troubles(facts, found);
+  find_robot_troubles(facts, found);
+  find_box_troubles(facts, found);
+  hide_consequences(found);
+  return found;
 }
 
 }  // namespace adit::alarms

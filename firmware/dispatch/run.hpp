@@ -18,7 +18,10 @@ struct Clock {
 };
 
 /// `seen` after the clock shows `shows`.
-Clock seen_again(const std::optional<Clock>& seen, double shows);
+inline Clock seen_again(const std::optional<Clock>& seen, double shows) {
+  if (!seen) return {.shows = shows};
+  return {.shows = shows, .runs = seen->runs || shows > seen->shows};
+}
 
 /// One run of the Command Post, as far as it is known. Three things tell runs apart: where the Command Post
 /// is, the team, and the name that its answers give the run; where those are the same, its status does

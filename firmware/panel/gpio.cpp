@@ -67,29 +67,16 @@ std::expected<Found, std::string> find(const settings::Panel& settings, const st
   return Found{std::move(chip), line};
 }
 
+struct LetGoDark {
+  void operator()(gpiod_line* line) const {
+    gpiod_line_set_value(line, 0);
+    gpiod_line_release(line);
+  }
+};
 /// An output, dark at first and when it is let go.
-class Output {
- public:
-  Output() = default;
-  explicit Output(Found found) : chip_(std::move(found.chip)), line_(found.line) {}
-  Output(Output&& other) noexcept
-      : chip_(std::move(other.chip_)), line_(std::exchange(other.line_, nullptr)) {}
-  Output& operator=(Output&& other) noexcept {
-    std::swap(chip_, other.chip_);
-    std::swap(line_, other.line_);
-    return *this;
-  }
-  ~Output() {
-    if (line_ == nullptr) return;
-    gpiod_line_set_value(line_, 0);
-    gpiod_line_release(line_);
-  }
-  bool is_there() const { return line_ != nullptr; }
-  bool set(bool lit) { return gpiod_line_set_value(line_, lit ? 1 : 0) == 0; }
-
- private:
-  Chip chip_;
-  gpiod_line* line_ = nullptr;
+struct Output {
+  Chip chip;  // outlives the line
+  std::unique_ptr<gpiod_line, LetGoDark> line;
 };
 
 /// `about` is for the error.
@@ -101,7 +88,7 @@ std::expected<Output, std::string> request_output(const settings::Panel& setting
   if (gpiod_line_request_output_flags(found->line, consumer.c_str(), flags, 0) != 0) {
     return gpio_trouble(about, errno);
   }
-  return Output(std::move(*found));
+  return Output{std::move(found->chip), std::unique_ptr<gpiod_line, LetGoDark>(found->line)};
 }
 
 class GpioLines final : public Lines {
@@ -115,8 +102,8 @@ class GpioLines final : public Lines {
   std::expected<void, std::string> set(const Lit& lit) override {
     std::expected<void, std::string> result;
     for (const Light light : kLights) {
-      Output& output = outputs_[index_of(light)];
-      if (!output.is_there() || output.set(lit[index_of(light)])) continue;
+      gpiod_line* const line = outputs_[index_of(light)].line.get();
+      if (line == nullptr || gpiod_line_set_value(line, lit[index_of(light)] ? 1 : 0) == 0) continue;
       if (result) result = gpio_trouble(about(settings_, line_of(settings_, light), name_of(light)), errno);
     }
     return result;

@@ -23,7 +23,7 @@ std::expected<void, std::string> FactoryReset::begin() {
 std::expected<bool, std::string> FactoryReset::finish() {
   std::error_code unknown;
   const bool is_begun = std::filesystem::exists(begun(), unknown);
-  if (unknown) return std::unexpected(begun() + ": " + unknown.message());
+  if (unknown) return std::unexpected(unread_ = begun() + ": " + unknown.message());
   if (!is_begun) return false;
   if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
   const network::Forget forget{host::draw_nonce()};

@@ -11,6 +11,9 @@ namespace adit::admin {
 /// it is done by the next finish(), and what that leaves undone by the one after it. Reports are kept.
 class FactoryReset {
  public:
+  /// In the state folder, while a reset is under way.
+  static constexpr const char* kFile = "reset";
+
   /// `store` outlives this.
   FactoryReset(Store& store, std::string state_folder, std::string runtime_folder);
 
@@ -20,12 +23,14 @@ class FactoryReset {
   /// adit-network, the box's addresses, where that was begun: then true. Called while nothing else uses them.
   /// An error says what is left, or why it is not known whether it was begun: then nothing is forgotten.
   std::expected<bool, std::string> finish();
+  /// Why finish() does not know whether it was begun, or "": until that is known, the box must be on standby.
+  const std::string& unread() const { return unread_; }
 
  private:
-  std::string begun() const { return state_ + "/reset"; }
+  std::string begun() const { return state_ + '/' + kFile; }
 
   Store& store_;
-  std::string state_, runtime_;
+  std::string state_, runtime_, unread_;
 };
 
 }  // namespace adit::admin

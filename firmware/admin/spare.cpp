@@ -29,13 +29,13 @@ Spare::Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, 
       stuck_(stuck),
       asked_(std::move(asked)),
       restart_(loop.timer([this] { asked_.restart(); })) {
-  auto file = SpareFile::read(state_);
-  const std::string unread = file ? "" : file.error();
+  auto file = SpareFile::read(state_, unread_);
+  const std::string unknown = file ? "" : file.error();
   if (file) file_ = *std::move(file);
   if (is_stuck()) {
     standby_ = stuck_;
-  } else if (!unread.empty()) {
-    standby_ = "it is not known whether a spare took over: " + unread;
+  } else if (!unknown.empty()) {
+    standby_ = "it is not known whether a spare took over: " + unknown;
   } else if (file_.rest) {
     standby_ = "its spare takes over";
   }

@@ -36,6 +36,8 @@ class Spare final : public api::Spare {
 
   /// Why the box takes nothing and sends nothing; "": it does.
   const std::string& standby() const { return standby_; }
+  /// Why its own file could not be read, or "".
+  const std::string& unread() const { return unread_; }
   bool is_stuck() const { return !stuck_.empty(); }
   /// Nothing is under way any more as this gateway ends: what /api/status would answer now.
   void ends(const std::optional<icd::RunStatus>& expected);
@@ -65,7 +67,7 @@ class Spare final : public api::Spare {
   TakingOver& taking_over_;
   std::string state_;
   SpareStick stick_;
-  std::string stuck_;
+  std::string stuck_, unread_;
   Asked asked_;
   loop::Source restart_;  // once who asked is answered
   SpareFile file_;

@@ -1,6 +1,7 @@
 #include "admin/taking_over.hpp"
 
 #include <algorithm>
+#include <cerrno>
 #include <cmath>
 #include <filesystem>
 
@@ -50,9 +51,9 @@ std::expected<void, std::string> TakingOver::begin(const std::string& content) {
 }
 
 std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
-  if (!host::may_exist(begun())) return false;
   const auto file = host::slurp(begun(), spare::kLargestExport);
-  if (!file) return std::unexpected(host::trouble(begun(), file.error()));
+  if (!file && file.error() == ENOENT) return false;
+  if (!file) return std::unexpected(unread_ = host::trouble(begun(), file.error()));
   const auto content = spare::read(file->text);
   if (!content) return std::unexpected(begun() + ": " + content.error());
   if (auto done = take(*content, loop); !done) return std::unexpected(std::move(done.error()));

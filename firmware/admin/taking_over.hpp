@@ -32,6 +32,8 @@ class TakingOver {
   /// begun: then true. Called while nothing else uses them. An error says why it is not finished: until it
   /// is, the box must rest.
   std::expected<bool, std::string> finish(const loop::Loop& loop);
+  /// Why finish() could not read whether there is one to finish, or "".
+  const std::string& unread() const { return unread_; }
   /// What cannot be finished is forgotten; what of it is done stays.
   std::expected<void, std::string> abandon();
 
@@ -45,7 +47,7 @@ class TakingOver {
   std::expected<void, std::string> note(const spare::About& about);
 
   Store& store_;
-  std::string state_;
+  std::string state_, unread_;
 };
 
 }  // namespace adit::admin

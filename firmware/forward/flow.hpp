@@ -51,8 +51,8 @@ class Flow final : public intake::Desk {
   /// Upkeep of the ledger begins so long after the start, because the first messages have priority, and
   /// again so long after a failure.
   static constexpr std::chrono::seconds kUpkeepEvery{60};
-  /// Directories of queued messages below the runtime folder.
-  static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting";
+  /// Directories of messages below the runtime folder.
+  static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting", *kRejected = "/rejected";
   struct Folders {
     std::string runtime, state;
   };
@@ -72,6 +72,12 @@ class Flow final : public intake::Desk {
   const std::string& put_aside() const { return spool_.ended_processes(); }
   /// Why a file without which nothing may be sent cannot be read, as a sentence; or "".
   std::string unread() const { return clocks_.unread(); }
+  /// After start(): whether the files of all messages of the process before were read.
+  bool has_read_messages() const {
+    return journal_.unread().empty() && spool_.unread().empty() && rejected_.unread().empty();
+  }
+  /// Whether the files of all messages below the runtime folder can be read now.
+  static bool can_be_read(const std::string& runtime_folder);
   /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who
   /// asks.
   void stand_by(const std::string& why);

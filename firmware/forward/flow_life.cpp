@@ -5,6 +5,7 @@
 #include "forward/flow.hpp"
 #include "host/random.hpp"
 #include "host/service.hpp"
+#include "spool/kept_message.hpp"
 
 namespace adit::forward {
 namespace {
@@ -41,7 +42,7 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       workers_(loop, 0),
       journal_(loop, folders.runtime + kJournal),
       clocks_(loop, journal_, folders.state),
-      rejected_(loop, writer_, folders.runtime + "/rejected"),
+      rejected_(loop, writer_, folders.runtime + kRejected),
       record_([this] { changed(); }),
       scoring_(loop, ledger, settings, tokens_.scoring, record_, random_, journal_, clocks_),
       picture_(loop, workers_, [this] { changed(); }),
@@ -52,6 +53,11 @@ Flow::Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& s
       archive_(loop, folders.state),
       drained_(loop.timer([this] { drain(); })) {
   archive_.limit(limits_of(settings));
+}
+
+bool Flow::can_be_read(const std::string& runtime_folder) {
+  return journal::Journal::can_be_read(runtime_folder + kJournal) &&
+         spool::can_be_read(runtime_folder + kWaiting) && spool::can_be_read(runtime_folder + kRejected);
 }
 
 void Flow::start() {

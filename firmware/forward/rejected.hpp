@@ -36,6 +36,8 @@ class RejectedStore {
 
   /// What an earlier service kept.
   void restore();
+  /// Why restore() could not read a file, or "".
+  const std::string& unread() const { return unread_; }
 
   void add(lanes::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
   /// The Command Post took it: what it says all of is not to be sent again, in a life to come neither.

@@ -9,8 +9,8 @@
 
 namespace adit::gateway {
 
-/// While the ledger, the settings or another saved file cannot be read: tries after each `rest`, and says
-/// once that all can.
+/// While the ledger, the settings, a message or another saved file cannot be read: tries after each `rest`,
+/// and says once that all can.
 class FileReturn {
  public:
   static constexpr std::chrono::seconds kRest{5}, kLongestRest{300};

@@ -1,5 +1,6 @@
 #include "gateway/gateway.hpp"
 
+#include <cerrno>
 #include <utility>
 
 #include "box/candidate.hpp"
@@ -7,6 +8,7 @@
 #include "dispatch/another_post.hpp"
 #include "forward/stamp_floor.hpp"
 #include "gateway/report_rows.hpp"
+#include "host/files.hpp"
 #include "host/interfaces.hpp"
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
@@ -14,6 +16,7 @@
 #include "loop/guard.hpp"
 #include "settings/subnet.hpp"
 #include "settings/written.hpp"
+#include "spare/sealed.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -24,9 +27,10 @@ constexpr std::chrono::seconds kAnswerLeaves{1};
 /// Whether the files of Gateway::unread() can be read now.
 bool can_be_read(const std::string& state_folder) {
   for (const char* const name :
-       {admin::Accounts::kFile, admin::Accounts::kCodeFile, forward::StampFloor::kFile}) {
-    const std::string file = state_folder + '/' + name;
-    if (host::may_exist(file) && !host::read_file(file)) return false;
+       {admin::Accounts::kFile, admin::Accounts::kCodeFile, forward::StampFloor::kFile,
+        admin::TakingOver::kFile, admin::FactoryReset::kFile, admin::SpareFile::kName}) {
+    const auto file = host::slurp(state_folder + '/' + name, spare::kLargestExport);
+    if (!file && file.error() != ENOENT) return false;
   }
   return true;
 }
@@ -100,14 +104,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                    log_crowding();
                  }),
       second_(loop.timer([this] { every_second(); })),
-      change_(loop.timer([this] { apply_change(); })) {
-  const bool has_ledger = !parts_.ledger.is_closed();
-  if (has_ledger && unread().empty()) return;
-  const auto all_can_be_read = [has_ledger, folder = parts_.options.state, &store = parts_.store] {
-    return (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() && can_be_read(folder);
-  };
-  file_return_.emplace(loop, disk_writer_, all_can_be_read, parts_.file_rest, [this] { state_is_back(); });
-}
+      change_(loop.timer([this] { apply_change(); })) {}
 
 intake::IcdOptions Gateway::icd_options() const {
   intake::IcdOptions options;
@@ -137,7 +134,27 @@ icd::Redaction Gateway::redaction() const {
 std::string Gateway::unread() const {
   const std::string& settings = parts_.store.unread();
   if (!settings.empty()) return "the saved settings or tokens cannot be read: " + settings;
+  const std::string& reset = parts_.reset.unread();
+  if (!reset.empty()) return "it is not known whether a factory reset was begun: " + reset;
+  const std::string& taking_over = parts_.taking_over.unread();
+  if (!taking_over.empty()) return "the take-over cannot be read: " + taking_over;
   return accounts_.unread().empty() ? flow_.unread() : accounts_.unread();
+}
+
+bool Gateway::has_read_all() const {
+  return !parts_.ledger.is_closed() && unread().empty() && spare_.unread().empty() &&
+         flow_.has_read_messages();
+}
+
+void Gateway::await_files() {
+  if (has_read_all()) return;
+  const auto all_can_be_read = [has_ledger = !parts_.ledger.is_closed(),
+                                has_messages = flow_.has_read_messages(), folder = parts_.options.state,
+                                runtime = parts_.runtime_folder, &store = parts_.store] {
+    return (has_ledger || ledger::Ledger::can_be_read(folder)) && store.can_be_read() &&
+           can_be_read(folder) && (has_messages || forward::Flow::can_be_read(runtime));
+  };
+  file_return_.emplace(loop_, disk_writer_, all_can_be_read, parts_.file_rest, [this] { files_are_back(); });
 }
 
 std::vector<loop::Workers*> Gateway::threads() {
@@ -146,8 +163,10 @@ std::vector<loop::Workers*> Gateway::threads() {
   return threads;
 }
 
-void Gateway::state_is_back() {
-  host::log(host::Level::Notice, "the state directory can be read again; restarting");
+/// A journal that is new has read all once it could be opened.
+void Gateway::files_are_back() {
+  if (has_read_all()) return;
+  host::log(host::Level::Notice, "all files can be read again; restarting");
   make_way();
 }
 
@@ -157,6 +176,7 @@ std::expected<void, std::string> Gateway::start() {
     flow_.stand_by(
         icd::sentence("this box is on standby: ", spare_.standby(), "; it accepts and sends no messages"));
   flow_.start();
+  await_files();
   lookout_.carry_on(flow_, loop_.stamp_now());
   if (auto listening = listen(settings_.team); !listening) return listening;
   board_.remember(acknowledged_.read(), loop_.wall_now());

@@ -116,7 +116,10 @@ class Gateway final : public api::Source, public api::Operator {
   void keep_sessions();
   void look_at_sockets();
   void log_crowding();
-  void state_is_back();
+  /// Whether the start could read all files that it needs.
+  bool has_read_all() const;
+  void await_files();
+  void files_are_back();
   void show_lights();
   void add_to(api::Usage& usage) const;
   std::expected<void, std::string> listen(const settings::Team& team);

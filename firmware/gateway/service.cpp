@@ -174,7 +174,6 @@ std::expected<bool, std::string> Service::run_gateway() {
                           .lines = std::move(panel.lines),
                           .button = std::move(panel.button),
                           .runtime_folder = runtime});
-  file_rest_ = gateway.awaits_files() ? longer(file_rest_) : FileReturn::kRest;
   return run(gateway, settings);
 }
 
@@ -197,6 +196,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
     watchdog->ask_also(gateway.threads());
   }
   running_ = &gateway;
+  file_rest_ = gateway.awaits_files() ? longer(file_rest_) : FileReturn::kRest;
   const auto forget_faults = [this] {
     std::error_code none;
     std::filesystem::resize_file(faults_file(), 0, none);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "host/service.hpp"
 #include "store/snapshot.hpp"
 
 namespace adit::journal {
@@ -44,6 +45,12 @@ Journal::Kept Journal::open() {
   directory_ = std::move(*directory);
   contents_ = std::move(*contents);
   return {};
+}
+
+bool Journal::can_be_read(const std::string& folder) {
+  if (!host::may_exist(folder)) return true;
+  const auto directory = store::Directory::look(folder);
+  return directory && store::Contents::read(*directory, kKeeping);
 }
 
 Carried Journal::read() {
@@ -105,6 +112,7 @@ Journal::Kept Journal::append(Kind kind, std::string_view said) {
       if (auto opened = open(); !opened) return failed(opened.error());
     }
     if (!contents_->is_new) return failed(unread_);
+    unread_.clear();
     log_.emplace(*directory_, kKeeping);
     if (auto started = log_->start(*contents_); !started) return failed(started.error().what);
   }

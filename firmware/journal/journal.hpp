@@ -46,6 +46,10 @@ class Journal {
   /// The records of the processes before. If a file cannot be read, the files stay, the records are empty,
   /// and each append fails until the next start.
   Carried read();
+  /// Why a file of the processes before cannot be read, or "".
+  const std::string& unread() const { return unread_; }
+  /// Whether the files in a journal's directory, if there is one, can be read now.
+  static bool can_be_read(const std::string& folder);
   /// Which records of the processes before are damaged: a sentence, or "".
   const std::string& damage() const { return damage_; }
   /// Call once, after read() and before any other member.

@@ -61,6 +61,15 @@ void remove_parts(const std::string& folder) {
   for (const std::string& part : parts) ::unlink(part.c_str());
 }
 
+bool can_be_read(const std::string& folder) {
+  bool can = true;
+  const auto listed = host::for_each_name(folder, [&](std::string_view name) {
+    can = name.ends_with(host::kDamaged) || map_file(folder + '/' + std::string(name));
+    return can;
+  });
+  return can && (listed || listed.error() == ENOENT);
+}
+
 icd::Checked<icd::MapUpdate> read_map(const std::string& path) {
   return MapFile::read(path, as_kept());
 }

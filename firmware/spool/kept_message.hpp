@@ -25,6 +25,9 @@ std::expected<void, std::string> write_whole(const std::string& path, icd::Chunk
 /// Removes what a kill left of files that were not written to their end. For nobody who still writes there.
 void remove_parts(const std::string& folder);
 
+/// Whether the files in a directory of messages, if there is one, can be read now.
+bool can_be_read(const std::string& folder);
+
 /// The message in a file, checked by the ICD's own rules: a team's (aliases, frames, sizes) were applied when
 /// it came, and may be others by now. Refused with 503 if the file cannot be read, else because it is
 /// damaged. A map's data is not read (MapFile::read()).

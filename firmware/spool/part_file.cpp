@@ -5,17 +5,17 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
-#include <vector>
 
 #include "icd/sentence.hpp"
 #include "loop/regular_file.hpp"
 
 namespace adit::spool {
 namespace {
+
+constexpr std::size_t kSmall = 4096;  // a file of so many bytes is read, a larger one is mapped
 
 std::expected<MappedFile, int> map_file(int fd) {
   struct stat status{};
@@ -28,9 +28,8 @@ std::expected<MappedFile, int> map_file(int fd) {
   return MappedFile{std::shared_ptr<void>(begin, unmap), {static_cast<const std::uint8_t*>(begin), size}};
 }
 
-MappedFile copy_of(std::span<const std::uint8_t> bytes) {
-  const auto owner = std::make_shared<std::vector<std::uint8_t>>(bytes.begin(), bytes.end());
-  return {owner, *owner};
+std::span<const std::uint8_t> as_bytes(std::string_view text) {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 }  // namespace
@@ -38,11 +37,11 @@ MappedFile copy_of(std::span<const std::uint8_t> bytes) {
 std::expected<MappedFile, int> map_file(const std::string& path) {
   const loop::FileDescriptor fd = loop::open_regular(path, O_RDONLY);
   if (!fd) return std::unexpected(errno);
-  std::array<std::uint8_t, 4096> small;
-  const ssize_t count = ::read(fd.get(), small.data(), small.size());
-  if (count < 0) return std::unexpected(errno);
-  const auto size = static_cast<std::size_t>(count);
-  return size < small.size() ? copy_of(std::span(small).first(size)) : map_file(fd.get());
+  auto small = loop::read_all(fd, kSmall);
+  if (!small && small.error() != EFBIG) return std::unexpected(small.error());
+  if (!small) return map_file(fd.get());
+  const auto owner = std::make_shared<std::string>(std::move(*small));
+  return MappedFile{owner, as_bytes(*owner)};
 }
 
 std::string_view text_in(const MappedFile& file) {

@@ -138,8 +138,9 @@ Spool::Kept Spool::read() {
       set_aside(number, map.error().sentence);
     }
   }
-  if (!unread_.empty()) host::log(host::Level::Error, "cannot read queued maps", {{"why", unread_}});
-  return kept;
+  if (unread_.empty()) return kept;
+  host::log(host::Level::Error, "cannot read queued maps", {{"why", unread_}});
+  return {};
 }
 
 }  // namespace adit::spool

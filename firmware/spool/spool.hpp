@@ -54,9 +54,12 @@ class Spool {
   /// Which maps read() has set aside for that: a sentence, or "".
   const std::string& ended_processes() const { return ended_processes_; }
 
-  /// All maps that are kept. A damaged file is logged and set aside. If a file cannot be read, it stays, and
-  /// keep() refuses every map until the next start.
+  /// All maps that are kept. A damaged file is logged and set aside. If a file cannot be read, all stay, none
+  /// is given, because a newer map must not go before an older one, and keep() refuses every map until the
+  /// next start.
   Kept read();
+  /// Why read() could not read a file, or "".
+  const std::string& unread() const { return unread_; }
   /// It is damaged: it is forgotten, and its file is there for whoever looks for it. For the writer.
   void set_aside(std::uint64_t number, const std::string& why);
 

@@ -161,6 +161,12 @@ TEST_F(TakingOverTest, IsNotFinishedWhileTheStampsCannotBeRead) {
   EXPECT_TRUE(fs::is_fifo(file));
 }
 
+TEST_F(TakingOverTest, SaysWhyItCannotReadWhetherItWasBegun) {
+  fs::create_directory(state_ / TakingOver::kFile);
+  EXPECT_FALSE(taking_over_.finish(loop_));
+  EXPECT_EQ(taking_over_.unread(), (state_ / TakingOver::kFile) + ": is not a regular file");
+}
+
 TEST_F(TakingOverTest, KeepsWhatIsOfThisMachine) {
   spare::Content other = content();
   other.settings =

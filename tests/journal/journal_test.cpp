@@ -189,8 +189,12 @@ TEST_F(JournalTest, KeepsNothingAndRemovesNothingIfAFileCannotBeRead) {
     ASSERT_FALSE(kept);
     EXPECT_EQ(kept.error(), why);
     EXPECT_EQ(files("log-").size(), 2u) << "no new one";
+    EXPECT_EQ(journal.unread(), why);
+    EXPECT_FALSE(Journal::can_be_read(folder_ / "journal"));
   }
   fs::remove(unreadable);
+  EXPECT_TRUE(Journal::can_be_read(folder_ / "journal"));
+  EXPECT_TRUE(Journal::can_be_read(folder_ / "none"));
   EXPECT_EQ(left().robots().size(), 1u);
 }
 

@@ -62,15 +62,15 @@ void alive(const Evidence& evidence, Broken& broken);
 class DiskFaultsSeen {
  public:
   void add(const Event& event);
-  bool in_this_life(const std::string& fault) const { return this_life_.contains(fault); }
   /// Whether a gateway begins after one that could not keep in the runtime folder what the next one is to
-  /// know.
+  /// know, or cannot read it itself.
   bool forgets_at(const Event& event) const;
   /// Any, now or less than so many seconds ago.
   bool within(double seconds, double now) const;
 
  private:
-  std::set<std::string> on_, this_life_;
+  std::set<std::string> on_;
+  bool forgets_ = false;
   double last_ = -1e9;
 };
 std::int64_t serial_of(const dispatch::Report& report);

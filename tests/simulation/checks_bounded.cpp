@@ -4,6 +4,7 @@
 #include <string>
 
 #include "icd/sentence.hpp"
+#include "simulation/call_faults.hpp"
 #include "simulation/checks.hpp"
 
 namespace adit::simulation {
@@ -40,9 +41,10 @@ class Looking {
   void at_lists() {
     for (const auto& [list, rows] : kLists) at(list, reading_.view.at(list).size(), rows);
   }
-  void at_files() {
+  /// `compacts`: no fault kept the journal from being made smaller.
+  void at_files(bool compacts) {
     at("bytes in the state folder", reading_.stored.state, state_);
-    at("bytes of the journal", reading_.stored.journal, kJournal);
+    if (compacts) at("bytes of the journal", reading_.stored.journal, kJournal);
     at("bytes in the runtime folder", reading_.stored.others, kBeside);
   }
   void at_rest() { at("bytes of maps that wait no more", reading_.stored.waiting, 0); }
@@ -62,6 +64,10 @@ std::uint64_t damaged_after(std::size_t events, const Evidence& evidence) {
       std::ranges::count_if(evidence.events | std::views::take(events), was_damaged));
 }
 
+bool is_in_runtime(const Event& event) {
+  return event.kind == Kind::Fault && event.who.ends_with(CallFaults::kInRuntime);
+}
+
 bool nothing_waits(const nlohmann::json& view) {
   return std::ranges::all_of(view.at("activities"), [](const auto& row) { return row.at("queued") == 0; });
 }
@@ -78,7 +84,7 @@ void bounded(const Evidence& evidence, Broken& broken) {
   for (const Reading& reading : evidence.readings) {
     Looking looking(reading, damaged_after(reading.heard, evidence), broken);
     looking.at_lists();
-    looking.at_files();
+    looking.at_files(!std::ranges::any_of(evidence.events | std::views::take(reading.heard), is_in_runtime));
     if (reading.at < changed)
       looking.at("bytes of maps", reading.view.at("queued_bytes"), evidence.most_map_bytes);
   }

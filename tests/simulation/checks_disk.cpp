@@ -1,8 +1,18 @@
 // Starts and SettingsKept, and what the checks know of the disk.
+#include <algorithm>
+
 #include "icd/sentence.hpp"
+#include "simulation/call_faults.hpp"
 #include "simulation/checks.hpp"
 
 namespace adit::simulation {
+namespace {
+
+bool is_of_runtime(const std::string& fault) {
+  return fault == "RuntimeFull" || fault.ends_with(CallFaults::kInRuntime);
+}
+
+}  // namespace
 
 void starts(const Evidence& evidence, Broken& broken) {
   for (const Event& event : evidence.events) {
@@ -31,18 +41,18 @@ void settings_kept(const Evidence& evidence, Broken& broken) {
 
 void DiskFaultsSeen::add(const Event& event) {
   if (event.kind == Kind::Begins) {
-    this_life_ = on_;
+    forgets_ = std::ranges::any_of(on_, is_of_runtime);
   } else if (event.kind == Kind::Mended) {
     on_.erase(event.who);
     last_ = event.at;
   } else if (event.kind == Kind::Fault && event.actor == Actor::Disk) {
     on_.insert(event.who);
-    this_life_.insert(event.who);
+    forgets_ = forgets_ || is_of_runtime(event.who);
   }
 }
 
 bool DiskFaultsSeen::forgets_at(const Event& event) const {
-  return (event.kind == Kind::Begins || event.kind == Kind::Saved) && in_this_life("RuntimeFull");
+  return (event.kind == Kind::Begins || event.kind == Kind::Saved) && forgets_;
 }
 
 bool DiskFaultsSeen::within(double seconds, double now) const {

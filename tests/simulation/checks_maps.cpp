@@ -56,7 +56,19 @@ std::map<Name, std::vector<Posted>> posted_in(const Evidence& evidence, const st
   return posted;
 }
 
+/// By which event the message of a taking left.
+std::size_t left_by(const std::vector<Event>& events, std::size_t taken) {
+  std::size_t place = taken;
+  const auto is_it = [&](const Event& event) {
+    return event.kind == Kind::Left && event.what == kMap && event.request == events[taken].request &&
+           event.serial == events[taken].serial;
+  };
+  while (place > 0 && !is_it(events[place])) --place;
+  return place;
+}
+
 /// Between one taking and the next the process was killed, or the first one's answer was lost or no 200; or
+/// the second one left before the first and was long under way, after its connection was lost; or
 /// the operator sent again what was still rejected after a kill, though it waited by then, or was rejected
 /// twice.
 bool may_be_double(const std::vector<Event>& events, std::size_t first, std::size_t second) {
@@ -67,6 +79,7 @@ bool may_be_double(const std::vector<Event>& events, std::size_t first, std::siz
   const auto at = [&](std::size_t place) { return events.begin() + static_cast<std::ptrdiff_t>(place); };
   const auto kill = std::find_if(at(0), at(second), is_kill);
   if (std::any_of(kill, at(second), is_word)) return true;
+  if (left_by(events, second) < left_by(events, first)) return true;
   int status = -1;
   for (std::size_t i = first; i < second; ++i) {
     const Event& event = events[i];

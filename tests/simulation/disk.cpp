@@ -22,13 +22,13 @@ int fail(int error) {
 
 std::uint64_t size_of(int fd) {
   struct stat found{};
-  return ::fstat(fd, &found) == 0 ? static_cast<std::uint64_t>(found.st_size) : 0;
+  return real::status(fd, &found) == 0 ? static_cast<std::uint64_t>(found.st_size) : 0;
 }
 
-std::string read(int fd, off_t at, std::uint64_t size) {
+std::string bytes_at(int fd, off_t at, std::uint64_t size) {
   std::string bytes;
   bytes.resize_and_overwrite(size, [&](char* to, std::size_t room) {
-    return static_cast<std::size_t>(std::max<ssize_t>(0, ::pread(fd, to, room, at)));
+    return static_cast<std::size_t>(std::max<ssize_t>(0, real::read_at(fd, to, room, at)));
   });
   return bytes;
 }
@@ -41,7 +41,7 @@ std::uint64_t end_of_data(int fd, std::uint64_t size) {
 
 bool is_folder(const std::string& path) {
   struct stat found{};
-  return ::lstat(path.c_str(), &found) == 0 && S_ISDIR(found.st_mode);
+  return real::status(AT_FDCWD, path.c_str(), &found, AT_SYMLINK_NOFOLLOW) == 0 && S_ISDIR(found.st_mode);
 }
 
 std::string mark_of(const std::string& bytes) {
@@ -53,7 +53,11 @@ std::string mark_of(const std::string& bytes) {
 }  // namespace
 
 Disk::Disk(World& world)
-    : world_(world), random_(world.random("disk")), unique_(world.random("names")), faults_(world) {
+    : world_(world),
+      random_(world.random("disk")),
+      unique_(world.random("names")),
+      faults_(world),
+      calls_(world) {
   the_disk = this;
 }
 
@@ -61,18 +65,22 @@ Disk::~Disk() {
   the_disk = nullptr;
 }
 
+bool Disk::is_on() {
+  return the_disk != nullptr && !the_disk->world_.is_dead() && !the_disk->looks_on_;
+}
+
 Disk* Disk::of(int folder, const char* path) {
-  if (the_disk == nullptr || the_disk->world_.is_dead() || path == nullptr) return nullptr;
+  if (!is_on() || path == nullptr) return nullptr;
   return the_disk->name_of(folder, path).empty() ? nullptr : the_disk;
 }
 
 Disk* Disk::of(int fd) {
-  if (the_disk == nullptr || the_disk->world_.is_dead()) return nullptr;
+  if (!is_on()) return nullptr;
   const auto open = the_disk->open_.find(fd);
   struct stat found{};
   if (open == the_disk->open_.end()) return nullptr;
-  const bool is_it =
-      ::fstat(fd, &found) == 0 && found.st_dev == open->second.device && found.st_ino == open->second.number;
+  const bool is_it = real::status(fd, &found) == 0 && found.st_dev == open->second.device &&
+                     found.st_ino == open->second.number;
   if (!is_it) the_disk->open_.erase(open);
   return is_it ? the_disk : nullptr;
 }
@@ -136,16 +144,17 @@ std::optional<Content> Disk::content_of(const std::string& name) const {
   const int file = real::open(AT_FDCWD, (folder_ + name).c_str(), O_RDONLY | O_CLOEXEC, 0);
   if (file < 0) return std::nullopt;
   const std::uint64_t size = size_of(file);
-  Content content{read(file, 0, end_of_data(file, size)), size};
+  Content content{bytes_at(file, 0, end_of_data(file, size)), size};
   real::close(file);
   return content;
 }
 
 int Disk::open(int folder, const char* path, int flags, mode_t mode) {
   const std::string name = name_of(folder, path);
+  if (const int error = calls_.error(CallFaults::Call::Open, name); error != 0) return fail(error);
   const bool writes = (flags & O_ACCMODE) != O_RDONLY;
   struct stat found{};
-  const bool is_there = ::fstatat(folder, path, &found, 0) == 0;
+  const bool is_there = real::status(folder, path, &found, 0) == 0;
   if (!is_there && (flags & O_CREAT) == 0) return -1;
   const bool is_file = is_there && S_ISREG(found.st_mode);
   if (!writes && is_file && name.starts_with("state/") && faults_.is(DiskFaults::Kind::Unreadable))
@@ -159,7 +168,7 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
   const int how = (flags & O_ACCMODE) == O_WRONLY ? (flags & ~O_ACCMODE) | O_RDWR : flags;
   const int fd = real::open(folder, path, how & ~O_TRUNC, mode);
   if (fd < 0 || world_.is_dead()) return fd;
-  ::fstat(fd, &found);
+  real::status(fd, &found);
   Open open{.name = name,
             .file = nullptr,
             .appends = (flags & O_APPEND) != 0,
@@ -170,7 +179,7 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
     if (makes) unsynced_.made(name);
     if (writes) open.file = unsynced_.file(name);
   }
-  if (writes || open.is_folder) open_[fd] = std::move(open);
+  open_[fd] = std::move(open);
   if (cuts) truncate(fd, 0);
   if (makes) world_.crossing();
   return fd;
@@ -178,8 +187,11 @@ int Disk::open(int folder, const char* path, int flags, mode_t mode) {
 
 ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at) {
   const Open open = open_.at(fd);
+  const auto part = cut(CallFaults::Call::Write, fd, bytes.size());
   world_.crossing();
   if (is_read_only(open.name)) return fail(EROFS);
+  if (!part) return fail(EIO);
+  bytes = bytes.first(*part);
   const auto size = static_cast<off_t>(size_of(fd));
   const off_t place = at ? *at : open.appends ? size : ::lseek(fd, 0, SEEK_CUR);
   const std::uint64_t there = std::min<std::uint64_t>(bytes.size(), std::max<off_t>(0, size - place));
@@ -193,6 +205,36 @@ ssize_t Disk::write(int fd, std::span<const char> bytes, std::optional<off_t> at
   if (!at && count > 0) ::lseek(fd, place + count, SEEK_SET);
   world_.crossing();
   return count;
+}
+
+/// How many of so many bytes a call reads or writes; nothing: it fails. One that ends before all are is
+/// followed by one that fails.
+std::optional<std::size_t> Disk::cut(CallFaults::Call call, int fd, std::size_t size) {
+  Open& open = open_.at(fd);
+  if (std::exchange(open.is_broken, false)) return std::nullopt;
+  const auto part = calls_.cut(call, open.name, size);
+  if (!part) return size;
+  open.is_broken = *part > 0;
+  return open.is_broken ? part : std::nullopt;
+}
+
+ssize_t Disk::read(int fd, void* to, std::size_t size, std::optional<off_t> at) {
+  const auto part = size == 0 ? size : cut(CallFaults::Call::Read, fd, size);
+  if (!part) return fail(EIO);
+  if (const auto less = calls_.cut(CallFaults::Call::Less, open_.at(fd).name, *part))
+    size = std::max<std::size_t>(*less, 1);
+  size = std::min(size, *part);
+  return at ? real::read_at(fd, to, size, *at) : real::read(fd, to, size);
+}
+
+int Disk::fails(CallFaults::Call call, int fd) {
+  const int error = calls_.error(call, open_.at(fd).name);
+  return error == 0 ? 0 : fail(error);
+}
+
+int Disk::fails(CallFaults::Call call, int folder, const char* path) {
+  const int error = calls_.error(call, name_of(folder, path));
+  return error == 0 ? 0 : fail(error);
 }
 
 /// How much of a write there is where the process dies in it. The kernel ends one only between two pages;
@@ -211,7 +253,7 @@ ssize_t Disk::put(int fd, const Open& open, std::span<const char> bytes, off_t a
     if (real::may_be_hole(fd, bytes, at)) {
       open.file->wrote_zeros(place, bytes.size(), size);
     } else {
-      open.file->wrote(place, std::string(bytes.data(), bytes.size()), read(fd, at, there), size);
+      open.file->wrote(place, std::string(bytes.data(), bytes.size()), bytes_at(fd, at, there), size);
     }
   }
   return real::write_at(fd, bytes, at);
@@ -223,7 +265,7 @@ int Disk::truncate(int fd, off_t size) {
   world_.crossing();
   const std::uint64_t before = size_of(fd), after = static_cast<std::uint64_t>(size);
   if (open.file && !world_.is_dead() && before != after)
-    open.file->resized(before, after, after < before ? read(fd, size, before - after) : "");
+    open.file->resized(before, after, after < before ? bytes_at(fd, size, before - after) : "");
   return real::truncate(fd, size);
 }
 
@@ -249,7 +291,8 @@ int Disk::sync(int fd) {
     if (open.file) open.file->sync_failed();
     return fail(EIO);
   }
-  open.is_folder ? unsynced_.synced_folder(open.name) : open.file->synced();
+  if (open.is_folder) unsynced_.synced_folder(open.name);
+  if (open.file) open.file->synced();
   world_.crossing();
   return 0;
 }
@@ -277,7 +320,7 @@ int Disk::unlink(int folder, const char* path, int flags) {
   world_.crossing();
   auto content = content_of(name);
   struct stat found{};
-  const bool is_there = ::fstatat(folder, path, &found, AT_SYMLINK_NOFOLLOW) == 0;
+  const bool is_there = real::status(folder, path, &found, AT_SYMLINK_NOFOLLOW) == 0;
   const int result = real::unlink(folder, path, flags);
   if (result != 0 || !is_there || world_.is_dead()) return result;
   if (S_ISREG(found.st_mode)) faults_.room(is_in_memory(name)) += static_cast<std::uint64_t>(found.st_size);
@@ -289,7 +332,7 @@ int Disk::unlink(int folder, const char* path, int flags) {
 int Disk::make_folder(int folder, const char* path, mode_t mode) {
   const std::string name = name_of(folder, path);
   struct stat found{};
-  if (::fstatat(folder, path, &found, 0) == 0) return fail(EEXIST);
+  if (real::status(folder, path, &found, 0) == 0) return fail(EEXIST);
   if (is_read_only(name)) return fail(EROFS);
   if (is_full(name) && faults_.room(is_in_memory(name)) == 0) return fail(ENOSPC);
   world_.crossing();
@@ -320,13 +363,15 @@ std::string Disk::settings() const {
   return content ? mark_of(content->bytes) : "";
 }
 
-std::uint64_t Disk::stored(const std::string& beginning) const {
+std::uint64_t Disk::stored(const std::string& beginning) {
+  looks_on_ = true;
   std::uint64_t bytes = 0;
   std::error_code gone;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder_, gone)) {
     if (entry.is_regular_file(gone) && entry.path().native().starts_with(folder_ + beginning))
       bytes += entry.file_size(gone);
   }
+  looks_on_ = false;
   return bytes;
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "simulation/call_faults.hpp"
 #include "simulation/disk_faults.hpp"
 #include "simulation/random.hpp"
 #include "simulation/unsynced.hpp"
@@ -46,11 +47,16 @@ class Disk {
   /// Changes `tree`, a copy of the folder, into what a power cut leaves of it.
   void cut_power(const std::filesystem::path& tree);
   DiskFaults& faults() { return faults_; }
+  CallFaults& calls() { return calls_; }
 
   // As in libc, each; -1 and errno where it fails.
   int open(int folder, const char* path, int flags, mode_t mode);
   /// `at`: where it does not go on at the file's own place.
   ssize_t write(int fd, std::span<const char> bytes, std::optional<off_t> at);
+  ssize_t read(int fd, void* to, std::size_t size, std::optional<off_t> at);
+  /// -1 and errno if a fault makes this call fail; else 0.
+  int fails(CallFaults::Call call, int fd);
+  int fails(CallFaults::Call call, int folder, const char* path);
   int truncate(int fd, off_t size);
   int allocate(int fd, int mode, off_t at, off_t size);
   int sync(int fd);
@@ -64,7 +70,7 @@ class Disk {
   /// Bytes that come from the run's seed. False: no run is on.
   static bool fill_random(void* bytes, std::size_t size);
   /// The bytes of all files whose names below the folder begin so.
-  std::uint64_t stored(const std::string& beginning) const;
+  std::uint64_t stored(const std::string& beginning);
   /// Bytes that are left in the file system of that path.
   std::uint64_t room(int folder, const char* path);
   std::uint64_t room(int fd);
@@ -75,13 +81,16 @@ class Disk {
     Unsynced::File file;
     bool appends, is_folder;
     std::uint64_t device, number;  // what it was: libc itself may have closed it
+    bool is_broken = false;        // the next read or write fails
   };
+  static bool is_on();
   std::string name_of(int folder, const char* path) const;
   static bool is_in_memory(const std::string& name);
   bool is_read_only(const std::string& name) const;
   bool is_full(const std::string& name) const;
   /// How many of so many new bytes there is room for.
   std::uint64_t take_room(const std::string& name, std::uint64_t bytes);
+  std::optional<std::size_t> cut(CallFaults::Call call, int fd, std::size_t size);
   std::uint64_t cut(const Open& open, std::uint64_t size, off_t at);
   ssize_t put(int fd, const Open& open, std::span<const char> bytes, off_t at);
   std::optional<Content> content_of(const std::string& name) const;
@@ -90,9 +99,11 @@ class Disk {
   World& world_;
   Random random_, unique_;
   DiskFaults faults_;
+  CallFaults calls_;
   Unsynced unsynced_;
   std::string folder_;  // with a slash at its end
   std::map<int, Open> open_;
+  bool looks_on_ = false;  // a check reads the files, and no fault is in its way
 };
 
 }  // namespace adit::simulation

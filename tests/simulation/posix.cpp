@@ -1,8 +1,11 @@
-// The calls of libc that change files, in front of libc's own (ELF: the program's come before a library's),
-// so that libstdc++'s go to the simulated disk, too. What does not belong to the box's folder
+// The calls of libc that read or change files, in front of libc's own (ELF: the program's come before a
+// library's), so that libstdc++'s go to the simulated disk, too. What does not belong to the box's folder
 // goes straight to the kernel. They bear names of their own, for libc's headers say more of theirs than is
 // wanted.
+#include <dirent.h>
 #include <dlfcn.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
 #include <sys/statvfs.h>
 #include <sys/uio.h>
 
@@ -19,6 +22,7 @@
 namespace {
 
 using adit::simulation::Disk;
+using Call = adit::simulation::CallFaults::Call;
 namespace real = adit::simulation::real;
 
 int open_at(int folder, const char* path, int flags, mode_t mode) {
@@ -42,6 +46,23 @@ ssize_t write_to(int fd, const void* bytes, std::size_t size, std::optional<off_
   const std::span all(static_cast<const char*>(bytes), size);
   if (disk != nullptr && size > 0) return disk->write(fd, all, at);
   return at ? real::write_at(fd, all, *at) : real::write(fd, bytes, size);
+}
+
+ssize_t read_from(int fd, void* to, std::size_t size, std::optional<off_t> at) {
+  if (Disk* const disk = Disk::of(fd)) return disk->read(fd, to, size, at);
+  return at ? real::read_at(fd, to, size, *at) : real::read(fd, to, size);
+}
+
+int status_of(int folder, const char* path, struct stat* found, int flags) {
+  Disk* const disk = Disk::of(folder, path);
+  if (disk != nullptr && disk->fails(Call::Status, folder, path) != 0) return -1;
+  return real::status(folder, path, found, flags);
+}
+
+/// Whether the directory that is open there cannot be listed, or not to its end.
+bool is_unlisted(int fd) {
+  Disk* const disk = Disk::of(fd);
+  return disk != nullptr && disk->fails(Call::List, fd) != 0;
 }
 
 std::FILE* open_stream(const char* path, const char* mode) {
@@ -105,6 +126,21 @@ ssize_t adit_write(int fd, const void* bytes, std::size_t size) ADIT_STANDS_FOR(
 ssize_t adit_pwrite(int fd, const void* bytes, std::size_t size, off_t at) ADIT_STANDS_FOR("pwrite");
 ssize_t adit_pwrite64(int fd, const void* bytes, std::size_t size, off_t at) ADIT_STANDS_FOR("pwrite64");
 ssize_t adit_writev(int fd, const iovec* pieces, int count) ADIT_STANDS_FOR("writev");
+ssize_t adit_read(int fd, void* to, std::size_t size) ADIT_STANDS_FOR("read");
+ssize_t adit_pread(int fd, void* to, std::size_t size, off_t at) ADIT_STANDS_FOR("pread");
+ssize_t adit_pread64(int fd, void* to, std::size_t size, off_t at) ADIT_STANDS_FOR("pread64");
+void* adit_mmap(void* at, std::size_t size, int access, int flags, int fd, off_t from)
+    ADIT_STANDS_FOR("mmap");
+void* adit_mmap64(void* at, std::size_t size, int access, int flags, int fd, off_t from)
+    ADIT_STANDS_FOR("mmap64");
+int adit_stat(const char* path, struct stat* found) ADIT_STANDS_FOR("stat");
+int adit_lstat(const char* path, struct stat* found) ADIT_STANDS_FOR("lstat");
+int adit_fstatat(int folder, const char* path, struct stat* found, int flags) ADIT_STANDS_FOR("fstatat");
+int adit_fstat(int fd, struct stat* found) ADIT_STANDS_FOR("fstat");
+int adit_fstat64(int fd, struct stat* found) ADIT_STANDS_FOR("fstat64");
+DIR* adit_opendir(const char* path) ADIT_STANDS_FOR("opendir");
+DIR* adit_fdopendir(int fd) ADIT_STANDS_FOR("fdopendir");
+dirent* adit_readdir(DIR* folder) ADIT_STANDS_FOR("readdir");
 int adit_ftruncate(int fd, off_t size) ADIT_STANDS_FOR("ftruncate");
 int adit_ftruncate64(int fd, off_t size) ADIT_STANDS_FOR("ftruncate64");
 int adit_truncate(const char* path, off_t size) ADIT_STANDS_FOR("truncate");
@@ -205,6 +241,59 @@ ssize_t adit_writev(int fd, const iovec* pieces, int count) {
   for (int i = 0; i < count; ++i)
     bytes.append(static_cast<const char*>(pieces[i].iov_base), pieces[i].iov_len);
   return write_to(fd, bytes.data(), bytes.size(), std::nullopt);
+}
+
+ssize_t adit_read(int fd, void* to, std::size_t size) {
+  return read_from(fd, to, size, std::nullopt);
+}
+ssize_t adit_pread(int fd, void* to, std::size_t size, off_t at) {
+  return read_from(fd, to, size, at);
+}
+ssize_t adit_pread64(int fd, void* to, std::size_t size, off_t at) {
+  return read_from(fd, to, size, at);
+}
+void* adit_mmap(void* at, std::size_t size, int access, int flags, int fd, off_t from) {
+  Disk* const disk = fd < 0 ? nullptr : Disk::of(fd);
+  if (disk != nullptr && disk->fails(Call::Map, fd) != 0) return MAP_FAILED;
+  return reinterpret_cast<void*>(::syscall(SYS_mmap, at, size, access, flags, fd, from));
+}
+void* adit_mmap64(void* at, std::size_t size, int access, int flags, int fd, off_t from) {
+  return adit_mmap(at, size, access, flags, fd, from);
+}
+
+int adit_stat(const char* path, struct stat* found) {
+  return status_of(AT_FDCWD, path, found, 0);
+}
+int adit_lstat(const char* path, struct stat* found) {
+  return status_of(AT_FDCWD, path, found, AT_SYMLINK_NOFOLLOW);
+}
+int adit_fstatat(int folder, const char* path, struct stat* found, int flags) {
+  return status_of(folder, path, found, flags);
+}
+int adit_fstat(int fd, struct stat* found) {
+  Disk* const disk = Disk::of(fd);
+  return disk != nullptr && disk->fails(Call::Status, fd) != 0 ? -1 : real::status(fd, found);
+}
+int adit_fstat64(int fd, struct stat* found) {
+  return adit_fstat(fd, found);
+}
+
+DIR* adit_opendir(const char* path) {
+  const int fd = open_at(AT_FDCWD, path, O_RDONLY | O_DIRECTORY | O_CLOEXEC, 0);
+  if (fd < 0) return nullptr;
+  DIR* const folder = adit_fdopendir(fd);
+  const int error = errno;
+  if (folder == nullptr) adit_close(fd);
+  errno = error;
+  return folder;
+}
+DIR* adit_fdopendir(int fd) {
+  static const auto next = reinterpret_cast<DIR* (*)(int)>(::dlsym(RTLD_NEXT, "fdopendir"));
+  return is_unlisted(fd) ? nullptr : next(fd);
+}
+dirent* adit_readdir(DIR* folder) {
+  static const auto next = reinterpret_cast<dirent* (*)(DIR*)>(::dlsym(RTLD_NEXT, "readdir"));
+  return is_unlisted(::dirfd(folder)) ? nullptr : next(folder);
 }
 
 int adit_ftruncate(int fd, off_t size) {

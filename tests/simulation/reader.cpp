@@ -32,7 +32,7 @@ bool anything_waits(const nlohmann::json& view) {
          std::ranges::any_of(view.at("reports"), is_going);
 }
 
-Stored stored(const Disk& disk) {
+Stored stored(Disk& disk) {
   const std::uint64_t waiting = disk.stored("runtime/waiting/"), journal = disk.stored("runtime/journal/");
   return {.state = disk.stored("state/"),
           .waiting = waiting,

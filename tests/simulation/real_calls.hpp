@@ -21,11 +21,23 @@ inline ssize_t write(int fd, const void* bytes, std::size_t size) {
 inline int truncate(int fd, off_t size) {
   return static_cast<int>(::syscall(SYS_ftruncate, fd, size));
 }
+inline ssize_t read(int fd, void* bytes, std::size_t size) {
+  return ::syscall(SYS_read, fd, bytes, size);
+}
+inline ssize_t read_at(int fd, void* bytes, std::size_t size, off_t at) {
+  return ::syscall(SYS_pread64, fd, bytes, size, at);
+}
+inline int status(int fd, struct stat* found) {
+  return static_cast<int>(::syscall(SYS_fstat, fd, found));
+}
+inline int status(int folder, const char* path, struct stat* found, int flags) {
+  return static_cast<int>(::syscall(SYS_newfstatat, folder, path, found, flags));
+}
 /// Whether these are pages of zeros that go behind a file's end: reading a hole there gives the same.
 inline bool may_be_hole(int fd, std::span<const char> bytes, off_t at) {
   struct stat file{};
   return bytes.size() >= 4096 && bytes[0] == 0 && std::memcmp(&bytes[0], &bytes[1], bytes.size() - 1) == 0 &&
-         ::fstat(fd, &file) == 0 && S_ISREG(file.st_mode) && file.st_size <= at;
+         status(fd, &file) == 0 && S_ISREG(file.st_mode) && file.st_size <= at;
 }
 /// A file of the ledger begins as 4 MiB of zeros: a hole takes no time to make and to copy.
 inline ssize_t write_at(int fd, std::span<const char> bytes, off_t at) {

@@ -46,6 +46,18 @@ void plan_clock(World& world, double trouble_for) {
   }
 }
 
+/// An end of the process before each start that is to meet a fault.
+void plan_calls(World& world, Box& box, double trouble_for) {
+  CallFaults& calls = world.disk().calls();
+  calls.plan(trouble_for);
+  Random random = world.random("ends for calls");
+  for (const double end : calls.ends()) {
+    const bool is_killed = random.chance(0.5);
+    world.after(seconds(end),
+                [&box, is_killed] { is_killed ? box.die(World::How::Killed) : box.terminate(); });
+  }
+}
+
 }  // namespace
 
 Outcome play(const Plan& plan) {
@@ -64,6 +76,7 @@ Outcome play(const Plan& plan) {
   plan_ends(world, box, trouble_for);
   plan_clock(world, trouble_for);
   world.disk().faults().plan(trouble_for);
+  plan_calls(world, box, trouble_for);
   world.network().stalls().plan(trouble_for);
   world.after(seconds(trouble_for), [&] { posts.calm(); });
   reader.wait_for_rest(trouble_for + kLeastRest, trouble_for + kMostRest, [&] { box.finish(); });
@@ -73,7 +86,7 @@ Outcome play(const Plan& plan) {
           .seconds = world.time(),
           .steps = world.steps(),
           .faults = world.history().faults(),
-          .drawn = faults.names() + world.disk().faults().names(),
+          .drawn = faults.names() + world.disk().faults().names() + world.disk().calls().names(),
           .broken = all_checks({world.history().events(), ledger.reports, reader.readings(),
                                 box.most_map_bytes(), ledger.missing}),
           .actions = world.actions()};

@@ -122,6 +122,7 @@ void World::begin_life(bool again) {
     dies_ = nullptr;
     crossings_after_report_.reset();
   }
+  disk_.calls().life_begins();
   note({.kind = Kind::Begins, .what = "aditd", .who = "", .serial = life_});
   heap_at_begin_ = heap();
   most_wanted();

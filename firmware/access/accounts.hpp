@@ -9,7 +9,7 @@
 
 namespace adit::access {
 
-/// Each role's password, hashed; nothing: nobody can log in as that.
+/// Each role's password hash (crypt(5)). If it is absent, login with that role is not possible.
 struct Accounts {
   std::optional<std::string> viewer, operator_;
 
@@ -20,14 +20,15 @@ struct Accounts {
   friend bool operator==(const Accounts&, const Accounts&) = default;
 };
 
-/// Which password `hash` was made of, and nothing about it: its salt, which no other has.
+/// The part of `hash` before the hash proper. Its salt makes it unique, so it identifies the password without
+/// revealing it.
 std::string_view salt_of(std::string_view hash);
 
-/// The role whose password this is. As slow as matches(): for a worker.
+/// The role with this password, or nullopt. Takes up to twice as long as matches(), so call it on a worker.
 std::optional<Role> role_of(const std::string& password, const Accounts& accounts);
 
-/// The text of access.json, {"version": 1, "operator": HASH, "viewer": HASH or null}; an error says what is
-/// wrong and shows no hash.
+/// The text of access.json: {"version": 1, "operator": HASH, "viewer": HASH or null}. An error says what is
+/// wrong and contains no hash.
 std::expected<Accounts, std::string> read_accounts(std::string_view json);
 std::string write_accounts(const Accounts& accounts);
 

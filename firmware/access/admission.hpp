@@ -12,28 +12,29 @@ namespace adit::access {
 
 inline constexpr std::string_view kCookie = "adit", kDeviceCookie = "adit-device", kCsrfHeader = "Adit-CSRF";
 
-/// What a request says of where it comes from; the headers by their names, "" where absent.
+/// The headers of a request that show where it comes from. An absent header is "".
 struct Request {
   std::string_view method, host, origin, cookie, authorization, csrf;
 };
 
-/// Somebody who may come in.
+/// A client that is logged in or has shown a token.
 struct Visitor {
   Role role = Role::Viewer;
-  const Session* session = nullptr;  // null: a script, by its token
+  const Session* session = nullptr;  // null: a script with a token
 };
 
-/// Whether the request comes from a page of this box, or from no page at all (403 otherwise): asked of all,
-/// even of those who need no role.
+/// An error (403) if the Host header does not name this box, or if the Origin header names another host.
+/// Applies to all requests, even if they need no role.
 icd::Checked<void> check_whence(const Request& request);
 
-/// Who asks: by one of the tokens, an operator; by a session's cookie, whoever logged in. Nobody (nothing)
-/// where neither is good.
+/// With an Authorization header: an operator if it contains one of `tokens`, else nullopt. Without one: the
+/// owner of the session whose cookie the request shows, or nullopt.
 std::optional<Visitor> who(const Request& request, std::span<const icd::BearerToken> tokens,
                            Sessions& sessions, Instant now);
 
-/// Whether the request may do what needs `role`: 401 nobody is logged in, 403 from another page, without the
-/// session's CSRF token where it changes anything (all methods but GET and HEAD), or by a lower role.
+/// Checks that the request may do an action that needs `role`. 401 if it shows no valid token or session. 403
+/// if it comes from another page, if its role is lower, or if it is not GET or HEAD and lacks its session's
+/// CSRF token.
 icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now);
 

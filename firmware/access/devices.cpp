@@ -34,7 +34,7 @@ Devices::Devices(std::vector<Device> kept, std::function<void()> changed)
 const Device* Devices::find(std::string_view id) {
   auto found = devices_.end();
   for (auto each = devices_.begin(); each != devices_.end(); ++each) {
-    if (each->id.matches(id)) found = each;  // no early end: the time must not tell which
+    if (each->id.matches(id)) found = each;  // no early exit: the time must not reveal which one matches
   }
   if (found == devices_.end()) return nullptr;
   std::rotate(found, found + 1, devices_.end());

@@ -15,30 +15,30 @@
 
 namespace adit::access {
 
-/// A browser that somebody has logged in from. It keeps showing the id, also when it is logged out; that lets
-/// nobody in, but needs no turn among strangers who guess (OWASP, "Device Cookies").
+/// A known device: a browser from which a password was shown. Its cookie stays after the logout. The cookie
+/// is no login, but it exempts the browser from waiting for a turn (OWASP, "Device Cookies").
 struct Device {
-  std::uint64_t number = 0;  // from 1 on, another after each start
+  std::uint64_t number = 0;  // from 1 on, new after each process start
   Role role = Role::Viewer;
   icd::BearerToken id;
 };
 
-/// Those that are known.
+/// The known devices.
 class Devices {
  public:
-  static constexpr std::size_t kMostOfRole = 16;  // at one more, the one that was not seen for longest goes
+  static constexpr std::size_t kMostOfRole = 16;  // beyond it, add() drops the one not seen for longest
 
-  /// `changed`, if given, is called whenever one is added or ended, or another password is theirs.
+  /// `changed`, if given, is called when a device is added, and by end_all() if the role has devices.
   explicit Devices(std::vector<Device> kept = {}, std::function<void()> changed = {});
 
-  /// The one whose id is presented, seen now, or null; valid until the next call.
+  /// The device with this id, or null. Marks it as seen now. The result is valid until the next call.
   const Device* find(std::string_view id);
-  /// `id` has never been used before; valid until the next call.
+  /// `id` must be new. The result is valid until the next call.
   const Device& add(const Secret& id, Role role);
-  /// Its password is another: of a role, all but one (0: no exception).
+  /// Call this when the role's password has changed. Removes the role's devices except number `but` (0: all).
   void end_all(Role role, std::uint64_t but);
 
-  /// Seen last comes last.
+  /// The device seen last comes last.
   const std::vector<Device>& all() const { return devices_; }
 
  private:
@@ -47,12 +47,12 @@ class Devices {
   std::uint64_t last_ = 0;
 };
 
-/// The text of devices.json, {"version": 2, "devices": [{"role", "password", "id"}, ...]}, where "password"
-/// is salt_of() the one that the role has in `accounts`.
+/// The text of devices.json: {"version": 2, "devices": [{"role", "password", "id"}, ...]}. "password" is
+/// salt_of() the role's hash in `accounts`.
 std::string write_devices(const std::vector<Device>& devices, const Accounts& accounts);
-/// Without those that were written under another password than `accounts` has: whichever of the two files was
-/// written last, a device ends with the password. An error says what is wrong and shows nothing of what is in
-/// it.
+/// Skips devices that were written under another password than the one in `accounts`. So a device ends with
+/// its password, whichever of the two files was written last. An error says what is wrong and contains no
+/// secret.
 std::expected<std::vector<Device>, std::string> read_devices(std::string_view json, const Accounts& accounts);
 
 }  // namespace adit::access

@@ -15,8 +15,8 @@
 
 namespace adit::access {
 
-/// What `read` makes of a file's text, a JSON object with this "version". An error says what is wrong and
-/// shows nothing of what is in it.
+/// Parses a JSON object with this "version" and returns the result of `read`. An error says what is wrong and
+/// contains no secret.
 template <class Kept, class Read>
 std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t version, Read read) {
   const auto root = codec::parse_json(json);
@@ -30,7 +30,8 @@ std::expected<Kept, std::string> read_kept(std::string_view json, std::int64_t v
   return std::move(*outcome);
 }
 
-/// What `read_element` gives of each element of an array, up to the first that is refused.
+/// The results of `read_element` for the elements of an array. Stops at the first refused element and skips
+/// those without a result.
 template <class Element, class Read>
 std::vector<Element> elements_of(const codec::Field& array, Read read_element) {
   std::vector<Element> all;
@@ -41,7 +42,7 @@ std::vector<Element> elements_of(const codec::Field& array, Read read_element) {
   return all;
 }
 
-/// Refuses, and gives nothing, where the text cannot be one.
+/// The token in member `name`. Refuses and returns nullopt if it cannot be a token.
 inline std::optional<icd::BearerToken> token_in(const codec::Field& object, std::string_view name) {
   const codec::Field field = object.member(name);
   auto token = icd::BearerToken::parse(field.text());
@@ -49,7 +50,7 @@ inline std::optional<icd::BearerToken> token_in(const codec::Field& object, std:
   return token;
 }
 
-/// The member `role`; refuses, and gives nothing, where it is none.
+/// The role in member `role`. Refuses and returns nullopt if it is no role.
 inline std::optional<Role> role_in(const codec::Field& object) {
   const codec::Field field = object.member("role");
   auto role = role_named(field.text());

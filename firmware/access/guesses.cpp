@@ -33,12 +33,12 @@ Guesses::Key Guesses::key_of(const Guesser& guesser) {
 
 Duration Guesses::pause(const Count& count, Instant now) {
   if (count.wrong < kFree) return Duration::zero();
-  const int doublings = std::min(count.wrong - kFree, 6);  // 64 s is more than the most
+  const int doublings = std::min(count.wrong - kFree, 6);  // 64 s is more than kMost
   const Duration pause = std::min<Duration>(kFirst * (1 << doublings), kMost);
   return std::max(count.last + pause - now, Duration::zero());
 }
 
-/// Null: all that there is room for are waiting for their turns.
+/// Null if kMostGuessers clients wait for their turns and this one is no known device.
 Guesses::Count* Guesses::count_of(const Guesser& guesser, Instant now) {
   std::erase_if(counts_, [now](const auto& each) { return now - each.second.asked >= kForgotten; });
   const Key key = key_of(guesser);
@@ -53,7 +53,7 @@ Guesses::Count* Guesses::count_of(const Guesser& guesser, Instant now) {
   return &counts_[key];
 }
 
-/// How long before its turn comes; one is given to who has none. Zero: it is used.
+/// The wait for its turn; zero: the turn is used now. Assigns a turn if it has none.
 Duration Guesses::turn(Count& own, Instant now) {
   if (own.turn && now < *own.turn) return *own.turn - now;
   const std::optional<Instant> had = std::exchange(own.turn, std::nullopt);

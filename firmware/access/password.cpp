@@ -12,7 +12,7 @@
 namespace adit::access {
 namespace {
 
-/// libcrypt's working memory, 32 KiB with the password in it, which is not left behind.
+/// Wipes libcrypt's working memory (32 KiB), because it contains the password.
 struct Wiped {
   void operator()(crypt_data* data) const {
     explicit_bzero(data, sizeof *data);
@@ -20,7 +20,7 @@ struct Wiped {
   }
 };
 
-/// Empty where it cannot be had.
+/// "" if libcrypt fails.
 std::string crypted(const std::string& password, const std::string& setting) {
   const std::unique_ptr<crypt_data, Wiped> data(new crypt_data{});
   const char* const text = crypt_r(password.c_str(), setting.c_str(), data.get());
@@ -69,7 +69,7 @@ std::expected<std::string, std::string> hash(const std::string& password, const 
 
 bool matches(const std::string& password, const std::string& hash) {
   if (password.size() > kMostBytes) return false;
-  const auto expected = icd::BearerToken::parse(hash);  // compares in the same time wherever they differ
+  const auto expected = icd::BearerToken::parse(hash);  // compares in constant time
   return expected && expected->matches(crypted(password, hash));
 }
 

@@ -10,7 +10,7 @@ namespace adit::access {
 using Instant = std::chrono::steady_clock::time_point;
 using Duration = std::chrono::nanoseconds;
 
-/// What somebody may do: a viewer looks, an operator also has a word. Each includes those before it.
+/// A viewer looks. An operator also acts. Each role includes the previous ones.
 enum class Role : std::uint8_t { Viewer, Operator };
 
 /// "viewer", "operator"

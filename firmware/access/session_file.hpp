@@ -9,17 +9,16 @@
 
 namespace adit::access {
 
-/// Sessions as they are kept across an end of the service. Times are of the machine's monotonic clock, which
-/// goes on from one start of the service to the next, but not over a start of the machine.
+/// Sessions as saved across a process restart. Times are monotonic, so they are valid within one boot only.
 struct KeptSessions {
-  std::string boot;  // names the start of the machine; "": nobody knows
+  std::string boot;  // identifies the boot; "": not known
   std::uint64_t last = 0;
-  std::vector<Session> sessions;  // in the order of their numbers
+  std::vector<Session> sessions;  // in order of number
 };
 
-/// The text of the file; holds what lets people in.
+/// The text of the file. It contains secrets.
 std::string write_sessions(const KeptSessions& kept);
-/// An error says what is wrong and shows nothing of what is in it.
+/// An error says what is wrong and contains no secret.
 std::expected<KeptSessions, std::string> read_sessions(std::string_view json);
 
 }  // namespace adit::access

@@ -8,7 +8,7 @@
 namespace adit::access {
 namespace {
 
-/// Visible ASCII and spaces, so that it can be shown anywhere.
+/// The text with "?" for all but visible ASCII and spaces, so that it can be shown anywhere.
 std::string plain(std::string_view agent) {
   std::string text(agent.substr(0, Sessions::kLongestAgent));
   std::ranges::replace_if(text, [](char letter) { return letter < 0x20 || letter > 0x7e; }, '?');
@@ -34,7 +34,7 @@ const Session& Sessions::begin(const Secret& id, const Secret& csrf, Role role, 
                                Instant now) {
   forget_ended(now);
   if (sessions_.size() >= kMost) {
-    // Viewers first, so that none of them can make an operator go.
+    // Viewers first, so that a viewer cannot end an operator's session.
     const auto by = [](const Session& each) { return std::pair(each.role == Role::Operator, each.seen); };
     sessions_.erase(std::ranges::min_element(sessions_, {}, by));
   }
@@ -54,7 +54,7 @@ const Session* Sessions::find(std::string_view id, Instant now) {
   forget_ended(now);
   Session* found = nullptr;
   for (Session& session : sessions_) {
-    if (session.id.matches(id)) found = &session;  // no early end: the time must not tell which
+    if (session.id.matches(id)) found = &session;  // no early exit: constant time
   }
   if (found != nullptr) found->seen = now;
   return found;

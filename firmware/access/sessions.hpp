@@ -13,57 +13,57 @@
 
 namespace adit::access {
 
-/// 256 bits that nobody can guess.
+/// 256 random bits.
 using Secret = std::array<std::uint8_t, 32>;
 
-/// In 64 hexadecimal digits.
+/// As 64 hexadecimal digits.
 icd::BearerToken as_token(const Secret& secret);
 
-/// Somebody who showed a password, and the browser that keeps showing the id since.
+/// A login. The browser shows `id` with each request.
 struct Session {
-  std::uint64_t number = 0;  // what it is called by; tells nothing of `id`
+  std::uint64_t number = 0;  // its public name; reveals nothing of `id`
   Role role = Role::Viewer;
   icd::BearerToken id, csrf;
   Instant made, seen;
   std::string address, agent;
 };
 
-/// Who comes to log in.
+/// The client that logs in.
 struct Caller {
   std::string address;
-  std::string_view agent;  // User-Agent, anybody's text
+  std::string_view agent;  // User-Agent, arbitrary text
 };
 
-/// Those who are logged in.
+/// The sessions that are logged in.
 class Sessions {
  public:
   static constexpr std::chrono::hours kIdle{12}, kLongest{7 * 24};
   static constexpr std::size_t kMost =
-      64;  // at one more, the viewer that was idle for longest ends, or else the operator
-  static constexpr std::size_t kLongestAgent = 160;  // the name of the browser comes after 80 to 110
+      64;  // beyond it, begin() ends the viewer idle for longest, or an operator if there is no viewer
+  static constexpr std::size_t kLongestAgent = 160;  // the browser's name starts at 80 to 110
 
-  /// `changed`, if given, is called whenever somebody logs in or a session is ended.
+  /// `changed`, if given, is called after each login and when a session is ended; not when one expires.
   explicit Sessions(std::function<void()> changed = {}) : changed_(std::move(changed)) {}
 
-  /// Takes up those of an earlier start; none that has ended, or begins after `now`. `last`: the number that
-  /// was given last.
+  /// Restores the sessions of an earlier process, except expired ones and those with times after `now`.
+  /// `last`: the last number in use.
   void restore(std::vector<Session> sessions, std::uint64_t last, Instant now);
   std::uint64_t last() const { return last_; }
   const std::vector<Session>& in_order() const { return sessions_; }
 
-  /// `id` and `csrf` have never been used before. The result is valid until the next call.
+  /// `id` and `csrf` must be new. The result is valid until the next call.
   const Session& begin(const Secret& id, const Secret& csrf, Role role, const Caller& caller, Instant now);
-  /// The session whose id is presented, seen now, or null; valid until the next call.
+  /// The session with this id, or null. Marks it as seen now. The result is valid until the next call.
   const Session* find(std::string_view id, Instant now);
-  /// Whether that session has not ended; it is seen now.
+  /// True if the session has not ended. Marks it as seen now.
   bool still(std::uint64_t number, Instant now);
 
-  /// False: there is none.
+  /// False if there is no such session.
   bool end(std::uint64_t number);
-  /// Of a role, all but one (0: no exception).
+  /// Ends the role's sessions except number `but` (0: all).
   void end_all(Role role, std::uint64_t but);
 
-  /// The newest first.
+  /// Newest first.
   std::vector<Session> all(Instant now);
 
  private:
@@ -73,7 +73,7 @@ class Sessions {
   }
 
   std::function<void()> changed_;
-  std::vector<Session> sessions_;  // in the order of their numbers
+  std::vector<Session> sessions_;  // in order of number
   std::uint64_t last_ = 0;
 };
 

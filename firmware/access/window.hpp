@@ -6,15 +6,15 @@
 
 namespace adit::access {
 
-/// For how long the word of somebody who was seen at the box itself is good. Nothing that comes over a
-/// network opens it, and it is kept nowhere: a restart closes it.
+/// A time during which a person at the box is trusted. Requests from a network cannot open it. It is kept in
+/// memory only, so a restart closes it.
 class Window {
  public:
-  /// From now on; where it is open already, for the whole time again.
+  /// Opens it for `length` from now, even if it is open already.
   void open(Instant now, Duration length) { until_ = now + length; }
-  /// It has been used.
+  /// Closes it after use.
   void close() { until_.reset(); }
-  /// For how much longer it is open; nothing: it is not.
+  /// The rest of its time, or nullopt if it is closed.
   std::optional<Duration> left(Instant now) const {
     return until_ && now < *until_ ? std::optional<Duration>(*until_ - now) : std::nullopt;
   }

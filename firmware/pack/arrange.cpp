@@ -27,7 +27,7 @@ void gather(std::span<const std::uint8_t> points, std::size_t step, std::span<co
   }
 }
 
-/// How small gzip makes some stretches of them in that order.
+/// The size to which gzip compresses a sample of the points in that order.
 std::size_t tried(std::span<const std::uint8_t> points, std::size_t step,
                   std::span<const std::uint32_t> numbers) {
   constexpr std::size_t kShare = 32, kShareOfFew = 4, kStretches = 16, kTelling = std::size_t{32} << 10;
@@ -41,7 +41,7 @@ std::size_t tried(std::span<const std::uint8_t> points, std::size_t step,
   return member ? member->size() : some.size();
 }
 
-/// Of at most kMostOrdered points.
+/// Orders at most kMostOrdered points.
 void put_block_in_order(const icd::PointCloud2& cloud, const Box& box, std::span<std::uint8_t> points) {
   const std::size_t step = cloud.point_step;
   Numbers best(points.size() / step);
@@ -83,7 +83,7 @@ Box box_of(const Arranged& arranged) {
   return box;
 }
 
-/// In blocks of one size.
+/// Works in blocks of equal size.
 void put_in_order(Arranged& arranged) {
   const std::size_t step = arranged.cloud.point_step, points = arranged.points.size() / step;
   const std::size_t blocks = (points + kMostOrdered - 1) / kMostOrdered;

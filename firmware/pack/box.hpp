@@ -8,7 +8,7 @@
 
 namespace adit::pack {
 
-/// The smallest box along the axes that holds some points; of none, its low is above its high.
+/// The smallest axis-parallel box around some points. Without points its low is above its high.
 struct Box {
   Coordinates low = all(std::numeric_limits<double>::max()),
               high = all(std::numeric_limits<double>::lowest());

@@ -20,7 +20,7 @@ std::array<std::size_t, 3> axes_of(const icd::PointCloud2& cloud) {
   return {field_of(cloud, "x").offset, field_of(cloud, "y").offset, field_of(cloud, "z").offset};
 }
 
-/// All three are of one datatype.
+/// check(cloud) makes sure that all three have one datatype.
 CoordinateReader::CoordinateReader(const icd::PointCloud2& cloud)
     : offsets_(axes_of(cloud)),
       is_double_(field_of(cloud, "x").datatype == icd::Datatype::Float64),

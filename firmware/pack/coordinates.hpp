@@ -11,19 +11,19 @@
 
 namespace adit::pack {
 
-/// Of a point: its x, y and z in metres, in the frame that its cloud is in.
+/// x, y and z of a point, in metres, in the frame of its cloud.
 using Coordinates = std::array<double, 3>;
 
-/// The offsets of x, y and z in a point. Requires them, as check(cloud) sees to it.
+/// The offsets of x, y and z in a point. Requires check(cloud).
 std::array<std::size_t, 3> axes_of(const icd::PointCloud2& cloud);
 
-/// Reads the coordinates of a cloud's points, float32 or float64, in either byte order (ICD 6.3.2).
+/// Reads the coordinates of a cloud's points: float32 or float64 in either byte order (ICD 6.3.2).
 class CoordinateReader {
  public:
-  /// As axes_of() requires.
+  /// Requires check(cloud).
   explicit CoordinateReader(const icd::PointCloud2& cloud);
 
-  /// Of a point of point_step bytes.
+  /// `point` has point_step bytes.
   Coordinates operator()(std::span<const std::uint8_t> point) const {
     Coordinates read{};
     for (std::size_t axis = 0; axis < read.size(); ++axis) {

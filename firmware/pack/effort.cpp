@@ -9,14 +9,14 @@
 namespace adit::pack {
 namespace {
 
-/// So much of the time another effort has to save.
+/// Another effort may take at most this part of the time.
 constexpr double kWorthIt = 0.9;
 
 double seconds_per_byte(Effort effort) {
   return kSecondsPerByte[static_cast<std::size_t>(effort)];
 }
 
-/// The bytes from `at` on, `size` of them.
+/// Appends `size` bytes from `at` on.
 void append(std::vector<std::uint8_t>& to, const icd::ChunkedBytes& bytes, std::size_t at, std::size_t size) {
   for (const auto& chunk : bytes.chunks()) {
     const std::size_t before = std::min(at, chunk->size());
@@ -28,7 +28,7 @@ void append(std::vector<std::uint8_t>& to, const icd::ChunkedBytes& bytes, std::
   }
 }
 
-/// What Quick makes of a byte, by some stretches of the points.
+/// The size to which Quick compresses a byte, measured on a sample of the points.
 double tried(const icd::ChunkedBytes& points) {
   constexpr std::size_t kShare = 32, kTelling = std::size_t{64} << 10, kStretches = 16;
   const std::size_t size = std::min(points.size(), std::max(points.size() / kShare, kTelling));
@@ -42,8 +42,8 @@ double tried(const icd::ChunkedBytes& points) {
   return member ? static_cast<double>(member->size()) / static_cast<double>(some.size()) : 1;
 }
 
-/// Whether its cells are too many to be whole in memory. Measured: a byte of a kept cave holds 35 to 220
-/// cells, and 2 to 20 if libdeflate can make it much smaller.
+/// True if the cells are too many to be held in memory. Measured: a byte of a stored cave holds 35 to 220
+/// cells, but only 2 to 20 if libdeflate can make it much smaller.
 bool is_left(const icd::MapData& cells) {
   constexpr std::size_t kMany = std::size_t{16} << 20, kMost = std::size_t{40} << 20, kPerByte = 40;
   return cells.raw_size > kMost ||
@@ -84,7 +84,7 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
   return best;
 }
 
-/// If even a cloud of no bytes is best sent unpacked, no part of it is tried.
+/// If even a cloud that Quick shrinks to nothing is best sent uncompressed, no sample is tried.
 Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
   if (map.is_grid()) return for_cells(map, hurry);
   const std::size_t size = map.data.bytes.size();
@@ -93,7 +93,7 @@ Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
   return effort_for(size, tried(map.data.bytes), hurry);
 }
 
-/// Measured: the longest time of all grids. A high level takes its time for the bytes of the kept form.
+/// Measured: the maximum over all grids. A high level takes its time for the bytes of the stored form.
 double seconds_for(Effort effort, const icd::MapUpdate& map) {
   const double size = static_cast<double>(map.data.raw_size);
   if (!map.is_grid()) return seconds_per_byte(effort) * size;

@@ -7,42 +7,42 @@
 
 namespace adit::pack {
 
-/// How much is done to make a map small.
+/// How hard a map is compressed.
 enum class Effort : std::uint8_t {
-  None,   // points as they came, without those that are not finite; cells as they are kept
-  Quick,  // points without padding, in their order, at the fastest level of gzip; cells at kQuickCellsLevel
+  None,   // points unchanged, without those that are not finite; cells as stored
+  Quick,  // points without padding, in their order, at gzip's fastest level; cells at kQuickCellsLevel
   Full,   // points as CloudForm says; cells at kCellsLevel
 };
 
-/// What the effort for a map hangs on.
+/// The conditions that decide the effort for a map.
 struct Hurry {
-  double bytes_per_second = 0;  // that its link carries, if the map can leave at once; 0: it waits meanwhile
-  double slowness = 1;          // of this box: seconds_for() times that
-  double longest = 1;           // seconds that it may be under way
+  double bytes_per_second = 0;  // the rate of its link, if the map can leave at once; 0: the map must wait
+  double slowness = 1;          // of this box: a factor for seconds_for()
+  double longest = 1;           // seconds that sending may take
 };
 
-/// What an effort takes for a byte, and what Full makes of a byte that Quick makes: as measured
-/// (tests/bench/README.md, of exact clouds).
+/// The time of each effort per byte, and the size of Full's output relative to Quick's. Measured on exact
+/// clouds (tests/bench/README.md).
 inline constexpr double kSecondsPerByte[] = {0, 7e-9, 15e-9};
 inline constexpr double kFullOfQuick = 0.85;
 
-/// libdeflate's levels for cells: the next higher one takes 9 MiB of memory, a lower one is hardly faster.
+/// libdeflate's levels for cells. The next higher level takes 9 MiB of memory; a lower one is hardly faster.
 inline constexpr int kCellsLevel = 9, kQuickCellsLevel = 2;
 
-/// The effort with which the last byte of a cloud of `size` bytes is there first, if Quick makes `quick_to`
-/// of a byte. Full, unless another one saves a tenth of the time, for what is larger is in the way of others;
-/// none that takes longer than `longest` to leave, but Full.
+/// The effort with which a cloud of `size` bytes is sent completely first, if Quick compresses a byte to
+/// `quick_to`. Another effort than Full must save a tenth of the time and must be sent within `longest`,
+/// because larger messages delay others.
 Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry);
 
-/// The same, for an exact cloud that is not compressed: a part of it is tried, if that can matter.
+/// The same for an exact, uncompressed cloud. Compresses a sample if the result can matter.
 ///
-/// For a grid as it is kept: the greatest effort that takes at most half of `longest`, half a second, and as
-/// long as the grid takes to leave as it is kept. None for more than 40 MiB of cells, because they are whole
-/// in memory meanwhile; more than 16 MiB must be worth it: their kept form has more than a byte for 40 cells.
+/// For a stored grid: the greatest effort that takes at most half of `longest`, half a second, and the time
+/// in which the grid as stored is sent. None for more than 40 MiB of cells, because all cells are in memory
+/// meanwhile. Also None for more than 16 MiB of cells if the stored form has at most one byte per 40 cells.
 Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry);
 
-/// Seconds for packing `map`, uncompressed points or kept cells, on the box of tests/bench/README.md: the
-/// usual ones for a cloud, the most for a grid.
+/// Seconds to pack `map` (uncompressed points or stored cells) on the box of tests/bench/README.md: typical
+/// for a cloud, the maximum for a grid.
 double seconds_for(Effort effort, const icd::MapUpdate& map);
 
 }  // namespace adit::pack

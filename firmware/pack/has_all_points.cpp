@@ -14,7 +14,7 @@ namespace {
 
 using Point = std::span<const std::uint8_t>;
 
-/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014): every bit counts for all.
+/// Steele, Lea and Flood, "Fast splittable pseudorandom number generators" (2014): each bit affects all.
 std::uint64_t mixed(std::uint64_t bits) {
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
   bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
@@ -32,7 +32,7 @@ std::uint64_t hash_of(Point point) {
   return mixed(hash ^ word);
 }
 
-/// Points that are sought, each known by its hash: open addressing, at most half full.
+/// A set of point hashes to find: open addressing, at most half full.
 class Sought {
  public:
   explicit Sought(std::size_t most) : places_(std::bit_ceil(2 * most + 2)) {}
@@ -54,7 +54,7 @@ class Sought {
   static constexpr std::uint64_t kFound = 1, kTaken = 2;
   static std::uint64_t key_of(std::uint64_t hash) { return (hash & ~kFound) | kTaken; }
 
-  /// Where it is, or would be.
+  /// The place of the point, or the free place for it.
   std::uint64_t& place_of(Point point) {
     const std::uint64_t hash = hash_of(point);
     std::size_t at = hash >> 2;
@@ -70,7 +70,7 @@ class Sought {
 
 bool begins_with(const icd::ChunkedBytes& whole, const icd::ChunkedBytes& part) {
   auto chunk = whole.chunks().begin();
-  std::size_t at = 0;  // of that chunk
+  std::size_t at = 0;  // within that chunk
   for (const auto& piece : part.chunks()) {
     for (Point rest = *piece; !rest.empty();) {
       if (chunk == whole.chunks().end()) return false;
@@ -85,7 +85,7 @@ bool begins_with(const icd::ChunkedBytes& whole, const icd::ChunkedBytes& part) 
   return true;
 }
 
-/// Of `older`'s points each `every`th.
+/// Looks for every `every`th point of `older`.
 bool has(const icd::ChunkedBytes& newer, const icd::ChunkedBytes& older, std::size_t point_step,
          std::size_t every) {
   Sought sought(older.size() / point_step / every + 1);
@@ -103,7 +103,7 @@ bool has(const icd::ChunkedBytes& newer, const icd::ChunkedBytes& older, std::si
 
 }  // namespace
 
-/// A few points first: clouds that are parts are told by them, with little memory.
+/// A sample of points first: it shows that a cloud is another one, with little memory.
 bool has_all_points(const icd::MapData& newer, const icd::MapData& older, std::size_t point_step) {
   constexpr std::size_t kFew = 64;
   if (older.bytes.size() > newer.bytes.size()) return false;

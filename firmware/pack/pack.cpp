@@ -13,8 +13,8 @@
 namespace adit::pack {
 namespace {
 
-/// Tells whether a point's x, y and z are all finite, by their exponents alone (IEEE 754): no alignment and
-/// no swapping of bytes is needed.
+/// Checks that a point's x, y and z are finite, by their exponents only (IEEE 754). It needs no alignment and
+/// no byte swapping.
 class FiniteCheck {
  public:
   explicit FiniteCheck(const icd::PointCloud2& cloud) {
@@ -39,7 +39,7 @@ class FiniteCheck {
 
  private:
   struct Exponent {
-    std::size_t high = 0, low = 0;  // where its two bytes stand in a point
+    std::size_t high = 0, low = 0;  // offsets of its two bytes in a point
   };
   static constexpr std::uint8_t kHighBits = 0x7f;
   std::uint8_t low_bits_ = 0;  // 1 bit in a float32, 4 in a float64

@@ -7,27 +7,27 @@
 
 namespace adit::pack {
 
-/// What is done to a cloud so that it becomes smaller.
+/// How a cloud is made smaller.
 struct CloudForm {
-  bool is_arranged = true;  // its padding is dropped, and its points are put in another order
-  double unit = 0;          // metres, to which coordinates are rounded where it is arranged; 0: they are not
-  Effort effort = Effort::Full;  // if they are not rounded
+  bool is_arranged = true;       // its padding is dropped and its points are reordered
+  double unit = 0;               // metres; if it is arranged, coordinates are rounded to this; 0: no rounding
+  Effort effort = Effort::Full;  // if nothing is rounded
 };
-/// Units that there are.
+/// The units in use.
 inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
 
-/// A cloud as small as it can be made without loss but what `form` allows, ready to be written: it loses
-/// the points that are not finite (ICD 6.3.2 takes clouds to be dense) and takes `form`: it was rounded where
-/// its origin is another (rounding.hpp), and if it is not compressed yet it is gzipped
-/// where that is smaller; where it is not, points stay in their order. CPU-bound in the size of the cloud,
-/// and takes as much memory as that and half as much more: meant for a worker.
+/// Makes an uncompressed cloud as small as `form` allows, ready to be written. Points that are not finite are
+/// dropped, because clouds are dense (ICD 6.3.2). Otherwise only rounding loses anything; it changes the
+/// cloud's origin (rounding.hpp). The points are gzipped if that makes them smaller; if not, they keep their
+/// order. A compressed cloud is returned unchanged. Takes one and a half times the memory of the cloud, and
+/// time by its size, so call it on a worker.
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});
 
 /// `data` without the points whose x, y or z is not finite. `data` must be uncompressed.
 icd::MapData without_invalid_points(const icd::PointCloud2& cloud, icd::MapData data);
 
-/// Whether `map` is a cloud of which nothing would be left then, though it has points. CPU-bound in the size
-/// of such a cloud; of any other its first points tell.
+/// True if `map` is a non-empty, uncompressed cloud without any finite point. Reads up to the first finite
+/// point, so the time grows with the size only if there is none.
 bool has_only_invalid_points(const icd::MapUpdate& map);
 
 }  // namespace adit::pack

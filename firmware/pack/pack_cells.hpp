@@ -7,10 +7,9 @@
 
 namespace adit::pack {
 
-/// A grid's cells in the smallest of these forms: as they are kept, by libdeflate at the level of `effort`,
-/// or not compressed; nullopt if that finds the data damaged. Data that is not compressed stays as it is, and
-/// so does all with Effort::None. Otherwise the cells are whole in memory meanwhile, and 1 MiB of
-/// libdeflate's.
+/// The smallest form of a grid's cells: as stored, compressed by libdeflate at the level of `effort`, or
+/// uncompressed. nullopt if the data is damaged. Uncompressed data, and any data with Effort::None, is
+/// returned unchanged. Otherwise all cells are in memory meanwhile, with 1 MiB for libdeflate.
 std::optional<icd::MapData> pack_cells(icd::MapData data, Effort effort);
 
 }  // namespace adit::pack

@@ -21,7 +21,7 @@ void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& f
   const int level = effort == Effort::Full ? kPointsLevel : codec::kFastestLevel;
   auto member = codec::gzip_whole(arranged.points, level, arranged.points.size() - 1);
   if (!member && layout.cloud == cloud) return;
-  if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // exact, and in their order
+  if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // exact and in their order
   cloud = std::move(arranged.cloud);
   data.raw_size = arranged.points.size();
   data.compression = member ? icd::Compression::Gzip : icd::Compression::None;

@@ -5,8 +5,8 @@
 
 namespace adit::pack {
 
-/// Makes finite points that are not compressed as small as `form` lets it be, and their cloud says how they
-/// lie then. Where two fields share bytes, all is left as it is but for gzip.
+/// Makes uncompressed, finite points as small as `form` allows, and sets the cloud's layout to match. If two
+/// fields share bytes, the points are only gzipped.
 void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& form);
 
 }  // namespace adit::pack

@@ -21,7 +21,7 @@ std::optional<PointLayout> without_padding(const icd::PointCloud2& cloud) {
   fields.reserve(cloud.fields.size());
   for (icd::FieldSchema& field : layout.cloud.fields) fields.push_back(&field);
   std::ranges::sort(fields, {}, [](const icd::FieldSchema* field) { return field->offset; });
-  std::uint32_t begin = 0, end = 0;  // of the next field in the new point; of the one before in the old one
+  std::uint32_t begin = 0, end = 0;  // of the next new field; of the previous old field
   for (icd::FieldSchema* field : fields) {
     const std::uint64_t size = std::uint64_t{icd::size_of(field->datatype)} * field->count;
     icd::require(size <= cloud.point_step && field->offset <= cloud.point_step - size);

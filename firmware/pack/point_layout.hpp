@@ -9,26 +9,26 @@
 
 namespace adit::pack {
 
-/// How a cloud's points lie in memory, and how they are made of others that lie otherwise.
+/// The layout of a cloud's points, and how to copy points of another layout into it.
 struct PointLayout {
-  /// Bytes of a point that go together.
+  /// Adjacent bytes of a point that are copied together.
   struct Run {
     std::uint32_t from = 0, to = 0, size = 0;
   };
 
   icd::PointCloud2 cloud;
-  std::vector<Run> runs;  // of the other points, each byte of these
+  std::vector<Run> runs;  // they cover each byte that is kept
 
-  /// Copies a point of the old layout to one of the new.
+  /// Copies a point from the old layout to the new one.
   void copy(std::span<const std::uint8_t> point, std::span<std::uint8_t> to) const;
 };
 
-/// As it is: each point is copied whole.
+/// The layout of `cloud`; each point is copied whole.
 PointLayout unchanged(const icd::PointCloud2& cloud);
 
-/// Without the padding between and after the fields: these have other offsets, and the cloud another
-/// point_step. They keep their place in the list, stand in a point in the same order, and no byte of them
-/// changes. Nothing where two fields share a byte. Requires check(cloud).
+/// The layout without the padding between and after the fields. Offsets and point_step change. The fields
+/// keep their bytes, their places in the list, and their order in a point. nullopt if two fields share a
+/// byte. Requires check(cloud).
 std::optional<PointLayout> without_padding(const icd::PointCloud2& cloud);
 
 }  // namespace adit::pack

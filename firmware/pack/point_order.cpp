@@ -10,19 +10,19 @@
 namespace adit::pack {
 namespace {
 
-/// A point's place in the order, and its number in the lowest bits: so a point is sorted as one word.
+/// A point's rank and, in the lowest bits, its number. So one word is sorted for each point.
 using Key = std::uint64_t;
 constexpr unsigned kNumberBits = 20, kDigitBits = 11, kDigits = 4;
 static_assert(kMostOrdered <= std::size_t{1} << kNumberBits);
 static_assert(kNumberBits + kDigitBits * kDigits == 64);
 
-/// Where a coordinate lies between the lowest and the highest, in whole steps.
+/// Converts a coordinate to whole steps between the lowest and the highest.
 class Steps {
  public:
   Steps(double low, double extent, unsigned bits)
       : low_(low), most_(static_cast<double>((1u << bits) - 1)), per_metre_(most_ / extent) {}
 
-  /// What is too large or too small to be told apart is at the beginning.
+  /// 0 if the coordinate is out of range or the steps cannot be computed.
   Key of(double metres) const {
     const double steps = (metres - low_) * per_metre_;
     return steps >= 0 && steps <= most_ ? static_cast<Key>(steps) : 0;
@@ -54,8 +54,8 @@ std::vector<Key> keys_of(Layers layers, const icd::PointCloud2& cloud, const Box
   return keys;
 }
 
-/// By all bits but the number's: stable, from the lowest digit up (Knuth, The Art of Computer Programming 3,
-/// 5.2.5). A digit that all keys share takes no pass.
+/// Radix sort by all bits except the number's: stable, from the lowest digit up (Knuth, The Art of Computer
+/// Programming 3, 5.2.5). A digit that all keys share takes no pass.
 void sort(std::vector<Key>& keys) {
   constexpr std::size_t kValues = std::size_t{1} << kDigitBits;
   const auto digit = [](Key key, unsigned number) {

@@ -10,20 +10,20 @@
 
 namespace adit::pack {
 
-/// Points in layers: by one coordinate first. Neighbours are then alike in its bytes, so that gzip makes them
-/// smaller.
+/// The order of points: by one coordinate first. gzip makes them smaller, because neighbours then have
+/// similar bytes.
 enum class Layers : std::uint8_t {
   AlongX,  // by x, then z, then y
   AlongY,  // by y, then x, then z
   AlongZ,  // by z, then y, then x
 };
 
-/// So many points are put in order at once, at most: it bounds the memory for it to 24 bytes a point.
+/// Maximum number of points to order at once. It bounds the memory to 24 bytes a point.
 inline constexpr std::size_t kMostOrdered = std::size_t{1} << 19;
 
-/// The numbers of the points in that order; of points that are alike in it, in the order they have. `points`:
-/// of point_step bytes, kMostOrdered of them at most, all within `box`. Coordinates are told apart by 22 bits
-/// of the box's size (the first) and by 11 (the others): nothing but their order hangs on it.
+/// The numbers of the points in that order. Points that are equal in it keep their order. `points`: at most
+/// kMostOrdered points of point_step bytes, all within `box`. The first coordinate is compared by 22 bits of
+/// the box's size, the others by 11. The values serve only to order the points.
 std::vector<std::uint32_t> numbers_in(Layers layers, const icd::PointCloud2& cloud, const Box& box,
                                       std::span<const std::uint8_t> points);
 

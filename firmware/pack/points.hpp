@@ -10,11 +10,11 @@
 
 namespace adit::pack {
 
-/// Gives each point of `bytes` (point_step bytes) to `visit`, in order, wherever chunks end, until that says
-/// false.
+/// Calls `visit` with each point of `bytes` (point_step bytes), in order, across chunk borders, until it
+/// returns false.
 template <class Visit>
 void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visit visit) {
-  std::vector<std::uint8_t> cut;  // a point of which only the first bytes have come
+  std::vector<std::uint8_t> cut;  // the first bytes of a point that continues in the next chunk
   for (const auto& chunk : bytes.chunks()) {
     std::span<const std::uint8_t> rest{*chunk};
     if (!cut.empty()) {
@@ -32,7 +32,7 @@ void for_each_point(const icd::ChunkedBytes& bytes, std::size_t point_step, Visi
   }
 }
 
-/// The points of `data`, not compressed, for which `stays` says so, asked in order: byte for byte.
+/// The points of uncompressed `data` for which `stays` returns true, unchanged, in their order.
 template <class Stays>
 icd::MapData those_that_stay(const icd::MapData& data, std::size_t point_step, Stays stays) {
   icd::MapData kept;

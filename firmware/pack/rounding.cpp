@@ -20,7 +20,7 @@
 namespace adit::pack {
 namespace {
 
-/// Fields beside x, y and z whose values mean the same however the cloud is turned.
+/// Fields whose values do not change when the cloud is turned.
 constexpr std::string_view kUnturned[] = {"intensity", "i",    "rgb", "rgba",      "ring",  "reflectivity",
                                           "label",     "time", "t",   "timestamp", "range", "ambient"};
 
@@ -38,7 +38,7 @@ bool is_turned(const icd::Quaternion& q) {
   return q.x != 0 || q.y != 0 || q.z != 0;
 }
 
-/// That holds all corners of `box`, placed.
+/// The box that holds all corners of the placed `box`.
 Box placed_box(const Box& box, const icd::Placement& placed) {
   Box all;
   for (unsigned corner = 0; corner < 8; ++corner) {
@@ -51,17 +51,17 @@ Box placed_box(const Box& box, const icd::Placement& placed) {
   return all;
 }
 
-/// From the frame of the points into the binade, and the origin that leads from there to "darpa".
+/// Leads from the points' frame into the binade; `origin` leads from there to "darpa".
 struct Shift {
   icd::Placement placed;
   icd::Point origin;
 };
 
-/// Moves one coordinate, of `placed`, so that all from `low` to `high` come to lie in the binade; false where
-/// it is too narrow, or float32 too coarse in "darpa". What is left of it is the origin, which float32 holds
-/// exactly, so that a receiver rounds once, when it adds the two.
+/// Moves one coordinate of `placed` so that `low` to `high` lie in the binade. False if the binade is too
+/// narrow or float32 too coarse in "darpa". `origin` is a float32, so a receiver rounds only once, when it
+/// adds the two.
 bool shift(double binade, double unit, double low, double high, double& placed, double& origin) {
-  constexpr double kMargin = 4;  // units: the origin is rounded by at most one
+  constexpr double kMargin = 4;  // units; the origin is rounded by at most one
   if (!(std::max(std::abs(low), std::abs(high)) < binade)) return false;
   origin = static_cast<double>(static_cast<float>(low - binade - kMargin * unit));
   placed -= origin;
@@ -88,7 +88,7 @@ icd::PointCloud2 in_float32(icd::PointCloud2 cloud) {
   return cloud;
 }
 
-/// Each point takes the place of itself, or of one before it: the new ones are no larger.
+/// Works in place, because the new points are not larger.
 void shift_points(Arranged& arranged, const PointLayout& layout, const icd::Placement& placed) {
   const CoordinateReader coordinates{arranged.cloud};
   const auto axes = axes_of(layout.cloud);

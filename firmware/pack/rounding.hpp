@@ -5,17 +5,21 @@
 
 namespace adit::pack {
 
-/// Rounds x, y and z to whole steps of `unit` metres, a power of two, so that gzip makes them small: each is
-/// shifted into the one binade of float32 whose steps these are, from 2^23 of them up, where all have the
-/// same exponent, and the cloud's origin takes the shift back. float64 becomes float32; other fields stay as
-/// they are, bit for bit. Where the origin turns the cloud, its points are turned instead: a receiver that
-/// turned such large numbers in float32 would lose more than rounding does.
+/// Rounds x, y and z to whole steps of `unit` metres, a power of two, so that gzip makes them small. Each
+/// coordinate is shifted into the binade of float32 whose steps these are (from 2^23 steps up), because all
+/// numbers there have the same exponent. The cloud's origin takes the shift back. float64 becomes float32;
+/// other fields keep their bits. If the origin turns the cloud, the points are turned here instead, because
+/// turning such large numbers in float32 at the receiver would lose more than the rounding.
 ///
-/// A point is then where it was, in "darpa", but for 1.3 units of distance, also at a receiver that computes
-/// in float32. False, and nothing is changed, where that cannot be held: where points lie further apart than
-/// the binade is wide, or as far from the origin of "darpa" (8192 m for 2^-10 m); where the cloud is turned
-/// and has fields that may say a direction; or where it is big-endian, for there is a server that minds an
-/// origin then. For finite points (without_invalid_points).
+/// Each point stays within 1.3 units of its place in "darpa", even if the receiver computes in float32. If
+/// that is not possible, it returns false and changes nothing:
+/// - the points extend over more than the binade, or lie that far from the origin of "darpa" (8192 m for
+///   2^-10 m)
+/// - the cloud is turned and has fields that may contain a direction
+/// - the cloud is big-endian, because a server may object to an origin then
+/// - two fields share bytes, or there are no points
+///
+/// Requires finite points (without_invalid_points).
 bool round_to(double unit, Arranged& arranged);
 
 }  // namespace adit::pack

@@ -12,7 +12,7 @@
 namespace adit::pack {
 namespace {
 
-/// Copies a tile's cells, as they come, to their places in rows of `width` cells.
+/// Copies a tile's cells, piece by piece, to their places in rows of `width` cells.
 class Laying {
  public:
   Laying(std::vector<std::uint8_t>& cells, std::size_t width, const Tile& tile)

@@ -10,17 +10,17 @@
 
 namespace adit::pack {
 
-/// A grid's cells, and where they lie in a larger one: columns and rows from its lower left cell.
+/// A grid's cells and their place in a larger grid: column and row of its lower left cell.
 struct Tile {
   icd::MapData data;
   std::size_t column = 0, row = 0;
   std::size_t width = 0, height = 0;  // cells; data.raw_size is their product
 };
 
-/// The cells of a grid of width x height, made of `tiles`, which lie within it: a later one over an earlier
-/// one, unknown cells too. What none of them fills is as in `under`, which has as many cells; without it,
-/// unknown. The error says what is wrong with the data of one. CPU-bound in the cells, and meant for a
-/// worker.
+/// Puts `tiles`, which lie within it, into a grid of width x height. A later tile overwrites an earlier one,
+/// even with unknown cells. The other cells come from `under`, which has as many cells; if it is empty, they
+/// are unknown. An error says what is wrong with a tile's data. The time grows with the cells, so call it on
+/// a worker.
 icd::Checked<icd::MapData> stitch(std::size_t width, std::size_t height, std::span<const Tile> tiles,
                                   std::vector<std::uint8_t> under = {});
 

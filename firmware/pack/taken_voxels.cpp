@@ -8,19 +8,19 @@
 namespace adit::pack {
 namespace {
 
-/// Neighbours are often in one block.
+/// Merges a voxel into the last block, because neighbours often share one.
 void note(const VoxelBlock& found, std::vector<VoxelBlock>& all) {
   if (found.place == 0) return;
   if (all.empty() || all.back().place != found.place) all.push_back({found.place, 0});
   all.back().voxels |= found.voxels;
 }
 
-/// The voxels that have a point already: what was taken, and what goes with one message.
+/// The voxels that have a point already, accepted or in this message.
 class Held {
  public:
   explicit Held(const VoxelSet& taken) : taken_(taken) {}
 
-  /// Whether a point of that voxel is its first, which it has from then on. One of no voxel always is.
+  /// True if this is the first point of its voxel, or has no voxel. Notes the voxel.
   bool is_first(const VoxelBlock& at) {
     if (at.place == 0) return true;
     if (at.place != here_.place) go_to(at.place);
@@ -36,8 +36,8 @@ class Held {
   }
 
   const VoxelSet& taken_;
-  VoxelSet left_;    // blocks that points of the message were in
-  VoxelBlock here_;  // the block of the point before
+  VoxelSet left_;    // blocks left behind, with this message's points
+  VoxelBlock here_;  // the block of the previous point
 };
 
 }  // namespace
@@ -74,7 +74,7 @@ void TakenVoxels::add(const icd::RobotName& robot, double edge, std::span<const 
   }
 }
 
-/// For a block more of that robot's.
+/// Makes room for one more block of that robot.
 void TakenVoxels::make_room(Robot& robot) {
   while (bytes() - robot.voxels.bytes() + robot.voxels.bytes_with_another() > most_bytes_) {
     const auto oldest =

@@ -13,13 +13,13 @@
 
 namespace adit::pack {
 
-/// The voxels in which the Command Post has taken a point, of each robot's clouds, so that another point of
-/// the same voxel need not be sent.
+/// For each robot, the voxels in which the Command Post has accepted a point. Another point of such a voxel
+/// need not be sent.
 ///
-/// What it holds is bounded over all robots, but while a set grows, half of that more. Beyond it, the voxels
-/// of the robot are forgotten whose clouds were taken longest ago, and at last those of the robot itself:
-/// then its points are sent again, and nothing is lost by it. What it does takes CPU time in proportion to
-/// the points: meant for a worker.
+/// The memory for all robots is at most `most_bytes`, and half as much more while a set grows. Beyond that,
+/// the robot whose clouds were accepted longest ago is forgotten, and finally the growing robot's own voxels.
+/// Their points are then sent again, so nothing is lost. The time grows with the points, so call it on a
+/// worker.
 class TakenVoxels {
  public:
   static constexpr std::size_t kMostBytes = std::size_t{32} << 20;
@@ -28,16 +28,16 @@ class TakenVoxels {
   /// A cloud without the points that need not be sent.
   struct Rest {
     icd::MapData data;
-    std::vector<VoxelBlock> voxels;  // of its points, to be given to add() once it was taken
-    std::size_t left_out = 0;        // points
+    std::vector<VoxelBlock> voxels;  // of its points; pass them to add() once it is accepted
+    std::size_t left_out = 0;        // number of points
   };
-  /// `data`: the cloud's, not compressed. Of its points those are left out whose voxel (`edge` metres) has a
-  /// point that was taken from this robot, or one before it in the cloud. The others are kept, in their order
-  /// and byte for byte; so are those of no voxel.
+  /// Leaves out each point of uncompressed `data` whose voxel (`edge` metres) has an accepted point of this
+  /// robot or an earlier point of this cloud. The other points keep their order and bytes. Points without a
+  /// voxel are kept.
   Rest leave_out(const icd::RobotName& robot, const icd::PointCloud2& cloud, const icd::MapData& data,
                  double edge) const;
 
-  /// The Command Post took points in these voxels. A robot's of another edge are forgotten.
+  /// The Command Post accepted points in these voxels. Forgets the robot's voxels if `edge` has changed.
   void add(const icd::RobotName& robot, double edge, std::span<const VoxelBlock> voxels);
   void forget() { robots_.clear(); }
   std::size_t bytes() const;
@@ -45,7 +45,7 @@ class TakenVoxels {
  private:
   struct Robot {
     double edge = 0;
-    std::uint64_t last = 0;  // by the count of adds_
+    std::uint64_t last = 0;  // the number of its last add()
     VoxelSet voxels;
   };
   void make_room(Robot& robot);

@@ -10,7 +10,8 @@ constexpr std::size_t kFewest = 1024;  // places
 
 }  // namespace
 
-/// Where the block is, or would be. The hash is Fibonacci's (Knuth, The Art of Computer Programming 3, 6.4).
+/// The index of the block, or of the free place for it. Fibonacci hashing (Knuth, The Art of Computer
+/// Programming 3, 6.4).
 std::size_t VoxelSet::place_of(std::uint64_t place) const {
   constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
   std::size_t at = (place * kGolden) >> (64 - std::countr_zero(places_.size()));

@@ -8,15 +8,15 @@
 
 namespace adit::pack {
 
-/// Voxels, each block of them in a place of its own: open addressing, at most three quarters full.
+/// Voxels by block: open addressing, at most three quarters full.
 class VoxelSet {
  public:
-  /// Those that it has of a block.
+  /// The voxels of the block at `place`; 0 if there is none.
   std::uint64_t voxels_at(std::uint64_t place) const;
-  /// Where there is no memory, it is as it was.
+  /// The set is unchanged if this throws std::bad_alloc.
   void add(const VoxelBlock& block);
 
-  /// Of memory; and what that is once another block has come.
+  /// Memory now, and after another block is added.
   std::size_t bytes() const { return places_.size() * sizeof(VoxelBlock); }
   std::size_t bytes_with_another() const { return places_with_another() * sizeof(VoxelBlock); }
 
@@ -25,7 +25,7 @@ class VoxelSet {
   std::size_t places_with_another() const;
   void grow(std::size_t places);
 
-  std::vector<VoxelBlock> places_;  // a power of two of them, or none
+  std::vector<VoxelBlock> places_;  // empty, or a power of two
   std::size_t count_ = 0;
 };
 

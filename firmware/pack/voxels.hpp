@@ -11,24 +11,24 @@
 
 namespace adit::pack {
 
-/// Some voxels of one block, which is a cube of 4 x 4 x 4 voxels.
+/// Some voxels of one block of 4 x 4 x 4 voxels.
 struct VoxelBlock {
-  std::uint64_t place = 0;   // of the block; 0: there is none
-  std::uint64_t voxels = 0;  // a bit for each that is meant
+  std::uint64_t place = 0;   // of the block; 0: no block
+  std::uint64_t voxels = 0;  // one bit for each voxel
   friend bool operator==(const VoxelBlock&, const VoxelBlock&) = default;
 };
 
-/// In which voxel of "darpa" (ICD 6.1) a cloud's points lie: cubes of one edge, of which one has its lower
-/// corner at the origin. The cloud's own origin is applied (ICD 6.3.2).
+/// Finds the voxel of "darpa" (ICD 6.1) in which a point of the cloud lies. Voxels are cubes; one has its
+/// lower corner at the origin of "darpa". The cloud's own origin is applied (ICD 6.3.2).
 class Voxels {
  public:
-  /// So many voxels of each axis to either side of the origin are told apart.
+  /// Voxels reach this far from the origin along each axis.
   static constexpr std::int64_t kReach = 1 << 20;
 
-  /// `edge`: in metres, above 0.
+  /// `edge`: metres, > 0.
   Voxels(const icd::PointCloud2& cloud, double edge);
 
-  /// Of a point of point_step bytes: its voxel. None where it is out of reach or not finite.
+  /// The voxel of a point of point_step bytes. A block with place 0 if it is out of reach or not finite.
   VoxelBlock of(std::span<const std::uint8_t> point) const;
 
  private:

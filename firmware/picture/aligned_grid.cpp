@@ -10,10 +10,10 @@
 namespace adit::picture {
 namespace {
 
-/// How far the far end of a row or column may lie off its axis.
+/// The far end of a row or column may lie this far off its axis, in metres.
 constexpr double kMostSkew = kPixel / 10;
-/// A cell's centre on a pixel's border belongs to the pixel after it. What floating point makes of that
-/// border is that far off at most, in cells: else a grid that grows would flicker.
+/// In cells: a larger distance than the rounding errors of a pixel's border. A cell whose centre lies on a
+/// border belongs to the next pixel. Without this, a grid that grows would flicker.
 constexpr double kRounding = 1e-3;
 
 }  // namespace
@@ -41,7 +41,7 @@ AlignedGrid::Axis::Axis(double origin, double metres_per_cell, std::uint32_t cou
     if (shown.begin < shown.end) {
       cells.push_back(shown);
     } else if (cells.empty()) {
-      ++first_pixel;  // less than half a cell of the grid lies in it
+      ++first_pixel;  // less than half a cell of the grid lies in this pixel
     }
   }
 }

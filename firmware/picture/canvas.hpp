@@ -7,10 +7,10 @@
 
 namespace adit::picture {
 
-/// A layer as it is now, to be drawn upon. No tile in it ever changes, so that a worker may read it.
+/// The present tiles of a layer, to draw on. Tiles never change, so a worker may read them.
 struct Canvas {
-  std::uint64_t run = 0;         // which of the mosaic's runs it is of
-  std::map<TileAt, Tile> tiles;  // none is null
+  std::uint64_t run = 0;         // the mosaic's run to which it belongs
+  std::map<TileAt, Tile> tiles;  // never null
 };
 
 }  // namespace adit::picture

@@ -12,7 +12,8 @@
 
 namespace adit::picture {
 
-/// Cuts a cloud's data, piece by piece, into points: `visit(bytes)` gets the first of every `stride` points.
+/// Cuts a cloud's data into points, piece by piece. Calls `visit(bytes)` with the first of every `stride`
+/// points.
 class PointCutter {
  public:
   PointCutter(std::size_t point_step, std::size_t stride) : step_(point_step), stride_(stride) {}
@@ -39,7 +40,7 @@ class PointCutter {
   }
 
   std::size_t step_, stride_, number_ = 0;
-  std::vector<std::uint8_t> cut_;  // a point of which only the first bytes have come
+  std::vector<std::uint8_t> cut_;  // the first bytes of a point that continues in the next piece
 };
 
 /// Reads one coordinate of a point.

@@ -11,14 +11,14 @@
 namespace adit::picture {
 namespace {
 
-/// Where x, y and z stand in a point.
+/// Offsets of x, y and z in a point.
 using Offsets = std::array<std::size_t, 3>;
 
 const icd::FieldSchema& field_of(const icd::PointCloud2& cloud, std::string_view name) {
   return *std::ranges::find(cloud.fields, name, &icd::FieldSchema::name);
 }
 
-/// Draws the points that it is given, from above.
+/// Draws points as seen from above.
 class Dabber {
  public:
   Dabber(const icd::PointCloud2& cloud, Sheet& sheet)
@@ -26,9 +26,7 @@ class Dabber {
 
   void dab(const icd::Point& point) {
     const auto [x, y, z] = placement_(point);
-    const auto inside = [](double at) {
-      return at >= -kWorldMetres && at < kWorldMetres;
-    };  // no number is not
+    const auto inside = [](double at) { return at >= -kWorldMetres && at < kWorldMetres; };  // false for NaN
     if (!inside(x) || !inside(y) || !std::isfinite(z) || !sheet_.raise(pixel(x), pixel(y), height_index(z))) {
       ++left_out;
     }
@@ -38,7 +36,7 @@ class Dabber {
 
  private:
   static int pixel(double metres) {
-    return static_cast<int>((metres + kWorldMetres) * (1 / kMetresPerPixel[0])) - kWorldPixels;  // down
+    return static_cast<int>((metres + kWorldMetres) * (1 / kMetresPerPixel[0])) - kWorldPixels;  // floor
   }
 
   Sheet& sheet_;

@@ -8,7 +8,7 @@
 
 namespace adit::picture {
 
-/// Draws a map by itself. Gives how much was left out.
+/// Draw a map on an empty sheet. The result is the number of cells, points or pixels that were left out.
 icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet,
                                     const Between& between);
 icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,

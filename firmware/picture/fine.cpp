@@ -14,14 +14,14 @@ constexpr std::size_t kStride = std::size_t{kSide} * kFineStep;  // pixels along
 /// A block as one picture, row by row from the top.
 using Block = std::vector<std::uint8_t>;
 
-/// Where a tile's upper left pixel is in its block.
+/// Offset of a tile's upper left pixel in its block.
 std::size_t corner_of(const TileAt& at) {
   const std::size_t place = place_in_block(at);
   const std::size_t column = place % kFineStep, row = kFineStep - 1 - place / kFineStep;
   return (row * kStride + column) * kSide;
 }
 
-/// What a grid knows replaces, what it does not know leaves.
+/// Known cells replace earlier ones; unknown cells leave them.
 void lay_over(const Sheet& sheet, Block& block) {
   for (const Sheet::Part& part : sheet.parts()) {
     std::uint8_t* to = block.data() + corner_of(part.at);
@@ -32,7 +32,7 @@ void lay_over(const Sheet& sheet, Block& block) {
   }
 }
 
-/// The part of a block that one coarser pixel is.
+/// The part of a block that one coarser pixel covers.
 class Dot {
  public:
   Dot(Block& block, std::size_t number)

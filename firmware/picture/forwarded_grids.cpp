@@ -11,7 +11,7 @@
 namespace adit::picture {
 namespace {
 
-/// A float32 of a robot's software is that far off at most, of what it stands for.
+/// The largest relative error of a float32 from a robot's software.
 constexpr double kRounding = 1e-3;
 
 std::array<icd::Point, 4> corners_of(const icd::OccupancyGrid& grid) {
@@ -27,8 +27,8 @@ Area area_of(const icd::OccupancyGrid& grid) {
   return {left.x, bottom.y, right.x, top.y};
 }
 
-/// Whether `older` lies within `newer` as seen from above, but for a cell at the border: what a robot's map
-/// is moved by from one to the next.
+/// True if `older` lies within `newer`, as seen from above, with a tolerance of one cell of `newer`. A
+/// robot's map may move by that much from one to the next.
 bool lies_over(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older) {
   const icd::Placement placement{newer.origin};
   const auto& turn = placement.turn;
@@ -48,7 +48,7 @@ bool is_same(const ForwardedGrid& a, const ForwardedGrid& b) {
          a.grid.height == b.grid.height && a.grid.origin == b.grid.origin && a.data == b.data;
 }
 
-/// In pieces of their own size: what shares a larger one would hold all of it.
+/// Copies into pieces of their own, because a shared piece would keep a larger buffer alive.
 icd::ChunkedBytes copied(const icd::ChunkedBytes& bytes) {
   icd::ChunkedBytes copy;
   for (const icd::Chunk& chunk : bytes.chunks()) {

@@ -11,45 +11,45 @@
 
 namespace adit::picture {
 
-/// A grid as the Command Post took it, with bytes of its own.
+/// A grid that the Command Post accepted. It owns its bytes.
 struct ForwardedGrid {
   Layer layer;
   icd::OccupancyGrid grid;
-  icd::MapData data;  // under gzip; none: it is not kept
-  Area area;          // that it lies in
+  icd::MapData data;  // gzipped; empty: not kept
+  Area area;          // its bounding box
 
-  std::size_t cost() const;  // in memory, nearly
+  std::size_t cost() const;  // approximate memory
 };
 
-/// Null where it is a cloud. CPU-bound in the size of the map, though most are packed already: for a worker.
+/// Null if `map` is a cloud. May have to compress the map, so call it on a worker.
 std::shared_ptr<const ForwardedGrid> forwarded_grid(const icd::MapUpdate& map);
 
-/// Its cells are not looked at finer than the mosaic has them if they are larger; it is not kept if it takes
-/// more bytes.
+/// A grid's data is not kept if its cells are larger than this, or if it takes more bytes.
 inline constexpr double kLargestFineCell = 0.5;  // metres
 inline constexpr std::size_t kLargestFineGrid = std::size_t{4} << 20;
 
-/// The last grids of each robot as they were forwarded, of which finer tiles are drawn. A grid takes the
-/// place of those that lie within it, and one that is not kept that of all of its layer: what is seen is what
-/// was forwarded last. Keeps at most `budget` bytes; what came first goes first.
+/// The last grids of each robot as they were forwarded. Finer tiles are drawn from them. A new grid replaces
+/// the grids that lie within it. A grid without data replaces all grids of its layer. So the newest forwarded
+/// grid is always shown. Keeps at most `budget` bytes and drops the oldest grids first.
 class ForwardedGrids {
  public:
   static constexpr std::size_t kBudget = std::size_t{16} << 20;
-  /// That are looked at for one block of tiles: a second of work on a small board.
+  /// The most cells to draw for one block of tiles: about a second of work on a small board.
   static constexpr std::size_t kMostCells = std::size_t{256} << 20;
 
   explicit ForwardedGrids(std::size_t budget = kBudget) : budget_(budget) {}
 
-  /// `number`: greater than any before. False where no finer tile can differ by it.
+  /// `number` must be greater than all before. False if no finer tile can change because of this grid.
   bool take(std::shared_ptr<const ForwardedGrid> grid, std::uint64_t number);
   void clear();
 
-  /// Those that lie in a part of an area, in the order in which they came: the last ones, of at most
-  /// kMostCells.
+  /// The grids that touch `area`, oldest first: the last ones, with at most kMostCells together. The newest
+  /// is always included.
   std::vector<std::shared_ptr<const ForwardedGrid>> in(const Layer& layer, const Area& area) const;
-  /// The number of the last of them; 0: there is none.
+  /// The number of the newest grid that touches `area`; 0: no grid.
   std::uint64_t newest_in(const Layer& layer, const Area& area) const;
-  /// What there is of a layer, and what of it came after `since`. Nothing: nothing is finer than the mosaic.
+  /// The finest level of a layer, and the area that changed after `since`. nullopt if it has no level finer
+  /// than the mosaic's.
   std::optional<Finer> finer(const Layer& layer, std::uint64_t since) const;
   std::size_t bytes() const { return bytes_; }
 

@@ -9,7 +9,7 @@
 
 namespace adit::picture {
 
-/// The colour index of a cell; 0 for an unknown one.
+/// The colour index of a cell; 0 if it is unknown.
 inline std::uint8_t index_of_cell(std::uint8_t value) {
   return value <= icd::kMostOccupied ? static_cast<std::uint8_t>(value + 1) : std::uint8_t{0};
 }
@@ -19,7 +19,7 @@ inline std::size_t known_cells(std::span<const std::uint8_t> cells) {
       std::ranges::count_if(cells, [](std::uint8_t value) { return value <= icd::kMostOccupied; }));
 }
 
-/// Cuts a grid's data, piece by piece, where rows end: `visit(row, column, cells)` gets a part of one row.
+/// Cuts a grid's data into rows, piece by piece. Calls `visit(row, column, cells)` with a part of one row.
 class RowCutter {
  public:
   RowCutter(std::uint32_t width, std::uint32_t height) : width_(width), height_(height) {}

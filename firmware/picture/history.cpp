@@ -16,7 +16,7 @@ bool in_one_span(double a, double b, double spacing) {
 }  // namespace
 
 std::size_t cost_of(const Version& version) {
-  constexpr std::size_t kAllocation = 32;  // what an allocation costs beside its bytes
+  constexpr std::size_t kAllocation = 32;  // overhead of an allocation
   const std::size_t own = sizeof(Version) + kAllocation;
   return version.tile ? own + sizeof(Packed) + kAllocation + version.tile->deflated.size() : own;
 }

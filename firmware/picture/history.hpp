@@ -9,36 +9,36 @@
 
 namespace adit::picture {
 
-/// A tile as it was from `stamp` on.
+/// The state of a tile from `stamp` on.
 struct Version {
   double stamp = 0;          // seconds since 1970
-  std::uint64_t number = 0;  // Mosaic::version() of when it came
+  std::uint64_t number = 0;  // Mosaic::version() of this change
   Tile tile;
 };
 
-/// What a version costs in memory, nearly.
+/// Approximate memory of a version.
 std::size_t cost_of(const Version& version);
 
 /// One tile over time.
 ///
-/// Time is cut into spans of `spacing` seconds, and of each span only the last version is kept: as of any
-/// time, what is shown is at most `spacing` old. Spans twice as long are two of these, so that thinning at
-/// last is as if it had been so from the start.
+/// Time is divided into spans of `spacing` seconds. Only the last version of each span is kept, so the
+/// version shown for any time is at most `spacing` old. A span of twice the length covers two of these, so
+/// repeated thinning gives the same result as the final spacing from the start.
 class History {
  public:
   /// Requires a stamp that is not before the newest.
   void add(Version version, double spacing);
   void thin(double spacing);
-  /// The time of day was set ahead by so many seconds.
+  /// Shifts all stamps: the time of day was set ahead by `seconds`.
   void move(double seconds) {
     for (Version& version : versions_) version.stamp += seconds;
   }
-  /// The newest state is from now on that of this version.
+  /// Gives the newest version this number.
   void renumber(std::uint64_t number) { versions_.back().number = number; }
 
-  /// As of that time; null where there was nothing yet.
+  /// The version at that time, or null if there was none yet.
   const Version* at(double stamp) const;
-  /// When that state of it was followed by another; nothing: it is the newest.
+  /// When another version followed; nullopt: it is the newest.
   std::optional<double> end_of(const Version& version) const;
   const Version& first() const { return versions_.front(); }
   const Version& newest() const { return versions_.back(); }

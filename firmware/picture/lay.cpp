@@ -12,9 +12,9 @@ namespace adit::picture {
 namespace {
 
 constexpr int kSmall = kSide / kStep;
-using Small = std::array<std::uint8_t, kSmall * kSmall>;  // a tile as its part of a coarser one
+using Small = std::array<std::uint8_t, kSmall * kSmall>;  // a tile at the scale of the next coarser level
 
-/// By the coarser tile that they are part of.
+/// Changed tiles by the coarser tile that contains them.
 using Changed = std::map<TileAt, std::vector<std::pair<TileAt, Small>>>;
 
 Small reduced(const Pixels& pixels) {
@@ -30,7 +30,7 @@ Small reduced(const Pixels& pixels) {
   return small;
 }
 
-/// Puts a part where it belongs within its coarser tile.
+/// Copies a part to its place in the coarser tile.
 void paste(const TileAt& part, const Small& small, Pixels& pixels) {
   const int x = (part.x & (kStep - 1)) * kSmall, y = (part.y & (kStep - 1)) * kSmall;
   for (int row = 0; row < kSmall; ++row) {  // the part's top row is its last one in y
@@ -39,7 +39,7 @@ void paste(const TileAt& part, const Small& small, Pixels& pixels) {
   }
 }
 
-/// Lays tile over tile, from the base up.
+/// Lays tiles over the canvas, from the base up.
 class Layers {
  public:
   Layers(const Canvas& before, Drawing& drawing) : before_(before), drawing_(drawing) {}
@@ -66,7 +66,7 @@ class Layers {
   Pixels was_{}, is_{};
 };
 
-/// What a grid does not know leaves what was known.
+/// Unknown cells leave the earlier ones.
 void lay_cells(const Pixels& cells, Pixels& over) {
   for (std::size_t i = 0; i < over.size(); ++i) over[i] = cells[i] != 0 ? cells[i] : over[i];
 }
@@ -75,7 +75,7 @@ void lay_heights(const Pixels& heights, Pixels& over) {
   for (std::size_t i = 0; i < over.size(); ++i) over[i] = std::max(over[i], heights[i]);
 }
 
-/// What of a tile is known, in metres. Requires that something is.
+/// The known part of a tile, in metres. Requires a known pixel.
 Area area_of(const Sheet::Part& part) {
   std::array<std::uint8_t, kSide> columns{};
   int top = -1, bottom = 0;  // rows from the top
@@ -99,26 +99,26 @@ Area area_of(const Sheet::Part& part) {
           (x + static_cast<double>(right)) * kPixel, (y - top) * kPixel};
 }
 
-/// Without a hundredth of the pixels at either end, which may be errors, and would take the colours from the
-/// others.
+/// Leaves out a hundredth of the pixels at either end, because they may be errors and would compress the
+/// colours of the others.
 std::optional<Heights> heights_of(const Sheet& sheet) {
   std::array<std::size_t, 256> count{};
   for (const auto& part : sheet.parts()) {
     for (const std::uint8_t index : *part.pixels) {
-      if (index != 0) ++count[index];  // most are not known: to count them as well takes five times as long
+      if (index != 0) ++count[index];  // most are unknown: counting them takes five times as long
     }
   }
   std::size_t known = 0;
   for (std::size_t index = 1; index < count.size(); ++index) known += count[index];
   if (known == 0) return {};
-  const auto beyond = [&](std::size_t pixels) {  // the first index up to which there are more than that
+  const auto beyond = [&](std::size_t pixels) {  // the first index up to which there are more pixels
     std::size_t index = 0;
     for (std::size_t below = 0; below <= pixels;) below += count[++index];
     return static_cast<std::uint8_t>(index);
   };
   const std::size_t few = known / 100;
   const auto rounded = [](double metres) {
-    return std::round(metres * 10) / 10;  // so that it reads well
+    return std::round(metres * 10) / 10;  // for the reader
   };
   return Heights{rounded(height_of(beyond(few)) - kHeightStep / 2),
                  rounded(height_of(beyond(known - 1 - few)) + kHeightStep / 2)};

@@ -5,8 +5,8 @@
 
 namespace adit::picture {
 
-/// Lays what a map says over what was drawn before, at all levels: fills in the drawing's tiles, area and
-/// heights. Its layer must be set.
+/// Lays a map's sheet over `before`, at all levels. Fills in the drawing's tiles, area and heights. Its layer
+/// must be set.
 void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing);
 
 }  // namespace adit::picture

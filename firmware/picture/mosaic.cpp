@@ -27,7 +27,7 @@ Canvas Mosaic::canvas(const Layer& layer) const {
   return canvas;
 }
 
-/// Null where there are as many layers already as there may be.
+/// Null if the layer is new and there are kMostLayers already.
 Mosaic::State* Mosaic::state_of(const Layer& layer, double stamp) {
   const auto found = layers_.find(layer);
   if (found != layers_.end()) return &found->second;
@@ -38,7 +38,7 @@ Mosaic::State* Mosaic::state_of(const Layer& layer, double stamp) {
   return &state;
 }
 
-/// Gives the time of what comes now: a finite one, that does not run backward.
+/// Starts a change and returns its time: finite, and not before the last one.
 double Mosaic::begin_change(double stamp) {
   constexpr double kLatest = 1e11;
   if (stamp > last_) last_ = std::min(stamp, kLatest);

@@ -14,38 +14,38 @@ namespace adit::picture {
 /// One tile of a layer.
 struct TileView {
   TileAt at;
-  double first = 0;           // when it was first drawn
-  double stamp = 0;           // when it was last drawn
+  double first = 0;           // time of its first drawing
+  double stamp = 0;           // time of its last drawing
   std::uint64_t version = 0;  // of its newest state
   bool blank = false;         // it was wiped since
 };
 
-/// Of which level a layer's tiles can be had besides, and what of these changed.
+/// The finer levels of a layer, and their changes.
 struct Finer {
   int level = 0;              // the finest: -1 or -2
   std::uint64_t version = 0;  // of the last change
   std::optional<Area> area;   // that changed
 };
 
-/// A layer, and those of its tiles that changed.
+/// A layer and those of its tiles that changed.
 struct LayerView {
   Layer layer;
-  std::optional<Area> bounds;  // of all that was drawn since the last wipe
+  std::optional<Area> bounds;  // of everything drawn since the last wipe
   std::optional<Heights> heights;
-  double first = 0, last = 0;  // when its first and its last map came
+  double first = 0, last = 0;  // times of its first and last map
   std::uint64_t version = 0;   // of the last change
   std::size_t missed = 0;      // maps that are not in it
   std::size_t left_out = 0;    // Drawing::left_out of the last map
   std::vector<TileView> tiles;
-  std::optional<Finer> finer;  // ForwardedGrids' word
+  std::optional<Finer> finer;  // from ForwardedGrids
 };
 
-/// The picture of all maps: its layers, their tiles, and how these were at earlier times. Does no more than
-/// hand tiles about; drawing them is draw()'s.
+/// The picture of all maps: the layers, their tiles, and earlier states of the tiles. It stores tiles; draw()
+/// makes them.
 ///
-/// Keeps at most `budget` bytes: the older states of tiles are thinned out evenly over time, down to the
-/// newest alone; a drawing whose newest tiles would not fit is refused as a whole. Times are seconds since
-/// 1970.
+/// Keeps at most `budget` bytes. Beyond that, older states of tiles are thinned out evenly over time, down to
+/// the newest state only. A drawing is rejected as a whole if its newest tiles do not fit. Times are seconds
+/// since 1970.
 class Mosaic {
  public:
   static constexpr std::size_t kBudget = std::size_t{32} << 20;
@@ -53,52 +53,53 @@ class Mosaic {
 
   explicit Mosaic(std::size_t budget = kBudget) : budget_(budget) {}
 
-  /// What the next map of that layer is to be drawn upon. A layer's drawings are made and applied one after
-  /// the other, each upon a canvas of its own.
+  /// The canvas for the next map of that layer. Make and apply a layer's drawings one after the other, each
+  /// on a new canvas.
   Canvas canvas(const Layer& layer) const;
 
-  /// Takes a drawing of what came at `stamp`; never a time before the last. False, and missed, where there is
-  /// no room for it; false also where it was begun before the last wipe, and belongs to the run before.
+  /// Adds the drawing of a map that came at `stamp`. A stamp before the last one counts as the last one.
+  /// False if there is no room for the drawing (it counts as missed), if there are too many layers, or if the
+  /// drawing was begun before the last wipe.
   bool apply(Drawing drawing, double stamp);
-  /// A map of that layer came that will not be drawn.
+  /// A map of that layer came and will not be drawn.
   void missed(const Layer& layer, double stamp);
-  /// Something that is shown with this changed: gives its version.
+  /// Counts a change of something that is shown with the picture, and returns its version.
   std::uint64_t count_change(double stamp) {
     begin_change(stamp);
     return version_;
   }
-  /// A new run: from now on all is blank. Earlier times stay as they were.
+  /// Starts a new run: all tiles are blank from now on. Earlier times stay.
   void wipe(double stamp);
 
-  /// The time of day was set ahead by so many seconds: all of it came as long ago as it did.
+  /// Shifts all times: the time of day was set ahead by `seconds`.
   void move(double seconds);
 
-  /// A state of a tile as it was before a restart, which comes in the order of its tile's states. False where
-  /// that order is broken, or there is no room for it.
+  /// Restores a state of a tile from before a restart. Call it in the order of the tile's states. False if
+  /// the order is violated or there is no room.
   bool take_up(const Layer& layer, const TileAt& at, Tile tile, double stamp);
-  /// What is known of a layer beside its tiles.
+  /// Restores the data of a layer, except its tiles.
   void take_up(const LayerView& view);
   void was_wiped(double stamp) { wiped_ = stamp; }
-  /// All that `earlier` has: its layers as they are now, and its earlier times where this has none. What is
-  /// drawn here already stays. At `stamp` all of it counts as changed.
+  /// Adds all of `earlier`: its present layers, and earlier states of tiles that are not drawn here. Tiles
+  /// that are drawn here stay. Added tiles count as changed at `stamp`.
   void take_up(Mosaic earlier, double stamp);
 
-  /// The tile as of `stamp` (absent: now), which is newest or not; null where nothing is drawn there.
+  /// The tile at `stamp` (absent: now). `tile` is null if nothing is drawn there.
   struct Shown {
     Tile tile;
     bool newest = false;
-    double stamp = 0;             // since when it is so
-    std::optional<double> until;  // when another followed; nothing: it is the newest
+    double stamp = 0;             // the start of this state
+    std::optional<double> until;  // when the next state followed; nullopt: it is the newest
   };
   Shown tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const;
 
-  /// Every layer, with the tiles that changed after that version; 0: all.
+  /// All layers, with the tiles that changed after version `since` (0: all tiles).
   std::vector<LayerView> layers(std::uint64_t since = 0) const;
 
-  /// Grows with every change, over restarts too: it is the time of the change in milliseconds, or one more
-  /// than the last. 0: nothing was drawn yet.
+  /// Grows with every change, also across restarts: the time of the change in milliseconds, or the previous
+  /// version plus one. 0: nothing was drawn yet.
   std::uint64_t version() const { return version_; }
-  std::optional<double> wiped() const { return wiped_; }  // when last
+  std::optional<double> wiped() const { return wiped_; }  // time of the last wipe
   double spacing() const { return spacing_; }             // of earlier states, in seconds: see History
   std::size_t bytes() const { return bytes_; }
 
@@ -116,7 +117,7 @@ class Mosaic {
 
   std::size_t budget_;
   std::map<Layer, State> layers_;
-  std::size_t bytes_ = 0, newest_bytes_ = 0;  // of all states, and of the newest alone
+  std::size_t bytes_ = 0, newest_bytes_ = 0;  // of all states; of the newest states
   double spacing_ = 1;
   double last_ = 0;  // the last stamp
   std::uint64_t version_ = 0, run_ = 0;

@@ -1,4 +1,4 @@
-// How a picture goes on from one that was kept.
+// Restores a picture from a saved one.
 #include <algorithm>
 #include <utility>
 
@@ -53,7 +53,8 @@ void Mosaic::take_up(Mosaic earlier, double stamp) {
   keep_to_budget();
 }
 
-/// A tile that was wiped here has states of another run, none before which could be put.
+/// The history of a tile that exists here is not extended: a wiped tile has states of another run, and no
+/// state can be inserted before them.
 void Mosaic::take_up(State& state, const TileAt& at, const History& earlier, double stamp) {
   const auto found = state.tiles.find(at);
   if (found != state.tiles.end()) {

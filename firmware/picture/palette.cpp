@@ -8,7 +8,7 @@ namespace {
 
 constexpr Colour kFree{0xc8, 0xd2, 0xda}, kOccupied{0xa8, 0x32, 0x1e};
 
-/// Viridis from an eighth of its length on, an eighth apart.
+/// Viridis in steps of an eighth of its length, without the first.
 constexpr Colour kRamp[] = {{71, 44, 122},  {59, 81, 139}, {44, 113, 142}, {33, 144, 141},
                             {39, 173, 129}, {92, 200, 99}, {170, 220, 50}, {253, 231, 37}};
 
@@ -20,14 +20,14 @@ Colour between(const Colour& a, const Colour& b, double part) {
   return {between(a.red, b.red, part), between(a.green, b.green, part), between(a.blue, b.blue, part)};
 }
 
-/// `part` of the way along the ramp, 0 to 1.
+/// The colour at `part` of the ramp, 0 to 1.
 Colour ramp_at(double part) {
   const double at = part * (std::size(kRamp) - 1);
   const auto before = std::min(static_cast<std::size_t>(at), std::size(kRamp) - 2);
   return between(kRamp[before], kRamp[before + 1], at - static_cast<double>(before));
 }
 
-/// `ramp(part)`: the colour of a height that is so far from `low` to `high`, 0 to 1.
+/// `ramp(part)`: the colour of a height at this part of the way from `low` to `high`, 0 to 1.
 template <class Ramp>
 std::array<Colour, 256> palette_of(double low, double high, Ramp ramp) {
   std::array<Colour, 256> colours;

@@ -11,30 +11,30 @@ struct Colour {
   friend bool operator==(const Colour&, const Colour&) = default;
 };
 
-/// A tile's pixels are indices of colours; 0 is transparent: nothing is known there.
+/// A tile's pixels are indices of colours. 0 is transparent and means unknown.
 ///
-/// A grid's cell of `value` per cent is index value + 1. Free (0) is #c8d2da and occupied (100) #a8321e, with
-/// the shades between for what is neither: a light way between dark red walls, told apart by their lightness
-/// too, that stand out from a dark ground and from a light one.
+/// A grid's cell of `value` per cent has index value + 1. Free (0) is #c8d2da, occupied (100) is #a8321e, and
+/// values between are shades between. Free ways are light and walls dark red, so lightness alone tells them
+/// apart, and both stand out from a dark and a light background.
 inline constexpr std::uint8_t kMostOccupiedIndex = 101;
 std::span<const Colour> grid_palette();
-/// The same in other colours: a page has its own in each theme.
+/// The same with other colours, because a page has its own in each theme.
 std::array<Colour, kMostOccupiedIndex + 1> grid_palette(const Colour& free, const Colour& occupied);
 
-/// A cloud's height above z = 0 of the frame "darpa": index 1 is kLowest, each further one kHeightStep more;
-/// what lies beyond has the first or the last index (255).
+/// A cloud's height above z = 0 of "darpa". Index 1 is kLowest, and each further index is kHeightStep higher.
+/// Heights beyond the ends have the first or the last index (255).
 inline constexpr double kLowest = -20, kHeightStep = 0.2, kHighest = 31;
 std::uint8_t height_index(double z);
-/// The middle of the heights that have this index.
+/// The middle of the heights with this index.
 double height_of(std::uint8_t index);
 
-/// Colours for heights from `low` to `high` (what lies beyond has the colours of the ends): from dark violet
-/// over green to yellow, after "viridis" (Smith and van der Walt, CC0), which grows in lightness all the way
-/// and so is told by the colour-blind and in grey. Its darkest shades, which would be lost on a dark page,
-/// are left out.
-std::span<const Colour> height_ramp();  // evenly spaced, the lowest first; those between are mixed
+/// Colours for heights from `low` to `high`; heights beyond have the colours of the ends. They go from dark
+/// violet over green to yellow, after "viridis" (Smith and van der Walt, CC0). Its lightness grows steadily,
+/// so the colours can be told apart by the colour-blind and in grey. Its darkest shades are left out, because
+/// they would be lost on a dark page.
+std::span<const Colour> height_ramp();  // evenly spaced, lowest first; colours between are mixed
 std::array<Colour, 256> cloud_palette(double low = kLowest, double high = kHighest);
-/// The same from one colour to another: a robot's own, or those of a theme.
+/// The same from one colour to another, for example of a robot or a theme.
 std::array<Colour, 256> cloud_palette(double low, double high, const Colour& lowest, const Colour& highest);
 
 }  // namespace adit::picture

@@ -26,7 +26,7 @@ std::string head() {
   std::string content;
   append_number(content, kSide);
   append_number(content, kSide);
-  return content + kBitDepth + kIndexed + std::string(3, '\0');  // deflate, the usual filters, not interlaced
+  return content + kBitDepth + kIndexed + std::string(3, '\0');  // deflate, usual filters, no interlace
 }
 
 std::string bytes_of(std::span<const Colour> palette) {

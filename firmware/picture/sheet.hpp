@@ -22,8 +22,8 @@ struct Frame {
   int side() const { return tiles * kSide; }
 };
 
-/// What one map says within a frame, at the scale of its level: of all that falls on a pixel, the highest
-/// index. A tile takes memory (64 KiB) once something is known in it, and no more than kMostTiles do.
+/// One map within a frame, at the scale of its level. Each pixel has the highest index that falls on it. A
+/// tile takes 64 KiB once a pixel in it is known, and there are at most kMostTiles.
 class Sheet {
  public:
   static constexpr std::size_t kMostTiles = 512;  // about 2 square kilometres
@@ -33,11 +33,11 @@ class Sheet {
     std::unique_ptr<Pixels> pixels;
   };
 
-  /// Of the whole world at the base's scale, unless told otherwise.
+  /// By default: the whole world at the scale of the base.
   explicit Sheet(const Frame& frame = {});
 
   const Frame& frame() const { return frame_; }
-  /// `index` at a pixel of the frame. False where there is no tile for it any more.
+  /// Raises a pixel of the frame to `index`. False if its tile would be one too many.
   bool raise(int x, int y, std::uint8_t index) {
     Pixels* pixels = tile(x >> 8, y >> 8);
     if (pixels == nullptr) return false;
@@ -46,7 +46,7 @@ class Sheet {
     return true;
   }
 
-  /// The same for a row of pixels from x, y on. Gives how many that are not 0 there was no tile for.
+  /// Raises a row of pixels from x, y on. The result is the number of known pixels without a tile.
   std::size_t raise(int x, int y, std::span<const std::uint8_t> row);
 
   std::span<const Part> parts() const { return parts_; }
@@ -55,7 +55,7 @@ class Sheet {
   static_assert(kSide == 1 << 8);
   static constexpr std::uint16_t kNone = 0;
 
-  /// Null where it would be one too many.
+  /// Null if it would be one too many.
   Pixels* tile(int x, int y) {
     const auto at = static_cast<std::size_t>(y - frame_.bottom) * static_cast<std::size_t>(frame_.tiles) +
                     static_cast<std::size_t>(x - frame_.left);
@@ -70,9 +70,9 @@ class Sheet {
 
   Frame frame_;
   std::vector<Part> parts_;
-  std::size_t last_at_ = SIZE_MAX;  // the tile asked for last, as most often the next one is
+  std::size_t last_at_ = SIZE_MAX;  // index of the last tile, because the next is often the same
   Pixels* last_ = nullptr;
-  std::vector<std::uint16_t> places_;  // in parts_, from 1; for each tile of the frame
+  std::vector<std::uint16_t> places_;  // for each tile of the frame: its place in parts_ plus 1
 };
 
 }  // namespace adit::picture

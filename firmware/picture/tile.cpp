@@ -8,12 +8,12 @@
 namespace adit::picture {
 namespace {
 
-constexpr int kMemory = 4;               // of zlib: runs are found without its table of strings
+constexpr int kMemory = 4;               // for zlib: runs are found without its large table
 constexpr std::size_t kRow = kSide + 1;  // a row begins with the number of its filter (PNG 7.3); 0: none
 constexpr std::uint8_t kIdat[] = {'I', 'D', 'A', 'T'};
 
 void require(bool started) {
-  if (!started) throw std::bad_alloc();  // zlib fails to start for want of memory alone
+  if (!started) throw std::bad_alloc();  // zlib fails to start only if memory runs out
 }
 
 std::uint32_t crc_of(const std::vector<std::uint8_t>& deflated) {
@@ -25,7 +25,7 @@ std::uint32_t crc_of(const std::vector<std::uint8_t>& deflated) {
 
 struct Packer::Streams {
   Streams() {
-    // Runs of one index alone are sought: a third of the time of level 4, and no more bytes for tiles of
+    // Only runs of one index are looked for: a third of the time of level 4, and no more bytes for tiles of
     // maps.
     require(deflateInit2(&out, Z_DEFAULT_COMPRESSION, Z_DEFLATED, MAX_WBITS, kMemory, Z_RLE) == Z_OK);
     require(inflateInit(&in) == Z_OK);
@@ -74,7 +74,7 @@ Tile Packer::pack(const Pixels& pixels) {
   zlib.avail_in = static_cast<uInt>(rows_.size());
   zlib.next_out = made_.data();
   zlib.avail_out = static_cast<uInt>(made_.size());
-  deflate(&zlib, Z_FINISH);  // cannot fail: there is room for all that can come out
+  deflate(&zlib, Z_FINISH);  // cannot fail: the buffer holds the largest output
   auto packed = std::make_shared<Packed>();
   packed->deflated.assign(made_.data(), zlib.next_out);
   packed->crc = crc_of(packed->deflated);
@@ -84,7 +84,7 @@ Tile Packer::pack(const Pixels& pixels) {
 void Packer::unpack(const Packed& packed, Pixels& pixels) {
   z_stream& zlib = streams_->in;
   inflateReset(&zlib);
-  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());  // zlib does not change what it reads
+  zlib.next_in = const_cast<Bytef*>(packed.deflated.data());  // zlib does not change its input
   zlib.avail_in = static_cast<uInt>(packed.deflated.size());
   zlib.next_out = rows_.data();
   zlib.avail_out = static_cast<uInt>(rows_.size());

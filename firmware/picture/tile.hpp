@@ -10,24 +10,23 @@
 
 namespace adit::picture {
 
-/// The colour index of each pixel of a tile, row by row from the top as a PNG has them. 0: nothing is known
-/// there.
+/// The colour index of each pixel of a tile, row by row from the top as in a PNG. 0: unknown.
 using Pixels = std::array<std::uint8_t, kSide * kSide>;
 
-/// Where a pixel stands in Pixels; x to the right, y up.
+/// Index of a pixel in Pixels. x to the right, y up.
 inline constexpr std::size_t index_of(int x, int y) {
   return static_cast<std::size_t>(kSide - 1 - y) * kSide + static_cast<std::size_t>(x);
 }
 
-/// A tile as it is kept: the content of a PNG's IDAT chunk (a zlib stream of unfiltered rows), without the
-/// palette, which is one for all.
+/// A tile as stored: the content of a PNG's IDAT chunk (a zlib stream of unfiltered rows), without the
+/// palette, which all tiles share.
 struct Packed {
   std::vector<std::uint8_t> deflated;
-  std::uint32_t crc = 0;  // of the chunk, by PNG 5.5: says whether two tiles are the same
+  std::uint32_t crc = 0;  // of the chunk, by PNG 5.5; equal tiles have equal values
 };
 using Tile = std::shared_ptr<const Packed>;  // null: blank
 
-/// Packs tile after tile with one zlib stream, whose memory is what costs. For one thread.
+/// Packs many tiles with one zlib stream, because creating a stream is expensive. For one thread.
 class Packer {
  public:
   Packer();
@@ -37,7 +36,7 @@ class Packer {
 
   Tile pack(const Pixels& pixels);
   void unpack(const Packed& packed, Pixels& pixels);
-  /// Of a tile that was kept on a disk: how many of its pixels are known; nothing where it is none.
+  /// The number of known pixels of a tile read from disk; nullopt if it is damaged.
   std::optional<std::size_t> known_in(const Packed& packed);
 
  private:

@@ -9,7 +9,7 @@
 namespace adit::picture {
 namespace {
 
-/// A lattice of that spacing, in pixels, has a point in every pixel however it lies.
+/// A lattice with this spacing, in pixels, has a point in every pixel at any angle.
 constexpr double kGapless = 1 / std::numbers::sqrt2;
 
 }  // namespace
@@ -25,11 +25,11 @@ TurnedGrid::TurnedGrid(const icd::OccupancyGrid& grid, const icd::Placement& pla
   side_ = cell > kLargestTurnedCell ? 0 : std::max(1, static_cast<int>(std::ceil(cell / kGapless)));
 }
 
-/// Whether a cell with its centre there reaches into the frame.
+/// True if a cell with this centre may reach into the frame.
 bool TurnedGrid::is_near(double x, double y) const {
   const Frame& frame = sheet_.frame();
   const auto near = [&](double at, int from) {
-    return at + reach_ >= from && at - reach_ < from + frame.side();  // no number is not
+    return at + reach_ >= from && at - reach_ < from + frame.side();  // false for NaN
   };
   return near(x, frame.first_x()) && near(y, frame.first_y());
 }

@@ -11,13 +11,13 @@
 
 namespace adit::picture {
 
-/// Draws a grid that lies askew, cell by cell: the pixel in which a cell's centre lies, or, where cells are
-/// not much smaller than pixels, those of as many points evenly over the cell as leave no gap.
+/// Draws a rotated grid cell by cell. A small cell sets the pixel at its centre. A larger cell sets the
+/// pixels of several points, evenly spread over the cell so that no gaps are left.
 class TurnedGrid {
  public:
   TurnedGrid(const icd::OccupancyGrid& grid, const icd::Placement& placement, Sheet& sheet);
 
-  /// A part of a row, in the order of the data.
+  /// Draws a part of a row. Call it in the order of the data.
   void draw(std::size_t row, std::size_t column, std::span<const std::uint8_t> cells);
   std::size_t left_out() const { return left_out_; }
 
@@ -29,8 +29,8 @@ class TurnedGrid {
   void dab(double x, double y, std::uint8_t index);
 
   Sheet& sheet_;
-  Step origin_, column_, row_;  // where the grid's corner lies, and what one cell more adds
-  double reach_ = 0;            // of a cell around its centre
+  Step origin_, column_, row_;  // the grid's corner, and the steps from cell to cell
+  double reach_ = 0;            // from a cell's centre to its corner, in pixels
   int side_ = 1;                // points along a cell's side; 0: cells are too large to be drawn
   std::size_t dabs_ = 0;
   std::size_t left_out_ = 0;

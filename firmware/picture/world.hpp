@@ -11,16 +11,16 @@
 
 namespace adit::picture {
 
-/// The world as it is drawn: the frame "darpa" from above, x to the right and y up, in tiles of kSide x kSide
-/// pixels at kLevels scales. Level 0 is the base; each further one is coarser by kStep.
+/// The drawn world: the frame "darpa" from above, x to the right and y up, in tiles of kSide x kSide pixels
+/// at kLevels scales. Level 0 is the base. Each further level is coarser by kStep.
 inline constexpr int kSide = 256;
 inline constexpr int kStep = 4;
 inline constexpr int kLevels = 3;
 inline constexpr std::array<double, kLevels> kMetresPerPixel{0.25, 1, 4};
 inline constexpr double kPixel = kMetresPerPixel[0];
 
-/// Finer levels, -1 and -2, which are drawn only where somebody looks: see fine.hpp. Each is finer by
-/// kFineStep, so that the cells of nearly all grids (5, 10, 20, 25 cm) are whole pixels.
+/// Finer levels, -1 and -2, are drawn on request only: see fine.hpp. Each is finer by kFineStep, so that the
+/// cells of most grids (5, 10, 20, 25 cm) are whole pixels.
 inline constexpr int kFineStep = 5;
 inline constexpr int kFinest = -2;
 inline constexpr std::array<double, 2> kFineMetresPerPixel{0.05, 0.01};
@@ -29,7 +29,7 @@ inline constexpr double metres_per_pixel(int level) {
                    : kMetresPerPixel[static_cast<std::size_t>(level)];
 }
 
-/// What lies farther from the frame's origin along x or y is not drawn: in metres, pixels and tiles of the
+/// The drawn world reaches this far from the frame's origin along x and y: in metres, pixels and tiles of the
 /// base.
 inline constexpr double kWorldMetres = 8192;
 inline constexpr int kWorldPixels = 32768;
@@ -54,14 +54,14 @@ struct TileAt {
   friend auto operator<=>(const TileAt&, const TileAt&) = default;
 };
 
-/// The tile of the next coarser level that this one lies in.
+/// The tile of the next coarser level that contains this one.
 inline TileAt coarser(const TileAt& at) {
   const int step = at.level < 0 ? kFineStep : kStep;
   const auto down = [step](int number) { return (number - (number < 0 ? step - 1 : 0)) / step; };
   return {at.level + 1, down(at.x), down(at.y)};
 }
 
-/// Whether some of it is drawn at all.
+/// True if a part of it lies in the drawn world.
 inline bool is_in_world(const TileAt& at) {
   if (at.level < kFinest || at.level >= kLevels) return false;
   const double reach = kWorldMetres / (metres_per_pixel(at.level) * kSide);
@@ -75,7 +75,7 @@ struct Area {
   friend bool operator==(const Area&, const Area&) = default;
 };
 
-/// Whether they have more than a border in common.
+/// True if they have more than a border in common.
 inline bool touch(const Area& a, const Area& b) {
   return a.left < b.right && b.left < a.right && a.bottom < b.top && b.bottom < a.top;
 }

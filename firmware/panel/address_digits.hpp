@@ -7,9 +7,9 @@
 
 namespace adit::panel {
 
-/// An IPv4 address as flashes that can be counted: for each digit as many as it says (ten for 0), for each
-/// dot a long one; after each a pause. Twice, with a longer pause between. `address` is in its text form;
-/// what is neither digit nor dot is left out.
+/// An IPv4 address as flashes to count. A digit is that many flashes (ten for 0), a dot one long flash. A
+/// pause follows each. The address is shown twice, with a longer pause between. `address` is in text form;
+/// characters other than digits and dots are skipped.
 std::vector<Step> address_digits(std::string_view address);
 
 }  // namespace adit::panel

@@ -21,7 +21,7 @@ std::optional<Press> Button::advance(Instant now) {
   return phase_ == Phase::Ignored ? std::optional(Press::Reset) : std::nullopt;
 }
 
-/// A level that has lasted counts from when it began.
+/// A level that has lasted long enough counts from its start.
 std::optional<Press> Button::settle(Instant now) {
   if (!bounces() || now - since_ < kBounce) return std::nullopt;
   if (level_) {

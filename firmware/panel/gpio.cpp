@@ -1,4 +1,4 @@
-// The panel by libgpiod 1.
+// The panel with libgpiod 1.
 #include <gpiod.h>
 
 #include <array>
@@ -35,7 +35,7 @@ std::unexpected<std::string> gpio_trouble(const std::string& about, int error) {
   return std::unexpected("panel: " + about + ": " + std::system_category().message(error));
 }
 
-/// What is left in errno by libgpiod, which says nothing where it merely did not find something.
+/// errno as libgpiod left it. libgpiod leaves 0 if it did not find the line or chip.
 int gpio_error() {
   return errno == 0 ? ENOENT : errno;
 }
@@ -50,12 +50,12 @@ struct Found {
   gpiod_line* line = nullptr;
 };
 
-/// `about` is for the error.
+/// `about` describes the line in an error.
 std::expected<Found, std::string> find(const settings::Panel& settings, const std::string& name,
                                        const std::string& about) {
   errno = 0;
   if (settings.chip.empty()) {
-    gpiod_line* const line = gpiod_line_find(name.c_str());  // opens the chip, which is ours then
+    gpiod_line* const line = gpiod_line_find(name.c_str());  // opens the chip, which the caller then owns
     if (line == nullptr) return gpio_trouble(about, gpio_error());
     return Found{Chip(gpiod_line_get_chip(line)), line};
   }
@@ -79,7 +79,7 @@ struct Output {
   std::unique_ptr<gpiod_line, LetGoDark> line;
 };
 
-/// `about` is for the error.
+/// `about` describes the line in an error.
 std::expected<Output, std::string> request_output(const settings::Panel& settings, const std::string& line,
                                                   const std::string& about, const std::string& consumer) {
   auto found = find(settings, line, about);
@@ -98,7 +98,7 @@ class GpioLines final : public Lines {
   GpioLines(settings::Panel settings, Outputs outputs)
       : settings_(std::move(settings)), outputs_(std::move(outputs)) {}
 
-  /// Every light is set, also after one that fails; the first failure is told.
+  /// Sets every light even if one fails. The error is that of the first failure.
   std::expected<void, std::string> set(const Lit& lit) override {
     std::expected<void, std::string> result;
     for (const Light light : kLights) {
@@ -123,7 +123,7 @@ class GpioButton final : public ButtonLine {
 
   int descriptor() const override { return gpiod_line_event_get_fd(found_.line); }
 
-  /// By its level, not by the events: the kernel drops those of a long bounce.
+  /// Uses the level, not the events, because the kernel drops events during a long bounce.
   std::expected<bool, std::string> pressed() override {
     constexpr timespec kNow{};
     std::array<gpiod_line_event, 16> events{};
@@ -168,7 +168,7 @@ std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const s
   const auto request = [&](int with) {
     return gpiod_line_request_both_edges_events_flags(found->line, consumer.c_str(), flags | with) == 0;
   };
-  if (!request(pull) && !request(0)) return gpio_trouble(what, errno);  // some chips know no pull
+  if (!request(pull) && !request(0)) return gpio_trouble(what, errno);  // some chips have no pull
   return std::make_unique<GpioButton>(std::move(*found), what);
 }
 

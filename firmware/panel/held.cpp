@@ -14,8 +14,7 @@ std::unique_ptr<Lines> hold_lines(const settings::Panel& settings, const std::st
   return reopened_lines([settings, consumer] { return open_gpio(settings, consumer); }, make);
 }
 
-/// A real button that cannot be had is none: what anybody could press in its place is no proof that he is at
-/// the box.
+/// A simulated button never replaces a real one, because it would not prove that a person is at the box.
 std::expected<std::unique_ptr<ButtonLine>, std::string> hold_button(const settings::Panel& settings,
                                                                     const std::string& consumer,
                                                                     const std::string& simulated_file) {

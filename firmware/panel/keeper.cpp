@@ -13,8 +13,7 @@
 namespace adit::panel {
 namespace {
 
-constexpr int kHeardAtOnce =
-    64;  // messages, so that nobody who tells without end keeps the lights from their time
+constexpr int kHeardAtOnce = 64;  // messages at once, so that a flood of messages cannot delay the lights
 
 bool same(const settings::Panel& one, const settings::Panel& other) {
   return message_of(ToUse{one}) == message_of(ToUse{other});
@@ -35,7 +34,7 @@ Keeper::Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<s
   show();
 }
 
-/// Whoever connected before has died, or hangs: a service has one process.
+/// A previous connection is closed: its aditd has died or hangs, because a service has one process.
 void Keeper::accept() {
   auto caller = accepted_at(listening_);
   if (!caller) return;
@@ -60,7 +59,7 @@ void Keeper::hear() {
   std::array<char, kLongestMessage> bytes{};
   for (int i = 0; client_ && i < kHeardAtOnce; ++i) {
     const ssize_t size = recv(client_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_TRUNC);
-    // Whoever left without having read all is told of before what he had said: that comes next.
+    // If the peer closed with unread data, ECONNRESET is reported before its last messages.
     if (size < 0 && (errno == ECONNRESET || errno == EINTR)) continue;
     if (size < 0 && errno == EAGAIN) break;
     if (size <= 0) {
@@ -95,7 +94,7 @@ void Keeper::take(const ToUse& message) {
   if (!knows_board_ && !(used_ && same(*used_, message.panel))) use(message.panel);
 }
 
-/// A line can be had once: the old ones are let go of first.
+/// A line can be opened only once, so the old lines are closed first.
 void Keeper::use(const settings::Panel& panel) {
   edges_ = {};
   button_.reset();
@@ -117,8 +116,8 @@ void Keeper::watch_button() {
   look_at_button();
 }
 
-/// A press that was under way when the button was lost comes to nothing; one that is there when it is back is
-/// none until it was let go, as at the start.
+/// Losing the button cancels a press. A button that is pressed when it is back, or at the start, counts as
+/// not pressed until it is released.
 void Keeper::look_at_button() {
   const auto level = button_->pressed();
   log_button(level);
@@ -134,13 +133,13 @@ void Keeper::log_button(const std::expected<bool, std::string>& level) {
   world_.complain(level ? "button works again" : "cannot read the button, retrying: " + level.error());
 }
 
-/// One that is held since before he came is none to him until it was let go.
+/// A press that began before aditd connected counts as not pressed until it is released.
 ButtonIs Keeper::button_for_him() const {
   return pressed_ ? ButtonIs{*pressed_ && is_for_him_} : ButtonIs{};
 }
 
-/// A button that is held is looked at besides: a chip that has vanished tells of no release, and he counts
-/// the time until the factory reset. While he warns of that, he tells of the lights twenty times a second.
+/// Also reads a held button, because a chip that has vanished reports no release and aditd counts the time
+/// until the factory reset. While aditd warns of the reset, it sends lights twenty times a second.
 void Keeper::show() {
   if (pressed_.value_or(false)) look_at_button();
   paint();
@@ -156,7 +155,7 @@ void Keeper::paint() {
                                                : "cannot set the lights, retrying: " + painter_.trouble());
   }
   std::optional<Instant> next = painter_.next();
-  // A millisecond more: what is left of one was cut off.
+  // One millisecond more, because timers are rounded down.
   if (const Instant ends = now + frame.lasts.value_or(Milliseconds{}) + Milliseconds(1); frame.lasts)
     next = std::min(ends, next.value_or(ends));
   if (next) {
@@ -173,7 +172,7 @@ void Keeper::tell_what_is_new() {
     tell(message_of(lights));
 }
 
-/// Whoever cannot be told is let go of: a release is never left out.
+/// Closes the connection if the message cannot be sent, so that a release is never skipped.
 void Keeper::tell(const std::string& message) {
   const int flags = MSG_DONTWAIT | MSG_NOSIGNAL;
   if (send(client_.get(), message.data(), message.size(), flags) < 0) lose();

@@ -16,16 +16,16 @@
 
 namespace adit::panel {
 
-/// Holds the lines of the panel for aditd, and watches it: adit-panel. One aditd at a time is heard, the one
-/// that connected last, and is told of the button, and of lights that cannot be set.
+/// Holds the panel's lines for aditd and watches aditd: the core of adit-panel. It serves one aditd at a
+/// time, the one that connected last. It reports the button's level and lights that cannot be set.
 class Keeper {
  public:
   struct World {
     std::function<Held(const settings::Panel&)> open;
-    std::function<void(const std::string&)> complain;  // a sentence, for the log
+    std::function<void(const std::string&)> complain;  // gets a sentence for the log
   };
 
-  /// `boards` counts before what aditd tells of the lines; nothing: they are not known before.
+  /// `boards` has priority over the panel that aditd names. nullopt: no panel until aditd names one.
   Keeper(loop::Loop& loop, loop::FileDescriptor listening, std::optional<settings::Panel> boards,
          World world);
   Keeper(const Keeper&) = delete;
@@ -56,12 +56,12 @@ class Keeper {
   std::optional<settings::Panel> used_;
   Painter painter_;
   std::unique_ptr<ButtonLine> button_;   // null: there is none
-  std::optional<bool> pressed_ = false;  // by what the line says; nothing: it cannot be read
-  bool is_for_him_ = false;              // the press began after whoever is heard had connected
-  ButtonIs told_button_{false};          // as he was told
-  LightsAre told_lights_;                // as he was told
-  bool complained_ = false;              // of what he tells
-  bool button_broken_ = false;           // which was logged
+  std::optional<bool> pressed_ = false;  // the line's level; nullopt: it cannot be read
+  bool is_for_him_ = false;              // the press began after the present aditd connected
+  ButtonIs told_button_{false};          // the last report to aditd
+  LightsAre told_lights_;                // the last report to aditd
+  bool complained_ = false;              // a wrong message of aditd was logged
+  bool button_broken_ = false;           // the button cannot be read; this was logged
   loop::FileDescriptor listening_, client_;
   loop::Source tick_, edges_, callers_, words_;  // ended before their descriptors are closed
 };

@@ -9,14 +9,14 @@
 
 namespace adit::panel {
 
-/// The lines that lights hang on: the seam between the panel and GPIO.
+/// The lines of the lights. Tests and the simulated panel replace GPIO here.
 class Lines {
  public:
   virtual ~Lines() = default;
-  /// Sets all lights. An error says why some may not show it, and the rest of Adit goes on: painter.hpp.
+  /// Sets all lights. An error says why some lights may be wrong; Adit continues: painter.hpp.
   virtual std::expected<void, std::string> set(const Lit& lit) = 0;
-  /// Whether they are set over and over (Watched::kBeat) while the program is well, so that whoever holds the
-  /// lines knows.
+  /// True if the lights must be set at least once in Watched::kBeat while the program is well, so that the
+  /// holder of the lines knows.
   virtual bool is_watched() const { return false; }
 };
 
@@ -24,31 +24,31 @@ class Lines {
 class ButtonLine {
  public:
   virtual ~ButtonLine() = default;
-  /// Is readable once the button was pressed or let go. It stays this one's.
+  /// Readable after the button was pressed or released. Owned by this object.
   virtual int descriptor() const = 0;
-  /// Whether it is pressed by now; what made descriptor() readable is read. An error: it cannot be read, and
-  /// a press that was under way comes to nothing. It may be asked again later.
+  /// The present level. Consumes what made descriptor() readable. An error means that the line cannot be
+  /// read; the caller must cancel a press. It may call again later.
   virtual std::expected<bool, std::string> pressed() = 0;
 };
 
-/// The lines named in the settings, by libgpiod, for `consumer` (what gpioinfo(1) shows as their user): on
-/// the chip of that name, label or path, or with no chip named, on whichever has a line of that name. Lines
-/// without a name are left out. All are dark at first, and dark when they are let go at the end. Lines whose
-/// chip vanishes stay lost, and so does the button's: reopened.hpp.
+/// Opens the lines named in `settings` with libgpiod, for `consumer` (shown by gpioinfo(1) as their user).
+/// The chip is found by name, label or path; if no chip is named, the line's name is looked up on all chips.
+/// Unnamed lines are skipped. All lights are dark at first and when closed. Lines stay lost after their chip
+/// vanishes: reopened.hpp.
 std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Panel& settings,
                                                              const std::string& consumer);
-/// The button's, which has to be named. Where the chip can, it is pulled to where it is not pressed, so that
-/// a line that nothing hangs on is no button that is held.
+/// Opens the line of the button, which must be named. If the chip supports it, the line is pulled to "not
+/// pressed", so that an unconnected line is no pressed button.
 std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,
                                                                          const std::string& consumer);
-/// libgpiod's own version.
+/// libgpiod's version.
 std::string gpiod_version();
 
-/// A panel without GPIO: what it shows is readable from `file` ("health on\n..."), rewritten atomically at
-/// each change.
+/// A panel without GPIO. Its state is in `file` ("health on\n..."), which is replaced atomically at each
+/// change.
 std::unique_ptr<Lines> simulated(std::string file);
-/// Its button: a FIFO, made new for this user alone, that takes the lines "press" and "release"; whatever
-/// else comes is ignored.
+/// The simulated button: a new FIFO for this user only. It accepts the lines "press" and "release" and
+/// ignores others. Replaces a file at `fifo`.
 std::expected<std::unique_ptr<ButtonLine>, std::string> simulated_button(const std::string& fifo);
 
 }  // namespace adit::panel

@@ -10,32 +10,32 @@
 
 namespace adit::panel {
 
-/// Sets lines when what is to be lit changes, again when that could not be done, and now and then in any
-/// case: a chip that has vanished says so only where it is set. It knows no clock: each call says what time
-/// it is, and times never run backward.
+/// Sets the lights when they change, retries after a failure, and sets them again from time to time, because
+/// a vanished chip is only noticed when lights are set. It reads no clock: each call gets the time, which
+/// never runs backward.
 class Painter {
  public:
-  static constexpr Milliseconds kAgain{500};     // after a try that failed
-  static constexpr Milliseconds kConfirm{2000};  // after one that went well
-  /// So long all must have gone well before trouble is over: a loose contact is told of once.
+  static constexpr Milliseconds kAgain{500};     // after a failure
+  static constexpr Milliseconds kConfirm{2000};  // after a success
+  /// Trouble ends after this time without a failure, so that a loose contact is reported once.
   static constexpr Milliseconds kMended{5000};
 
-  /// Null: there are none. What is to be lit is shown next.
+  /// Null: no lines. The next show() sets the new lines.
   void take(std::unique_ptr<Lines> lines);
   const Lines* lines() const { return lines_.get(); }
 
-  /// Sets what is to be lit, where that is due.
+  /// Sets the lights if they have changed or setting is due.
   void show(const Lit& lit, Instant now);
-  /// In any case.
+  /// Sets the lights in any case.
   void set(const Lit& lit, Instant now);
-  /// When show() is due where nothing changes; nothing: never.
+  /// When show() is due if the lights do not change; nullopt: there are no lines.
   std::optional<Instant> next() const;
 
-  /// Nothing was shown on these lines yet.
+  /// True if these lines have not been set yet.
   bool is_blank() const { return !tried_; }
-  /// Why the lines may not show what they were last set to; or "".
+  /// Why the lights may be wrong, or "".
   const std::string& trouble() const { return trouble_; }
-  /// Whether trouble() came or went since this was last asked.
+  /// True if trouble() began or ended since the last call.
   bool has_turned() {
     const bool is_in_trouble = !trouble_.empty();
     return std::exchange(was_in_trouble_, is_in_trouble) != is_in_trouble;

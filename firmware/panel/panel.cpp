@@ -8,8 +8,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A blink is a whole number of steps, and lit first. "Slow" and "fast" are four to one, "rush" is too fast to
-// count; "flash" is mostly dark, "wink" mostly lit.
+// A blink is a whole number of steps and begins lit. "Slow" to "fast" is one to four, "rush" is too fast to
+// count, "flash" is mostly dark, "wink" mostly lit.
 constexpr Step kOffSteps[] = {{false, 1s}};
 constexpr Step kOnSteps[] = {{true, 1s}};
 constexpr Step kSlowSteps[] = {{true, 500ms}, {false, 500ms}};

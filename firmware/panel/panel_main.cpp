@@ -1,5 +1,5 @@
-/// adit-panel: holds the lights and the button. An output keeps its last value while the process that set it
-/// hangs, and after it died, so that aditd itself could not tell that it does.
+/// adit-panel: holds the lights and the button. A GPIO output keeps its value when its process hangs or dies,
+/// so aditd cannot show its own fault.
 
 #include <systemd/sd-daemon.h>
 
@@ -25,11 +25,11 @@ void complain(const std::string& sentence) {
   std::fprintf(stderr, "adit-panel: %s\n", sentence.c_str());
 }
 
-/// Absent if there is no file, or it names no panel. A wrong one is told and ignored. An error: the file
-/// cannot be read.
+/// nullopt if there is no file, or if it names no panel or is wrong. A wrong file is logged. An error means
+/// that the file cannot be read.
 std::expected<std::optional<settings::Panel>, std::string> panel_of_board(const std::string& file) {
   const loop::FileDescriptor fd = loop::open_regular(file, O_RDONLY);
-  if (!fd && errno == ENOENT) return std::nullopt;  // so it is for ""
+  if (!fd && errno == ENOENT) return std::nullopt;  // also if `file` is ""
   const auto text = fd ? loop::read_all(fd, kLargestBoard) : std::unexpected(errno);
   if (!text) return std::unexpected(file + ": " + loop::text_of(text.error()));
   auto board = settings::parse_board(*text);
@@ -38,7 +38,7 @@ std::expected<std::optional<settings::Panel>, std::string> panel_of_board(const 
   return std::nullopt;
 }
 
-/// systemd's, or one of its own.
+/// The socket from systemd, or a new one.
 std::expected<loop::FileDescriptor, std::string> listening(const std::string& socket) {
   const int given = sd_listen_fds(1);
   if (given > 1) return std::unexpected("systemd gave more than one socket");

@@ -18,7 +18,7 @@ namespace adit::panel {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// Before it is told that nobody answers: at a start adit-panel comes later, and it may be started again.
+// Unanswered for this long is an error. adit-panel may start later than aditd, and may be restarted.
 constexpr std::chrono::seconds kPatience{30};
 constexpr int kMessagesAtOnce = 64;
 
@@ -26,7 +26,7 @@ std::string unreachable(const std::string& socket, int error) {
   return "adit-panel does not answer at " + socket + ": " + std::system_category().message(error);
 }
 
-/// What lights and button have in common.
+/// The connection that lights and button share.
 class Connection {
  public:
   Connection(std::string socket, std::string greeting, loop::FileDescriptor epoll,
@@ -50,7 +50,7 @@ class Connection {
     return std::unexpected(unreachable(socket_, error));
   }
 
-  /// As adit-panel said last.
+  /// The last report of adit-panel.
   std::expected<void, std::string> lights() const {
     if (trouble_.empty()) return {};
     return std::unexpected(trouble_);
@@ -73,7 +73,7 @@ class Connection {
     return *pressed_;
   }
 
-  /// Readable where the connection of the moment is: it stays the same one.
+  /// Stays the same across connections: readable if the present one is.
   int descriptor() const { return epoll_.get(); }
 
  private:
@@ -104,7 +104,7 @@ class Connection {
   }
 
   void lose() {
-    fd_ = loop::FileDescriptor();  // which ends its place in the epoll, too
+    fd_ = loop::FileDescriptor();  // also removes it from the epoll
     if (pressed_.value_or(false)) was_lost_ = true;
     pressed_ = false;
     trouble_.clear();
@@ -113,8 +113,8 @@ class Connection {
   std::string socket_, greeting_;
   loop::FileDescriptor epoll_, fd_;
   std::optional<Clock::time_point> unheard_since_;
-  std::optional<bool> pressed_ = false;  // nothing: it cannot be read
-  bool was_lost_ = false;                // since it was last asked for: no release is to be seen in it
+  std::optional<bool> pressed_ = false;  // nullopt: it cannot be read
+  bool was_lost_ = false;                // a press was cancelled since the last call of pressed()
   std::string trouble_;                  // with the lights
 };
 
@@ -123,7 +123,7 @@ class RemoteLines final : public Lines {
   explicit RemoteLines(std::shared_ptr<Connection> connection) : connection_(std::move(connection)) {}
   RemoteLines(const RemoteLines&) = delete;
   RemoteLines& operator=(const RemoteLines&) = delete;
-  /// Whoever never said what is to be lit did not start: that he ends is the fault.
+  /// Sends the end only after a first set(): a program that ends before has failed to start.
   ~RemoteLines() override {
     if (is_started_) [[maybe_unused]]
       const auto told = connection_->tell(message_of(ToEnd{}));

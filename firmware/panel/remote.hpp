@@ -8,16 +8,16 @@
 
 namespace adit::panel {
 
-/// Lights and button that adit-panel holds, at its `socket`. It is told where the lines are (`settings`),
-/// unless its board has told it. Where it is not there, or goes, it is connected to again by what is set;
-/// that it does not answer is an error of set() after half a minute, and that it cannot set the lights is one
-/// as soon as the button was looked at. A button that is held when it is connected to is none until it was
-/// let go, and a press that is under way when it goes, or cannot read the button, comes to nothing.
+/// Lights and button held by adit-panel at `socket`. adit-panel ignores `settings` if its board names a
+/// panel. set() reconnects if there is no connection. It fails after half a minute without a connection, or
+/// if adit-panel has reported a failure of the lights. pressed() receives these reports. A button that is
+/// held while connecting counts as not pressed until it is released. A press is cancelled if the connection
+/// is lost or adit-panel cannot read the button. `announced`: a connection by announce().
 std::expected<Held, std::string> remote(const std::string& socket, const settings::Panel& settings,
                                         loop::FileDescriptor announced = {});
 
-/// A connection to adit-panel for remote(), before it is known what is to be lit: where it ends before that,
-/// adit-panel shows the fault. Empty where nobody answers there.
+/// Connects to adit-panel before the lights are known. If the program ends before it sets lights, adit-panel
+/// shows the fault. Empty if it does not answer.
 loop::FileDescriptor announce(const std::string& socket);
 
 }  // namespace adit::panel

@@ -33,7 +33,7 @@ class ReopenedLines final : public Lines {
         if (!done) fails_since_ = fails_since_.value_or(now);
         return done;
       }
-      lines_.reset();  // first: a line can be had once
+      lines_.reset();  // first, because a line can be opened only once
     } else if (now < due_) {
       return stand_in(lit);
     }
@@ -56,7 +56,7 @@ class ReopenedLines final : public Lines {
     return done;
   }
 
-  /// What becomes of the stand-in is nobody's trouble beside that of the lines.
+  /// A failure of the stand-in is ignored; the lines' own error is reported.
   std::expected<void, std::string> stand_in(const Lit& lit) {
     if (!stand_in_ && make_stand_in_) stand_in_ = make_stand_in_();
     if (stand_in_) [[maybe_unused]]
@@ -68,9 +68,9 @@ class ReopenedLines final : public Lines {
   std::function<std::unique_ptr<Lines>()> make_stand_in_;
   std::function<Instant()> now_;
   std::unique_ptr<Lines> lines_, stand_in_;
-  std::optional<Instant> fails_since_;  // the lines there are
-  Instant due_{};                       // to be opened, where there are none
-  std::string why_;                     // there are none
+  std::optional<Instant> fails_since_;  // of the open lines
+  Instant due_{};                       // when to open them, if they are closed
+  std::string why_;                     // the error, if they are closed
 };
 
 class ReopenedButton final : public ButtonLine {
@@ -80,7 +80,7 @@ class ReopenedButton final : public ButtonLine {
     reopen();
   }
 
-  /// Readable where the line of the moment or the timer is: it stays the same one.
+  /// Stays the same across lines: readable if the present line or the timer is.
   int descriptor() const override { return epoll_.get(); }
 
   std::expected<bool, std::string> pressed() override {
@@ -120,10 +120,10 @@ class ReopenedButton final : public ButtonLine {
   OpenButton open_;
   loop::FileDescriptor timer_, epoll_;
   std::unique_ptr<ButtonLine> line_;
-  std::string why_;  // there is none
+  std::string why_;  // the error, if it is closed
 };
 
-/// Readable each `pace`.
+/// Readable every `pace`.
 loop::FileDescriptor timer_of(std::chrono::milliseconds pace) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(pace);
   const timespec each{.tv_sec = seconds.count(), .tv_nsec = std::chrono::nanoseconds(pace - seconds).count()};

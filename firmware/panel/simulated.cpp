@@ -32,7 +32,7 @@ class SimulatedLines final : public Lines {
   }
 
  private:
-  /// By a rename, so that a reader never sees half of it. It need not outlive a power cut.
+  /// Renames a new file, so that a reader never sees half of it. It need not survive a power cut.
   bool write(const Lit& lit) {
     const std::string temporary = file_ + ".new";
     std::ofstream stream(temporary, std::ios::trunc);

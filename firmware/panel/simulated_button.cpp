@@ -13,7 +13,7 @@
 namespace adit::panel {
 namespace {
 
-constexpr std::size_t kLongest = 16;  // characters of a line that is looked at
+constexpr std::size_t kLongest = 16;  // characters of a line; a longer line is ignored
 constexpr int kOursAlone = 0600;
 
 class SimulatedButton final : public ButtonLine {
@@ -26,7 +26,7 @@ class SimulatedButton final : public ButtonLine {
 
   int descriptor() const override { return fifo_.get(); }
 
-  /// No more at once than a pipe holds, so that a flood of it never keeps the loop.
+  /// Reads at most as much as a pipe holds, so that a flood cannot block the loop.
   std::expected<bool, std::string> pressed() override {
     std::array<char, 4096> bytes{};
     for (int i = 0; i < 16; ++i) {
@@ -59,7 +59,7 @@ std::unexpected<std::string> trouble(const std::string& path, int error) {
 
 }  // namespace
 
-/// Opened for writing, too: without any writer it would be readable for ever.
+/// Opened for writing too, because without a writer the FIFO would always be readable.
 std::expected<std::unique_ptr<ButtonLine>, std::string> simulated_button(const std::string& fifo) {
   if (unlink(fifo.c_str()) != 0 && errno != ENOENT) return trouble(fifo, errno);
   if (mkfifo(fifo.c_str(), kOursAlone) != 0) return trouble(fifo, errno);

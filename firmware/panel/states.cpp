@@ -3,14 +3,14 @@
 namespace adit::panel {
 namespace {
 
-constexpr std::optional<Pattern> kLeft;  // to states of lower priority
+constexpr std::optional<Pattern> kLeft;  // leaves the light to states of lower priority
 constexpr auto kOff = Pattern::Off, kOn = Pattern::On, kSlow = Pattern::Slow, kFast = Pattern::Fast,
                kTwice = Pattern::Twice, kFlash = Pattern::Flash, kWink = Pattern::Wink, kRush = Pattern::Rush,
                kDigits = Pattern::Digits;
 
-// What somebody at the box has just done comes first, and then the worse before the better. Open set-up comes
-// before an operator's action that waits: whoever opened it must see how long it stays open, and the page
-// shows the action that waits.
+// The last action at the box comes first, then worse before better. Open set-up precedes an operator's
+// pending action: the person who opened set-up must see how long it stays open, and the page shows the
+// action.
 constexpr StateRow kTable[] = {
     {State::Fault,
      "fault",

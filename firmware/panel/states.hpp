@@ -10,8 +10,8 @@
 
 namespace adit::panel {
 
-/// What the panel can tell. States are asserted and cleared one by one; which of those that are asserted a
-/// light shows is decided by their priorities alone.
+/// The panel's states. Each is asserted and cleared by itself. If several states concern a light, it shows
+/// the one with the highest priority.
 enum class State : std::uint8_t {
   Fault,
   ResetWarning,
@@ -33,26 +33,25 @@ enum class State : std::uint8_t {
   MappingConnected,
 };
 
-/// A row of the one table of states, which README.md has too.
+/// A row of the table of states, which is also in README.md.
 struct StateRow {
   State state;
   std::string_view name;                                        // "reset warning"
-  int priority;                                                 // of two on one light the higher shows
-  std::array<std::optional<Pattern>, kLights.size()> patterns;  // by Light; nothing: leaves it to others
+  int priority;                                                 // the higher one is shown on a light
+  std::array<std::optional<Pattern>, kLights.size()> patterns;  // by Light; nullopt: does not concern it
   std::string_view meaning;
 };
-/// In the order of State, which is that of their priorities, the highest first.
+/// In the order of State and by priority, highest first.
 std::span<const StateRow> state_table();
 inline constexpr std::size_t kStates = static_cast<std::size_t>(State::MappingConnected) + 1;
 
-/// The states that are asserted. At first none is, and all lights are dark.
+/// The asserted states. At first there are none, and all lights are dark.
 class States {
  public:
-  /// True: it was not so before.
+  /// True if this changed the state.
   bool set(State state, bool asserted);
   bool has(State state) const { return asserted_[static_cast<std::size_t>(state)]; }
-  /// For each light the pattern of the state with the highest priority that says anything of it; dark where
-  /// none does.
+  /// For each light, the pattern of the asserted state with the highest priority that concerns it, or dark.
   Lights shown() const;
 
  private:

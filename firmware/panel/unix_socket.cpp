@@ -12,7 +12,7 @@
 namespace adit::panel {
 namespace {
 
-constexpr int kWaiting = 4;  // connections
+constexpr int kWaiting = 4;  // connections not yet accepted
 constexpr int kKind = SOCK_SEQPACKET | SOCK_NONBLOCK | SOCK_CLOEXEC;
 
 std::optional<sockaddr_un> address_of(const std::string& path) {
@@ -23,7 +23,7 @@ std::optional<sockaddr_un> address_of(const std::string& path) {
   return address;
 }
 
-/// The C interface of all addresses.
+/// The address type of the C interface.
 const sockaddr* plain(const sockaddr_un& address) {
   return reinterpret_cast<const sockaddr*>(&address);  // NOLINT(cppcoreguidelines-pro-type-reinterpret-cast)
 }

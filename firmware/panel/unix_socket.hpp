@@ -7,11 +7,11 @@
 
 namespace adit::panel {
 
-/// Sockets of packets in the file system (SOCK_SEQPACKET), none of which blocks. An error is errno's.
+/// Non-blocking packet sockets in the file system (SOCK_SEQPACKET). An error is errno's value.
 std::expected<loop::FileDescriptor, int> connected_to(const std::string& path);
-/// For this user alone; what was at `path` is removed.
+/// For this user only. Replaces a file at `path`.
 std::expected<loop::FileDescriptor, int> listening_at(const std::string& path);
-/// The next who connected; EAGAIN: nobody.
+/// The next connection. EAGAIN: there is none.
 std::expected<loop::FileDescriptor, int> accepted_at(const loop::FileDescriptor& listening);
 
 }  // namespace adit::panel

@@ -25,7 +25,7 @@ void Watched::enter(Phase phase, Instant now) {
   since_ = now;
 }
 
-/// After a death the fault shows until the next one tells what is to be lit.
+/// After a death the fault shows until the next aditd sends lights.
 void Watched::came(Instant now) {
   if (phase_ == Phase::Awaited || phase_ == Phase::Ended) enter(Phase::Awaited, now);
 }

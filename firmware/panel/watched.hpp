@@ -7,25 +7,24 @@
 
 namespace adit::panel {
 
-/// What the lights show of an aditd that is watched: what it tells while it is well, the fault while it is
-/// not, and nothing where it ended by itself. It knows no clock: each call says what time it is, and times
-/// never run backward.
+/// Decides the lights from the messages of an aditd: its own lights while it is well, the fault if it is not,
+/// and dark after it ended by itself. It reads no clock: each call gets the time, which never runs backward.
 class Watched {
  public:
-  /// It tells at least so often that it is well; and has hung where it has told nothing for so long.
+  /// aditd sends its lights at least once in kBeat. After kSilence without them it hangs.
   static constexpr Milliseconds kBeat{400}, kSilence{1500};
-  /// So long a start may take, from whoever waits for it or from the connection on: systemd waits no longer.
+  /// A start may take this long, from the constructor or from the connection. It is systemd's limit.
   static constexpr std::chrono::minutes kStart{1};
 
   explicit Watched(Instant now) : since_(now) {}
 
-  /// It connected, told what is to be lit, said that it ends, or its connection ended.
+  /// It connected, sent its lights, announced its end, or lost its connection.
   void came(Instant now);
   void lights(const Lit& lit, Instant now);
   void ends(Instant now);
   void gone(Instant now);
 
-  /// What is to be lit by now, and when to ask again at the latest.
+  /// The present lights, and when to ask again at the latest.
   Frame frame(Instant now) const;
   bool is_faulty(Instant now) const { return fault_since(now).has_value(); }
 
@@ -35,7 +34,7 @@ class Watched {
   std::optional<Instant> fault_since(Instant now) const;
 
   Phase phase_ = Phase::Awaited;
-  Instant since_;  // when the phase began; where it is well, when that was told last
+  Instant since_;  // start of the phase; of Well: the last lights
   Lit lit_{};
 };
 

@@ -6,8 +6,8 @@
 
 namespace adit::command_line {
 
-/// What main() returns at once: 2 and the help for a wrong command line, 0 where only help or the version was
-/// wanted (1 where that cannot be printed); nothing: the program is to do its work.
+/// The exit code if main() must return at once: 2 after an error and the help for a wrong command line, 0
+/// after the help or the version (1 if it cannot be printed). nullopt: the program continues.
 template <class Options>
 std::optional<int> answer(Program (*program_of)(Options&), const char* version,
                           const std::expected<Options, std::string>& options) {

@@ -8,14 +8,15 @@ namespace {
 
 constexpr std::size_t kWidth = 100;
 
-/// What comes before the next `end` of `text`, which then begins behind that; all of it where there is none.
+/// Removes the text before the next `end`, and the `end`, from `text` and returns it. All of it if there is
+/// no `end`.
 std::string_view cut(std::string_view& text, char end) {
   const std::string_view piece = text.substr(0, text.find(end));
   text.remove_prefix(std::min(text.size(), piece.size() + 1));
   return piece;
 }
 
-/// A line's words in lines of the width, all but the first behind `indent` blanks.
+/// Wraps a line at kWidth. All lines but the first are indented by `indent` blanks.
 std::string wrapped(std::string_view line, std::size_t indent) {
   std::string all(cut(line, ' '));
   std::size_t column = indent + all.size();
@@ -28,7 +29,7 @@ std::string wrapped(std::string_view line, std::size_t indent) {
   return all;
 }
 
-/// Each line wrapped, but those that begin with a blank.
+/// Wraps each line, except those that begin with a blank.
 std::string paragraphs(std::string_view text) {
   std::string all;
   while (!text.empty()) {

@@ -4,12 +4,12 @@
 
 namespace adit::command_line {
 
-/// What is wrong with a number, or nothing where it is from `least` to `most`.
+/// nullopt if `text` is a number from `least` to `most`, which is then in `number`.
 [[gnu::cold]] Wrong read_number(const std::string& text, double least, double most, double& number);
 [[gnu::cold]] Wrong read_number(const std::string& text, std::uint64_t least, std::uint64_t most,
                                 std::uint64_t& number);
 
-/// Takes a number of that span, a whole one where they are, into what can be made of it.
+/// Stores a number from Least to Most in `into`. It must be whole if Least is an integer.
 template <auto Least, decltype(Least) Most, class Into>
 Take number(Into& into) {
   return take<[](Into& place, const std::string& text) {

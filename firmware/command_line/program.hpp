@@ -8,16 +8,17 @@
 
 namespace adit::command_line {
 
-/// What is wrong; nothing: it is right.
+/// An error, or nullopt.
 using Wrong = std::optional<std::string>;
 
-/// Takes the value of an option, "" of one that stands alone. As plain as the rows are, which are many.
+/// A function that stores an option's value in `into`. The value is "" for an option without one. Plain
+/// pointers keep the many rows small.
 struct Take {
   Wrong (*take)(void* into, const std::string& value) = nullptr;
   void* into = nullptr;
 };
 
-/// That which calls TakeInto(Into&, value).
+/// Stores a value by TakeInto(Into&, value).
 template <auto TakeInto, class Into>
 Take take(Into& into) {
   return {[](void* known, const std::string& value) -> Wrong {
@@ -26,32 +27,32 @@ Take take(Into& into) {
           &into};
 }
 
-/// Whether an option may be left out, and whether its value may be "".
+/// Whether an option may be omitted, and whether its value may be "".
 enum class Wanted : std::uint8_t { Maybe, Always };
 enum class Empty : std::uint8_t { Refused, Taken };
 
-/// One option: all that reads, explains, documents or completes it comes from here.
+/// One option. Reading, help, documents and completion are made from it.
 struct Row {
-  const char* word;   // "--settings"; or a word of its own, "good"
-  const char* value;  // what the help calls it, "FILE", "N|all"; "": it stands alone
-  const char* help;   // what it is for; a text that it has where it is left out is added to that
+  const char* word;   // "--settings", or a plain word: "good"
+  const char* value;  // its name in the help, "FILE", "N|all"; "": it has no value
+  const char* help;   // its purpose; a default text in `into` is appended
   std::variant<bool*, std::string*, std::vector<std::string>*, Take> into;
   Wanted wanted = Wanted::Maybe;
 };
 
-/// A program's command line. Of an option that comes twice the last counts.
+/// A program's command line. If an option is repeated, the last value counts, but a list gets all values.
 struct Program {
   std::string name;
-  std::string usage;  // the words after it, but for the options; "": none
-  std::string about;  // what it does, a paragraph a line; one that begins with a blank is kept as it is
+  std::string usage;  // the words after the name, without options
+  std::string about;  // its purpose, one paragraph per line; a line that begins with a blank is not wrapped
   std::vector<Row> rows;
-  std::string ending;  // what else is to be known, as `about`
+  std::string ending;  // further information, formatted like `about`
   Empty empty = Empty::Refused;
-  std::vector<std::string>* given = nullptr;  // gets the words of the rows that came; null: nobody asks
-  Take word = {};                             // takes each word that is no row's; null: there is none
+  std::vector<std::string>* given = nullptr;  // gets the words of the options that were given; may be null
+  Take word = {};  // stores each word that matches no row; null: such words are errors
 };
 
-/// What --help prints. It and all that reads a command line is cold: run once, it is to be small.
+/// The text of --help. This function and read() are cold: they run once and should be small.
 [[gnu::cold]] std::string help(const Program& program);
 
 }  // namespace adit::command_line

@@ -10,9 +10,9 @@
 namespace adit::command_line {
 namespace {
 
-constexpr int kFirst = 256;  // of what getopt_long calls the rows: above all characters
+constexpr int kFirst = 256;  // first number of a row for getopt_long; larger than any character
 
-/// The rows as getopt_long wants them; those without "--" stand alone and are none of its options.
+/// The rows for getopt_long, without those that lack "--".
 std::vector<option> options_of(const Program& program) {
   std::vector<option> options;
   int number = kFirst;
@@ -30,7 +30,7 @@ std::string_view without_dashes(std::string_view word) {
   return word.substr(std::min(word.find_first_not_of('-'), word.size()));
 }
 
-/// Says so of a word, and which row's was likely meant.
+/// An error about an unknown word, with a suggestion if a row's word is close.
 std::string unknown(std::string_view word, const Program& program) {
   std::string sentence = std::string("unknown word '").append(word).append("'");
   std::vector<std::string_view> known;
@@ -49,14 +49,14 @@ class Reading {
   explicit Reading(const Program& program) : program_(program), given_(program.rows.size()) {}
 
   Wrong words(std::span<const char* const> arguments) {
-    // getopt_long wants the program's name before them and null after them. It changes none of them: "-"
-    // keeps their order.
+    // getopt_long needs the program's name first and null last. It changes no word and, because of "-", not
+    // their order.
     std::vector<char*> all{const_cast<char*>(program_.name.c_str())};
     for (const char* const word : arguments) all.push_back(const_cast<char*>(word));
     const int count = static_cast<int>(all.size());
     all.push_back(nullptr);
     const std::vector<option> options = options_of(program_);
-    optind = 0;  // from the beginning, also where another command line was read before
+    optind = 0;  // restarts getopt_long after another command line
     opterr = 0;
     while (true) {
       const char* const at = all[static_cast<std::size_t>(std::max(optind, 1))];
@@ -71,7 +71,7 @@ class Reading {
   }
 
  private:
-  /// `found`: what getopt_long found at the word `at`.
+  /// `found`: getopt_long's result for the word `at`.
   Wrong take(int found, std::string_view at) {
     if (found == 1) return word(optarg);
     if (found == 'h') return word("--help");
@@ -79,7 +79,7 @@ class Reading {
     const int number = found == '?' || found == ':' ? optopt : found;
     const Row* const row =
         number < kFirst ? nullptr : &program_.rows[static_cast<std::size_t>(number - kFirst)];
-    if (row == nullptr || name != row->word)  // a word that was cut short is none
+    if (row == nullptr || name != row->word)  // abbreviated words are not accepted
       return unknown(name, program_);
     if (found == '?') return name + " takes no value";
     if (found == ':') return name + " wants a value";
@@ -122,7 +122,7 @@ class Reading {
 
   const Program& program_;
   std::vector<bool> given_;  // by row
-  bool asked_ = false;       // for help or the version: nothing is missing
+  bool asked_ = false;       // for help or the version: required options may be missing
 };
 
 }  // namespace

@@ -8,11 +8,11 @@
 
 namespace adit::command_line {
 
-/// Reads the words after the program's name, `--word value` and `--word=value`; what comes back is wrong, and
-/// names the word it is about. Not for two threads at once: getopt_long(3).
+/// Reads the words after the program's name: `--word value` and `--word=value`. An error names its word. Not
+/// thread-safe because of getopt_long(3).
 [[gnu::cold]] Wrong read(const Program& program, std::span<const char* const> arguments);
 
-/// The options of `program_of`, a table whose rows lead into what it is given.
+/// The options that were read. `program_of` returns the rows for the options object that it gets.
 template <class Options>
 std::expected<Options, std::string> read(Program (*program_of)(Options&),
                                          std::span<const char* const> arguments) {

@@ -10,19 +10,19 @@
 
 namespace adit::icd {
 
-/// The artifact types of the final event (ICD 5.2); letter case does not matter.
+/// The artifact types of the final event (ICD 5.2). Letter case does not matter.
 inline constexpr auto kArtifactTypes = std::to_array<std::string_view>({
 #include "artifact_types.inc"
 });
 
-/// The ICD's own spelling of a type, or nothing ("") where it is none of them.
+/// The ICD's spelling of a type, or "" if it is unknown.
 std::string_view artifact_type(std::string_view text);
 
-/// The body of POST /api/artifact_reports (ICD 5.2). `type` is kept as its sender wrote it.
+/// The body of POST /api/artifact_reports (ICD 5.2). `type` is as the sender wrote it.
 struct ArtifactReport {
   std::string type;
   Point position;
-  std::optional<RobotName> robot = {};  // "name": in the ICD's example, not in its listing
+  std::optional<RobotName> robot = {};  // "name": in the ICD's example, not in its list of members
   friend bool operator==(const ArtifactReport&, const ArtifactReport&) = default;
 };
 

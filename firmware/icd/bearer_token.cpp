@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::string_view kStruck = "[token]";
 constexpr std::size_t kShortest = 4;
-constexpr std::size_t kLeast = 8;  // characters at its beginning, where it is cut
+constexpr std::size_t kLeast = 8;  // minimum length of a beginning that is replaced
 
 void strike_whole(std::string& text, std::string_view token) {
   for (std::size_t at = 0; (at = text.find(token, at)) != std::string::npos; at += kStruck.size()) {
@@ -18,7 +18,7 @@ void strike_whole(std::string& text, std::string_view token) {
   }
 }
 
-/// With `mark` before each of `letters`.
+/// Puts `mark` before each of `letters`.
 std::string doubled(std::string_view token, std::string_view letters, char mark) {
   std::string text;
   for (const char letter : token) {
@@ -28,7 +28,7 @@ std::string doubled(std::string_view token, std::string_view letters, char mark)
   return text;
 }
 
-/// in_quotes() shows the beginning of what is long, and "..." after it.
+/// in_quotes() shows the beginning of a long text, followed by "...".
 void strike_cut(std::string& text, std::string_view token) {
   const std::string_view beginning = token.substr(0, kLeast);
   for (std::size_t at = 0; (at = text.find(beginning, at)) != std::string::npos; ++at) {
@@ -38,7 +38,7 @@ void strike_cut(std::string& text, std::string_view token) {
   }
 }
 
-/// How many of the first `most` characters are written everywhere as they are.
+/// The number of characters, at most `most`, before the first one that JSON, CSV or HTML escapes.
 std::size_t until_escaped(std::string_view token, std::size_t most) {
   return std::min(token.find_first_of("\"\\&<>'"), most);
 }
@@ -62,7 +62,8 @@ bool BearerToken::matches(std::string_view presented) const {
 
 bool BearerToken::may_be_in(std::string_view text) const {
   const auto beginning = std::string_view(text_).substr(0, until_escaped(text_, kLeast));
-  return ::memmem(text.data(), text.size(), beginning.data(), beginning.size()) != nullptr;  // of megabytes
+  // memmem() is fast enough for megabytes.
+  return ::memmem(text.data(), text.size(), beginning.data(), beginning.size()) != nullptr;
 }
 
 void BearerToken::strike_from(std::string& text) const {
@@ -70,7 +71,7 @@ void BearerToken::strike_from(std::string& text) const {
   strike_whole(text, text_);
   if (text_.find_first_of("\"\\") != std::string::npos) {
     const std::string in_json = doubled(text_, "\"\\", '\\');
-    strike_whole(text, doubled(in_json, "\"\\", '\\'));  // an answer that is kept, within JSON
+    strike_whole(text, doubled(in_json, "\"\\", '\\'));  // a stored answer within JSON
     strike_whole(text, in_json);
     strike_whole(text, doubled(text_, "\"", '"'));  // CSV
   }
@@ -85,7 +86,7 @@ bool same(const std::optional<BearerToken>& one, const std::optional<BearerToken
 bool is_one_of(std::span<const BearerToken> tokens, std::string_view presented) {
   bool found = false;
   for (const BearerToken& token : tokens) {
-    if (token.matches(presented)) found = true;  // no early end: the time must not tell which
+    if (token.matches(presented)) found = true;  // no early exit: the time must not reveal which one matches
   }
   return found;
 }

@@ -1,4 +1,4 @@
-// What every cell of a grid goes through.
+// Checks of the cells of a grid.
 #include <algorithm>
 
 #include "icd/map_update.hpp"
@@ -15,7 +15,7 @@ bool is_bad(std::uint8_t cell) {
 }  // namespace
 
 std::size_t sound_cells(std::span<const std::uint8_t> cells) {
-  std::uint8_t bad = 0;  // the loop without a way out of it is the one that compilers vectorize
+  std::uint8_t bad = 0;  // compilers vectorize this loop because it has no early exit
   for (const std::uint8_t cell : cells) bad |= static_cast<std::uint8_t>(is_bad(cell) ? 1 : 0);
   if (bad == 0) return cells.size();
   return static_cast<std::size_t>(std::ranges::find_if(cells, is_bad) - cells.begin());

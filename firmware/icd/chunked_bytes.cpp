@@ -15,18 +15,18 @@ void ChunkedBytes::swap(ChunkedBytes& other) noexcept {
   std::swap(size_, other.size_);
 }
 
-/// The last chunk where it has room and nobody else can see it, else a new one.
+/// Keeps the last chunk if it has room and is not shared. Otherwise begins a new one.
 void ChunkedBytes::open_chunk() {
   constexpr long kOurs = 2;  // open_ and chunks_.back()
   if (open_ && open_->size() < kChunk && open_.use_count() == kOurs) {
-    std::atomic_thread_fence(std::memory_order_acquire);  // whoever shared it has let go of it before this
+    std::atomic_thread_fence(std::memory_order_acquire);  // after a former sharer's last access
     return;
   }
   open_ = std::make_shared<std::vector<std::uint8_t>>();
   chunks_.emplace_back(open_, *open_);
 }
 
-/// Adds to the open chunk, which has room for it.
+/// Adds to the open chunk. Requires room for `piece`.
 void ChunkedBytes::grow(std::span<const std::uint8_t> piece) {
   std::vector<std::uint8_t>& chunk = *open_;
   if (chunk.capacity() - chunk.size() < piece.size()) {

@@ -10,7 +10,7 @@
 
 namespace adit::icd {
 
-/// Some bytes and whatever keeps them alive: a vector of their own, or a file that is mapped into memory.
+/// Some bytes and their owner: a vector, or a file that is mapped into memory.
 class Chunk {
  public:
   Chunk() = default;
@@ -26,11 +26,11 @@ class Chunk {
   std::span<const std::uint8_t> bytes_;
 };
 
-/// Bulk bytes in chunks of at most kChunk that are shared and never changed once written, so that a map is
-/// queued, merged with another, sent and sent again without a second copy, wherever its bytes are.
+/// Bytes in chunks of at most kChunk. Chunks are shared and never change once written. So a map can be
+/// queued, merged, sent and retried without a second copy.
 ///
-/// Copying a ChunkedBytes shares its chunks. Not for use by two threads at once, though chunks may be shared
-/// across threads.
+/// A copy of a ChunkedBytes shares its chunks. A ChunkedBytes is not thread-safe, but threads may share
+/// chunks.
 class ChunkedBytes {
  public:
   static constexpr std::size_t kChunk = std::size_t{64} * 1024;
@@ -51,24 +51,24 @@ class ChunkedBytes {
   void append(std::span<const std::uint8_t> bytes);
   /// Shares the chunks of `other` at the end.
   void append(const ChunkedBytes& other);
-  /// Takes a whole chunk over, without a copy where it is no larger than kChunk.
+  /// Moves `chunk` to the end; copies it if it is larger than kChunk.
   void append(std::vector<std::uint8_t>&& chunk);
-  /// Shows `bytes`, of any size, which live and do not change while `owner` lives, without a copy.
+  /// Appends `bytes` of any size without a copy. They must stay valid and unchanged while `owner` lives.
   void append(const std::shared_ptr<const void>& owner, std::span<const std::uint8_t> bytes);
 
-  /// All bytes, in order; no chunk is empty.
+  /// All bytes, in order. No chunk is empty.
   std::span<const Chunk> chunks() const { return std::span(chunks_).subspan(first_); }
   std::size_t size() const { return size_; }
   bool empty() const { return size_ == 0; }
 
-  /// Takes the first chunk out, so that what has been worked on can be freed. Requires !empty().
+  /// Removes the first chunk, so that it can be freed after use. Requires !empty().
   Chunk pop_front();
 
-  /// One contiguous copy: for small bodies and for tests.
+  /// One contiguous copy, for small bodies and tests.
   std::vector<std::uint8_t> to_vector() const;
   std::string to_string() const;
 
-  /// Equal bytes, however they are cut into chunks.
+  /// Compares the bytes; the borders of chunks do not matter.
   friend bool operator==(const ChunkedBytes& a, const ChunkedBytes& b);
 
  private:
@@ -77,7 +77,7 @@ class ChunkedBytes {
   void open_chunk();
 
   std::vector<Chunk> chunks_;
-  std::size_t first_ = 0;                            // of chunks_ that has not been popped
+  std::size_t first_ = 0;                            // index of the first chunk that was not popped
   std::shared_ptr<std::vector<std::uint8_t>> open_;  // the last chunk, while it may still grow
   std::size_t size_ = 0;
 };

@@ -10,7 +10,7 @@ std::optional<Quaternion> rotation_of(const Quaternion& q) {
   const double largest = std::max({std::abs(q.x), std::abs(q.y), std::abs(q.z), std::abs(q.w)});
   if (largest == 0) return Quaternion{};
   const double x = q.x / largest, y = q.y / largest, z = q.z / largest, w = q.w / largest;
-  const double norm = std::sqrt(x * x + y * y + z * z + w * w);  // from 1 to 2, however long `q` is
+  const double norm = std::sqrt(x * x + y * y + z * z + w * w);  // from 1 to 2 for any length of `q`
   const double length = largest * norm;
   if (length < kLengthNoise) return {};
   if (std::abs(length - 1) <= kLengthNoise) return q;

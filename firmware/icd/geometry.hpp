@@ -4,24 +4,23 @@
 
 namespace adit::icd {
 
-/// Metres, in the frame that the message names; each component is finite.
+/// Metres in the message's frame. Each component is finite.
 struct Point {
   double x = 0, y = 0, z = 0;
   friend bool operator==(const Point&, const Point&) = default;
 };
 
-/// A rotation: its length differs from 1 by kLengthNoise at most.
+/// A rotation. Its length differs from 1 by at most kLengthNoise.
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;
   friend bool operator==(const Quaternion&, const Quaternion&) = default;
 };
 
-/// What float32 and printed digits make of a length. The bits of a quaternion whose length differs from 1 by
-/// no more are kept.
+/// The error of a length because of float32 and printed digits. A quaternion within it keeps its bits.
 inline constexpr double kLengthNoise = 1e-6;
 
-/// The rotation of `q`, which may have any length: all zeros are the identity, for so ROS leaves one that
-/// nobody set. Nothing if `q` is not finite, or shorter than kLengthNoise and so without a direction.
+/// The rotation of `q`, which may have any length. All zeros are the identity, because ROS leaves an unset
+/// quaternion so. nullopt if `q` is not finite, or shorter than kLengthNoise and thus without a direction.
 std::optional<Quaternion> rotation_of(const Quaternion& q);
 
 struct Pose {

@@ -4,12 +4,12 @@
 
 namespace adit::icd {
 
-/// Seconds, on the clock of whoever made the message; from 0 (ICD 6.2) to kLatestStamp.
+/// Seconds on the sender's clock, from 0 (ICD 6.2) to kLatestStamp.
 using Stamp = double;
-inline constexpr Stamp kLatestStamp = 0x1.fffffffffffffp31;  // ROS's time has its seconds in a uint32
+inline constexpr Stamp kLatestStamp = 0x1.fffffffffffffp31;  // ROS has its seconds in a uint32
 
-/// The frame that every message is in (ICD 6.1). A message that exists has passed that check, so a Header
-/// does not hold it.
+/// The frame of every message (ICD 6.1). It was checked when the message was parsed, so a Header does not
+/// contain it.
 inline constexpr const char* kFrame = "darpa";
 
 struct Header {

@@ -5,8 +5,8 @@
 
 namespace adit::icd {
 
-/// As HTML's text and as an attribute's value in double quotes: none of it is markup, and control characters
-/// are U+FFFD.
+/// Escapes a text for HTML, also for an attribute in double quotes. A newline or tab becomes a blank, another
+/// control character U+FFFD.
 std::string in_html(std::string_view text);
 
 }  // namespace adit::icd

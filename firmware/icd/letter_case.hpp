@@ -5,12 +5,12 @@
 
 namespace adit::icd {
 
-/// Of ASCII; any other character stays.
+/// In lower case, if it is an ASCII letter.
 constexpr char lower(char letter) {
   return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
 }
 
-/// Equal but for the case of ASCII letters.
+/// True if both are equal except for the case of ASCII letters.
 constexpr bool same_but_for_case(std::string_view one, std::string_view other) {
   return std::ranges::equal(one, other, {}, lower, lower);
 }

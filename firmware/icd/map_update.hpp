@@ -17,11 +17,10 @@ namespace adit::icd {
 inline constexpr std::uint8_t kMostOccupied = 100;
 inline constexpr std::uint8_t kUnknownCell = 255;
 
-/// OccupancyGrid without its cells (ICD 6.3.1). Cells are row-major from the lower left, row by row towards
-/// +Y.
+/// OccupancyGrid without its cells (ICD 6.3.1). Cells are row by row towards +Y, from the lower left.
 struct OccupancyGrid {
   Header header;
-  double resolution = 0;     // metres a cell; as a float32 finite and above 0
+  double resolution = 0;     // metres a cell; finite and above 0 as a float32
   std::uint32_t width = 0;   // cells towards +X; at least 1
   std::uint32_t height = 0;  // cells towards +Y; at least 1
   Pose origin;               // of the lower left corner, in "darpa"
@@ -42,8 +41,8 @@ struct FieldSchema {
   friend bool operator==(const FieldSchema&, const FieldSchema&) = default;
 };
 
-/// PointCloud2 without its points (ICD 6.3.2). `fields` has x, y and z, each once, all Float32 or all
-/// Float64, each with count 1; every field ends within point_step.
+/// PointCloud2 without its points (ICD 6.3.2). `fields` has x, y and z once each, all Float32 or all Float64,
+/// each with count 1. Every field ends within point_step.
 struct PointCloud2 {
   Header header;
   std::optional<Pose> origin;  // from the points' frame to "darpa"; absent: identity
@@ -53,14 +52,14 @@ struct PointCloud2 {
   friend bool operator==(const PointCloud2&, const PointCloud2&) = default;
 };
 
-/// How MapData's bytes are held.
+/// How MapData's bytes are compressed.
 enum class Compression : std::uint8_t {
   None,
-  Gzip,  // exactly one member (RFC 1952) and nothing after it
+  Gzip,  // exactly one member (RFC 1952) and no bytes after it
 };
 
-/// A map's `data`. `raw_size` is its size in bytes before compression: width * height for a grid, a multiple
-/// of point_step for a cloud.
+/// A map's `data`. `raw_size` is its uncompressed size in bytes: width * height for a grid, a multiple of
+/// point_step for a cloud.
 struct MapData {
   ChunkedBytes bytes;
   Compression compression = Compression::None;
@@ -70,7 +69,7 @@ struct MapData {
 
 /// The body of POST /map/update (ICD 6.4).
 struct MapUpdate {
-  std::optional<RobotName> name;  // absent: merged, for all robots
+  std::optional<RobotName> name;  // absent: merged from all robots
   std::variant<OccupancyGrid, PointCloud2> msg;
   MapData data;
 

@@ -8,7 +8,7 @@ bool is_invisible(const Marker& marker) {
 }
 
 std::size_t bytes_of(const Marker& marker) {
-  constexpr std::size_t kFixed = 640;  // all that does not grow, with what maps and allocators add
+  constexpr std::size_t kFixed = 640;  // members of fixed size, with the overhead of maps and allocators
   constexpr std::size_t kPoint = 34;   // three named 64-bit numbers of CBOR; in memory 24
   constexpr std::size_t kColor = 45;   // four of them; in memory 32
   return kFixed + 2 * marker.ns.size() + marker.text.size() + marker.mesh_resource.size() +

@@ -12,8 +12,8 @@ namespace adit::icd {
 
 enum class MarkerAction : std::uint8_t { Add = 0, Delete = 2, DeleteAll = 3 };
 
-/// The types of ROS's visualization_msgs/Marker. Those from LineStrip to Points, and TriangleList, are made
-/// of `points`; an Arrow may be given by two of them, its tail and its tip.
+/// The types of ROS's visualization_msgs/Marker. LineStrip to Points and TriangleList are made of `points`.
+/// An Arrow may be given by two points, its tail and its tip.
 enum class MarkerType : std::int32_t {
   Arrow,
   Cube,
@@ -32,9 +32,8 @@ inline constexpr auto kLastMarkerType = static_cast<std::int32_t>(MarkerType::Tr
 
 inline constexpr std::size_t kMostMarkers = 100'000;  // in one update
 inline constexpr std::size_t kMostMarkerPoints = 100'000;
-inline constexpr std::size_t kLongestMeshResource = 4096;  // bytes
-inline constexpr double kLongestLifetime =
-    0x1.fffffffffffffp30;  // ROS's duration has its seconds in an int32
+inline constexpr std::size_t kLongestMeshResource = 4096;         // bytes
+inline constexpr double kLongestLifetime = 0x1.fffffffffffffp30;  // ROS has its seconds in an int32
 
 /// Each component from 0 to 1.
 struct Color {
@@ -42,12 +41,12 @@ struct Color {
   friend bool operator==(const Color&, const Color&) = default;
 };
 
-/// The namespace of a marker whose sender names none: the organiser's display deletes markers with an empty
-/// one when a message has fewer markers than the one before, and Adit puts several messages in one.
+/// The namespace for markers without one. The organiser's display deletes markers with an empty namespace if
+/// a message has fewer markers than the previous one, and Adit merges messages.
 inline constexpr const char* kUnnamedMarkers = "unnamed";
 
-/// One of POST /markers/update (ICD 6.6): a whole visualization_msgs/Marker of ROS 1, which the ICD encodes
-/// (2.2) and lists in part. For Delete and DeleteAll only ns and id mean anything.
+/// A marker of POST /markers/update (ICD 6.6): a whole visualization_msgs/Marker of ROS 1. The ICD encodes it
+/// (2.2) and lists some members. Only ns and id matter for Delete and DeleteAll.
 struct Marker {
   Header header;
   std::string ns;
@@ -59,9 +58,9 @@ struct Marker {
   Color color;
   double lifetime = 0;  // seconds, from 0 to kLongestLifetime; 0: for ever
   std::string text;
-  bool frame_locked = false;       // drawn again in its frame as that moves
+  bool frame_locked = false;       // moves with its frame
   std::vector<Point> points = {};  // metres from `pose`; at most kMostMarkerPoints
-  std::vector<Color> colors = {};  // as they came; of use where there is one for each point, or each triangle
+  std::vector<Color> colors = {};  // as received; used if there is one for each point, or each triangle
   std::string mesh_resource = {};  // the URL of a MeshResource; at most kLongestMeshResource
   bool mesh_use_embedded_materials = false;
 
@@ -69,11 +68,11 @@ struct Marker {
   friend bool operator==(const Marker&, const Marker&) = default;
 };
 
-/// Whether nobody sees it: its color has alpha 0 (ROS's default, ICD 6.6), and neither its points nor its
-/// mesh bring colors of their own.
+/// True if the marker is added and cannot be seen: its color has alpha 0 (ROS's default, ICD 6.6), and
+/// neither its points nor its mesh have colors of their own.
 bool is_invisible(const Marker& marker);
 
-/// What a marker takes in memory and in a message: no less than either, and little more than the larger.
+/// The bytes that a marker takes in memory or in a message: at least the larger, and little more.
 std::size_t bytes_of(const Marker& marker);
 
 struct MarkersUpdate {

@@ -7,7 +7,7 @@
 
 namespace adit::icd {
 
-/// From a map's own frame to "darpa": a rotation by a matrix, then a shift.
+/// Leads from a map's own frame to "darpa": a rotation by a matrix, then a shift.
 struct Placement {
   explicit Placement(const Pose& pose) : shift{pose.position} {
     auto [x, y, z, w] = pose.orientation;

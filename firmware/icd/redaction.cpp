@@ -5,7 +5,7 @@
 namespace adit::icd {
 namespace {
 
-/// Past the closing quotation mark of a string that begins at `at`, where its opening one stands.
+/// The index after the string's closing quotation mark. Its opening one is at `at`.
 std::size_t end_of_string(std::string_view text, std::size_t at) {
   for (++at; at < text.size() && text[at] != '"'; ++at) {
     if (text[at] == '\\') ++at;

@@ -9,22 +9,22 @@
 
 namespace adit::icd {
 
-/// Strikes the secrets that the box knows out of what others read, wherever somebody put one: a marker's
-/// text, a robot's name, a sentence of the Command Post.
+/// Replaces the box's secrets in texts that others read. A secret may be anywhere, for example in a marker's
+/// text, a robot's name or a sentence of the Command Post.
 class Redaction {
  public:
-  /// One of less than so many characters stays in strings and in HTML: it may be a word that a page needs.
+  /// A secret shorter than this stays in strings and in HTML, because it may be a word that a page needs.
   static constexpr std::size_t kShortest = 8;
 
   explicit Redaction(std::vector<BearerToken> secrets = {}) : secrets_(std::move(secrets)) {}
 
   void add(BearerToken secret) { secrets_.push_back(std::move(secret)); }
 
-  /// Plain text or CSV: wherever they stand.
+  /// For plain text or CSV: replaces secrets anywhere.
   void strike_from(std::string& text) const;
-  /// JSON, a stream of it, or Prometheus' text format: within the strings that are values.
+  /// For JSON, a stream of it, or Prometheus' text format: replaces secrets in strings that are values.
   void strike_from_strings(std::string& text) const;
-  /// HTML, where in_html() wrote what is text.
+  /// For HTML whose text was written by in_html().
   void strike_from_html(std::string& text) const;
 
  private:

@@ -6,9 +6,8 @@
 
 namespace adit::icd {
 
-/// What a function requires of its callers ("Requires" in its comment). Where it does not hold, the program
-/// ends, in every build: nobody has thought of what it would do next, and a restart loses nothing. Only for
-/// what is cheap to check.
+/// Asserts a precondition ("Requires" in a comment), in every build. If it fails, the program ends, because
+/// its further behaviour would be unknown and a restart loses nothing. Only for cheap checks.
 inline void require(bool holds, std::source_location where = std::source_location::current()) {
   if (holds) [[likely]]
     return;

@@ -12,7 +12,7 @@ class RobotName {
  public:
   static constexpr std::size_t kLongest = 10;
 
-  /// Nothing where `text` is no robot's name.
+  /// nullopt if `text` is no robot's name.
   static std::optional<RobotName> parse(std::string_view text);
 
   const std::string& text() const { return text_; }

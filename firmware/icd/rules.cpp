@@ -16,7 +16,7 @@ Checked<void> check_side(const char* path, std::uint32_t cells) {
   return unprocessable(path, ": expected a whole number from 1 to ", kMostCellsASide, ", got ", cells);
 }
 
-/// ICD 6.3.2: where a field lies in its point.
+/// ICD 6.3.2: a field lies within its point.
 Checked<void> check_place(const FieldSchema& field, std::size_t index, std::uint32_t point_step) {
   if (field.count < 1) return unprocessable("msg.fields[", index, "].count: expected at least 1, got 0");
   const std::size_t size = size_of(field.datatype);
@@ -26,7 +26,7 @@ Checked<void> check_place(const FieldSchema& field, std::size_t index, std::uint
                        point_step, ", got ", field.offset, " + ", size, " x ", field.count, " = ", end);
 }
 
-/// The index of the one field of that name.
+/// The index of the only field with that name.
 Checked<std::size_t> find_once(const std::vector<FieldSchema>& fields, std::string_view name) {
   const auto count = std::ranges::count(fields, name, &FieldSchema::name);
   if (count == 1) {
@@ -36,7 +36,7 @@ Checked<std::size_t> find_once(const std::vector<FieldSchema>& fields, std::stri
   return unprocessable("msg.fields: expected one field ", in_quotes(name), ", got ", count);
 }
 
-/// What kills a server, or makes it drop the cloud: x, y, z not there once each, or not of one float type.
+/// Clouds that crash a server, or that it drops: x, y, z not once each, or not of one float type.
 Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
   static constexpr std::array<std::string_view, 3> kCoordinates = {"x", "y", "z"};
   Datatype datatype{};
@@ -65,9 +65,9 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
 }  // namespace
 
 Checked<void> check(const OccupancyGrid& grid, const Rules& rules) {
-  using Float = std::numeric_limits<float>;                   // as ROS has it
-  constexpr double kBecomesZero = Float::denorm_min() / 2.0;  // as what is halfway goes to the even one
-  if (!(grid.resolution > kBecomesZero && grid.resolution <= Float::max())) {  // NaN is neither
+  using Float = std::numeric_limits<float>;                   // as in ROS
+  constexpr double kBecomesZero = Float::denorm_min() / 2.0;  // halfway is rounded to even, to 0
+  if (!(grid.resolution > kBecomesZero && grid.resolution <= Float::max())) {  // false for NaN
     return unprocessable("msg.info.resolution: expected a finite float32 above 0, got ", grid.resolution);
   }
   if (auto checked = check_side("msg.info.width", grid.width); !checked) return checked;

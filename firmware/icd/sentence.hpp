@@ -9,13 +9,13 @@
 
 namespace adit::icd {
 
-/// A number as a sentence shows it: in the fewest digits that say which double it is.
+/// A number in the fewest digits that identify the double.
 std::string number_text(double number);
 
-/// The same, and never as a whole number: with ".0" where there would be neither point nor exponent.
+/// The same with ".0" if there would be neither point nor exponent, so that it never reads as a whole number.
 std::string real_text(double number);
 
-/// What a sender wrote, for a sentence: in quotation marks, on one line, at most 40 bytes of it.
+/// A sender's text for a sentence: in quotation marks, on one line, cut after 40 bytes.
 std::string in_quotes(std::string_view text);
 
 inline void append_part(std::string& sentence, std::string_view part) {
@@ -28,7 +28,7 @@ inline void append_part(std::string& sentence, double part) {
   sentence += number_text(part);
 }
 
-/// Its parts, strings and numbers, one after the other.
+/// Joins strings and numbers.
 template <class... Parts>
 std::string sentence(const Parts&... parts) {
   std::string whole;
@@ -36,12 +36,12 @@ std::string sentence(const Parts&... parts) {
   return whole;
 }
 
-/// 422 (ICD 4.1) with that sentence.
+/// 422 (ICD 4.1) with a sentence of these parts.
 template <class... Parts>
 std::unexpected<Refusal> unprocessable(const Parts&... parts) {
   return std::unexpected(Refusal{Status::UnprocessableEntity, sentence(parts...)});
 }
-/// The same, if the setting `key` can prevent it: a literal.
+/// The same. The setting `key`, a literal, can prevent this refusal.
 template <class... Parts>
 std::unexpected<Refusal> unprocessable_by_setting(std::string_view key, const Parts&... parts) {
   return std::unexpected(

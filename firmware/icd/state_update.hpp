@@ -14,7 +14,7 @@ struct NamedPose {
   friend bool operator==(const NamedPose&, const NamedPose&) = default;
 };
 
-/// The body of POST /state/update (ICD 6.5). No name stands in `poses` twice.
+/// The body of POST /state/update (ICD 6.5). Each name is in `poses` at most once.
 struct StateUpdate {
   Header header;
   std::vector<NamedPose> poses;

@@ -8,7 +8,7 @@
 
 namespace adit::icd {
 
-/// HTTP status codes: those of the ICD's section 4.1, and the few that HTTP (RFC 9110) needs beside them.
+/// HTTP status codes: those of the ICD's section 4.1, and some more of HTTP (RFC 9110).
 enum class Status : std::uint16_t {
   Ok = 200,
   Created = 201,
@@ -30,14 +30,13 @@ enum class Status : std::uint16_t {
   GatewayTimeout = 504,
 };
 
-/// Why a message was not taken: the status its sender gets, and a sentence that names the field by its path,
-/// says what was expected and what was found ("msg.info.width: expected a whole number, got a string").
+/// Why a message is rejected: the status for the sender, and a sentence. The sentence names the field by its
+/// path, the expected and the actual value ("msg.info.width: expected a whole number, got a string").
 struct Refusal {
   Status status = Status::UnprocessableEntity;
   std::string sentence;
-  std::size_t parts = 0;  // of a state or of markers, that it is about; 0: it is about a message
-  /// The key of the setting that can prevent this refusal ("rules.map_bytes"); "": no setting can. Not owned:
-  /// a literal.
+  std::size_t parts = 0;  // number of rejected poses or markers; 0: it is about the message
+  /// The key of the setting that can prevent this refusal ("rules.map_bytes"), a literal; "": there is none.
   std::string_view setting = {};
   friend bool operator==(const Refusal&, const Refusal&) = default;
 };

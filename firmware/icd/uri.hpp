@@ -18,7 +18,7 @@ std::string_view path_of(Uri uri);
 /// "GET" for Status, "POST" for the others.
 std::string_view method_of(Uri uri);
 
-/// Which function a request's path names; trailing slashes are tolerated.
+/// The function that a request's path names. Trailing slashes are ignored.
 std::optional<Uri> uri_of(std::string_view path);
 
 }  // namespace adit::icd

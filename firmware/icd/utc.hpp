@@ -4,8 +4,8 @@
 
 namespace adit::icd {
 
-/// "2026-11-23 04:05:06", of seconds since 1970, in UTC, cut off to whole ones; "" where that is no date of
-/// the years 1970 to 5138, and for 0.
+/// Seconds since 1970 as "2026-11-23 04:05:06" in UTC, without fractions. "" for 0, negative values, values
+/// above 1e11 (the year 5138) and NaN.
 std::string utc(double seconds);
 
 }  // namespace adit::icd

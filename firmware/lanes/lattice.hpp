@@ -30,7 +30,7 @@ inline Cells around(const Cells& a, const Cells& b) {
   return {x, y, std::max(a.right(), b.right()) - x, std::max(a.top(), b.top()) - y};
 }
 
-/// The intersection. Requires that they overlap.
+/// The intersection of two rectangles that overlap.
 inline Cells common(const Cells& a, const Cells& b) {
   const std::int64_t x = std::max(a.x, b.x), y = std::max(a.y, b.y);
   return {x, y, std::min(a.right(), b.right()) - x, std::min(a.top(), b.top()) - y};

@@ -65,7 +65,7 @@ class MapLane {
   void a_message_holds(const PointsAt& points) { holds_ = points; }
 
   /// Adds a map. Returns the numbers of the updates whose maps it replaced; the map stands for them from now
-  /// on. Requires a number that was not used before.
+  /// on. A number is used once.
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
 
   /// Adds a map that was queued before a restart; call in the order of the numbers. It replaces no other map,

@@ -79,7 +79,7 @@ class MarkerChanges {
   using Places = std::map<Key, Place, ByKey>;
 
   std::size_t bytes_at(const Key& key) const;
-  /// Requires a marker that is not in places_; `next`: the first key there that follows.
+  /// `marker` is not in places_; `next`: the first key there that follows.
   void insert(Place place, icd::Marker&& marker, Places::const_iterator next);
   void insert(Place place, icd::Marker&& marker) {
     const auto next = places_.lower_bound(marker);

@@ -45,7 +45,7 @@ class StateLane {
   /// The newest poses of all robots that go together, or of one robot that goes apart. Nothing if there is no
   /// news. Without `now`, robots that rest are included.
   std::optional<WaitingState> take(Instant now = Instant::max());
-  /// Drops robots without news, because another Command Post knows no robot. Requires that no state is in
+  /// Drops robots without news, because another Command Post knows no robot. Call while no state is in
   /// flight.
   void forget_what_was_taken();
   /// Another run has begun. Queued poses are sent once, because they were posted before it; accepted poses
@@ -59,7 +59,7 @@ class StateLane {
   void passed(const WaitingState& state);
   /// Drops a robot's own state. Its next state rests for kRest.
   void give_up(const icd::RobotName& name, Instant now);
-  /// Requires a robot of a state that take() gave.
+  /// `name`: of a state that take() gave.
   Trial& trial_of(const icd::RobotName& name) { return robots_.at(name).trial; }
 
   /// The newest pose of each robot that has news.

@@ -9,7 +9,7 @@ namespace {
 /// Bounds the work. A try costs at most the square of the number of grids.
 constexpr std::size_t kMostTries = 64;
 
-/// Whether `tiles` fill the row of cells at `y` without a gap. Requires tiles within `all`, sorted by x.
+/// Whether `tiles`, which lie within `all` and are sorted by x, fill the row of cells at `y` without a gap.
 bool fill_row(const Cells& all, const std::vector<Cells>& tiles, std::int64_t y) {
   std::int64_t filled = all.x;
   for (const Cells& tile : tiles) {

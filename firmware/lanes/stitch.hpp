@@ -37,7 +37,7 @@ using Known = std::function<bool(const Cells& all, std::span<const Cells> grids)
 /// cell is sent after a newer one.
 Stitch stitch(std::span<const Cells> grids, const Known& known = {});
 
-/// Whether `tiles` fill `all` without a gap. Requires tiles within `all`.
+/// Whether `tiles`, which lie within `all`, fill it without a gap.
 bool fill(const Cells& all, std::vector<Cells> tiles);
 
 /// The stitched grid without its data: it has the header of the newest one, and its origin on their lattice.

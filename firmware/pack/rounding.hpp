@@ -19,7 +19,7 @@ namespace adit::pack {
 /// - the cloud is big-endian, because a server may object to an origin then
 /// - two fields share bytes, or there are no points
 ///
-/// Requires finite points (without_invalid_points).
+/// All points are finite (without_invalid_points()).
 bool round_to(double unit, Arranged& arranged);
 
 }  // namespace adit::pack

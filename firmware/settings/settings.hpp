@@ -166,10 +166,10 @@ std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 /// robot's alias is in the rules. Requires names of robots that RobotName takes, as parse() sees to it.
 Settings in_use(Settings settings);
 
-/// A robot's name for the ICD. Requires a name that parse() accepts.
+/// A robot's name for the ICD; parse() accepts no other names.
 icd::RobotName name_of(const Robot& robot);
 
-/// A setting of each robot that does not have its default. Requires names that parse() accepts.
+/// A setting of each robot that does not have its default.
 template <class Setting>
 std::map<icd::RobotName, Setting> by_robot(const std::vector<Robot>& robots, Setting Robot::* setting) {
   std::map<icd::RobotName, Setting> all;

@@ -69,6 +69,7 @@ Result<Outcome> complete_reports(const Call& call) {
 Result<Outcome> complete_rejected(const Call& call) {
   return listed<api::RunView>(call, "/adit/run", [](const api::RunView& view) {
     std::vector<Candidate> all;
+    all.reserve(view.rejected.size());
     for (const api::RejectedRow& row : view.rejected)
       all.push_back({std::to_string(row.number), row.kind + (row.robot.empty() ? "" : " of " + row.robot)});
     return all;
@@ -89,6 +90,7 @@ Result<Outcome> complete_courses(const Call& call) {
 Result<Outcome> complete_runs(const Call& call) {
   return listed<api::RunList>(call, "/adit/runs", [](const api::RunList& list) {
     std::vector<Candidate> all;
+    all.reserve(list.runs.size());
     for (const api::RunRow& run : list.runs)
       all.push_back({run.key, run.is_present ? "the present run" : api::iso_time(run.began)});
     return all;
@@ -99,6 +101,7 @@ Result<Outcome> complete_runs(const Call& call) {
 Result<Outcome> complete_keys(const Options& options, const Console& /*console*/) {
   const auto rows = api::key_rows();
   std::vector<Candidate> all;
+  all.reserve(rows.size());
   for (const api::KeyRow& key : rows)
     all.push_back({key.path, key.meaning.substr(0, key.meaning.find_first_of(".:;"))});
   return Outcome{Exit::Fine, options.json ? codec::to_json(rows) + '\n' : lines(all), ""};

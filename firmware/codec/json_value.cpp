@@ -172,10 +172,9 @@ bool reals_in(std::string_view object, std::span<const std::string_view> names, 
   };
   for (std::size_t i = 0; i < names.size(); ++i) {
     if (!takes(i == 0 ? "{\"" : ",\"") || !takes(names[i]) || !takes("\":")) return false;
-    const char* const end = object.data() + object.size();
-    const auto [after, error] = std::from_chars(object.data(), end, into[i]);
+    const auto [after, error] = std::from_chars(object.begin(), object.end(), into[i]);
     if (error != std::errc()) return false;
-    object = {after, end};
+    object = {after, object.end()};
   }
   return object == "}";
 }

@@ -15,7 +15,7 @@ constexpr bool kRequired = true;
 constexpr std::uint64_t kMiB = 1u << 20;
 constexpr std::string_view kReviews[] = {"off", "duplicates", "all"};  // as dispatch::Review
 
-const Key kKeys[] = {
+constexpr Key kKeys[] = {
     {"version", "The layout of this file.", Kind(), kRequired},
 
     {"command_post.scoring.address", "The scoring endpoint, as posted in the Base Station area (ICD 3).",

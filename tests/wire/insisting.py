@@ -74,16 +74,23 @@ class Client(threading.Thread):
 class Operator:
     """Of a stage: looks at what the Command Post shows as recorded, and judges by that what waits for him."""
 
-    def __init__(self, stage):
-        self.stage, self.judged = stage, {}  # the action by the report's number
+    def __init__(self, stage, looks_after=DOUBTED):
+        self.stage, self.looks_after = stage, looks_after
+        self.judged = {}  # the action by the report's number
+        self.doubted = {}  # by the number and time of each doubt: when it was first seen, by this machine's clock
 
     def waiting(self):
-        """Those held, and those in doubt of which nothing was found out for a while, by their numbers."""
+        """The held reports, and those that have been in doubt for a while, by their numbers. The box's clock may be ahead of this
+        machine's: it never goes back over a power cut."""
+        now = time.monotonic()
         return {
             row["number"]: row
             for row in self.stage.box.reports()
-            if row["state"] == "held" or (row["state"] == "in_doubt" and time.time() - row["changed"] > DOUBTED)
+            if row["state"] == "held" or (row["state"] == "in_doubt" and now - self.seen(row, now) > self.looks_after)
         }
+
+    def seen(self, row, now):
+        return self.doubted.setdefault((row["number"], row["changed"]), now)
 
     def looks(self):
         waiting = self.waiting()

@@ -1,5 +1,6 @@
 """The operator of these tests, against a box that finds something out between his look and his word."""
 
+import time
 import types
 import unittest
 
@@ -24,7 +25,16 @@ class Box:
 class TheOperator(unittest.TestCase):
     def operator(self, *box):
         post = types.SimpleNamespace(recorded=lambda: [{"x": 1.0, "y": 2.0}])
-        return Operator(types.SimpleNamespace(box=Box(*box), post=post))
+        return Operator(types.SimpleNamespace(box=Box(*box), post=post), looks_after=-1)
+
+    def test_waits_by_his_own_clock(self):
+        """That of a box which has lost its power a hundred times is minutes ahead."""
+        box = Box({}, (409, "no"))
+        box.row["changed"] = time.time() + 3600
+        operator = Operator(types.SimpleNamespace(box=box), looks_after=0.05)
+        self.assertEqual(operator.waiting(), {})
+        time.sleep(0.1)
+        self.assertEqual(list(operator.waiting()), [1])
 
     def test_takes_it_that_the_box_found_out_first(self):
         for then in ({"state": "settled", "changed": 12.0}, {"changed": 12.0}):  # and in doubt again

@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "codec/row_file.hpp"
+
 namespace adit::fuzz {
 
 /// Anybody's bytes.
@@ -54,10 +56,10 @@ void settles(Input text, Read read, Write write) {
   require(again.has_value() && write(*again) == written);
 }
 
-/// The same of messages that their room's write() writes.
+/// The same of a row file (codec/row_file.hpp).
 template <class Message>
 void settles(Input text, std::expected<Message, std::string> (*read)(std::string_view)) {
-  settles(text, read, [](const Message& message) { return write(message); });
+  settles(text, read, [](const Message& message) { return codec::write_file(message); });
 }
 
 }  // namespace adit::fuzz

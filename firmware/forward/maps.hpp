@@ -208,6 +208,7 @@ class Maps {
   std::set<std::uint64_t> unread_;  // numbers of maps whose data is still to be checked
   lanes::Blame blame_;
   bool stopping_ = false;
+  bool are_grids_told_ = true;  // the journal has where grids are posted
 };
 
 }  // namespace adit::forward

@@ -15,13 +15,21 @@ void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
     const auto told =
         ran_before ? journal_.grids_posted(lanes::Canvases::kAnyName, everywhere) : journal_.grids_begin();
     if (ran_before || !told) posted[lanes::Canvases::kAnyName] = everywhere;
+    are_grids_told_ = told.has_value();
   }
   lane_.canvases().carry_on(std::move(posted));
 }
 
-/// So that a life to come knows where nothing can have been sent. False: there is no room for it.
+/// Records where grids are posted, so that a later process knows which cells cannot have been sent. False:
+/// the journal cannot record it. The grid must not be accepted then: if the journal could not be read at the
+/// start, the next process reads it as the process before left it.
 bool Maps::is_told(const icd::MapUpdate& update) {
   if (!update.is_grid()) return true;
+  if (!are_grids_told_) {
+    const auto everywhere = lanes::Extent::everywhere();
+    are_grids_told_ = journal_.grids_posted(lanes::Canvases::kAnyName, everywhere).has_value();
+    if (!are_grids_told_) return false;
+  }
   const auto grows = lane_.canvases().grows(update);
   if (!grows) return true;
   if (!journal_.grids_posted(grows->first, grows->second)) return false;

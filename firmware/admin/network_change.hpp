@@ -46,8 +46,8 @@ class NetworkChange final : public api::Network {
   alarms::NetworkFact fact() const;
 
  private:
-  /// Reads the watch's file if what is known of it is old. If the file cannot be read, the addresses that
-  /// were read last stay, for network::kTakenFor.
+  /// Reads the watch's file if the last reading is old. If the file cannot be read, the last known addresses
+  /// stay for network::kTakenFor.
   void read_taken() const;
   void lead_to_endpoints();
   std::optional<alarms::ExchangedAddress> exchanged() const;

@@ -52,8 +52,8 @@ bool explains(const Condition& cause, const Condition& other) {
   return cause.id == "cable_out:team" && is_robots_silence(other);
 }
 
-/// Takes out what follows from a larger cause that is there, too, and counts it there. The cable before the
-/// endpoint, the endpoint before the maps and robots.
+/// Removes each cause that follows from a larger one, and adds its count to the larger one. Order: the cable,
+/// the endpoints, maps and robots.
 void hide_consequences(Found& found) {
   // Larger causes come first in the list, so that each is counted where nothing larger hides it.
   for (std::size_t i = 0; i < found.size(); ++i) {

@@ -13,9 +13,9 @@ bool takes_gzip(std::string_view accept_encoding);
 /// Whether an answer's body is under gzip already.
 bool is_packed(const intake::Answer& answer);
 
-/// Puts an answer's body under gzip where that pays: text and JSON of some kB up to 1 MiB, for it is done on
-/// the loop (2 ms for each 256 KiB on a desk machine). What has an ETag stays as it is, for that names these
-/// bytes.
+/// Compresses an answer's body with gzip if that pays: text and JSON of some kB up to 1 MiB. The limit exists
+/// because the loop does it (2 ms for each 256 KiB on a desk machine). A body with an ETag stays unchanged,
+/// because the ETag names its bytes.
 void pack_if_it_pays(intake::Answer& answer);
 
 }  // namespace adit::api

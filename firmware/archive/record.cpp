@@ -21,7 +21,7 @@ std::uint32_t checksum_of(std::string_view body) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(body.data()), body.size()));
 }
 
-/// What is said of the record at the begin of `bytes`; empty where it is damaged.
+/// The body of the record at the beginning of `bytes`; empty if the record is damaged.
 std::string_view body_at_begin(std::string_view bytes) {
   if (bytes.size() <= kHead) return {};
   const std::uint64_t length = number_at(bytes, 4, 4);

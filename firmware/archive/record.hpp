@@ -14,9 +14,9 @@ inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 /// bytes each and little-endian, and what it says (said.hpp), which is not empty.
 std::string framed(std::string_view said);
 
-/// Tells what the whole records in `bytes` say, in order. What is damaged is passed over up to the next whole
-/// record; in a file that is damaged all over, the rest is. Returns the number of damaged records: not of
-/// torn ones, which a death leaves.
+/// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the
+/// next complete record, or to the end. Returns the number of damaged records, without a torn one that a
+/// killed process leaves.
 std::size_t for_each_record(std::string_view bytes, const std::function<void(std::string_view)>& told);
 
 }  // namespace adit::archive

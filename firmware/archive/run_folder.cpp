@@ -105,7 +105,7 @@ RunFolder::RunFolder(std::string path, const Head& head)
       lines_(path_, kLines, record_of(head)) {}
 
 std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& batch, std::uint64_t most) {
-  if (const auto disk = host::disk_of(path_)) {  // else the write says what is wrong
+  if (const auto disk = host::disk_of(path_)) {  // if not, the write fails with the reason
     if (disk->free < std::min(kLeave, disk->all / 4)) return std::unexpected("the disk is nearly full");
     most = std::min(most, (disk->free + bytes()) / 2);
   }

@@ -108,7 +108,7 @@ bool lies_within(double from, double to, double most) {
   return -most <= from && from <= to && to <= most;
 }
 
-/// Whether what was read lies within the world, and within time.
+/// Whether the values that were read are within their limits.
 bool is_good(const picture::Layer& layer) {
   return layer.kind <= picture::Kind::Cloud;
 }

@@ -58,7 +58,7 @@ struct Sample {
 /// The time of day was set: all that such files told before is of so many seconds later.
 struct Step {
   double seconds = 0;  // ahead; less than 0: back
-  double when = 0;     // by a clock that nobody sets: a step that is told twice is one
+  double when = 0;     // by a clock that is never set; identifies a step that is recorded twice
   bool operator==(const Step&) const = default;
 };
 

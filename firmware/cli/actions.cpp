@@ -21,7 +21,7 @@ struct BegunRun {
 };
 constexpr codec::Member kBegun[] = {codec::member<&BegunRun::run>("run")};
 
-/// What was done to a report, by the subcommand.
+/// The end of the sentence "report 5 is queued", by the subcommand.
 struct Decision {
   std::string_view verb;
   const char* done;

@@ -17,7 +17,7 @@ namespace adit::cli {
 inline constexpr const char* kGivenSettings = "/etc/adit/settings.json";
 inline constexpr const char* kSavedSettings = "/var/lib/adit/settings.json";
 
-/// What a test is to try instead of what is in use; "": nothing.
+/// The values that a test tries instead of the present settings; "": the present one.
 struct Trial {
   std::string course;
   std::optional<settings::Address> scoring, mapping;

@@ -19,8 +19,8 @@ constexpr const char* kSpare = "/adit/spare";
 constexpr const char* kSeeSpare = "adit spare";
 constexpr std::chrono::seconds kFile{60};
 
-/// Until what is under way is answered, and the box is up again. The stick may be slow, and another may have
-/// its turn before.
+/// Until the present requests are answered and the box is up again. The stick may be slow, and another
+/// request may go first.
 Waiting for_box(std::chrono::seconds within) {
   return {.within = within,
           .every = std::chrono::milliseconds(300),

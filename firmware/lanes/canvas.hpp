@@ -44,8 +44,8 @@ class Canvas {
   Ground under(const Cells& cells) const;
   /// Marks cells that are being sent as unknown, until lay(). Requires at most kMostTouched tiles.
   void forget(const Cells& cells);
-  /// Sets what was drawn over under(). `when`: the number of this lay(), a count. Tiles that were forgotten
-  /// since then stay unknown.
+  /// Sets the cells that were drawn over under(). `when`: the number of this lay(), a count. Tiles that were
+  /// forgotten since then stay unknown.
   void lay(const Ground& drawn, std::uint64_t when) noexcept;
 
   std::size_t tiles() const { return tiles_.size(); }

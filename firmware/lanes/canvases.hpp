@@ -65,7 +65,7 @@ class Canvases {
   void lay(const std::optional<icd::RobotName>& name, const Ground& drawn);
 
  private:
-  /// What was sent to one Command Post.
+  /// The grids that were sent to one Command Post.
   struct Sent {
     Posted all;           // what its present map may have
     Posted newer, older;  // sent since the last status of the present run; between that and the one before

@@ -68,6 +68,8 @@ void OpenReports::add(const Event& event) {
   }
   if (event.kind == Kind::Left) {
     sent_[event.request] = event.serial;
+    // The same report goes again to another course, although the first one answered it.
+    open_.insert(event.serial);
     doubts_.insert(event.serial);
     doubts_.erase(kUnknown);
   }

@@ -17,9 +17,11 @@
 namespace adit::applier {
 namespace {
 
-/// "" where it cannot be read.
-std::string text_of(const std::string& path) {
-  return host::read_file(path).value_or("");
+/// "" if the file is absent.
+std::expected<std::string, std::string> text_of(const std::string& path) {
+  auto text = host::read_if_there(path);
+  if (!text) return std::unexpected(std::move(text).error());
+  return std::move(*text).value_or("");
 }
 
 }  // namespace
@@ -96,10 +98,14 @@ void NetworkdFiles::use_factory() {
   }
 }
 
-/// Where they cannot be read, aditd tells them again.
+/// If they cannot be read, aditd tells them again.
 void NetworkdFiles::read_endpoints() {
-  const auto endpoints = codec::read_file<network::Endpoints>(text_of(endpoints_file()));
-  endpoints_ = endpoints.value_or(network::Endpoints{});
+  const auto endpoints = host::read_row<network::Endpoints>(endpoints_file());
+  if (!endpoints) {
+    host::log(host::Level::Error, "cannot read the Command Post's endpoints: no routes until aditd runs",
+              {{"why", endpoints.error()}});
+  }
+  endpoints_ = endpoints && *endpoints ? **endpoints : network::Endpoints{};
 }
 
 std::expected<void, std::string> NetworkdFiles::write(Then then) {
@@ -124,7 +130,9 @@ std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why
 std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& numbers) {
   std::vector<Place> changes;
   for (Place& place : places(numbers)) {
-    if (in_use_of(place) != place.text) changes.push_back(std::move(place));
+    const auto in_use = in_use_of(place);
+    if (!in_use) return std::unexpected(in_use.error());
+    if (*in_use != place.text) changes.push_back(std::move(place));
   }
   for (const Place& place : changes) {
     if (auto unused = check_unused(place); !unused) return unused;
@@ -136,9 +144,9 @@ std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& nu
   return reload_.run();
 }
 
-std::string NetworkdFiles::in_use_of(const Place& place) {
-  const std::string tried = text_of(place.tried);
-  return tried.empty() ? text_of(place.kept) : tried;
+std::expected<std::string, std::string> NetworkdFiles::in_use_of(const Place& place) {
+  auto tried = text_of(place.tried);
+  return tried && tried->empty() ? text_of(place.kept) : tried;
 }
 
 /// An interface that is down, or not there yet, has nobody to ask.
@@ -206,7 +214,9 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
   }
   const auto& in_use = tried_ ? tried_ : kept_;
   for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
-    if (in_use_of(place) == place.text) continue;
+    const auto used = in_use_of(place);
+    if (!used) return std::unexpected(used.error());
+    if (*used == place.text) continue;
     if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
   }
   return reload_.run();
@@ -214,7 +224,7 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
 
 std::expected<void, std::string> NetworkdFiles::write_kept(const network::Numbers& numbers, Then then) {
   for (const Place& place : places(numbers)) {
-    if (text_of(place.kept) == place.text) continue;
+    if (const auto text = text_of(place.kept); text && *text == place.text) continue;
     if (auto written = put(place.kept, place.text, then); !written) return written;
   }
   return {};

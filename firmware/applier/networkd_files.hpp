@@ -63,8 +63,8 @@ class NetworkdFiles final : public network::Hands {
   std::expected<void, std::string> set_aside(const std::string& why);
   std::expected<void, std::string> write_kept(const network::Numbers& numbers, Then then);
   std::expected<void, std::string> put(const std::string& file, const std::string& text, Then then);
-  /// What networkd goes by; "": nothing.
-  static std::string in_use_of(const Place& place);
+  /// The text that networkd uses for an interface; "" if there is none.
+  static std::expected<std::string, std::string> in_use_of(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
   /// Whether any was there.
   std::expected<bool, std::string> remove_tried(Then then);

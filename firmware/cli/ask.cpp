@@ -17,9 +17,9 @@ std::string given(const std::string& option, const char* variable) {
   return option.empty() && value != nullptr ? value : option;
 }
 
-std::expected<settings::Address, std::string> address_in(const std::string& file) {
+std::expected<settings::Address, std::string> address_in(const std::string& file, const std::string& advice) {
   const auto text = host::read_file(file);
-  if (!text) return std::unexpected(text.error() + "; give Adit's address by --at ADDR[:PORT]");
+  if (!text) return std::unexpected(text.error() + "; " + advice + "give Adit's address by --at ADDR[:PORT]");
   const auto settings = settings::parse(*text);
   if (!settings) {
     return std::unexpected(file + ": " + settings.error().front().sentence() + " (see adit check)");
@@ -35,8 +35,9 @@ std::expected<settings::Address, std::string> address_of(const Options& options)
     if (!address) return std::unexpected((options.at.empty() ? "ADIT_AT: " : "--at: ") + address.error());
     return address;
   }
-  const bool saved = !file_named && host::read_file(options.saved_settings);
-  return address_in(saved ? options.saved_settings : options.settings);
+  const bool is_saved = !file_named && host::may_exist(options.saved_settings);
+  return is_saved ? address_in(options.saved_settings, "run adit as root, or ")
+                  : address_in(options.settings, "");
 }
 
 /// For an answer that is not 200.

@@ -126,6 +126,19 @@ TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
   EXPECT_TRUE(watchful.apply(first));
 }
 
+TEST_F(NetworkdFilesTest, RefuseAChangeIfTheFileInUseCannotBeRead) {
+  ASSERT_TRUE(files->settle());
+  ASSERT_TRUE(files->apply(first));
+  ASSERT_TRUE(files->keep(first));
+  const std::string tried = options.networkd + "/04-adit-team.network";
+  fs::remove(tried);
+  fs::create_directory(tried);
+  const auto applied = files->apply(first);
+  ASSERT_FALSE(applied) << "networkd may use other addresses than these";
+  EXPECT_THAT(applied.error(), HasSubstr(tried));
+  EXPECT_FALSE(files->lead_to({.addresses = {1}}));
+}
+
 TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));

@@ -9,6 +9,7 @@
 #include "cli/say.hpp"
 #include "cli/status_text.hpp"
 #include "cli/view.hpp"
+#include "host/folder.hpp"
 
 namespace adit::cli {
 namespace {
@@ -112,6 +113,18 @@ TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
   options.settings = "/none.json";
   EXPECT_EQ(run(options, {}).exit, Exit::Unable) << "a file that is named is the one that is meant";
   std::filesystem::remove(saved);
+}
+
+TEST(Ask, NeedsTheSavedSettingsIfTheyAreThere) {
+  const TokenFile token;
+  const host::Folder folder;
+  Options options = status_of_a_box();
+  options.token_file = token.path();
+  options.saved_settings = folder / "settings.json";
+  std::filesystem::create_directory(options.saved_settings);
+  const Outcome outcome = run(options, {});
+  EXPECT_EQ(outcome.exit, Exit::Unable);
+  EXPECT_THAT(outcome.err, HasSubstr(options.saved_settings)) << "the given ones may name another address";
 }
 
 /// A variable of the environment, for the length of a test.

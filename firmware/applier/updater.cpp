@@ -97,7 +97,9 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   if (!file) return file.error();
   if (!status_.trouble.empty()) return status_.trouble;
   if (status_.trial) return update::wait_for_trial(status_.running.version);
-  if (const auto why = host::read_file(options_.hindrance)) return why->substr(0, why->find('\n'));
+  const auto hindrance = host::read_if_there(options_.hindrance);
+  if (!hindrance) return hindrance.error();
+  if (*hindrance) return (*hindrance)->substr(0, (*hindrance)->find('\n'));
   status_.doing = "checking";
   tell();
   const auto bundle = rauc_.info(file->path());

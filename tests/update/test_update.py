@@ -196,6 +196,10 @@ class AHindrance(OnABox):
         self.assertEqual(self.box.install(self.bundles.make())["refusal"], "2 disks hold an Adit: take one out")
         self.expect_untouched()
         hindrance.unlink()
+        hindrance.mkdir()  # it cannot be read
+        self.assertIn(str(hindrance), self.box.install(self.bundles.make())["refusal"])
+        self.expect_untouched()
+        hindrance.rmdir()
         self.assertEqual(self.box.install(self.bundles.make())["last"]["stage"], "installed")
 
 

@@ -1,6 +1,7 @@
 // The run that all reports belong to: when it is another one, and what that does to them.
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include "codec/read.hpp"
 #include "dispatch/report_verdict.hpp"
@@ -120,7 +121,7 @@ void Reports::meet(const icd::ReportReply& reply, Time time) {
   const Run* const before = account_.named_before();
   if (before == nullptr) return claim(reply.run, time);
   if (before->id == reply.run) return return_to(*before, time);
-  account_.is_another(time.stamp);
+  account_.is_not(before->number);
   clear_held(time);
 }
 
@@ -225,20 +226,24 @@ void Reports::take_up_run(const Run& known, const std::string& why, Time time) {
   doubt_began(time.now);
 }
 
-/// What was taken for a new run is `known` still: all that belongs to it is of that one, and what was held as
-/// a repeat of one of its reports is one.
+/// The present run is `known`, and so are the runs between the two: all their reports are of that run. What
+/// was held as a repeat of one of its reports is one.
 void Reports::return_to(const Run& known, Time time) {
   const std::int64_t number = known.number;
+  const auto maybe = account_.runs().maybe_present();
+  const std::set<std::int64_t> merged(maybe.begin(), std::ranges::find(maybe, number));
   std::vector<Report> steps;
   std::vector<std::pair<std::int64_t, std::int64_t>> joined;
   for (const auto& [each, report] : book_.all()) {
-    if (report.run != run().number) continue;
+    if (!merged.contains(report.run)) continue;
     Report& changed = steps.emplace_back(report);
     changed.run = number;
     changed.changed = time.stamp;
     if (report.state == ReportState::InDoubt) changed.before.reset();
     if (report.state == ReportState::Queued) unchecked_.insert(each);
     if (!is_held_as_repeat(report)) continue;
+    const std::int64_t its_run = book_.at(report.same_as).run;
+    if (its_run != number && !merged.contains(its_run)) continue;
     changed = joined_to(report.same_as, changed, time);
     joined.emplace_back(each, report.same_as);
   }

@@ -109,24 +109,28 @@ void RunAccount::take_up(std::int64_t number, std::span<const Report> steps, Tim
 }
 
 void RunAccount::merge_into(std::int64_t number, std::span<const Report> steps, Time time) {
-  const Run later = run();
-  runs_.take_up(number);
-  Run& present = runs_.present();
-  if (later.last) {
-    present.last = later.last;
-    present.status_clock = later.status_clock;
+  const auto numbers = runs_.maybe_present();  // from the latest to the earliest
+  Run merged = *runs_.find(number);
+  for (auto each = std::ranges::find(numbers, number); each != numbers.begin();) {
+    const Run& later = *runs_.find(*--each);
+    if (later.last) {
+      merged.last = later.last;
+      merged.status_clock = later.status_clock;
+    }
+    if (later.answer_clock) merged.answer_clock = later.answer_clock;
+    if (merged.unreliable.empty()) merged.unreliable = later.unreliable;
+    merged.heard = later.heard;
   }
-  if (later.answer_clock) present.answer_clock = later.answer_clock;
-  if (present.unreliable.empty()) present.unreliable = later.unreliable;
-  present.heard = later.heard;
+  runs_.take_up(number);
+  merged.turn = run().turn;
+  runs_.present() = std::move(merged);
   forget_counts();
-  book_.change(steps, present);
+  book_.change(steps, run());
   written_ = time.stamp;
 }
 
-void RunAccount::is_another(double stamp) {
-  runs_.present().may_be = 0;
-  write_down(stamp);
+void RunAccount::is_not(std::int64_t number) {
+  book_.write(runs_.is_not(number));
 }
 
 void RunAccount::forget_counts() {

@@ -52,7 +52,7 @@ class RunAccount {
   const Run* of_team(const std::string& team) const;
   /// A run of that name here, from before one of another name.
   const Run* of_name(const std::string& id) const;
-  /// The first run that has a name, of those that the present one may be.
+  /// Of the runs that the present one may be, the latest that has a name.
   const Run* named_before() const;
 
   /// Another run begins, at the place that the settings name, with this status if one was heard; what that
@@ -63,11 +63,11 @@ class RunAccount {
   std::int64_t announce(const std::string& why, const std::string& post, Time time);
   /// An earlier one is the present one again.
   void take_up(std::int64_t number, std::span<const Report> steps, Time time);
-  /// The present one is one that it may be: that one is the present one again, with all that is known of
-  /// both.
+  /// The present run is `number`, which it may be, and so are the runs between them. `number` becomes the
+  /// present run, with what is known of all of them.
   void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
-  /// The present one is another than the one before, for certain.
-  void is_another(double stamp);
+  /// The present run is not `number`, for certain. It may still be a run between the two.
+  void is_not(std::int64_t number);
 
   /// A status of this run.
   void heard(const icd::RunStatus& status, Time time);

@@ -56,14 +56,26 @@ bool Runs::is_at(std::int64_t number, const std::string& post) const {
   return run == nullptr || run->post.empty() || run->post == post;
 }
 
-bool Runs::may_be_present(std::int64_t number) const {
-  // Each is of an earlier number than the one that it may be.
-  const Run* run = &present();
-  while (run != nullptr && run->may_be != 0 && run->may_be < run->number) {
-    if (run->may_be == number) return true;
-    run = find(run->may_be);
+std::vector<std::int64_t> Runs::maybe_present() const {
+  std::vector<std::int64_t> numbers;
+  // A run has a lower number than one that may be it.
+  for (const Run* run = &present(); run != nullptr;) {
+    numbers.push_back(run->number);
+    run = run->may_be != 0 && run->may_be < run->number ? find(run->may_be) : nullptr;
   }
-  return false;
+  return numbers;
+}
+
+bool Runs::may_be_present(std::int64_t number) const {
+  const auto numbers = maybe_present();
+  return number != present_ && std::ranges::find(numbers, number) != numbers.end();
+}
+
+const Run& Runs::is_not(std::int64_t number) {
+  Run* later = &present();
+  while (later->may_be != number) later = &runs_.at(later->may_be);
+  later->may_be = 0;
+  return *later;
 }
 
 }  // namespace adit::dispatch

@@ -38,8 +38,12 @@ class Runs {
   bool is_at(std::int64_t number, const std::string& post) const;
   /// It is at the present run's Command Post.
   bool is_here(std::int64_t number) const { return is_at(number, present().post); }
-  /// `number` is a run that the present one may still be, or one that that may be.
+  /// The present run, the run that it may still be, the run that that one may be, and so on.
+  std::vector<std::int64_t> maybe_present() const;
+  /// `number` is one of maybe_present(), but not the present run.
   bool may_be_present(std::int64_t number) const;
+  /// The present run is not `number`, which may_be_present(). Returns the run in which another run began.
+  const Run& is_not(std::int64_t number);
 
  private:
   std::int64_t next_turn() const;

@@ -122,6 +122,40 @@ TEST_F(OnlyTheClock, LetsItGoOnceAnAnswerNamesAnotherRun) {
   EXPECT_EQ(scene_.send_next(), 2);
 }
 
+/// The clock goes back twice, and a report is found recorded in between.
+class OnlyTheClockTwice : public OnlyTheClock {
+ protected:
+  OnlyTheClockTwice() {
+    scene_.post(2);
+    scene_.lose();
+    for (int i = 0; i < 15; ++i) {
+      scene_.wait(1);
+      scene_.hear(18, 0, 4 + i);
+    }
+    scene_.hear(18, 0, 3);
+  }
+};
+
+TEST_F(OnlyTheClockTwice, IsOneRunIfAnAnswerNamesTheFirst) {
+  ASSERT_EQ(scene_.state(2), Settled);
+  ASSERT_EQ(scene_.reports().run().number, 3);
+  scene_.record(3, "1");
+  EXPECT_EQ(scene_.reports().run().number, 1);
+  for (const std::int64_t number : {1, 2, 3}) EXPECT_EQ(scene_.report(number).run, 1) << number;
+  EXPECT_EQ(scene_.reports().run().last->remaining_reports, 18);
+}
+
+TEST_F(OnlyTheClockTwice, MayStillBeTheSecondIfAnAnswerNamesAnother) {
+  scene_.post(2);
+  scene_.post(1);
+  scene_.record(3, "2");
+  EXPECT_EQ(scene_.send_next(), 4) << "it is not the first run";
+  scene_.answer(answer_of(201));
+  EXPECT_EQ(scene_.send_next(), 0);
+  EXPECT_EQ(scene_.state(3), Held) << "it may have been recorded in this run";
+  EXPECT_EQ(scene_.output().runs.at(2).may_be, 0) << "on disk";
+}
+
 TEST_F(OnlyTheClock, LetsItGoOnceMoreReportsAreLeft) {
   scene_.post(1);
   scene_.hear(25, 0, 4);

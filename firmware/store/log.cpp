@@ -17,7 +17,7 @@ constexpr std::size_t kPiece = 256u << 10;  // of zeros, written and synced at o
 /// Writes so many zeros to a new file and syncs them; the errno, else 0. A disk that has no room is not
 /// filled up first.
 int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
-  struct statvfs disk{};
+  struct statvfs disk {};
   if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size) return ENOSPC;
   const std::string zeros(std::min(size, kPiece), '\0');
   for (std::size_t at = 0; at < size; at += zeros.size()) {
@@ -172,9 +172,11 @@ Result<Log::File> Log::make_file(std::size_t size) const {
     made = make_zeros(directory_, file.name, size, false);
   }
   if (made) made = directory_.sync();
-  if (!made) return std::unexpected(made.error());
-  auto fd = directory_.open_to_write(file.name.text());
-  if (!fd) return std::unexpected(fd.error());
+  auto fd = made ? directory_.open_to_write(file.name.text()) : std::unexpected(made.error());
+  if (!fd) {
+    (void)directory_.remove(file.name.text());  // the next try makes another one
+    return std::unexpected(fd.error());
+  }
   file.fd = std::move(*fd);
   return file;
 }

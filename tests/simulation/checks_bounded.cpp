@@ -89,6 +89,8 @@ void bounded(const Evidence& evidence, Broken& broken) {
       looking.at("bytes of maps", reading.view.at("queued_bytes"), evidence.most_map_bytes);
   }
   if (evidence.readings.empty() || !nothing_waits(evidence.readings.back().view)) return;
+  // A start that cannot list the folder leaves unfinished files, and logs that.
+  if (std::ranges::any_of(evidence.events, is_in_runtime)) return;
   Looking(evidence.readings.back(), 0, broken).at_rest();
 }
 

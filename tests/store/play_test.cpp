@@ -186,5 +186,19 @@ TEST(PlayLog, KeepsInMemoryWhatItAcceptedThroughKillsAndFailures) {
   play(false);
 }
 
+TEST(TheLog, LeavesNoFileThatItCannotOpen) {
+  Disk disk(Random(1, "disk"));
+  disk.start();
+  const auto directory = Directory::lock(disk.log()).value();
+  const Keeping keeping{{512, 2}, 8192, true};
+  Log log(directory, keeping);
+  ASSERT_TRUE(log.start(Contents::read(directory, keeping).value()));
+  ASSERT_TRUE(log.append(kKind, "a", Durability::Now));
+  ASSERT_TRUE(make_spare(directory, keeping, false));
+  disk.failing_file = "log-";
+  ASSERT_FALSE(log.turn());
+  EXPECT_EQ(directory.files().value().size(), 1) << "the file with the record";
+}
+
 }  // namespace
 }  // namespace adit::store

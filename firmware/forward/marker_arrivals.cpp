@@ -71,7 +71,7 @@ bool MarkerArrivals::begin(Arrival& arrival) {
     make_record(arrival);
     return false;
   }
-  arrival.record = journal::said(*arrival.update);
+  arrival.record = store::bytes_of(arrival.update->markers);
   return keep(arrival);
 }
 
@@ -93,7 +93,7 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
 void MarkerArrivals::make_record(const Arrival& arrival) {
   const auto made = std::make_shared<std::string>();
   workers_.submit(
-      loop::Urgency::OnTheWay, [made, update = arrival.update] { *made = journal::said(*update); },
+      loop::Urgency::OnTheWay, [made, update = arrival.update] { *made = store::bytes_of(update->markers); },
       [this, made] {
         arrivals_.front().record = std::move(*made);
         go(&MarkerArrivals::keep);

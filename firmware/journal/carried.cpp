@@ -3,9 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "codec/body_decoder.hpp"
-#include "codec/read.hpp"
-#include "codec/write.hpp"
 #include "host/log.hpp"
 
 namespace adit::journal {
@@ -13,15 +10,6 @@ namespace {
 
 /// A snapshot's messages are no larger than those that it is made of.
 constexpr std::size_t kMarkersInARecord = 500;
-
-/// By the ICD's own rules: a team's (aliases, frames) were applied before.
-std::optional<icd::MarkersUpdate> markers_in(std::string_view said) {
-  const auto document = codec::decode({codec::Format::Cbor, codec::ContentCoding::Identity},
-                                      codec::Split::Lists, said, {.text_bytes = said.size()});
-  auto markers = document ? codec::read_markers_update(*document, {}) : std::unexpected(document.error());
-  if (!markers) return std::nullopt;
-  return std::move(*markers);
-}
 
 bool is_known(icd::Uri uri) {
   return std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
@@ -140,21 +128,23 @@ bool Carried::read_state_sent(std::string_view said) {
 }
 
 bool Carried::read_markers(std::string_view said) {
-  const auto update = markers_in(said);
-  if (!update) return false;
-  for (const icd::Marker& marker : update->markers) markers_.apply(marker);
+  std::vector<icd::Marker> markers;
+  if (!store::read(said, markers)) return false;
+  for (icd::Marker& marker : markers) markers_.apply(std::move(marker));
   return true;
 }
 
 /// The markers that went are those that wait now; newer changes of them come later. Those before, of which no
 /// answer is known, wait again.
 bool Carried::read_sent(std::string_view said) {
-  std::vector<icd::Marker> like;
-  if (!store::read(said, like)) return false;
+  std::vector<std::tuple<std::string, std::int32_t, icd::MarkerAction>> sent;
+  if (!store::read(said, sent)) return false;
   markers_come_back();
   markers_under_way_.clear();
-  for (const icd::Marker& each : like) {
-    if (auto marker = markers_.remove(each)) markers_under_way_.push_back(std::move(*marker));
+  icd::Marker like;
+  for (auto& [ns, id, action] : sent) {
+    like.ns = std::move(ns), like.id = id, like.action = action;
+    if (auto marker = markers_.remove(like)) markers_under_way_.push_back(std::move(*marker));
   }
   return true;
 }
@@ -212,15 +202,12 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
   };
   to(Kind::StateSent, store::bytes_of(write_robots(&Robot::under_way)));
   write_robots(&Robot::news);
-  const auto write_markers = [&to](const std::vector<icd::Marker>& markers) {
-    for (std::size_t i = 0; i < markers.size(); i += kMarkersInARecord) {
-      const auto first = markers.begin() + static_cast<std::ptrdiff_t>(i);
-      const auto count = static_cast<std::ptrdiff_t>(std::min(markers.size() - i, kMarkersInARecord));
-      to(Kind::Markers, said(icd::MarkersUpdate{.markers = {first, first + count}}));
-    }
+  const auto write_markers = [&to](std::span<const icd::Marker> markers) {
+    for (; !markers.empty(); markers = markers.subspan(std::min(markers.size(), kMarkersInARecord)))
+      to(Kind::Markers, store::bytes_of(markers.first(std::min(markers.size(), kMarkersInARecord))));
   };
   write_markers(markers_under_way_);
-  to(Kind::MarkersSent, store::bytes_of(markers_under_way_));
+  to(Kind::MarkersSent, names_of(markers_under_way_));
   std::vector<icd::Marker> waiting;
   for (const auto& [place, marker] : markers_.in_order()) waiting.push_back(marker);
   write_markers(waiting);
@@ -247,8 +234,14 @@ std::pair<Carried, std::string> read_records(const store::Contents& contents) {
   return {std::move(carried), std::move(damage)};
 }
 
-std::string said(const icd::MarkersUpdate& update) {
-  return codec::write_markers_update(update).to_string();
+std::string names_of(std::span<const icd::Marker> markers) {
+  store::Writer put;
+  put(markers.size());
+  for (const icd::Marker& marker : markers) {
+    const auto name = std::tie(marker.ns, marker.id, marker.action);
+    store::walk(put, name);
+  }
+  return put.finish();
 }
 
 }  // namespace adit::journal

@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -108,8 +109,8 @@ class Carried {
 /// because the delivered message may be in the gap. Unknown records are logged.
 std::pair<Carried, std::string> read_records(const store::Contents& contents);
 
-/// What a record of Kind::Markers says, as it goes upstream.
-std::string said(const icd::MarkersUpdate& update);
+/// What a record of Kind::MarkersSent says: ns, id and action of each marker.
+std::string names_of(std::span<const icd::Marker> markers);
 
 }  // namespace adit::journal
 
@@ -156,11 +157,19 @@ inline constexpr auto store::kMembers<icd::Point> =
 template <>
 inline constexpr auto store::kMembers<icd::Quaternion> =
     std::tuple(&icd::Quaternion::x, &icd::Quaternion::y, &icd::Quaternion::z, &icd::Quaternion::w);
-/// What tells a robot's pose, or a marker, from others.
 template <>
-inline constexpr auto store::kMembers<icd::NamedPose> = std::tuple(&icd::NamedPose::name);
+inline constexpr auto store::kMembers<icd::Color> =
+    std::tuple(&icd::Color::r, &icd::Color::g, &icd::Color::b, &icd::Color::a);
+template <>
+inline constexpr auto store::kMembers<icd::Header> = std::tuple(&icd::Header::stamp);
 template <>
 inline constexpr auto store::kMembers<icd::Marker> =
-    std::tuple(&icd::Marker::ns, &icd::Marker::id, &icd::Marker::action);
+    std::tuple(&icd::Marker::header, &icd::Marker::ns, &icd::Marker::id, &icd::Marker::type,
+               &icd::Marker::action, &icd::Marker::pose, &icd::Marker::scale, &icd::Marker::color,
+               &icd::Marker::lifetime, &icd::Marker::text, &icd::Marker::frame_locked, &icd::Marker::points,
+               &icd::Marker::colors, &icd::Marker::mesh_resource, &icd::Marker::mesh_use_embedded_materials);
+/// What tells a robot's pose from others.
+template <>
+inline constexpr auto store::kMembers<icd::NamedPose> = std::tuple(&icd::NamedPose::name);
 
 }  // namespace adit

@@ -62,9 +62,11 @@ class Journal {
   Kept accepted(std::span<const lanes::PostedPose> poses) {
     return append(Kind::Poses, store::bytes_of(poses));
   }
-  Kept accepted(const icd::MarkersUpdate& update) { return accepted_markers(said(update)); }
-  /// As said() made it: any thread may do that.
-  Kept accepted_markers(const std::string& said) { return append(Kind::Markers, said); }
+  Kept accepted(const icd::MarkersUpdate& update) {
+    return accepted_markers(store::bytes_of(update.markers));
+  }
+  /// The bytes of the markers. Any thread may make them.
+  Kept accepted_markers(const std::string& bytes) { return append(Kind::Markers, bytes); }
 
   void senders(const lanes::StampShift::Clocks& clocks);
   /// For the next process start. If there is no room for it, the next one says the same.
@@ -72,9 +74,7 @@ class Journal {
 
   /// These poses, or these markers, are about to be sent.
   void state_sent(const icd::StateUpdate& update) { note(Kind::StateSent, store::bytes_of(update.poses)); }
-  void markers_sent(const icd::MarkersUpdate& update) {
-    note(Kind::MarkersSent, store::bytes_of(update.markers));
-  }
+  void markers_sent(const icd::MarkersUpdate& update) { note(Kind::MarkersSent, names_of(update.markers)); }
   /// They need no more care, or wait again.
   void state_answered(bool done);
   void markers_answered(bool done);

@@ -12,15 +12,15 @@ enum class Kind : std::uint8_t {
   StateSent = 5,     // these robots' poses are under way
   StateDone = 6,     // what was under way needs no more care
   StateBack = 7,     // it waits again
-  Markers = 9,       // a /markers/update was accepted
   MarkersSent = 10,  // these are under way, and wait no more
   MarkersDone = 11,
   MarkersBack = 12,
-  Pace = 13,   // when a URI may be asked next, and what spacing was learned
-  Stamp = 14,  // the last stamp of a URI
-  Grids = 16,  // where grids of a name were posted
-  Poses = 19,  // of a /state/update that was accepted
-  Heard = 20,  // when a robot was heard, and how often it posts
+  Pace = 13,     // when a URI may be asked next, and what spacing was learned
+  Stamp = 14,    // the last stamp of a URI
+  Grids = 16,    // where grids of a name were posted
+  Poses = 19,    // of a /state/update that was accepted
+  Heard = 20,    // when a robot was heard, and how often it posts
+  Markers = 21,  // of a /markers/update that was accepted
 };
 
 }  // namespace adit::journal

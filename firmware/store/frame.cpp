@@ -2,6 +2,8 @@
 
 #include <libdeflate.h>
 
+#include <bit>
+
 namespace adit::store {
 namespace {
 
@@ -25,7 +27,8 @@ std::size_t aligned(std::size_t offset, const Layout& layout) {
 }  // namespace
 
 void put_number(std::string& out, std::uint64_t number, std::size_t bytes) {
-  for (; bytes > 0; --bytes, number >>= 8) out += static_cast<char>(number & 0xFF);
+  if constexpr (std::endian::native == std::endian::big) number = std::byteswap(number);
+  out.append(reinterpret_cast<const char*>(&number), bytes);
 }
 
 std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {

@@ -115,9 +115,9 @@ TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
 TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
   Carried carried;
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
-  tell(carried, Kind::Markers, said(icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Add, 1)}}));
+  tell(carried, Kind::Markers, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
   tell(carried, Kind::StateSent, sent({"r1"}));
-  tell(carried, Kind::MarkersSent, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
+  tell(carried, Kind::MarkersSent, names_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
   tell(carried, Kind::LifeBegins);
   tell(carried, Kind::StateDone);  // of the next life: nothing is under way there
   tell(carried, Kind::MarkersDone);
@@ -130,15 +130,35 @@ TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::Poses, store::bytes_of(state("r2", 1, 10)));
   const auto a = marker("a", 1, icd::MarkerAction::Add, 1), b = marker("b", 1, icd::MarkerAction::Add, 1);
-  tell(carried, Kind::Markers, said(icd::MarkersUpdate{{a, b}}));
+  tell(carried, Kind::Markers, store::bytes_of(std::vector{a, b}));
   tell(carried, Kind::StateSent, sent({"r1"}));
   tell(carried, Kind::StateSent, sent({"r2"}));
-  tell(carried, Kind::MarkersSent, store::bytes_of(std::vector{a}));
-  tell(carried, Kind::MarkersSent, store::bytes_of(std::vector{b}));
+  tell(carried, Kind::MarkersSent, names_of(std::vector{a}));
+  tell(carried, Kind::MarkersSent, names_of(std::vector{b}));
   tell(carried, Kind::StateDone);
   tell(carried, Kind::MarkersDone);
   EXPECT_THAT(names_in(carried), ElementsAre("r1"));
   EXPECT_THAT(carried.markers().markers, ElementsAre(a));
+}
+
+TEST(Carried, HasEachMemberOfAMarker) {
+  icd::Marker each = marker("a", -1, icd::MarkerAction::Add, 1);
+  each.type = 8;
+  each.pose.orientation = {0.5, 0.5, 0.5, 0.5};
+  each.scale = {1, 2, 3};
+  each.color = {0.1, 0.2, 0.3, 0.4};
+  each.lifetime = 7;
+  each.text = "text";
+  each.frame_locked = true;
+  each.points = {{1, 2, 3}, {4, 5, 6}};
+  each.colors = {{0.5, 0.6, 0.7, 0.8}};
+  each.mesh_resource = "package://mesh";
+  each.mesh_use_embedded_materials = true;
+  icd::Marker unstamped = marker("b", 2, icd::MarkerAction::Delete, 0);
+  unstamped.header.stamp.reset();
+  Carried carried;
+  tell(carried, Kind::Markers, store::bytes_of(std::vector{each, unstamped}));
+  EXPECT_THAT(again(carried).markers().markers, ElementsAre(each, unstamped));
 }
 
 TEST(Carried, HasClocksPacesAndStamps) {
@@ -254,7 +274,7 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
       case 0: {  // accepted
         icd::MarkersUpdate update;
         for (int left = pick(4); left >= 0; --left) update.markers.push_back(any(i));
-        tell(carried, Kind::Markers, said(update));
+        tell(carried, Kind::Markers, store::bytes_of(update.markers));
         waiting = lanes::merged(waiting, update.markers);
         break;
       }
@@ -262,7 +282,7 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
         if (!under_way.empty() || waiting.empty()) break;
         under_way.assign(waiting.begin(), waiting.begin() + 1 + pick(static_cast<int>(waiting.size())));
         waiting.erase(waiting.begin(), waiting.begin() + static_cast<std::ptrdiff_t>(under_way.size()));
-        tell(carried, Kind::MarkersSent, store::bytes_of(under_way));
+        tell(carried, Kind::MarkersSent, names_of(under_way));
         break;
       case 2:
         under_way.clear();

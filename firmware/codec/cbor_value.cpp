@@ -160,7 +160,7 @@ bool reals_in(std::string_view object, std::span<const std::string_view> names, 
 }
 
 icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t end);
-constexpr Lists::Format kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
+constexpr ListFormat kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
 
 /// The value from `begin` on.
 icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t /*end*/) {

@@ -9,7 +9,7 @@ namespace {
 
 class CutList final : public List {
  public:
-  CutList(SharedText text, Starts starts, const Lists::Format& format)
+  CutList(SharedText text, Starts starts, const ListFormat& format)
       : text_(std::move(text)), starts_(std::move(starts)), format_(format) {}
 
   std::size_t size() const override { return starts_.empty() ? 0 : starts_.size() - 1; }
@@ -29,14 +29,18 @@ class CutList final : public List {
 
   const SharedText text_;
   const Starts starts_;
-  const Lists::Format& format_;
+  const ListFormat& format_;
 };
 
 }  // namespace
 
+Value list_of(const SharedText& text, Starts starts, const ListFormat& format) {
+  return {std::make_shared<const CutList>(text, std::move(starts), format)};
+}
+
 Value Lists::next() {
   icd::require(next_ < arrays_.size());
-  return {std::make_shared<const CutList>(text_, std::move(arrays_[next_++]), format_)};
+  return list_of(text_, std::move(arrays_[next_++]), format_);
 }
 
 }  // namespace adit::codec

@@ -1,6 +1,7 @@
 #include "codec/json_number.hpp"
 
 #include <charconv>
+#include <cmath>
 #include <cstdlib>
 #include <string>
 #include <system_error>
@@ -10,14 +11,15 @@
 namespace adit::codec {
 
 std::size_t JsonNumber::next(std::string_view in) {
-  std::size_t n = 0;
-  while (n < in.size() && accept(in[n])) {
-    ++n;
+  const char* at = in.data();  // the hot path: a string_view checks each index
+  const char* const end = at + in.size();
+  while (at != end && accept(*at)) {
+    ++at;
     const bool is_among_digits =
         place_ == Place::Integer || place_ == Place::Fraction || place_ == Place::Exponent;
-    while (is_among_digits && n < in.size() && is_digit(in[n])) ++n;
+    while (is_among_digits && at != end && is_digit(*at)) ++at;
   }
-  return n;
+  return static_cast<std::size_t>(at - in.data());
 }
 
 bool JsonNumber::accept(char c) {
@@ -52,6 +54,11 @@ bool JsonNumber::accept(char c) {
       return digit && go(Place::Exponent);
   }
   return false;
+}
+
+bool is_finite(const JsonNumber& grammar, std::string_view text) {
+  constexpr std::size_t kSurelySmall = 308;  // digits, without an exponent: below 1e308
+  return (text.size() <= kSurelySmall && !grammar.has_exponent()) || !std::isinf(take_json_number(text));
 }
 
 double take_json_number(std::string_view& text) {

@@ -17,6 +17,7 @@ class JsonNumber {
     return place_ == Place::Zero || place_ == Place::Integer || place_ == Place::Fraction ||
            place_ == Place::Exponent;
   }
+  bool has_exponent() const { return place_ == Place::Exponent; }
   /// It is "0" or "-0" so far: no digit may follow.
   bool zero() const { return place_ == Place::Zero; }
 
@@ -26,6 +27,9 @@ class JsonNumber {
 
   Place place_ = Place::Start;
 };
+
+/// Whether a double holds the number `text`, whose grammar has been read.
+bool is_finite(const JsonNumber& grammar, std::string_view text);
 
 /// Takes such a number, as which `text` begins, and gives what it means as a double, rounded to the nearest:
 /// 0 or infinite where it is too small or too large for one.

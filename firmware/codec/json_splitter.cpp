@@ -26,14 +26,15 @@ JsonSplitter::JsonSplitter(Split split, Most most, BulkData& data)
 
 icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
   const bool is_first = at_ == 0 && !root_;
-  if (is_first && split_ == Split::Nothing && bytes.size() <= most_.text)
-    root_ = json_value(bytes, most_.values);
-  if (is_first && root_) {
-    first_ = bytes;
-    return {};
+  if (is_first && split_ != Split::MapData && bytes.size() <= most_.text) {
+    first_ = std::make_shared<const std::string>(bytes);
+    root_ = split_ == Split::Lists ? json_value_with_lists(first_, most_.values)
+                                   : json_value(*first_, most_.values);
+    return root_ ? icd::Checked<void>() : read(*std::exchange(first_, {}));
   }
-  root_.reset();
-  if (auto read_first = read(std::exchange(first_, {})); !read_first) return read_first;
+  if (root_.reset(); first_) {
+    if (auto read_first = read(*std::exchange(first_, {})); !read_first) return read_first;
+  }
   return read(bytes);
 }
 
@@ -63,7 +64,11 @@ icd::Checked<void> JsonSplitter::end() {
 icd::Checked<Value> JsonSplitter::finish() {
   if (root_) return *std::move(root_);
   if (auto whole = end(); !whole) return std::unexpected(whole.error());
-  if (split_ == Split::Lists) return json_value_with_lists(std::move(rest_));
+  if (split_ == Split::Lists) {
+    const auto text = std::make_shared<const std::string>(std::move(rest_));
+    if (auto root = json_value_with_lists(text, values_)) return *std::move(root);
+    return std::unexpected(too_many_outside_lists(kMostOutsideLists));
+  }
   auto root = json_value(rest_);
   icd::require(root.has_value());
   if (data_.form() != DataForm::Absent) mark_split_out(*root);

@@ -9,6 +9,7 @@
 
 #include "codec/base64.hpp"
 #include "codec/bulk_data.hpp"
+#include "codec/cut_lists.hpp"
 #include "codec/data_path.hpp"
 #include "codec/json_number.hpp"
 #include "codec/json_string.hpp"
@@ -17,8 +18,8 @@
 namespace adit::codec {
 
 /// JSON (RFC 8259) as a pushdown automaton. A byte order mark before it is ignored (8.1).
-/// If no data is split off, most documents come in one piece, which json_value() reads at once. The automaton
-/// reads all others from their first piece, so that it refuses them as soon as they are wrong.
+/// If no data is split off, most documents come in one piece, which is read at once (json_value.hpp). The
+/// automaton reads all others from their first piece, so that it refuses them as soon as they are wrong.
 class JsonSplitter final : public Splitter {
  public:
   /// `data` must outlive this.
@@ -73,7 +74,7 @@ class JsonSplitter final : public Splitter {
   DataPath path_;
 
   std::optional<Value> root_;  // the document, if the first piece was all of it
-  std::string first_;          // that piece
+  SharedText first_;           // that piece
 
   Expect expect_ = Expect::Value;
   Token token_ = Token::None;

@@ -82,10 +82,7 @@ icd::Checked<void> JsonSplitter::number_ended(std::optional<char> next) {
 }
 
 icd::Checked<void> JsonSplitter::keep_number() {
-  constexpr std::size_t kSurelySmall = 308;  // digits, without an exponent: below 1e308
-  const bool surely_small = number_.size() <= kSurelySmall &&
-                            std::ranges::none_of(number_, [](char c) { return c == 'e' || c == 'E'; });
-  if (std::string_view text = number_; !surely_small && std::isinf(take_json_number(text)))
+  if (!is_finite(number_grammar_, number_))
     return std::unexpected(fault_at(number_at_, "a number too large for a double"));
   keep(number_);
   return {};

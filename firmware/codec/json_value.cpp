@@ -17,15 +17,24 @@
 namespace adit::codec {
 namespace {
 
+bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into);
+icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::size_t end);
+constexpr ListFormat kJsonLists = {.element = element_at, .reals = reals_in, .gap = 1};
+
 /// Each function reads what its name says and moves on behind it; false: the document cannot be read.
 class JsonReader {
  public:
-  /// `lists`: stand for the arrays, which are empty; null: there are none such.
-  JsonReader(std::string_view text, std::size_t most_values, Lists* lists)
-      : at_(text.data()), end_(text.data() + text.size()), values_left_(most_values), lists_(lists) {}
+  JsonReader(std::string_view text, std::size_t most_values)
+      : at_(text.data()), end_(text.data() + text.size()), values_left_(most_values) {}
+  /// Leaves the arrays of a part of `whole` as text.
+  JsonReader(std::string_view part, const SharedText& whole, std::size_t most_values)
+      : JsonReader(part, most_values) {
+    whole_ = &whole;
+    outside_left_ = kMostOutsideLists;
+  }
 
   bool document(Value& into) {
-    if (!value(into)) return false;
+    if (!value(&into)) return false;
     skip_blanks();
     return at_ == end_;
   }
@@ -42,13 +51,15 @@ class JsonReader {
     return true;
   }
 
-  bool value(Value& into) {
+  /// Null, here and below: it is checked and not kept.
+  bool value(Value* into) {
     skip_blanks();
-    if (values_left_ == 0) return false;
+    if (values_left_ == 0 || (into != nullptr && outside_left_ == 0)) return false;
     --values_left_;
+    if (into != nullptr) --outside_left_;
     switch (next()) {
       case '"':
-        return string(into.is.emplace<std::string>());
+        return string(into == nullptr ? nullptr : &into->is.emplace<std::string>());
       case '{':
         return nested([&] { return object(into); });
       case '[':
@@ -74,43 +85,44 @@ class JsonReader {
     return is_read;
   }
 
-  bool word(std::string_view word, Value meaning, Value& into) {
+  bool word(std::string_view word, Value meaning, Value* into) {
     if (!std::string_view(at_, end_).starts_with(word)) return false;
     at_ += word.size();
-    into = std::move(meaning);
+    if (into != nullptr) *into = std::move(meaning);
     return true;
   }
 
-  bool string(std::string& into) {
+  bool string(std::string* into) {
     const char* const begin = ++at_;
     while (at_ != end_ && is_plain(*at_)) ++at_;
-    into.assign(begin, at_);
+    if (into != nullptr) into->assign(begin, at_);
     if (next() != '"') return rest_of_string(into);
     ++at_;
     return true;
   }
 
   /// From the first escape, or the first character that is not ASCII.
-  bool rest_of_string(std::string& into) {
+  bool rest_of_string(std::string* into) {
     JsonString characters;
     for (bool ended = false; !ended;) {
       if (at_ == end_) return false;
       const auto piece = characters.next({at_, end_});
       if (!piece) return false;
-      into += piece->text;
+      if (into != nullptr) *into += piece->text;
       at_ += piece->taken;
       ended = piece->ended;
     }
     return true;
   }
 
-  bool number(Value& into) {
+  bool number(Value* into) {
     JsonNumber grammar;
     std::string_view text(at_, grammar.next({at_, end_}));
     at_ += text.size();
     if (!grammar.complete()) return false;
+    if (into == nullptr) return is_finite(grammar, text);
     const double number = take_json_number(text);
-    into = json_number_value(number);
+    *into = json_number_value(number);
     return !std::isinf(number);
   }
 
@@ -123,73 +135,109 @@ class JsonReader {
     return taken;
   }
 
-  bool array(Value& into) {
+  /// What is between the brackets: `each` reads an item, from behind the bracket or the comma.
+  template <class Each>
+  bool items(char bracket, Each each) {
+    if (take(bracket)) return true;
+    do {
+      if (!each()) return false;
+    } while (take(','));
+    return take(bracket);
+  }
+
+  bool array(Value* into) {
+    if (into == nullptr) return items(']', [&] { return value(nullptr); });
+    if (whole_ != nullptr) return list(*into);
     const std::size_t first = elements_.size();
-    if (!take(']')) {
-      do {
-        Value element;
-        if (!value(element)) return false;
-        elements_.push_back(std::move(element));
-      } while (take(','));
-      if (!take(']')) return false;
-    }
-    into = lists_ != nullptr ? lists_->next() : Value{take_from(elements_, first)};
+    const auto element = [&] {
+      Value element;
+      if (!value(&element)) return false;
+      elements_.push_back(std::move(element));
+      return true;
+    };
+    if (!items(']', element)) return false;
+    into->is.emplace<Value::Array>(take_from(elements_, first));
     return true;
   }
 
-  bool object(Value& into) {
+  bool list(Value& into) {
+    Starts starts;
+    const auto offset = [this] {
+      return static_cast<std::uint32_t>(at_ - (*whole_)->data());  // a text with lists has a few MB
+    };
+    const auto element = [&] {
+      starts.push_back(offset());
+      return value(nullptr);
+    };
+    if (!items(']', element)) return false;
+    if (!starts.empty()) starts.push_back(offset());
+    into = list_of(*whole_, std::move(starts), kJsonLists);
+    return true;
+  }
+
+  bool name(std::string* into) {
+    skip_blanks();
+    return next() == '"' && string(into) && take(':');
+  }
+
+  bool object(Value* into) {
+    if (into == nullptr) return items('}', [&] { return name(nullptr) && value(nullptr); });
     const std::size_t first = members_.size();
-    if (!take('}')) {
-      do {
-        std::string name;
-        Value meant;
-        skip_blanks();
-        if (next() != '"' || !string(name) || !take(':') || !value(meant)) return false;
-        members_.emplace_back(std::move(name), std::move(meant));
-      } while (take(','));
-      if (!take('}')) return false;
-    }
-    into.is.emplace<Value::Object>(take_from(members_, first));
+    const auto member = [&] {
+      std::string named;
+      Value meant;
+      if (!name(&named) || !value(&meant)) return false;
+      members_.emplace_back(std::move(named), std::move(meant));
+      return true;
+    };
+    if (!items('}', member)) return false;
+    into->is.emplace<Value::Object>(take_from(members_, first));
     return true;
   }
 
   const char* at_;
   const char* end_;
   std::size_t values_left_;
-  Lists* lists_;
+  std::size_t outside_left_ = std::numeric_limits<std::size_t>::max();  // values that are kept
+  const SharedText* whole_ = nullptr;                                   // null: no array is left as text
   int depth_ = 0;
   // Of all that are open, so that each gets room for what it holds and no more.
   std::vector<Value> elements_;
   std::vector<Value::Member> members_;
 };
 
-/// List::reals() of well-formed text without white space.
+/// List::reals() of well-formed text.
 bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into) {
+  const auto skip_blanks = [&] {
+    while (!object.empty() && is_blank(object.front())) object.remove_prefix(1);
+  };
   const auto takes = [&](std::string_view what) {
     if (!object.starts_with(what)) return false;
     object.remove_prefix(what.size());
     return true;
   };
+  const auto takes_next = [&](std::string_view what) {
+    skip_blanks();
+    return takes(what);
+  };
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!takes(i == 0 ? "{\"" : ",\"") || !takes(names[i]) || !takes("\":")) return false;
+    if (!takes_next(i == 0 ? "{" : ",") || !takes_next("\"") || !takes(names[i]) || !takes("\"") ||
+        !takes_next(":"))
+      return false;
+    skip_blanks();
     const auto [after, error] = std::from_chars(object.begin(), object.end(), into[i]);
     if (error != std::errc()) return false;
     object = {after, object.end()};
   }
-  return object == "}";
+  return takes_next("}");
 }
 
-icd::Checked<Value> with_lists(const SharedText& text, std::size_t begin, std::size_t end);
-constexpr Lists::Format kJsonLists = {.element = with_lists, .reals = reals_in, .gap = 1};
-
-/// The value from `begin` to `end`.
-icd::Checked<Value> with_lists(const SharedText& text, std::size_t begin, std::size_t end) {
-  Cut cut = cut_json(*text, begin, end);
-  if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));
-  Lists lists(text, std::move(cut.arrays), kJsonLists);
-  Value root;
-  icd::require(JsonReader(cut.rest, cut.rest.size(), &lists).document(root));
-  return root;
+/// Of well-formed text.
+icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::size_t end) {
+  Value element;
+  const std::string_view part(text->data() + begin, end - begin);
+  if (JsonReader(part, text, part.size()).document(element)) return element;
+  return std::unexpected(too_many_outside_lists(kMostOutsideLists));
 }
 
 }  // namespace
@@ -204,13 +252,14 @@ Value json_number_value(double number) {
 
 std::optional<Value> json_value(std::string_view text, std::size_t most_values) {
   Value root;
-  if (!JsonReader(text, most_values, nullptr).document(root)) return std::nullopt;
+  if (!JsonReader(text, most_values).document(root)) return std::nullopt;
   return root;
 }
 
-icd::Checked<Value> json_value_with_lists(std::string text) {
-  const auto kept = std::make_shared<const std::string>(std::move(text));
-  return with_lists(kept, 0, kept->size());
+std::optional<Value> json_value_with_lists(const SharedText& text, std::size_t most_values) {
+  Value root;
+  if (!JsonReader(*text, text, most_values).document(root)) return std::nullopt;
+  return root;
 }
 
 }  // namespace adit::codec

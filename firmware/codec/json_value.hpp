@@ -17,8 +17,8 @@ namespace adit::codec {
 /// JsonSplitter says which.
 std::optional<Value> json_value(std::string_view text,
                                 std::size_t most_values = std::numeric_limits<std::size_t>::max());
-/// A document that a JsonSplitter has passed and kept; its arrays are left as text. 413: as List::element().
-icd::Checked<Value> json_value_with_lists(std::string text);
+/// The same, whose arrays are left as text, and of which at most kMostOutsideLists values are outside them.
+std::optional<Value> json_value_with_lists(const SharedText& text, std::size_t most_values);
 
 /// A number of JSON: an integer where it surely stands for that one alone.
 Value json_number_value(double number);

@@ -13,7 +13,7 @@
 namespace adit::intake {
 namespace {
 
-using Body = std::vector<std::vector<std::uint8_t>>;
+using Body = std::vector<std::uint8_t>;
 using Parts = icd::Checked<codec::InParts<icd::MarkersUpdate>>;
 
 /// The loop decodes updates up to kAtOnce itself, in less than a millisecond.
@@ -31,23 +31,19 @@ bool is_too_large(const icd::Refusal& refusal) {
   return refusal.status == icd::Status::ContentTooLarge;
 }
 
-/// The worker's part. read_large() frees each piece after it was parsed.
+/// The worker's part. read_large() frees the body after it was decoded.
 Parts read_small(codec::BodyKind kind, const icd::Rules& rules, const Body& body) {
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kSmall);
   const MemoryGivenBack at_the_end(decoder);
-  for (const auto& piece : body) {
-    if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
-  }
+  if (auto fed = decoder.feed(body); !fed) return std::unexpected(std::move(fed.error()));
   return read_parts(decoder, rules);
 }
 
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
   const MemoryGivenBack at_the_end(true);
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kLarge);
-  for (auto& piece : body) {
-    if (auto fed = decoder.feed(piece); !fed) return std::unexpected(std::move(fed.error()));
-    std::vector<std::uint8_t>().swap(piece);
-  }
+  if (auto fed = decoder.feed(body); !fed) return std::unexpected(std::move(fed.error()));
+  Body().swap(body);
   return read_parts(decoder, rules);
 }
 
@@ -123,7 +119,7 @@ void MarkersUpload::State::keep(std::span<const std::uint8_t> piece) {
     return turn_away(
         {icd::Status::ContentTooLarge, icd::sentence("body: expected at most ", kMost, " bytes")});
   }
-  body_.emplace_back(piece.begin(), piece.end());
+  body_.insert(body_.end(), piece.begin(), piece.end());
   if (at_once_) feed(piece);
   if (!over_) charge();
 }
@@ -137,6 +133,7 @@ void MarkersUpload::State::feed(std::span<const std::uint8_t> piece) {
 
 void MarkersUpload::State::whole() {
   if (over_) return;
+  if (body_.size() > kSmall.text_bytes) return wait_for_turn();
   if (!at_once_) return give_to_worker();
   const MemoryGivenBack at_the_end(*at_once_);
   decoded(read_parts(*at_once_, rules_));

@@ -26,6 +26,7 @@ TEST(Lists, AreWhereTheyStandWhateverIsAroundThem) {
       {kJsonBody, R"([1, "a,b]", {"x": [2, 3], "[": []}, null])", R"([1,"a,b]",{"x":[2,3],"[":[]},null])"},
       {kJsonBody, "{" + hidden + ":[" + hidden + "," + hidden + "]," + hidden + ":" + hidden + "}",
        "{" + hidden + ":[" + hidden + "," + hidden + "]," + hidden + ":" + hidden + "}"},
+      {kJsonBody, "\n[ 1 , [ ] ,\t{ \"a\" : [ 2\r, \"\\u0041\" ] } ] ", R"([1,[],{"a":[2,"A"]}])"},
       {kCborBody, "\x80", "[]"},
       {kCborBody, "\x9f\xff", "[]"},
       {kCborBody, "\x9f\x9f\x01\x02\xff\x80\x81\xa0\xff", "[[1,2],[],[{}]]"},
@@ -73,6 +74,7 @@ TEST(Lists, GiveTheNumbersOfAnObjectThatHoldsTheseMembersAlone) {
   const Element elements[] = {
       {kJsonBody, R"([{"x": 0.5, "y": -2e1}])", true},
       {kJsonBody, R"([{"x": 0.5, "y": -20}])", true},
+      {kJsonBody, "[ {\n \"x\" : 0.5 , \"y\" :\t-20 } ]", true},
       {kJsonBody, R"([{"y": -20, "x": 0.5}])", false},
       {kJsonBody, R"([{"x": 0.5}])", false},
       {kJsonBody, R"([{"x": 0.5, "y": -20, "z": 0}])", false},
@@ -103,6 +105,18 @@ TEST(Lists, GiveTheNumbersOfAnObjectThatHoldsTheseMembersAlone) {
     ASSERT_EQ(list.reals(0, kNames, numbers), is_read) << body;
     if (is_read) EXPECT_EQ(std::pair(numbers[0], numbers[1]), std::pair(0.5, -20.0)) << body;
     EXPECT_FALSE(reading.refused()) << body;
+  }
+}
+
+/// A document that comes in one piece has the same errors inside its lists as one that comes in many.
+TEST(Lists, AreWellFormed) {
+  for (const std::string inside : {"1 2", "1,", ",1", "01", "-", "1.", "tru", "\"", "\"\\x\"", "{\"a\":}",
+                                   "{1:2}", "{\"a\" 1}", "[", "1e999", "\"\xff\""}) {
+    const std::string body = "{\"a\": [" + inside + "]}";
+    const auto whole = decode(kJsonBody, Split::Nothing, body);
+    const auto listed = decode(kJsonBody, Split::Lists, body);
+    ASSERT_FALSE(listed) << body;
+    EXPECT_EQ(listed.error().sentence, whole.error().sentence) << body;
   }
 }
 

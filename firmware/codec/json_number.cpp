@@ -1,5 +1,6 @@
 #include "codec/json_number.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -11,13 +12,13 @@
 namespace adit::codec {
 
 std::size_t JsonNumber::next(std::string_view in) {
-  const char* at = in.data();  // the hot path: a string_view checks each index
+  const char* at = in.data();
   const char* const end = at + in.size();
   while (at != end && accept(*at)) {
     ++at;
     const bool is_among_digits =
         place_ == Place::Integer || place_ == Place::Fraction || place_ == Place::Exponent;
-    while (is_among_digits && at != end && is_digit(*at)) ++at;
+    if (is_among_digits) at = std::find_if_not(at, end, is_digit);
   }
   return static_cast<std::size_t>(at - in.data());
 }

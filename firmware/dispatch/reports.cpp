@@ -185,7 +185,7 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   const auto reply = codec::read_report_reply(answer.body);
   const Report* const another = reply ? told_of_another(*reply) : nullptr;
   const ReportEvent event =
-      event_of(answer.status, reply.has_value() && another == nullptr, body_of(answer.body));
+      event_of(answer.status, reply && another == nullptr, reply ? Body::Json : body_of(answer.body));
   const auto keep = [&](Report& report) {
     report.status = answer.status;
     report.content_type = answer.content_type;

@@ -4,39 +4,26 @@
 #include <utility>
 
 #include "host/log.hpp"
-#include "panel/watched.hpp"
 
 namespace adit::box {
 
 Lights::Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines)
-    : loop_(loop),
-      began_(loop.now()),
-      digits_began_(began_),
-      tick_(loop.timer([this] { paint(); })),
-      beat_(loop.timer([this] { beat(); })) {
+    : loop_(loop), began_(loop.now()), digits_began_(began_), tick_(loop.timer([this] { paint(); })) {
   painter_.take(std::move(lines));
-  if (is_watched()) beat_.call_at(began_);
-}
-
-bool Lights::is_watched() const {
-  return painter_.lines() != nullptr && painter_.lines()->is_watched();
 }
 
 void Lights::let_go() {
-  beat_.cancel();
   painter_.take(nullptr);
 }
 
-/// That it is told the same again says that the loop turns.
 void Lights::beat() {
-  beat_.call_at(loop_.now() + panel::Watched::kBeat);
+  if (painter_.lines() == nullptr || !painter_.lines()->is_watched()) return;
   painter_.set(frame().lit, loop_.now());
-  log_trouble();
+  paint();
 }
 
 void Lights::take(std::unique_ptr<panel::Lines> lines) {
   painter_.take(std::move(lines));
-  if (is_watched()) beat_.call_at(loop_.now());
   paint();
 }
 

@@ -22,6 +22,9 @@ class Lights {
   void let_go();
   void take(std::unique_ptr<panel::Lines> lines);
 
+  /// Call once a second: sets watched lines again, which shows their holder that the loop turns.
+  void beat();
+
   /// Asserts or clears a state.
   void set(panel::State state, bool asserted);
   /// Asserts it for so long from now on.
@@ -43,14 +46,12 @@ class Lights {
   panel::Frame frame() const;
   void paint();
   void log_trouble();
-  bool is_watched() const;
-  void beat();
   void wake_for_what_is_next(const panel::Frame& frame);
 
   loop::Loop& loop_;
   panel::Painter painter_;
   loop::Instant began_, digits_began_;
-  loop::Source tick_, beat_;
+  loop::Source tick_;
   panel::States states_;
   std::array<std::optional<loop::Instant>, panel::kStates> until_;  // of those that end by themselves
   std::vector<panel::Step> digits_;

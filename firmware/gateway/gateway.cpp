@@ -246,6 +246,7 @@ void Gateway::every_second() {
   notices_ = box::read_notices(parts_.options.notices);
   look_for_alarms();
   show_lights();
+  lights_.beat();
   network_.every_second();
   updates_.every_second();
   keep_sessions();

@@ -15,8 +15,8 @@ class Lines {
   virtual ~Lines() = default;
   /// Sets all lights. An error says why some lights may be wrong; Adit continues: painter.hpp.
   virtual std::expected<void, std::string> set(const Lit& lit) = 0;
-  /// True if the lights must be set at least once in Watched::kBeat while the program is well, so that the
-  /// holder of the lines knows.
+  /// True if the lights must be set at least once a second while the program is well, so that the holder of
+  /// the lines knows.
   virtual bool is_watched() const { return false; }
 };
 

@@ -11,8 +11,8 @@ namespace adit::panel {
 /// and dark after it ended by itself. It reads no clock: each call gets the time, which never runs backward.
 class Watched {
  public:
-  /// aditd sends its lights at least once in kBeat. After kSilence without them it hangs.
-  static constexpr Milliseconds kBeat{400}, kSilence{1500};
+  /// aditd sends its lights at least once a second. After kSilence without them it hangs.
+  static constexpr Milliseconds kSilence{1800};
   /// A start may take this long, from the constructor or from the connection. It is systemd's limit.
   static constexpr std::chrono::minutes kStart{1};
 

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "loop/simulated_time.hpp"
-#include "panel/watched.hpp"
 #include "panel/watched_lines.hpp"
 
 namespace adit::box {
@@ -140,17 +139,22 @@ TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
   be_well();
   lights.let_go();
   lights.take(std::make_unique<WatchedLines>(watched));
-  const std::size_t taken = watched.shown.size();
-  time.pass(loop, 3 * panel::Watched::kBeat + 1ms);
-  EXPECT_EQ(watched.shown.size(), taken + 4) << "at once, and with each beat";
+  EXPECT_EQ(watched.shown.size(), 1u) << "at once";
+  for (int i = 0; i < 3; ++i) {
+    time.pass(loop, 1s);
+    lights.beat();
+  }
+  EXPECT_EQ(watched.shown.size(), 4u) << "and with each beat alone";
   for (const Lit& lit : watched.shown) EXPECT_EQ(lit, (Lit{true, true, true, false}));
   watched.fail = true;
   const std::size_t before = watched.shown.size();
-  time.pass(loop, 2 * panel::Watched::kBeat);
-  EXPECT_GT(watched.shown.size(), before + 1) << "and tried again";
+  lights.beat();
+  time.pass(loop, panel::Painter::kAgain);
+  EXPECT_EQ(watched.shown.size(), before + 2) << "and tried again";
   lights.let_go();
   watched.shown.clear();
   lights.set(State::NeedsOperator, true);
+  lights.beat();
   time.pass(loop, 1s);
   EXPECT_TRUE(watched.shown.empty());
 }
@@ -158,7 +162,7 @@ TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
 TEST_F(LightsTest, AreNotToldTheSameAgainWhereNobodyWatches) {
   be_well();
   const std::size_t told = seen.shown.size();
-  time.pass(loop, 2 * panel::Watched::kBeat);
+  lights.beat();
   EXPECT_EQ(seen.shown.size(), told);
 }
 

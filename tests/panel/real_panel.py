@@ -184,6 +184,21 @@ class WithAditd(Running):
         self.is_at_work()
         print(f"\nadit-panel: from SIGSTOP of aditd to the fault: {', '.join(f'{each:.2f}' for each in figures)} s", file=sys.stderr)
 
+    def test_lights_that_do_not_change_are_no_hang(self):
+        listening = self.enterContext(socket.create_server(("127.0.0.1", 0)))  # connects, and never answers
+        (self.folder / "secrets").mkdir(mode=0o700)
+        for name in ("scoring", "mapping"):
+            token = self.folder / "secrets" / f"{name}.token"
+            token.touch(mode=0o600)
+            token.write_text("token-of-the-test")
+        self.begin_panel()
+        self.begin_aditd(post={"address": "127.0.0.1", "port": listening.getsockname()[1]})
+        self.shows("1110")
+        end = time.monotonic() + 4  # a fault would be seen in this time
+        while time.monotonic() < end:
+            self.assertEqual(self.lit(), "1110")
+            time.sleep(0.01)
+
     def test_a_kill_is_shown_until_the_next_start(self):
         self.begin_panel()
         self.begin_aditd().kill()

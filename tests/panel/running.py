@@ -90,10 +90,10 @@ class Running(unittest.TestCase):
         os.write(file, f"{word}\n".encode())
         os.close(file)
 
-    def begin_aditd(self, port=0):
+    def begin_aditd(self, port=0, post=NOWHERE):
         (self.folder / "secrets").mkdir(mode=0o700, exist_ok=True)
         settings = self.folder / "settings.json"
-        settings.write_text(json.dumps({"version": 1, "command_post": {"scoring": NOWHERE, "mapping": NOWHERE},
+        settings.write_text(json.dumps({"version": 1, "command_post": {"scoring": post, "mapping": post},
                                         "team": {"listen": [{"address": "127.0.0.1", "port": port}]}}))
         return self.begin(aditd, "--settings", settings, "--secrets", self.folder / "secrets", "--state", self.folder / "state",
                           "--panel", self.socket)

@@ -6,7 +6,7 @@
 namespace adit::clock {
 namespace {
 
-/// It tells aditd, on this machine, how it stands; and takes no order.
+/// Lets aditd on this machine ask for the state of chronyd, not command it.
 constexpr const char* kTells =
     "cmdport 323\nbindcmdaddress 127.0.0.1\nbindcmdaddress /\npidfile /run/adit-ntp/chronyd.pid\n";
 

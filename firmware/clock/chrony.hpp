@@ -4,23 +4,23 @@
 
 #include "clock/messages.hpp"
 
-/// What chronyd is told, which speaks NTP for Adit: adit-ntp.service.
+/// Configuration of chronyd, which speaks NTP for Adit (adit-ntp.service).
 namespace adit::clock {
 
-/// Files by name, in adit-clock's runtime folder.
+/// Files in adit-clock's runtime directory.
 inline constexpr const char* kConfigurationFile = "chrony.conf";  // chrony.conf(5)
-inline constexpr const char* kOptionsFile = "chrony.options";     // of its command line, for systemd
-inline constexpr const char* kFirewallFile = "chrony.nft";        // what the firewall lets in for it
+inline constexpr const char* kOptionsFile = "chrony.options";     // command-line options, for systemd
+inline constexpr const char* kFirewallFile = "chrony.nft";        // firewall rules
 
 struct Chrony {
   std::string configuration, options, firewall;
   friend bool operator==(const Chrony&, const Chrony&) = default;
 };
 
-/// Where `source` set the time of day last. chronyd keeps a clock that the server's time was set to, and
-/// never moves it by more than a minute; else it only measures, and who may set the clock is to_be_set()'s.
-/// It gives the time to `clients` while it is known. It is bound to `interface`. Requires what read() gives;
-/// and that NTP is on.
+/// Configuration for a time of day that `source` set last. If that is the server of `ntp`, chronyd steers the
+/// clock, by at most a minute in one step; otherwise it only measures, because to_be_set() decides. chronyd
+/// serves the clients of `ntp` once the time is reliable (is_set()). It is bound to `interface`. Requires
+/// ntp.is_on().
 Chrony chrony_for(const Ntp& ntp, Source source, const std::string& interface);
 
 }  // namespace adit::clock

@@ -18,7 +18,7 @@ constexpr codec::Member kClockRequest[] = {
     codec::member<&Request::boot>("boot"),
     codec::member<&Request::server>("server").as(network::kAddressOrNone),
 };
-/// A subnet by its first address, as settings::written() has it, or "".
+/// Whether the text is a subnet in the form of settings::written(), or "".
 bool is_subnet_or_none(std::string_view text) {
   const auto parsed = settings::parse_subnet(text);
   return text.empty() || (parsed && settings::written(*parsed) == text);

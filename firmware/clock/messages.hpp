@@ -7,15 +7,14 @@
 #include "clock/source.hpp"
 #include "codec/row_file.hpp"
 
-/// The files by which aditd, which has no privilege, and adit-clock, which runs as root, speak with each
-/// other: README.md.
+/// Messages, as files, between aditd, which has no privileges, and adit-clock, which runs as root: README.md.
 namespace adit::clock {
 
-/// What aditd asks for, in its state directory.
+/// Requests in aditd's state directory.
 inline constexpr const char* kRequestFile = "clock.json";
 inline constexpr const char* kNtpFile = "ntp.json";
 
-/// The words of Source, in its order.
+/// In the order of Source.
 inline constexpr std::string_view kSourceWords[] = {"none", "last_known", "robots", "command_post",
                                                     "chip", "operator",   "ntp"};
 
@@ -31,40 +30,39 @@ struct Request {
   std::string nonce = "";  // codec::is_nonce()
   Source source = Source::None;
   double time = 0;          // seconds since 1970
-  double at = 0;            // when that was so: seconds of the machine's monotonic clock
-  std::string boot = "";    // the machine's start, as the status has it
-  std::string server = "";  // that told it, where the source is ntp; else ""
+  double at = 0;            // monotonic seconds at which `time` was right
+  std::string boot = "";    // boot identifier, as in Status::boot
+  std::string server = "";  // the NTP server, if the source is ntp; else ""
   static const codec::Row kRow;
 };
 
-/// What the settings ask of NTP on the team's network: in the file of its own that lasts.
+/// NTP on the team's network, as set in the settings. Its file outlives a boot.
 struct Ntp {
-  std::string server = "";   // an IPv4 address; "": none is asked
-  std::string clients = "";  // the subnet that the box is to be the server of: "10.0.0.0/24"; "": of none
+  std::string server = "";   // IPv4 address; "": no server
+  std::string clients = "";  // subnet that the box serves: "10.0.0.0/24"; "": none
   bool is_on() const { return !server.empty() || !clients.empty(); }
   static const codec::Row kRow;
   friend bool operator==(const Ntp&, const Ntp&) = default;
 };
 
 struct Status {
-  std::string boot = "";         // host::boot(): requests of another start of the machine do not count
-  std::string nonce = "";        // of the last request that was taken up
-  std::string refusal = "";      // why it was not done; "" where it was
-  Source source = Source::None;  // who set the time of day last, since the machine started
-  std::string server = "";       // which NTP server's time was taken last, if any
-  Ntp ntp = {};                  // what is asked of NTP
-  std::string trouble = "";      // why that is not done; "" where it is
+  std::string boot = "";         // host::boot(); requests of another boot are rejected
+  std::string nonce = "";        // of the last request that was read
+  std::string refusal = "";      // why that request failed, or ""
+  Source source = Source::None;  // set the time of day last in this boot
+  std::string server = "";       // NTP server whose time was set last, or ""
+  Ntp ntp = {};                  // in effect
+  std::string trouble = "";      // why `ntp` is not in effect, or ""
 
-  /// As far as `source` is to be trusted still: a server that is asked no more has set it once, as the
-  /// operator does, and the next one's time is to be taken.
+  /// Source to compare offers with. If the NTP server has changed, its time ranks as the operator's, so that
+  /// the new server's time is accepted.
   Source trusted() const { return source == Source::Ntp && server != ntp.server ? Source::Operator : source; }
   bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;
 };
 
-/// Why a request is not to be done at that instant of the monotonic clock (seconds), as things stand; "": it
-/// is.
+/// Why a request must be rejected at monotonic second `at`, or "".
 std::string hindrance(const Request& request, double at, const Status& status);
 
 }  // namespace adit::clock

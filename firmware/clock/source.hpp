@@ -3,26 +3,26 @@
 #include <cstdint>
 #include <optional>
 
-/// Where the time of day comes from: README.md.
+/// Sources of the time of day: README.md.
 namespace adit::clock {
 
-/// Who set the time of day last; the later, the more he is trusted.
+/// In the order of trust, the least trusted first.
 enum class Source : std::uint8_t {
-  None,         // nobody: the machine began with it
-  LastKnown,    // as it was when the power went
-  Robots,       // their stamps
-  CommandPost,  // the Date of its answers
-  Chip,         // a clock with a battery of its own
-  Operator,     // by his browser, or by `adit clock set`
+  None,         // the time at boot
+  LastKnown,    // stored before the power went
+  Robots,       // time stamps of robots
+  CommandPost,  // the Date header of its answers
+  Chip,         // a clock with its own battery
+  Operator,     // the operator's browser, or `adit clock set`
   Ntp,          // a server on the team's network
 };
 
-/// Seconds since 1970: in 2026, before this was built, and in 2100. A clock that shows another time is wrong.
+/// Seconds since 1970: the starts of 2026, before Adit was built, and of 2100. Other times are wrong.
 inline constexpr double kEarliest = 1767225600, kLatest = 4102444800;
-/// Seconds by which robots may set it ahead: a box may have lain for a season.
+/// Most seconds by which robots may advance the clock: a box may be stored for a season.
 inline constexpr double kRobotsMost = 200.0 * 86400;
 
-/// That time is known well enough that nobody need be asked.
+/// Whether the time is reliable enough to need no other source.
 inline bool is_set(Source source) {
   return source >= Source::CommandPost;
 }
@@ -32,10 +32,9 @@ struct Offer {
   double time = 0;  // seconds since 1970, now
 };
 
-/// What the time of day is to be set to, where `present` set it last and it is `now`; nothing: it stays.
-/// Whoever is trusted more sets it, either way, and after him the operator alone (who is asked whether the
-/// NTP server keeps it: not here). What was known last sets it
-/// ahead alone; so do robots, and not by more than kRobotsMost.
+/// The time to set, or std::nullopt to leave the clock. `present` set the clock last; `now` is its time. A
+/// more trusted source sets it in either direction, and the operator always does. LastKnown and Robots only
+/// advance it, Robots by at most kRobotsMost. The caller checks whether an NTP server keeps the clock.
 std::optional<double> to_be_set(Source present, const Offer& offer, double now);
 
 }  // namespace adit::clock

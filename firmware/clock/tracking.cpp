@@ -9,7 +9,7 @@ constexpr std::uint8_t kVersion = 6, kRequest = 1, kReply = 2;
 constexpr std::uint32_t kTracking = 33, kTrackingReply = 5, kSucceeded = 0;
 constexpr std::uint32_t kIpv4 = 1, kNotSynchronised = 3;
 
-/// Where what is in a message, in bytes.
+/// Offsets in bytes.
 constexpr std::size_t kCommandAt = 4, kSequenceInRequestAt = 8;
 constexpr std::size_t kReplyAt = 6, kStatusAt = 8, kSequenceAt = 16, kAddressAt = 32, kFamilyAt = 48,
                       kLeapAt = 54, kTimeAt = 56, kOffsetAt = 72;
@@ -20,7 +20,7 @@ std::uint32_t number_at(std::span<const std::uint8_t> bytes, std::size_t at, std
   return number;
 }
 
-/// A number of its own format: an exponent of 7 bits and a coefficient of 25, both signed.
+/// chrony's floating point: a signed exponent of 7 bits and a signed coefficient of 25.
 double real_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   constexpr int kBits = 25, kExponents = 128;
   const std::uint32_t all = number_at(bytes, at, 4);
@@ -31,7 +31,7 @@ double real_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return std::ldexp(static_cast<double>(coefficient), exponent - kBits);
 }
 
-/// Seconds in two halves, and nanoseconds.
+/// Seconds in two halves, then nanoseconds.
 double time_at(std::span<const std::uint8_t> bytes, std::size_t at) {
   return number_at(bytes, at, 4) * 4294967296.0 + number_at(bytes, at + 4, 4) +
          number_at(bytes, at + 8, 4) / 1e9;

@@ -6,21 +6,20 @@
 #include <optional>
 #include <span>
 
-/// How chronyd stands, as it tells whoever asks on this machine: version 6 of its protocol (candm.h of chrony
-/// 4), command "tracking".
+/// State of chronyd by its protocol, version 6 (candm.h of chrony 4), command "tracking".
 namespace adit::clock {
 
 struct Tracking {
-  std::uint32_t server = 0;  // the IPv4 address that it goes by; 0: none
-  double heard = 0;          // when it was heard last, in seconds since 1970 by the system's clock
-  double behind = 0;         // seconds by which the system's clock was behind the server's then
+  std::uint32_t server = 0;  // IPv4 address of the selected server; 0: none
+  double heard = 0;          // last contact, in seconds since 1970 by the system clock
+  double behind = 0;         // seconds by which the system clock was then behind the server
 };
 
-/// The reply to it is as long.
+/// As long as the reply.
 using TrackingRequest = std::array<std::uint8_t, 104>;
-/// `number` is in its reply.
+/// `number` is returned in the reply.
 TrackingRequest tracking_request(std::uint32_t number);
-/// Nothing where these bytes are no reply to that request.
+/// std::nullopt if the bytes are not a reply to that request.
 std::optional<Tracking> read_tracking(std::span<const std::uint8_t> reply, std::uint32_t number);
 
 }  // namespace adit::clock

@@ -12,7 +12,7 @@ void Change::interrupted() {
 }
 
 void Change::want(const Wanted& wanted, Instant now) {
-  if (status_.pending) return;  // its sender sees by the status that it was not taken
+  if (status_.pending) return;  // the sender sees in the status that its request was ignored
   if (status_.kept == wanted.numbers) {
     status_.ended_nonce = wanted.nonce;
     status_.ended = Ended::Confirmed;

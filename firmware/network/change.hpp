@@ -11,29 +11,30 @@
 
 namespace adit::network {
 
-/// What is done to the machine.
+/// The actions of a Change on the machine.
 class Hands {
  public:
   virtual ~Hands() = default;
-  /// Uses the numbers until the machine is restarted, or until they are reverted.
+  /// Uses the numbers until the next boot or the next revert().
   virtual std::expected<void, std::string> apply(const Numbers& numbers) = 0;
-  /// Uses them from now on.
+  /// Uses and stores the numbers.
   virtual std::expected<void, std::string> keep(const Numbers& numbers) = 0;
-  /// Goes back to what was kept last.
+  /// Returns to the numbers that were stored last.
   virtual std::expected<void, std::string> revert() = 0;
-  /// Goes back to what the box came with, and keeps that; gives it, where it came with any.
+  /// Returns to the factory numbers, stores them, and gives them. std::nullopt: the box came without any.
   virtual std::expected<std::optional<Numbers>, std::string> forget() = 0;
 };
 
-/// A change of the network's numbers. It is applied at once, stored when the operator confirms it, and
-/// reverted if the operator does not confirm it in time. One at a time.
+/// A change of the network's numbers, one at a time. It is applied at once and stored when the operator
+/// confirms it. If the operator does not confirm it in time, it is reverted.
 class Change {
  public:
-  /// A revert that fails is tried again this often, this long after the last time; then by a later start.
+  /// Attempts of a failing revert, and the wait between two of them. After the last one, a later start
+  /// reverts.
   static constexpr int kTries = 5;
   static constexpr std::chrono::seconds kTryAgain{2};
 
-  /// `hands` outlives this. `kept`: what was confirmed last, or what the box came with.
+  /// `hands` must outlive this object. `kept`: the numbers that were confirmed last, or the factory numbers.
   Change(Hands& hands, const std::optional<Numbers>& kept) : hands_(hands) { status_.kept = kept; }
 
   void set_interfaces(std::string team, std::string command_post) {
@@ -41,20 +42,20 @@ class Change {
     status_.command_post_interface = std::move(command_post);
   }
 
-  /// A change was under way when this last ended: it has been reverted.
+  /// Records that the previous process ended during a change. The caller has reverted that change.
   void interrupted();
 
   void want(const Wanted& wanted, Instant now);
-  /// A word counts until tick() has said that the time is up: whoever was kept from looking looks for words
-  /// first, for they may have come in time.
+  /// Confirms or reverts the pending change. Call before tick(): a late caller may hold a word that came in
+  /// time.
   void hear(const Word& word, Instant now);
-  /// Ends what is pending, too. An error: it is not done, or not in use yet.
+  /// Forgets all addresses and ends a pending change. Error: not done, or not in effect yet.
   std::expected<void, std::string> forget(Instant now);
   void tick(Instant now);
-  /// The program ends: reverts a pending change. If a revert has failed, tries it once more.
+  /// Reverts a pending change before the program ends. If a revert has failed, tries once more.
   void stop(Instant now);
 
-  /// When tick() is to be called; nothing: no change is under way.
+  /// Time of the next tick(). std::nullopt: no change is pending.
   std::optional<Instant> wake() const;
   void set_endpoints(Endpoints endpoints) { status_.endpoints = std::move(endpoints); }
   const Status& status() const { return status_; }
@@ -66,7 +67,7 @@ class Change {
 
   Hands& hands_;
   Status status_;
-  std::string why_;  // it is being reverted
+  std::string why_;  // reason of the revert
   int tries_ = 0;
   std::optional<Instant> try_at_;
 };

@@ -21,14 +21,14 @@ bool is_any(const std::string& address) {
 struct Endpoint {
   std::string name;
   std::string address;
-  std::optional<std::uint32_t> number;  // nothing: no IPv4 address
+  std::optional<std::uint32_t> number;  // std::nullopt: no IPv4 address
 };
 
 Endpoint endpoint(std::string name, const Address& address) {
   return {std::move(name), address.address, settings::ipv4_of(address.address)};
 }
 
-/// Those that are in use.
+/// The endpoints of the present course.
 std::vector<Endpoint> endpoints(const Circumstances& around) {
   return {endpoint("scoring endpoint", around.command_post.scoring),
           endpoint("mapping endpoint", around.command_post.mapping)};
@@ -43,7 +43,7 @@ std::vector<Endpoint> all_endpoints(const Circumstances& around) {
   return all;
 }
 
-/// An endpoint that the box would find no way to.
+/// Warns of endpoints that the box could not reach.
 void warn_of_lost_endpoints(const Numbers& wanted, const Circumstances& around,
                             std::vector<std::string>& warnings) {
   for (const auto& [name, address, number] : endpoints(around)) {

@@ -28,7 +28,7 @@ struct KindOf<std::chrono::milliseconds> {
   static constexpr Schema schema = {.type = "integer"};
 };
 
-/// Milliseconds of its clock.
+/// Milliseconds of CLOCK_MONOTONIC.
 template <>
 struct KindOf<network::Instant> {
   using Milliseconds = KindOf<std::chrono::milliseconds>;
@@ -109,7 +109,7 @@ constexpr codec::Schema kAddressesSchema = {.type = "array"};
 constexpr codec::Kind kAddresses = {
     .write = write_addresses, .read = read_addresses, .schema = &kAddressesSchema};
 
-/// When a change is reverted unless it is confirmed.
+/// Time within which a change must be confirmed.
 template <auto within>
 constexpr Member confirm_within() {
   return member<within>("confirm_within_ms").from(kLeastWithin.count()).to(kMostWithin.count());
@@ -166,7 +166,7 @@ constexpr Member kTakenMembers[] = {
     member<&Taken::exchanged>("exchanged").as(kTaken),
 };
 
-/// The file that is kept.
+/// The file of the stored numbers.
 struct Kept {
   Numbers numbers;
   static const Row kRow;

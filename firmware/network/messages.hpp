@@ -11,14 +11,14 @@
 #include "codec/row_file.hpp"
 #include "network/numbers.hpp"
 
-/// The files by which aditd, which has no privilege, and adit-network, which runs as root, speak with each
-/// other: README.md.
+/// Messages, as files, between aditd, which has no privileges, and adit-network, which runs as root:
+/// README.md.
 namespace adit::network {
 
-/// The kernel's CLOCK_MONOTONIC, which both programs see alike.
+/// CLOCK_MONOTONIC, which both programs share.
 using Instant = std::chrono::steady_clock::time_point;
 
-/// What aditd asks for, in its own state folder. Each file is taken away once it is read.
+/// Requests in aditd's state directory. adit-network removes each file once it has read it.
 inline constexpr const char* kWantedFile = "wanted.json";
 inline constexpr const char* kWordFile = "word.json";
 inline constexpr const char* kProbeFile = "probe.json";
@@ -26,12 +26,12 @@ inline constexpr const char* kEndpointsFile = "endpoints.json";
 inline constexpr const char* kForgetFile = "forget.json";
 /// The answer to a Probe, in adit-network's runtime directory.
 inline constexpr const char* kProbedFile = "probed.json";
-/// What adit-network --watch tells everybody, in a runtime folder of its own.
+/// The address conflicts that adit-network --watch has found, in its own runtime directory.
 inline constexpr const char* kTakenFile = "taken.json";
 
 inline constexpr std::chrono::milliseconds kLeastWithin{1000}, kMostWithin{600000};
 
-/// An IPv4 address, or "": the kind of that text.
+/// The kind of a text that is an IPv4 address or "".
 extern const codec::Kind kAddressOrNone;
 
 struct Wanted {
@@ -41,7 +41,7 @@ struct Wanted {
   static const codec::Row kRow;
 };
 
-/// About a pending change.
+/// The operator's answer to a pending change.
 struct Word {
   enum class What : std::uint8_t { Confirm, Revert };
   std::string nonce;  // of the change
@@ -49,23 +49,23 @@ struct Word {
   static const codec::Row kRow;
 };
 
-/// Whether somebody else has one of the box's addresses on the Command Post's network, and who answers for
-/// `sought` on which side.
+/// Asks whether another machine has one of the box's addresses on the Command Post's network, and on which
+/// interface a machine answers for `sought`.
 struct Probe {
   std::string nonce;
-  std::string sought = "";  // an IPv4 address: the endpoint, or the gateway to it; "": none is looked for
+  std::string sought = "";  // the endpoint's IPv4 address, or its gateway's; "": not asked
   static const codec::Row kRow;
 };
 
-/// Where the settings' endpoints are, for whatever addresses the box has: no change, and so never confirmed.
+/// Addresses of the endpoints in the settings. The routes to them need no confirmation.
 struct Endpoints {
-  std::vector<std::uint32_t> addresses;  // kMostEndpoints, in order, none twice
+  std::vector<std::uint32_t> addresses;  // at most kMostEndpoints, sorted, without duplicates
   static const codec::Row kRow;
   friend bool operator==(const Endpoints&, const Endpoints&) = default;
 };
 inline constexpr std::size_t kMostEndpoints = 64;
 
-/// The box is to have the addresses that it came with.
+/// Requests the factory addresses.
 struct Forget {
   std::string nonce;
   static const codec::Row kRow;
@@ -88,12 +88,12 @@ constexpr std::string_view name_of(Ended ended) {
 
 struct Status {
   std::string team_interface = "", command_post_interface = "";
-  std::optional<Numbers> kept = {};  // confirmed, or as the box came; nothing: set elsewhere
-  Endpoints endpoints = {};          // to which there are routes
+  std::optional<Numbers> kept = {};  // confirmed, or from the factory; nullopt: set elsewhere
+  Endpoints endpoints = {};          // addresses that have routes
   std::optional<Pending> pending = {};
-  Ended ended = Ended::NotYet;   // how the last change of this start ended
-  std::string ended_nonce = "";  // its own
-  std::string why = "";          // of it
+  Ended ended = Ended::NotYet;   // of the last change since this process started
+  std::string ended_nonce = "";  // nonce of that change
+  std::string why = "";          // reason of that end
   bool names(std::string_view change) const {
     return ended_nonce == change || (pending && pending->nonce == change);
   }
@@ -103,35 +103,35 @@ struct Status {
 
 struct Probed {
   std::string nonce;
-  std::string address = "";  // that somebody else has; of all where nobody does, the first; "": there is none
-  std::string claimant = "";  // the MAC address that has it, too; "": nobody's
-  std::string own = "";       // the interface of this box that this is
-  std::string found_on = "";  // the interface on which somebody answers for what was sought; "": nobody does
-  std::string trouble = "";   // why nothing was found out
+  std::string address = "";   // first address with a conflict, else the box's first address; "": no address
+  std::string claimant = "";  // MAC address of the other machine; "": no conflict
+  std::string own = "";       // this box's interface with that MAC address, or ""
+  std::string found_on = "";  // the interface on which a machine answers for `sought`; "": none does
+  std::string trouble = "";   // why the probe failed
   static const codec::Row kRow;
 };
 
-/// That another machine uses an address of the box's, too (RFC 5227 2.4).
+/// An address conflict: another machine uses an address of the box (RFC 5227 2.4).
 struct TakenAddress {
   std::string interface = "", address = "";
-  std::string mac = "";  // whose; "02:00:5e:10:00:01"
-  Instant seen = {};     // last
+  std::string mac = "";  // of the other machine: "02:00:5e:10:00:01"
+  Instant seen = {};     // last time
   static const codec::Row kRow;
   friend bool operator==(const TakenAddress&, const TakenAddress&) = default;
 };
-/// It counts for so long after it was seen last.
+/// Time for which a conflict is reported after it was last seen.
 inline constexpr std::chrono::seconds kTakenFor{20};
 
 struct Taken {
-  std::vector<TakenAddress> addresses = {};  // kMostTaken
-  /// The Command Post's that are at the team's port, and not at their own: kMostTaken.
+  std::vector<TakenAddress> addresses = {};  // at most kMostTaken
+  /// The Command Post's addresses that answer at the team's port instead of their own; at most kMostTaken.
   std::vector<TakenAddress> exchanged = {};
   static const codec::Row kRow;
   friend bool operator==(const Taken&, const Taken&) = default;
 };
 inline constexpr std::size_t kMostTaken = 32;
 
-/// What is kept, in a file of its own in adit-network's state folder: the numbers alone.
+/// The file of the confirmed numbers, in adit-network's state directory.
 inline constexpr const char* kConfirmedFile = "confirmed.json";
 std::string write_kept(const Numbers& numbers);
 std::expected<Numbers, std::string> read_kept(std::string_view json);

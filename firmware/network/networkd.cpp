@@ -9,9 +9,9 @@ namespace {
 
 using settings::Subnet;
 
-/// An address stays without a carrier: a cable that is pulled and put back costs no more than that. Whatever
-/// else the interface had goes (KeepConfiguration=no), or an address that was changed would stay beside the
-/// new one.
+/// The address stays without a carrier (ConfigureWithoutCarrier), so a pulled cable costs only its own time.
+/// Other addresses of the interface are removed (KeepConfiguration=no), or a replaced address would stay
+/// beside the new one.
 constexpr const char* kHead =
     "# Written by adit-network: to change it, use Adit's page.\n"
     "[Match]\n"
@@ -24,9 +24,9 @@ constexpr const char* kBoth =
     "KeepConfiguration=no\n"
     "ConfigureWithoutCarrier=yes\n";
 
-/// Whether anybody else has the address (RFC 5227) is asked before this is written, and so with an answer;
-/// networkd would ask for seconds in which there is no address at all, and where it is told another one
-/// meanwhile, version 252 takes up both.
+/// adit-network looks for address conflicts (RFC 5227) before it writes this file. The check by networkd
+/// would leave the interface without an address for seconds. If the address changes during the check, version
+/// 252 sets both.
 std::string address(const Subnet& host, bool with_route) {
   return icd::sentence("\n[Address]\nAddress=", host_text(host), with_route ? "" : "\nAddPrefixRoute=no",
                        "\nDuplicateAddressDetection=none\n");
@@ -36,7 +36,7 @@ std::string in_table() {
   return icd::sentence("Table=", kRouteTable, "\n");
 }
 
-/// To the subnet that an address is in; of two addresses in one, by the first.
+/// A route to the subnet of an address. If two addresses share a subnet, the route uses the first.
 std::string link_route(const Subnet& host) {
   return icd::sentence("\n[Route]\nDestination=", written(host),
                        "\nScope=link\nPreferredSource=", settings::ipv4_text(host.address), "\n") +
@@ -50,8 +50,8 @@ std::string endpoint_route(std::uint32_t endpoint, std::uint32_t gateway, const 
          in_table();
 }
 
-/// Who looks in the table: sockets that are bound to the interface, and, so that the kernel knows the way
-/// back of what comes (rp_filter), whatever goes from its addresses.
+/// Sends sockets bound to the interface, and packets from its addresses, to the table. The second rule also
+/// gives the kernel the way back for received packets (rp_filter).
 std::string rules(const std::string& interface, const Numbers& numbers) {
   std::string text = icd::sentence("\n[RoutingPolicyRule]\nOutgoingInterface=", interface,
                                    "\nFamily=ipv4\nPriority=", kRouteTable, "\n") +
@@ -74,7 +74,8 @@ std::string team_file(const std::string& interface, const Numbers& numbers) {
                      "MulticastDNS=yes\n" +
                      kBoth;
   text += asks ? "DHCP=ipv4\n" : "DHCP=no\n";
-  // What another network gave is of no use in this one; a cable that was only moved keeps it.
+  // Addresses from the DHCP server of another network are useless here. A cable that moved within one network
+  // keeps its lease.
   text += asks ? "IgnoreCarrierLoss=5s\n" : "IgnoreCarrierLoss=yes\n";
   if (numbers.mode == Mode::Static) text += address(numbers.team, true);
   if (asks) {

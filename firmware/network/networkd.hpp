@@ -8,23 +8,21 @@
 
 namespace adit::network {
 
-/// The Command Post's routes have a table of their own, in which nobody looks but who is bound to its
-/// interface, or to an address of it: where both sides' subnets overlap, what goes to the team never finds
-/// them.
+/// The routing table of the Command Post's routes. Only sockets bound to its interface or to one of its
+/// addresses use it. So traffic to the team never uses these routes, even if both sides' subnets overlap.
 inline constexpr int kRouteTable = 230;
 
-/// What systemd-networkd is to read (systemd.network(5)). The team's side: its address, a link-local one
-/// besides, and mDNS. By DHCP an address is taken, and nothing else: no route, no name server, no time.
+/// The systemd.network(5) file of the team's side: its address, a link-local address and mDNS. DHCP sets only
+/// the address: no route, name server or time.
 std::string team_file(const std::string& interface, const Numbers& numbers);
-/// The Command Post's side: addresses, and by the gateway those of `endpoints` that are in no subnet of them,
-/// never a default route: the two networks touch only inside Adit. Nothing is learned from the network, and
-/// nothing said to it.
+/// The systemd.network(5) file of the Command Post's side: the addresses, and routes by the gateway to
+/// `endpoints` outside their subnets. It has no default route, because the two networks meet only inside
+/// Adit. The interface accepts no configuration from the network and announces nothing.
 std::string command_post_file(const std::string& interface, const Numbers& numbers,
                               const std::vector<std::uint32_t>& endpoints);
 
-/// A .network file of a lower number wins over one of a higher: what is tried goes before what is kept, and
-/// both before what the machine may have of before (netplan's 10-*), for an interface is found by its earlier
-/// name, too.
+/// File names: the lower number wins. A change on trial precedes the stored numbers, and both precede the
+/// machine's earlier files (netplan's 10-*), which may match an interface by its old name.
 inline constexpr const char* kTriedTeam = "04-adit-team.network";
 inline constexpr const char* kTriedCommandPost = "04-adit-command-post.network";
 inline constexpr const char* kKeptTeam = "05-adit-team.network";

@@ -16,7 +16,7 @@ using settings::Subnet;
 
 using settings::shown;
 
-/// The members of one object, each asked for by its name; what is wrong with them is gathered.
+/// The members of one object, read by name. Collects the errors.
 class Members {
  public:
   Members(const Value* value, std::string path, std::vector<Error>& errors)
@@ -46,7 +46,7 @@ class Members {
     const Value* value = find(name);
     const auto* text = value == nullptr ? nullptr : std::get_if<std::string>(&value->is);
     if (may_be_none && is_none(value)) return std::nullopt;
-    if (object_ == nullptr) return std::nullopt;  // told already
+    if (object_ == nullptr) return std::nullopt;  // reported already
     if (value == nullptr) {
       refuse(name, "missing");
       return std::nullopt;
@@ -77,7 +77,7 @@ class Members {
     return static_cast<std::uint8_t>(*number);
   }
 
-  /// Static where there is none.
+  /// Static if absent.
   Mode mode() {
     const Value* value = find("mode");
     if (value == nullptr) return Mode::Static;
@@ -89,14 +89,14 @@ class Members {
     return Mode::Static;
   }
 
-  /// A member that has nothing to say here.
+  /// Rejects a member that has no meaning in this mode.
   void none(std::string_view name, std::string_view why) {
     if (const Value* value = find(name); !is_none(value)) {
       refuse(name, icd::sentence("expected none ", why, ", got ", shown(*value)));
     }
   }
 
-  /// Once all that there may be has been asked for.
+  /// Rejects members that were not read. Call after all others.
   void finish() {
     if (object_ == nullptr) return;
     for (auto member = object_->begin(); member != object_->end(); ++member) {
@@ -124,7 +124,7 @@ class Members {
 
 constexpr std::uint32_t kLinkLocal = 169u << 8 | 254;  // the first two numbers of 169.254.0.0/16
 
-/// Why no host of the subnet can have the address; "" where one can.
+/// Why a host of the subnet cannot have the address, or "".
 std::string unfit(std::uint32_t address, const Subnet& subnet) {
   const std::uint32_t first = address >> 24;
   if (first == 0 || first == 127 || first >= 224) return "is not an address that a host can have";
@@ -158,7 +158,7 @@ void read_team(Members& team, Numbers& numbers) {
   team.finish();
 }
 
-/// All of a list, or none where anything is wrong with one of them.
+/// All addresses of a list; if one is wrong, no list.
 std::optional<std::vector<Subnet>> hosts(const Value::Array& list, const std::string& path,
                                          std::vector<Error>& errors) {
   const std::size_t before = errors.size();
@@ -179,7 +179,7 @@ std::optional<std::vector<Subnet>> hosts(const Value::Array& list, const std::st
   return errors.size() == before ? std::optional(std::move(all)) : std::nullopt;
 }
 
-/// By `addresses`, or by `address` and `prefix`, as they were when there was one.
+/// Reads `addresses`, or the older form `address` and `prefix`.
 std::optional<std::vector<Subnet>> own_of(Members& post, std::vector<Error>& errors) {
   const Value* list = post.find("addresses");
   if (list == nullptr && post.find("address") != nullptr) {
@@ -223,7 +223,7 @@ void read_command_post(Members& post, Numbers& numbers, std::vector<Error>& erro
   post.finish();
 }
 
-/// The kernel would take what is meant for one side for the other's.
+/// The kernel would confuse the two sides.
 void check_both(const Numbers& numbers, std::vector<Error>& errors) {
   if (numbers.mode != Mode::Static || numbers.team.address == 0) return;
   if (std::ranges::find(numbers.command_post, numbers.team.address, &Subnet::address) !=

@@ -13,9 +13,9 @@
 
 namespace adit::network {
 
-/// How team0 comes by its address. Besides, it always has a link-local one (RFC 3927).
+/// Source of team0's address. team0 always has a link-local address (RFC 3927) in addition.
 enum class Mode : std::uint8_t { Static, Dhcp, LinkLocal };
-/// In their order.
+/// In the order of Mode.
 inline constexpr std::string_view kModeWords[] = {"static", "dhcp", "link-local"};
 constexpr std::string_view name_of(Mode mode) {
   return kModeWords[static_cast<std::size_t>(mode)];
@@ -23,29 +23,29 @@ constexpr std::string_view name_of(Mode mode) {
 
 inline constexpr std::size_t kMostAddresses = 8;  // of the Command Post's side
 
-/// What the box's two interfaces have: IPv4 addresses of their own, each in a subnet.
+/// The IPv4 addresses and subnets of the box's two interfaces.
 struct Numbers {
   Mode mode = Mode::Static;                         // of the team's side
-  settings::Subnet team = {};                       // of Mode::Static
-  std::vector<settings::Subnet> command_post = {};  // kMostAddresses; none: the interface has none
-  std::optional<std::uint32_t> gateway = {};        // in one of these subnets, to endpoints elsewhere
+  settings::Subnet team = {};                       // for Mode::Static
+  std::vector<settings::Subnet> command_post = {};  // at most kMostAddresses; may be empty
+  std::optional<std::uint32_t> gateway = {};        // in one of these subnets; leads to endpoints elsewhere
 
-  static const codec::Row kRow;  // as it is written
+  static const codec::Row kRow;  // the stored form
   friend bool operator==(const Numbers&, const Numbers&) = default;
 };
 
-inline constexpr std::uint8_t kWidest = 8, kNarrowest = 30;  // prefixes that leave room for two hosts
+inline constexpr std::uint8_t kWidest = 8, kNarrowest = 30;  // prefixes with room for two hosts
 
-/// Of `{"team": {"mode", "address", "prefix"}, "command_post": {"addresses": [{"address", "prefix"}, ...],
-/// "gateway"}}`, or all that is wrong with it, each by its path: members that are missing, unknown or given
-/// twice, values of the wrong kind, addresses that no host can have, or that are given twice. `mode` may be
-/// absent: static; the other modes have no address. `gateway` may be absent, null or "". One address may
-/// stand in place of `addresses`: `{"address", "prefix", "gateway"}`.
+/// Reads `{"team": {"mode", "address", "prefix"}, "command_post": {"addresses": [{"address", "prefix"}, ...],
+/// "gateway"}}`. The error lists all faults by path: missing, unknown or repeated members, wrong types,
+/// addresses that a host cannot have, repeated addresses. `mode` defaults to static; the other modes have no
+/// address. `gateway` may be absent, null or "". One address may replace `addresses`: `{"address", "prefix",
+/// "gateway"}`.
 std::expected<Numbers, std::vector<settings::Error>> read_numbers(const codec::Value& value);
 
-/// A host's own address with its prefix, as it is written.
+/// A host's address with its prefix, in the stored form.
 extern const codec::Row kHost;
-/// Kinds of an address: as text, and "" where there is none.
+/// Kinds of an address as text. "" stands for no address.
 struct AddressText {
   static codec::Value write(std::uint32_t address) { return {settings::ipv4_text(address)}; }
   static void read(const codec::Field& field, std::uint32_t& address);
@@ -59,10 +59,10 @@ struct AddressOrNone {
   static constexpr codec::Schema schema = {.type = "string"};
 };
 
-/// Of the Command Post's addresses, the one in whose subnet `address` is.
+/// The Command Post address of the box whose subnet contains `address`, or null.
 const settings::Subnet* on_link(const Numbers& numbers, std::uint32_t address);
-/// Who answers there for an address of the Command Post's: it, or the gateway to it; nothing: there is no
-/// way.
+/// The host to send to for an address of the Command Post: `address` itself or the gateway. std::nullopt: no
+/// route.
 std::optional<std::uint32_t> next_hop(const Numbers& numbers, std::uint32_t address);
 
 /// "192.168.7.11/24", "dhcp", "link-local"
@@ -85,7 +85,7 @@ struct KindOf<settings::Subnet> : KindOfRow<settings::Subnet, network::kHost> {}
 template <>
 struct KindOf<network::Numbers> {
   static Value write(const network::Numbers& numbers) { return write_row(network::Numbers::kRow, &numbers); }
-  static void read(const Field& field, network::Numbers& numbers);  // as read_numbers()
+  static void read(const Field& field, network::Numbers& numbers);  // as read_numbers() does
   static constexpr Schema schema = {.row = &network::Numbers::kRow, .has_reader = true};
 };
 

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Of a message without its bulk data: more than any that is taken.
+/// Largest message without its bulk data: larger than any accepted one.
 constexpr std::size_t kMostText = 64u << 20;
 
 icd::Rules as_kept() {

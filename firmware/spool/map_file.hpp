@@ -11,34 +11,34 @@
 
 namespace adit::spool {
 
-/// The file of a map that waits: its message with the data first (codec::DataFirst), so that the data can be
-/// written as it arrives, and shown in the file rather than beside it. For one thread at a time. What fails
-/// gives the errno, else 0.
+/// The file of a queued map, with the data first (codec::DataFirst). So data can be written as it arrives,
+/// and then mapped instead of held in memory. Use from one thread at a time. Functions that return int give
+/// errno, or 0.
 class MapFile {
  public:
-  /// `path`: what it is named after until it has its name.
+  /// `path`: prefix of the temporary name until finish().
   explicit MapFile(const std::string& path);
 
-  /// Puts data at the end; each chunk is freed as it is written. Where it fails, `data` is what is left.
+  /// Appends data and frees each chunk once it is written. After an error, `data` holds the rest.
   int append(icd::ChunkedBytes& data);
-  /// What append() has put there, in the file. Empty with errno: it cannot be read.
+  /// The data that append() has written, mapped from the file. Empty with errno: it cannot be mapped.
   icd::ChunkedBytes stored();
   std::size_t stored_bytes() const;
-  /// Whether `data` begins with what stored() gave, all of it.
+  /// Whether `data` begins with all chunks that stored() gave.
   bool begins(const icd::ChunkedBytes& data) const;
 
-  /// Writes what is missing of `map`, whose data begins so, gives it its name, and shows its data in it.
+  /// Writes the rest of `map`, renames the file to `path`, and replaces the map's data by the mapped file.
+  /// Call only if begins(map.data.bytes), or if no data has been appended.
   int finish(icd::MapUpdate& map, const std::string& path);
 
-  /// The map in a file that finish() made, with its data in the file, which is not read: what it is worth is
-  /// to be found out by codec::check_data(). Refused with 503 if the file cannot be read, else because it is
-  /// damaged.
+  /// Reads a file that finish() made and maps its data unread; codec::check_data() checks the data. Errors:
+  /// 503 if the file cannot be read, otherwise the file is damaged.
   static icd::Checked<icd::MapUpdate> read(const std::string& path, const icd::Rules& rules);
 
  private:
   PartFile file_;
   int error_;
-  MappedFile shown_;  // by stored()
+  MappedFile shown_;  // from stored()
 };
 
 }  // namespace adit::spool

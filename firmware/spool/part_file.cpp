@@ -15,7 +15,7 @@
 namespace adit::spool {
 namespace {
 
-constexpr std::size_t kSmall = 4096;  // a file of so many bytes is read, a larger one is mapped
+constexpr std::size_t kSmall = 4096;  // bytes: larger files are mapped
 
 std::expected<MappedFile, int> map_file(int fd) {
   struct stat status{};

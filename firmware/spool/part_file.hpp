@@ -14,41 +14,40 @@
 
 namespace adit::spool {
 
-/// A file's bytes in memory: those of a large file on a tmpfs are the file itself. They live as long as their
-/// owner.
+/// A file's bytes in memory. A mapped file on a tmpfs takes no memory of its own. `bytes` is valid while
+/// `owner` lives.
 struct MappedFile {
   std::shared_ptr<const void> owner;
   std::span<const std::uint8_t> bytes;
 };
-/// The bytes of a file, or the errno of why it cannot be read. Those of a small file are a copy: to map it
-/// takes longer.
+/// The bytes of a file, or errno. A small file is copied, which is faster than a mapping.
 std::expected<MappedFile, int> map_file(const std::string& path);
 std::string_view text_in(const MappedFile& file);
-/// 503 and why; but if there is no such file, 422: what it had is lost.
+/// The refusal for a file that cannot be read: 503, or 422 if the file does not exist, because its content is
+/// lost.
 icd::Refusal unreadable(const std::string& path, int error);
 
-/// A file of this user alone that is not whole yet: it has another name until name(), and is gone with this
-/// object if it never comes to that. For one thread at a time. What fails gives the errno, else 0.
+/// An unfinished file for this user alone. It has a temporary name until name(); the destructor removes a
+/// file without its final name. Use from one thread at a time. Functions that return int give errno, or 0.
 class PartFile {
  public:
-  /// Files that end so, and that nobody writes, were left by a kill.
+  /// Ending of temporary names. A killed process leaves such files.
   static constexpr std::string_view kEnding = ".part";
 
-  /// `path`: what it is named after meanwhile, but as no other is.
+  /// `path`: prefix of the unique temporary name.
   explicit PartFile(const std::string& path);
   ~PartFile();
   PartFile(const PartFile&) = delete;
   PartFile& operator=(const PartFile&) = delete;
 
   std::size_t size() const { return size_; }
-  /// Writes at the end, and frees each chunk as it is written. Where it fails, `bytes` is what is left to
-  /// write.
+  /// Appends, and frees each chunk once it is written. After an error, `bytes` holds the rest.
   int append(icd::ChunkedBytes& bytes);
   int append(std::string_view bytes);
-  /// Overwrites what stands at the beginning.
+  /// Overwrites the beginning.
   int begin_with(std::string_view bytes) const { return write(bytes, 0); }
   std::expected<MappedFile, int> map() const;
-  /// From now on it is that file, in the place of the one before.
+  /// Renames the file to `path` and replaces an older file there.
   int name(const std::string& path);
 
  private:
@@ -56,7 +55,7 @@ class PartFile {
 
   std::string part_;
   loop::FileDescriptor fd_;
-  int error_ = 0;  // of its making
+  int error_ = 0;  // from the constructor
   std::size_t size_ = 0;
   bool named_ = false;
 };

@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a map's file takes beside the map's data, in whole pages.
+/// Bytes of a map's file beside the data, in whole pages.
 constexpr std::uint64_t kBeside = 8192;
 constexpr std::string_view kMap = "map-", kEnding = ".cbor";
 
@@ -30,7 +30,7 @@ std::unexpected<icd::Refusal> not_kept(const std::string& why) {
                                       "Adit cannot store this map: " + why + "; send it again later"});
 }
 
-/// What is left in the folder's file system for this user and for maps; an error is its errno.
+/// Bytes left for maps in the file system, or errno.
 std::expected<std::uint64_t, int> room_in(const std::string& folder, std::uint64_t left_to_others) {
   const auto disk = host::disk_of(folder);
   if (!disk) return std::unexpected(errno);
@@ -96,14 +96,14 @@ void Spool::work_begins(const std::vector<std::uint64_t>& numbers) {
   std::string text;
   for (const std::uint64_t number : numbers)
     text += icd::sentence(number, " ", ended_once_.contains(number) ? 1 : 0, "\n");
-  (void)host::write_file(work_file(), text, host::kOursAlone);  // without it a map is only tried once more
+  (void)host::write_file(work_file(), text, host::kOursAlone);  // without the file, a crash is not counted
 }
 
 void Spool::work_ends() const {
   ::unlink(work_file().c_str());
 }
 
-/// The process before ended in the work that the file names.
+/// Reads the maps that the last process was working on when it ended, and sets repeated ones aside.
 void Spool::count_ends() {
   if (!host::may_exist(work_file())) return;
   const auto text = host::read_file(work_file());

@@ -11,12 +11,12 @@
 
 namespace adit::alarms {
 
-/// That somebody has seen an alarm, as it was then: what outlives the end of the service.
+/// An acknowledgement of an alarm as it then was. It outlives a restart of the service.
 struct Acknowledged {
-  static constexpr std::size_t kMost = 64;       // that are kept
-  static constexpr std::size_t kLongest = 1024;  // bytes of what and why: longer ones are not kept
-  static constexpr double kHolds = 3600;         // seconds that one holds over an end of the service
-  static constexpr double kWaitsFor = 60;        // seconds after a start within which its alarm is back
+  static constexpr std::size_t kMost = 64;       // stored acknowledgements
+  static constexpr std::size_t kLongest = 1024;  // bytes of what and why; longer ones are not stored
+  static constexpr double kHolds = 3600;         // seconds of validity across a restart
+  static constexpr double kWaitsFor = 60;        // seconds after a start within which the alarm must return
 
   std::string id = {};
   Severity severity = Severity::Wait;
@@ -28,9 +28,9 @@ struct Acknowledged {
   friend bool operator==(const Acknowledged&, const Acknowledged&) = default;
 };
 
-/// As a file: {"version": 1, "acknowledged": [...]}.
+/// The file: {"version": 1, "acknowledged": [...]}.
 std::string write_acknowledged(const std::vector<Acknowledged>& all);
-/// What is no such file is refused as a whole.
+/// An error anywhere rejects the whole file.
 std::expected<std::vector<Acknowledged>, std::string> read_acknowledged(std::string_view json);
 
 }  // namespace adit::alarms

@@ -8,27 +8,27 @@
 
 namespace adit::alarms {
 
-/// How urgent a condition is, the worst first. What is normal is no condition.
+/// Urgency of a condition, the worst first. A normal state is not a condition.
 enum class Severity : std::uint8_t {
   Bad,   // something does not work
-  Ask,   // it waits for the operator's word
-  Wait,  // it may pass by itself, and should be known
+  Ask,   // needs a decision of the operator
+  Wait,  // may pass by itself
 };
 inline constexpr std::string_view kSeverityWords[] = {"bad", "ask", "wait"};
 
-/// Where the cause is, and so who can mend it.
+/// Location of the cause.
 enum class Side : std::uint8_t { Robot, Box, Network, CommandPost };
 inline constexpr std::string_view kSideWords[] = {"robot", "box", "network", "command_post"};
 
-/// The one thing to do about it.
+/// The one thing to do.
 struct Action {
-  std::string word = {};  // on a button: "Show robot"
-  std::string link = {};  // where on the box's pages: "/#robot=uav5"
+  std::string word = {};  // on the button: "Show robot"
+  std::string link = {};  // path on the box's pages: "/#robot=uav5"
   static const codec::Row kRow;
   friend bool operator==(const Action&, const Action&) = default;
 };
 
-/// "uav5 is silent", and once that is over: "uav5 was silent".
+/// "uav5 is silent", and afterwards "uav5 was silent".
 struct Headline {
   std::string subject = {};  // "uav5"
   std::string state = {};    // "silent"
@@ -39,18 +39,18 @@ struct Headline {
   friend bool operator==(const Headline&, const Headline&) = default;
 };
 
-/// What is not as it should be, as the rules find it.
+/// A fault or a question, as the rules find it.
 struct Condition {
-  std::string id = {};  // stable while it lasts: "robot_silent:uav5"
+  std::string id = {};  // unchanged while the condition lasts: "robot_silent:uav5"
   Severity severity = Severity::Bad;
   Side side = Side::Box;
-  std::string subject = {};  // the part of the id behind the colon: a robot, an endpoint, a report's number
-  double since = 0;          // seconds since 1970; 0: since it was first found
+  std::string subject = {};  // part of the id after the colon: a robot, an endpoint, a report's number
+  double since = 0;          // seconds since 1970; 0: since first found
   Headline headline = {};    // at most six words
-  std::string why = {};      // a short sentence, in lower case and without a full stop; may be ""
+  std::string why = {};      // short clause in lower case without a full stop, or ""
   Action action = {};
-  std::uint64_t degree = 0;  // grows as it gets worse: an acknowledgement holds only up to that
-  std::uint64_t hides = 0;   // how many others follow from it, and are not listed
+  std::uint64_t degree = 0;  // grows with the fault; an acknowledgement covers this degree and lower ones
+  std::uint64_t hides = 0;   // number of unlisted conditions that follow from this one
   friend bool operator==(const Condition&, const Condition&) = default;
 };
 
@@ -67,7 +67,7 @@ struct KindOf<alarms::Side> : KindOfWords<alarms::Side, alarms::kSideWords> {};
 
 namespace adit::alarms {
 
-/// A condition as everybody shows it.
+/// A condition as all faces show it.
 struct Alarm {
   std::string id = {};
   Severity severity = Severity::Bad;
@@ -83,7 +83,7 @@ struct Alarm {
   friend bool operator==(const Alarm&, const Alarm&) = default;
 };
 
-/// One that went.
+/// An alarm that has ended.
 struct Over {
   std::string id = {};
   Severity severity = Severity::Bad;

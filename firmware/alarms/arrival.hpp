@@ -9,22 +9,22 @@
 
 namespace adit::alarms {
 
-/// How well something is, by shape and colour.
+/// A state for display, by shape and colour.
 enum class Level : std::uint8_t { Quiet, Good, Wait, Bad };
 inline constexpr std::string_view kLevelWords[] = {"quiet", "good", "wait", "bad"};
 
-/// Whether what a robot sends of one kind reaches the Command Post.
+/// Whether a robot's messages of one kind reach the Command Post.
 enum class Arrival : std::uint8_t {
-  NotYet,       // it waits for its first
-  UpToDate,     // nothing waits
-  Arriving,     // something waits, and not for long
-  Late,         // longer than taking turns explains
+  NotYet,       // the first message has not come
+  UpToDate,     // the queue is empty
+  Arriving,     // queued, for a normal time
+  Late,         // queued for longer than the turns of others explain
   Throttled,    // the Command Post answered 429
-  Failing,      // the last try came to nothing
-  NotArriving,  // and it has been so for long
-  Refused,      // the Command Post would not have the last one
-  Quiet,        // nothing new came for a while
-  Silent,       // its robot says nothing any more, against its habit
+  Failing,      // the last attempt failed
+  NotArriving,  // failing for long
+  Refused,      // the Command Post rejected the last message
+  Quiet,        // no new message for a while
+  Silent,       // the robot has stopped sending, against its habit
 };
 inline constexpr std::string_view kArrivalWords[] = {"waiting",   "up to date", "arriving",     "late",
                                                      "throttled", "failing",    "not arriving", "refused",
@@ -33,26 +33,27 @@ constexpr std::string_view name_of(Arrival arrival) {
   return kArrivalWords[static_cast<std::size_t>(arrival)];
 }
 
-/// The times by which all faces judge, in seconds.
-inline constexpr double kLateAfter = 10;       // and a turn of all that send
-inline constexpr double kFailingAfter = 10;    // a failing one counts as not arriving
-inline constexpr double kStuckAfter = 90;      // any counts as not arriving, or three times as long as late
-inline constexpr double kQuietAfter = 60;      // nothing new was forwarded
-inline constexpr double kStatusOldAfter = 15;  // what was heard of the run is no longer fresh
+/// Time limits of all faces, in seconds.
+inline constexpr double kLateAfter = 10;       // in addition to one turn of all senders
+inline constexpr double kFailingAfter = 10;    // failing then becomes "not arriving"
+inline constexpr double kStuckAfter = 90;      // any late stream becomes "not arriving", or after three times
+                                               // the late limit
+inline constexpr double kQuietAfter = 60;      // since the last new message was forwarded
+inline constexpr double kStatusOldAfter = 15;  // age at which a status of the run is old
 
-/// One robot's (or, with no name, the merged) traffic of one kind.
+/// Traffic of one kind from one robot, or merged (no name).
 struct Stream {
   std::string kind = {};                 // "grid", "cloud", "state", "markers"
-  std::string robot = {};                // ""
-  std::optional<double> behind = {};     // seconds that the oldest news has waited; nothing: none waits
-  std::optional<double> forwarded = {};  // age in seconds of the newest data that was delivered
-  std::optional<double> no_room = {};    // seconds since the robot was refused, because too much waits
+  std::string robot = {};                // "" for the merged map
+  std::optional<double> behind = {};     // seconds that the oldest message has been queued; nullopt: none is
+  std::optional<double> forwarded = {};  // age in seconds of the newest delivered data
+  std::optional<double> no_room = {};    // seconds since a message was rejected because the queue was full
   int last_status = 0;
-  bool failed = false;  // the last try has a sentence why it came to nothing
+  bool failed = false;  // the last attempt failed with a sentence
   bool is_map() const { return kind == "grid" || kind == "cloud"; }
 };
 
-/// `turn`: seconds within which each of all maps that wait has its turn. `silent`: its robot is.
+/// `turn`: seconds in which each queued map has its turn. `silent`: of the stream's robot.
 Arrival arrival_of(const Stream& stream, double turn, bool silent);
 Level level_of(Arrival arrival);
 

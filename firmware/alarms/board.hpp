@@ -12,30 +12,28 @@
 
 namespace adit::alarms {
 
-/// What is known of the conditions over time: since when each lasts, who has seen it, which ones went. Holds
-/// as many as conditions_of() gives, and kMostOver that went.
+/// History of the conditions: start of each, acknowledgements, and the last kMostOver that ended.
 class Board {
  public:
   static constexpr std::size_t kMostOver = 8;
 
-  /// Takes note of what came and went; `now` as in Facts. To be called each second, and before
-  /// acknowledge().
+  /// Records new and ended conditions. `now`: as in Facts. Call each second, and before acknowledge().
   void take(const std::vector<Condition>& conditions, double now);
-  /// The time of day was set ahead by so many seconds: each lasts as long as it did.
+  /// Call if the time of day was advanced by `seconds`: shifts all times, so that durations stay the same.
   void move(double seconds);
-  /// Quiets the alarm until it gets worse or comes again. If its degree falls meanwhile, a rise from there is
-  /// worse. Error: there is no alarm of that id.
+  /// Silences the alarm until it gets worse or ends. If its degree falls, a later rise from there counts as
+  /// worse. Error: there is no alarm with that id.
   std::expected<void, std::string> acknowledge(const std::string& id, double now);
 
-  /// What was acknowledged before this start, at `now`. Each holds once its alarm is back as it was, in every
-  /// word, within Acknowledged::kWaitsFor: what got worse, went, or reads otherwise is as loud as a new one.
+  /// Restores acknowledgements from before a restart at `now`. Each takes effect if its alarm returns
+  /// unchanged within Acknowledged::kWaitsFor. An alarm that got worse, ended or changed its text is new.
   void remember(std::vector<Acknowledged> before, double now);
-  /// What is to be remembered after the next start.
+  /// Acknowledgements to store for the next start.
   std::vector<Acknowledged> acknowledged() const;
 
-  /// These, as they are to be shown: bad before ask before wait, then oldest first.
+  /// The conditions as alarms: by severity, then the oldest first.
   std::vector<Alarm> shown(const std::vector<Condition>& conditions, double now) const;
-  /// The newest first.
+  /// Newest first.
   std::vector<Over> over() const { return {over_.begin(), over_.end()}; }
 
  private:
@@ -43,7 +41,7 @@ class Board {
     Condition condition;
     double since = 0;
     bool acknowledged = false;
-    Acknowledged seen = {};  // as it was then
+    Acknowledged seen = {};  // the alarm when it was acknowledged
   };
   static bool is_worse(const Condition& condition, const Known& known);
   static void see(Known& known, double now);
@@ -52,11 +50,11 @@ class Board {
 
   std::map<std::string, Known> known_;
   std::deque<Over> over_;
-  std::vector<Acknowledged> before_;  // whose alarms are not back yet
+  std::vector<Acknowledged> before_;  // alarms that have not returned yet
   double waits_until_ = 0;
 };
 
-/// Whether it calls the operator: the attention light blinks, `adit status` ends with 1.
+/// Whether the alarm calls the operator: the attention light blinks, and `adit status` exits with 1.
 inline bool calls(const Alarm& alarm) {
   return alarm.severity != Severity::Wait;
 }

@@ -1,4 +1,4 @@
-// What is wrong with the box and its networks.
+// Conditions of the box and its networks.
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +50,7 @@ void find_cables(const Facts& facts, Found& found) {
   }
 }
 
-/// Whether an endpoint of the Command Post is known to be heard, by its own port.
+/// Whether packets from the endpoint arrive, by the state of its connections.
 bool is_heard(const Endpoint& endpoint) {
   return endpoint.trouble != PostTrouble::NoToken && endpoint.trouble != PostTrouble::Unreachable &&
          endpoint.trouble != PostTrouble::Silent;

@@ -15,13 +15,13 @@ bool is_post(const Condition& condition) {
   return condition.id.starts_with("command_post_") && !is(condition, "command_post_throttling");
 }
 
-/// The way to the Command Post is cut at the box.
+/// Whether the box has lost its link to the Command Post.
 bool cuts_off(const Condition& condition) {
   return condition.id == "cable_out:command_post" || condition.id == "cables_exchanged" ||
          condition.id == "no_address";
 }
 
-/// Nothing of that endpoint's goes.
+/// Whether the condition stops all traffic to the endpoint.
 bool stops(const Condition& condition, std::string_view endpoint) {
   if (cuts_off(condition)) return true;
   const bool down = is_post(condition) || is(condition, "no_token");
@@ -36,7 +36,7 @@ bool is_of_maps(const Condition& condition) {
   return is(condition, "map_behind") || is(condition, "maps_behind") || condition.id.starts_with("queue_");
 }
 
-/// What is for the spare to deal with, once it took over.
+/// Whether the condition concerns the spare after a takeover.
 bool is_for_the_spare(const Condition& condition) {
   return is_post(condition) || is(condition, "command_post_throttling") || is_robots_silence(condition) ||
          is_of_maps(condition) || is(condition, "clients_refused") || condition.id.starts_with("report_");
@@ -52,10 +52,10 @@ bool explains(const Condition& cause, const Condition& other) {
   return cause.id == "cable_out:team" && is_robots_silence(other);
 }
 
-/// Removes each cause that follows from a larger one, and adds its count to the larger one. Order: the cable,
-/// the endpoints, maps and robots.
+/// Removes conditions that follow from a larger cause and adds their number to that cause. Order of causes:
+/// the cable, the endpoints, maps and robots.
 void hide_consequences(Found& found) {
-  // Larger causes come first in the list, so that each is counted where nothing larger hides it.
+  // Larger causes come first, so a condition is counted at its largest cause.
   for (std::size_t i = 0; i < found.size(); ++i) {
     std::uint64_t hidden = 0;
     for (std::size_t j = found.size(); j-- > 0;) {

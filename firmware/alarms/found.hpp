@@ -5,7 +5,7 @@
 #include "alarms/alarm.hpp"
 #include "alarms/facts.hpp"
 
-/// The parts of conditions_of(), each with the conditions of one side of the box.
+/// The parts of conditions_of(), one for each side of the box.
 namespace adit::alarms {
 
 using Found = std::vector<Condition>;

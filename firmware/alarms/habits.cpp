@@ -6,11 +6,11 @@
 namespace adit::alarms {
 namespace {
 
-constexpr double kNew = 0.25;  // what the last gap says of the habit
+constexpr double kNew = 0.25;  // weight of the last gap
 
 }  // namespace
 
-/// Robots that were switched off make room.
+/// Removes robots that were switched off if the table is full.
 bool Habits::has_room(double now) {
   if (known_.size() < kMost) return true;
   std::erase_if(known_, [now](const auto& each) { return now - each.second.habit.last > Rules{}.away; });
@@ -44,7 +44,7 @@ void Habits::heard(const std::string& robot, std::uint64_t count, double now) {
   }
   auto& [messages, usual, last] = known.habit;
   const double gap = now - last;
-  // A robot that comes back begins from nothing, for a silence is no habit.
+  // A returning robot starts without a habit, because its absence would distort the average.
   const bool was_away = messages >= kMessages && gap > std::max(60.0, 10 * usual);
   messages = was_away ? 1 : messages + 1;
   if (messages == 2) usual = gap;

@@ -9,46 +9,46 @@
 
 namespace adit::alarms {
 
-/// How often a robot says something; what outlives a restart of the service.
+/// The habit of a robot; outlives a restart of the service.
 struct Habit {
-  int messages = 0;  // at most kMessages count
-  double gap = 0;    // seconds, as a rule, between two messages
-  double last = 0;   // when it was heard last
+  int messages = 0;  // received; kMessages of them make a habit
+  double gap = 0;    // usual seconds between two messages
+  double last = 0;   // time of the last message
 };
 
-/// How often each robot says something as a rule, and so when its silence means anything. A new run changes
-/// neither.
+/// Usual interval between each robot's messages, and so the silence that matters. A new run does not change
+/// it.
 class Habits {
  public:
   struct Rules {
-    double least = 30;   // seconds of silence that say nothing of any robot
-    double times = 5;    // its habit
-    double away = 1800;  // seconds after which it counts as switched off
+    double least = 30;   // seconds of silence that are normal for any robot
+    double times = 5;    // multiple of the robot's usual gap
+    double away = 1800;  // seconds after which the robot is switched off
   };
-  static constexpr int kMessages = 4;  // before which a robot has no habit
+  static constexpr int kMessages = 4;  // messages that make a habit
   static constexpr std::size_t kMost = 64;
 
-  /// `count`: of its messages of all kinds, since ever. To be told each second; `now`: seconds of
-  /// a clock that never steps, when the last of them came. Messages between two calls count as one.
+  /// `count`: the robot's messages of all kinds so far. `now`: monotonic seconds. Call each second; messages
+  /// between two calls count as one.
   void heard(const std::string& robot, std::uint64_t count, double now);
-  /// Restores the habit from before a restart. `count`: messages that this process counted before its first
+  /// Restores the habit from before a restart. `count`: messages counted by this process before its first
   /// heard().
   void carry_on(const std::string& robot, const Habit& habit, std::uint64_t count);
-  /// It spoke in this run before a start of the machine, and at most one message is told of since, which may
-  /// be of before, too: from now on its silence counts.
+  /// Makes the robot's silence count from now on. For a robot that sent in this run before a reboot, and has
+  /// at most one message since, which may be older than the reboot.
   void expect(const std::string& robot, double now);
-  /// The habit of one robot, if it is known.
+  /// The habit of one robot, or std::nullopt.
   std::optional<Habit> of(const std::string& robot) const;
 
-  /// Those that have a habit.
+  /// The robots that have a habit and are not switched off.
   std::map<std::string, Robot> robots(const Rules& rules, double now) const;
 
  private:
   struct Known {
     std::uint64_t count = 0;
     Habit habit = {};
-    bool is_expected = false;   // and nothing was heard of it here
-    bool was_expected = false;  // once is enough
+    bool is_expected = false;   // no message has come since expect()
+    bool was_expected = false;  // a later expect() has no effect
   };
   bool has_room(double now);
 

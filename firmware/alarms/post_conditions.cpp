@@ -1,4 +1,4 @@
-// What is wrong with the Command Post, or with its two addresses.
+// Conditions of the Command Post and its two endpoints.
 #include <algorithm>
 
 #include "alarms/found.hpp"
@@ -13,7 +13,7 @@ using icd::sentence;
 const Action kSetUp{"Open set-up", "/setup"};
 const Action kTest{"Open test", "/setup#test"};
 
-/// Of one endpoint, or of both.
+/// The same trouble of one endpoint or of both.
 struct Trouble {
   PostTrouble is = PostTrouble::None;
   double since = 0;

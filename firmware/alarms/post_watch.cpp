@@ -10,7 +10,7 @@ bool is_barred(const Seen& seen) {
   return seen.foreign || seen.status == 401 || seen.status == 403;
 }
 
-/// Of everything that is sent so: no word on one message alone.
+/// Whether the status concerns the endpoint rather than one message.
 bool is_error(int status) {
   return status >= 500 || status == 404 || status == 405 || status == 407;
 }
@@ -34,7 +34,7 @@ void PostWatch::look(Way& way, const Seen& seen, double now) {
   if (answered && is_error(seen.status) && !seen.foreign && !way.failing) way.failing = now;
   const bool came_to_nothing = seen.status == 0 && !seen.said.empty();
   const bool unanswered = seen.busy || came_to_nothing;
-  // Once a request came to nothing, the bytes of the next one are no sign of life.
+  // After a failed request, bytes of the next one are no sign of life.
   if (answered || (moved && !came_to_nothing)) way.waits.reset();
   begin(way.waits, unanswered, now);
   begin(way.without, !seen.connected && seen.status == 0 && !seen.said.empty(), now);
@@ -60,10 +60,10 @@ void PostWatch::look(const std::vector<Seen>& seen, double now) {
 void PostWatch::forget() {
   ways_.clear();
   throttled_.clear();
-  is_stopped_ = true;  // what waited for the place before is taken from the next look on
+  is_stopped_ = true;  // so that messages queued for the old address count as late, not as failed
 }
 
-/// Another connection of the endpoint has had a good answer since, or just before.
+/// Whether another connection had a good answer within kStillWell, and not before `since` less a second.
 bool PostWatch::is_well_elsewhere(const Way& way, double since, double now) const {
   return std::ranges::any_of(ways_, [&](const Way& other) {
     return &other != &way && other.well && *other.well > std::min(since, now) - 1 &&

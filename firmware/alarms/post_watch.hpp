@@ -10,46 +10,45 @@
 
 namespace adit::alarms {
 
-/// How one connection to the Command Post stands.
+/// State of one connection to the Command Post.
 struct Seen {
   bool connected = false;
-  bool busy = false;            // an answer is awaited
-  std::uint64_t ended = 0;      // requests that ended, in any way
-  std::uint64_t throttled = 0;  // those that were answered 429
-  std::uint64_t sent = 0;       // bytes that left
-  int status = 0;               // of the last one; 0: none came
-  bool foreign = false;         // what answered it is no Command Post
-  std::string said = {};        // why the last one came to nothing, or why there is no connection; or ""
+  bool busy = false;            // waiting for an answer
+  std::uint64_t ended = 0;      // requests that ended, with any result
+  std::uint64_t throttled = 0;  // of these, answered 429
+  std::uint64_t sent = 0;       // bytes sent
+  int status = 0;               // of the last answer; 0: no answer
+  bool foreign = false;         // the answer was not from a Command Post
+  std::string said = {};        // why the last request or the connection failed, or ""
 };
 
-/// Over one endpoint, by all its connections: what is wrong with it, and since when.
+/// Finds the trouble of one endpoint from all its connections, and its start.
 class PostWatch {
  public:
   static constexpr double kUnreachableAfter = 3;  // seconds
   static constexpr double kSilentAfter =
-      15;  // since the last byte that left of the first request without an answer
+      15;  // seconds from the last byte sent of the first unanswered request
   static constexpr double kFailingAfter = 5;
   static constexpr double kStillWell =
-      15;  // another connection's good answer stands for the endpoint so long
+      15;  // seconds for which a good answer on another connection vouches for the endpoint
   static constexpr double kThrottledWithin = 30;
-  static constexpr std::size_t kThrottled = 3;  // answers of 429 within that time
+  static constexpr std::size_t kThrottled = 3;  // answers of 429 within kThrottledWithin
 
-  /// To be told each second, of the same connections in the same order. `now`: seconds of a clock
-  /// that never steps.
+  /// Call each second with the same connections in the same order. `now`: monotonic seconds.
   void look(const std::vector<Seen>& seen, double now);
-  /// It is another place, or has another token.
+  /// Call if the endpoint's address or token has changed.
   void forget();
-  /// What is wrong; Endpoint::name and address are the caller's.
+  /// The trouble; the caller sets Endpoint::name and address.
   Endpoint endpoint(double now) const;
 
  private:
   struct Way {
     Seen seen = {};
-    std::optional<double> well = {};     // when it answered well, last
-    std::optional<double> waits = {};    // since when no answer comes
-    std::optional<double> without = {};  // since when there is no connection
-    std::optional<double> failing = {};  // since when it answers with errors alone
-    std::optional<double> barred = {};   // since when it is refused, or somebody else answers
+    std::optional<double> well = {};     // last good answer
+    std::optional<double> waits = {};    // start of the wait for an answer
+    std::optional<double> without = {};  // start of the time without a connection
+    std::optional<double> failing = {};  // start of errors as the only answers
+    std::optional<double> barred = {};   // start of answers 401, 403, or from another server
   };
   void look(Way& way, const Seen& seen, double now);
   bool is_well_elsewhere(const Way& way, double since, double now) const;
@@ -57,9 +56,9 @@ class PostWatch {
   Endpoint throttling(double now) const;
 
   std::vector<Way> ways_;
-  bool is_stopped_ = false;           // it took nothing, when last looked at
-  std::optional<double> well_since_;  // when that was over
-  std::deque<double> throttled_;      // when, the last kThrottled
+  bool is_stopped_ = false;           // at the last look
+  std::optional<double> well_since_;  // end of the last stop
+  std::deque<double> throttled_;      // times of the last kThrottled answers of 429
 };
 
 }  // namespace adit::alarms

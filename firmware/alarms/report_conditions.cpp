@@ -1,4 +1,4 @@
-// What the operator has to decide: reports, and messages that the Command Post rejected.
+// Decisions of the operator: reports, and messages that the Command Post rejected.
 #include <array>
 
 #include "alarms/conditions.hpp"
@@ -106,7 +106,7 @@ void find_report_troubles(const Facts& facts, Found& found) {
          .headline = {sentence(facts.messages_rejected, one ? " message" : " messages"), "rejected", !one},
          .why = sentence("the Command Post did not accept ", one ? "it" : "them"),
          .action = {"Show", "/#rejected"},
-         .degree = facts.newest_rejected});  // also if an older one went for it
+         .degree = facts.newest_rejected});  // rises even if an older message made room
   }
 }
 

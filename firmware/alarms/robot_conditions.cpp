@@ -1,4 +1,4 @@
-// What is wrong with the robots, their maps, and who else speaks to the box.
+// Conditions of the robots, their maps, and the clients.
 #include <algorithm>
 
 #include "alarms/conditions.hpp"
@@ -13,15 +13,15 @@ namespace {
 using icd::sentence;
 
 constexpr std::size_t kMegabyte = 1'000'000;
-constexpr double kNoRoomRecent = 60;    // seconds that a refusal for want of room is told of
-constexpr std::size_t kNamed = 3;       // robots, in a sentence
-constexpr std::size_t kManyBehind = 4;  // robots: told of together
+constexpr double kNoRoomRecent = 60;    // seconds that a rejection for want of room is reported
+constexpr std::size_t kNamed = 3;       // robots named in a sentence
+constexpr std::size_t kManyBehind = 4;  // robots that share one condition
 
 Action show(const std::string& robot) {
   return {"Show robot", "/#robot=" + robot};
 }
 
-/// Takes the last `count` conditions out for `larger`, which hides them.
+/// Replaces the last `count` conditions by `larger`, which hides them.
 void put_in_place_of(Found& found, std::size_t count, Condition larger) {
   const auto those = found.end() - static_cast<std::ptrdiff_t>(count);
   larger.since = std::ranges::min_element(those, found.end(), {}, &Condition::since)->since;
@@ -51,8 +51,8 @@ void find_silent(const Facts& facts, Found& found) {
                    .why = "check the team's network and the base station"});
 }
 
-/// Of all maps of one robot the one that is longest behind, and longer than `least`, the endpoint's own
-/// trouble not counted; or null.
+/// The robot's map that is furthest behind, and more than `least` seconds, without the endpoint's own
+/// trouble; or null.
 const Stream* longest_behind(const Facts& facts, const std::string& robot, double least) {
   const Stream* longest = nullptr;
   for (const Stream& stream : facts.streams) {

@@ -7,7 +7,7 @@
 namespace adit::alarms {
 namespace {
 
-constexpr double kTick = 1.5;  // seconds within which a clock of whole seconds may show the same
+constexpr double kTick = 1.5;  // seconds: two statuses closer than this may show the same whole second
 
 constexpr codec::Member kShown[] = {
     codec::member<&ShownClock::seconds>("seconds", "seconds of the run, now"),

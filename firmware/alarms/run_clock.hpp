@@ -8,22 +8,22 @@ namespace adit::alarms {
 
 /// The run's clock as all faces show it.
 struct ShownClock {
-  double seconds = 0;  // of the run, now
-  double age = 0;      // seconds since the status that the clock comes from
-  bool runs = false;   // `seconds` goes on by itself
-  bool old = false;    // the status is no longer fresh: with `runs`, `seconds` is an estimate
+  double seconds = 0;  // run time now
+  double age = 0;      // seconds since the status was received
+  bool runs = false;   // `seconds` advances
+  bool old = false;    // the status is old; if `runs`, `seconds` is an estimate
 
   static const codec::Row kRow;
   friend bool operator==(const ShownClock&, const ShownClock&) = default;
 };
 
-/// The run's clock between two statuses. Times are seconds of a clock that never steps.
+/// The run's clock between two statuses. All times are monotonic seconds.
 class RunClock {
  public:
-  /// Call for each status; `shows`: its clock.
+  /// Call for each status. `shows`: its clock.
   void heard(double shows, double now);
-  /// The clock at `now`, after the first status. A clock goes on unless it is at 0 s, or two statuses that
-  /// are more than 1.5 s apart show the same.
+  /// The clock at `now`, or std::nullopt before the first status. A clock advances unless it is at 0 s, or
+  /// two statuses more than 1.5 s apart show the same time.
   std::optional<ShownClock> at(double now) const;
 
  private:

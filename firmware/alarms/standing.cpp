@@ -10,12 +10,12 @@ const Endpoint* mapping(const Facts& facts) {
   return found == facts.endpoints.end() ? nullptr : &*found;
 }
 
-/// A word on the endpoint or its token, not on what was sent (PostWatch).
+/// Whether the status concerns the endpoint or its token rather than the message (PostWatch).
 bool is_of_endpoint(int status) {
   return status == 401 || status == 403 || status == 404 || status == 405 || status == 407;
 }
 
-/// The last that was heard of it may be of when the endpoint took nothing.
+/// Whether the stream's last result may date from when the endpoint was stopped.
 bool is_catching_up(const Stream& stream, const Facts& facts) {
   const Endpoint* const endpoint = mapping(facts);
   return endpoint != nullptr && endpoint->well_for && *endpoint->well_for < kLateAfter + facts.turn &&

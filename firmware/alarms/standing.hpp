@@ -9,28 +9,29 @@
 
 namespace adit::alarms {
 
-/// What all faces say of a stream: whether it arrives, and how well that is.
+/// A stream's state on all faces.
 struct Standing {
   Arrival arrival = Arrival::NotYet;
   Level level = Level::Quiet;
 };
 
-/// `stream` is one of the facts'. A larger cause is blamed alone, as in the list of conditions: while the
-/// mapping endpoint takes nothing, what waits does not arrive, at level Quiet, and no robot is silent; nor is
-/// one while the team's cable is out. Once the endpoint takes again what it could not, what waited is late,
-/// until each that sends has had its turn.
+/// `stream` must be one of `facts`. Only the largest cause is blamed, as in the list of conditions. While the
+/// mapping endpoint is stopped, queued data is NotArriving at level Quiet, and no robot is silent. While the
+/// team's cable is out, no robot is silent. After the endpoint recovers, queued data is Late until each
+/// sender has had its turn.
 Standing standing_of(const Stream& stream, const Facts& facts);
 
-/// It says nothing any more, and that is its own doing.
+/// Whether the robot has stopped sending by its own fault.
 bool is_silent(const std::string& robot, const Facts& facts);
 
-/// The silent robots without a stream, by name: they have sent no message since the service began.
+/// Names of the silent robots that have sent no message since the service started.
 std::vector<std::string> unheard(const Facts& facts);
 
-/// The mapping endpoint, where nothing is taken at all; or null.
+/// The mapping endpoint if it accepts no messages at all, or null.
 const Endpoint* stopped(const Facts& facts);
 
-/// Seconds that the oldest news has waited at an endpoint that took it, at most; nothing: none waits.
+/// Seconds that the oldest message has been queued while the endpoint accepted messages, at most.
+/// std::nullopt: the queue is empty.
 std::optional<double> waited(const Stream& stream, const Facts& facts);
 
 }  // namespace adit::alarms

@@ -20,10 +20,10 @@ constexpr codec::Member kVerdict[] = {
     codec::member<&Verdict::why>("why", "which do not, and how old the others are; may be empty"),
 };
 
-/// Of one robot's maps.
+/// The maps of one robot.
 struct Maps {
   Level level = Level::Quiet;
-  // Seconds since one that is not quiet was posted, or that its news has waited; and since any was posted.
+  // Seconds: age or delay of the oldest map that is not quiet, and age of the newest map.
   std::optional<double> oldest = {}, newest = {};
 };
 

@@ -6,7 +6,7 @@
 
 namespace adit::alarms {
 
-/// Is my map arriving? One answer for all robots.
+/// Answers "is my map arriving?" for all robots.
 struct Verdict {
   Level level = Level::Quiet;
   std::string what = {}, why = {};

@@ -7,7 +7,7 @@
 namespace adit::alarms {
 namespace {
 
-constexpr double kLongest = 1e9;  // seconds: beyond that a clock was set
+constexpr double kLongest = 1e9;  // seconds; a longer age comes from a clock step
 
 std::int64_t whole(double seconds) {
   return static_cast<std::int64_t>(std::floor(std::clamp(seconds, 0.0, kLongest)));

@@ -18,7 +18,7 @@ using host::Level;
 
 static_assert(2 * Takers::kMost <= network::kMostTaken);
 
-/// What is to be watched.
+/// The addresses to watch.
 std::vector<std::uint32_t> addresses_of(const std::string& interface) {
   std::vector<std::uint32_t> all;
   for (const settings::Subnet& each : host::own_addresses(interface)) all.push_back(each.address);
@@ -75,7 +75,7 @@ void AddressWatch::look(Side& side, const std::vector<Mac>& macs, const std::vec
   side.takers.set_own(addresses, macs, now);
   addresses.insert(addresses.end(), sought.begin(), sought.end());
   if (side.arp) {
-    // What is heard is judged again: without it there is only more to read.
+    // hear() checks each packet anyway, so a missing filter only costs time.
     if (const auto set = side.arp->hear_only(addresses); !set)
       host::log(Level::Warning, "cannot filter ARP: reading all of it", {{"why", set.error()}});
   }
@@ -119,7 +119,7 @@ void AddressWatch::hear(Side& side) {
   work();
 }
 
-/// All that is due.
+/// Does all due work.
 void AddressWatch::work() {
   const Instant now = loop_.now();
   for (Side& side : sides_) {
@@ -149,13 +149,13 @@ void AddressWatch::work() {
 
 void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addresses) {
   for (const std::uint32_t address : addresses) {
-    if (!side.arp || !side.carrier) continue;  // asked again once there is a cable
+    if (!side.arp || !side.carrier) continue;  // look() asks again after the carrier returns
     if (const auto asked = side.arp->ask(address); !asked)
       host::log(Level::Debug, "cannot send an ARP request", {{"why", asked.error()}});
   }
 }
 
-/// Seldom enough that nobody fills the log by coming and going.
+/// Logs conflicts at most once per kBetweenLines, so that a machine cannot fill the log by coming and going.
 void AddressWatch::say(Side& side, Instant now) {
   const auto taken = side.takers.taken();
   const auto is_taken = [&taken](std::uint32_t address) {

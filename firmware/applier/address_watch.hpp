@@ -18,22 +18,21 @@
 
 namespace adit::applier {
 
-/// Listens, as long as the box is on, whether another machine uses an address of its two interfaces, and
-/// whether the Command Post is at the team's port, and tells so in network::kTakenFile. Interfaces may come
-/// and go.
+/// Listens for address conflicts on the box's two interfaces and for the Command Post at the team's port, and
+/// writes them to network::kTakenFile. Runs until the box stops. Interfaces may come and go.
 class AddressWatch {
  public:
-  /// Packets that are read at once. Where more come, they rest so long: what floods the box is dropped by the
-  /// kernel, and costs no processor.
+  /// Packets read at once, and the pause after as many. In a flood the kernel drops packets, which costs no
+  /// CPU time here.
   static constexpr int kMostAtOnce = 64;
   static constexpr std::chrono::milliseconds kRest{100};
-  /// Between two writings of the file, and between two lines of the log about an interface.
+  /// Least time between two writes of the file, and between two log lines about an interface.
   static constexpr std::chrono::seconds kBetweenTellings{1}, kBetweenLines{60};
 
-  /// Both outlive this.
+  /// Both must outlive this object.
   AddressWatch(loop::Loop& loop, const Options& options);
 
-  /// An error: nothing would ever be heard, or told.
+  /// Error: the watch cannot hear packets or write the file.
   std::expected<void, std::string> start();
 
  private:
@@ -41,15 +40,15 @@ class AddressWatch {
 
   struct Side {
     std::string interface;
-    unsigned index = 0;  // of the one that is listened on; 0: none
+    unsigned index = 0;  // of the interface listened on; 0: not listening
     bool carrier = false;
-    std::string trouble = {};  // why nothing is heard; ""
+    std::string trouble = {};  // why it cannot listen, or ""
     Takers takers = {};
     std::optional<Instant> rests_until = {};
-    std::optional<Instant> said_at = {};   // in the log
-    std::vector<std::uint32_t> said = {};  // that these are taken
+    std::optional<Instant> said_at = {};   // last log line
+    std::vector<std::uint32_t> said = {};  // addresses logged as in conflict
     std::optional<ArpSocket> arp = {};
-    loop::Source heard = {};  // ended before its descriptor is closed
+    loop::Source heard = {};  // destroyed before its descriptor is closed
   };
 
   Side& team() { return sides_.front(); }

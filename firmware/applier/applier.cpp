@@ -31,7 +31,7 @@ std::expected<void, std::string> Applier::start() {
   change_.emplace(files_, files_.kept());
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
-  // Or the start before this one found it, and could not tell networkd.
+  // Or an earlier start found the change and could not make networkd read its files.
   const bool was_pending = before && before->pending && before->pending->wanted != files_.kept();
   if (files_.found_a_change() || was_pending) {
     host::log(Level::Warning, "a change that was not confirmed was reverted");
@@ -70,7 +70,7 @@ void Applier::watch_folder() {
   });
 }
 
-/// Whatever takes its seconds, a word that came meanwhile is heard before the time is up.
+/// Reads requests before tick(), so that a confirmation that came during slow work is still in time.
 void Applier::look() {
   if (folder_) take_requests();
   change_->tick(loop_.now());
@@ -79,7 +79,7 @@ void Applier::look() {
   after();
 }
 
-/// But for those that are as right now as they were then.
+/// Removes requests of an earlier boot, except requests that remain valid.
 void Applier::drop_requests() {
   for (const char* name : {network::kWantedFile, network::kWordFile, network::kProbeFile}) remove(name);
 }
@@ -125,7 +125,7 @@ void Applier::take_probe() {
   if (const auto probe = asked<network::Probe>(network::kProbeFile)) answer_probe(*probe);
 }
 
-/// Taken away once it is done: after a power cut before that it is done again. False: it is not done.
+/// Removes the request only after it is done, so that a power cut repeats it. False: not done.
 bool Applier::take_forget() {
   const auto text = folder_->read(network::kForgetFile);
   if (text && !*text) return true;
@@ -137,7 +137,7 @@ bool Applier::take_forget() {
   return true;
 }
 
-/// Whether there is nothing more to do about it.
+/// Returns true if the request is finished.
 bool Applier::forget(const std::string& text) {
   if (const auto forget = codec::read_file<network::Forget>(text); !forget) {
     host::log_rejected_request(network::kForgetFile, forget.error());
@@ -181,7 +181,7 @@ void Applier::answer_probe(const network::Probe& probe) {
   if (!written) host::log(Level::Error, "cannot write an answer", {{"why", written.error()}});
 }
 
-/// The interface on which somebody answers for an address; "": nobody does, or nobody can be asked.
+/// The interface on which a machine answers for an address, or "". A failed probe counts as no answer.
 std::string Applier::side_of(std::uint32_t address) const {
   for (const std::string& interface : {options_.command_post, options_.team}) {
     const auto claim = applier::probe(interface, {address});
@@ -190,7 +190,7 @@ std::string Applier::side_of(std::uint32_t address) const {
   return "";
 }
 
-/// The status, where it is another than was told last.
+/// Writes the status if it has changed. False: cannot write.
 bool Applier::tell() {
   const network::Status& status = change_->status();
   const auto told = file_.tell(status);

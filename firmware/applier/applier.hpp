@@ -13,21 +13,21 @@
 
 namespace adit::applier {
 
-/// adit-network at work: takes what aditd asks for, does it, tells how it stands, and ends the loop once
-/// nothing is pending.
+/// The work of adit-network: reads aditd's requests, executes them, writes the status, and stops the loop
+/// once no change is pending.
 class Applier {
  public:
-  /// Both outlive this.
+  /// Both must outlive this object.
   Applier(loop::Loop& loop, const Options& options);
 
-  /// An error: its own folders are not as they should be. Requests of an earlier start of the machine are
-  /// dropped: whoever asked has seen that it came to nothing.
+  /// Error: its own directories are unusable. Requests from before the boot are dropped, because their
+  /// senders have seen them fail.
   std::expected<void, std::string> start();
-  /// A pending change is reverted, and the loop ends.
+  /// Reverts a pending change and stops the loop.
   void stop();
 
-  /// Nothing is left to be tried again by another start, but not at once: a request that could not be taken
-  /// away or be done, or what networkd has not read.
+  /// False if a later start must retry: a request could not be removed or executed, or networkd has not read
+  /// its files. The retry must not come at once.
   bool is_done() const { return !is_stuck_ && !files_.reload_is_due(); }
 
  private:
@@ -44,7 +44,7 @@ class Applier {
   bool tell();
   void answer_probe(const network::Probe& probe);
   std::string side_of(std::uint32_t address) const;
-  /// What is asked for in the file of that name, which is taken away; nothing: nothing that can be done.
+  /// Reads and removes the request in a file. std::nullopt: no valid request.
   template <class Request>
   std::optional<Request> asked(const char* name);
   void remove(const char* name);

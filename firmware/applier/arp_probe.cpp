@@ -25,7 +25,7 @@ std::string own_interface(const std::string& mac) {
 
 using Addresses = std::vector<std::uint32_t>;
 
-/// The first claim that is heard by then.
+/// The first claim before `until`.
 std::optional<Claim> hear(const ArpSocket& arp, const Addresses& addresses, Clock::time_point until) {
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();

@@ -9,16 +9,16 @@
 
 namespace adit::applier {
 
-/// Somebody else who has an address.
+/// Another machine's claim to an address.
 struct Claim {
   std::uint32_t address = 0;
   std::string mac;
-  std::string own;  // the interface of this very machine that has this MAC address; "": it is another machine
+  std::string own;  // this machine's interface with that MAC address; "": another machine
 };
 
-/// Asks on `interface` whether anybody else has one of `addresses`, by ARP (RFC 5227 2.1.1), and waits for
-/// answers; needs CAP_NET_RAW. Quicker than the RFC's seconds, which are for a machine that is about to use
-/// an address: this one is a test that somebody waits for. An error says what could not be done.
+/// Asks on `interface` by ARP (RFC 5227 2.1.1) whether another machine has one of `addresses`. Blocks for
+/// answers; needs CAP_NET_RAW. The test is shorter than the RFC's, which is for a machine about to use an
+/// address, because a user waits for it. Error: the test failed.
 std::expected<std::optional<Claim>, std::string> probe(const std::string& interface,
                                                        const std::vector<std::uint32_t>& addresses);
 

@@ -16,7 +16,7 @@ namespace adit::applier {
 namespace {
 
 constexpr std::uint16_t kArpInNetworkOrder = __builtin_bswap16(ETH_P_ARP);
-/// Its jumps reach no further.
+/// Limit set by the length of BPF jumps.
 constexpr std::size_t kMostFiltered = 64;
 
 std::unexpected<std::string> failed(const std::string& interface, const char* doing) {
@@ -30,7 +30,8 @@ constexpr sock_filter load(unsigned size, std::uint32_t at) {
   return statement(BPF_LD | size | BPF_ABS, at);
 }
 
-/// A comparison, after which the program goes on, or jumps to one of its two ends.
+/// A comparison. One result continues the program. The other jumps to an end, which keeps or drops the
+/// packet.
 struct Jump {
   unsigned how;
   std::uint32_t value;
@@ -50,11 +51,11 @@ std::vector<sock_filter> arp_filter(const std::vector<std::uint32_t>& addresses)
   program.push_back(load(BPF_W, 0));
   jump({BPF_JEQ, 0x00010800, false, false});  // Ethernet, IPv4
   program.push_back(load(BPF_H, 4));
-  jump({BPF_JEQ, 0x0604, false, false});  // the lengths of their addresses
-  program.push_back(load(BPF_W, 14));     // who says it
+  jump({BPF_JEQ, 0x0604, false, false});  // address lengths
+  program.push_back(load(BPF_W, 14));     // sender's address
   for (const std::uint32_t each : addresses) jump({BPF_JEQ, each, true, true});
   jump({BPF_JEQ, 0, false, false});
-  program.push_back(load(BPF_W, 24));  // whom it is about
+  program.push_back(load(BPF_W, 24));  // target address
   for (const std::uint32_t each : addresses) jump({BPF_JEQ, each, true, true});
   const std::size_t drop = program.size(), keep = drop + 1;
   program.push_back(statement(BPF_RET | BPF_K, 0));

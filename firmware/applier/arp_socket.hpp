@@ -16,21 +16,21 @@ struct sock_filter;
 
 namespace adit::applier {
 
-/// The MAC address of an interface, or why there is none: it is no Ethernet, or is not there.
+/// The MAC address of an interface. Error: the interface is absent or not Ethernet.
 std::expected<Mac, std::string> mac_of(const std::string& interface);
 
-/// Speaks and hears ARP on one interface; needs CAP_NET_RAW. Errors say what could not be done.
+/// Sends and receives ARP on one interface; needs CAP_NET_RAW.
 class ArpSocket {
  public:
-  /// Hears all ARP of the interface.
+  /// Receives all ARP of the interface.
   static std::expected<ArpSocket, std::string> open(const std::string& interface);
 
-  /// From now on the kernel gives it only what comes from one of these addresses, or probes for one.
+  /// Makes the kernel pass only packets from these addresses and probes for them.
   std::expected<void, std::string> hear_only(const std::vector<std::uint32_t>& addresses);
-  /// Asks everybody who has the address.
+  /// Broadcasts a request for the address.
   std::expected<void, std::string> ask(std::uint32_t address) const;
-  /// What has come, its length in bytes; nothing: no more. Does not wait. 0: it was for somebody else, which
-  /// is what the kernel makes of the frames of VLANs that the interface is not in.
+  /// Length of the next packet, or std::nullopt if there is no more. Does not block. 0: a packet for another
+  /// receiver, which the kernel makes of frames of other VLANs.
   std::optional<std::size_t> receive(std::span<std::uint8_t> into) const;
 
   const Mac& own() const { return own_; }
@@ -43,8 +43,7 @@ class ArpSocket {
   Mac own_{};
 };
 
-/// The program of the kernel's (socket(7), SO_ATTACH_FILTER) that hear_only() sets, for what begins with
-/// ARP's first byte.
+/// The kernel filter of hear_only() (socket(7), SO_ATTACH_FILTER), for data that begins with the ARP header.
 std::vector<sock_filter> arp_filter(const std::vector<std::uint32_t>& addresses);
 
 }  // namespace adit::applier

@@ -8,17 +8,17 @@
 
 namespace adit::applier {
 
-/// An update's file that nobody can change while it is looked at and installed.
+/// An update's file that other users cannot change during checks and installation.
 class BundleFile {
  public:
-  /// Takes the file of that name out of a folder in which somebody else writes: its name is gone, it belongs
-  /// to this user, and nobody has it open for writing. An error says what it is; it is gone all the same,
-  /// where it can be taken away.
+  /// Takes a file out of a directory in which another user writes. The file has no name afterwards, belongs
+  /// to this user and is open for writing in no process. After an error the file is still removed, if
+  /// possible.
   static std::expected<BundleFile, std::string> take(host::UntrustedFolder& folder, const std::string& name);
-  /// Opens one where nobody writes: a file system that is mounted read-only.
+  /// Opens a file on a read-only file system.
   static std::expected<BundleFile, std::string> open(const std::string& path);
 
-  /// By which other programs of this user reach the very file, as long as this lives.
+  /// Path of the same file for other programs of this user, valid while this object lives.
   std::string path() const;
 
  private:

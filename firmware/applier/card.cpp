@@ -17,7 +17,7 @@ namespace {
 using host::UntrustedFolder;
 using settings::Settings;
 
-/// One card while it is read.
+/// Reads one card.
 class Reader {
  public:
   Reader(const UntrustedFolder& card, const Settings& now) : card_(card), now_(now) {}
@@ -38,7 +38,7 @@ class Reader {
     for (const settings::Error& error : errors) refuse(name, error.sentence());
   }
 
-  /// What is in a file of `folder`, told of as `name`.
+  /// The content of a file of `folder`. Errors call the file `name`.
   std::optional<std::string> text_of(const UntrustedFolder& folder, const std::string& file,
                                      const std::string& name) {
     static constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
@@ -55,7 +55,7 @@ class Reader {
     const auto names = card_.names();
     if (!names) return refuse("", names.error());
     for (const std::string& written : *names) {
-      std::string name = written;  // FAT knows no letter case
+      std::string name = written;  // FAT ignores case
       std::ranges::transform(name, name.begin(), [](char letter) {
         return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter | 0x20) : letter;
       });
@@ -65,7 +65,7 @@ class Reader {
     }
   }
 
-  /// Taken before, Adit's own, or of those that desktops leave beside others.
+  /// Whether the file was accepted before, is Adit's own, or is a desktop's hidden file.
   static bool is_spent(const std::string& name) {
     return name.starts_with('.') || name.ends_with(kTakenEnding) || name == kTakenText;
   }
@@ -100,7 +100,7 @@ class Reader {
     found_.brought.numbers = *numbers;
   }
 
-  /// The numbers alone, or with their format, as the image's own and adit-network's file have them.
+  /// Reads bare numbers, or numbers with a format as in the files of the image and of adit-network.
   static std::expected<network::Numbers, std::vector<settings::Error>> numbers_of(const codec::Value& value,
                                                                                   const std::string& text) {
     const auto* object = std::get_if<codec::Value::Object>(&value.is);

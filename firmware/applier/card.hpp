@@ -12,31 +12,33 @@
 
 namespace adit::applier {
 
-/// What somebody put on the boot partition for the box, by a card reader. All of it has passed its checks.
+/// Files for the box that a user put on the boot partition. All have passed their checks.
 struct Brought {
   std::optional<settings::Settings> settings;
   std::optional<network::Numbers> numbers;
-  std::map<std::string, icd::BearerToken> tokens;  // by the name of the file: "scoring.token", or kCardCode
+  std::map<std::string, icd::BearerToken> tokens;  // by file name: "scoring.token", or kCardCode
 
   bool nothing() const { return !settings && !numbers && tokens.empty(); }
 };
 
-/// What was found on a card.
+/// The result of reading a card.
 struct Found {
   Brought brought;
-  std::vector<std::string> errors;  // "adit/settings.json: team.listen[0].port: ..."; then nothing is taken
-  std::vector<std::string> left_alone;  // names of other files
+  std::vector<std::string> errors;      // "adit/settings.json: team.listen[0].port: ..."; if any, no file is
+                                        // accepted
+  std::vector<std::string> left_alone;  // names of ignored files
 };
 
 inline constexpr const char* kCardSettings = "settings.json";
 inline constexpr const char* kCardNetwork = "network.json";
 inline constexpr const char* kCardSecrets = "secrets";
-inline constexpr const char* kCardCode = "label.code";  // of kCardSecrets: what the first password asks for
+inline constexpr const char* kCardCode = "label.code";  // in kCardSecrets: the code that the first password
+                                                        // requires
 inline constexpr const char* kTakenText = "taken.txt";
 inline constexpr const char* kTakenEnding = ".taken";
 
-/// Reads `card`, its folder "adit". `now`: the settings that are in force unless the card brings others. A
-/// file is at most UntrustedFolder::kLargest bytes; a byte order mark, as some editors leave, is cut.
+/// Reads `card`, the directory "adit". `now`: the settings in force, unless the card brings others. A file
+/// has at most UntrustedFolder::kLargest bytes. A byte order mark is removed.
 Found read_card(const host::UntrustedFolder& card, const settings::Settings& now);
 
 }  // namespace adit::applier

@@ -17,7 +17,7 @@ constexpr std::chrono::seconds kUnitAnswer{20};
 std::array<std::pair<const char*, const std::string*>, 3> files_of(const clock::Chrony& chrony) {
   return {{{clock::kOptionsFile, &chrony.options},
            {clock::kFirewallFile, &chrony.firewall},
-           {clock::kConfigurationFile, &chrony.configuration}}};  // last: with it the others are whole
+           {clock::kConfigurationFile, &chrony.configuration}}};  // last: marks the others complete
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ std::string Chronyd::start(const clock::Chrony& chrony) const {
     is_as_it_was = is_as_it_was && host::read_file(path(name)) == *text;
   if (is_as_it_was) return "";
   (void)host::remove_file(
-      path(clock::kConfigurationFile));  // a death here: it is started at the next request
+      path(clock::kConfigurationFile));  // after a death here, the next request starts chronyd
   for (const auto& [name, text] : files_of(chrony)) {
     if (const auto written = host::write_file(path(name), *text, host::kForAll); !written)
       return written.error();

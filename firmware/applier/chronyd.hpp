@@ -6,15 +6,14 @@
 
 namespace adit::applier {
 
-/// chronyd, as systemd runs it (adit-ntp.service) by files that are written here.
+/// chronyd, run by systemd (adit-ntp.service) from files written here.
 class Chronyd {
  public:
-  /// `folder`: of these files, nobody else's. `interface`: the team's.
+  /// `folder`: for these files alone. `interface`: the team's.
   Chronyd(std::string folder, std::string interface, std::string systemctl)
       : folder_(std::move(folder)), interface_(std::move(interface)), systemctl_(std::move(systemctl)) {}
 
-  /// It is to run, restarted where it is to do something else, or not to run. Gives why that cannot be; or
-  /// "".
+  /// Starts, restarts or stops chronyd as needed. Returns why that failed, or "".
   std::string run_with(const clock::Ntp& ntp, clock::Source source) const;
 
  private:

@@ -1,4 +1,4 @@
-/// adit-clock: sets the time of day, as root, for aditd, which has no privilege.
+/// adit-clock: sets the time of day as root, for aditd, which has no privileges.
 
 #include "applier/clock_options.hpp"
 #include "applier/clock_setter.hpp"

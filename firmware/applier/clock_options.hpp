@@ -8,12 +8,12 @@ namespace adit::applier {
 
 /// adit-clock's command line.
 struct ClockOptions {
-  std::string wanted = "/var/lib/private/adit";  // where aditd asks
-  std::string status = "/run/adit-clock";        // where it is answered, for everybody to read
-  std::string chip = "/sys/class/rtc/rtc0";      // the clock with a battery, if there is one
+  std::string wanted = "/var/lib/private/adit";  // directory of aditd's requests
+  std::string status = "/run/adit-clock";        // directory of the status, readable by all
+  std::string chip = "/sys/class/rtc/rtc0";      // the clock with a battery; may be absent
   std::string chip_device = "/dev/rtc0";
-  std::string team = "team0";           // the interface on which NTP is spoken
-  std::string systemctl = "systemctl";  // starts and stops chronyd
+  std::string team = "team0";           // NTP interface
+  std::string systemctl = "systemctl";  // controls chronyd
   bool help = false, version = false;
 };
 

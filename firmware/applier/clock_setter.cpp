@@ -14,8 +14,8 @@ using host::Level;
 
 constexpr double kAgrees = 5;  // seconds
 
-/// The kernel reads a clock with a battery as it starts. One that is behind what was built then does not
-/// agree with the system's.
+/// Whether the battery clock, as the kernel read it at boot, agrees with the system clock and is not earlier
+/// than clock::kEarliest.
 bool agrees(const std::string& chip, double now) {
   const auto text = host::read_file(chip + "/since_epoch");
   double told = 0;
@@ -61,7 +61,8 @@ void ClockSetter::answer(const clock::Request& request) {
   if (status_.refusal.empty()) {
     status_.source = request.source;
     if (request.source == clock::Source::Ntp) status_.server = request.server;
-    // Not a guess: the next start would trust the chip more than the Command Post.
+    // A guessed time is not stored, because the next boot trusts the battery clock more than the Command
+    // Post.
     if (clock::is_set(request.source)) clocks_.set_chip(time);
     host::log(Level::Notice, "clock set",
               {{"by", std::string(clock::kSourceWords[static_cast<std::size_t>(request.source)])},

@@ -12,30 +12,30 @@
 
 namespace adit::applier {
 
-/// The clocks of the machine, in seconds: since 1970, and of the monotonic one.
+/// The machine's clocks, in seconds: wall time since 1970, and monotonic time.
 struct Clocks {
   std::function<double()> wall, monotonic;
-  /// Sets the first. An error says why it cannot.
+  /// Sets the wall clock.
   std::function<std::expected<void, std::string>(double)> set;
-  /// The same time into a clock with a battery, where there is one.
+  /// Sets the battery clock, if there is one.
   std::function<void(double)> set_chip;
   std::string boot;  // host::boot()
 };
-/// Those of this machine. `chip_device`: its clock with a battery.
+/// `chip_device`: the battery clock.
 Clocks clocks_of_machine(const std::string& chip_device);
 
-/// adit-clock at work: sets the time of day as aditd asks, and tells who set it last.
+/// The work of adit-clock: sets the time of day on aditd's request, and reports the source.
 class ClockSetter {
  public:
-  /// `options` outlive this.
+  /// `options` must outlive this object.
   ClockSetter(const ClockOptions& options, Clocks clocks)
       : options_(options),
         clocks_(std::move(clocks)),
         file_(options.status + '/' + host::kStatusFile),
         chronyd_(options.status, options.team, options.systemctl) {}
 
-  /// Until nothing is asked for. An error: its own folder is not as it should be, or what is asked for cannot
-  /// be taken away.
+  /// Answers all requests, then returns. Error: its own directory is unusable, or a request cannot be
+  /// removed.
   std::expected<void, std::string> work();
 
  private:

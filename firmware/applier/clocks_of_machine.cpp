@@ -1,4 +1,4 @@
-// What adit-clock sets: the system's clock, and one with a battery.
+// The clocks that adit-clock sets: the system clock and a battery clock.
 #include <fcntl.h>
 #include <linux/rtc.h>
 #include <sys/ioctl.h>
@@ -22,7 +22,7 @@ double time_of(clockid_t clock) {
   return static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_nsec) / 1e9;
 }
 
-/// It is none that can be set: few boards have one.
+/// A missing or unsettable clock is ignored, because few boards have one.
 void set_chip(const std::string& device, std::time_t now) {
   const loop::FileDescriptor chip(open(device.c_str(), O_RDONLY | O_CLOEXEC));
   if (!chip) return;

@@ -29,7 +29,7 @@ std::unexpected<std::string> failed(const std::string& name, int error) {
   return std::unexpected(std::move(why));
 }
 
-/// 0, or the errno.
+/// 0, or errno.
 int put(int folder, const std::string& name, const std::string& bytes) {
   const FileDescriptor file(
       openat(folder, kUnfinished, O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, host::kForAll));

@@ -17,12 +17,12 @@ namespace {
 using host::Level;
 
 constexpr std::chrono::seconds kSystemctlAnswer{30};
-/// How often systemd is asked: of a slot on trial; of one that only its settings keep from being ready.
+/// Interval of questions to systemd: for a slot on trial, and for a slot that lacks only its settings.
 constexpr std::chrono::seconds kOnTrial{2}, kElse{10};
 
 std::chrono::microseconds now() {
   return std::chrono::duration_cast<std::chrono::microseconds>(
-      std::chrono::steady_clock::now().time_since_epoch());  // CLOCK_MONOTONIC, as systemd's
+      std::chrono::steady_clock::now().time_since_epoch());  // CLOCK_MONOTONIC, as systemd uses
 }
 
 update::Ready ready(const std::string& systemctl) {
@@ -39,7 +39,7 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
   return std::unexpected("cannot restart the machine: " + restarted.error());
 }
 
-/// Where this cannot be kept, the slot is good all the same: a later start keeps it.
+/// A failure to store this does not change the slot's state: a later start stores it.
 void keep_proven(const UpdateOptions& options, const update::Running& running, bool trial) {
   const update::Proven before = load_proven(options.state);
   const update::Proven proven = update::proven_now(before, running, trial);
@@ -50,12 +50,12 @@ std::expected<void, std::string> pass_trial(const UpdateOptions& options, update
   host::log(Level::Notice, "the update is healthy",
             {{"version", last_update.version}, {"slot", last_update.slot}});
   last_update.stage = update::Stage::Good;
-  last_update.why.clear();  // of one that adit-update has not settled yet
+  last_update.why.clear();  // of an end that adit-update has not settled
   if (!save(options.state, last_update)) return std::unexpected("cannot store the end of the trial");
   return {};
 }
 
-/// It tells everybody, and ends RAUC's service.
+/// adit-update writes the status and ends RAUC's service.
 void start_adit_update(const std::string& systemctl) {
   host::output_of({systemctl, "start", "--no-block", "adit-update.service"}, kSystemctlAnswer);
 }

@@ -29,8 +29,8 @@ using Done = std::expected<void, std::string>;
 
 constexpr mode_t kFolderOfOurs = 0700;
 
-/// Gives what root made to whom the folder belongs: systemd looks at no more than the folder itself before it
-/// starts aditd (systemd.exec(5), StateDirectory=).
+/// Gives a file that root made to the owner of its directory. Before systemd starts aditd, it checks only the
+/// owner of the directory itself (systemd.exec(5), StateDirectory=).
 Done give_to_owner(UntrustedFolder& folder, const std::string& path) {
   struct stat owner{};
   if (stat(folder.path_by_descriptor().c_str(), &owner) == 0 &&
@@ -40,14 +40,14 @@ Done give_to_owner(UntrustedFolder& folder, const std::string& path) {
   return std::unexpected(host::trouble(path, errno));
 }
 
-/// A file of aditd's. The folder is aditd's too, so its path is not trusted.
+/// Writes a file of aditd. aditd owns the directory, so its path is not trusted.
 Done put(UntrustedFolder& folder, const std::string& name, const std::string& text) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
   if (auto written = host::write_file(path, text, host::kOursAlone); !written) return written;
   return give_to_owner(folder, path);
 }
 
-/// systemd makes it where it is not there yet, of this mode, and gives it to aditd.
+/// Creates the directory with the mode that systemd would use. systemd gives it to aditd.
 std::expected<UntrustedFolder, std::string> open_state(const std::string& path) {
   const std::filesystem::path parent = std::filesystem::path(path).parent_path();
   std::error_code error;
@@ -60,7 +60,7 @@ std::expected<UntrustedFolder, std::string> open_state(const std::string& path) 
   return UntrustedFolder::open(path);
 }
 
-/// `lasting`: the state is there at the next start, too.
+/// `lasting`: the state survives a boot.
 std::string said_of(const Found& found, bool lasting) {
   std::string text;
   if (!found.errors.empty()) {
@@ -86,7 +86,7 @@ std::string said_of(const Found& found, bool lasting) {
   return text;
 }
 
-/// Not written again at each start: a card wears out.
+/// Writes only a changed text, because a card wears out.
 Done tell(UntrustedFolder& card, const std::string& text) {
   const auto told = card.read(kTakenText);
   if (told && *told == text) return {};
@@ -96,14 +96,14 @@ Done tell(UntrustedFolder& card, const std::string& text) {
 void rename_taken(UntrustedFolder& folder, const std::string& name) {
   const std::string path = folder.path_by_descriptor() + '/' + name, taken = path + kTakenEnding;
   if (rename(path.c_str(), taken.c_str()) == 0) return;
-  // A folder of that name: what cannot be renamed would be taken again at each start.
+  // If a directory has that name, removes it. Otherwise every start would accept the file again.
   if (folder.remove(name + kTakenEnding) && rename(path.c_str(), taken.c_str()) == 0) return;
   host::log(Level::Warning, "cannot rename an accepted file",
             {{"file", name}, {"why", std::strerror(errno)}});
 }
 
-/// Anybody who has the card could read them. One that was cut off while it was wiped is no token any more: so
-/// each is renamed first, and those of an earlier start are found here.
+/// Wipes accepted tokens, because the card can be read elsewhere. Each token is renamed first, so that a
+/// start after an interrupted wipe finds it here.
 void wipe_taken(UntrustedFolder& card) {
   auto secrets = card.folder(kCardSecrets);
   if (!secrets || !*secrets) return;
@@ -114,7 +114,7 @@ void wipe_taken(UntrustedFolder& card) {
   }
 }
 
-/// The settings last: without them, what is left is taken again as it was.
+/// Renames the settings last. Without them, the next start could not accept the remaining files unchanged.
 void leave(UntrustedFolder& card, const Brought& brought) {
   if (auto secrets = card.folder(kCardSecrets); secrets && *secrets) {
     for (const auto& [file, token] : brought.tokens) rename_taken(**secrets, file);
@@ -142,13 +142,13 @@ Done Import::run() {
   if (said.empty()) return {};
   for (const std::string& error : found.errors)
     host::log(Level::Error, "file on the card rejected", {{"why", error}});
-  // First, because files of a card that cannot be written would be taken again at each start.
+  // First, because every start would accept the files of a read-only card again.
   if (auto told = tell(*card, said); !told) {
     return std::unexpected("cannot write to the card, so its files are ignored: " + told.error());
   }
   if (!found.errors.empty() || found.brought.nothing()) return {};
   if (auto saved = save(found.brought); !saved) {
-    (void)tell(*card, "Adit could not store these files: " + saved.error() + '\n');  // the log has it as well
+    (void)tell(*card, "Adit could not store these files: " + saved.error() + '\n');  // also logged
     return saved;
   }
   if (lasting) leave(*card, found.brought);
@@ -168,7 +168,7 @@ settings::Settings Import::in_force() const {
     const auto given = host::slurp(options_.given);
     text = given ? given->text : "";
   }
-  auto saved = settings::parse_saved(*text);  // as aditd does: perhaps of a later Adit
+  auto saved = settings::parse_saved(*text);  // as aditd reads it: a later Adit may have written it
   return saved ? std::move(saved->settings) : settings::Settings{};
 }
 
@@ -203,7 +203,7 @@ Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
   return {};
 }
 
-/// On trial, as those that the page saves: aditd takes them back where it cannot start with them.
+/// Saves the settings on trial, as the page does. If aditd cannot start with them, it reverts them.
 Done Import::save_settings(UntrustedFolder& state, const settings::Settings& settings) {
   const auto before = state.read(settings::kFileBefore);
   if (!before) return std::unexpected(before.error());

@@ -11,29 +11,29 @@ namespace adit::applier {
 
 /// adit-import's command line.
 struct ImportOptions {
-  std::string card = "/boot/adit";                    // what was put there
-  std::string state = "/var/lib/private/adit";        // aditd's
-  std::string network = "/var/lib/adit-network";      // adit-network's
+  std::string card = "/boot/adit";                    // the user's files
+  std::string state = "/var/lib/private/adit";        // of aditd
+  std::string network = "/var/lib/adit-network";      // of adit-network
   std::string given = "/etc/adit/settings.json";      // the settings of the image
-  std::string in_memory = "/run/adit-notices/state";  // is there where the state is lost at the next start
+  std::string in_memory = "/run/adit-notices/state";  // exists if the state is lost at the next boot
   bool help = false, version = false;
 };
 
 [[gnu::cold]] command_line::Program import_command_line_of(ImportOptions& options);
 
-/// Takes what was put on the boot partition into the box's state, all of it or nothing, and leaves there
-/// what became of it, in taken.txt.
+/// Imports the files on the boot partition into the box's state, all or none, and writes the result to
+/// taken.txt.
 ///
-/// Tokens are wiped from the card and other files renamed only once all is in the state: a power cut before
-/// that finds the same files again, and one after it finds fewer. Where the state is in memory alone they
-/// stay on the card, and are taken at each start. Runs while neither aditd nor adit-network does.
+/// Tokens are wiped and other files renamed only after the state is stored, so a power cut repeats or
+/// finishes the import. If the state is in memory, the files stay and every start imports them. Run while
+/// neither aditd nor adit-network runs.
 class Import {
  public:
-  /// `options` outlives this.
+  /// `options` must outlive this object.
   explicit Import(const ImportOptions& options) : options_(options) {}
 
-  /// An error: what is right could not be taken. What is wrong with the files is told on the card and in the
-  /// journal, and is none.
+  /// Error: correct files could not be imported. Faults in the files are reported on the card and in the
+  /// journal, and are not an error.
   std::expected<void, std::string> run();
 
  private:

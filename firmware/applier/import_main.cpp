@@ -1,4 +1,4 @@
-/// adit-import: takes what a card reader put on the boot partition, as root, before aditd starts.
+/// adit-import: imports a user's files from the boot partition, as root, before aditd starts.
 
 #include "applier/import.hpp"
 #include "command_line/answer.hpp"

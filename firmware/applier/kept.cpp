@@ -8,7 +8,7 @@
 namespace adit::applier {
 namespace {
 
-/// `what`: for the log, as "... is not known" and "... cannot be kept".
+/// `what`: for the log, as in "cannot read ...".
 template <class Message>
 Message load(const std::string& path, std::string_view what) {
   auto kept = host::read_row<Message>(path);

@@ -5,8 +5,8 @@
 #include "update/last_update.hpp"
 #include "update/proven.hpp"
 
-/// What adit-update keeps over starts of the machine, in its state folder. What is not there, or damaged, is
-/// none. Saving gives true once it outlives a power cut.
+/// State of adit-update that outlives a boot, in its state directory. A missing file reads as the default. A
+/// damaged file is logged and reads as the default. save() returns true once the data survives a power cut.
 namespace adit::applier {
 
 update::LastUpdate load_last_update(const std::string& folder);

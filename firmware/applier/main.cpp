@@ -1,4 +1,4 @@
-/// adit-network: changes the box's own addresses, as root, for aditd, which has no privilege.
+/// adit-network: changes the box's addresses as root, for aditd, which has no privileges.
 
 #include <csignal>
 #include <optional>
@@ -19,13 +19,13 @@ int fail(const std::string& why) {
   return 1;
 }
 
-/// Once, as the machine starts: networkd finds its files when it comes.
+/// Runs once at boot, before networkd.
 int start(const adit::applier::Options& options) {
   const auto written = adit::applier::NetworkdFiles(options).write_at_start();
   return written ? 0 : fail(written.error());
 }
 
-/// As long as the box is on.
+/// Runs until the box stops.
 int watch(const adit::applier::Options& options) {
   adit::loop::Loop loop;
   adit::applier::AddressWatch watch(loop, options);

@@ -84,7 +84,7 @@ std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
   return aside ? std::expected<bool, std::string>(false) : std::unexpected(aside.error());
 }
 
-/// Where there are none, somebody else set the addresses, and that stays.
+/// Uses the factory addresses. If the box came without any, the addresses are set elsewhere and stay.
 void NetworkdFiles::use_factory() {
   kept_.reset();
   const auto text = host::read_if_there(options_.factory);
@@ -118,7 +118,7 @@ std::expected<void, std::string> NetworkdFiles::write(Then then) {
   return {};
 }
 
-/// A change can be made all the same.
+/// A damaged file must not prevent later changes.
 std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why) {
   const std::string file = confirmed_file();
   host::log(host::Level::Error, "the confirmed addresses are damaged: file set aside",
@@ -149,7 +149,7 @@ std::expected<std::string, std::string> NetworkdFiles::in_use_of(const Place& pl
   return tried && tried->empty() ? text_of(place.kept) : tried;
 }
 
-/// An interface that is down, or not there yet, has nobody to ask.
+/// An interface that is down or absent cannot be probed.
 std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place) const {
   if (place.addresses.empty()) return {};
   const auto claim = probe_(place.interface, place.addresses);
@@ -164,8 +164,8 @@ std::expected<void, std::string> NetworkdFiles::check_unused(const Place& place)
   return {};
 }
 
-/// What was tried stays where it is until the next start, so that networkd has nothing more to do. Once
-/// confirmed.json is written, the change is kept, whatever happens next: settle() does the rest.
+/// The files on trial stay until the next start, so that networkd need not reload. Once confirmed.json is
+/// written, the change is stored; settle() finishes the rest.
 std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& numbers) {
   if (auto written = host::write_file(confirmed_file(), network::write_kept(numbers), host::kForAll);
       !written)
@@ -185,7 +185,7 @@ std::expected<void, std::string> NetworkdFiles::revert() {
   return reload_.run();
 }
 
-/// Where the box came with no addresses, networkd has none of ours.
+/// Without factory addresses, also removes networkd's files.
 std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forget() {
   for (const std::string& file : {confirmed_file(), endpoints_file()}) {
     if (auto removed = host::remove_file(file); !removed) return std::unexpected(removed.error());
@@ -241,7 +241,7 @@ std::expected<bool, std::string> NetworkdFiles::remove_tried(Then then) {
   for (const Place& place : kept_ ? places(*kept_) : places()) {
     const auto tried = host::slurp(place.tried);
     if (!tried && tried.error() == ENOENT) continue;
-    if (tried && !place.text.empty() && tried->text == place.text) continue;  // this is what was confirmed
+    if (tried && !place.text.empty() && tried->text == place.text) continue;  // equals the confirmed one
     if (then == Then::Reload) reload_.set_due();
     if (unlink(place.tried.c_str()) != 0) return std::unexpected(host::trouble(place.tried, errno));
     removed = true;

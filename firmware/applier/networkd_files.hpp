@@ -10,40 +10,39 @@
 
 namespace adit::applier {
 
-/// The numbers as systemd-networkd's files. An interface whose numbers stay as they are is not touched, and
-/// no address is taken that somebody else on its network has.
+/// The numbers as files of systemd-networkd. An interface with unchanged numbers is left alone. An address
+/// that another machine has is rejected.
 class NetworkdFiles final : public network::Hands {
  public:
   using Prober = decltype(&probe);
 
-  /// `options` outlives this.
+  /// `options` must outlive this object.
   explicit NetworkdFiles(const Options& options, Prober prober = &probe)
       : options_(options), probe_(prober), reload_(options) {}
 
-  /// Reads what was confirmed last, or else what the box came with, and makes networkd's folder hold that and
-  /// nothing else, and networkd read it: a kill may have come at any point. An error: it is not as it should
-  /// be.
+  /// Restores the confirmed numbers, or the factory ones, in networkd's directory, removes files on trial,
+  /// and makes networkd reload. Safe after a kill at any point. Error: that failed.
   std::expected<void, std::string> settle();
-  /// The same before networkd is there. What cannot be read is no reason to be without any address: then it
-  /// is what the box came with.
+  /// The same before networkd starts. If the confirmed numbers cannot be read, uses the factory ones, because
+  /// a box without addresses cannot be reached.
   std::expected<void, std::string> write_at_start();
-  /// What was confirmed last, or what the box came with.
+  /// The confirmed numbers, or the factory ones.
   const std::optional<network::Numbers>& kept() const { return kept_; }
   const network::Endpoints& endpoints() const { return endpoints_; }
-  /// settle() found a change that nobody had confirmed.
+  /// Whether settle() found an unconfirmed change.
   bool found_a_change() const { return found_a_change_; }
-  /// networkd has not read yet what its files say: settle() does the rest.
+  /// Whether networkd has still to read its files; settle() retries.
   bool reload_is_due() const { return reload_.is_due(); }
 
   std::expected<void, std::string> apply(const network::Numbers& numbers) override;
   std::expected<void, std::string> keep(const network::Numbers& numbers) override;
   std::expected<void, std::string> revert() override;
   std::expected<std::optional<network::Numbers>, std::string> forget() override;
-  /// Leads to these from now on, with whatever addresses are in use.
+  /// Sets routes to these endpoints with the present addresses.
   std::expected<void, std::string> lead_to(const network::Endpoints& endpoints);
 
  private:
-  /// One interface's two places, and what would stand there.
+  /// One interface's two files, and their wanted text.
   struct Place {
     std::string interface, tried, kept, text;
     std::vector<std::uint32_t> addresses;
@@ -56,8 +55,7 @@ class NetworkdFiles final : public network::Hands {
   std::expected<bool, std::string> read_confirmed();
   void read_endpoints();
   void use_factory();
-  /// What is to come of a file that changes; nothing where networkd has all of it already, or reads it as it
-  /// starts.
+  /// Action after a file changes. Nothing: networkd has the content already, or reads it when it starts.
   enum class Then : std::uint8_t { Reload, Nothing };
   std::expected<void, std::string> write(Then then);
   std::expected<void, std::string> set_aside(const std::string& why);
@@ -66,7 +64,7 @@ class NetworkdFiles final : public network::Hands {
   /// The text that networkd uses for an interface; "" if there is none.
   static std::expected<std::string, std::string> in_use_of(const Place& place);
   std::expected<void, std::string> check_unused(const Place& place) const;
-  /// Whether any was there.
+  /// Returns whether a file was removed.
   std::expected<bool, std::string> remove_tried(Then then);
 
   const Options& options_;

@@ -6,8 +6,8 @@
 namespace adit::applier {
 namespace {
 
-/// The kernel's dev_valid_name(), and nothing that means more to systemd.network(5): a pattern, a list, a
-/// negation.
+/// The kernel's dev_valid_name(), without characters that systemd.network(5) interprets: patterns, lists,
+/// negations.
 bool is_interface(std::string_view name) {
   return !name.empty() && name.size() <= 15 && name != "." && name != ".." &&
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789._-") ==

@@ -4,7 +4,7 @@
 
 namespace adit::applier {
 
-/// VERSION_ID of os-release(5), with or without quotation marks; "" where there is none.
+/// VERSION_ID of os-release(5) without quotation marks; "" if absent.
 std::string version_in(const std::string& path);
 
 }  // namespace adit::applier

@@ -9,11 +9,11 @@
 namespace adit::applier {
 namespace {
 
-/// A slot of a slow card is written in some minutes. For so long its client is waited for, and after that, or
-/// where the client dies, its end.
+/// Longest wait for the client of an installation. A slow card takes some minutes. If the client dies or
+/// takes longer, status() waits for RAUC itself.
 constexpr std::chrono::minutes kInstall{20};
 constexpr std::chrono::seconds kRaucAnswer{60};
-/// How often it is asked again while it is busy.
+/// Interval of questions while RAUC is busy.
 constexpr std::chrono::seconds kAgain{1};
 
 using update::Fault;
@@ -27,7 +27,7 @@ Fault fault_of(const host::Output& said) {
 std::expected<std::string, Fault> ask(const std::vector<std::string>& words) {
   host::Output said = host::output_of(words, kRaucAnswer);
   Fault fault = fault_of(said);
-  // One that ends well, with a warning that it was busy, lacks a part: which slot is next.
+  // A success with a "busy" warning lacks the next slot.
   if (!said.trouble.empty() || fault.kind == Fault::Kind::Busy) return std::unexpected(std::move(fault));
   return std::move(said.out);
 }
@@ -82,8 +82,8 @@ std::expected<void, std::string> Rauc::start_booted_next() const {
   return mark(command_, "mark-active", "booted");
 }
 
-/// Marked bad, it is out of the boot loader's order, which would else try it three times more once no slot
-/// has a try left.
+/// A slot marked bad leaves the boot loader's order. Otherwise the boot loader would try it three more times
+/// once no slot has tries left.
 std::expected<void, std::string> Rauc::leave_other() const {
   if (auto first = start_booted_next(); !first) return first;
   return mark(command_, "mark-bad", "other");

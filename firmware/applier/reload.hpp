@@ -8,26 +8,26 @@
 
 namespace adit::applier {
 
-/// That networkd reads its files again: due from before they change until it has. That it is due outlives a
-/// kill, in a file that goes as the machine starts, as networkd's own do.
+/// The duty to make networkd read its files again, from before a file changes until networkd has read them. A
+/// file in memory preserves it across a kill, and is lost at boot like networkd's own files.
 class Reload {
  public:
   static constexpr std::chrono::seconds kWithin{30};
 
-  /// `options` outlives this.
+  /// `options` must outlive this object.
   explicit Reload(const Options& options) : options_(options) {}
 
   bool is_due() const;
-  /// Before a file changes. Where it cannot be noted, only a kill would make it be forgotten.
+  /// Call before a file changes. If the mark cannot be written, only a kill would lose it.
   void set_due();
-  /// Where it is due. An error: it still is.
+  /// Reloads if due. After an error it is still due.
   std::expected<void, std::string> run();
 
  private:
   std::string file() const { return options_.status + "/reload-due"; }
 
   const Options& options_;
-  bool is_due_ = false;  // as this start of the program knows
+  bool is_due_ = false;  // as known to this process
 };
 
 }  // namespace adit::applier

@@ -11,25 +11,24 @@
 
 namespace adit::applier {
 
-/// Who answers on the link for the Command Post's endpoints, by what adit-network tells: these, or the
-/// gateway to them; in order, none twice, at most Takers::kMost. `own`: the box's addresses on that side,
-/// where adit-network has none of its own. None that is in a subnet of the team's: where the two overlap, it
-/// may be a robot's as well.
+/// Addresses that answer on the link for the Command Post's endpoints: the endpoints or their gateway.
+/// Sorted, without duplicates, at most Takers::kMost. `own`: the box's addresses on that side, used if
+/// adit-network has none. Addresses in a subnet of `team` are left out, because a robot may have them.
 std::vector<std::uint32_t> sought_in(const network::Status& status, const std::vector<settings::Subnet>& own,
                                      const std::vector<settings::Subnet>& team);
 
-/// adit-network's status, read by another program, and when it is another.
+/// adit-network's status, read by another program, with notices of changes.
 class ToldStatus {
  public:
-  /// `folder`: adit-network's, which may come later. `changed` is called once it may be another. `loop`
-  /// outlives this.
+  /// `folder`: of adit-network; may appear later. `changed` is called after each possible change. `loop` must
+  /// outlive this object.
   ToldStatus(loop::Loop& loop, std::string folder, std::function<void()> changed);
 
-  /// Nothing told: no endpoints.
+  /// Without a status: no endpoints.
   network::Status read() const;
 
  private:
-  /// Between two looks for a folder that is not there yet.
+  /// Interval of looks for a missing directory.
   static constexpr std::chrono::seconds kLookAgain{10};
   void watch_folder();
 

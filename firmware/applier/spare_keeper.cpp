@@ -11,7 +11,7 @@ namespace {
 using host::Level;
 using Mode = Sticks::Mode;
 
-/// Takes the export that is to be written out of a folder in which somebody else writes.
+/// Takes the export to write out of a directory in which another user writes.
 std::expected<std::string, std::string> take_export(host::UntrustedFolder& folder) {
   auto bytes = read_export(folder.path_by_descriptor() + "/.", spare::kForStickFile);
   if (const auto gone = folder.remove(spare::kForStickFile); !gone) return std::unexpected(gone.error());
@@ -46,7 +46,7 @@ void SpareKeeper::answer(const spare::StickRequest& request, host::UntrustedFold
                         : take(request.name);
   status_.doing.clear();
   if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
-  look();  // it may be another by now, or gone
+  look();  // the stick may have changed
   tell();
 }
 
@@ -57,7 +57,7 @@ std::string SpareKeeper::write(const std::string& name,
   if (!medium) return medium.error();
   doing("writing");
   std::string why = write_to(*medium, name, *bytes);
-  // Unmounted in any case: it may be pulled out.
+  // Unmounts after an error as well, because the stick may be pulled out.
   const auto done = sticks_.remount(medium->name, Mode::ReadOnly);
   if (!sticks_.is_in(medium->name))
     return "the stick was removed before the export was complete: insert it again";
@@ -79,7 +79,8 @@ std::string SpareKeeper::write_to(const spare::Medium& medium, const std::string
   return written ? "" : written.error();
 }
 
-/// What the stick has kept: nothing of it is in the machine's memory any more since it was unmounted.
+/// Compares with the stick's content. After the unmount the kernel's memory holds none of the file, so the
+/// bytes come from the stick.
 std::string SpareKeeper::check(const spare::Medium& medium, const std::string& name,
                                const std::string& bytes) {
   const auto kept = read_export(sticks_.folder(medium.name), name);

@@ -10,22 +10,21 @@
 
 namespace adit::applier {
 
-/// adit-spare at work: carries exports to the stick and from it, as aditd asks, one after the other, and
-/// tells how it stands.
+/// The work of adit-spare: copies exports to and from the stick, one after the other, on aditd's request, and
+/// reports the status.
 class SpareKeeper {
  public:
-  /// Outlives this.
+  /// `options` must outlive this object.
   explicit SpareKeeper(const SpareOptions& options)
       : options_(options), sticks_(options), file_(options.status + '/' + host::kStatusFile) {}
 
-  /// Until nothing is asked for. An error: its own folder is not as it should be, or what is asked for cannot
-  /// be taken away. What was asked before the machine was restarted is dropped: whoever asked has seen that
-  /// it came to nothing.
+  /// Answers all requests, then returns. Error: its own directory is unusable, or a request cannot be
+  /// removed. Requests from before the boot are dropped, because their senders have seen them fail.
   std::expected<void, std::string> work();
 
  private:
   void answer(const spare::StickRequest& request, host::UntrustedFolder& folder);
-  /// "", or why it is not done.
+  /// "", or why it failed.
   std::string write(const std::string& name, const std::expected<std::string, std::string>& bytes);
   std::string write_to(const spare::Medium& medium, const std::string& name, const std::string& bytes);
   std::string check(const spare::Medium& medium, const std::string& name, const std::string& bytes);

@@ -1,5 +1,5 @@
-/// adit-spare: carries exports for a spare box to a USB stick and from it, as root, for aditd, which has no
-/// privilege.
+/// adit-spare: copies exports for a spare box to and from a USB stick, as root, for aditd, which has no
+/// privileges.
 
 #include "applier/spare_keeper.hpp"
 #include "command_line/answer.hpp"

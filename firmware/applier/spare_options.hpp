@@ -8,12 +8,12 @@ namespace adit::applier {
 
 /// adit-spare's command line.
 struct SpareOptions {
-  std::string wanted = "/var/lib/private/adit";  // where aditd asks
-  std::string status = "/run/adit-spare";        // where it is answered, for everybody to read
-  std::string sticks = "/run/adit-stick";        // in whose folders USB sticks are mounted
-  std::string block = "/sys/class/block";        // where the kernel tells of disks
-  std::string devices = "/dev";                  // where they are
-  std::string mount = "systemd-mount";           // mounts them, and takes --umount
+  std::string wanted = "/var/lib/private/adit";  // directory of aditd's requests
+  std::string status = "/run/adit-spare";        // directory of the status, readable by all
+  std::string sticks = "/run/adit-stick";        // directory of the mount points
+  std::string block = "/sys/class/block";        // the kernel's list of disks
+  std::string devices = "/dev";                  // device files
+  std::string mount = "systemd-mount";           // mounts, and unmounts with --umount
   bool help = false, version = false;
 };
 

@@ -12,7 +12,7 @@
 namespace adit::applier {
 namespace {
 
-/// Each is read once, which takes a while.
+/// Each candidate is read once, which is slow.
 constexpr std::size_t kMost = 8;
 
 struct Candidate {
@@ -20,7 +20,7 @@ struct Candidate {
   update::Promise promise;
 };
 
-/// Those that promise most of all that is on the sticks.
+/// The most promising files of all sticks.
 std::vector<Candidate> candidates(const std::string& sticks, const std::string& compatible,
                                   std::string& trouble) {
   std::vector<Candidate> found;
@@ -41,7 +41,7 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
   return found;
 }
 
-/// What could be installed, or why not.
+/// The update in a file, or why it cannot be installed.
 std::expected<update::Offer, std::string> judge(const Candidate& candidate, const Rauc& rauc,
                                                 const update::Running& running) {
   if (!update::is_plain(candidate.name))

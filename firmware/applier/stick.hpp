@@ -8,15 +8,15 @@
 
 namespace adit::applier {
 
-/// What is on the USB sticks that are in.
+/// The best update on the mounted USB sticks.
 struct OnStick {
-  std::optional<update::Offer> offer;  // the newest that could be installed
-  std::string path;                    // of its file
-  std::string trouble;                 // where there is none: why not what there is; or ""
+  std::optional<update::Offer> offer;  // the newest installable one
+  std::string path;                    // its file
+  std::string trouble;                 // without an offer: why the files cannot be installed, or ""
 };
 
-/// Looks at the files `adit-*.raucb` at the top of each stick: of each folder of `folder`, in which they are
-/// mounted read-only. At most at eight of them, those whose names promise most.
+/// Checks files `adit-*.raucb` at the top of each stick, the eight with the most promising names. The sticks
+/// are mounted read-only in the directories of `folder`.
 OnStick look_at_sticks(const std::string& folder, const Rauc& rauc, const update::Running& running);
 
 }  // namespace adit::applier

@@ -19,12 +19,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kMount{90};
-/// Whoever looks at all mounts holds one for a moment, and the unit of the mount before is gone a moment
-/// after it.
+/// Another program may use the mount for a moment, and systemd removes the old mount's unit a moment later.
 constexpr int kTries = 20;
 constexpr std::chrono::milliseconds kBetween{100};
 
-/// As adit-stick@.service mounts it, but for the first word.
+/// The options of adit-stick@.service after the first one.
 constexpr const char* kOptions = ",nosuid,nodev,noexec,noatime";
 
 std::vector<std::string> names_at(const std::string& folder, std::size_t most) {
@@ -50,7 +49,7 @@ bool Sticks::is_mounted(const std::string& name) const {
 std::vector<spare::Medium> Sticks::media() const {
   std::vector<spare::Medium> media;
   for (const std::string& name : host::names_in(options_.sticks).value_or(std::vector<std::string>())) {
-    if (!is_in(name)) continue;  // the folder of one that was pulled out
+    if (!is_in(name)) continue;  // directory of a removed stick
     const std::string block = options_.block + '/' + name;
     std::error_code error;
     const fs::path itself = fs::canonical(block, error);

@@ -10,32 +10,31 @@
 
 namespace adit::applier {
 
-/// The USB sticks that are in. systemd mounts them, each file system in a folder of its own
+/// The USB sticks that are plugged in. systemd mounts each file system in a directory of its own
 /// (services/adit-stick@.service).
 class Sticks {
  public:
   enum class Mode : std::uint8_t { ReadOnly, Writable };
 
-  /// Outlives this.
+  /// `options` must outlive this object.
   explicit Sticks(const SpareOptions& options) : options_(options) {}
 
   std::vector<spare::Medium> media() const;
-  /// Where that one is mounted.
+  /// Its mount point.
   std::string folder(const std::string& name) const { return options_.sticks + '/' + name; }
   bool is_in(const std::string& name) const;
 
-  /// Names at the top of a stick, of whatever.
+  /// Names read at the top of a stick.
   static constexpr std::size_t kMostAtTop = 4096;
-  /// Names of exports on all that are mounted, the latest first: at most kMost.
+  /// Names of exports on all mounted sticks, the latest first, at most kMost.
   static constexpr std::size_t kMost = 8;
   std::vector<std::string> exports() const;
-  /// The folder in which an export of that name is; "": in none.
+  /// The directory that has an export of that name, or "".
   std::string folder_with(const std::string& name) const;
 
-  /// Mounts it so, in place of how it was mounted: then what was written is on the stick. An error is a
-  /// sentence.
+  /// Unmounts the stick, which completes its writes, and mounts it in `mode`. Errors are sentences.
   std::expected<void, std::string> remount(const std::string& name, Mode mode) const;
-  /// What a program that was killed left writable is not any more.
+  /// Mounts sticks read-only that a killed program left writable.
   void settle() const;
 
  private:

@@ -37,12 +37,13 @@ void Takers::hear(const ArpPacket& packet, Instant now) {
     if (packet.from == own.address) {
       note(own, packet.sender, now);
     } else if (packet.probes(own.address)) {
-      ask_soon(own, now);  // who has it all the same after our kernel's answer says so when asked
+      ask_soon(own, now);  // if another machine has the address in spite of our kernel's answer, it answers a
+                           // request
     }
   }
 }
 
-/// Of several the one that was heard first is named until it is not heard any more.
+/// Of several machines, reports the first until it falls silent.
 void Takers::note(Own& own, const Mac& by, Instant now) {
   if (!own.taken || now >= own.by_seen + network::kTakenFor)
     own.taken = Taken{.address = own.address, .by = by, .since = now};

@@ -1,4 +1,4 @@
-/// adit-update: installs updates of the box, as root, for aditd, which has no privilege.
+/// adit-update: installs updates of the box as root, for aditd, which has no privileges.
 
 #include "applier/health_watch.hpp"
 #include "applier/update_options.hpp"

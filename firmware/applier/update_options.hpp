@@ -7,15 +7,15 @@ namespace adit::applier {
 
 /// adit-update's command line.
 struct UpdateOptions {
-  std::string wanted = "/var/lib/private/adit";       // where aditd asks
-  std::string status = "/run/adit-update";            // where it is answered, for everybody to read
-  std::string state = "/var/lib/adit-update";         // what became of the last update
-  std::string sticks = "/run/adit-stick";             // in whose folders USB sticks are mounted
-  std::string os_release = "/etc/os-release";         // says which version runs
-  std::string hindrance = "/run/adit-notices/disks";  // why none may be installed, where it is there
+  std::string wanted = "/var/lib/private/adit";       // directory of aditd's requests
+  std::string status = "/run/adit-update";            // directory of the status, readable by all
+  std::string state = "/var/lib/adit-update";         // result of the last update
+  std::string sticks = "/run/adit-stick";             // directory of the mount points
+  std::string os_release = "/etc/os-release";         // source of the running version
+  std::string hindrance = "/run/adit-notices/disks";  // if it exists, says why updates are blocked
   std::string rauc = "rauc", systemctl = "systemctl";
-  std::chrono::seconds within = update::kGoodWithin;  // of `good`
-  bool good = false;  // watches the start of the machine, rather than doing what is asked for
+  std::chrono::seconds within = update::kGoodWithin;  // time limit of `good`
+  bool good = false;  // watches the start of the machine instead of answering requests
   bool help = false, version = false;
 };
 

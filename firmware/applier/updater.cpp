@@ -37,7 +37,7 @@ std::expected<void, std::string> Updater::work() {
   return done;
 }
 
-/// Which slot runs, and what that says of the last update.
+/// Finds the running slot and settles the last update.
 void Updater::find_out() {
   const auto running = rauc_.status();
   if (running) {
@@ -89,7 +89,7 @@ void Updater::answer(const update::Request& request, host::UntrustedFolder& fold
     status_.refusal = status_.stick_trouble.empty() ? "no stick has an update" : status_.stick_trouble;
   }
   if (!status_.refusal.empty()) host::log(Level::Warning, "request rejected", {{"why", status_.refusal}});
-  look_at_sticks();  // it may be another by now, or gone
+  look_at_sticks();  // the stick may have changed
   tell();
 }
 
@@ -110,8 +110,8 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
   return why;
 }
 
-/// What is in the slot that is about to be written counts no more: nobody goes back to it, and it is not
-/// started next, which tells in the end that RAUC has written all of it.
+/// Gives up the content of the slot to be written: go_back() is no longer possible, and it is not the next
+/// slot to start. If the slot is next afterwards, RAUC has written all of it.
 std::string Updater::give_up_other() {
   if (load_proven(options_.state).slot == status_.running.other && !save(options_.state, update::Proven{}))
     return kNotKept;
@@ -126,7 +126,7 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
   update::LastUpdate last_update{
       .stage = Stage::Installing, .version = bundle.version, .slot = status_.running.other, .boot = boot_};
   if (std::string why = give_up_other(); !why.empty()) return why;
-  // Were that not kept, the slot would not be on trial.
+  // Without this file the slot would not be on trial.
   if (!save(options_.state, last_update)) return kNotKept;
   status_.doing = "installing";
   status_.progress = 0;
@@ -138,7 +138,7 @@ std::string Updater::write(const BundleFile& file, const update::Bundle& bundle)
   });
   last_update.stage = installed ? Stage::Installed : Stage::Failed;
   last_update.why = installed ? "" : installed.error();
-  if (!installed) {  // RAUC goes on where its client died, or took too long: status() waits for its end
+  if (!installed) {  // RAUC continues if its client died or took too long; status() waits for its end
     if (const auto ended = rauc_.status()) last_update = update::settled(last_update, *ended, boot_);
   }
   tell_of(last_update);

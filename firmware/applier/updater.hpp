@@ -11,23 +11,22 @@
 
 namespace adit::applier {
 
-/// adit-update at work: does what aditd asks for, one thing after the other, and tells how it stands.
+/// The work of adit-update: executes aditd's requests one after the other and reports the status.
 class Updater {
  public:
-  /// Outlives this.
+  /// `options` must outlive this object.
   explicit Updater(const UpdateOptions& options)
       : options_(options), rauc_(options.rauc), file_(options.status + '/' + host::kStatusFile) {}
 
-  /// Until nothing is asked for. An error: its own folders are not as they should be, or what is asked for
-  /// cannot be taken away. What was asked before the machine was restarted is dropped: whoever asked has
-  /// seen that it came to nothing.
+  /// Answers all requests, then returns. Error: its own directories are unusable, or a request cannot be
+  /// removed. Requests from before the boot are dropped, because their senders have seen them fail.
   std::expected<void, std::string> work();
 
  private:
   void find_out();
   void look_at_sticks();
   void answer(const update::Request& request, host::UntrustedFolder& folder);
-  /// "", or why it is not done.
+  /// "", or why it failed.
   std::string install(const std::expected<BundleFile, std::string>& file, bool again);
   std::string give_up_other();
   std::string write(const BundleFile& file, const update::Bundle& bundle);
@@ -41,7 +40,7 @@ class Updater {
   Rauc rauc_;
   std::string boot_;
   update::Status status_;
-  std::string on_stick_;  // the file of status_.stick
+  std::string on_stick_;  // path of status_.stick
   host::StatusFile file_;
 };
 

@@ -41,7 +41,7 @@ std::vector<access::Device> read_known(const std::string& file, const access::Ac
   return {};
 }
 
-/// `accounts` with a role's password set. Slow.
+/// Returns `accounts` with a role's password changed. Slow.
 icd::Checked<access::Accounts> with(access::Accounts accounts, Role role,
                                     const std::optional<std::string>& password, const access::Salt& salt) {
   accounts.of(role).reset();
@@ -69,7 +69,7 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
       devices_(read_known(devices_file(), accounts_, unread_devices_), [this] { keep_devices(); }) {
   if (!unread_.empty()) return;
   if (!first_start()) {
-    unlink(code_file().c_str());  // left by a kill, or of a card: the consoles show it
+    unlink(code_file().c_str());  // left by a kill or copied from a card; consoles would show it
     return;
   }
   const bool on_label = label_code.has_value();
@@ -82,7 +82,7 @@ Accounts::Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer&
   }
 }
 
-/// The one that an earlier start drew, or a new one; none if the file cannot be read.
+/// The code of an earlier start, or a new one. std::nullopt if the file cannot be read.
 std::optional<icd::BearerToken> Accounts::kept_code() {
   const auto kept = host::may_exist(code_file()) ? host::read_file(code_file()) : "";
   if (!kept) {
@@ -115,7 +115,7 @@ void Accounts::check(std::string password, std::string address,
         *role = access::role_of(password, accounts);
       },
       [this, role, accounts = accounts_, address = std::move(address), done = std::move(done)] {
-        // another was set while it was checked
+        // the password has changed since
         if (*role && accounts_.of(**role) != accounts.of(**role)) role->reset();
         if (*role) {
           host::log(Level::Notice, "logged in",
@@ -125,7 +125,7 @@ void Accounts::check(std::string password, std::string address,
         }
         done(*role);
       },
-      [] {});  // who waits for it is told by being dropped
+      [] {});  // dropping `done` answers the waiting client
 }
 
 void Accounts::set(Role role, std::optional<std::string> password,
@@ -146,7 +146,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
     if (const auto written = host::write_kept(file, access::write_accounts(**changed)); !written) {
       *changed = refuse(icd::Status::ServiceUnavailable, "cannot store the password: " + written.error());
     } else {
-      unlink(code_file.c_str());  // if there was one, it has done its service
+      unlink(code_file.c_str());  // a code is valid only without a password
     }
   };
   const auto ended = [this, changed, role, done = std::move(done)] { was_set(role, *changed, done); };
@@ -167,7 +167,7 @@ void Accounts::was_set(Role role, const icd::Checked<access::Accounts>& changed,
   done({});
 }
 
-/// What a power cut takes of it costs a browser its precedence until it is in again.
+/// After a power cut, a browser whose device was not stored loses its precedence until its next login.
 void Accounts::keep_devices() {
   if (!unread_devices_.empty()) return;
   auto written = std::make_shared<std::expected<void, std::string>>();

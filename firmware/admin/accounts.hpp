@@ -15,20 +15,20 @@
 
 namespace adit::admin {
 
-/// The passwords. If their file or the code's cannot be read, no password is set and no login is accepted. A
-/// damaged file of passwords is set aside, and the code sets them again.
+/// The passwords. If their file or the code's file cannot be read, no password is set and all logins are
+/// rejected. A damaged file of passwords is set aside; the code then sets new ones.
 class Accounts final : public api::Keys {
  public:
-  /// In the state folder: the passwords' hashes, and until there is one the code that sets it, where the
-  /// box's label has none.
+  /// In the state directory: the password hashes, and before the first password the code, if the label has
+  /// none.
   static constexpr const char* kFile = "access.json";
   static constexpr const char* kCodeFile = access::kCodeFile;
-  /// Beside them: the browsers that have been in. An unreadable file stays as it is until the next start.
+  /// Also there: the known devices. An unreadable file stays unchanged until the next start.
   static constexpr const char* kDevicesFile = "devices.json";
-  static constexpr std::chrono::minutes kSetUp{10}, kAtBox{1};  // for how long the button's press is good
+  static constexpr std::chrono::minutes kSetUp{10}, kAtBox{1};  // validity of the button's press
 
-  /// Logs the code of a first start, unless it is on the label. `loop`, `workers` (which hash, and are asked
-  /// for nothing else), `writer` and `sessions` outlive this.
+  /// Logs the code of a first start, unless it is on the label. `workers` compute hashes and must have no
+  /// other jobs. `loop`, `workers`, `writer` and `sessions` must outlive this object.
   Accounts(const loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, SessionKeeper& sessions,
            std::string folder, std::optional<icd::BearerToken> label_code);
 
@@ -46,10 +46,10 @@ class Accounts final : public api::Keys {
   bool somebody_at_box() const override { return at_box_.left(loop_.now()).has_value(); }
   access::Secret draw() override;
 
-  /// What sets the first password, where none was set at the start.
+  /// The code for the first password, if none was set at the start.
   const std::optional<icd::BearerToken>& code() const { return code_; }
 
-  /// On the word of the box's own button. Nothing else calls these.
+  /// Call only for the box's own button.
   void open_set_up();
   void button_pressed() { at_box_.open(loop_.now(), kAtBox); }
   std::optional<access::Duration> set_up_left() const { return set_up_.left(loop_.now()); }

@@ -7,7 +7,7 @@
 namespace adit::admin {
 namespace {
 
-/// chronyd asks four times in six seconds as it starts.
+/// At its start chronyd asks four times in six seconds.
 constexpr std::chrono::seconds kFirstAnswer{30};
 
 }  // namespace
@@ -48,7 +48,7 @@ void ClockSetting::offered(const clock::Offer& offer) {
   const auto status = adit_clock_.status();
   if (!status || adit_clock_.waits()) return;
   const bool came_to_nothing = !trouble().empty() || !status->refusal.empty();
-  if (came_to_nothing && loop_.now() < asked_at_ + kAskAgain) return;  // the operator may insist
+  if (came_to_nothing && loop_.now() < asked_at_ + kAskAgain) return;  // set_clock() has no such limit
   const double of_the_system = loop_.wall_now() - loop_.wall_ahead();
   const auto time = clock::to_be_set(status->trusted(), offer, of_the_system);
   if (!time) return;
@@ -89,7 +89,7 @@ void ClockSetting::ask_for_ntp() {
   if (!written) host::log(host::Level::Error, "cannot request NTP", {{"why", written.error()}});
 }
 
-/// Once its time is set, chronyd keeps it by itself.
+/// Offers the time until adit-clock has set it. Then chronyd keeps the clock by itself.
 void ClockSetting::follow_ntp() {
   const auto status = adit_clock_.status();
   const auto behind = watch_.behind();

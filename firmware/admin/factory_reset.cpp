@@ -37,7 +37,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
   std::error_code error;
   std::filesystem::remove_all(state_ + "/runs", error);
   if (error) return std::unexpected("cannot remove " + state_ + "/runs: " + error.message());
-  // Last: until then the box does not look as if it were reset.
+  // Removes the passwords and the mark last, so that an unfinished reset does not look finished.
   for (const std::string& file :
        {runtime_ + '/' + SessionKeeper::kFile, state_ + '/' + AcknowledgedFile::kFile,
         state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,

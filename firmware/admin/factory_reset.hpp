@@ -7,23 +7,24 @@
 
 namespace adit::admin {
 
-/// Back to the first start, also where the power goes in the midst of it: once begin() has written it down,
-/// it is done by the next finish(), and what that leaves undone by the one after it. Reports are kept.
+/// Factory reset, safe against a power cut. begin() records the reset; the next finish() executes it, and a
+/// later finish() completes an interrupted one. Reports are kept.
 class FactoryReset {
  public:
-  /// In the state folder, while a reset is under way.
+  /// In the state directory, until the reset is finished.
   static constexpr const char* kFile = "reset";
 
-  /// `store` outlives this.
+  /// `store` must outlive this object.
   FactoryReset(Store& store, std::string state_folder, std::string runtime_folder);
 
-  /// An error: nothing is forgotten.
+  /// Error: the reset has not begun.
   std::expected<void, std::string> begin();
-  /// Forgets settings, tokens, passwords, the code, who is logged in, what waits or is set aside and, by
-  /// adit-network, the box's addresses, where that was begun: then true. Called while nothing else uses them.
-  /// An error says what is left, or why it is not known whether it was begun: then nothing is forgotten.
+  /// If begun, deletes settings, tokens, passwords, the code, sessions, stored runs, and queued and rejected
+  /// messages, and requests factory addresses from adit-network. Then returns true. Call before other objects
+  /// use these. Error: the reset is incomplete, or it is unknown whether it has begun; in the second case all
+  /// stays.
   std::expected<bool, std::string> finish();
-  /// Why finish() does not know whether it was begun, or "": until that is known, the box must be on standby.
+  /// Why finish() does not know whether a reset has begun, or "". The box must then be a standby.
   const std::string& unread() const { return unread_; }
 
  private:

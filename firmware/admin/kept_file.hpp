@@ -8,8 +8,8 @@
 
 namespace adit::admin {
 
-/// What `read` makes of a file's text; a new one if there is no file. An error names the file. `unread`: the
-/// error if the file cannot be read; otherwise as it was. The caller must not replace such a file.
+/// Parses a file's text by `read`, or returns a new value if there is no file. An error names the file. If
+/// the file cannot be read, sets `unread` to the error; the caller must then not replace the file.
 template <class Read>
 auto read_kept_file(const std::string& file, Read read, std::string& unread)
     -> decltype(read(std::string_view())) {

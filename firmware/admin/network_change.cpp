@@ -14,7 +14,7 @@ std::unexpected<icd::Refusal> refuse_now(std::string sentence) {
   return refuse(icd::Status::Conflict, std::move(sentence));
 }
 
-/// Names are found on the team's side alone: nothing listens on the other.
+/// Resolves names on the team's side alone, because mDNS listens only there.
 api::PortRow port_of(const char* side, const std::string& interface) {
   const auto all = host::interfaces().value_or(std::vector<host::Interface>{});
   const auto found = std::ranges::find(all, interface, &host::Interface::name);
@@ -111,7 +111,7 @@ api::NetworkView NetworkChange::network() const {
     view.pending = {
         .until = view.now + left, .wanted = waits->wanted, .previous = kept, .page = page_at(waits->wanted)};
   }
-  if (view.pending) return view;  // how the one before ended says nothing of this one
+  if (view.pending) return view;  // the previous change's end says nothing about this one
   view.last_why = adit_network_.trouble();
   const auto status = adit_network_.status();
   if (!view.last_why.empty()) {
@@ -153,7 +153,8 @@ icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   return say(network::Word::What::Confirm, *waits);
 }
 
-/// Which address DHCP gave, or the box chose, nobody knows beforehand: it is any but the one that went.
+/// An address from DHCP or a link-local one is not known in advance. Any address but the old one confirms
+/// such a change.
 icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& wanted,
                                                     const std::string& local) const {
   const bool fixed = wanted.mode == network::Mode::Static;
@@ -213,7 +214,7 @@ icd::Checked<void> NetworkChange::say(network::Word::What what, const network::P
   return {};
 }
 
-/// The first of an interface's.
+/// The interface's first conflict.
 std::optional<alarms::TakenAddress> NetworkChange::taken(const std::string& interface, bool is_team) const {
   for (const network::TakenAddress& each : taken_.addresses) {
     if (each.interface != interface || loop_.now() >= each.seen + network::kTakenFor) continue;
@@ -223,7 +224,7 @@ std::optional<alarms::TakenAddress> NetworkChange::taken(const std::string& inte
   return std::nullopt;
 }
 
-/// The first that is an endpoint of the settings, or the gateway to it.
+/// The first one that is an endpoint of the settings or its gateway.
 std::optional<alarms::ExchangedAddress> NetworkChange::exchanged() const {
   const std::string scoring = next_hop(settings_.command_post.scoring),
                     mapping = next_hop(settings_.command_post.mapping);

@@ -12,16 +12,15 @@
 
 namespace adit::admin {
 
-/// The operator's changes of the box's own addresses, as adit-network makes them.
+/// The operator's changes of the box's addresses, executed by adit-network.
 class NetworkChange final : public api::Network {
  public:
-  /// adit-network asks the network first whether an address is free, which takes some seconds.
+  /// adit-network first probes the network for the addresses, which takes seconds.
   static constexpr std::chrono::seconds kTakenUpWithin{30};
-  /// adit-network is told again where the endpoints are, where it does not know, this long after the last
-  /// time.
+  /// Interval at which adit-network is sent the endpoints until its status has them.
   static constexpr std::chrono::seconds kTellAgain{10};
 
-  /// `watch_folder`: where adit-network --watch tells what it hears. All others outlive this.
+  /// `watch_folder`: of adit-network --watch. The other arguments must outlive this object.
   NetworkChange(loop::Loop& loop, const settings::Settings& settings,
                 host::RootProgram<network::Status>& adit_network, const std::string& watch_folder)
       : loop_(loop),
@@ -35,14 +34,13 @@ class NetworkChange final : public api::Network {
   icd::Checked<void> confirm(const std::string& local) override;
   icd::Checked<void> revert() override;
 
-  /// Called each second. Takes note of what became of the last change, and sees to it that there are ways to
-  /// the endpoints of the settings, and of all courses.
+  /// Call each second. Reads the result of the last change, and requests routes to the endpoints of the
+  /// settings and of all courses.
   void every_second();
-  /// Who answers for an endpoint on the Command Post's side: it, or the gateway to it; "": there is no way to
-  /// it.
+  /// The host to ask for an endpoint on the Command Post's side: the endpoint or its gateway. "": no route.
   std::string next_hop(const settings::Address& endpoint) const;
 
-  /// What is to be known of the addresses at once.
+  /// Input of the alarm rules.
   alarms::NetworkFact fact() const;
 
  private:
@@ -52,13 +50,13 @@ class NetworkChange final : public api::Network {
   void lead_to_endpoints();
   std::optional<alarms::ExchangedAddress> exchanged() const;
   std::optional<alarms::TakenAddress> taken(const std::string& interface, bool is_team) const;
-  /// Why nothing can be changed here; "" where it can.
+  /// Why changes are impossible here, or "".
   std::string hindrance() const;
   std::string page_at(const network::Numbers& numbers) const;
   std::optional<network::Pending> pending() const;
   std::optional<network::Numbers> kept() const;
   std::optional<network::Numbers> present() const;
-  /// Where `local` is an address by which the confirmation of a change to `wanted` may come.
+  /// Accepts `local` if a change to `wanted` may be confirmed from that address.
   icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
   icd::Checked<void> say(network::Word::What what, const network::Pending& pending) const;
 
@@ -67,11 +65,11 @@ class NetworkChange final : public api::Network {
   host::RootProgram<network::Status>& adit_network_;
   const std::string taken_file_;
   mutable network::Taken taken_;
-  mutable std::string taken_trouble_;  // why the file could not be read last, which is logged once
+  mutable std::string taken_trouble_;  // the last read error, logged once
   mutable std::optional<loop::Instant> taken_read_at_;
-  network::Wanted wanted_;  // last
+  network::Wanted wanted_;  // last request
   loop::Instant wanted_at_{};
-  std::optional<loop::Instant> told_at_;  // where the endpoints are
+  std::optional<loop::Instant> told_at_;  // last request for routes
 };
 
 }  // namespace adit::admin

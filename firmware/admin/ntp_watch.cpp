@@ -38,7 +38,7 @@ void NtpWatch::every_second(const std::string& server) {
   }
 }
 
-/// Where nobody is there, it is asked again.
+/// A failed request is repeated later.
 void NtpWatch::ask() {
   asked_at_ = loop_.now();
   is_asked_ = true;

@@ -10,20 +10,20 @@
 
 namespace adit::admin {
 
-/// Asks chronyd, on this machine, how it stands with an NTP server (firmware/clock/README.md).
+/// Asks chronyd on this machine about an NTP server (firmware/clock/README.md).
 class NtpWatch {
  public:
-  /// Three of its questions without an answer, at least.
+  /// Age of chronyd's last contact at which the server is silent: at least three unanswered packets.
   static constexpr double kSilence = 150;  // seconds
-  /// A chronyd that has not answered for so long does not run.
+  /// Age of chronyd's last answer at which chronyd is not running.
   static constexpr std::chrono::seconds kGone{15};
 
-  /// `port`: where chronyd answers. `loop` outlives this.
+  /// `port`: of chronyd. `loop` must outlive this object.
   explicit NtpWatch(loop::Loop& loop, std::uint16_t port = 323) : loop_(loop), port_(port) {}
 
-  /// Called each second: `server` is to be heard, an IPv4 address; "": nobody is, and nothing is asked.
+  /// Call each second. `server`: an IPv4 address, or "" to stop asking.
   void every_second(const std::string& server);
-  /// Seconds by which the system's clock is behind the server's; nothing: it is not heard.
+  /// Seconds by which the system clock is behind the server. std::nullopt: the server is silent.
   std::optional<double> behind() const;
 
  private:
@@ -37,9 +37,9 @@ class NtpWatch {
   std::optional<clock::Tracking> told_;
   loop::Instant told_at_{}, asked_at_{};
   std::uint32_t number_ = 0;
-  bool is_asked_ = false;  // and has not answered
+  bool is_asked_ = false;  // the last request has no answer
   loop::FileDescriptor socket_;
-  loop::Source answers_;  // ended before its descriptor is closed
+  loop::Source answers_;  // destroyed before its descriptor is closed
 };
 
 }  // namespace adit::admin

@@ -6,18 +6,18 @@
 
 namespace adit::admin {
 
-/// Those who are logged in, kept in a file for aditd alone, so that they stay so when the service ends, also
-/// suddenly. A start of the machine forgets them. What is wrong with the file is logged, and costs no more
-/// than a login. An unreadable file stays as it is until the next start.
+/// Stores the sessions in a file that only aditd can read, across restarts and crashes. A boot ends all
+/// sessions. A faulty file is logged, and users log in again. An unreadable file stays unchanged until the
+/// next start.
 class SessionKeeper {
  public:
-  static constexpr const char* kFile = "sessions.json";  // in the runtime folder
+  static constexpr const char* kFile = "sessions.json";  // in the runtime directory
 
-  /// `now`: of the monotonic clock.
+  /// `now`: monotonic time.
   SessionKeeper(std::string file, access::Instant now);
 
   access::Sessions& sessions() { return sessions_; }
-  /// Writes down when each was seen last. Logging in and out is written at once.
+  /// Stores the last use of each session. Logins and logouts are stored at once.
   void keep();
 
  private:

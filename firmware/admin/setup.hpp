@@ -11,18 +11,18 @@
 
 namespace adit::admin {
 
-/// What the gateway runs with, and how that is changed.
+/// The gateway's settings and tokens, and their changes.
 class Setup final : public api::Setup {
  public:
-  /// What it means for the reports where the scoring endpoint is at this address and port from then on.
+  /// Returns the effect on reports of a scoring endpoint at this address and port.
   using Meaning = std::function<std::string(const std::string& post)>;
 
-  /// `apply` is called once a change is on the disk, and sees to it that runs_with() is told what came of it;
-  /// `restart` ends the gateway, so that another begins. `store` and `reset` outlive this.
+  /// `apply` is called after a change is on disk, and must cause runs_with(). `restart` replaces the gateway.
+  /// `store` and `reset` must outlive this object.
   Setup(Store& store, FactoryReset& reset, const Store::Loaded& loaded, std::string trouble,
         Meaning for_reports, std::function<void()> apply, std::function<void()> restart);
 
-  /// A change was applied, or reverted: the gateway runs with these. `trouble`: see api::Setup.
+  /// Reports the configuration in use after a change was applied or reverted. `trouble`: see api::Setup.
   void runs_with(const Store::Loaded& loaded, std::string trouble);
 
   const settings::Settings& settings() const override { return settings_; }
@@ -37,7 +37,7 @@ class Setup final : public api::Setup {
   icd::Checked<void> reset() override;
 
  private:
-  /// What `written` has on the disk is brought about by `apply`.
+  /// Calls `apply` if `written` is good. `what`: for the error.
   icd::Checked<void> applied(const std::expected<void, std::string>& written, const char* what,
                              const std::function<void()>& apply);
 
@@ -50,10 +50,10 @@ class Setup final : public api::Setup {
   Meaning for_reports_;
   std::function<void()> apply_, restart_;
   bool applying_ = false;
-  bool is_kept_ = true;  // what is run with is what the disk has: not after a save that failed halfway
+  bool is_kept_ = true;  // the disk matches the configuration in use; false after an incomplete save
 };
 
-/// The token for an endpoint ("scoring", "mapping"): that of the course in use, or else the common one.
+/// The token for an endpoint ("scoring", "mapping"): the present course's, or else the common one.
 std::optional<icd::BearerToken> token_for(const std::string& endpoint, const settings::Settings& settings,
                                           const host::Secrets& secrets);
 

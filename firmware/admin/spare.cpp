@@ -69,7 +69,7 @@ api::SpareView Spare::spare() const {
   view.asks_code = sealed_ != nullptr;
   view.takes_over = takes_over_;
   view.stick = stick_.view();
-  // What an earlier rest wrote is no export of this one.
+  // the last export of an earlier standby does not count
   if (view.stick && !is_of_this_rest(view.stick->written)) view.stick->written.clear();
   if (file_.rest) view.since = file_.rest->since;
   if (view.standby && file_.rest) view.code = spare::spoken(file_.rest->code);
@@ -108,7 +108,7 @@ icd::Checked<void> Spare::resume() {
   if (standby_.empty()) return refuse(Status::Conflict, "this box is not on standby");
   if (!is_stuck()) {
     std::string unread;
-    SpareFile next = SpareFile::read(state_, unread).value_or(SpareFile());  // a damaged one is replaced
+    SpareFile next = SpareFile::read(state_, unread).value_or(SpareFile());  // a damaged file is replaced
     if (!unread.empty()) return refuse(Status::ServiceUnavailable, std::move(unread));
     next.rest.reset();
     if (auto kept = keep(next); !kept) return kept;
@@ -163,7 +163,7 @@ icd::Checked<void> Spare::take_from_stick(const std::string& name) {
   return stick_.take(name);
 }
 
-/// By the checks of one that is uploaded.
+/// Runs the checks of an upload.
 void Spare::taken_from_stick(std::string file) {
   if (const auto taken = take_in(std::move(file)); !taken)
     host::log(host::Level::Warning, "export from the stick rejected", {{"why", taken.error().sentence}});
@@ -195,7 +195,7 @@ void Spare::open(const std::string& code, Done done) {
       });
 }
 
-/// A wrong code may be typed again.
+/// After a wrong code, the user may try again.
 icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
   if (!text) return refuse(Status::UnprocessableEntity, std::move(text.error()));
   auto content = spare::read(*text);
@@ -209,7 +209,7 @@ icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
   return {};
 }
 
-/// Also what cannot be finished.
+/// Also abandons a takeover that cannot be finished.
 icd::Checked<void> Spare::forget() {
   if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
   if (is_stuck()) {
@@ -226,7 +226,7 @@ icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
   if (!taken_in_) return refuse(Status::Conflict, "no export is open: import and open one first");
   spare::Content content = *taken_in_;
-  if (!asked_.is_time_set()) content.about.told_at.reset();  // nobody can compare them
+  if (!asked_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
   if (auto begun = taking_over_.begin(spare::write(content)); !begun)
     return refuse(Status::ServiceUnavailable, std::move(begun.error()));
   takes_over_ = true;

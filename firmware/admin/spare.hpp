@@ -15,31 +15,31 @@
 
 namespace adit::admin {
 
-/// The box's rest and its export, and the taking in of another's (firmware/spare/README.md).
+/// The box's standby and its export, and the import of another box's (firmware/spare/README.md).
 class Spare final : public api::Spare {
  public:
-  /// What the gateway does for it. Each is called on the loop.
+  /// Functions of the gateway, called on the loop.
   struct Asked {
-    /// All but what this knows itself: of the box and its rest.
+    /// The export's content, without the data about this box and its standby.
     std::function<std::expected<spare::Content, std::string>()> content;
-    /// The time of day was set by somebody who knows it.
+    /// Whether the time of day is reliable.
     std::function<bool()> is_time_set;
-    /// The gateway ends, and another takes its place, which looks at the files again.
+    /// Replaces the gateway; the new one reads the files again.
     std::function<void()> restart;
   };
 
-  /// `status_folder`: where adit-spare answers. `stuck`: why the box is on standby whatever
-  /// its own file says (a take-over is not finished, the settings cannot be read), or "". `workers`: for what
-  /// costs 0.1 s. All outlive this.
+  /// `status_folder`: of adit-spare. `stuck`: why the box is a standby in spite of its file (an unfinished
+  /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `taking_over`
+  /// must outlive this object.
   Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
         const std::string& status_folder, const std::string& stuck, Asked asked);
 
-  /// Why the box takes nothing and sends nothing; "": it does.
+  /// Why the box is a standby, or "".
   const std::string& standby() const { return standby_; }
-  /// Why its own file could not be read, or "".
+  /// Why its file could not be read, or "".
   const std::string& unread() const { return unread_; }
   bool is_stuck() const { return !stuck_.empty(); }
-  /// Nothing is under way any more as this gateway ends: what /api/status would answer now.
+  /// Call when the gateway ends without requests in flight. `expected`: the answer of /api/status then.
   void ends(const std::optional<icd::RunStatus>& expected);
 
   api::SpareView spare() const override;
@@ -56,7 +56,7 @@ class Spare final : public api::Spare {
  private:
   icd::Checked<void> keep(const SpareFile& next);
   bool is_of_this_rest(const std::string& file) const;
-  /// The export's file, and where the team finds the box.
+  /// `file`: the export. `name`: the box's address for the team.
   using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
   void seal(const Named& done);
   void taken_from_stick(std::string file);
@@ -69,14 +69,14 @@ class Spare final : public api::Spare {
   SpareStick stick_;
   std::string stuck_, unread_;
   Asked asked_;
-  loop::Source restart_;  // once who asked is answered
+  loop::Source restart_;  // fires after the client has its answer
   SpareFile file_;
   std::string standby_;
-  bool goes_on_standby_ = false;  // with the end of this gateway
+  bool goes_on_standby_ = false;  // when this gateway ends
   bool takes_over_ = false;
-  std::shared_ptr<const std::string> sealed_;  // taken in, and not opened yet; null: nothing is
+  std::shared_ptr<const std::string> sealed_;  // imported and not opened yet, or null
   std::optional<spare::Content> taken_in_;
-  std::vector<std::string> left_out_;  // of its settings: their paths
+  std::vector<std::string> left_out_;  // paths of settings that this box does not know
 };
 
 }  // namespace adit::admin

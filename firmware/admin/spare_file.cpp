@@ -49,7 +49,7 @@ std::string SpareFile::hindrance(const spare::About& about) const {
   if (about.box == box) return "this box made the export itself: end the standby if no spare took over";
   const auto before = std::ranges::find(taken, about.box, &TakenFrom::box);
   if (before == taken.end()) return "";
-  // That box's clock may have been set back in between: its count goes before.
+  // Prefers the counts, because that box's clock may have been set back in between.
   const bool are_counted = about.rest_count && before->rest_count;
   const auto order = are_counted ? *about.rest_count <=> *before->rest_count : about.at <=> before->at;
   if (order > 0) return "";

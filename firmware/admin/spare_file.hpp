@@ -12,14 +12,13 @@
 
 namespace adit::admin {
 
-/// The standby of the box.
+/// A standby of the box.
 struct Rest {
-  std::string code = "";                       // of its export
+  std::string code = "";                       // of the export
   double since = 0;                            // seconds since 1970
-  std::optional<double> stamp = std::nullopt;  // then; nothing: an earlier Adit did not note it
+  std::optional<double> stamp = std::nullopt;  // at `since`; nullopt: from an earlier Adit
   std::optional<double> told = std::nullopt;   // spare::About::told_at
-  /// What /api/status would have answered once nothing was under way any more; nothing: not known for
-  /// certain.
+  /// The answer of /api/status after the last request in flight. std::nullopt: not known for certain.
   std::optional<icd::RunStatus> expected = std::nullopt;
   static const codec::Row kRow;
 };
@@ -27,27 +26,27 @@ struct Rest {
 /// An export that was taken over from.
 struct TakenFrom {
   std::string box = "";
-  double at = 0;                                          // when that box came to rest
+  double at = 0;                                          // start of that box's standby
   std::optional<std::int64_t> rest_count = std::nullopt;  // spare::About
   static const codec::Row kRow;
 };
 
-/// What a box keeps of itself and its spare, in the state folder: it must outlive everything.
+/// The box's permanent record of itself and its spare, in the state directory.
 struct SpareFile {
-  std::string box = "";  // its own number; "": it drew none yet
+  std::string box = "";  // the box's own number; "": not drawn yet
   std::optional<Rest> rest = std::nullopt;
   std::optional<std::int64_t> rest_count = std::nullopt;  // spare::About
   std::vector<TakenFrom> taken = {};
 
   static const codec::Row kRow;
   static constexpr const char* kName = "spare.json";
-  /// One that is not there yet is new.
+  /// A missing file reads as a new record.
   static std::expected<SpareFile, std::string> read(const std::string& state_folder);
-  /// `unread`: the error if it cannot be read. Then it must not be replaced; one that is damaged may be.
+  /// `unread`: the error if the file cannot be read. Such a file must not be replaced; a damaged one may be.
   static std::expected<SpareFile, std::string> read(const std::string& state_folder, std::string& unread);
   std::expected<void, std::string> write(const std::string& state_folder) const;
 
-  /// Why that export must not be taken over from; "": it may.
+  /// Why this export must not be taken over from, or "".
   std::string hindrance(const spare::About& about) const;
 };
 

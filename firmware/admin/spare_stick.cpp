@@ -23,12 +23,12 @@ icd::Refusal conflict(std::string sentence) {
   return {Status::Conflict, std::move(sentence)};
 }
 
-/// What is said to be done before adit-spare says so itself.
+/// The action to show until adit-spare reports its own.
 const char* doing_of(spare::StickRequest::What what) {
   return what == spare::StickRequest::What::Write ? "writing" : "reading";
 }
 
-/// Of adit-spare's folder, in memory.
+/// Reads from adit-spare's directory, in memory.
 std::expected<std::string, std::string> read_from_stick(const std::string& path) {
   auto file = host::slurp(path, spare::kLargestExport);
   if (!file)

@@ -12,32 +12,32 @@
 
 namespace adit::admin {
 
-/// Exports to and from the USB stick in the box, as adit-spare carries them (firmware/spare/README.md).
+/// Exports to and from the USB stick in the box, copied by adit-spare (firmware/spare/README.md).
 class SpareStick {
  public:
-  /// adit-spare begins within that time, unless it does not run here.
+  /// Time in which adit-spare must start; later, it does not run here.
   static constexpr std::chrono::seconds kTakenUpWithin{60};
-  /// How often it is looked what became of a request.
+  /// Interval at which a request's result is read.
   static constexpr std::chrono::milliseconds kLook{100};
 
   using Taken = std::function<void(std::string)>;
 
-  /// `state_folder`: where requests are left; `status_folder`: where they are answered. `taken` is given each
-  /// export that was read from a stick. `loop` outlives this.
+  /// `state_folder`: for requests. `status_folder`: for answers. `taken` receives each export read from a
+  /// stick. `loop` must outlive this object.
   SpareStick(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
              Taken taken);
 
-  /// Nothing: adit-spare does not run here.
+  /// std::nullopt: adit-spare does not run here.
   std::optional<api::StickRow> view() const;
-  /// Why nothing can be asked for now; nothing: it can.
+  /// Why requests are impossible now, or std::nullopt.
   std::optional<icd::Refusal> hindrance() const;
-  /// The whole file, under that name.
+  /// Writes the whole file under that name.
   icd::Checked<void> write(const std::string& name, const std::string& file);
   icd::Checked<void> take(const std::string& name);
 
  private:
   using What = spare::StickRequest::What;
-  /// Why no export can be written now.
+  /// Why no export can be written now, or std::nullopt.
   std::optional<icd::Refusal> hindrance_to_write() const;
   icd::Checked<void> ask(What what, const std::string& name);
   void look();
@@ -48,8 +48,8 @@ class SpareStick {
   host::RootProgram<spare::StickStatus> adit_spare_;
   Taken taken_;
   loop::Source timer_;
-  std::optional<What> asked_;  // and not finished yet
-  std::string refusal_;        // why the last came to nothing
+  std::optional<What> asked_;  // until it is finished
+  std::string refusal_;        // why the last request failed
 };
 
 }  // namespace adit::admin

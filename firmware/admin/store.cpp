@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What `parse` makes of a file's text. `unread`: why the file cannot be read; else as it was.
+/// Parses a file's text. Sets `unread` if the file cannot be read.
 template <class Parse>
 auto read_settings(const std::string& file, Parse parse, std::string& unread)
     -> std::expected<typename decltype(parse(""))::value_type, std::string> {
@@ -39,7 +39,7 @@ std::expected<Store::Loaded, std::string> Store::load() {
   unread_.clear();
   auto loaded = read(unread_);
   if (!loaded) return loaded;
-  // So that the box still serves a page on which it can be set right.
+  // A box with damaged settings must still serve the page that corrects them.
   if (loaded->is_damaged) {
     host::set_damaged_aside(file(), "the saved set-up", loaded->trouble);
   } else if (!loaded->trouble.empty()) {
@@ -53,8 +53,8 @@ bool Store::can_be_read() const {
   return read(unread) && unread.empty();
 }
 
-/// Of what a later Adit saved, the settings that this one does not know are left out: an update that was
-/// reverted must not cost the rest of them.
+/// Leaves out settings of a later Adit that this one does not know, so that a reverted update preserves the
+/// others.
 std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const {
   Loaded loaded;
   loaded.saved = host::may_exist(file());

@@ -15,11 +15,11 @@ namespace adit::admin {
 
 using settings::token_names;
 
-/// Where settings and tokens are kept, and which of them count: those that were saved in the state folder, or
-/// else those that the box was given.
+/// Stores settings and tokens, and decides which apply: the saved ones in the state directory, or else the
+/// given ones.
 ///
-/// Saved settings and tokens are on trial until settle(). revert() restores the earlier ones, also after a
-/// crash or a power cut.
+/// Saved settings and tokens are on trial until settle(). revert() restores the earlier settings, after a
+/// crash or a power cut as well.
 class Store {
  public:
   Store(std::string given_settings, std::string given_secrets, std::string state_folder);
@@ -27,17 +27,16 @@ class Store {
   struct Loaded {
     settings::Settings settings;
     bool saved = false;
-    bool is_damaged = false;  // the saved settings were read, and cannot be understood
+    bool is_damaged = false;  // the saved settings could be read, but not parsed
     host::Secrets secrets;
-    std::string trouble;  // why saved settings or tokens do not count, though there are any
+    std::string trouble;  // why existing saved settings or tokens are not used
   };
-  /// Of the secrets that there are whatever the settings say: a sentence on what is wrong with these quotes
-  /// them.
+  /// Redacts all stored secrets, because an error about them quotes them.
   icd::Redaction redaction() const;
-  /// What counts. An error: neither can be used. Damaged saved settings are set aside.
+  /// Loads the configuration that applies. Error: neither can be used. Damaged saved settings are set aside.
   std::expected<Loaded, std::string> load();
-  /// Why load() could not read a file, or "". Its result then is not the saved set-up, and the box must
-  /// not use it. Until load() succeeds, save(), settle() and revert() change nothing.
+  /// Why load() could not read a file, or "". The box must not use that result. Until load() succeeds,
+  /// save(), settle() and revert() change nothing.
   const std::string& unread() const { return unread_; }
   /// Whether load() could read all files now. Thread-safe.
   bool can_be_read() const;
@@ -45,11 +44,11 @@ class Store {
   std::expected<void, std::string> save(const settings::Settings& settings);
   std::expected<void, std::string> save_token(const std::string& name,
                                               const std::optional<icd::BearerToken>& token);
-  /// What counts works. Tokens of courses that there are no more are removed: nobody could see them.
+  /// Ends the trial with success. Removes tokens of deleted courses, because no page shows them.
   void settle(const settings::Settings& settings);
-  /// False: nothing is on trial, or it failed.
+  /// False: there is no trial, or the revert failed.
   bool revert();
-  /// Forgets all that was saved.
+  /// Deletes all that was saved.
   std::expected<void, std::string> forget();
 
  private:
@@ -60,7 +59,7 @@ class Store {
     return secrets_folder() + "/" + name + settings::kTokenEnding;
   }
   std::expected<void, std::string> make_secrets_folder();
-  /// As load(); changes nothing on the disk.
+  /// As load(), without changes on disk.
   std::expected<Loaded, std::string> read(std::string& unread) const;
 
   const std::string given_settings_, given_secrets_, state_;

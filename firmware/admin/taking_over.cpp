@@ -18,15 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How far the stamps here, which are at `stamp`, are ahead of the first box's: as much time went by since it
-/// came to rest as the times of day say. Where they may differ none did for certain: what makes a new run is
-/// silence. `wall`: here.
+/// Seconds by which this box's stamps (`stamp` now) are ahead of the first box's. `wall`: this box's time of
+/// day. The time since the first box's standby comes from both times of day. If they cannot be compared, it
+/// counts as 0, because a long silence would look like a new run.
 double ahead(const spare::About& about, double stamp, double wall) {
   const double since = std::max(0.0, wall - about.told_at.value_or(wall));
   return stamp - since - about.stamp;
 }
 
-/// The same ports, at whatever addresses the machine has on its interface.
+/// The same ports, at any address of the interface.
 std::vector<settings::Address> at_any(const std::vector<settings::Address>& listen) {
   std::vector<settings::Address> all;
   for (settings::Address each : listen) {
@@ -36,7 +36,7 @@ std::vector<settings::Address> at_any(const std::vector<settings::Address>& list
   return all;
 }
 
-/// What tells of the machine, not of the team: the first box's may be another.
+/// Preserves settings of the machine, which may differ from the first box's.
 void keep_hardware(settings::Settings& here, settings::Settings& taken) {
   taken.command_post.interface = std::move(here.command_post.interface);
   taken.team.interface = std::move(here.team.interface);
@@ -63,12 +63,12 @@ std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
   return true;
 }
 
-/// Each step may be done again. Who exported is noted last: until then it is not finished.
+/// Every step can be repeated. The last step records the first box, which finishes the takeover.
 std::expected<void, std::string> TakingOver::take(const spare::Content& content, const loop::Loop& loop) {
   forward::StampFloor stamps(state_);
   const auto kept = stamps.read();
   if (!kept) return std::unexpected(kept.error());
-  const double least = std::ceil(std::max(content.about.stamps, kept->least));  // as it is kept
+  const double least = std::ceil(std::max(content.about.stamps, kept->least));  // the stored form
   const dispatch::Handover handover{
       .expected = content.about.expected,
       .stamp = std::max(loop.stamp_now(), least),

@@ -12,29 +12,28 @@
 
 namespace adit::admin {
 
-/// The box goes on where another one came to rest, also where the power goes in the midst of it: once
-/// begin() has written the export down, it is done by the next finish(), and what that leaves undone by the
-/// one after it.
+/// Takeover from another box's export, safe against a power cut. begin() stores the export; the next finish()
+/// executes it, and a later finish() completes an interrupted one.
 class TakingOver {
  public:
-  /// What is being taken over, with the other team's tokens: nothing of it stays.
+  /// The export, with the other box's tokens; removed at the end.
   static constexpr const char* kFile = "take-over";
 
-  /// `store` outlives this.
+  /// `store` must outlive this object.
   TakingOver(Store& store, std::string state_folder) : store_(store), state_(std::move(state_folder)) {}
 
-  /// The paths of those of its settings that this box does not know, and will leave out. An error: why it
-  /// cannot take over from that one. Nothing is changed.
+  /// Paths of settings that this box does not know and will leave out. Error: the takeover is impossible.
+  /// Does not change the box.
   std::expected<std::vector<std::string>, std::string> check(const spare::Content& content) const;
-  /// `content`: spare::write(). An error: nothing is begun.
+  /// `content`: from spare::write(). Error: the takeover has not begun.
   std::expected<void, std::string> begin(const std::string& content);
-  /// Takes over reports and runs into the ledger, settings, tokens and the bound of stamps, where that was
-  /// begun: then true. Called while nothing else uses them. An error says why it is not finished: until it
-  /// is, the box must rest.
+  /// If begun, takes over reports and runs into the ledger, settings, tokens and the stamp floor. Then
+  /// returns true. Call before other objects use these. Error: unfinished; the box must be a standby until it
+  /// is finished.
   std::expected<bool, std::string> finish(const loop::Loop& loop);
-  /// Why finish() could not read whether there is one to finish, or "".
+  /// Why finish() does not know whether a takeover has begun, or "".
   const std::string& unread() const { return unread_; }
-  /// What cannot be finished is forgotten; what of it is done stays.
+  /// Abandons an unfinished takeover. Finished steps stay.
   std::expected<void, std::string> abandon();
 
  private:

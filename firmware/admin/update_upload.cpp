@@ -20,7 +20,7 @@ icd::Refusal cannot(const std::string& why) {
 
 }  // namespace
 
-/// On the loop but for write_now(), of which one runs at a time.
+/// Runs on the loop, except write_now(), which runs once at a time in the writer thread.
 class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
  public:
   Writing(loop::Writer& writer, Ends ends, loop::FileDescriptor file)
@@ -76,9 +76,9 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
         error_ = errno;
       }
     }
-    // So that the last of it does not wait for all the rest.
+    // Spreads the flushes, so that the last one is short.
     if (error_ == 0 && fdatasync(file_.get()) != 0) error_ = errno;
-    // What still comes is thrown away: the ledger is not to wait for the room until all of it has.
+    // Frees the space at once, because the ledger may need it while the rest arrives.
     if (error_ != 0 && ftruncate(file_.get(), 0) != 0) file_ = {};
   }
 
@@ -106,7 +106,7 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
     if (error_ != 0) return std::unexpected(cannot(std::strerror(error_)));
     if (received_ != ends_.size)
       return std::unexpected(cannot(icd::sentence("got ", received_, " of ", ends_.size, " bytes")));
-    file_ = loop::FileDescriptor();  // adit-update takes no file that somebody could still write to
+    file_ = loop::FileDescriptor();  // adit-update rejects a file that is open for writing
     if (std::rename(ends_.part.c_str(), ends_.whole.c_str()) != 0)
       return std::unexpected(cannot(std::strerror(errno)));
     return ends_.asked();
@@ -117,10 +117,10 @@ class UpdateUpload::Writing : public std::enable_shared_from_this<Writing> {
   loop::FileDescriptor file_;
   std::vector<std::uint8_t> waiting_;
   std::uint64_t received_ = 0;
-  int error_ = 0;         // of the writer's, read while it is not busy
-  bool busy_ = false;     // the writer is at it
-  bool held_ = false;     // whoever sends is waiting
-  bool dropped_ = false;  // nothing is left to do
+  int error_ = 0;         // set in the writer thread, read while it is idle
+  bool busy_ = false;     // the writer thread is writing
+  bool held_ = false;     // the sender is paused
+  bool dropped_ = false;  // finished or abandoned
   std::function<void(icd::Checked<void>)> done_;
 };
 

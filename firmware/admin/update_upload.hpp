@@ -11,22 +11,22 @@
 
 namespace adit::admin {
 
-/// A bundle that is written as it comes, by the writer: a slow disk is back-pressure to whoever sends it, and
-/// never holds up the loop.
+/// A bundle that the writer thread stores as it arrives. A slow disk slows the sender and never blocks the
+/// loop.
 class UpdateUpload final : public api::Upload {
  public:
-  /// Pieces are written together, and whoever sends them waits where so much is not written yet.
+  /// Bytes collected for one write. The sender is paused if as many are queued during a write.
   static constexpr std::size_t kTogether = 256 << 10;
 
-  /// What it needs to know of whoever begins it. All but `file` is called on the loop.
+  /// Data and callbacks of the caller. All but `part` and `whole` are used on the loop.
   struct Ends {
-    std::string part, whole;                    // the paths while it comes, and once it is there
-    std::uint64_t size = 0;                     // that was announced
-    std::function<void()> resume;               // more may come
-    std::function<icd::Checked<void>()> asked;  // it is whole: asks for the installation
-    std::function<void()> over;                 // nothing of it is left to do
+    std::string part, whole;                    // path during the upload, and afterwards
+    std::uint64_t size = 0;                     // announced size
+    std::function<void()> resume;               // accept more data
+    std::function<icd::Checked<void>()> asked;  // the file is complete: requests the installation
+    std::function<void()> over;                 // the upload is finished or abandoned
   };
-  /// Refused where the file cannot be made. `writer` outlives this.
+  /// Error: the file cannot be created. `writer` must outlive this object.
   static icd::Checked<std::unique_ptr<UpdateUpload>> begin(loop::Writer& writer, Ends ends);
   ~UpdateUpload() override;
   UpdateUpload(const UpdateUpload&) = delete;

@@ -17,13 +17,13 @@ icd::Refusal conflicting(std::string sentence) {
   return {icd::Status::Conflict, std::move(sentence)};
 }
 
-/// What is said to be done before adit-update says so itself.
+/// The action to show until adit-update reports its own.
 const char* doing_of(update::Request::What what) {
   using What = update::Request::What;
   return what == What::Restart || what == What::Back ? "restarting" : "checking";
 }
 
-/// Why a bundle of that size has no place in the folder.
+/// Why a bundle of that size does not fit into the directory.
 std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t size) {
   const auto disk = host::disk_of(folder);
   if (!disk) {
@@ -44,7 +44,7 @@ Updates::Updates(loop::Loop& loop, loop::Writer& writer, const std::string& stat
     : writer_(writer),
       adit_update_(loop, "adit-update", state_folder, status_folder, kTakenUpWithin),
       under_way_(std::move(under_way)) {
-  unlink(part_file().c_str());  // of an upload that a power cut broke off
+  unlink(part_file().c_str());  // left by a power cut
 }
 
 void Updates::every_second() {

@@ -13,16 +13,16 @@
 
 namespace adit::admin {
 
-/// The operator's updates of the box, as adit-update makes them.
+/// The operator's updates of the box, executed by adit-update.
 class Updates final : public api::Updates {
  public:
-  /// adit-update begins within that time, unless it does not run here.
+  /// Time in which adit-update must start; later, it does not run here.
   static constexpr std::chrono::seconds kTakenUpWithin{60};
-  /// What stays free on the disk beside a bundle: for the ledger above all.
+  /// Bytes left free beside a bundle, above all for the ledger.
   static constexpr std::uint64_t kSpared = 16 << 20;
 
-  /// `state_folder`: where requests and bundles are left; `status_folder`: where adit-update answers.
-  /// `under_way`: a sentence about the report that the Command Post is being sent, or "". All outlive this.
+  /// `state_folder`: for requests and bundles. `status_folder`: of adit-update. `under_way`: a sentence about
+  /// the report in flight, or "". `loop` and `writer` must outlive this object.
   Updates(loop::Loop& loop, loop::Writer& writer, const std::string& state_folder,
           const std::string& status_folder, std::function<std::string()> under_way);
 
@@ -34,32 +34,32 @@ class Updates final : public api::Updates {
   icd::Checked<void> go_back(bool anyway) override;
   icd::Checked<void> stay() override;
 
-  /// Called each second: takes note of what became of the last request.
+  /// Call each second: reads the result of the last request.
   void every_second();
 
-  /// Something is being received, checked or installed, or the box is about to be restarted.
+  /// Whether a bundle is being received, checked or installed, or the box is about to restart.
   bool running() const { return !update().doing.empty(); }
 
  private:
-  /// Where a bundle is left, and where it is while it comes in.
+  /// Path of a bundle, and during its upload.
   std::string bundle_file() const { return adit_update_.requests() + '/' + update::kBundleFile; }
   std::string part_file() const { return bundle_file() + ".part"; }
-  /// Why nothing can be asked for now; nothing: it can.
+  /// Why requests are impossible now, or std::nullopt.
   std::optional<icd::Refusal> hindrance() const;
-  /// Why nothing is installed now.
+  /// Why no update can be installed now, or std::nullopt.
   std::optional<icd::Refusal> nothing_installed_now() const;
-  /// There is no slot to go back to.
+  /// The refusal if no unexpected slot runs.
   std::optional<icd::Refusal> no_stray() const;
-  /// Why the box is not restarted into that: also, unless `anyway`, while a report is under way.
+  /// Requests a restart. Rejected while a report is in flight, unless `anyway`.
   icd::Checked<void> ask_for_restart(update::Request::What what, bool anyway);
   icd::Checked<void> ask(update::Request::What what, bool again);
 
   loop::Writer& writer_;
   host::RootProgram<update::Status> adit_update_;
   std::function<std::string()> under_way_;
-  std::uint64_t expected_ = 0;               // bytes of what is being received; 0: nothing is
-  const UpdateUpload* receiving_ = nullptr;  // while it is
-  update::Request::What asked_{};            // last
+  std::uint64_t expected_ = 0;               // bytes of the present upload, or 0
+  const UpdateUpload* receiving_ = nullptr;  // the present upload, or null
+  update::Request::What asked_{};            // last request
 };
 
 }  // namespace adit::admin

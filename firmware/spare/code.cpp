@@ -8,7 +8,7 @@ constexpr std::size_t kGroup = 4;
 }  // namespace
 
 std::string draw_code(const std::array<std::uint8_t, kCodeDigits>& random) {
-  // The last digits of a number of 128 bits: none is likelier than another by more than one in 2^70.
+  // The low decimal digits of a number of 128 bits. Their probabilities differ by less than 1 in 2^70.
   std::array<std::uint8_t, kCodeDigits> number = random;
   std::string code;
   for (std::size_t i = 0; i < kCodeDigits; ++i) {

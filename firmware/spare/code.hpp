@@ -8,17 +8,17 @@
 
 namespace adit::spare {
 
-/// The code of an export: 16 digits, which the box that makes it draws. As much to guess as a password that
-/// nobody finds out by trying (2^53), and typed with gloves on.
+/// Digits of an export's code, which the exporting box draws. 16 digits are as hard to guess as a strong
+/// password (2^53) and can be typed with gloves.
 inline constexpr std::size_t kCodeDigits = 16;
 
-/// `random`: of the kernel's.
+/// `random`: from the kernel.
 std::string draw_code(const std::array<std::uint8_t, kCodeDigits>& random);
 
-/// "1234 5678 9012 3456", to be read and typed.
+/// "1234 5678 9012 3456", for people.
 std::string spoken(std::string_view code);
 
-/// Nothing unless there are 16 digits in it, with blanks and hyphens anywhere between them.
+/// std::nullopt unless the text has 16 digits, with blanks and hyphens anywhere between them.
 std::optional<std::string> code_in(std::string_view typed);
 
 }  // namespace adit::spare

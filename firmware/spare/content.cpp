@@ -37,7 +37,7 @@ struct Part {
   std::string_view name, bytes;
 };
 
-/// The first part of `rest`, which is taken away.
+/// Removes the first part from `rest` and returns it.
 std::optional<Part> take_part(std::string_view& rest) {
   const std::size_t end = rest.substr(0, kLongestHead).find('\n');
   if (end == std::string_view::npos) return std::nullopt;
@@ -59,7 +59,7 @@ std::unexpected<std::string> damaged(const std::string& why) {
   return std::unexpected("cannot read the export: " + why);
 }
 
-/// Each once.
+/// Reads each part once.
 class Reading {
  public:
   std::optional<std::string> take(const Part& part) {

@@ -13,36 +13,36 @@
 
 namespace adit::spare {
 
-/// Which box made an export, and how all stood then.
+/// The box that made an export, and its state at the standby.
 struct About {
-  std::string box = "";      // a number of the box's own, in hexadecimal digits, that it drew once
-  std::string name = "";     // where the team found it: its address and port
-  std::string version = "";  // of its Adit
-  double at = 0;             // when it came to rest; seconds since 1970
-  double stamp = 0;          // its clock for stamps then; seconds since 1970
-  /// How often it came to rest, this time with them; nothing: an earlier Adit did not count.
+  std::string box = "";      // number that the box drew once, in hexadecimal digits
+  std::string name = "";     // its address and port for the team
+  std::string version = "";  // of Adit
+  double at = 0;             // start of the standby; seconds since 1970
+  double stamp = 0;          // stamp clock at `at`; seconds since 1970
+  /// Number of standbys, including this one. std::nullopt: from an earlier Adit.
   std::optional<std::int64_t> rest_count = std::nullopt;
-  std::optional<double> told_at = std::nullopt;  // `at`, where somebody had set the time of day who knew it
-  double stamps = 0;                             // no stamp that it gave out is later
-  std::int64_t reports = 0, open = 0;            // all, and those with which something is still to happen
-  std::string post = "";                         // the Command Post: address and port
-  std::optional<icd::RunStatus> run = std::nullopt;  // as last heard
-  /// What /api/status would have answered then; nothing: that was not known for certain.
+  std::optional<double> told_at = std::nullopt;      // `at`, if the time of day was reliable
+  double stamps = 0;                                 // bound of all stamps that it used
+  std::int64_t reports = 0, open = 0;                // all reports, and those not finished
+  std::string post = "";                             // the Command Post's address and port
+  std::optional<icd::RunStatus> run = std::nullopt;  // last status
+  /// The answer of /api/status at the standby. std::nullopt: not known for certain.
   std::optional<icd::RunStatus> expected = std::nullopt;
   static const codec::Row kRow;
 };
 
-/// What a box hands on to its spare.
+/// Data that a box hands to its spare.
 struct Content {
   About about;
-  std::string settings;                            // the file
+  std::string settings;                            // the settings file
   std::map<std::string, icd::BearerToken> tokens;  // by name
   std::string ledger;                              // Ledger::copy()
 };
 
-/// As the text that is sealed: parts, each as "NAME SIZE", a line's end, and so many bytes.
+/// The text to seal: parts, each as "NAME SIZE", a newline, and SIZE bytes.
 std::string write(const Content& content);
-/// Strict: each part is there once, and no other. An error is a sentence.
+/// Each part must occur exactly once; other parts are errors. An error is a sentence.
 std::expected<Content, std::string> read(std::string_view text);
 
 }  // namespace adit::spare

@@ -4,19 +4,18 @@
 #include <string>
 #include <string_view>
 
-/// What an export's file is called on a stick. Nothing hangs on a name: whose the export is, its sealed
-/// content says.
+/// Names of export files on a stick. Names only inform; the sealed content says whose export it is.
 namespace adit::spare {
 
-/// "adit-10.0.0.1-20261123T231600Z.adit-spare", of the box at `box`, which came to rest `at` (seconds since
-/// 1970, by its clock).
+/// "adit-10.0.0.1-20261123T231600Z.adit-spare". `box`: its address. `at`: start of its standby, in seconds
+/// since 1970 by its clock.
 std::string file_name(std::string_view box, double at);
 
-/// Whether a file of that name on a stick is taken for an export: *.adit-spare, of at most 96 visible
-/// characters of ASCII and blanks; not what a Mac leaves beside one ("._*").
+/// Whether a file on a stick may be an export: *.adit-spare, at most 96 characters of visible ASCII and
+/// blanks. The companion files of a Mac ("._*") are not.
 bool is_file_name(std::string_view name);
 
-/// What a name says, as far as it does.
+/// The parts of a name, as far as present.
 struct NamedFor {
   std::string box = "";
   std::optional<double> at = std::nullopt;
@@ -24,7 +23,7 @@ struct NamedFor {
 };
 NamedFor named_for(std::string_view name);
 
-/// Whether of two names the first is to be shown before: that of the later export, and those that say when.
+/// Order of display: names with a time first, then the latest first.
 bool is_before(std::string_view left, std::string_view right);
 
 }  // namespace adit::spare

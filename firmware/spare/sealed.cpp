@@ -9,8 +9,8 @@
 namespace adit::spare {
 namespace {
 
-// A file is: the magic, the version as a byte and a zero, the salt, the nonce, and what is sealed, with its
-// tag. All before the last is authenticated with it.
+// Format: the magic, the version byte and a zero, the salt, the nonce, and the sealed content with its tag.
+// The tag authenticates all bytes before it.
 constexpr std::string_view kMagic = "adit-spare";
 constexpr std::uint8_t kVersion = 1;
 static_assert(kMagic.size() + 2 == kExportHead);

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::What
 
-/// A name that cannot lead out of a folder.
+/// A name that cannot leave its directory.
 constexpr char kExpectedName[] = "expected the name of an export";
 
 }  // namespace

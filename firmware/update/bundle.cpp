@@ -17,10 +17,10 @@ using codec::Value;
 
 constexpr std::size_t kLongestFault = 300;
 constexpr std::string_view kLastError = "LastError: ";
-/// Of its service (RAUC 1.8, src/service.c), while it installs or marks.
+/// Message of RAUC's service (RAUC 1.8, src/service.c) while it installs or marks.
 constexpr std::string_view kBusy = "already processing a different method";
 
-/// RAUC lists slots as objects of one member, the slot's name. `next`: the name of the one that is started
+/// Reads one of RAUC's slots, an object with one member, the slot's name. `next`: name of the slot to start
 /// next.
 void take_slot(const Value& slot, const std::string& booted, const std::string& next, Running& running) {
   const auto* named = std::get_if<Value::Object>(&slot.is);
@@ -30,7 +30,7 @@ void take_slot(const Value& slot, const std::string& booted, const std::string& 
   const Field name = field.member("bootname");
   if (name.is_absent() || !name.is<std::string>()) return;  // a part of another slot
   if (name.text() == booted) return;
-  const Field good = field.member("boot_status");  // absent where the boot loader's environment is none
+  const Field good = field.member("boot_status");  // absent if the boot loader's environment is invalid
   running.other = name.text();
   running.other_good = good.is<std::string>() && good.text() == "good";
   running.other_next = named->front().first == next;
@@ -67,7 +67,7 @@ std::expected<Running, std::string> read_status(std::string_view json) {
               slots = field.member("slots");
   Running running{.compatible = std::string(compatible.text()), .slot = std::string(booted.text())};
   slots.size();
-  const Field primary = field.member("boot_primary");  // absent where the boot loader's environment is none
+  const Field primary = field.member("boot_primary");  // absent if the boot loader's environment is invalid
   const std::string next(primary.is_absent() ? "" : primary.text());
   if (reading.refused()) return std::unexpected("RAUC: " + reading.outcome(0).error().sentence);
   for (const Value& slot : std::get<Value::Array>(slots.value()->is))
@@ -79,7 +79,7 @@ std::expected<Running, std::string> read_status(std::string_view json) {
 
 std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size) {
   constexpr std::string_view kMagic = "hsqs";
-  constexpr std::size_t kBytesUsed = 40;  // little-endian, of the squashfs
+  constexpr std::size_t kBytesUsed = 40;  // offset of the size in a squashfs, little-endian
   const bool squashfs = head.size() >= kBundleHead && std::equal(kMagic.begin(), kMagic.end(), head.begin());
   if (!squashfs) return "the file is not an update: expected a file adit-BOARD-VERSION.raucb";
   std::uint64_t used = 0;

@@ -11,54 +11,52 @@
 
 namespace adit::update {
 
-/// What an update says of itself, once its signature was found good.
+/// A bundle's own description, after its signature was verified.
 struct Bundle {
-  std::string compatible = "";  // the board that it is for: "adit-qemu-virt"
+  std::string compatible = "";  // the board: "adit-qemu-virt"
   std::string version = "";
 };
 
-/// What the box is.
+/// The running system.
 struct Running {
   std::string compatible = "";
   std::string version = "";
-  std::string slot = "";    // the boot loader's name: "A"
-  std::string other = "";   // the slot that an update goes into: "B"
-  bool other_next = false;  // the boot loader starts that one next; known here alone, no file says it
-  bool other_good = false;  // the boot loader has tries left for it; known here alone too
+  std::string slot = "";    // boot loader's name: "A"
+  std::string other = "";   // the slot for an update: "B"
+  bool other_next = false;  // the boot loader starts `other` next; not stored
+  bool other_good = false;  // `other` has tries left; not stored
   static const codec::Row kRow;
   friend bool operator==(const Running&, const Running&) = default;
 };
 
-/// Reads what `rauc info --output-format=json` and `rauc status --output-format=json` print; an error says
-/// what is not as it must be. Running::version is not RAUC's to know.
+/// Read the output of `rauc info --output-format=json` and `rauc status --output-format=json`. RAUC does not
+/// know Running::version.
 std::expected<Bundle, std::string> read_info(std::string_view json);
 std::expected<Running, std::string> read_status(std::string_view json);
 
-/// How many bytes not_a_bundle() looks at.
+/// Bytes that not_a_bundle() reads.
 inline constexpr std::size_t kBundleHead = 48;
-/// Why what begins with these `kBundleHead` bytes (or with all there are) and has `size` bytes cannot be a
-/// bundle, or
-/// "". A bundle is a squashfs (Documentation/filesystems/squashfs.rst) with its signature behind it.
+/// Why a file of `size` bytes with these first kBundleHead bytes (or all, if shorter) cannot be a bundle, or
+/// "". A bundle is a squashfs (Documentation/filesystems/squashfs.rst) followed by its signature.
 std::string not_a_bundle(std::span<const std::uint8_t> head, std::uint64_t size);
 
-/// The per cent in a line of `rauc install --progress`, " 40% Verifying signature done."
+/// The percentage in a line of `rauc install --progress`: " 40% Verifying signature done."
 std::optional<int> percent_in(std::string_view line);
 
-/// What RAUC says went wrong. It tells its callers by sentences alone: the one that control hangs on is known
-/// here, and nowhere else.
+/// An error of RAUC. RAUC reports only sentences; the one that decides control flow is known only here.
 struct Fault {
   enum class Kind {
-    Busy,  // it installs or marks, and answers nothing else meanwhile: ask again
+    Busy,  // it installs or marks and gives no answers: ask again
     Other,
   };
   Kind kind = Kind::Other;
-  std::string sentence = "";  // "": it says nothing
+  std::string sentence = "";  // "": no message
   friend bool operator==(const Fault&, const Fault&) = default;
 };
-/// Out of its standard output and its standard error.
+/// Reads RAUC's standard output and standard error.
 Fault fault_in(std::string_view out, std::string_view err);
 
-/// Why the bundle must not be installed, or "". `again`: the version that runs already may be.
+/// Why the bundle must not be installed, or "". `again`: allows the running version.
 std::string hindrance(const Bundle& bundle, const Running& running, bool again);
 
 }  // namespace adit::update

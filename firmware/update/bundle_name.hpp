@@ -8,13 +8,13 @@
 
 namespace adit::update {
 
-/// Whether a file of that name on a stick is looked at: "adit-*.raucb".
+/// Whether a file on a stick may be a bundle: "adit-*.raucb".
 bool is_bundle_name(std::string_view name);
 
-/// Whether it can be told to everybody: of visible ASCII and spaces.
+/// Whether the name has only visible ASCII and spaces.
 bool is_plain(std::string_view name);
 
-/// What a file's name promises of the update in it, the greatest the most: toolchain/image calls an update
+/// The update that a file's name promises; the best compares greatest. toolchain/image names an update
 /// COMPATIBLE-VERSION.raucb.
 struct Promise {
   bool for_this_board = false;

@@ -8,32 +8,32 @@
 
 namespace adit::update {
 
-/// The value of NAME=VALUE in one of the lines, or "".
+/// The value of NAME=VALUE in the lines, or "".
 std::string_view value_of(std::string_view name, std::string_view lines);
 
-/// What systemd says of aditd: nothing while it is not ready, or how long it has been since.
+/// Time since aditd became ready, or std::nullopt while it is not, as systemd reports.
 using Ready = std::optional<std::chrono::microseconds>;
 
-/// Out of `systemctl show --property=ActiveState,ActiveEnterTimestampMonotonic`; `now`: CLOCK_MONOTONIC.
+/// Reads `systemctl show --property=ActiveState,ActiveEnterTimestampMonotonic`. `now`: CLOCK_MONOTONIC.
 Ready read_ready(std::string_view properties, std::chrono::microseconds now);
 
 enum class Health : std::uint8_t {
   Wait,     // ask again
-  Good,     // the slot is to be marked good
-  Restart,  // the machine is to be restarted, which counts against the slot
+  Good,     // mark the slot good
+  Restart,  // restart the machine, which counts against the slot
 };
 
-/// A slot on trial is good once aditd has been ready, and its watchdog fed, for so long without a break.
+/// Uninterrupted time for which aditd must be ready, with its watchdog fed, on a slot on trial.
 inline constexpr std::chrono::seconds kHealthyFor{60};
-/// For so long a slot on trial may be not good.
+/// Time limit of a slot on trial.
 inline constexpr std::chrono::seconds kGoodWithin{300};
 
-/// Why nothing is installed while that version is on trial.
+/// Why no update is installed while that version is on trial.
 std::string wait_for_trial(std::string_view version);
 
-/// `late`: kGoodWithin is over. A slot that is not on trial is good as soon as aditd is ready, so that short
-/// lives (a loose plug) do not count against it, and never ends in a restart: what is wrong with it are its
-/// settings, and they are set right on a box that stays up.
+/// `late`: kGoodWithin is over. A slot that is not on trial is good once aditd is ready, so that short runs
+/// (a loose plug) do not count against it. It never causes a restart, because its fault is the settings,
+/// which a user corrects on a running box.
 Health judge(bool trial, const Ready& ready, bool late);
 
 }  // namespace adit::update

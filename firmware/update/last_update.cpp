@@ -5,13 +5,13 @@
 namespace adit::update {
 namespace {
 
-/// Whether RAUC came to its end is known for certain only of what it said: it goes on by itself where
-/// adit-update is killed, and the power may go before its answer is kept. What was left is whole, too.
+/// Whether RAUC may have finished writing. RAUC continues if adit-update is killed, and a power cut may lose
+/// its answer. A slot that the boot loader left was complete.
 bool may_be_whole(Stage stage) {
   return stage != Stage::None && stage != Stage::Good;
 }
 
-/// RAUC has the slot that it writes started next once all of it is written.
+/// RAUC makes the slot the next one only after it is complete.
 bool waits_for_a_restart(const LastUpdate& last_update, const Running& running, const std::string& boot) {
   return may_be_whole(last_update.stage) && last_update.boot == boot && last_update.slot == running.other &&
          running.other_next;

@@ -8,17 +8,17 @@
 
 namespace adit::update {
 
-/// How far the last update has come. What is installed is on trial until it was healthy once.
+/// State of the last update. An installed update is on trial until it was healthy once.
 enum class Stage : std::uint8_t {
-  None,         // there was none
+  None,         // no update yet
   Installing,   // the other slot is being written
-  Interrupted,  // while it was: the slot that runs was not touched
-  Failed,       // RAUC could not write it, or not in time
-  Installed,    // waits for a restart; once the box was restarted, from that slot, on trial
-  Left,         // it did not come up healthy in three starts, and the boot loader went back
-  Good,         // it came up healthy
+  Interrupted,  // the writing was interrupted; the running slot is unchanged
+  Failed,       // RAUC could not write the slot in time, or at all
+  Installed,    // waits for a restart; after it, on trial in that slot
+  Left,         // not healthy in three starts; the boot loader returned to the other slot
+  Good,         // was healthy
 };
-/// In the order of the stages.
+/// In the order of Stage.
 inline constexpr std::string_view kStageWords[] = {"",          "installing", "interrupted", "failed",
                                                    "installed", "left",       "good"};
 constexpr std::string_view name_of(Stage stage) {
@@ -36,23 +36,23 @@ struct KindOf<update::Stage> : KindOfWords<update::Stage, update::kStageWords> {
 
 namespace adit::update {
 
-/// The last update. Kept over starts of the machine.
+/// The last update, stored across boots.
 struct LastUpdate {
   Stage stage = Stage::None;
-  std::string version = "";  // the update's; "": not known, the bundle could not be read
-  std::string slot = "";     // that it was installed into
-  std::string boot = "";     // the start of the machine in which it was (host::boot())
+  std::string version = "";  // "": the bundle could not be read
+  std::string slot = "";     // target of the installation
+  std::string boot = "";     // host::boot() of the installation
   std::string why = "";      // a sentence about the stage
   static const codec::Row kRow;
   friend bool operator==(const LastUpdate&, const LastUpdate&) = default;
 };
 
-/// What the last update has come to, as found at a start of the program, in the machine's start `boot`.
+/// Updates the stage at a start of the program, in boot `boot`.
 LastUpdate settled(LastUpdate last_update, const Running& running, const std::string& boot);
 
-/// What runs is the last update, and it has not been healthy yet; whatever became known of the end of the
-/// writing, for what was cut off before its end does not start. Where the slot has another version, it was
-/// never written; one that was left and runs all the same is tried again.
+/// Whether the running slot is the last update and has not been healthy yet. The known end of the writing
+/// does not matter, because an incomplete slot does not start. If the slot has another version, the update
+/// was never written. A slot that was left and runs again is on trial again.
 bool on_trial(const LastUpdate& last_update, const Running& running, const std::string& boot);
 
 }  // namespace adit::update

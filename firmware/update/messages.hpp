@@ -11,19 +11,18 @@
 #include "update/last_update.hpp"
 #include "update/proven.hpp"
 
-/// The files by which aditd, which has no privilege, and adit-update, which runs as root, speak with each
-/// other: README.md.
+/// Messages, as files, between aditd, which has no privileges, and adit-update, which runs as root:
+/// README.md.
 namespace adit::update {
 
-/// What aditd asks for and the bundle that was uploaded, in its own state folder. adit-update takes both
-/// away.
+/// aditd's request and the uploaded bundle, in aditd's state directory. adit-update removes both.
 inline constexpr const char* kRequestFile = "update.json";
 inline constexpr const char* kBundleFile = "update.raucb";
-/// What adit-update keeps, in its state directory.
+/// Files in adit-update's state directory.
 inline constexpr const char* kLastUpdateFile = "last.json";
 inline constexpr const char* kProvenFile = "proven.json";
 
-/// More than both slots hold.
+/// Larger than a slot.
 inline constexpr std::uint64_t kLargestBundle = 256U << 20;
 
 struct Request {
@@ -31,35 +30,35 @@ struct Request {
     Install,
     Stick,
     Restart,
-    Back,  // into the proven slot, which does not run
-    Stay,  // the slot that runs is proven from now on
+    Back,  // into the proven slot, which is not running
+    Stay,  // the running slot becomes the proven one
   };
   std::string nonce = "";  // codec::is_nonce()
   What what = What::Restart;
-  bool again = false;  // Install, Stick: though that version runs already
+  bool again = false;  // Install, Stick: even if that version runs
   static const codec::Row kRow;
 };
 
-/// A bundle on a USB stick that could be installed.
+/// An installable bundle on a USB stick.
 struct Offer {
-  std::string name = "";  // of the file
+  std::string name = "";  // file name
   std::string version = "";
   static const codec::Row kRow;
   friend bool operator==(const Offer&, const Offer&) = default;
 };
 
 struct Status {
-  std::string trouble = "";  // why nothing can be updated here; "" where it can
+  std::string trouble = "";  // why updates are impossible here, or ""
   Running running = {};
-  std::string nonce = "";            // of the last request that was taken up
-  std::string refusal = "";          // why it was not done; "" where it was, or is being done
+  std::string nonce = "";            // of the last request that was read
+  std::string refusal = "";          // why that request failed; "": done or in progress
   std::string doing = "";            // "", "checking", "installing", "restarting"
   std::optional<int> progress = {};  // per cent of "installing"
   LastUpdate last = {};
   bool trial = false;      // on_trial()
   std::string stray = "";  // stray()
   std::optional<Offer> stick = {};
-  std::string stick_trouble = "";  // why what is on the stick cannot be installed; "" where there is none
+  std::string stick_trouble = "";  // why the stick's files cannot be installed, or ""
   bool names(std::string_view request) const { return nonce == request; }
   static const codec::Row kRow;
   friend bool operator==(const Status&, const Status&) = default;

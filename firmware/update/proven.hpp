@@ -7,24 +7,24 @@
 
 namespace adit::update {
 
-/// The slot that came up healthy last and was to stay. Kept over starts of the machine; it changes by an
-/// update that proves good and by the operator's word, and not by the boot loader, which goes to another slot
-/// without a word. It is forgotten where that slot is to be written.
+/// The slot that was healthy last and is to stay, stored across boots. Successful updates and the operator
+/// change it; the boot loader, which changes slots silently, does not. It is deleted before that slot is
+/// written.
 struct Proven {
-  std::string slot = "";  // "": none is known yet
+  std::string slot = "";  // "": not known yet
   std::string version = "";
   static const codec::Row kRow;
   friend bool operator==(const Proven&, const Proven&) = default;
 };
 
-/// What is proven once the slot that runs was found good: the same, another version of the same slot, or,
-/// where what runs was on `trial`, that.
+/// The proven slot after the running one was found good. Another slot than the proven one replaces it only if
+/// it was on `trial`.
 Proven proven_now(Proven before, const Running& running, bool trial);
 
-/// Which other slot runs than the proven one, and why, as a sentence; "" where there is nothing to tell: it
-/// is the proven one, none is known, or what runs is on `trial`.
+/// A sentence about an unexpected slot that runs, and why. "": the proven slot runs, none is known, or the
+/// running slot is on `trial`.
 std::string stray(const Proven& proven, const Running& running, bool trial);
-/// Why none is gone back to, nor stayed in, then.
+/// Why go_back() and stay() are rejected then.
 inline constexpr std::string_view kNoStray = "no unexpected slot is running";
 
 }  // namespace adit::update

@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view kDigits = "0123456789";
 constexpr std::string_view kLetters = "0123456789-abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
 
-/// Digits alone, and none too many before.
+/// Digits without leading zeros.
 bool is_number(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kDigits) == std::string_view::npos &&
          (text.size() == 1 || text.front() != '0');
@@ -37,13 +37,13 @@ bool is_identifier(std::string_view text) {
   return !text.empty() && text.find_first_not_of(kLetters) == std::string_view::npos;
 }
 
-/// "rc" or "1": numbers have no zero before them, so that of two equal ones both are written alike.
+/// "rc" or "1". Numbers have no leading zeros, so equal identifiers are written alike.
 bool is_pre_release(std::string_view text) {
   const bool digits = text.find_first_not_of(kDigits) == std::string_view::npos;
   return is_identifier(text) && (!digits || is_number(text));
 }
 
-/// Numbers by their value, words by ASCII, a number before a word.
+/// Numbers by value, words by ASCII, numbers before words.
 std::strong_ordering compare(const std::string& left, const std::string& right) {
   const bool numbers[] = {is_number(left), is_number(right)};
   if (numbers[0] != numbers[1])

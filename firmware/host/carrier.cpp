@@ -12,7 +12,7 @@ std::optional<bool> carrier_in(const std::string& sys_class_net, const std::stri
   if (!is_interface_name(interface)) return std::nullopt;
   const auto file = slurp(sys_class_net + "/" + interface + "/carrier");
   if (file) return file->text.starts_with('1');
-  if (file.error() == EINVAL) return false;  // an interface that is not up has no carrier to tell of
+  if (file.error() == EINVAL) return false;  // an interface that is down has no carrier
   return std::nullopt;
 }
 

@@ -5,7 +5,7 @@
 
 namespace adit::host {
 
-/// carrier() by the kernel's list of interfaces in `sys_class_net`.
+/// As carrier(). `sys_class_net`: the kernel's list of interfaces.
 std::optional<bool> carrier_in(const std::string& sys_class_net, const std::string& interface);
 
 }  // namespace adit::host

@@ -6,11 +6,11 @@
 
 namespace adit::host {
 
-/// The file system that a folder is on, in bytes.
+/// The file system of a directory, in bytes.
 struct Disk {
   std::uint64_t all = 0, free = 0;  // `free`: for this user
 };
-/// Nothing, with errno: it cannot be asked.
+/// std::nullopt with errno: unknown.
 std::optional<Disk> disk_of(const std::string& folder);
 
 }  // namespace adit::host

@@ -8,8 +8,8 @@
 namespace adit::host {
 namespace {
 
-/// Characters that steer or deceive a terminal: C1 controls, those without width, those that turn the
-/// direction of writing, line ends of Unicode's own, tags (Unicode 15, 23.2 to 23.9).
+/// Characters that control or deceive a terminal: C1 controls, characters without width or that change the
+/// writing direction, Unicode's line ends, tags (Unicode 15, 23.2 to 23.9).
 struct Span {
   char32_t first, last;
 };
@@ -21,7 +21,7 @@ std::size_t length_by(std::uint8_t first) {
   return first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
 }
 
-/// Of a character of UTF-8 that has several bytes.
+/// The code of a UTF-8 character of several bytes.
 char32_t decoded(std::string_view character) {
   const auto first = static_cast<std::uint8_t>(character[0]);
   char32_t code = first & (0xffu >> (character.size() + 1));
@@ -29,7 +29,7 @@ char32_t decoded(std::string_view character) {
   return code;
 }
 
-/// How many bytes the character has that `text` begins with; 0: it cannot be shown, or is none of UTF-8.
+/// Length of the first character in bytes. 0: invisible, or not UTF-8.
 std::size_t visible(std::string_view text) {
   const auto first = static_cast<std::uint8_t>(text[0]);
   const std::string_view character = text.substr(0, length_by(first));

@@ -32,7 +32,7 @@ std::string folder_of(const std::string& path) {
 
 constexpr const char* kBeingWritten = ".writing";
 
-/// A new file, for us alone; what an earlier process left under its name is removed.
+/// A new file for this user alone. Replaces a file of that name that an earlier process left.
 FileDescriptor make_new(const std::string& path) {
   constexpr int kFlags = O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC;
   FileDescriptor fd(open(path.c_str(), kFlags, kOursAlone));
@@ -42,7 +42,7 @@ FileDescriptor make_new(const std::string& path) {
 
 constexpr const char* kChecksum = "crc32 ";
 
-/// The last line of a file of aditd's own.
+/// The last line of a file by write_kept().
 std::string checksum_of(const std::string& text) {
   std::array<char, 32> line;
   (void)std::snprintf(line.data(), line.size(), "%s%08" PRIx32 "\n", kChecksum,
@@ -165,7 +165,7 @@ std::expected<std::vector<std::string>, std::string> names_in(const std::string&
 std::expected<void, std::string> remove_file(const std::string& path) {
   if (unlink(path.c_str()) != 0 && errno != ENOENT)
     return std::unexpected(trouble(path + ": cannot be removed", errno));
-  // Also if it was absent: the sync after its removal may have failed.
+  // Also for an absent file, because the sync after an earlier removal may have failed.
   if (!sync_folder(path) && errno != ENOENT) return std::unexpected(trouble(folder_of(path), errno));
   return {};
 }

@@ -12,15 +12,15 @@ inline constexpr std::size_t kLargestFile = 1u << 20;
 
 struct File {
   std::string text;
-  struct stat status;  // of the very file that was read
+  struct stat status;  // of the file that was read
 };
 
-/// The text, or the errno; EFBIG above `most` bytes.
+/// The text, or errno; EFBIG above `most` bytes.
 std::expected<File, int> slurp(const std::string& path, std::size_t most = kLargestFile);
-/// A file's text without the line of write_kept(), if that has the right checksum.
+/// The text without the last line of write_kept(), if its checksum is right.
 std::string without_checksum(std::string text);
 
-/// Syncs the folder that has this file: only then its name outlives a power cut. False, with errno.
+/// Syncs the directory of this file, so that the file's name survives a power cut. False: see errno.
 bool sync_folder(const std::string& path);
 
 /// "PATH: No such file or directory"

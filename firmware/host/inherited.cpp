@@ -37,7 +37,7 @@ void forget_descriptor(const std::string& name) {
 
 namespace {
 
-/// On stderr, because the log's own descriptor may be gone.
+/// Writes to stderr, because the log's descriptor may be closed.
 void must(int result, const char* doing) {
   if (result >= 0) return;
   std::fprintf(stderr, "cannot start again: %s: %s\n", doing, std::strerror(errno));
@@ -51,7 +51,7 @@ void start_again(std::vector<Inherited> sockets, char* const* arguments,
   const int count = static_cast<int>(sockets.size());
   std::string names;
   must(close_range(SD_LISTEN_FDS_START, ~0U, CLOSE_RANGE_CLOEXEC), "closing descriptors");
-  // First above all places: a place may be that of another socket.
+  // Copies above all final places first, because a final place may be another socket's.
   for (Inherited& each : sockets) {
     each.descriptor =
         loop::FileDescriptor(fcntl(each.descriptor.get(), F_DUPFD_CLOEXEC, SD_LISTEN_FDS_START + count));
@@ -61,7 +61,7 @@ void start_again(std::vector<Inherited> sockets, char* const* arguments,
   for (int i = 0; i < count; ++i)
     must(dup2(sockets[static_cast<std::size_t>(i)].descriptor.get(), SD_LISTEN_FDS_START + i),
          "passing a socket");
-  if (count > 0) {  // 0 would be an error there
+  if (count > 0) {  // sd_listen_fds() rejects 0
     variables["LISTEN_PID"] = std::to_string(getpid());
     variables["LISTEN_FDS"] = std::to_string(count);
     variables["LISTEN_FDNAMES"] = names;

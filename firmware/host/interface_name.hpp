@@ -4,7 +4,7 @@
 
 namespace adit::host {
 
-/// As the kernel's dev_valid_name(): a name that is no path.
+/// The kernel's dev_valid_name(). Such a name cannot be a path.
 inline bool is_interface_name(std::string_view name) {
   return !name.empty() && name.size() <= 15 && name != "." && name != ".." &&
          name.find_first_of("/: \t\n\v\f\r") == std::string_view::npos &&

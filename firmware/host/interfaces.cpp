@@ -32,7 +32,7 @@ int ones_in(const void* bytes, std::size_t count) {
   return ones;
 }
 
-/// "10.0.0.1/24", or "" for what is no address of IP.
+/// "10.0.0.1/24", or "" if it is not an IP address.
 std::string address_text(const sockaddr* address, const sockaddr* mask) {
   char text[INET6_ADDRSTRLEN];
   if (address == nullptr || mask == nullptr) return "";
@@ -49,13 +49,13 @@ std::string address_text(const sockaddr* address, const sockaddr* mask) {
   return std::string(text) + "/" + std::to_string(ones);
 }
 
-/// The first line of a small file of the kernel's; "" where it cannot be read.
+/// The first line of a small kernel file; "" if it cannot be read.
 std::string line_in(const std::string& path) {
   const auto file = slurp(path);
   return file ? file->text.substr(0, file->text.find('\n')) : "";
 }
 
-/// Of an address as /proc/net/route has it: hexadecimal, in the order of its bytes in memory.
+/// An address of /proc/net/route, which is hexadecimal in memory order.
 std::string address_text(std::uint32_t address) {
   char text[INET_ADDRSTRLEN];
   return inet_ntop(AF_INET, &address, text, sizeof text) == nullptr ? "" : text;
@@ -90,7 +90,7 @@ std::optional<Port> port_in(const std::string& sys_class_net, const std::string&
   if (!slurp(folder + "/address")) return std::nullopt;
   Port port{.mac = line_in(folder + "/address"), .mbit = {}, .duplex = line_in(folder + "/duplex")};
   if (port.duplex == "unknown") port.duplex.clear();
-  const std::string speed = line_in(folder + "/speed");  // -1, or no reading it: not known
+  const std::string speed = line_in(folder + "/speed");  // -1 or unreadable: not known
   unsigned mbit = 0;
   const auto [end, error] = std::from_chars(speed.data(), speed.data() + speed.size(), mbit);
   if (error == std::errc() && end == speed.data() + speed.size() && mbit > 0) port.mbit = mbit;
@@ -144,7 +144,7 @@ std::vector<Route> routes_in(const std::string& table) {
   return routes;
 }
 
-/// Of this process's network, which is there under ProcSubset=pid, too.
+/// Uses /proc/self, which exists under ProcSubset=pid.
 std::vector<Route> routes() {
   const auto file = slurp("/proc/self/net/route");
   return file ? routes_in(file->text) : std::vector<Route>{};

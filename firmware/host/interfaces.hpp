@@ -9,7 +9,7 @@
 
 namespace adit::host {
 
-/// A network interface as the kernel has it now.
+/// The present state of a network interface.
 struct Interface {
   std::string name;
   bool up = false;
@@ -17,39 +17,39 @@ struct Interface {
   std::vector<std::string> addresses;  // "10.0.0.1/24", "fe80::1/64"
 };
 
-/// What the driver tells of a port.
+/// The driver's data about a port.
 struct Port {
-  std::string mac;               // "02:00:00:00:00:01"; "": it has none
-  std::optional<unsigned> mbit;  // of the link; nothing: there is none, or the driver does not tell
-  std::string duplex;            // "full", "half"; "": not told
+  std::string mac;               // "02:00:00:00:00:01" or ""
+  std::optional<unsigned> mbit;  // of the link; nullopt: no link, or not known
+  std::string duplex;            // "full", "half"; "": not known
 };
 
-/// By the kernel's list of interfaces in `sys_class_net`; nothing where there is no such interface.
+/// `sys_class_net`: the kernel's list of interfaces. std::nullopt: no such interface.
 std::optional<Port> port_in(const std::string& sys_class_net, const std::string& interface);
 std::optional<Port> port(const std::string& interface);
 
-/// What this machine is called in mDNS: "adit.local" (RFC 6762 3).
+/// This machine's mDNS name: "adit.local" (RFC 6762 3).
 std::string local_name();
 
-/// All of them in the kernel's order, or why they cannot be told (getifaddrs(3)).
+/// All interfaces in the kernel's order, or the error of getifaddrs(3).
 std::expected<std::vector<Interface>, std::string> interfaces();
 
-/// All IPv4 addresses of an interface, link-local ones last (the kernel has them first); none where there is
-/// no such interface.
+/// All IPv4 addresses of an interface, link-local ones last (the kernel lists them first). Empty if the
+/// interface does not exist.
 std::vector<settings::Subnet> own_addresses(const std::string& interface);
 
-/// The first of them.
+/// The first of own_addresses().
 std::optional<settings::Subnet> own_address(const std::string& interface);
 
-/// A route of IPv4.
+/// An IPv4 route.
 struct Route {
   std::string destination;  // "10.100.1.0/24", "0.0.0.0/0"
-  std::string gateway;      // "" where it is on the link
+  std::string gateway;      // "": on the link
   std::string interface;
   unsigned metric = 0;
 };
 
-/// By the text of /proc/net/route (proc_net(5)); a line that is none is left out.
+/// Parses /proc/net/route (proc_net(5)) and skips other lines.
 std::vector<Route> routes_in(const std::string& table);
 std::vector<Route> routes();
 

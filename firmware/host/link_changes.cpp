@@ -10,7 +10,7 @@
 namespace adit::host {
 namespace {
 
-/// What the kernel tells these groups.
+/// A socket that receives the kernel's messages to these groups.
 loop::FileDescriptor told_to(unsigned groups) {
   loop::FileDescriptor changes(socket(AF_NETLINK, SOCK_RAW | SOCK_CLOEXEC | SOCK_NONBLOCK, NETLINK_ROUTE));
   sockaddr_nl address{};
@@ -30,7 +30,7 @@ loop::FileDescriptor link_and_address_changes() {
   return told_to(RTMGRP_LINK | RTMGRP_IPV4_IFADDR);
 }
 
-/// What it says is not read: where too much came at once (ENOBUFS), some of it would be missing.
+/// Discards the messages, because some are lost when too many come at once (ENOBUFS).
 bool take_link_changes(const loop::FileDescriptor& changes) {
   constexpr int kMostAtOnce = 64;
   std::array<char, 64> start;

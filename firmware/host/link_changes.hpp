@@ -4,16 +4,16 @@
 
 namespace adit::host {
 
-/// A socket that becomes readable whenever an interface comes, goes, or changes, its cable included
-/// (rtnetlink(7), RTMGRP_LINK); none where the kernel gives none. It tells of a cable that comes at once, of
-/// one that goes within a second.
+/// A socket that becomes readable when an interface comes, goes or changes, or its cable does (rtnetlink(7),
+/// RTMGRP_LINK). Reports a plugged cable at once, a pulled one within a second. Empty if the kernel gives no
+/// socket.
 loop::FileDescriptor link_changes();
 
-/// The same, and whenever an interface's IPv4 addresses change (RTMGRP_IPV4_IFADDR).
+/// The same, also for changes of IPv4 addresses (RTMGRP_IPV4_IFADDR).
 loop::FileDescriptor link_and_address_changes();
 
-/// Takes from it what it has told by now: who looks at the interfaces afterwards sees it. False: it is
-/// broken, and will tell nothing more.
+/// Clears the socket. Read the interfaces afterwards. False: the socket is broken and reports no more
+/// changes.
 bool take_link_changes(const loop::FileDescriptor& changes);
 
 }  // namespace adit::host

@@ -1,6 +1,6 @@
 #include "host/log.hpp"
 
-// Else each program has this file's path in it, and another one where it is built in another folder.
+// Omits this file's path, so that programs built in different directories are the same.
 #define SD_JOURNAL_SUPPRESS_LOCATION
 
 #include <sys/uio.h>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr Level kLeast = Level::Info;
 
-/// Wall time: what a person compares with other logs. Policy never reads it (loop::Loop::now does that).
+/// Wall time, for comparison with other logs. Rules use loop::Loop::now().
 double time_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
@@ -30,7 +30,7 @@ Memory& memory() {
   return records;
 }
 
-/// For any thread.
+/// Thread-safe.
 class KeptOut {
  public:
   void are(icd::Redaction redaction) {
@@ -59,7 +59,7 @@ bool to_journal(const std::vector<std::string>& entry) {
   return sd_journal_sendv(pieces.data(), static_cast<int>(pieces.size())) == 0;
 }
 
-/// One write, so that lines of several threads do not mix. There is nowhere to tell of a stderr that fails.
+/// One write, so that lines of several threads do not mix. A failing stderr cannot be reported.
 void to_stderr(std::string line) {
   line += '\n';
   [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, line.data(), line.size());

@@ -11,7 +11,7 @@
 
 namespace adit::host {
 
-enum class Level : int { Error = 3, Warning = 4, Notice = 5, Info = 6, Debug = 7 };  // syslog's (RFC 5424)
+enum class Level : int { Error = 3, Warning = 4, Notice = 5, Info = 6, Debug = 7 };  // syslog (RFC 5424)
 
 /// "error", "warning", ...
 std::string_view name_of(Level level);
@@ -19,42 +19,42 @@ std::string_view name_of(Level level);
 /// A field of a log record: name in lower_case ("report", "status"), value as text. Never a token.
 using Field = std::pair<std::string_view, std::string>;
 
-/// A record that is remembered.
+/// A stored record.
 struct Record {
-  std::uint64_t seq = 0;  // counts all that was ever logged by this process
-  double at = 0;          // seconds since 1970, on the wall clock
+  std::uint64_t seq = 0;  // number among all records of this process
+  double at = 0;          // seconds since 1970, wall clock
   Level level = Level::Info;
   std::string message;
-  std::vector<std::pair<std::string, std::string>> fields;  // those that are not empty
+  std::vector<std::pair<std::string, std::string>> fields;  // without empty ones
 };
 
-/// The one logger. Thread-safe. Message and fields make one line, `message name=value ...`, with everything
-/// escaped that could forge another. Under journald (stderr is the stream that $JOURNAL_STREAM names) each
-/// field is also recorded by itself, unescaped, as ADIT_<NAME>; elsewhere the line goes to stderr after the
-/// time and the level. Memory remembers the last of them for the page.
+/// Logs a record. Thread-safe. Message and fields make one line, `message name=value ...`, escaped so that it
+/// cannot forge another. Under journald (stderr is the stream in $JOURNAL_STREAM) each field is also recorded
+/// unescaped as ADIT_<NAME>. Elsewhere the line goes to stderr after time and level. The last records are
+/// stored for the page.
 void log(Level level, std::string_view message, std::initializer_list<Field> fields = {});
 
-/// The same for whoever is at the console alone: the message is remembered without its fields.
+/// As log(), for a person at the console: secrets stay in the text, and the stored record has no fields.
 void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields);
 
-/// From now on these are struck out of all that is logged, but not of what the console is told.
+/// Removes these secrets from all later records, except from tell_console().
 void keep_out_of_log(icd::Redaction redaction);
-/// A text for whoever reads the log, without them.
+/// The text with those secrets removed.
 std::string without_secrets(std::string text);
 
-/// What is remembered of the records after the one of that number, oldest first.
+/// The stored records with a larger number, oldest first.
 std::vector<Record> remembered(std::uint64_t after);
 
-/// How many records there were: the number of the last.
+/// Number of the last record, which counts all records.
 std::uint64_t logged();
 
-/// A record as one line, as it stands in the log.
+/// The record as a line of the log.
 std::string line_of(const Record& record);
 
-/// What a client sent, so that it can neither forge a line nor steer a terminal: visible characters of UTF-8
-/// and blanks as they are, each byte of all else as \xNN, and a backslash as two.
+/// Escapes a client's text, so that it cannot forge a line or control a terminal. Visible UTF-8 characters
+/// and blanks stay, other bytes become \xNN, and a backslash is doubled.
 std::string escaped(std::string_view text);
-/// The same for a terminal without UTF-8, of what is escaped: each byte of a character that is not ASCII.
+/// Escapes an escaped text for a terminal without UTF-8: each byte of a character outside ASCII.
 std::string in_ascii(std::string_view text);
 
 }  // namespace adit::host

@@ -7,12 +7,12 @@
 namespace adit::host {
 namespace {
 
-/// Escaped, because a line end in `status` would begin another assignment (sd_notify(3)).
+/// Escaped, because a newline in `status` would begin another assignment (sd_notify(3)).
 std::string assignment(const std::string& status) {
   return "STATUS=" + escaped(without_secrets(status));
 }
 
-/// From now on systemd waits so long for each sign of life.
+/// Sets systemd's watchdog interval.
 void notify_watchdog(std::chrono::microseconds within) {
   sd_notify(0, ("WATCHDOG_USEC=" + std::to_string(within.count())).c_str());
 }

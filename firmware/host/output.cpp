@@ -40,7 +40,7 @@ std::vector<std::string> clean_environment() {
   return clean;
 }
 
-/// As execve(2) wants it; `texts` must outlive it.
+/// For execve(2). `texts` must outlive the result.
 std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
   std::vector<char*> pointers;
   pointers.reserve(texts.size() + 1);
@@ -49,7 +49,7 @@ std::vector<char*> pointers_to(const std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// Starts a program with nothing to read, and these two to write to. Gives its number, or the errno.
+/// Starts a program without input and with these two outputs. Returns its PID, or errno.
 std::expected<pid_t, int> spawn(const std::vector<std::string>& words, int output, int errors,
                                 const std::vector<std::string>& environment) {
   const auto arguments = pointers_to(words);
@@ -63,7 +63,7 @@ std::expected<pid_t, int> spawn(const std::vector<std::string>& words, int outpu
   posix_spawnattr_init(&attributes);
   sigset_t none;
   sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);  // the loop's own signals are blocked here
+  posix_spawnattr_setsigmask(&attributes, &none);  // the loop's signals are blocked in this process
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
   pid_t process = 0;
   const int error =
@@ -74,7 +74,7 @@ std::expected<pid_t, int> spawn(const std::vector<std::string>& words, int outpu
   return process;
 }
 
-/// How it ended: "" if it exited 0, else "exit status 3" or "ended by signal 9".
+/// "" for exit status 0, else "exit status 3" or "ended by signal 9".
 std::string await_end(pid_t process) {
   int status = 0;
   while (waitpid(process, &status, 0) < 0) {
@@ -85,11 +85,11 @@ std::string await_end(pid_t process) {
                            : "ended by signal " + std::to_string(WTERMSIG(status));
 }
 
-/// One of the two ends that are read.
+/// The reading end of one output.
 class Ear {
  public:
   Ear(int fd, std::string& heard) : fd_(fd), heard_(heard) {}
-  int fd() const { return over_ ? -1 : fd_; }  // poll(2) passes over -1
+  int fd() const { return over_ ? -1 : fd_; }  // poll(2) ignores -1
   bool over() const { return over_; }
 
   void read() {
@@ -104,7 +104,7 @@ class Ear {
     heard_.erase(0, surplus);
     told_ -= std::min(told_, surplus);
   }
-  /// The whole lines that have not been told.
+  /// Reports whole lines that have not been reported.
   void tell(const std::function<void(std::string_view)>& line) {
     for (std::size_t end; (end = heard_.find('\n', told_)) != std::string::npos; told_ = end + 1) {
       if (line) line(std::string_view(heard_).substr(told_, end - told_));
@@ -118,7 +118,7 @@ class Ear {
   bool over_ = false;
 };
 
-/// Until both have ended; false where that takes longer.
+/// Reads both outputs to their ends. False: not by `until`.
 bool hear(Ear& out, Ear& err, Clock::time_point until, const std::function<void(std::string_view)>& line) {
   while (!out.over() || !err.over()) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now()).count();

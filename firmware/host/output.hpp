@@ -9,21 +9,21 @@
 
 namespace adit::host {
 
-/// What a program said, and how it ended.
+/// A program's output and its end.
 struct Output {
   std::string out, err;  // the last kMostKept bytes of each
-  std::string trouble;   // "" where it exited 0; or why it could not be run, or how it ended; not its name
+  std::string trouble;   // why it could not run or how it ended, without its name; "": it exited 0
   static constexpr std::size_t kMostKept = 1U << 20;
 };
 
-/// Runs a program, by its path or found in $PATH, with an environment of PATH, LC_ALL=C and the system bus
-/// alone, and waits for its end; kills it after `within`. `line` is told each whole line of its standard
-/// output as it comes.
+/// Runs a program, by its path or found in $PATH, and waits for its end; kills it after `within`. Its
+/// environment is only PATH, LC_ALL=C and the system bus. `line` receives each whole line of standard output
+/// as it comes.
 Output output_of(const std::vector<std::string>& words, std::chrono::milliseconds within,
                  const std::function<void(std::string_view)>& line = {});
 
-/// The same, where nothing but its end counts. An error is a sentence with its name and what it said first,
-/// on one line.
+/// Runs a program for its effect alone. An error is one line with the program's name and the first line of
+/// its output.
 std::expected<void, std::string> run_command(const std::vector<std::string>& words,
                                              std::chrono::milliseconds within);
 

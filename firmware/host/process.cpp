@@ -27,7 +27,7 @@ std::uint64_t count_in(const char* folder) {
   return count;
 }
 
-/// The second number of proc_pid_statm(5): resident pages.
+/// Resident pages, the second number of proc_pid_statm(5).
 std::uint64_t resident_pages() {
   const auto file = slurp("/proc/self/statm");
   std::uint64_t size = 0, resident = 0;
@@ -60,7 +60,7 @@ std::string kernel() {
   return std::string(name.sysname) + " " + name.release + " " + name.machine;
 }
 
-/// Not by /proc/device-tree, a link to there which the service's ProcSubset=pid hides.
+/// The service's ProcSubset=pid hides /proc/device-tree, a link to this directory.
 std::string model() {
   const auto file = slurp("/sys/firmware/devicetree/base/model");
   return file ? file->text.substr(0, file->text.find('\0')) : "";

@@ -10,7 +10,7 @@
 
 namespace adit::host {
 
-/// Fills `bytes` with the kernel's randomness, which is good for secrets. Requires at most 256 of them.
+/// Fills `bytes` with kernel randomness, fit for secrets. Requires at most 256 bytes.
 void fill_random(std::span<std::uint8_t> bytes);
 
 template <std::size_t size>
@@ -20,7 +20,7 @@ std::array<std::uint8_t, size> random_bytes() {
   return bytes;
 }
 
-/// That many bytes, as two hexadecimal digits each.
+/// `size` random bytes as hexadecimal digits.
 template <std::size_t size>
 std::string random_digits() {
   return icd::hex(random_bytes<size>());

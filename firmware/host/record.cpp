@@ -17,7 +17,7 @@ std::string quoted_where_needed(std::string_view value) {
   return text + '"';
 }
 
-/// Field names of the journal are upper case letters, digits and underscores.
+/// Journal field names have upper case letters, digits and underscores.
 std::string journal_name(std::string_view name) {
   std::string text = "ADIT_";
   for (const char c : name) {

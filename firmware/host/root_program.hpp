@@ -13,20 +13,20 @@
 #include "host/untrusted_folder.hpp"
 #include "loop/loop.hpp"
 
-/// How aditd, which has no privilege, asks a program that runs as root, and how that program answers. A
-/// request is a file in aditd's state directory, which the program takes away. The answer is the program's
-/// status, a file in its runtime directory that every user can read. The status names the last request by its
-/// nonce. Each file is a row (codec/row_file.hpp).
+/// Requests of aditd, which has no privileges, to a program that runs as root, and its answers. A request is
+/// a file in aditd's state directory, which the program removes. The answer is the program's status, a file
+/// in its runtime directory that every user can read. The status names the last request by its nonce. Each
+/// file is a row (codec/row_file.hpp).
 namespace adit::host {
 
 inline constexpr const char* kStatusFile = "status.json";
 
-/// Names a request: codec::is_nonce(), and never the same twice.
+/// A unique name of a request: codec::is_nonce().
 std::string draw_nonce();
 
-/// A small file's text; nothing if there is no such file. An error names the file.
+/// A small file's text, or std::nullopt if it does not exist. An error names the file.
 std::expected<std::optional<std::string>, std::string> read_if_there(const std::string& path);
-/// The same of a row.
+/// The same for a row.
 template <class Row>
 std::expected<std::optional<Row>, std::string> read_row(const std::string& path) {
   const auto text = read_if_there(path);
@@ -37,27 +37,27 @@ std::expected<std::optional<Row>, std::string> read_row(const std::string& path)
   return *std::move(row);
 }
 
-// aditd's side.
+// For aditd.
 
-/// Leaves a request in aditd's state directory. It replaces one of that name that was not read yet.
+/// Writes a request into aditd's state directory. Replaces an unread one of that name.
 template <class Request>
 std::expected<void, std::string> leave_request(const std::string& directory, const char* file,
                                                const Request& request) {
   return write_file(directory + '/' + file, codec::write_file(request), kOursAlone);
 }
-/// Removes a request that the program did not read in time, and logs that.
+/// Removes a request that was not read in time, and logs it.
 void withdraw_request(const std::string& path, const std::string& program);
 
-/// How old what aditd knows of a status may be.
+/// Age at which a status is read again.
 inline constexpr std::chrono::milliseconds kFresh{100};
 
-/// A root program as aditd sees it: its status, and the last request. `Status` has
-/// `bool names(std::string_view nonce) const`: the program has read that request.
+/// A root program seen by aditd: its status and the last request. `Status` has `bool names(std::string_view
+/// nonce) const`: whether the program has read that request.
 template <class Status>
 class RootProgram {
  public:
   /// `name`: "adit-clock". `requests`: aditd's state directory. `directory`: the program's runtime directory.
-  /// `within`: how long the program may take to read a request. `loop` outlives this.
+  /// `within`: time in which the program must read a request. `loop` must outlive this object.
   RootProgram(loop::Loop& loop, std::string name, std::string requests, std::string directory,
               std::chrono::seconds within)
       : loop_(loop),
@@ -69,15 +69,15 @@ class RootProgram {
   const std::string& requests() const { return requests_; }
   const std::string& directory() const { return directory_; }
 
-  /// The status, read at most kFresh ago; null: why().
+  /// The status, read at most kFresh ago. Null: see why().
   std::shared_ptr<const Status> status() const {
     refresh();
     return status_.value_or(nullptr);
   }
-  /// False: the program has no status file. True if the file cannot be read.
+  /// Whether the program has a status file, readable or not.
   bool runs_here() const { return status() || !status_; }
   /// Why there is no status, as a sentence: the program does not run here, or its status cannot be read. "":
-  /// there is one.
+  /// there is a status.
   std::string why() const {
     if (status()) return "";
     return status_ ? name_ + " does not run here: it has no status in " + directory_
@@ -89,25 +89,25 @@ class RootProgram {
   std::expected<void, std::string> leave(const char* file, const Request& request) const {
     return leave_request(requests_, file, request);
   }
-  /// Writes a request with a new nonce, and follows it: waits(), trouble().
+  /// Writes a request with a new nonce and follows it: waits(), trouble().
   template <class Request>
   std::expected<void, std::string> ask(const char* file, const Request& request) {
     auto left = leave(file, request);
     if (left) asked_ = Asked{.nonce = request.nonce, .file = file, .at = loop_.now()};
     return left;
   }
-  /// The status does not name the last request yet, and the request was not withdrawn.
+  /// Whether the last request is neither named by the status nor withdrawn.
   bool waits() const {
     refresh();
     return asked_ && !asked_->is_withdrawn;
   }
-  /// Why the last request came to nothing before the program read it, as a sentence; or "".
+  /// Why the last request was withdrawn unread, as a sentence; or "".
   std::string trouble() const {
     refresh();
     if (!asked_ || !asked_->is_withdrawn) return "";
     return name_ + " did not read the request: see journalctl -u " + name_;
   }
-  /// Call each second. Reads the status. Withdraws a request that the program did not read in time: then
+  /// Reads the status. Call each second. If the last request was not read in time, withdraws it and returns
   /// true.
   bool check() {
     read();
@@ -127,7 +127,7 @@ class RootProgram {
   void refresh() const {
     if (!read_at_ || loop_.now() >= *read_at_ + kFresh) read();
   }
-  /// A request that was named is forgotten: the status of a later start of the program does not name it.
+  /// A named request is forgotten, because the status of a restarted program does not name it.
   void read() const {
     read_at_ = loop_.now();
     auto read = read_row<Status>(directory_ + '/' + kStatusFile);
@@ -142,20 +142,20 @@ class RootProgram {
   loop::Loop& loop_;
   const std::string name_, requests_, directory_;
   const std::chrono::seconds within_;
-  mutable std::expected<std::shared_ptr<const Status>, std::string> status_;  // null: there is no file
+  mutable std::expected<std::shared_ptr<const Status>, std::string> status_;  // null: no file
   mutable std::optional<loop::Instant> read_at_;
-  mutable std::optional<Asked> asked_;  // last, until the status names it
+  mutable std::optional<Asked> asked_;  // the last request, until the status names it
 };
 
-// The program's side.
+// For the root program.
 
-/// A status that a program tells every user.
+/// A status that every user can read.
 class StatusFile {
  public:
   explicit StatusFile(std::string path) : path_(std::move(path)) {}
 
-  /// The status of an earlier start since the machine booted; nothing if this is the first one. A file that
-  /// cannot be read is logged and replaced by the next tell(): then an empty status.
+  /// The status of an earlier start in this boot, or std::nullopt at the first start. A file that cannot be
+  /// read is logged and gives an empty status; the next tell() replaces it.
   template <class Status>
   std::optional<Status> told() const {
     auto status = read_row<Status>(path_);
@@ -163,7 +163,7 @@ class StatusFile {
     log_unreadable(status.error());
     return Status{};
   }
-  /// Writes the status if it is not the one that was told last. Whether it was written; an error is logged.
+  /// Writes a changed status. Returns whether it was written. An error is logged.
   template <class Status>
   std::expected<bool, std::string> tell(const Status& status) {
     return tell_text(codec::write_file(status));
@@ -176,13 +176,13 @@ class StatusFile {
   std::string path_, told_;
 };
 
-/// Opens the directory in which aditd leaves requests; nothing, which is logged, if there is none.
+/// Opens the directory of aditd's requests. std::nullopt, which is logged, if it does not exist.
 std::expected<std::optional<UntrustedFolder>, std::string> open_requests(const std::string& directory);
 
 void log_rejected_request(const char* file, const std::string& why);
 
-/// Takes a request away and gives it; nothing if there is none of that name. One that is malformed is logged,
-/// and another one is looked for. An error: it cannot be taken away, and would be found again and again.
+/// Takes a request, or std::nullopt if there is none. Malformed ones are logged and skipped. Error: it cannot
+/// be removed, so the caller would find it again.
 template <class Request>
 std::expected<std::optional<Request>, std::string> take_request(UntrustedFolder& folder, const char* file) {
   while (true) {
@@ -195,15 +195,15 @@ std::expected<std::optional<Request>, std::string> take_request(UntrustedFolder&
   }
 }
 
-/// Where a program finds requests of one kind.
+/// The place of one kind of request.
 struct RequestPlace {
   std::string directory;
   const char* file;
-  const char* beside;  // the file that belongs to a request
+  const char* beside;  // a file that belongs to the request
 };
 
-/// Gives each request to `answer`, until there is none. `drop`: removes a request and the file beside it
-/// instead: aditd has shown that it came to nothing.
+/// Passes each request to `answer` until there is none. `drop`: first removes a request and its file, because
+/// aditd has shown it as failed.
 template <class Request>
 std::expected<void, std::string> answer_requests(
     const RequestPlace& place, bool drop,

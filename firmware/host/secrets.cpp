@@ -10,8 +10,8 @@
 namespace adit::host {
 namespace {
 
-/// systemd keeps credentials readable for the service alone, by an ACL that the mode bits do not show
-/// (systemd.exec(5), LoadCredential=).
+/// systemd restricts credentials to the service by an ACL, which the mode bits do not show (systemd.exec(5),
+/// LoadCredential=).
 bool holds_credentials(const std::string& folder) {
   const char* credentials = std::getenv("CREDENTIALS_DIRECTORY");
   if (credentials == nullptr) return false;
@@ -30,12 +30,12 @@ using Token = std::optional<icd::BearerToken>;
 
 struct Fault {
   std::string why;
-  bool is_unread = false;  // the file cannot be read; else it was read, and holds no token
+  bool is_unread = false;  // the file cannot be read; otherwise it holds no token
 };
 
 enum class Place : std::uint8_t { Saved, Given, Credentials };
 
-/// No token if the file is absent, or if a given file is empty. No sentence shows the file's content.
+/// No token if the file is absent, or if a given file is empty. Errors never show the file's content.
 std::expected<Token, Fault> read_token(const std::string& path, Place place) {
   const auto file = slurp(path);
   if (!file && file.error() == ENOENT) return Token();
@@ -67,7 +67,7 @@ std::map<std::string, std::string> Secrets::odd_tokens() const {
   std::map<std::string, std::string> odd = damaged;
   for (const auto& [name, token] : tokens) {
     const std::size_t length = token.reveal().size();
-    if (name == "team" || length == kLength) continue;  // the team's own may have any length
+    if (name == "team" || length == kLength) continue;  // the team's token may have any length
     odd.emplace(name,
                 icd::sentence("the token ", name, " has ", length, length == 1 ? " character" : " characters",
                               "; the Command Post's tokens have ", kLength, " (ICD 4); is it complete?"));

@@ -15,73 +15,70 @@
 
 namespace adit::host {
 
-/// sd_notify(3): tells systemd that the service is ready, stopping, or how it is ("STATUS="). Nothing outside
-/// systemd.
+/// sd_notify(3): report readiness, stopping, and the status text ("STATUS="). Without effect outside systemd.
 void notify_ready(const std::string& status);
 void notify_status(const std::string& status);
 void notify_stopping();
-/// The process is about to start again (inherited.hpp). Until notify_ready() systemd gives it as long as any
-/// start.
+/// Announces a new start of the process (inherited.hpp). systemd allows it the time of any start until
+/// notify_ready().
 void notify_starting_again();
 void notify_alive();                                      // WATCHDOG=1
 inline constexpr std::chrono::seconds kLongestStart{60};  // services/adit.service: TimeoutStartSec=
 
-/// How long systemd waits for a sign of life (WatchdogSec=) before it kills the service; nothing where it
-/// does not wait for any.
+/// systemd's watchdog interval (WatchdogSec=), or std::nullopt without a watchdog.
 std::optional<std::chrono::microseconds> watchdog_within();
 
-/// Whether there is a file or folder of that name, or nobody can say: what cannot be looked for is not
-/// absent.
+/// False only if the file or directory is known to be absent. An error gives true.
 bool may_exist(const std::string& path);
 
 inline constexpr const char* kDamaged = ".damaged";
-/// Renames a file or folder that cannot be read to PATH + kDamaged, over an earlier one, so that a person can
-/// look at it. Logs `what`, `why` and the path, and a failure to rename.
+/// Renames an unreadable file or directory to PATH + kDamaged, over an earlier one, for examination by a
+/// person. Logs `what`, `why` and the path, and a failure to rename.
 void set_damaged_aside(const std::string& path, std::string_view what, const std::string& why);
 
-/// A small text file, at most 1 MiB, without the line of write_kept(). If its checksum is wrong, that line
-/// stays: whoever reads the text finds it damaged.
+/// Reads a small text file, at most 1 MiB, without the line of write_kept(). If the checksum is wrong, that
+/// line stays, so the parser finds the text damaged.
 std::expected<std::string, std::string> read_file(const std::string& path);
 
-/// Modes of files: readable for everybody, or for nobody else.
+/// Modes of files: readable by all, or by this user alone.
 inline constexpr int kForAll = 0644, kOursAlone = 0600;
 
-/// Writes `text` so that after a crash there is the old file or the new one: a temporary beside it
-/// (PATH.writing), fsync, rename, fsync of the folder. One call at a time for a path.
+/// Writes `text` so that a crash leaves the old file or the new one: temporary file (PATH.writing), fsync,
+/// rename, fsync of the directory. One call at a time for each path.
 std::expected<void, std::string> write_file(const std::string& path, const std::string& text, int mode);
-/// The same for this user alone, with a checksum in a last line ("crc32 1a2b3c4d").
+/// The same for this user alone, with a checksum in the last line ("crc32 1a2b3c4d").
 std::expected<void, std::string> write_kept(const std::string& path, const std::string& text);
-/// Writes over the file that is there, which takes no more room on a full disk: of at most 512 bytes, which a
-/// disk writes all or none of.
+/// Overwrites an existing file, which needs no space on a full disk. At most 512 bytes, which a disk writes
+/// completely or not at all.
 std::expected<void, std::string> write_over(const std::string& path, const std::string& text);
-/// Removes what write_file() leaves in a folder when the process dies before the rename. Before the first
-/// write there.
+/// Removes temporary files that a crash during write_file() left. Call before the first write there.
 void remove_unwritten(const std::string& folder);
 
-/// Calls `each` with the name of each entry of a folder, in no order, until it gives false. An errno: the
-/// folder cannot be read to its end.
+/// Calls `each` with the name of each entry, unordered, until it returns false. Errno: the directory cannot
+/// be read completely.
 std::expected<void, int> for_each_name(const std::string& folder,
                                        const std::function<bool(std::string_view)>& each);
 
-/// The names of what is in a folder, in order; none where there is no such folder. An error, without the
-/// folder's name: it cannot be read to its end, or holds more than `most`.
+/// The sorted names in a directory; empty if it does not exist. Error, without the directory's name: it
+/// cannot be read completely, or holds more than `most`.
 inline constexpr std::size_t kMostNames = 256;
 std::expected<std::vector<std::string>, std::string> names_in(const std::string& folder,
                                                               std::size_t most = kMostNames);
 
-/// Removes a file, for good once this has succeeded; also where there was none. An error names the file.
+/// Removes a file, and syncs the removal. An absent file is no error. An error names the file.
 std::expected<void, std::string> remove_file(const std::string& path);
 
 struct Secrets {
   std::map<std::string, icd::BearerToken, std::less<>> tokens;  // by name: "scoring", "course.A.mapping"
   std::optional<icd::BearerToken> label_code =
-      std::nullopt;                                 // what sets the first password; absent: one is drawn
-  std::map<std::string, std::string> damaged = {};  // by name: why a saved token is none, nor the given one
+      std::nullopt;                                 // code for the first password; absent: one is drawn
+  std::map<std::string, std::string> damaged = {};  // by name: why a saved token is invalid; the given one is
+                                                    // then not used
   std::string unread = "";  // why a file cannot be read, so that a token is missing; or ""
 
   icd::Redaction redaction() const;
-  /// A sentence by the name: of damaged tokens, and of the Command Post's tokens whose length is none that
-  /// the ICD (4) gives them.
+  /// Sentences by name: damaged tokens, and tokens of the Command Post with a length other than the ICD's
+  /// (4).
   std::map<std::string, std::string> odd_tokens() const;
   std::optional<icd::BearerToken> token(std::string_view name) const {
     const auto found = tokens.find(name);
@@ -89,17 +86,17 @@ struct Secrets {
   }
 };
 
-/// The tokens of these names, each in NAME.token in `saved` or else in `given` (a folder of systemd
-/// credentials, or one of mode 0700 with files of mode 0600); and `label.code` in `given`. White space around
-/// a token is cut; a missing file is none, as is an empty one in `given`. An error names the file in `given`,
-/// never its content: others may read it, or it holds no token.
+/// Reads the tokens of these names, each from NAME.token in `saved` or else in `given`, and `label.code` in
+/// `given`. `given` holds systemd credentials, or has mode 0700 and files of mode 0600. White space around a
+/// token is removed. A missing file, or an empty one in `given`, is no token. An error names the file in
+/// `given`, never its content: other users may read it, or it holds no token.
 std::expected<Secrets, std::string> read_secrets(const std::string& given, const std::string& saved,
                                                  std::span<const std::string> names);
 
-/// Names this start of the machine; "" where that cannot be known.
+/// Identifies this boot; "" if unknown.
 std::string boot();
 
-/// Whether `interface` has a carrier: nothing where there is no such interface; "" is always true.
+/// Whether `interface` has a carrier. std::nullopt: no such interface. True for "".
 std::optional<bool> carrier(const std::string& interface);
 
 }  // namespace adit::host

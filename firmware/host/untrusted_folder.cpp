@@ -19,7 +19,7 @@
 namespace adit::host {
 namespace {
 
-/// Not followed elsewhere.
+/// Opens without following links.
 loop::FileDescriptor open_file(const loop::FileDescriptor& folder, const std::string& name, int how) {
   return loop::open_regular(name, how | O_NOFOLLOW, folder.get());
 }

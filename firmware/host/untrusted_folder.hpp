@@ -10,42 +10,41 @@
 
 namespace adit::host {
 
-/// A folder in which somebody else writes: for a program with more rights than whoever does. Nothing in it is
-/// followed elsewhere, waited for, or believed to be small.
+/// A directory in which a less privileged user writes. Operations do not follow links, do not block, and
+/// limit sizes.
 class UntrustedFolder {
  public:
   static constexpr std::size_t kLargest = 65536;
 
-  /// An error where it is not there, or is no folder itself but a link to one.
+  /// Error: the directory does not exist, or is a link.
   static std::expected<UntrustedFolder, std::string> open(const std::string& path);
 
   struct Untaken {
     std::string why = "";
-    bool stays = false;  // what has the name cannot be taken away, and would be found again and again
+    bool stays = false;  // cannot be removed, and would be found again
   };
-  /// Takes a file away and gives what was in it; nothing where there is none of that name. An error: it was
-  /// no plain file, too large or unreadable, and is gone all the same, or it stays.
+  /// Removes a file and returns its content. std::nullopt: no such file. Error: not a plain file, too large
+  /// or unreadable; removed in any case unless `stays`.
   std::expected<std::optional<std::string>, Untaken> take(const std::string& name);
 
-  /// Takes away whatever has that name. Of a folder that cannot be deleted (it may be deeper than files can
-  /// be opened) the name at least: what is left is beside it, as NAME.XXXXXX.
+  /// Removes an entry of any type. If a directory cannot be deleted (it may be deeper than files can be
+  /// opened), frees its name: the rest is NAME.XXXXXX.
   std::expected<void, std::string> remove(const std::string& name);
 
-  /// What is in a file, which stays; nothing where there is none of that name. An error: it is no plain file,
-  /// too large or unreadable.
+  /// The content of a file, or std::nullopt if it does not exist. Error: not a plain file, too large or
+  /// unreadable.
   std::expected<std::optional<std::string>, std::string> read(const std::string& name) const;
 
-  /// A folder in it; nothing where there is none of that name.
+  /// A subdirectory, or std::nullopt if it does not exist.
   std::expected<std::optional<UntrustedFolder>, std::string> folder(const std::string& name) const;
 
-  /// names_in() it.
+  /// As names_in().
   std::expected<std::vector<std::string>, std::string> names() const;
 
-  /// Removes a file so that its text is not left on the disk: overwritten, then unlinked. False: it may still
-  /// be there.
+  /// Overwrites and unlinks a file, so that its text does not stay on the disk. False: it may still exist.
   bool wipe(const std::string& name);
 
-  /// For inotify(7): names the folder itself, whatever its path has come to mean.
+  /// A path for inotify(7) that always means this directory.
   std::string path_by_descriptor() const;
 
  private:

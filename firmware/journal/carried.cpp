@@ -8,7 +8,7 @@
 namespace adit::journal {
 namespace {
 
-/// A snapshot's messages are no larger than those that it is made of.
+/// Limits a snapshot's messages to the size of the original ones.
 constexpr std::size_t kMarkersInARecord = 500;
 
 bool is_known(icd::Uri uri) {
@@ -18,7 +18,7 @@ bool is_known(const std::string& /*name*/) {
   return true;
 }
 
-/// Puts a record's key and value in their place.
+/// Stores a record's key and value.
 template <class Key, class Value>
 bool read_into(std::map<Key, Value>& all, std::string_view said) {
   Key key{};
@@ -96,7 +96,7 @@ bool Carried::read_sender(std::string_view said) {
   return true;
 }
 
-/// lanes::StateLane::news_in() has said that they are the newest.
+/// lanes::StateLane::news_in() has kept only the newest poses.
 bool Carried::read_poses(std::string_view said) {
   std::vector<std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>> read;
   if (!store::read(said, read)) return false;
@@ -114,7 +114,7 @@ bool Carried::read_poses(std::string_view said) {
   return true;
 }
 
-/// One state is under way at a time: what was before, and of which no answer is known, was not taken.
+/// One state is in flight at a time, so an earlier one without an answer was not delivered.
 bool Carried::read_state_sent(std::string_view said) {
   std::vector<std::string> robots;
   if (!store::read(said, robots)) return false;
@@ -134,8 +134,8 @@ bool Carried::read_markers(std::string_view said) {
   return true;
 }
 
-/// The markers that went are those that wait now; newer changes of them come later. Those before, of which no
-/// answer is known, wait again.
+/// The sent markers are among the queued ones; newer changes come in later records. Earlier markers without
+/// an answer are queued again.
 bool Carried::read_sent(std::string_view said) {
   std::vector<std::tuple<std::string, std::int32_t, icd::MarkerAction>> sent;
   if (!store::read(said, sent)) return false;

@@ -27,59 +27,59 @@
 
 namespace adit::journal {
 
-/// The gateway's clock for stamps at one instant of a start of the machine.
+/// The gateway's stamp clock at one time of a boot.
 struct Clock {
   std::string boot;  // host::boot()
   pace::Instant at{};
   double stamp = 0;
-  double leapt_to = 0, leapt_by = 0;  // dispatch::Leap: with which this start of the machine began
+  double leapt_to = 0, leapt_by = 0;  // dispatch::Leap at the start of this boot
   double off = 0, off_since = 0;      // forward::Clocks::Off
 };
 
-/// When a robot was heard, by the clock for stamps, and how often it posts.
+/// When a robot was last heard, by the stamp clock, and how often it sends.
 struct Heard {
-  /// Of one kind of its data; NaN: never.
+  /// For one kind of data; NaN: never.
   struct Times {
     double accepted = std::numeric_limits<double>::quiet_NaN(),
            forwarded = std::numeric_limits<double>::quiet_NaN();
   };
   std::string robot;             // "": merged maps
   std::uint64_t messages = 0;    // alarms::Habit
-  double gap = 0, last = 0;      // this, too
+  double gap = 0, last = 0;      // as `messages`
   std::array<Times, 3> kinds{};  // grid, cloud, state
 };
 
-/// What one life of the gateway hands on to the next: what the records of a journal come to.
+/// State that a process hands to the next: the sum of a journal's records.
 class Carried {
  public:
-  /// Its pose is news, or an earlier one of it was sent and no answer is known.
+  /// A pose that is queued (`news`), or in flight without an answer.
   struct Robot {
     lanes::PostedPose posted;
     bool news = true, under_way = false;
   };
 
-  /// False: the record could not be understood, and changed nothing.
+  /// False: the record is unknown and had no effect.
   bool apply(Kind kind, std::string_view said);
 
-  /// The same as few records.
+  /// Writes the same state as few records.
   void write(const std::function<void(Kind, std::string_view)>& to) const;
 
-  /// This is the start of the machine: instants, and stamps by them, of another one say nothing now.
+  /// Sets the present boot. Drops monotonic times of another boot, and stamps derived from them.
   void machine_is(const std::string& boot);
 
-  /// Absent: nothing is known, this is the first life of this start of the machine.
+  /// std::nullopt: the first process of this boot.
   const std::optional<Clock>& clock() const { return clock_; }
   const lanes::StampShift& senders() const { return senders_; }
   const std::map<icd::Uri, pace::Learned>& paces() const { return paces_; }
   const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
-  /// lanes::Canvases::Posted. Absent: nobody told.
+  /// lanes::Canvases::Posted. std::nullopt: not recorded.
   const std::optional<std::map<std::string, lanes::Extent>>& grids() const { return grids_; }
-  /// Those whose pose the Command Post has not taken as it is. One that it has taken is no business of a life
-  /// to come, which may serve another Command Post.
+  /// Robots whose present pose is not delivered. Delivered poses are dropped, because the next process may
+  /// serve another Command Post.
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
-  /// By robot. Empty after a start of the machine.
+  /// By robot. Empty after a boot.
   const std::map<std::string, Heard>& heard() const { return heard_; }
-  /// What it has not taken, in order.
+  /// Markers that are not delivered, in order.
   icd::MarkersUpdate markers() const;
 
  private:
@@ -105,8 +105,8 @@ class Carried {
   std::vector<icd::Marker> markers_under_way_;
 };
 
-/// The sum of the records, and a sentence about damage, or "". No message counts as delivered behind a gap,
-/// because the delivered message may be in the gap. Unknown records are logged.
+/// The sum of the records, and a sentence about damage, or "". After a gap no message counts as delivered,
+/// because the message that was delivered may be in the gap. Unknown records are logged.
 std::pair<Carried, std::string> read_records(const store::Contents& contents);
 
 /// What a record of Kind::MarkersSent says: ns, id and action of each marker.

@@ -12,7 +12,7 @@
 namespace adit::journal {
 namespace {
 
-/// A snapshot of all before that log. Its size in bytes.
+/// Writes a snapshot of all records before log `before`. Returns its size in bytes.
 store::Result<std::size_t> write_snapshot(const store::Directory& directory, store::Snapshot& snapshot,
                                           std::uint64_t before, const std::atomic<bool>& enough) {
   const auto contents = store::Contents::read(directory, Journal::kKeeping, before);
@@ -64,7 +64,7 @@ Carried Journal::read() {
   return std::move(carried);
 }
 
-/// The files of the processes before become a snapshot.
+/// Compacts the files of earlier processes into a snapshot.
 void Journal::begin(const Clock& clock) {
   if (contents_) {
     log_.emplace(*directory_, kKeeping);
@@ -104,8 +104,8 @@ void Journal::comes_back(Kind sent, Kind back) {
   unsaid_.erase(std::next(last).base());
 }
 
-/// If the directory could not be opened at the start, it may be now. Records that are in it then were not
-/// read.
+/// If the directory could not be opened at the start, tries again. Records found in it then were not read, so
+/// append() fails.
 Journal::Kept Journal::append(Kind kind, std::string_view said) {
   if (!log_) {
     if (!contents_) {
@@ -146,7 +146,7 @@ Journal::Kept Journal::failed(const std::string& why) {
   return std::unexpected(why);
 }
 
-/// All records until now become a snapshot, while the next file is written.
+/// Compacts all records so far, while new ones go to the next file.
 void Journal::compact() {
   if (compacting_) return;
   if (const auto turned = log_->turn(); !turned) return not_compacted(turned.error());
@@ -169,7 +169,7 @@ void Journal::compact() {
       });
 }
 
-/// It is tried again after as much.
+/// Retries after kLeastTurn more bytes.
 void Journal::not_compacted(const store::Error& error) {
   host::log(host::Level::Warning, "cannot compact the journal", {{"why", error.what}});
   least_ = size_ + kLeastTurn;

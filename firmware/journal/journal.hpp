@@ -21,21 +21,20 @@
 
 namespace adit::journal {
 
-/// What must outlive any death of the service, though not of the machine: telemetry that was answered and is
-/// not yet taken, when each URI was asked last, the stamps given out, and the senders' clocks. (README.md)
+/// Data that must survive a crash of the service, not of the machine: accepted telemetry that is not
+/// delivered, the last request to each URI, used stamps, and senders' clocks (README.md).
 ///
-/// Each record is one write by the loop to a log in memory (store/README.md), and is there for the next
-/// process once the call has returned. If there is no room for a record that nobody is answered for, it waits
-/// in memory and is written before the next one. Until then the journal accepts no
-/// other record.
+/// Each record is one write by the loop to a log in memory (store/README.md); the next process finds it once
+/// the call has returned. If there is no room for a record that no client's answer depends on, the record is
+/// kept in this process and written before the next one. Until then the journal rejects all other records.
 class Journal {
  public:
-  /// How the log is kept.
+  /// Storage of the log.
   static constexpr store::Keeping kKeeping{store::kInMemory, 0, false};
-  /// Bytes of records that wait in memory, at most: those that come beyond are lost.
+  /// Most bytes of unwritten records; more are lost.
   static constexpr std::size_t kMostUnsaid = 8u << 20;
-  /// A file is followed by the next one, and a snapshot is made, once it is as large as the last snapshot,
-  /// and at least so large.
+  /// Least size at which a snapshot is made. A snapshot is made when the file is larger than this and than
+  /// the last snapshot.
   static constexpr std::size_t kLeastTurn = 1u << 20;
 
   Journal(loop::Loop& loop, std::string folder);
@@ -43,21 +42,21 @@ class Journal {
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
 
-  /// The records of the processes before. If a file cannot be read, the files stay, the records are empty,
-  /// and each append fails until the next start.
+  /// Records of earlier processes. If a file cannot be read, the files stay, the result is empty, and
+  /// append() fails until the next start.
   Carried read();
-  /// Why a file of the processes before cannot be read, or "".
+  /// Why a file of earlier processes cannot be read, or "".
   const std::string& unread() const { return unread_; }
-  /// Whether the files in a journal's directory, if there is one, can be read now.
+  /// Whether all files of a journal's directory, if it exists, can be read now.
   static bool can_be_read(const std::string& folder);
-  /// Which records of the processes before are damaged: a sentence, or "".
+  /// A sentence about damaged records of earlier processes, or "".
   const std::string& damage() const { return damage_; }
   /// Call once, after read() and before any other member.
   void begin(const Clock& clock);
-  /// More is known of it.
+  /// Records a change of the clock.
   void clock(const Clock& clock) { note(Kind::Clock, store::bytes_of(clock)); }
 
-  /// An error: it is not kept, and must not be answered as if it were.
+  /// Error: not stored; the client must not get a success.
   using Kept = std::expected<void, std::string>;
   Kept accepted(std::span<const lanes::PostedPose> poses) {
     return append(Kind::Poses, store::bytes_of(poses));
@@ -69,25 +68,25 @@ class Journal {
   Kept accepted_markers(const std::string& bytes) { return append(Kind::Markers, bytes); }
 
   void senders(const lanes::StampShift::Clocks& clocks);
-  /// For the next process start. If there is no room for it, the next one says the same.
+  /// For the next process. A failed record is dropped, because the next one replaces it.
   void heard(const Heard& heard) { (void)append(Kind::Heard, store::bytes_of(heard)); }
 
-  /// These poses, or these markers, are about to be sent.
+  /// Call before these poses or markers are sent.
   void state_sent(const icd::StateUpdate& update) { note(Kind::StateSent, store::bytes_of(update.poses)); }
   void markers_sent(const icd::MarkersUpdate& update) { note(Kind::MarkersSent, names_of(update.markers)); }
-  /// They need no more care, or wait again.
+  /// `done`: delivered or rejected; otherwise queued again.
   void state_answered(bool done);
   void markers_answered(bool done);
 
   void paced(icd::Uri uri, const pace::Learned& learned) { note(Kind::Pace, store::bytes_of(uri, learned)); }
   void stamped(icd::Uri uri, icd::Stamp stamp) { note(Kind::Stamp, store::bytes_of(uri, stamp)); }
-  /// Where grids are posted is told from here on; grids_posted() begins that, too.
+  /// Starts the record of posted grids; grids_posted() does so too.
   Kept grids_begin() { return append(Kind::Grids, {}); }
   Kept grids_posted(const std::string& name, const lanes::Extent& extent) {
     return append(Kind::Grids, store::bytes_of(name, extent));
   }
 
-  /// Why the last record could not be kept, or "".
+  /// Why the last record could not be stored, or "".
   const std::string& trouble() const { return trouble_; }
 
  private:
@@ -97,7 +96,8 @@ class Journal {
   };
   Kept open();
   void note(Kind kind, std::string said);
-  /// What was sent waits again: nothing has happened, as long as it is unsaid that it was sent.
+  /// Records that sent data is queued again. If the record of the sending is still unwritten, removes that
+  /// record.
   void comes_back(Kind sent, Kind back);
   Kept append(Kind kind, std::string_view said);
   Kept append_unsaid();
@@ -108,18 +108,18 @@ class Journal {
 
   const std::string path_;
   std::optional<store::Directory> directory_;
-  std::optional<store::Contents> contents_;  // of the processes before, until begin()
+  std::optional<store::Contents> contents_;  // of earlier processes, until begin()
   std::optional<store::Log> log_;
-  std::string unread_;  // why a file of the processes before could not be read
+  std::string unread_;  // why a file of earlier processes could not be read
   std::string damage_;
   std::vector<Unsaid> unsaid_;  // in order
   std::size_t unsaid_size_ = 0;
-  std::size_t size_ = 0, snapshot_ = 0;  // of the file, and of the last snapshot, in bytes
+  std::size_t size_ = 0, snapshot_ = 0;  // bytes of the file, and of the last snapshot
   std::size_t least_ = kLeastTurn;
   bool compacting_ = false;
   std::string trouble_;
   std::atomic<bool> ending_ = false;
-  loop::Workers compactor_;  // a thread of its own: it may take a second, and nobody waits for it
+  loop::Workers compactor_;  // its own thread, because a snapshot may take a second
 };
 
 }  // namespace adit::journal

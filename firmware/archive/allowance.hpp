@@ -8,14 +8,14 @@
 
 namespace adit::archive {
 
-/// How much may be written: in any minute less than 1 MB, over all files. What is left may be as large as one
-/// record, so that each has its turn, and one write is never larger.
+/// Limits writes to less than 1 MB in any minute, over all files. The unused part may grow to one record, so
+/// that every record can be written, and no write is larger.
 class Allowance {
  public:
-  static constexpr double kASecond = 14000;  // bytes
+  static constexpr double kASecond = 14000;  // bytes per second
   static constexpr double kMost = kLargestRecord + 1024;
 
-  /// Bytes that may be written at `now`, which never runs back.
+  /// Bytes that may be written at `now`, which must not run back.
   std::size_t at(loop::Instant now) {
     if (last_ == loop::Instant{}) last_ = now;
     const double passed = std::chrono::duration<double>(now - last_).count();
@@ -23,7 +23,7 @@ class Allowance {
     last_ = now;
     return static_cast<std::size_t>(std::max(left_, 0.0));
   }
-  /// So many were written, or will be.
+  /// Records a write, done or planned.
   void spend(std::size_t bytes) { left_ -= static_cast<double>(bytes); }
 
  private:

@@ -26,8 +26,8 @@ std::function<bool()> Archive::enough() const {
 
 namespace {
 
-/// Skips the files of a run that cannot be read and damaged records. The log says so, and the run itself,
-/// among what needed the operator.
+/// Skips unreadable files and damaged records of a run. Reports them in the log and in the run's own list of
+/// attention.
 void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
               const std::function<bool()>& enough) {
   const auto all_read = read_run(runs.folder_of(key), told, enough);
@@ -41,7 +41,7 @@ void tell_all(const RunsFolder& runs, const std::string& key, Told& told,
 
 }  // namespace
 
-/// What the disk gives of a run.
+/// Result of opening a run on disk.
 struct Archive::Opening {
   Head head;
   std::expected<std::string, std::string> key = std::unexpected("no memory");
@@ -99,7 +99,7 @@ void Archive::opened(Opening& opening) {
   look_at_disk();
 }
 
-/// Of a run without one nothing is written.
+/// A run without a directory is not written.
 void Archive::has_folder(const Opening& opening) {
   if (opening.key) {
     key_ = *opening.key;
@@ -127,7 +127,8 @@ void Archive::make_folder() {
       });
 }
 
-/// Before anything that is told by the new time: of lines that wait, only so many as go at once.
+/// Call before other functions use the new time. Keeps only as many lines as one write holds, so that the
+/// step goes with them.
 void Archive::move(double seconds) {
   samples_.move(seconds);
   last_pose_ += seconds;
@@ -169,8 +170,8 @@ void Archive::look_at_disk() {
 
 namespace {
 
-/// The present run as it is now, any other as the disk has it. It began by the clock for stamps, as the
-/// ledger has it; it is told by the time of day, as its end is.
+/// The present run's row as it is now, others as on disk. Converts the start from the stamp clock, which the
+/// ledger uses, to the time of day, like the end.
 api::RunRow as_told(const api::RunRow& row, const api::RunRow& present) {
   api::RunRow told = row.key == present.key ? present : row;
   told.bytes = row.bytes;
@@ -182,7 +183,7 @@ api::RunRow as_told(const api::RunRow& row, const api::RunRow& present) {
 
 api::RunList Archive::list() const {
   api::RunList all{.runs = list_, .bytes = 0, .trouble = trouble_};
-  // One that has just begun has nothing on the disk yet.
+  // a new run has no files yet
   if (!key_.empty() && std::ranges::find(list_, key_, &api::RunRow::key) == list_.end()) {
     all.runs.insert(all.runs.begin(), {.key = key_,
                                        .run = head_.run,
@@ -201,7 +202,7 @@ api::RunList Archive::list() const {
 
 namespace {
 
-/// For the thread that waits for the disk; null where there is no such run.
+/// Blocks on the disk. Null if there is no such run.
 std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
                                              const api::RunRow& present,
                                              const std::function<bool()>& enough) {

@@ -20,59 +20,57 @@
 
 namespace adit::archive {
 
-/// What the disk may hold, in bytes.
+/// Space limits on disk, in bytes.
 struct Limits {
-  std::uint64_t run = std::uint64_t{64} << 20;   // one run
-  std::uint64_t all = std::uint64_t{512} << 20;  // all runs
+  std::uint64_t run = std::uint64_t{64} << 20;   // for one run
+  std::uint64_t all = std::uint64_t{512} << 20;  // for all runs
 };
 
-/// How the present run stands.
+/// State of the present run.
 struct Seen {
   api::Time now = 0;
-  double stamp = 0;  // the same by the clock for stamps
+  double stamp = 0;  // `now` by the stamp clock
   const picture::Mosaic& picture;
   std::function<std::vector<api::Track>(api::Time since)> tracks;
-  std::function<Sample()> sample;  // its `throttled`: since the service started
-  std::function<api::RunRow()>
-      facts;  // `began` by the clock for stamps; key, end and bytes are the archive's
+  std::function<Sample()> sample;      // its `throttled` counts since the service started
+  std::function<api::RunRow()> facts;  // `began` by the stamp clock; the archive sets key, end and bytes
 };
 
-/// Keeps the runs' pictures, tracks and plots on the disk, so that they outlive a restart and a power cut:
-/// README.md. The loop waits for none of it.
+/// Stores the runs' maps, tracks and plots on disk across restarts and power cuts: README.md. A thread
+/// writes; the loop never blocks.
 class Archive final : public api::KeptRuns {
  public:
   static constexpr std::chrono::seconds kWriteEvery{5}, kFactsEvery{30};
-  /// Bytes of records that wait to be written, at most: a disk may be slow. Beyond it the oldest go.
+  /// Most bytes of queued records, because a disk may be slow. Beyond that the oldest are dropped.
   static constexpr std::size_t kMostWaiting = std::size_t{256} << 10;
-  /// Of the picture of a run that is looked at again.
+  /// Most bytes of a stored run's map when it is shown again.
   static constexpr std::size_t kLookedAt = std::size_t{12} << 20;
 
-  /// `loop` outlives this.
+  /// `loop` must outlive this object.
   Archive(loop::Loop& loop, const std::string& state_folder);
   ~Archive() override;
 
   void limit(const Limits& limits) { limits_ = limits; }
 
-  /// From now on that run is the present one. What is kept of it comes once the disk has given it, whoever
-  /// calls goes on with it, and gives the picture as it is then. Nothing is written before that.
+  /// Makes a run the present one. After its stored data was read, calls `go_on` with the data, and expects
+  /// the map that is in use from then on. Writes only after that.
   using GoOn = std::function<const picture::Mosaic&(picture::Mosaic picture, std::vector<api::Track> tracks)>;
   void begin(const Head& head, GoOn go_on);
 
-  /// Once a second; writes what is due.
+  /// Call once a second. Writes due data.
   void tick(const Seen& seen);
-  /// Writes pending data at once, as far as the allowance permits. The process may end after it.
+  /// Writes queued data at once, within the allowance. The process may end afterwards.
   void write_now(const Seen& seen);
-  /// Writes all pending data of this run, beyond the allowance: it is the last chance. The facts are those of
-  /// the last tick, because a newer status may be of the next run.
+  /// Writes all queued data of this run, beyond the allowance, because it is the last chance. Stores the
+  /// facts of the last tick, because a newer status may belong to the next run.
   void end_run(const Seen& seen);
   void needs_attention(const std::vector<std::string>& sentences, api::Time now);
-  /// The time of day was set ahead by so many seconds: all that is kept of this run was as long ago as it
-  /// was.
+  /// Call if the time of day was advanced by `seconds`: shifts all times of this run.
   void move(double seconds);
 
-  /// Why nothing is written now; or "".
+  /// Why the run is not stored, or "".
   const std::string& trouble() const { return trouble_; }
-  /// The thread that writes, to be asked for signs of life.
+  /// The writing thread, for the watchdog.
   loop::Writer& thread() { return writer_; }
 
   api::RunList list() const override;
@@ -87,7 +85,7 @@ class Archive final : public api::KeptRuns {
   struct Writing;
   void opened(Opening& opening);
   void has_folder(const Opening& opening);
-  /// Where the disk had no room for one.
+  /// Retries if the run has no directory.
   void make_folder();
   void line(const Said& said);
   void keep_lines_below(std::size_t most);
@@ -101,7 +99,7 @@ class Archive final : public api::KeptRuns {
   void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);
   void written(const Writing& writing);
   void look_at_disk();
-  /// The present run's as it is now, which the disk has as of up to kFactsEvery ago; bytes as in `row`.
+  /// A function that returns true once this object ends.
   std::function<bool()> enough() const;
 
   loop::Loop& loop_;
@@ -113,28 +111,28 @@ class Archive final : public api::KeptRuns {
   Attention attention_;
   std::deque<std::string> lines_;  // oldest first
   std::size_t lines_bytes_ = 0;
-  std::uint64_t throttled_ = 0;    // as last told
-  api::Time last_pose_ = 0;        // that is written, or is about to be
+  std::uint64_t throttled_ = 0;    // last count
+  api::Time last_pose_ = 0;        // newest stored or queued pose
   std::uint64_t layers_seen_ = 0;  // Mosaic::version()
-  std::optional<double> wiped_;    // as written
+  std::optional<double> wiped_;    // as stored
   loop::Instant next_write_{}, next_facts_{};
-  api::RunRow row_;                      // the present run's as of the last tick, but for its bytes
-  std::optional<std::uint64_t> leaves_;  // the file that is to go
-  bool is_left_ = false;                 // it may
+  api::RunRow row_;                      // the present run at the last tick, without its bytes
+  std::optional<std::uint64_t> leaves_;  // the file to remove
+  bool is_left_ = false;                 // it may be removed
   std::uint64_t writes_ = 0;
-  int writing_ = 0;  // writes under way
+  int writing_ = 0;  // writes in flight
   bool opening_ = false;
-  double moved_ = 0;         // meanwhile
-  std::string steps_;        // records of the clock that was set, for the tiles
-  std::uint64_t begun_ = 0;  // how often a run began here
+  double moved_ = 0;         // clock steps during the opening, in seconds
+  std::string steps_;        // records of clock steps for the tile files
+  std::uint64_t begun_ = 0;  // number of begin() calls
   GoOn go_on_;
-  Head head_;        // the present run's
-  std::string key_;  // the present run's; "": not known yet
+  Head head_;        // of the present run
+  std::string key_;  // of the present run; "": not known yet
   std::shared_ptr<RunFolder> folder_;
   std::vector<api::RunRow> list_;
   std::string trouble_;
   std::shared_ptr<std::atomic<bool>> ending_ = std::make_shared<std::atomic<bool>>(false);
-  loop::Writer writer_;  // last: its jobs end before all else
+  loop::Writer writer_;  // last, so that its jobs end first
 };
 
 }  // namespace adit::archive

@@ -1,4 +1,4 @@
-// What of the present run is written, and when.
+// Decides which data of the present run is written, and when.
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -10,19 +10,19 @@
 namespace adit::archive {
 namespace {
 
-/// When every tile that changed is due.
+/// Makes every changed tile due.
 constexpr api::Time kNoneRests = std::numeric_limits<api::Time>::infinity();
 
 }  // namespace
 
-/// One write: the thread reads `batch`, and says what became of it.
+/// One write, executed by the thread.
 struct Archive::Writing {
   std::uint64_t number = 0, begun = 0;
   Batch batch;
-  std::string steps;  // of it
+  std::string steps;  // in the batch
   std::shared_ptr<RunFolder> folder;
   std::uint64_t most = 0;
-  std::optional<std::uint64_t> goes;  // this file
+  std::optional<std::uint64_t> goes;  // file to remove
   std::expected<RunFolder::Written, std::string> outcome = std::unexpected("no memory");
 };
 
@@ -74,8 +74,8 @@ void Archive::sample(const Seen& seen) {
   samples_.add(std::move(now));
 }
 
-/// Lines first: they are small, and there is no newer state of them that could be written instead. Tiles:
-/// those that are due at `tiles_of`. False: there was nothing.
+/// Lines come first, because they are small and not replaced by newer ones. Tiles: those due at `tiles_of`.
+/// False: no data was due.
 bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
   next_write_ = loop_.now() + kWriteEvery;
   const auto writing = std::make_shared<Writing>();
@@ -111,7 +111,8 @@ void Archive::put_facts(Batch& batch) {
   allowance_.spend(batch.facts.size());
 }
 
-/// Call once for each `seen`: if the time of day was set back, a second call would note the same poses again.
+/// Call once for each `seen`. If the time of day was set back, a second call would store the same poses
+/// again.
 void Archive::note_poses(const Seen& seen) {
   for (const api::Track& track : seen.tracks(last_pose_)) {
     for (auto from = track.poses.begin(), end = track.poses.end(); from != end;) {
@@ -147,7 +148,7 @@ void Archive::put_layers(const Seen& seen, Batch& batch) {
 }
 
 void Archive::put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of) {
-  constexpr std::size_t kFraming = 200;  // what a record has beside the tile, at most, with a robot's name
+  constexpr std::size_t kFraming = 200;  // most bytes of a record beside the tile, with a robot's name
   due_.look(seen.picture);
   for (const TileKey& key : due_.at(tiles_of)) {
     TileState state{.layer = key.first, .at = key.second, .stamp = 0, .tile = {}};
@@ -178,7 +179,7 @@ void Archive::written(const Writing& writing) {
   if (!outcome) {
     next_facts_ = loop_.now();
     steps_.insert(0, writing.steps);
-    layers_seen_ = 0;  // the next write has all layers
+    layers_seen_ = 0;  // so that the next write has all layers
     wiped_.reset();
     if (!writing.batch.lines.empty()) lines_bytes_ += lines_.emplace_front(writing.batch.lines).size();
     return;
@@ -189,7 +190,7 @@ void Archive::written(const Writing& writing) {
   } else {
     look_at_disk();
   }
-  // A little before there is no room: what is newest in the first file is written again, and then it goes.
+  // Shortly before the limit, the newest tiles of the first file are written again. Then the file is removed.
   if (outcome->bytes > limits_.run / 8 * 7 && outcome->first_file != 0) leaves_ = outcome->first_file;
   if (leaves_) is_left_ = due_.leave(*leaves_);
 }

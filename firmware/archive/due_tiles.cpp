@@ -15,7 +15,7 @@ void DueTiles::look(const picture::Mosaic& picture) {
   for (const picture::LayerView& layer : picture.layers(seen_)) {
     for (const picture::TileView& tile : layer.tiles) {
       Tile& known = tiles_[{layer.layer, tile.at}];
-      // A tile that is blank is of a run before, and was never one of this run's, unless it was written.
+      // A blank tile belongs to an earlier run, unless this run wrote it.
       known.due = !tile.blank || known.written != 0;
     }
   }

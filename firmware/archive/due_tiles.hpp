@@ -10,45 +10,44 @@
 
 namespace adit::archive {
 
-/// A tile of the picture.
+/// Identifies a tile of the map.
 using TileKey = std::pair<picture::Layer, picture::TileAt>;
 
-/// Which tiles are to be written next: those that have changed since they were, each at most once in
-/// interval_of() its level, so that a coarse one, which changes with every fine one below it, does not take
-/// their room. Of those the one comes first whose last writing is longest ago; one that was never written
-/// comes before all others.
+/// Decides which tiles to write next: changed ones, each at most once per interval_of() its level. The
+/// interval keeps coarse tiles, which change with every fine one below, from displacing fine ones. Order:
+/// never written, then the oldest write first.
 ///
-/// It also knows in which file the newest state of each tile is, for a file without any may go.
+/// Also tracks the file of each tile's newest state, because a file without newest states may be removed.
 class DueTiles {
  public:
-  /// Seconds from one writing of a tile to the next: 4 for the finest, 4 times that for each coarser level.
+  /// Seconds between two writes of a tile: 4 for the finest level, 4 times as many for each coarser one.
   static double interval_of(int level);
 
-  /// What of the picture changed since the last look is due from now on.
+  /// Marks tiles that changed since the last look.
   void look(const picture::Mosaic& picture);
-  /// Those to be written at `now`, in seconds since 1970, in their order.
+  /// Tiles to write at `now` (seconds since 1970), in order.
   std::vector<TileKey> at(double now) const;
-  /// Its state of now is being written, by the write of that number, at `now`.
+  /// Records that write number `write` takes the tile's state at `now`.
   void being_written(const TileKey& tile, std::uint64_t write, double now);
-  /// That write is done: what it wrote is in that file; nothing: it failed, and is due again.
+  /// Records the write's file. std::nullopt: the write failed, and its tiles are due again.
   void done(std::uint64_t write, std::optional<std::uint64_t> file);
 
-  /// The time of day was set ahead by so many seconds.
+  /// Call if the time of day was advanced by `seconds`.
   void move(double seconds) {
     for (auto& [at, tile] : tiles_) {
       if (tile.written != 0) tile.written += seconds;
     }
   }
-  /// The states in that file are to be written again, so that it may go. True: it holds no newest state.
+  /// Makes the tiles of that file due, so that the file can be removed. True: it has no newest states.
   bool leave(std::uint64_t file);
-  /// Of the picture, these tiles are written, in these files.
+  /// Starts with the tiles of `picture` that are stored in `files`.
   void begin(const picture::Mosaic& picture, const std::map<TileKey, std::uint64_t>& files);
 
  private:
   struct Tile {
     double written = 0;       // 0: never
     std::uint64_t file = 0;   // 0: none
-    std::uint64_t write = 0;  // that is under way; 0: none
+    std::uint64_t write = 0;  // in flight; 0: none
     bool due = false;
   };
   std::map<TileKey, Tile> tiles_;

@@ -4,10 +4,10 @@
 
 namespace adit::archive {
 
-/// With so many digits behind the point.
+/// The number with `digits` decimals.
 std::string fixed(double number, int digits);
 
-/// "1:02:03", of seconds; "-" where there are none.
+/// "1:02:03", or "-" for no time.
 std::string lasted(double seconds);
 
 }  // namespace adit::archive

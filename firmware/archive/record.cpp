@@ -13,15 +13,15 @@ using store::number_at, store::put_number;
 constexpr std::string_view kBegins =
     "\xA7"
     "adr";
-constexpr std::size_t kHead = 12;  // what begins it, length and checksum
-/// Each that looks like one and is none costs a checksum.
+constexpr std::size_t kHead = 12;  // marker, length and checksum
+/// Limits the checksums spent on bytes that only look like a record.
 constexpr int kMostDamaged = 4096;
 
 std::uint32_t checksum_of(std::string_view body) {
   return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(body.data()), body.size()));
 }
 
-/// The body of the record at the beginning of `bytes`; empty if the record is damaged.
+/// The body of the first record in `bytes`; empty if damaged.
 std::string_view body_at_begin(std::string_view bytes) {
   if (bytes.size() <= kHead) return {};
   const std::uint64_t length = number_at(bytes, 4, 4);
@@ -30,7 +30,7 @@ std::string_view body_at_begin(std::string_view bytes) {
   return checksum_of(body) == number_at(bytes, 8, 4) ? body : std::string_view();
 }
 
-/// Whether the record at the begin of `bytes` is whole. A torn one is shorter than it says.
+/// Whether the first record has its full length. A torn record is shorter.
 bool is_whole(std::string_view bytes) {
   if (bytes.size() <= kHead) return false;
   const std::size_t size = kHead + number_at(bytes, 4, 4);

@@ -22,10 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char *kTiles = "map-", *kLines = "lines-";
-/// A file that host::read_file() reads.
+/// File sizes that host::read_file() can read.
 constexpr std::size_t kLargest = std::size_t{900} << 10, kSmallest = std::size_t{96} << 10;
 
-/// So that a sixteenth of the run goes with the first file.
+/// A file holds a sixteenth of the run, which is lost with the first file.
 std::size_t largest_file(std::uint64_t most) {
   return static_cast<std::size_t>(std::clamp<std::uint64_t>(most / 16, kSmallest, kLargest));
 }
@@ -34,7 +34,7 @@ std::size_t largest_file(std::uint64_t most) {
 
 GrowingFile::GrowingFile(std::string folder, std::string prefix, std::string head)
     : folder_(std::move(folder)), prefix_(std::move(prefix)), head_(std::move(head)) {
-  static_cast<void>(look());  // append() looks again, and returns the error
+  static_cast<void>(look());  // append() looks again and returns the error
 }
 
 std::expected<void, std::string> GrowingFile::look() {
@@ -73,7 +73,7 @@ std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view b
     files_.push_back({number, 0});
   }
   File& last = files_.back();
-  const bool is_new = last.size == 0;  // or a death left it so
+  const bool is_new = last.size == 0;  // new, or left empty by a crash
   const std::string all = (is_new ? head_ : "") + std::string(bytes);
   const bool is_written = loop::write_all(fd_.get(), all, last.size) == 0 && ::fdatasync(fd_.get()) == 0 &&
                           (!is_new || host::sync_folder(path(last.number)));
@@ -105,7 +105,7 @@ RunFolder::RunFolder(std::string path, const Head& head)
       lines_(path_, kLines, record_of(head)) {}
 
 std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& batch, std::uint64_t most) {
-  if (const auto disk = host::disk_of(path_)) {  // if not, the write fails with the reason
+  if (const auto disk = host::disk_of(path_)) {  // otherwise the write fails with the reason
     if (disk->free < std::min(kLeave, disk->all / 4)) return std::unexpected("the disk is nearly full");
     most = std::min(most, (disk->free + bytes()) / 2);
   }
@@ -133,7 +133,7 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
 }
 
 void RunFolder::remove_first(std::uint64_t file) {
-  if (tiles_.first() == file) (void)tiles_.remove_first();  // else it goes with a later write
+  if (tiles_.first() == file) (void)tiles_.remove_first();  // otherwise a later write removes it
 }
 
 std::expected<void, std::string> read_run(const std::string& folder, Told& told,

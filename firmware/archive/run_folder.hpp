@@ -15,65 +15,65 @@
 
 namespace adit::archive {
 
-/// What one write is to put on the disk.
+/// The data of one write.
 struct Batch {
   std::vector<TileState> tiles = {};
-  std::string beside = "";  // records that go with the tiles
-  std::string lines = "";   // records of tracks, plots and what needed the operator
-  std::string facts = "";   // the file of facts; "": as it is
+  std::string beside = "";  // records for the tile file
+  std::string lines = "";   // records of tracks, plots and attention
+  std::string facts = "";   // file of facts; "": unchanged
   bool is_empty() const { return tiles.empty() && beside.empty() && lines.empty() && facts.empty(); }
 };
 
-/// A file that grows, one after the other: records are appended to the last one until it is full. What a
-/// death left torn at its end is passed over by who reads it.
+/// A sequence of files. Records are appended to the last file until it is full. Readers skip a torn end,
+/// which a crash leaves.
 class GrowingFile {
  public:
-  /// `head`: the record that begins each.
+  /// `head`: the first record of each file.
   GrowingFile(std::string folder, std::string prefix, std::string head);
 
-  /// All of it or nothing, and on the disk when this returns. Gives the number of the file.
+  /// Appends all or none, and syncs. Returns the file's number.
   std::expected<std::uint64_t, std::string> append(std::string_view bytes, std::size_t largest);
   std::uint64_t bytes() const;
-  /// The number of the first of several files; 0: there is one, or none.
+  /// Number of the first file, or 0 if there are fewer than two.
   std::uint64_t first() const { return files_.size() > 1 ? files_.front().number : 0; }
-  /// Removes that one.
+  /// Removes the first file. Call only if there is one.
   std::expected<void, std::string> remove_first();
-  /// The first files go, until the others have at most so many bytes.
+  /// Removes first files until the rest has at most `most` bytes, but never the last file.
   std::expected<void, std::string> shrink(std::uint64_t most);
 
  private:
   struct File {
     std::uint64_t number, size;
   };
-  /// At what there is, until it could be read: a number that was given is not given again.
+  /// Reads the existing files, once successfully, so that a number is not used twice.
   std::expected<void, std::string> look();
   std::string path(std::uint64_t number) const;
 
   std::string folder_, prefix_, head_;
   bool has_looked_ = false;
   std::vector<File> files_;  // in order
-  loop::FileDescriptor fd_;  // of the last one
+  loop::FileDescriptor fd_;  // of the last file
 };
 
-/// The files of one run. For one thread, which waits for the disk.
+/// The files of one run. Use from one thread; it blocks on the disk.
 class RunFolder {
  public:
   static constexpr const char* kFacts = "facts.json";
-  /// What is left to the ledger and all else, in bytes, or a quarter of a small disk: below it nothing is
-  /// written.
+  /// Bytes left to the ledger and others, or a quarter of a small disk. With less free space, writes fail.
   static constexpr std::uint64_t kLeave = std::uint64_t{16} << 20;
 
   RunFolder(std::string path, const Head& head);
 
   struct Written {
-    std::uint64_t file = 0;        // that has the tiles
-    std::uint64_t first_file = 0;  // of those with tiles
+    std::uint64_t file = 0;        // number of the tile file
+    std::uint64_t first_file = 0;  // first tile file, or 0 if there are fewer than two
     std::uint64_t bytes = 0;       // of the run
   };
-  /// `most`: bytes that the run may take, and half of what the disk has for it. Beyond it the first files go.
-  /// Where it fails, no lines were written. The rest may have been, and may be written again.
+  /// `most`: limit of the run in bytes; half of the available space also limits it. Removes first files
+  /// beyond the limit. After an error no lines were written; other data may have been, and may be written
+  /// again.
   std::expected<Written, std::string> write(const Batch& batch, std::uint64_t most);
-  /// The first of several files with tiles goes.
+  /// Removes that tile file if it is the first of several.
   void remove_first(std::uint64_t file);
   std::uint64_t bytes() const { return tiles_.bytes() + lines_.bytes(); }
 
@@ -82,11 +82,11 @@ class RunFolder {
   GrowingFile tiles_, lines_;
 };
 
-/// Reads a run's files into `told`, until `enough`. An error names the first file that cannot be read; all
-/// other files are read.
+/// Reads a run's files into `told` until `enough` returns true. An error names the first unreadable file; all
+/// others are read.
 std::expected<void, std::string> read_run(const std::string& folder, Told& told,
                                           const std::function<bool()>& enough);
-/// Whether nothing was ever written into it. An error: it cannot be read.
+/// Whether the run has no files. Error: it cannot be read.
 std::expected<bool, std::string> is_blank(const std::string& folder);
 
 }  // namespace adit::archive

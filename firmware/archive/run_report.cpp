@@ -36,7 +36,7 @@ std::string number(const std::optional<std::int64_t>& value) {
   return value ? std::to_string(*value) : "";
 }
 
-/// As `words.js` has them.
+/// As in `words.js`.
 std::string signed_change(const std::optional<std::int64_t>& change) {
   if (!change) return "";
   return *change > 0 ? '+' + std::to_string(*change) : std::to_string(*change);
@@ -51,7 +51,7 @@ std::string title_of(const api::RunRow& run) {
   return icd::sentence("Run ", run.run, run.course.empty() ? "" : ", course ", run.course);
 }
 
-/// Of a run that the box knew of from its first start, the first that is kept.
+/// If the box does not know the run's start, uses the first stored time.
 std::string facts(const api::KeptRun& kept) {
   const api::RunRow& run = kept.facts;
   const double began = run.began > 0 || kept.history.at.empty() ? run.began : kept.history.at.front();
@@ -95,7 +95,7 @@ double length_of(const api::Track& track) {
   return length;
 }
 
-/// How old its map was at the Command Post, at worst.
+/// The robot's greatest map age at the Command Post.
 std::string oldest_map(const api::KeptRun& run, const std::string& robot) {
   const auto row = std::ranges::find(run.history.robots, robot, &api::MapAges::robot);
   if (row == run.history.robots.end()) return "";

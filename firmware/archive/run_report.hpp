@@ -7,13 +7,13 @@
 
 namespace adit::archive {
 
-/// The report of a run to print, on A4 and in black on white: one HTML file that loads nothing, has no
-/// script, and escapes all that it quotes. At most some megabytes.
+/// A run's report for printing on A4, black on white: one HTML file without external resources or scripts.
+/// All quoted text is escaped. At most some megabytes.
 std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports);
 
-/// Its map, seen from above, with tracks and the places of reports: an element svg.
+/// The run's map from above, with tracks and places of reports: an svg element.
 std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports);
-/// How much was known over time: an element svg; "" where nothing was.
+/// The known area over time: an svg element, or "" without data.
 std::string drawn_coverage(const api::KeptRun& run);
 
 }  // namespace adit::archive

@@ -17,12 +17,12 @@ namespace {
 
 using picture::kSide;
 
-/// Pictures in one report, in bytes: a tile that finds no room is left out, and told.
+/// Most bytes of images in a report. Further tiles are left out, and the report says so.
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostTiles = 120;
 constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9"};
 
-/// The finest level of which there are not too many tiles.
+/// The finest level without too many tiles.
 int level_of(const std::vector<picture::LayerView>& layers) {
   for (int level = 0; level + 1 < picture::kLevels; ++level) {
     std::size_t tiles = 0;
@@ -97,7 +97,7 @@ std::string polyline(const api::Track& track, const char* colour, double width) 
                        "</title></polyline>\n");
 }
 
-/// With a label, so that a robot is told by more than its colour.
+/// With a label, so that colour alone does not identify a robot.
 std::string marked(double x, double y, const std::string& label, const char* colour, double size) {
   return icd::sentence("<circle cx=\"", fixed(x, 2), "\" cy=\"", fixed(-y, 2), "\" r=\"", fixed(size / 3, 3),
                        "\" fill=\"", colour, "\" stroke=\"#fff\" stroke-width=\"", fixed(size / 15, 3),

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kGone = "gone-";
 
-/// Of the files in it.
+/// Total size of the files.
 std::uint64_t bytes_in(const std::string& folder) {
   std::uint64_t bytes = 0;
   std::error_code error;
@@ -29,7 +29,7 @@ std::uint64_t bytes_in(const std::string& folder) {
   return bytes;
 }
 
-/// As far as the box can tell: a run that it knew of from its first start has no begin.
+/// A run whose start the box does not know has `began` 0; then the Command Post decides, if known.
 bool is_same(const Head& a, const Head& b) {
   if (a.run != b.run || std::abs(a.began - b.began) > 1) return false;
   return a.began > 0 || a.post.empty() || b.post.empty() || a.post == b.post;
@@ -128,7 +128,7 @@ std::expected<void, std::string> RunsFolder::remove(const std::string& key) {
   if (!has(key)) return std::unexpected("there is no such run");
   const std::string gone = path_ + '/' + std::string(kGone) + key;
   std::error_code error;
-  fs::rename(folder_of(key), gone, error);  // first: a death leaves no half of a run
+  fs::rename(folder_of(key), gone, error);  // first, so that a crash does not leave half a run
   if (!error) fs::remove_all(gone, error);
   if (error) return std::unexpected(folder_of(key) + ": " + error.message());
   return {};

@@ -14,32 +14,32 @@
 
 namespace adit::archive {
 
-/// The folder of all runs: each has a folder in it, whose name is its key. For one thread, which waits for
-/// the disk.
+/// The directory of all runs, with a subdirectory for each, named by its key. Use from one thread; it blocks
+/// on the disk.
 class RunsFolder {
  public:
   static constexpr const char* kName = "runs";
-  static constexpr std::size_t kMostRuns = 2000;  // that are looked at
+  static constexpr std::size_t kMostRuns = 2000;  // most entries read
 
   explicit RunsFolder(const std::string& state_folder) : path_(state_folder + '/' + kName) {}
 
-  /// All that there is, the latest first. A run whose facts are damaged is known by its files. One that
-  /// cannot be read is logged.
+  /// All runs, the latest first. A run with damaged facts is read from its other files. An unreadable run is
+  /// logged and skipped.
   std::vector<api::RunRow> list() const;
-  /// Makes the run's folder if it does not exist, and returns its key. An error: the folder cannot be made,
-  /// or a folder that may be the run's cannot be read.
+  /// Creates the run's directory if it does not exist, and returns its key. Error: the directory cannot be
+  /// created, or a directory that may be the run's cannot be read.
   std::expected<std::string, std::string> begin(const Head& head);
   std::string folder_of(const std::string& key) const { return path_ + '/' + key; }
   bool has(const std::string& key) const;
-  /// Empty if the run does not exist, or if its files do not say which run it is. An error names the file
-  /// that cannot be read.
+  /// std::nullopt if the run does not exist, or its files do not identify it. An error names the unreadable
+  /// file.
   std::expected<std::optional<api::RunRow>, std::string> facts_of(const std::string& key) const;
   std::expected<void, std::string> remove(const std::string& key);
-  /// Removes the oldest until all take at most `most` bytes, and at most half of what the disk has for them;
-  /// never `present`. Also what a death left of a removal.
+  /// Removes the oldest runs until all take at most `most` bytes, and at most half of the available space;
+  /// never `present`. Also completes interrupted removals.
   void tidy(std::uint64_t most, const std::string& present);
 
-  /// A name that begin() gives: a run's number, and more where two runs have the same.
+  /// Whether a name has begin()'s form: a run's number, and a suffix if two runs share it.
   static bool is_key(std::string_view name);
 
  private:

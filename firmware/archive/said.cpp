@@ -63,7 +63,7 @@ namespace {
 class Put : public store::Writer {
  public:
   using store::Writer::operator();
-  /// Cut, but not within a character of UTF-8.
+  /// Truncates a text between two UTF-8 characters.
   void operator()(const std::string& text) {
     std::size_t end = std::min(text.size(), kMostText);
     while (end < text.size() && end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
@@ -77,7 +77,7 @@ class Put : public store::Writer {
   }
 };
 
-/// Takes finite numbers, and short texts of UTF-8.
+/// Accepts finite numbers and short UTF-8 texts.
 class Take : public store::Reader {
  public:
   using store::Reader::Reader, store::Reader::operator();
@@ -98,7 +98,7 @@ class Take : public store::Reader {
   }
 };
 
-/// What is later is no time.
+/// Largest valid time.
 constexpr double kLatest = 1e11;
 bool is_time(double time) {
   return time >= 0 && time < kLatest;
@@ -108,7 +108,7 @@ bool lies_within(double from, double to, double most) {
   return -most <= from && from <= to && to <= most;
 }
 
-/// Whether the values that were read are within their limits.
+/// Whether values are within their limits.
 bool is_good(const picture::Layer& layer) {
   return layer.kind <= picture::Kind::Cloud;
 }

@@ -12,10 +12,10 @@
 #include "api/scene.hpp"
 #include "picture/mosaic.hpp"
 
-/// What records say, and what is read of them: nothing, where it cannot be.
+/// Bodies of records. A body that cannot be read gives std::nullopt.
 namespace adit::archive {
 
-/// Of each file: whose run it is of. How tiles are cut is the program's: another may cut them in another way.
+/// First record of each file: its run, and the program's tile geometry, which another program may change.
 struct Head {
   std::int64_t run = 0;
   double began = 0;
@@ -23,14 +23,14 @@ struct Head {
   std::uint64_t side = picture::kSide, step = picture::kStep, levels = picture::kLevels;
   double pixel = picture::kPixel;
 
-  /// They are cut as this program cuts them.
+  /// Whether this program has the same tile geometry.
   bool tiles_fit() const {
     const Head ours;
     return side == ours.side && step == ours.step && levels == ours.levels && pixel == ours.pixel;
   }
 };
 
-/// A state of a tile. Its crc is as it was written: picture::Packer says whether it is a tile.
+/// A state of a tile. picture::Packer checks the stored crc.
 struct TileState {
   picture::Layer layer;
   picture::TileAt at = {};
@@ -38,45 +38,45 @@ struct TileState {
   picture::Tile tile = {};  // null: blank
 };
 
-/// The picture was blank at that time.
+/// Records that the map was wiped at that time.
 struct Wiped {
   double stamp = 0;
 };
 
-/// One moment of the plots.
+/// One sample of the plots.
 struct Sample {
   api::Time at = 0;
   double sent_mbit = 0;
   std::uint64_t queued_bytes = 0;
   std::optional<double> scoring_ms = {}, mapping_ms = {};
-  std::uint64_t throttled = 0;                                // since the sample before
+  std::uint64_t throttled = 0;                                // since the previous sample
   std::vector<std::pair<std::string, double>> map_ages = {};  // by robot, seconds
 
   friend bool operator==(const Sample&, const Sample&) = default;
 };
 
-/// The time of day was set: all that such files told before is of so many seconds later.
+/// A clock step: earlier records of such files are later by `seconds`.
 struct Step {
-  double seconds = 0;  // ahead; less than 0: back
-  double when = 0;     // by a clock that is never set; identifies a step that is recorded twice
+  double seconds = 0;  // negative: back
+  double when = 0;     // monotonic; identifies a step that is recorded twice
   bool operator==(const Step&) const = default;
 };
 
-/// One of these, whose place is a number in files: they stay, and others come behind them. Of a layer all but
-/// its tiles; the poses of one robot; that something which needs the operator came, or went.
+/// The kinds of records. Their positions are numbers in files: keep them and append new kinds. LayerView: a
+/// layer without its tiles. Track: poses of one robot. AttentionStep: start or end of a need for attention.
 using Said =
     std::variant<Head, TileState, picture::LayerView, Wiped, api::Track, Sample, api::AttentionStep, Step>;
 
-/// A record of it.
+/// The framed record.
 std::string record_of(const Said& said);
-/// Whatever bytes a record has: what they say in full, or nothing.
+/// Reads any bytes: a complete value, or std::nullopt.
 std::optional<Said> read(std::string_view said);
 
-/// Poses in one record, at most: it then has 40 kB.
+/// Most poses in a record, which then has 40 kB.
 inline constexpr std::size_t kLargestPoses = 1000;
-/// Robots in one sample, at most.
+/// Most robots in a sample.
 inline constexpr std::size_t kMostRobots = 128;
-/// Bytes of a name or of a sentence, at most: longer ones are cut.
+/// Most bytes of a name or a sentence; the rest is cut.
 inline constexpr std::size_t kMostText = 400;
 
 }  // namespace adit::archive

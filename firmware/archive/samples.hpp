@@ -10,23 +10,23 @@
 
 namespace adit::archive {
 
-/// The plots of a run: a sample each kSpacing. Where there are kMost of them, every other one goes, and new
-/// ones come half as often. A count of events is that of the time since the sample before, and none is lost.
+/// The plots of a run, with a sample every kSpacing seconds. At kMost samples every second one is dropped,
+/// and the spacing doubles. The event count of a dropped sample is added to the next one.
 class Samples {
  public:
   static constexpr double kSpacing = 2;       // seconds
   static constexpr std::size_t kMost = 3600;  // two hours at first
-  static constexpr double kEarly = 0.5;       // seconds: what comes each second comes not quite so
+  static constexpr double kEarly = 0.5;       // seconds of tolerance, because ticks jitter
   static constexpr std::size_t kMostSteps = 2000;
 
-  /// Whether one is wanted at that time.
+  /// Whether a sample is due at that time.
   bool wants(api::Time at) const { return samples_.empty() || at >= samples_.back().at + spacing_ - kEarly; }
-  /// Of a time that is later than the last one; others are passed over.
+  /// Ignores a sample that is not later than the last one.
   void add(Sample sample);
-  /// Beyond kMostSteps the oldest goes.
+  /// Beyond kMostSteps the oldest is dropped.
   void add(api::AttentionStep step);
   void clear() { *this = Samples(); }
-  /// The time of day was set ahead by so many seconds.
+  /// Call if the time of day was advanced by `seconds`.
   void move(double seconds);
 
   bool empty() const { return samples_.empty() && steps_.empty(); }
@@ -40,14 +40,14 @@ class Samples {
   std::deque<api::AttentionStep> steps_;
 };
 
-/// What needs the operator, as it comes and goes.
+/// The present needs for attention.
 class Attention {
  public:
-  static constexpr std::size_t kMost = 100;  // at once
+  static constexpr std::size_t kMost = 100;  // at the same time
 
-  /// What came and what went since the last look.
+  /// Returns the changes since the last look.
   std::vector<api::AttentionStep> look(const std::vector<std::string>& sentences, api::Time now);
-  /// `steps`: of the life before. What had come and not gone by then still stands.
+  /// `steps`: from before a restart. Needs that had not ended continue.
   void go_on(const std::vector<api::AttentionStep>& steps);
   void clear() { *this = Attention(); }
 

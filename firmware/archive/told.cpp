@@ -21,15 +21,15 @@ void Told::add(const Wiped& wiped, std::uint64_t /*file*/) {
   picture_.was_wiped(wiped.stamp);
 }
 
-/// A sample, or something that needs the operator.
+/// A sample, or a need for attention.
 template <class Line>
 void Told::add(const Line& line, std::uint64_t /*file*/) {
   last_line_ = std::max(last_line_, line.at);
   samples_.add(line);
 }
 
-/// The files of lines and those of tiles are read apart, so each tells it. After a write that failed, its
-/// steps are told again.
+/// Line files and tile files are read separately, so each records every step. A step may be recorded again
+/// after a failed write.
 void Told::add(const Step& step, std::uint64_t file) {
   const bool of_tiles = file != 0;
   std::vector<Step>& told = of_tiles ? tile_steps_ : line_steps_;
@@ -58,8 +58,8 @@ void Told::move_tiles(double seconds) {
   last_tile_ += seconds;
 }
 
-/// The first one says whose run it is. Files of another one, which somebody put there, are not told. A file
-/// whose head is damaged is taken for what the one before was.
+/// The first head identifies the run; files of other runs are ignored. A file with a damaged head counts like
+/// the file before it.
 void Told::add(const Head& head, std::uint64_t /*file*/) {
   if (!head_) head_ = head;
   is_ours_ = head_->run == head.run && head_->began == head.began;

@@ -19,32 +19,32 @@
 
 namespace adit::archive {
 
-/// What the records of a run come to. Any bytes may be told: what is no record of this run is passed over.
+/// The sum of a run's records. Accepts any bytes and skips data that is not a record of this run.
 class Told {
  public:
   static constexpr std::size_t kMostPoses = 100'000;
 
-  /// `budget`: of the picture, in bytes.
+  /// `budget`: most bytes of the map.
   explicit Told(std::size_t budget) : picture_(budget) {}
 
-  /// The content of one file, which has that number.
+  /// Adds one file. `file`: number of a tile file, or 0 for a line file.
   void tell(std::string_view bytes, std::uint64_t file);
-  /// The time of day was set ahead by so many seconds.
+  /// Call if the time of day was advanced by `seconds`.
   void move(double seconds);
 
   const std::optional<Head>& head() const { return head_; }
   picture::Mosaic& picture() { return picture_; }
   std::vector<api::Track> tracks() const;
   Samples& samples() { return samples_; }
-  /// Where the newest state of each tile is.
+  /// The file of each tile's newest state.
   std::map<TileKey, std::uint64_t>& files() { return files_; }
-  /// How much of the finest tiles was known over time: pixels of all layers.
+  /// Known pixels of the finest tiles over time, in all layers.
   const std::vector<std::pair<double, std::uint64_t>>& known() const { return known_; }
   std::size_t damaged() const { return damaged_; }                  // records
-  double last() const { return std::max(last_line_, last_tile_); }  // of what is told of
+  double last() const { return std::max(last_line_, last_tile_); }  // latest time in the records
 
  private:
-  // One record each. `file`: 0 if it holds lines, else it holds tiles.
+  // `file`: 0 for a line file, else a tile file.
   void add(const Head& head, std::uint64_t file);
   void add(const TileState& state, std::uint64_t file);
   void add(const picture::LayerView& view, std::uint64_t file);
@@ -70,7 +70,7 @@ class Told {
   std::uint64_t known_now_ = 0;
   std::vector<std::pair<double, std::uint64_t>> known_;
   double last_line_ = 0, last_tile_ = 0;
-  std::vector<Step> line_steps_, tile_steps_;  // that were told
+  std::vector<Step> line_steps_, tile_steps_;  // already applied
 };
 
 }  // namespace adit::archive

@@ -14,7 +14,7 @@ using codec::Value;
 
 constexpr std::size_t kLongestName = 32, kLongestTitle = 80;
 
-/// As a board's folder is called.
+/// Also the name of the board's directory.
 bool is_name(const std::string& text) {
   return !text.empty() && text.size() <= kLongestName && std::ranges::all_of(text, [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-' || c == '_';

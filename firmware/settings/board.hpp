@@ -10,15 +10,15 @@
 
 namespace adit::settings {
 
-/// What a running box knows of the board that it is.
+/// A running box's data about its board.
 struct Board {
   std::string name;            // "qemu-virt"
   std::string title;           // for people
-  std::optional<Panel> panel;  // nothing: the settings' counts
+  std::optional<Panel> panel;  // nullopt: the settings' panel applies
 };
 
-/// The file of a board (board.json of an image). All errors at once, as of the settings; an unknown key is
-/// one.
+/// Parses board.json of an image. Returns all errors at once, as for the settings; an unknown key is an
+/// error.
 std::expected<Board, std::vector<Error>> parse_board(std::string_view json);
 
 }  // namespace adit::settings

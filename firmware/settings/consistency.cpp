@@ -16,7 +16,7 @@ std::string item(std::size_t index) {
   return "team.listen[" + std::to_string(index) + "]";
 }
 
-/// Of an IPv4 or IPv6 address.
+/// Properties of an IPv4 or IPv6 address.
 struct Host {
   bool any = false, loopback = false;
   bool several = false;  // multicast or broadcast
@@ -35,7 +35,7 @@ Host host_of(const std::string& text) {
           .mapped = IN6_IS_ADDR_V4MAPPED(&ipv6) != 0};
 }
 
-/// Whether what is sent to `endpoint` comes in at `listen`, as far as the addresses tell.
+/// Whether `listen` receives traffic to `endpoint`, as far as the addresses show.
 bool comes_in_at(const Address& listen, const Address& endpoint) {
   if (listen == endpoint) return true;
   return listen.port == endpoint.port && host_of(listen.address).any && host_of(endpoint.address).loopback;
@@ -65,7 +65,7 @@ void check_ntp_server(const std::string& address, std::vector<Error>& errors) {
 }
 
 void check_endpoints(const Settings& settings, std::vector<Error>& errors) {
-  const auto is_own = [&settings](const Address& endpoint) {  // check_listen() tells of these
+  const auto is_own = [&settings](const Address& endpoint) {  // check_listen() reports these
     return std::ranges::find(settings.team.listen, endpoint) != settings.team.listen.end();
   };
   const auto check = [&](const std::string& of, const auto& post) {
@@ -92,7 +92,8 @@ void check_listen(const Settings& settings, std::vector<Error>& errors) {
   }
 }
 
-/// Names are unique, and an alias is nobody else's and no robot's name: who posts must be clear.
+/// Names are unique. An alias is neither another robot's alias nor a robot's name, so that a sender is
+/// unambiguous.
 void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) {
   for (std::size_t i = 0; i < robots.size(); ++i) {
     const std::string name = icd::sentence("robots[", i, "].name"),
@@ -113,7 +114,7 @@ void check_robots(const std::vector<Robot>& robots, std::vector<Error>& errors) 
   }
 }
 
-/// Of whole clouds the newest counts alone: what is left out of it would be there no more.
+/// A whole cloud replaces earlier ones, so points left out of it would be lost.
 void check_voxels(const std::vector<Robot>& robots, std::vector<Error>& errors) {
   constexpr double kSmallest = 0.01;
   for (std::size_t i = 0; i < robots.size(); ++i) {

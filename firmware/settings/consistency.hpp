@@ -6,10 +6,10 @@
 
 namespace adit::settings {
 
-/// What is wrong between settings that are each right.
+/// Contradictions between settings that are valid on their own.
 std::vector<Error> contradictions(const Settings& settings);
 
-/// The same of the panel alone.
+/// The same for the panel alone.
 void check_panel(const Panel& panel, std::vector<Error>& errors);
 
 }  // namespace adit::settings

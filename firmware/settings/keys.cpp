@@ -7,7 +7,7 @@
 namespace adit::settings {
 namespace {
 
-// Names a member of Settings, whether const or not.
+// A function that names a member of Settings, const or not.
 // NOLINTNEXTLINE(bugprone-macro-parentheses): parentheses would make it no member
 #define MEMBER(path) [](auto& s) -> auto& { return s.path; }
 

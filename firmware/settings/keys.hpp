@@ -11,14 +11,13 @@ namespace adit::settings {
 
 /// One key of the settings file.
 struct Key {
-  std::string_view path;  // "team.listen[].port": "[]" stands for each item of a list; `kind` is of its last
+  std::string_view path;  // "team.listen[].port"; "[]" stands for each item; `kind` refers to the last item
   std::string_view meaning;
   Kind kind;
   bool required = false;
 };
 
-/// The one table of all keys: what the parser knows, and what README.md documents. Keys of one object stand
-/// together.
+/// The table of all keys, for the parser and README.md. Keys of one object are adjacent.
 std::span<const Key> keys();
 
 /// One list of the settings file.
@@ -29,19 +28,19 @@ struct List {
   void (*resize)(Settings&, std::size_t);
 };
 
-/// Requires a list's path.
+/// Requires the path of a list.
 const List& list_at(std::string_view path);
-/// All lists with one item more, as by default: what each key's kind can be asked of.
+/// Default settings with one more item in each list, so that each key's kind can be read.
 Settings with_an_item_of_each();
 
-/// What may stand under a name in an object of the settings file.
+/// A named member of an object in the settings file.
 struct Child {
   std::string_view name;
-  const Key* key = nullptr;  // nothing for an object or a list
+  const Key* key = nullptr;  // null for an object or a list
   bool list = false;
 };
 
-/// The children of the object at `prefix` ("team.listen[]."), in the order of the table.
+/// The members of the object at `prefix` ("team.listen[]."), in table order.
 std::vector<Child> children_of(std::string_view prefix);
 
 }  // namespace adit::settings

@@ -21,12 +21,12 @@ bool is_address(const std::string& text) {
   return inet_pton(AF_INET, text.c_str(), &parsed) == 1 || inet_pton(AF_INET6, text.c_str(), &parsed) == 1;
 }
 
-/// A course's name stands in the name of a file.
+/// Course names are parts of file names.
 bool is_course(const std::string& text) {
   return is_word(text, 20);
 }
 
-/// At most `most` visible ASCII characters and none of `without`.
+/// At most `most` visible ASCII characters, without those in `without`.
 bool is_name(const std::string& text, std::size_t most, std::string_view without = "") {
   if (text.size() > most || text.find_first_of(without) != std::string::npos) return false;
   for (const char c : text) {
@@ -47,8 +47,8 @@ bool is_port(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() && text.front() != '0' && port <= 65535;
 }
 
-/// "http://10.0.0.20:3000", as a browser writes it (RFC 6454 6.2): in lower case, without a default port. Not
-/// "null", which any page can have.
+/// "http://10.0.0.20:3000", as a browser writes it (RFC 6454 6.2): in lower case, without a default port.
+/// "null" is rejected, because any page can have it.
 bool is_origin(std::string_view text) {
   const auto colon = text.find("://");
   if (colon == 0 || colon == std::string_view::npos) return false;
@@ -82,7 +82,7 @@ std::string digits(double number) {
   return {text, std::to_chars(text, text + sizeof text, number, std::chars_format::fixed).ptr};
 }
 
-/// What the member is to be, as Kind::put() takes it; nothing: `value` is out of range.
+/// The value for Kind::put(). std::nullopt: `value` is out of range.
 std::optional<codec::Value> meant(const Kind& kind, const codec::Value& value) {
   const auto* const text = std::get_if<std::string>(&value.is);
   codec::Reading reading;
@@ -114,13 +114,13 @@ std::optional<codec::Value> meant(const Kind& kind, const codec::Value& value) {
 }  // namespace
 
 constexpr Form kAddress{is_address, "an IPv4 or IPv6 address"};
-/// As the kernel's dev_valid_name().
+/// The kernel's dev_valid_name().
 constexpr Form kInterface{
     [](const std::string& text) { return is_name(text, 15, "/:") && text != "." && text != ".."; },
     "an interface's name of at most 15 characters, or \"\""};
 constexpr Form kChip{[](const std::string& text) { return is_name(text, 64); },
                      "a GPIO chip's name or path, or \"\""};
-/// GPIO_MAX_NAME_SIZE in linux/gpio.h, less its NUL.
+/// GPIO_MAX_NAME_SIZE of linux/gpio.h, without the NUL.
 constexpr Form kLine{[](const std::string& text) { return is_name(text, 31); },
                      "a GPIO line's name of at most 31 characters, or \"\""};
 constexpr Form kRobot{[](const std::string& text) { return icd::RobotName::parse(text).has_value(); },

@@ -13,7 +13,7 @@
 
 namespace adit::settings {
 
-/// What a text may be.
+/// A valid form of text.
 struct Form {
   bool (*fits)(const std::string& text);
   std::string_view range;
@@ -21,31 +21,31 @@ struct Form {
 extern const Form kAddress, kInterface, kChip, kLine, kRobot, kAlias, kCourse, kCourseOrNone, kIpv4OrNone,
     kOrigins;
 
-/// What a value of the settings file may be, and which member of Settings it sets. A kind is made for a
-/// member by naming it: whole<[](auto& s) -> auto& { return s.team.connections; }>(1, 1024).
+/// The valid values of a setting, and the member of Settings that it sets. Example: whole<[](auto& s) ->
+/// auto& { return s.team.connections; }>(1, 1024).
 struct Kind {
   enum class Of : std::uint8_t { Flag, Whole, Real, Text, Choice, Version };
-  /// Sets nothing: the number of the file's layout.
+  /// Version: the number of the file's layout, without a member.
   Of of = Of::Version;
-  /// The member: true or false, a whole number (also of milliseconds, or the place of a word), a number, a
+  /// Read and write the member: a flag, a whole number (also milliseconds, or a word's index), a number or a
   /// text.
   codec::Value (*get)(const Settings&) = [](const Settings&) { return codec::Value{std::uint64_t{1}}; };
   void (*put)(Settings&, const codec::Value&) = [](Settings&, const codec::Value&) {};
   double least = 1, most = 1;                    // of a number
   const Form* form = nullptr;                    // of a text
-  std::span<const std::string_view> words = {};  // of a choice, in the order of its enumeration
+  std::span<const std::string_view> words = {};  // of a choice, in enumeration order
 };
 
-/// Sets the member to `value`, or says what was expected and what was found.
+/// Sets the member to `value`. The error says what was expected and what was found.
 std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings);
 
 /// "1 to 65535"
 std::string range_of(const Kind& kind);
 
-/// The member's value as the settings file has it.
+/// The member's value in the settings file.
 codec::Value value_of(const Kind& kind, const Settings& settings);
 
-/// `least` or `most` as the settings file has it.
+/// `least` or `most` in the settings file.
 codec::Value bound_of(const Kind& kind, double bound);
 
 /// "flag", "whole", "real", "text", "choice" or "version"
@@ -54,7 +54,7 @@ std::string_view name_of(const Kind& kind);
 /// 1 to `longest` letters, digits, `_` and `-`.
 bool is_word(std::string_view text, std::size_t longest);
 
-/// A value for a sentence: as JSON and not too long, or what it is ("an object").
+/// A value for a sentence: short JSON, or its type ("an object").
 std::string shown(const codec::Value& value);
 
 template <auto member>

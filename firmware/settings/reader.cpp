@@ -11,7 +11,7 @@ namespace {
 
 using codec::Value;
 
-/// A member's name for a path: as it is, or as a JSON string where it is no plain word.
+/// A member's name in a path: as it is if a plain word, else as a JSON string.
 std::string shown_name(const std::string& name) {
   return is_word(name, 48) ? name : shown(Value{name});
 }
@@ -93,7 +93,7 @@ void Reader::tell_unknown(const std::string& name, const std::vector<Child>& chi
        icd::sentence("no such key", spelling::did_you_mean(name, known), " (keys here: ", list, ")")});
 }
 
-/// Names each required key, so that one look tells all that is to be written.
+/// Names each required key at once, so that the user can write all of them.
 void Reader::tell_missing(const Child& child, const std::string& pattern, const std::string& path) {
   if (child.list) {
     if (list_at(pattern).least > 0)

@@ -10,18 +10,18 @@
 
 namespace adit::settings {
 
-/// Reads objects of the settings file by the table of keys. Whatever is wrong is told, and left as it was.
+/// Reads objects of the settings file by the table of keys. Reports invalid values and leaves their settings
+/// unchanged.
 class Reader {
  public:
-  /// `pattern` is the path as the table writes it, "team.listen[]"; `path` as it is in the file,
-  /// "team.listen[0]".
+  /// `pattern`: the path in the table, "team.listen[]". `path`: the path in the file, "team.listen[0]".
   void read_object(const codec::Value& value, const std::string& pattern, const std::string& path);
-  /// Tells that the object at `path` has a member that is none of `children`.
+  /// Reports a member that is not in `children`.
   void tell_unknown(const std::string& name, const std::vector<Child>& children, const std::string& path);
 
   Settings settings;
   std::vector<Error> errors;
-  bool passes_unknown = false;           // unknown keys are no errors
+  bool passes_unknown = false;           // unknown keys are not errors
   std::vector<std::string> passed_over;  // their paths
 
  private:

@@ -8,7 +8,7 @@ namespace adit::settings {
 namespace {
 
 struct Row {
-  std::string_view begins;  // the path of a setting
+  std::string_view begins;  // beginning of a setting's path
   Restarts restarts;
 };
 

@@ -4,17 +4,16 @@
 
 namespace adit::settings {
 
-/// What of a running gateway restarts where other settings take the place of its own. All that is not
-/// named here goes on, and takes over the values.
+/// The parts of a running gateway that restart for new settings. All others continue with the new values.
 struct Restarts {
-  bool listeners = false;  // where the team is served
-  bool scoring = false;    // the endpoint: its connection, and what is known of the run there
-  bool mapping = false;    // the endpoint: its connections
-  bool panel = false;      // the lines of the lights and the button
+  bool listeners = false;  // the team's sockets
+  bool scoring = false;    // the scoring connection, and the known state of the run
+  bool mapping = false;    // the mapping connections
+  bool panel = false;      // the lines of lights and button
   friend bool operator==(const Restarts&, const Restarts&) = default;
 };
 
-/// `running`, `next`: as in_use() gives them.
+/// `running`, `next`: from in_use().
 Restarts restarts_by(const Settings& running, const Settings& next);
 
 }  // namespace adit::settings

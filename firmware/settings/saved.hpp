@@ -7,16 +7,16 @@
 
 namespace adit::settings {
 
-/// What of the settings lies in aditd's state folder, and counts before what the box was given.
+/// The saved settings in aditd's state directory, which precede the given ones.
 inline constexpr const char* kSavedFile = "settings.json";
-/// The settings that count again unless those saved last prove to work; kNoneBefore: the given ones.
+/// The previous settings, while the saved ones are on trial. kNoneBefore: the given ones applied.
 inline constexpr const char* kFileBefore = "settings.json.before";
 inline constexpr const char* kNoneBefore = "none\n";
-/// The folder of the tokens, each in NAME.token.
+/// The directory of the tokens, each in NAME.token.
 inline constexpr const char* kSecretsFolder = "secrets";
 inline constexpr const char* kTokenEnding = ".token";
 
-/// The names of all tokens that there can be: "scoring", "mapping", "team", and two for each course.
+/// The names of all possible tokens: "scoring", "mapping", "team", and two for each course.
 std::vector<std::string> token_names(const Settings& settings);
 
 }  // namespace adit::settings

@@ -13,7 +13,7 @@ namespace {
 
 using codec::Value;
 
-/// Where the file is of another version, nothing else that this one would say of it is worth reading.
+/// If the file has another version, other errors mean little.
 bool only_the_version(const std::vector<Error>& errors, const Value& root) {
   const auto* members = std::get_if<Value::Object>(&root.is);
   const auto is_version = [](const std::string& name) { return name == "version"; };

@@ -25,7 +25,7 @@ struct Address {
   friend bool operator==(const Address&, const Address&) = default;
 };
 
-/// Requests a second, each from 0.001 to 1000.
+/// Requests per second, each from 0.001 to 1000.
 struct Rates {
   double reports_hz = 1, status_hz = 1, map_hz = 1, state_hz = 1, markers_hz = 1;
 };
@@ -38,27 +38,27 @@ struct Timeouts {
 
 struct CommandPost {
   Address scoring, mapping;
-  std::string interface;     // "" : none (loopback); else at most 15 characters
-  double budget_mbit = 100;  // of the link, over both endpoints (ICD 3)
+  std::string interface;     // "": none (loopback); else at most 15 characters
+  double budget_mbit = 100;  // of the link, shared by both endpoints (ICD 3)
   Rates rates;
   Timeouts timeouts;
   bool arrange_clouds = true;  // pack::CloudForm
-  std::string course;          // the one in use, whose endpoints then count instead of these; "": none
+  std::string course;          // in use; its endpoints replace these; "": none
 };
 
 struct Team {
   std::vector<Address> listen;  // at least one
   std::string interface;
   bool require_token = true;
-  std::string origins;  // with spaces between them; whose pages need no token where it is not required
+  std::string origins;  // separated by spaces; their pages need no token if `require_token` is false
   std::uint32_t connections = 128, connections_per_address = 64;  // intake::Shares
 };
 
-/// Those in a text that has spaces between them.
+/// The words of a text that are separated by spaces.
 std::vector<std::string_view> words(std::string_view text);
 
 struct Reports {
-  std::chrono::milliseconds answer_within{20000};  // a client that waits longer gets a truthful 503
+  std::chrono::milliseconds answer_within{20000};  // a client that has waited so long gets 503
   std::chrono::milliseconds doubt_for{10000};      // dispatch::Patience
   std::int64_t doubt_asks = 3;
   dispatch::Review review = dispatch::Review::Off;
@@ -66,31 +66,31 @@ struct Reports {
 };
 
 struct Queues {
-  std::size_t map_bytes = 256u << 20;    // maps that may wait, in bytes held; above it: 429
-  std::size_t merge_bytes = 32u << 20;   // points merged into one cloud at most
-  std::size_t marker_bytes = 32u << 20;  // markers that may wait, in bytes held; above it: 429
+  std::size_t map_bytes = 256u << 20;    // queued maps in bytes; beyond that: 429
+  std::size_t merge_bytes = 32u << 20;   // most bytes of points merged into one cloud
+  std::size_t marker_bytes = 32u << 20;  // queued markers in bytes; beyond that: 429
   std::size_t markers_per_message = 2000;
   std::size_t marker_bytes_per_message = 1u << 20;
 };
 
-/// How long a run lasts; and what is kept of runs on the disk, beside their reports.
+/// The length of a run, and the limits of stored runs without their reports.
 struct Runs {
   std::int64_t length_seconds = 3600;
-  std::uint64_t run_bytes = std::uint64_t{64} << 20;   // of one run
-  std::uint64_t all_bytes = std::uint64_t{512} << 20;  // of all runs; the oldest go first
+  std::uint64_t run_bytes = std::uint64_t{64} << 20;   // for one run
+  std::uint64_t all_bytes = std::uint64_t{512} << 20;  // for all runs; the oldest are deleted first
 };
 
-/// When a robot counts as silent.
+/// Limits of a robot's silence.
 struct Alarms {
   std::chrono::milliseconds silent_for{30000};  // at least
-  double silent_times = 5;                      // the time that it lets pass between two messages as a rule
+  double silent_times = 5;                      // multiple of the robot's usual gap between messages
 };
 
-/// GPIO lines of the four lights and the button, by name; no line at all: a simulated panel.
+/// GPIO lines of the four lights and the button, by name. Without any line the panel is simulated.
 struct Panel {
-  std::string chip;  // its name, label or path; "": whichever chip has a line of that name
+  std::string chip;  // name, label or path; "": any chip with such a line
   std::string health, scoring, mapping, attention;
-  bool active_low = false;  // the lights
+  bool active_low = false;  // of the lights
   std::string button;
   bool button_active_low = true;
 
@@ -100,16 +100,16 @@ struct Panel {
   bool is_simulated() const { return !has_lights() && button.empty(); }
 };
 
-/// A robot as it was registered (ICD 2).
+/// A registered robot (ICD 2).
 struct Robot {
   std::string name;   // icd::RobotName
-  std::string alias;  // what it calls itself, goes on under `name`; "": nothing else
+  std::string alias;  // the name in its messages, replaced by `name`; "": none
   lanes::Clouds clouds = lanes::Clouds::Auto;
-  lanes::Precision precision = lanes::Precision::Exact;  // of its clouds
-  double voxel_metres = 0;  // of its clouds one point in each voxel of that edge is enough; 0: all are sent
+  lanes::Precision precision = lanes::Precision::Exact;  // for its clouds
+  double voxel_metres = 0;  // edge of a voxel, of which one point is sent; 0: all points are sent
 };
 
-/// One of the Command Posts of an event: its endpoints, switched by name.
+/// One of an event's Command Posts, selected by name.
 struct Course {
   std::string name;
   Address scoring, mapping;
@@ -117,17 +117,17 @@ struct Course {
 
 /// NTP on the team's network: room clock.
 struct Clock {
-  std::string ntp_server;  // an IPv4 address; "": none is asked
+  std::string ntp_server;  // IPv4 address; "": none
   bool serve_ntp = false;
 };
 
-/// How the box's own addresses are changed. They are not here: room network.
+/// Rules for changes of the box's addresses. The addresses themselves: room network.
 struct Network {
-  std::chrono::milliseconds confirm_within{90000};  // then a change of them is reverted
-  bool allow_overlap = false;                       // of the team's subnet with the Command Post's
+  std::chrono::milliseconds confirm_within{90000};  // time until an unconfirmed change is reverted
+  bool allow_overlap = false;                       // of the team's subnet with the Command Post's networks
 };
 
-/// The settings file, version 1. Everything but the addresses has a default. Tokens are never in it.
+/// The settings file, version 1. All but the addresses have defaults. It never holds tokens.
 struct Settings {
   CommandPost command_post;
   std::vector<Course> courses;
@@ -149,27 +149,25 @@ struct Error {
   std::string sentence() const { return path.empty() ? what : path + ": " + what; }
 };
 
-/// All errors at once, in the order of the file; an unknown key is an error that names it and the keys there
-/// are.
+/// Returns all errors at once, in the file's order. An unknown key is an error, which lists the known keys.
 std::expected<Settings, std::vector<Error>> parse(std::string_view json);
 std::expected<Settings, std::vector<Error>> parse(const codec::Value& root);
 
-/// Of a file that Adit itself wrote, and perhaps a later one, of an update that was reverted: keys that
-/// this version does not know are passed over.
+/// Settings that Adit wrote, perhaps a later version before an update was reverted. Unknown keys are skipped.
 struct Saved {
   Settings settings;
-  std::vector<std::string> passed_over;  // the paths of these keys
+  std::vector<std::string> passed_over;  // paths of unknown keys
 };
 std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json);
 
-/// The settings as they work while their course is in use: its endpoints are the Command Post's, and each
-/// robot's alias is in the rules. Requires names of robots that RobotName takes, as parse() sees to it.
+/// The settings in effect: the endpoints of the course in use, and the robots' aliases in the rules. Requires
+/// valid robot names (icd::RobotName), which parse() ensures.
 Settings in_use(Settings settings);
 
 /// A robot's name for the ICD; parse() accepts no other names.
 icd::RobotName name_of(const Robot& robot);
 
-/// A setting of each robot that does not have its default.
+/// The values of a setting by robot, without defaults.
 template <class Setting>
 std::map<icd::RobotName, Setting> by_robot(const std::vector<Robot>& robots, Setting Robot::* setting) {
   std::map<icd::RobotName, Setting> all;

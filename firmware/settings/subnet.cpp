@@ -20,7 +20,7 @@ std::optional<std::uint8_t> prefix_in(std::string_view text) {
 
 }  // namespace
 
-/// inet_aton() would read leading zeros as octal, and take "10.1" too; this takes neither.
+/// Rejects leading zeros, which inet_aton() reads as octal, and short forms such as "10.1".
 std::optional<std::uint32_t> ipv4_of(std::string_view text) {
   in_addr address{};
   if (text.contains('\0') || inet_pton(AF_INET, std::string(text).c_str(), &address) != 1)

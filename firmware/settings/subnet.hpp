@@ -13,28 +13,27 @@ namespace adit::settings {
 std::optional<std::uint32_t> ipv4_of(std::string_view text);
 std::string ipv4_text(std::uint32_t address);
 
-/// An IPv4 address and how many of its leading bits name the subnet that it lies in: a host's own address
-/// with its prefix, or a whole subnet.
+/// An IPv4 address with a prefix length: a host's address, or a whole subnet.
 struct Subnet {
   std::uint32_t address = 0;
   std::uint8_t prefix = 0;  // 0 to 32
 
   std::uint32_t mask() const { return prefix == 0 ? 0 : ~std::uint32_t{0} << (32 - prefix); }
-  std::uint32_t first() const { return address & mask(); }  // the network's own address
-  std::uint32_t last() const { return first() | ~mask(); }  // its broadcast address
+  std::uint32_t first() const { return address & mask(); }  // network address
+  std::uint32_t last() const { return first() | ~mask(); }  // broadcast address
   bool contains(std::uint32_t other) const { return (other & mask()) == first(); }
   friend bool operator==(const Subnet&, const Subnet&) = default;
 };
 
-/// "10.1.1.0/24"; the address may be any of the subnet's.
+/// "10.1.1.0/24"; any address of the subnet is accepted.
 std::expected<Subnet, std::string> parse_subnet(std::string_view text);
-/// The subnet, not the host in it: "10.1.1.0/24".
+/// The subnet without the host: "10.1.1.0/24".
 std::string written(const Subnet& subnet);
 
-/// Whether an address can be in both.
+/// Whether the subnets share an address.
 bool overlaps(const Subnet& a, const Subnet& b);
 
-/// What the Command Post's network nominally uses, and a team's should not (ICD 3): 10.1.1.0/24, 10.2.1.0/24,
+/// The Command Post's nominal subnets, which a team should avoid (ICD 3): 10.1.1.0/24, 10.2.1.0/24,
 /// 10.100.0.0/16.
 std::span<const Subnet> command_post_subnets();
 

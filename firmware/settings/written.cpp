@@ -13,14 +13,14 @@ namespace {
 
 using codec::Value;
 
-/// The object whose keys begin with `prefix` in the table.
+/// The object whose keys begin with `prefix`.
 Value object_at(const std::string& prefix, const Settings& settings);
 
 Value list_value(const std::string& path, const Settings& settings) {
   const List& list = list_at(path);
   Value::Array items;
   for (std::size_t i = 0; i < list.size(settings); ++i) {
-    Settings up_to_it = settings;  // a key's kind is of the last item
+    Settings up_to_it = settings;  // a key's kind refers to the last item
     list.resize(up_to_it, i + 1);
     items.push_back(object_at(path + "[].", up_to_it));
   }
@@ -52,7 +52,7 @@ bool is_short(const Value& value) {
   return flat && codec::write_json(value).size() <= kLine;
 }
 
-/// An object or a list of which the parts stand on lines of their own, unless it is short.
+/// Writes an object or a list with its parts on separate lines, unless it is short.
 void write(const Value& value, const std::string& indent, std::string& text) {
   if (is_short(value)) {
     text += codec::write_json(value);
@@ -81,7 +81,7 @@ void write(const Value& value, const std::string& indent, std::string& text) {
   text.append("\n").append(indent) += members != nullptr ? '}' : ']';
 }
 
-/// What an item of a list is known by.
+/// An item's name, or its index.
 std::string name_in(const Value& item, std::size_t index) {
   const auto& members = std::get<Value::Object>(item.is);
   const auto name = std::ranges::find(members, "name", &Value::Member::first);
@@ -90,7 +90,7 @@ std::string name_in(const Value& item, std::size_t index) {
 
 using Leaves = std::vector<std::pair<std::string, Value>>;
 
-/// All values that hold no others, each with its path.
+/// All scalar values with their paths.
 void flatten(const Value& value, const std::string& path, Leaves& leaves) {
   if (const auto* members = std::get_if<Value::Object>(&value.is)) {
     for (const auto& [name, member] : *members) {

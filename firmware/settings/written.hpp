@@ -8,22 +8,22 @@
 
 namespace adit::settings {
 
-/// The whole settings as an object, in the order of the keys, with all that is by default.
+/// All settings as an object in key order, with defaults.
 codec::Value value_of(const Settings& settings);
 
-/// The same as a settings file: JSON for people, which parse() takes.
+/// The settings file: JSON for people, which parse() accepts.
 std::string file_of(const Settings& settings);
 
-/// Names this version of the settings among others: the same for the same settings, in 16 hexadecimal digits.
+/// Identifies the settings by 16 hexadecimal digits; equal settings have equal tags.
 std::string tag_of(const Settings& settings);
 
-/// One setting that differs. An item of a list is known by its name where it has one: "robots[ugv1].alias".
+/// A changed setting. An item of a list is identified by its name, if any: "robots[ugv1].alias".
 struct Change {
   std::string path;
-  codec::Value from, to;  // null: not there
+  codec::Value from, to;  // null: absent
 };
 
-/// In the order of the keys.
+/// In key order.
 std::vector<Change> changes(const Settings& from, const Settings& to);
 
 }  // namespace adit::settings

@@ -9,7 +9,7 @@
 namespace adit::api {
 namespace {
 
-/// Nothing but the page's own files may be loaded or called, and nothing may frame it.
+/// The page may load and call only its own files, and no page may frame it.
 constexpr const char* kContentSecurityPolicy =
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self'; connect-src 'self'; "
     "worker-src 'self'; base-uri 'none'; frame-ancestors 'none'; form-action 'none'";

@@ -12,9 +12,10 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kGuarded = "/adit/";  // what is not in the table of routes: a page's file, or this
+constexpr std::string_view kGuarded = "/adit/";  // prefix of paths outside the table that are not files of
+                                                 // the page
 
-/// Why a body is refused by its head.
+/// The refusal of a body by its headers, or std::nullopt.
 std::optional<intake::Answer> unfit(const Body& body, const intake::RequestHead& head) {
   if (body.type.empty()) return std::nullopt;
   const std::string_view type = head.header("Content-Type");
@@ -93,7 +94,7 @@ void Api::let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction)
   *redaction_ = shared(std::move(redaction));
 }
 
-/// After a POST, open pages show what it changed.
+/// A POST may change open pages.
 void Api::handle(const Route& route, const Call& call) {
   if (route.method == "POST") live_.changed();
   if (route.handle.answer == nullptr) return route.handle.answer_later(handlers_, call);

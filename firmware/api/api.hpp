@@ -28,7 +28,7 @@
 
 namespace adit::api {
 
-/// What the API asks.
+/// The gateway's parts that the API uses.
 struct Served {
   const Source& source;
   Operator& judge;
@@ -44,15 +44,15 @@ struct Served {
   Spare& spare;
 };
 
-/// The API of the page and of scripts, on the team's side and behind a login, and the page's own files.
-/// routes.cpp is its table, README.md has it in words, firmware/access/README.md says what protects it.
+/// The API for the page and for scripts, on the team's side after a login, and the page's files. Table:
+/// routes.cpp. Description: README.md. Protection: firmware/access/README.md.
 ///
-/// Every answer but the events carries X-Content-Type-Options, Referrer-Policy and a Content-Security-Policy
-/// of `default-src 'none'` with what the page needs; every error is a JSON string.
+/// Every answer except events has X-Content-Type-Options, Referrer-Policy and a Content-Security-Policy of
+/// `default-src 'none'` with the page's needs. Every error is a JSON string.
 class Api final : public intake::Handler {
  public:
-  /// `tokens`: any of them lets a script in as an operator; empty: none does. `redaction` is applied to every
-  /// answer. The other arguments outlive this, and all work and answers that are under way.
+  /// `tokens`: each admits a script as an operator. `redaction`: applied to every answer. The other arguments
+  /// must outlive this object, and all work and answers in progress.
   Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
       icd::Redaction redaction = icd::Redaction());
 
@@ -61,10 +61,10 @@ class Api final : public intake::Handler {
                                          std::shared_ptr<intake::Responder> asked_by,
                                          std::shared_ptr<intake::Flow> flow) override;
 
-  /// From now on.
+  /// Replaces tokens and redaction.
   void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
 
-  /// Something that the page shows has changed.
+  /// Call after a change of data that the page shows.
   void changed() { live_.changed(); }
 
  private:

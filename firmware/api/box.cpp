@@ -2,7 +2,7 @@
 
 namespace adit::codec {
 
-/// An object with a member for each.
+/// An object with a member for each field.
 template <>
 struct KindOf<api::LogFields> : OnlyWritten {
   static Value write(const api::LogFields& fields) {

@@ -12,7 +12,7 @@
 namespace adit::api {
 namespace {
 
-/// "adit-support-20260131T120000Z"; "adit-support" where the clock is at no date.
+/// "adit-support-20260131T120000Z", or "adit-support" if the clock has no date.
 std::string bundle_name(Time now) {
   const auto seconds = static_cast<std::time_t>(now);
   std::tm parts{};

@@ -13,10 +13,10 @@
 
 namespace adit::api {
 
-/// Of the box itself: metrics, log, about and support bundle. README.md has the routes.
+/// The box: metrics, log, about and support bundle. Routes: README.md.
 class BoxRoutes {
  public:
-  /// All outlive this, and whatever `box` still works on.
+  /// All must outlive this object, and the work of `box`.
   BoxRoutes(const Source& source, const ReportLists& lists, Box& box, Entrance& entrance,
             const SharedRedaction& redaction, loop::Loop& loop)
       : source_(source), lists_(lists), box_(box), entrance_(entrance), redaction_(redaction), loop_(loop) {}
@@ -37,7 +37,7 @@ class BoxRoutes {
   const ReportLists& lists_;
   Box& box_;
   Entrance& entrance_;
-  const SharedRedaction& redaction_;  // of the bundle; of other answers it is the Api's
+  const SharedRedaction& redaction_;  // for the bundle; Api redacts other answers
   loop::Loop& loop_;
 };
 

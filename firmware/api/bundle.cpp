@@ -10,14 +10,14 @@
 namespace adit::api {
 namespace {
 
-constexpr std::size_t kPerFile = 2048;  // tar's header and filling, and a share of gzip's and of tar's end
+constexpr std::size_t kPerFile = 2048;  // tar's header and padding, and a share of the ends of gzip and tar
 
 std::size_t size_of(const std::vector<BundleFile>& files) {
   return std::accumulate(files.begin(), files.end(), std::size_t{0},
                          [](std::size_t sum, const BundleFile& file) { return sum + file.body.size(); });
 }
 
-/// The length that the largest may have, so that all are of at most `most` bytes.
+/// Limit for each body, so that all together have at most `most` bytes.
 std::size_t longest_allowed(const std::vector<BundleFile>& files, std::size_t most) {
   std::vector<std::size_t> sizes;
   sizes.reserve(files.size());
@@ -26,7 +26,7 @@ std::size_t longest_allowed(const std::vector<BundleFile>& files, std::size_t mo
   std::size_t left = most;
   for (std::size_t i = 0; i < sizes.size(); ++i) {
     const std::size_t share = left / (sizes.size() - i);
-    if (sizes[i] > share) return share;  // it and all after it
+    if (sizes[i] > share) return share;  // this one and all larger ones
     left -= sizes[i];
   }
   return most;

@@ -13,11 +13,11 @@ struct BundleFile {
   std::string name, body;
 };
 
-/// Cuts the largest bodies from their beginning, to the same length each, until all together are of at most
-/// `most` bytes; each that is cut begins with a line that says so.
+/// Cuts the beginnings of the largest bodies, to one length, until all have at most `most` bytes. A cut body
+/// begins with a line that says so.
 void cut_to(std::vector<BundleFile>& files, std::size_t most);
 
-/// The files as a .tar.gz, in the folder `folder`, of at most kMostBundle bytes. Slow: for a worker.
+/// The files as a .tar.gz in directory `folder`, at most kMostBundle bytes. Slow: for a worker.
 inline constexpr std::size_t kMostBundle = 10'000'000;
 std::string write_bundle(std::vector<BundleFile> files, const std::string& folder, Time now);
 

@@ -9,25 +9,25 @@
 
 namespace adit::api {
 
-/// The time of day, and who set it.
+/// The time of day and its source.
 struct ClockView {
   double now = 0;        // seconds since 1970
-  bool managed = false;  // it can be set here
-  std::string why;       // why not; "" where it can
+  bool managed = false;  // whether it can be set here
+  std::string why;       // why not, or ""
   clock::Source source = clock::Source::None;
   bool is_set = false;
-  std::string refusal;   // why the last change came to nothing
-  std::string ntp = "";  // what is done about NTP, or why it is not; "" where the settings do not ask for it
-  bool is_kept = false;  // an NTP server keeps it: nobody else may set it
+  std::string refusal;   // why the last change failed
+  std::string ntp = "";  // state of NTP, or why it does not work; "": not in the settings
+  bool is_kept = false;  // an NTP server keeps the time, so it cannot be set
   static const codec::Row kRow;
 };
 
-/// What sets it. A refusal says why not.
+/// Sets the time of day. A refusal says why not.
 class Clock {
  public:
   virtual ~Clock() = default;
   virtual ClockView clock() const = 0;
-  /// On the operator's word, soon.
+  /// Requests the operator's time; takes effect soon.
   virtual icd::Checked<void> set_clock(double time) = 0;
 };
 

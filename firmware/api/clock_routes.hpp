@@ -10,7 +10,7 @@ namespace adit::api {
 /// The time of day. README.md has the routes.
 class ClockRoutes {
  public:
-  /// `clock` outlives this.
+  /// `clock` must outlive this object.
   explicit ClockRoutes(Clock& clock) : clock_(clock) {}
 
   intake::Answer shown() const;

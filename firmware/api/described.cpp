@@ -1,9 +1,9 @@
-// OpenAPI's schemas of the rows, which the compiler writes as it reads their descriptions: the section
-// "schemas" of this file's object is their text (CMakeLists.txt). It is linked into no program, and none has
-// to run for it, so that it can be built for another machine.
+// OpenAPI's schemas of the rows, computed by the compiler. Section "schemas" of the object file holds their
+// text (CMakeLists.txt). The file is linked into no program and need not run, so it can be built for another
+// machine.
 #include "codec/schemas.hpp"
 
-// NOLINTBEGIN(bugprone-suspicious-include): where their descriptions stand.
+// NOLINTBEGIN(bugprone-suspicious-include): the sources hold the descriptions.
 #include "alarms/alarm.cpp"
 #include "alarms/run_clock.cpp"
 #include "alarms/verdict.cpp"

@@ -4,7 +4,7 @@
 
 #include "site/site.hpp"
 
-/// The description of the API, OpenAPI 3.1: describe.jq writes it at build time.
+/// The OpenAPI 3.1 description of the API, written by describe.jq at build time.
 namespace adit::api::open_api {
 
 using site::File;

@@ -29,7 +29,7 @@ std::string file_name(const std::string& url) {
   return beginning(std::move(name));
 }
 
-/// How many points make one part; 0: this marker is not made of points.
+/// Points of one part; 0: the marker has no points.
 std::size_t corners_of(const Marker& marker) {
   switch (static_cast<MarkerType>(marker.type)) {
     case MarkerType::LineStrip:
@@ -58,7 +58,8 @@ double length_of(const std::vector<Point>& points) {
   return length;
 }
 
-/// Points of a strip at even distances along its way, its ends among them: where a robot stood says nothing.
+/// Points of a strip at even distances along it, with both ends. So the time that a robot stood still has no
+/// weight.
 std::vector<std::size_t> along(const std::vector<Point>& points, double length) {
   const double step = length / static_cast<double>(DrawnMarker::kMostPoints - 2);
   std::vector<std::size_t> kept = {0};
@@ -76,7 +77,7 @@ std::vector<std::size_t> along(const std::vector<Point>& points, double length) 
 std::vector<std::size_t> kept_parts(const Marker& marker, std::size_t parts, std::size_t corners) {
   const std::size_t most = DrawnMarker::kMostPoints / corners;
   if (parts > most && marker.is(MarkerType::LineStrip)) {
-    // One that goes beyond all numbers has no even distances, and is thinned as a list is.
+    // A strip of infinite length has no even distances and is thinned like a list.
     if (const double length = length_of(marker.points); std::isfinite(length))
       return along(marker.points, length);
   }
@@ -86,18 +87,18 @@ std::vector<std::size_t> kept_parts(const Marker& marker, std::size_t parts, std
   return kept;
 }
 
-/// What no number is for (the sum of opposite infinities) is 0; what is beyond all floats the largest of
-/// them.
+/// Undefined values (a sum of opposite infinities) become 0. Values outside the range of float become its
+/// largest.
 float as_float(double value) {
   constexpr double kMost = std::numeric_limits<float>::max();
   return std::isnan(value) ? 0 : static_cast<float>(std::clamp(value, -kMost, kMost));
 }
 
-/// The pose's turn and shift, as far as they are seen from above.
+/// The pose's rotation and shift, seen from above.
 class Placing {
  public:
   explicit Placing(const Marker& marker) : placement_(marker.pose) {
-    // Of a TriangleList the corners are scaled, of all others the symbols at the points.
+    // Scale applies to the corners of a TriangleList, and to the symbols at the points of other markers.
     const auto scale = [&](double along) {
       return marker.is(MarkerType::TriangleList) && along != 0 ? along : 1;
     };
@@ -114,7 +115,7 @@ class Placing {
   Point scale_;
 };
 
-/// The colour of a part: of its first point, or of a triangle as such. None where the colours fit neither.
+/// The colour of a part: of its first point, or of a triangle. Null if the number of colours fits neither.
 const icd::Color* color_of(const Marker& marker, std::size_t part, std::size_t corners) {
   const std::size_t colors = marker.colors.size(), points = marker.points.size();
   if (colors == points) return &marker.colors[part * corners];

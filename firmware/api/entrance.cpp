@@ -44,7 +44,7 @@ intake::Shown Entrance::shown(const intake::RequestHead& head) {
   if (!head.header("Authorization").empty())
     return visitor ? intake::Shown::Token : intake::Shown::WrongToken;
   if (visitor) return intake::Shown::Enough;
-  // Who logs in from where he has been in has room however many strangers guess.
+  // A known device has room for a login, however many clients guess passwords.
   return device(head) == nullptr ? intake::Shown::Nothing : intake::Shown::Enough;
 }
 

@@ -14,24 +14,24 @@
 
 namespace adit::api {
 
-/// The one door to what is under /adit/: firmware/access/README.md says who comes in.
+/// Admission to all routes under /adit/: firmware/access/README.md.
 class Entrance {
  public:
-  /// `tokens`: any of them lets a script in; empty: none does. `loop` and `keys` outlive this.
+  /// `tokens`: each admits a script. `loop` and `keys` must outlive this object.
   Entrance(loop::Loop& loop, Keys& keys, std::vector<icd::BearerToken> tokens)
       : loop_(loop), keys_(keys), tokens_(std::move(tokens)) {}
 
-  /// These let a script in from now on.
+  /// Replaces the tokens.
   void let_in(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
 
-  /// 401 or 403 if the asker may not do what `who` may.
+  /// Error 401 or 403: the client may not do what `who` may.
   icd::Checked<Asker> admit(const intake::RequestHead& head, Who who);
-  /// Visitor::session is valid until the next call of anything here.
+  /// Visitor::session is valid until the next call on this object.
   std::optional<access::Visitor> who(const intake::RequestHead& head);
   intake::Shown shown(const intake::RequestHead& head);
-  /// The asking browser, if somebody has logged in from it before, or null. As Devices::find().
+  /// The client's known device, or null. As Devices::find().
   const access::Device* device(const intake::RequestHead& head);
-  /// Whether the asker may still be given more of a long answer. This outlives the result.
+  /// Whether the client may still receive a long answer. This object must outlive the result.
   std::function<bool()> may_stay(const Asker& asker);
 
   access::Sessions& sessions() { return keys_.sessions(); }
@@ -42,7 +42,7 @@ class Entrance {
   std::vector<icd::BearerToken> tokens_;
 };
 
-/// The answer for whoever is not let in.
+/// The answer to a rejected client.
 intake::Answer turned_away(const icd::Refusal& refusal);
 
 }  // namespace adit::api

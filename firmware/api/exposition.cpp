@@ -6,7 +6,7 @@
 namespace adit::api {
 namespace {
 
-/// Backslash and line end, and in a label's value the quotation mark.
+/// Escapes backslashes and newlines, and in a label's value quotation marks.
 std::string escaped(std::string_view text, bool quoted) {
   std::string safe;
   safe.reserve(text.size());

@@ -7,16 +7,17 @@
 
 namespace adit::api {
 
-/// Metrics in Prometheus' text exposition format, version 0.0.4. The samples of a metric follow it at once.
+/// Metrics in Prometheus' text exposition format, version 0.0.4. Add the samples of a metric directly after
+/// it.
 class Exposition {
  public:
   static constexpr const char* kContentType = "text/plain; version=0.0.4; charset=utf-8";
   using Label = std::pair<std::string_view, std::string_view>;
 
-  /// Begins a metric. A counter's name ends in "_total".
+  /// Begins a metric. A counter's name must end in "_total".
   void counter(std::string_view name, std::string_view help) { begin(name, "counter", help); }
   void gauge(std::string_view name, std::string_view help) { begin(name, "gauge", help); }
-  /// A sample of the metric that was begun last; each set of labels once.
+  /// Adds a sample to the last metric. Each set of labels may occur once.
   void sample(std::initializer_list<Label> labels, double value);
   void sample(double value) { sample({}, value); }
 

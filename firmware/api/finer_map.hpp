@@ -9,16 +9,16 @@
 
 namespace adit::api {
 
-/// The levels of the map that are finer than the mosaic's, of now alone.
+/// Map levels finer than the mosaic's, for the present alone.
 class FinerMap {
  public:
   using Done = std::function<void(icd::Checked<picture::Tile>)>;
 
   virtual ~FinerMap() = default;
-  /// What there is of a layer, and what of it changed after version `since`.
+  /// The existing tiles of a layer, and those changed after version `since`.
   virtual std::optional<picture::Finer> finer(const picture::Layer& layer, std::uint64_t since) const = 0;
-  /// Draws it where that is not done, `at` being in the world: `done` is called then, or at once. Null:
-  /// nothing finer is known there. An error: too many wait.
+  /// Draws the tile if necessary, then calls `done`, perhaps at once. `at` must be in the world. Null: no
+  /// finer data there. Error: too many requests are queued.
   virtual void tile(const picture::Layer& layer, const picture::TileAt& at, Done done) = 0;
 };
 

@@ -46,9 +46,9 @@ auto call_of(const Handlers& handlers, const Call& call) {
   }
 }
 
-/// A member function of one of the Handlers. Its parameter's type says what it is called with: the number in
-/// the path (404 if that is no number), the body (std::string), the RequestHead or the whole Call. It returns
-/// the Answer; or nothing, and answers by Call::responder; or the object that takes the body.
+/// Wraps a member function of one of the Handlers. Its parameter is the number in the path (404 if it is not
+/// a number), the body (std::string), the RequestHead or the Call. It returns the Answer, or void and answers
+/// by Call::responder, or the object that receives the body.
 template <auto function>
 consteval Handle by() {
   using Gives = std::invoke_result_t<decltype(call_of<function>), const Handlers&, const Call&>;

@@ -15,7 +15,7 @@ double seconds_since(Time at, Time now) {
   return std::max(0.0, now - at);
 }
 
-/// A rejected update, or one that cannot be sent, was accepted and not delivered.
+/// The latest accepted update may be rejected or unsendable, so the earlier of both times counts.
 std::optional<double> age_of(const ActivityRow& row, Time now) {
   if (!row.last_forwarded) return std::nullopt;
   return seconds_since(std::min(*row.last_forwarded, row.last_accepted.value_or(*row.last_forwarded)), now);
@@ -41,7 +41,7 @@ std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Tim
 
 namespace {
 
-/// `rows`: the robot's, in the order of their kinds.
+/// `rows`: of the robot, in the order of kinds.
 StandingRow standing_of(const std::string& name, std::vector<const ActivityRow*> rows) {
   const auto is_pose = [](const ActivityRow* row) { return row->kind == "state"; };
   const auto is_quiet = [](const ActivityRow* row) { return row->level == alarms::Level::Quiet; };
@@ -70,7 +70,7 @@ void judge_robots(RunView& view, const alarms::Facts& facts) {
   std::ranges::sort(view.standings, {}, &StandingRow::name);
 }
 
-/// What an alarm, by its name, says of an endpoint.
+/// Words for an endpoint, by alarm name.
 constexpr std::pair<std::string_view, std::string_view> kTroubles[] = {
     {"no_token", "no token"},
     {"cable_out", "cable out"},
@@ -83,7 +83,7 @@ constexpr std::pair<std::string_view, std::string_view> kTroubles[] = {
     {"command_post_failing", "failing"},
     {"command_post_throttling", "slow down"}};
 
-/// Trouble without an alarm may pass. Some servers close the connection after each answer.
+/// Trouble without an alarm may pass: some servers close the connection after each answer.
 void judge_endpoint(EndpointRow& row, const std::vector<alarms::Alarm>& alarms) {
   const bool is_well = row.trouble.empty() && (row.connected || row.last_status > 0);
   row.level = is_well ? alarms::Level::Good : alarms::Level::Wait;

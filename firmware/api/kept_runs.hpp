@@ -16,9 +16,9 @@
 
 namespace adit::api {
 
-// What each member says, and its bounds, is in the descriptions: kept_runs.cpp.
+// Meaning and bounds of each member: descriptions in kept_runs.cpp.
 
-/// How old the newest map is that the Command Post has of a robot, at each sample.
+/// Age of a robot's newest map at the Command Post, for each sample.
 struct MapAges {
   std::string robot;
   std::vector<std::optional<double>> ages = {};
@@ -26,7 +26,7 @@ struct MapAges {
   static const codec::Row kRow;
 };
 
-/// Something that needed the operator: it came, or it went.
+/// Start or end of a need for attention.
 struct AttentionStep {
   Time at = 0;
   bool came = false;
@@ -35,7 +35,7 @@ struct AttentionStep {
   static const codec::Row kRow;
 };
 
-/// The plots of a run. Each list has an item for each sample, oldest first.
+/// The plots of a run. Each list has one item for each sample, oldest first.
 struct History {
   double spacing = 0;
   std::vector<Time> at = {};
@@ -49,13 +49,13 @@ struct History {
   static const codec::Row kRow;
 };
 
-/// A run that is kept: which it was, and how it stood at last.
+/// A stored run and its last state.
 struct RunRow {
-  std::string key = "";  // what it is asked for by: its number, and more where two runs have the same
+  std::string key = "";  // its number, with a suffix if two runs share it
   std::int64_t run = 0;  // as in ReportRow
   std::string id = "", course = "", post = "", team = "";
   Time began = 0, last = 0;
-  std::optional<double> stamp = {};  // `last`, by the clock for stamps
+  std::optional<double> stamp = {};  // `last` by the stamp clock
   std::optional<std::int64_t> score = {}, remaining_reports = {};
   std::vector<std::string> robots = {};
   std::uint64_t bytes = 0;
@@ -72,28 +72,28 @@ struct RunList {
   static const codec::Row kRow;
 };
 
-/// All that is kept of a run.
+/// All stored data of a run.
 struct KeptRun {
   RunRow facts;
   picture::Mosaic picture;
   std::vector<Track> tracks;
   History history;
-  std::vector<std::pair<Time, double>> coverage = {};  // m2 that were known of all layers, over time
+  std::vector<std::pair<Time, double>> coverage = {};  // known area of all layers in m2 over time
 };
 
-/// The runs that outlive a restart: room archive.
+/// Stored runs: room archive.
 class KeptRuns {
  public:
   virtual ~KeptRuns() = default;
   virtual RunList list() const = 0;
   /// The plots of the present run, after `since`.
   virtual History history(Time since) const = 0;
-  /// Reads a run, and calls `done` on the loop: null where there is none of that key, or it is gone.
+  /// Reads a run and calls `done` on the loop. Null: no run has that key.
   virtual void read(const std::string& key, std::function<void(std::shared_ptr<const KeptRun>)> done) = 0;
-  /// Its report to print: HTML; "" where there is none of that key, or it is gone.
+  /// The run's report for printing as HTML; "": no run has that key.
   virtual void report(const std::string& key, std::vector<ReportDetail> reports,
                       std::function<void(std::string html)> done) = 0;
-  /// Forgets it: never the present one. A sentence: why not. Its reports stay in the ledger.
+  /// Deletes a run, except the present one. Its reports stay in the ledger. Error: a sentence.
   virtual void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) = 0;
 };
 

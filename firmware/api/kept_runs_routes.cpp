@@ -12,13 +12,13 @@
 namespace adit::api {
 namespace {
 
-constexpr std::size_t kDetailsInATurn = 16;  // each is a look into the ledger
+constexpr std::size_t kDetailsInATurn = 16;  // each is a query of the ledger
 
 intake::Answer no_such_run() {
   return refusal(icd::Status::NotFound, "there is no such run");
 }
 
-/// The report of a run holds its style and its pictures, and no script: nothing else may be loaded.
+/// A run's report contains its style and images, and no script. Other content must not load.
 intake::Answer printed(std::string html) {
   return {.content_type = "text/html; charset=utf-8",
           .body = std::move(html),
@@ -77,7 +77,7 @@ void KeptRunsRoutes::came(const std::string& key, const std::shared_ptr<const Ke
   for (const Waiting& each : waiting) each.responder->answer(run ? each.answer(*run) : no_such_run());
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, key);
-  if (!run || row == nullptr || row->is_present) return;  // the present one goes on
+  if (!run || row == nullptr || row->is_present) return;  // the present run changes
   held_ = run;
   forget_.call_at(loop_.now() + kHeld);
 }
@@ -105,7 +105,7 @@ void KeptRunsRoutes::plots(const Call& call) {
   with_run(call, [](const KeptRun& run) { return fresh("application/json", codec::to_json(run.history)); });
 }
 
-/// The reports of a run, some in each turn of the loop.
+/// Collects the reports of a run, some in each turn of the loop.
 struct KeptRunsRoutes::Gathering {
   std::string key;
   std::int64_t run = 0, last = 0;

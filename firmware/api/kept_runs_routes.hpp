@@ -13,14 +13,14 @@
 
 namespace adit::api {
 
-/// What is kept of the present run and of earlier ones: README.md. A run that is looked at again is read
-/// once, and held for kHeld after the last look.
+/// Stored data of the present and earlier runs: README.md. A run is read once and held for kHeld after its
+/// last use.
 class KeptRunsRoutes {
  public:
   static constexpr std::chrono::seconds kHeld{60};
-  static constexpr std::size_t kMostWaiting = 64;  // requests, while a run is read
+  static constexpr std::size_t kMostWaiting = 64;  // requests queued while a run is read
 
-  /// All outlive this.
+  /// All must outlive this object.
   KeptRunsRoutes(loop::Loop& loop, KeptRuns& runs, const Source& source);
 
   /// The plots of the present run.
@@ -32,7 +32,7 @@ class KeptRunsRoutes {
   void tile(const Call& call);
   void tracks(const Call& call);
   void plots(const Call& call);
-  /// The report to print, as HTML.
+  /// The report for printing, as HTML.
   void report(const Call& call);
   void remove(const Call& call);
 

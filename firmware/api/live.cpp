@@ -13,13 +13,14 @@ namespace {
 
 constexpr auto kSpacing = std::chrono::milliseconds{1000 / Live::kEventsPerSecond};
 
-/// Milliseconds, millimetres, microseconds of an answer: finer than a page shows, and half as long.
+/// Rounds to milliseconds, millimetres or microseconds, which is finer than the page shows and halves the
+/// text.
 double rounded(double number) {
   constexpr double kSteps = 1000;
-  return std::round(number * kSteps) / kSteps + 0.0;  // no -0
+  return std::round(number * kSteps) / kSteps + 0.0;  // avoids -0
 }
 
-/// The clocks go on whatever happens.
+/// Clocks change all the time and are not news.
 bool is_news(const std::optional<codec::Value>& patch) {
   return patch && std::ranges::any_of(std::get<codec::Value::Object>(patch->is), [](const auto& member) {
            return member.first != "now" && member.first != "run_clock";
@@ -34,7 +35,7 @@ Live::Live(loop::Loop& loop, const Source& source)
 RunView Live::look() const {
   RunView view = source_.view();
   codec::change_numbers(RunView::kRow, &view, rounded);
-  // Ages go on whatever happens: by whole seconds, so that an event is small.
+  // Ages change all the time. Whole seconds keep events small.
   const auto whole_seconds = [](std::optional<double>& age) {
     if (age) *age = std::floor(*age);
   };
@@ -60,7 +61,7 @@ void Live::open(intake::Responder& responder, std::function<bool()> may_stay) {
   if (pages_.empty()) {
     begin();
   } else if (loop_.now() >= looked_ + kSpacing) {
-    send_to_all(true);  // so that what is told whole is no older than that
+    send_to_all(true);  // so that the whole view is no older than kSpacing
   }
   auto stream = responder.stream("text/event-stream");
   if (!stream || !stream->send("retry: 1000\n" + whole())) return;

@@ -12,23 +12,24 @@
 
 namespace adit::api {
 
-/// The open pages, each fed by server-sent events (HTML Living Standard 9.2): first the view of the run
-/// whole, then, as it changes (at most kEventsPerSecond), what it changes by (codec/patch.hpp), the same to
-/// all; and a heartbeat that tells the page that the box is there. A page that is slow is told the whole view
-/// again where more waits for it than that.
+/// The open pages, fed by server-sent events (HTML Living Standard 9.2). A page gets the whole view of the
+/// run, then at most kEventsPerSecond changes (codec/patch.hpp), the same for all pages, and heartbeats. A
+/// slow page with too many queued bytes gets the whole view again.
 class Live {
  public:
   static constexpr int kEventsPerSecond = 4;
 
-  static constexpr std::chrono::milliseconds kHeartbeat{2000};  // a page takes 4.5 s of silence for a loss
-  /// Open pages at once: forgotten ones must leave connections for the robots.
+  static constexpr std::chrono::milliseconds kHeartbeat{2000};  // a page assumes a lost connection after 4.5
+                                                                // s
+  /// Most open pages, so that forgotten pages leave connections for robots.
   static constexpr std::size_t kMostPages = 24;
-  /// Bytes that wait for a page, beside two whole views: the one that it takes, and the one after it.
+  /// Most queued bytes for a page, beside two whole views: one in transfer and the next.
   static constexpr std::size_t kMostPatches = 64 * 1024;
 
   Live(loop::Loop& loop, const Source& source);
 
-  /// Answers with a stream of events, or 503 where kMostPages are open. It ends once `may_stay` is false.
+  /// Answers with a stream of events, or 503 beyond kMostPages. The stream ends once `may_stay` returns
+  /// false.
   void open(intake::Responder& responder, std::function<bool()> may_stay);
   void changed();
 
@@ -41,7 +42,7 @@ class Live {
   RunView look() const;
   void begin();
   void send_to_all(bool in_any_case);
-  /// All that the pages were told, as an event.
+  /// The state of the pages as an event.
   const std::string& whole();
   bool tell(const OpenPage& page, std::string_view event);
   void drop_the_gone(std::string_view event);
@@ -49,9 +50,9 @@ class Live {
   loop::Loop& loop_;
   const Source& source_;
   std::vector<OpenPage> pages_;
-  RunView told_;                // what the pages have
-  std::string whole_;           // that; "": nobody needed it yet
-  std::size_t whole_size_ = 0;  // when somebody last did
+  RunView told_;                // the pages' state
+  std::string whole_;           // that state as text; "": not computed
+  std::size_t whole_size_ = 0;  // its last size
   loop::Source timer_;
   loop::Instant looked_, sent_;
   bool dirty_ = false;

@@ -9,16 +9,16 @@
 
 namespace adit::api {
 
-/// What of the log is asked for.
+/// A selection of log records.
 struct LogFilter {
-  int severity = 7;         // and all that is worse
-  std::string text;         // in the record's line, in whatever letters; "": any
-  std::uint64_t after = 0;  // of this number
+  int severity = 7;         // this severity and worse ones
+  std::string text;         // part of the line, ignoring case; "": any
+  std::uint64_t after = 0;  // only larger numbers
 
   bool lets(const LogRecord& record) const;
 };
 
-/// Of `?level=warning&text=...&since=17`; 400 where a word is none.
+/// Reads `?level=warning&text=...&since=17`. Error 400: an invalid value.
 icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head);
 
 }  // namespace adit::api

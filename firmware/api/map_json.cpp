@@ -56,7 +56,7 @@ struct KindOf<picture::Kind> : OnlyWritten {
   static constexpr Schema schema = KindOf<std::string>::schema;
 };
 
-/// As CSS has it: "#c8d2da".
+/// In CSS form: "#c8d2da".
 template <>
 struct KindOf<picture::Colour> : OnlyWritten {
   static Value write(const picture::Colour& colour) {

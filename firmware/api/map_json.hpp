@@ -17,7 +17,7 @@ struct MapColours {
   static const codec::Row kRow;
 };
 
-/// /adit/map: how tiles are cut and coloured, and every layer with the tiles that changed.
+/// /adit/map: geometry and colours of tiles, and every layer with its changed tiles.
 struct MapView {
   std::uint64_t version = 0;
   int tile_side = picture::kSide;
@@ -30,7 +30,7 @@ struct MapView {
   static const codec::Row kRow;
 };
 
-/// Of the tiles, those that changed after version `since`.
+/// Includes only tiles that changed after version `since`.
 MapView map_view(const picture::Mosaic& map, std::uint64_t since);
 
 }  // namespace adit::api

@@ -6,10 +6,10 @@
 
 namespace adit::api {
 
-/// The picture of the maps, the markers and the robots' tracks: README.md.
+/// The map, the markers and the robots' tracks: README.md.
 class MapRoutes {
  public:
-  /// Both outlive this.
+  /// Both must outlive this object.
   MapRoutes(const Source& source, FinerMap& finer) : source_(source), finer_(finer) {}
 
   intake::Answer layers(const intake::RequestHead& head) const;

@@ -12,13 +12,13 @@
 namespace adit::api {
 namespace {
 
-constexpr std::string_view kMerged = "-";  // for the robot "", which no path could name
+constexpr std::string_view kMerged = "-";  // stands for the robot "", which a path cannot name
 
 intake::Answer bad_tile(std::string_view sentence) {
   return refusal(icd::Status::BadRequest, sentence);
 }
 
-/// A colour of the query, six digits as CSS has it without its "#": absent, or none at all.
+/// A colour in the query, six digits without "#". `wrong`: present but invalid.
 struct AskedColour {
   std::optional<picture::Colour> colour;
   bool wrong = false;
@@ -46,7 +46,7 @@ std::string coloured(const picture::Packed& tile, const TileAsked& asked) {
                                               : picture::cloud_palette(low, high));
 }
 
-/// Says which state of a tile it is, whatever the box was restarted for since.
+/// Identifies a tile's state across restarts.
 std::string etag_of(const picture::Packed& tile) {
   return icd::sentence("\"", tile.crc, "-", tile.deflated.size(), "\"");
 }
@@ -105,9 +105,9 @@ std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& h
 intake::Answer tile_of(const picture::Mosaic& map, const TileAsked& asked) {
   const auto shown = map.tile(asked.layer, asked.at, asked.stamp);
   if (shown.tile == nullptr) return nothing_drawn();
-  // What was followed by another state does not change any more; the newest is asked for each time.
+  // An earlier state never changes; the newest must be revalidated.
   intake::Answer answer = image_of(*shown.tile, asked, shown.newest ? "no-cache" : "max-age=3600");
-  // So that who plays a run asks for a tile only where it changed.
+  // So that a replay requests a tile only when it changes.
   answer.headers.push_back({"Adit-Since", icd::number_text(shown.stamp)});
   if (shown.until) answer.headers.push_back({"Adit-Until", icd::number_text(*shown.until)});
   return guarded(std::move(answer));

@@ -131,7 +131,7 @@ void write_link(Exposition& out, const Measured& measured) {
   out.sample(number(measured.usage.rejected_dropped));
 }
 
-/// Of each robot and kind.
+/// A sample for each robot and kind.
 void sample_each(Exposition& out, const RunView& view, std::uint64_t ActivityRow::* count) {
   for (const ActivityRow& row : view.activities) {
     out.sample({{"kind", row.kind}, {"robot", row.robot}}, number(row.*count));

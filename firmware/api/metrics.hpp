@@ -6,7 +6,7 @@
 
 namespace adit::api {
 
-/// What the metrics are made of.
+/// Input of the metrics.
 struct Measured {
   RunView view;
   ReportCounts reports;  // of all runs
@@ -15,7 +15,7 @@ struct Measured {
   std::uint64_t operators = 0, viewers = 0;  // sessions
 };
 
-/// /metrics: each metric with its HELP and TYPE. README.md says what the names are made of.
+/// /metrics: each metric with HELP and TYPE. Names: README.md.
 std::string write_metrics(const Measured& measured);
 
 }  // namespace adit::api

@@ -8,7 +8,7 @@
 namespace adit::api {
 namespace {
 
-/// The numbers, or all that is wrong with the body.
+/// The numbers, or all errors of the body.
 std::expected<network::Numbers, std::vector<settings::Error>> numbers_in(const std::string& body) {
   const auto value = codec::parse_json(body);
   if (value) return network::read_numbers(*value);

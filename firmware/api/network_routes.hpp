@@ -6,23 +6,23 @@
 
 namespace adit::api {
 
-/// The box's own addresses and the Test: README.md.
+/// The box's addresses and the Test: README.md.
 class NetworkRoutes {
  public:
-  /// Both outlive this.
+  /// Both must outlive this object.
   NetworkRoutes(Network& network, SelfTest& test) : network_(network), test_(test) {}
 
   intake::Answer shown() const;
   intake::Answer check(const Call& call) const;
   intake::Answer change(const Call& call);
-  /// By the address that was asked.
+  /// Uses the address of the request's connection.
   intake::Answer confirm(const Call& call);
   intake::Answer revert();
   intake::Answer tested() const;
   intake::Answer begin_test(const std::string& body);
 
  private:
-  /// How it stands now, or why the action was refused.
+  /// The present state, or the refusal.
   intake::Answer after(const icd::Checked<void>& done) const;
 
   Network& network_;

@@ -46,7 +46,7 @@ constexpr Member kCommandPostSideMembers[] = {
 };
 constexpr Row kCommandPostSide = {"CommandPostSide", kCommandPostSideMembers};
 
-/// The numbers among the other members of PendingNetwork.
+/// The numbers as members of PendingNetwork.
 struct Wanted : codec::KindOf<network::Numbers> {
   static void read(const codec::Field& field, network::Numbers& numbers) {
     const codec::Field team = field.member("team"), post = field.member("command_post");

@@ -9,7 +9,7 @@
 
 namespace adit::api {
 
-/// The number that all of `text`, a part of a path or of a query, is; or nothing.
+/// The number that `text`, a part of a path or query, consists of; or std::nullopt.
 template <class Number>
 std::optional<Number> number_in(std::string_view text) {
   Number number{};
@@ -17,7 +17,7 @@ std::optional<Number> number_in(std::string_view text) {
   return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
 }
 
-/// A number of the query: absent, or a finite one, or no number at all.
+/// A number in the query. `wrong`: present but not a finite number.
 struct AskedNumber {
   std::optional<double> number;
   bool wrong = false;

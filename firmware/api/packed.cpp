@@ -11,10 +11,10 @@
 namespace adit::api {
 namespace {
 
-constexpr std::size_t kFewest = 1400;  // less is one packet anyway
+constexpr std::size_t kFewest = 1400;  // a smaller body fits one packet anyway
 constexpr std::size_t kMost = 1u << 20;
 
-/// What stands before the next `mark`; `text` is what follows it.
+/// Removes and returns the text before the next `mark`; `text` becomes the rest.
 std::string_view take(std::string_view& text, char mark) {
   const auto end = std::min(text.find(mark), text.size());
   const auto taken = intake::without_blanks(text.substr(0, end));
@@ -22,7 +22,7 @@ std::string_view take(std::string_view& text, char mark) {
   return taken;
 }
 
-/// "q=0", "q=0.0": not this one.
+/// "q=0", "q=0.0": not acceptable.
 bool is_forbidden(std::string_view weight) {
   if (!weight.starts_with("q=") && !weight.starts_with("Q=")) return false;
   return weight.substr(2).find_first_not_of("0.") == std::string_view::npos;

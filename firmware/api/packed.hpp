@@ -6,11 +6,11 @@
 
 namespace adit::api {
 
-/// Whether a client whose Accept-Encoding this is takes gzip (RFC 9110 12.5.3); one that sends none is not
-/// given it, as scripts mean it.
+/// Whether a client with this Accept-Encoding accepts gzip (RFC 9110 12.5.3). Without the header it does not,
+/// because scripts expect plain text.
 bool takes_gzip(std::string_view accept_encoding);
 
-/// Whether an answer's body is under gzip already.
+/// Whether an answer's body is compressed by gzip.
 bool is_packed(const intake::Answer& answer);
 
 /// Compresses an answer's body with gzip if that pays: text and JSON of some kB up to 1 MiB. The limit exists

@@ -28,9 +28,9 @@ icd::Checked<std::string> inflated(const site::File& file) {
 }
 
 constexpr const char* kForGood = "public, max-age=31536000, immutable";  // RFC 8246
-constexpr const char* kAskEachTime = "no-cache";                         // sent only where it changed
+constexpr const char* kAskEachTime = "no-cache";                         // revalidated each time
 
-/// What is embedded, as the client takes it: as it lies there, or inflated.
+/// An embedded file, compressed as stored, or inflated for a client without gzip.
 intake::Answer answer_with(const site::File& file, const intake::RequestHead& head) {
   const bool as_it_is = takes_gzip(head.header("Accept-Encoding"));
   const std::string etag = '"' + std::string(file.etag) + (as_it_is ? "-gzip\"" : "\"");  // of these bytes

@@ -4,10 +4,10 @@
 
 namespace adit::api {
 
-/// What is for anybody: the page's files, and the description of the API.
+/// Open to any client: the page's files, and the description of the API.
 class PageRoutes {
  public:
-  /// Any of the files, by its path.
+  /// A file, by its path.
   intake::Answer file(const intake::RequestHead& head) const;
   intake::Answer description(const intake::RequestHead& head) const;
 };

@@ -9,7 +9,7 @@
 
 namespace adit::api {
 
-/// What `read` makes of a body, which is one JSON object.
+/// Applies `read` to a body, which must be one JSON object.
 template <class Message, class Read>
 icd::Checked<Message> read_body(const std::string& body, Read read) {
   const auto root = codec::parse_json(body);
@@ -18,7 +18,7 @@ icd::Checked<Message> read_body(const std::string& body, Read read) {
   return reading.outcome<Message>(read(codec::Field(*root, reading)));
 }
 
-/// The text of the member `name` of such a body.
+/// The text of the member `name` of a body.
 inline icd::Checked<std::string> read_text(const std::string& body, std::string_view name) {
   return read_body<std::string>(
       body, [name](const codec::Field& root) { return std::string(root.member(name).text()); });

@@ -10,13 +10,14 @@
 namespace adit::api {
 
 using SharedRedaction = std::shared_ptr<const icd::Redaction>;
-/// The one that counts, for the loop alone: tokens change while a page is open.
+/// The present redaction, for use on the loop alone, because tokens change while a page is open.
 using PresentRedaction = std::shared_ptr<const SharedRedaction>;
 
-/// Out of a body of that Content-Type; out of pictures, archives and the page's own files nothing.
+/// Redacts a body of this Content-Type. Images, archives and the page's files stay unchanged.
 void redact(const icd::Redaction& redaction, std::string_view content_type, std::string& body);
 
-/// Passes answers and streams on, redacted; answers under gzip if `head` takes it and it pays (packed.hpp).
+/// Forwards answers and streams after redaction. Compresses answers if `head` accepts gzip and it pays
+/// (packed.hpp).
 std::shared_ptr<intake::Responder> redacted(std::shared_ptr<intake::Responder> responder,
                                             PresentRedaction redaction, const intake::RequestHead& head);
 

@@ -8,7 +8,7 @@
 namespace adit::api {
 namespace {
 
-/// Half a millisecond of work.
+/// Reports for half a millisecond of work.
 constexpr std::size_t kInATurn = 64;
 
 }  // namespace
@@ -18,7 +18,7 @@ struct ReportLists::Listing {
   const std::optional<std::int64_t> run;
   const std::function<void(std::string)> done;
   std::string text = form.begin;
-  std::int64_t last = 0;  // whose turn has been
+  std::int64_t last = 0;  // the last written report
   bool is_empty = true;
 };
 

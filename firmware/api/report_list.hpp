@@ -12,25 +12,25 @@
 
 namespace adit::api {
 
-/// How a list of reports is written.
+/// Format of a list of reports.
 struct ListForm {
   std::string begin;
   std::string (*row)(const ReportRow& row);
   std::string_view between, end;
 };
 
-/// An array of JSON.
+/// A JSON array.
 ListForm json_list();
 
 /// Writes lists of reports.
 class ReportLists {
  public:
-  /// Both outlive this, and this the turns of the loop.
+  /// Both must outlive this object, and this object must outlive the loop's turns.
   ReportLists(loop::Loop& loop, const Source& source) : loop_(loop), source_(source) {}
 
-  /// Writes all reports of `run`, or of all runs, oldest first, and calls `done` with them: at once where
-  /// they are few. Of thousands it writes some in each turn of the loop, each as it is then: all at once,
-  /// they would keep the loop from its sockets.
+  /// Writes all reports of `run`, or of all runs, oldest first, and passes them to `done`, at once if there
+  /// are few. Long lists are written in several turns of the loop, so that the loop can serve its sockets;
+  /// each report has its state at that turn.
   void write(ListForm form, std::optional<std::int64_t> run,
              std::function<void(std::string list)> done) const;
 

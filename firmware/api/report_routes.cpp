@@ -18,7 +18,7 @@ using codec::json;
 namespace {
 
 constexpr std::string_view kAll = "all", kPresent = "present";
-constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; no ICD answer has it
+constexpr auto kAccepted = static_cast<icd::Status>(202);  // RFC 9110 15.3.3; not in the ICD
 
 intake::Answer no_such(std::int64_t number) {
   return refusal(icd::Status::NotFound, icd::sentence("there is no report ", number));

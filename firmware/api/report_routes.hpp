@@ -9,10 +9,10 @@
 
 namespace adit::api {
 
-/// What is known of reports, and the operator's actions: README.md.
+/// Reports, and the operator's actions on them: README.md.
 class ReportRoutes {
  public:
-  /// All outlive this.
+  /// All must outlive this object.
   ReportRoutes(const ReportLists& lists, const Source& source, Operator& judge)
       : lists_(lists), source_(source), operator_(judge) {}
 
@@ -26,7 +26,7 @@ class ReportRoutes {
   intake::Answer compose(const std::string& body);
 
  private:
-  /// All of one run, which the request names (its number, "present" or "all"), answered as `begun` with them.
+  /// Completes `begun` with the list of the run in the request (its number, "present" or "all").
   void listed(const Call& call, ListForm form, intake::Answer begun) const;
   intake::Answer judge(std::int64_t number, Action action);
 

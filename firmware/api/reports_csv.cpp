@@ -12,7 +12,7 @@
 namespace adit::api {
 namespace {
 
-/// How many bytes the first character of `text` has; 0 where it begins with none (no UTF-8).
+/// Bytes of the first UTF-8 character of `text`, or 0.
 std::size_t first_character(std::string_view text) {
   codec::Utf8Checker checker;
   for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {
@@ -21,14 +21,14 @@ std::size_t first_character(std::string_view text) {
   return 0;
 }
 
-/// Of the first set (and DEL), or of the second, U+0080 to U+009F, which some terminals obey, too.
+/// C0 controls and DEL, or C1 controls (U+0080 to U+009F), which some terminals execute.
 bool is_control(std::string_view character) {
   const auto last = static_cast<unsigned char>(character.back());
   if (character.size() == 1) return last < 0x20 || last == 0x7f;
   return character.size() == 2 && character.front() == '\xc2' && last < 0xa0;
 }
 
-/// As UTF-8, with a space for each control character: RFC 4180 has none in its text.
+/// Valid UTF-8 with a space for each control character, because RFC 4180 text has none.
 std::string plain(std::string_view text) {
   std::string all;
   while (!text.empty()) {
@@ -40,7 +40,7 @@ std::string plain(std::string_view text) {
   return all;
 }
 
-/// Whether a spreadsheet would compute the cell; some take the wide forms of the signs, too.
+/// Whether a spreadsheet would evaluate the cell. Some accept wide forms of the signs.
 bool is_formula(std::string_view text) {
   text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
   constexpr std::string_view kSigns[] = {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20"};
@@ -57,11 +57,11 @@ std::string cell(std::string_view text) {
 }
 
 std::string cell(double number) {
-  char text[32];  // the shortest form that reads back has at most 24 characters
+  char text[32];  // the shortest exact form has at most 24 characters
   return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
-/// Empty where there is nothing.
+/// Empty for null.
 std::string cell(const codec::Value& value, codec::Cell form) {
   if (const auto* const text = std::get_if<std::string>(&value.is)) return cell(*text);
   if (const auto* const flag = std::get_if<bool>(&value.is)) return *flag ? "yes" : "no";
@@ -71,7 +71,7 @@ std::string cell(const codec::Value& value, codec::Cell form) {
   return whole == nullptr || (*whole == 0 && form == codec::Cell::NotZero) ? "" : std::to_string(*whole);
 }
 
-/// The members that have a column, in the order of their columns.
+/// The members with a column, in column order.
 std::vector<const codec::Member*> columns() {
   std::vector<const codec::Member*> all;
   for (const codec::Member& member : ReportRow::kRow.members) {
@@ -81,7 +81,8 @@ std::vector<const codec::Member*> columns() {
   return all;
 }
 
-/// A line of CSV: what `each` gives for each column; a row in a column has one for each of its members.
+/// A line of CSV: the result of `each` for each column. A nested row fills one column for each of its
+/// members.
 std::string line(const auto& each) {
   std::string text;
   for (const codec::Member* const member : columns()) {

@@ -25,56 +25,56 @@ class SettingsRoutes;
 class SpareRoutes;
 class UpdateRoutes;
 
-/// What answers.
+/// All handlers.
 using Handlers =
     std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, SettingsRoutes*,
                NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*, ClockRoutes*, SpareRoutes*>;
 
-/// Who may use a route. A script that sends one of the tokens is an operator.
+/// Clients that may use a route. A script with a token is an operator.
 enum class Who : std::uint8_t {
-  Open,             // anybody, from anywhere: nothing of the team's is in it
-  OwnPage,          // anybody, but no page from elsewhere
+  Open,             // any client from any page: holds no data of the team
+  OwnPage,          // any client, but not from another site's page
   OperatorOrSetUp,  // an operator; at the first start, and while set-up is open, as OwnPage
-  Viewer,           // whoever is logged in
+  Viewer,           // any logged-in user
   Operator,
 };
 
-/// The body that a route asks for.
+/// A route's request body.
 struct Body {
-  std::string_view type;     // Content-Type; "": none, and what comes is read away
+  std::string_view type;     // Content-Type; "": none, and a body is discarded
   std::size_t most = 0;      // bytes
-  bool as_it_comes = false;  // to Handle::begin; else the handler is called once it is whole
+  bool as_it_comes = false;  // streamed to Handle::begin; otherwise the handler gets the whole body
 };
 
-/// Who asks.
+/// The client.
 struct Asker {
-  bool admitted = false;      // he has the role that the route asks for
+  bool admitted = false;      // has the role that the route requires
   std::uint64_t session = 0;  // 0: none
 };
 
-/// A request that its route lets through.
+/// An admitted request.
 struct Call {
   const intake::RequestHead& head;
-  std::shared_ptr<intake::Responder> responder;  // for what answers later
-  std::shared_ptr<intake::Flow> flow;            // for what takes the body as it comes
+  std::shared_ptr<intake::Responder> responder;  // for late answers
+  std::shared_ptr<intake::Flow> flow;            // for streamed bodies
   Asker asker;
-  std::vector<std::string> parameters;  // of the path, in its order
+  std::vector<std::string> parameters;  // of the path, in order
   std::string body;
 };
 
-/// A member of one of the Handlers, of one of three kinds; the others are null.
+/// A member of one of the Handlers. Exactly one pointer is set.
 struct Handle {
   intake::Answer (*answer)(const Handlers& handlers, const Call& call) = nullptr;
   /// Answers by Call::responder, at once or later.
   void (*answer_later)(const Handlers& handlers, const Call& call) = nullptr;
-  /// Gives what takes the body as it comes and answers; null: it has answered.
+  /// Returns a receiver of the body, which answers. Null: it has answered.
   std::unique_ptr<intake::BodySink> (*begin)(const Handlers& handlers, const Call& call) = nullptr;
 };
 
 /// A row of the table of routes.
 struct Route {
-  std::string_view method;  // HEAD goes with GET
-  std::string_view path;  // "/adit/reports/{number}/send": a parameter is of at least one letter, without '/'
+  std::string_view method;  // GET includes HEAD
+  std::string_view path;  // "/adit/reports/{number}/send"; a parameter has at least one character and no '/'
   Who who = Who::Operator;
   Body body;
   Handle handle;

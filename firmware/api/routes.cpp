@@ -24,15 +24,14 @@ using enum Who;
 
 template <std::size_t most>
 constexpr Body kJson{"application/json", most};
-/// No form of a page from elsewhere can send it without a CORS preflight, as with JSON.
+/// Like JSON, this type cannot be sent by another site's form without a CORS preflight.
 constexpr Body kBundle{"application/octet-stream", update::kLargestBundle, true};
 constexpr Body kExport{"application/octet-stream", spare::kLargestExport, true};
 
-/// What follows the handle is for describe.jq, which reads it here; the program has none of it:
-/// of the body, which of openapi.json's `bodies` it is; tag and summary; of the answer, what it means and
-/// what it is: a schema, [schema], one of `answers` or a Content-Type, behind its status where that is not
-/// 200; the refusals beside those that follow from who may and from the body; the `parameters` of path and
-/// query.
+/// The arguments after the handle are for describe.jq, which reads this file; the program does not contain
+/// them. For the body: its name in openapi.json's `bodies`. Then tag and summary. For the answer: its
+/// meaning, and a schema, [schema], one of `answers` or a Content-Type, after its status if that is not 200.
+/// Then the refusals beyond those of `who` and the body, and the `parameters` of path and query.
 consteval Route get(std::string_view path, Who who, Handle handle, std::string_view, std::string_view,
                     std::string_view, std::string_view, std::string_view = {}, std::string_view = {}) {
   return {"GET", path, who, {}, handle};
@@ -260,7 +259,7 @@ constexpr Route kRoutes[] = {
          "WasReset", "400 409 429 503"),
 };
 
-/// The parameters in `path`, where it is one of `pattern`.
+/// The parameters in `path` if it matches `pattern`.
 std::optional<std::vector<std::string>> parameters_in(std::string_view pattern, std::string_view path) {
   std::vector<std::string> found;
   while (true) {
@@ -280,7 +279,7 @@ std::optional<std::vector<std::string>> parameters_in(std::string_view pattern, 
   }
 }
 
-/// "GET, HEAD, POST": what reads comes first, as in the table.
+/// "GET, HEAD, POST": reading methods first, as in the table.
 void allow(std::string& methods, std::string_view method) {
   if (!methods.empty()) methods += ", ";
   methods += method == "GET" ? kReading : method;
@@ -301,7 +300,7 @@ Match match(const intake::RequestHead& head) {
     allow(match.allowed, route.method);
     const bool fits = route.method == "GET" ? only_reads(head) : route.method == head.method();
     if (fits) return {&route, std::move(*parameters), {}, route.who};
-    if (route.who < Who::OperatorOrSetUp) match.who = route.who;  // who may know it, may know that
+    if (route.who < Who::OperatorOrSetUp) match.who = route.who;  // its clients may learn its methods
   }
   return match;
 }

@@ -9,16 +9,17 @@
 
 namespace adit::api {
 
-/// The one table of routes: README.md has them in words, /adit/openapi.json for programs. Only the page's
-/// files are not in it; anybody may have them.
+/// The table of all routes. README.md describes them, /adit/openapi.json describes them for programs. The
+/// page's files are not in it and are open to all.
 std::span<const Route> routes();
 
-/// What the table says of a request.
+/// A request's place in the table.
 struct Match {
-  const Route* route = nullptr;         // null: no such path, or another method
-  std::vector<std::string> parameters;  // of the path, in its order
-  std::string allowed;                  // of the path, as in RFC 9110 10.2.1: "GET, HEAD"; "": no such path
-  Who who = Who::Operator;              // may ask; where there is no route, and be told so
+  const Route* route = nullptr;         // null: no such path or method
+  std::vector<std::string> parameters;  // of the path, in order
+  std::string allowed;                  // methods of the path (RFC 9110 10.2.1): "GET, HEAD"; "": no such
+                                        // path
+  Who who = Who::Operator;              // clients that may use it, or learn that there is no route
 };
 Match match(const intake::RequestHead& head);
 

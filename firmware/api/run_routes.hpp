@@ -10,28 +10,28 @@
 
 namespace adit::api {
 
-/// The state of the run, and the operator's actions on anything but reports.
+/// The state of the run, and the operator's actions except those on reports.
 class RunRoutes {
  public:
-  static constexpr double kLeast = 1, kMost = 60;  // seconds that the lights flash
+  static constexpr double kLeast = 1, kMost = 60;  // seconds of flashing lights
 
-  /// All outlive this.
+  /// All must outlive this object.
   RunRoutes(const Source& source, Operator& judge, Live& live, Entrance& entrance)
       : source_(source), operator_(judge), live_(live), entrance_(entrance) {}
 
   intake::Answer run() const;
   std::unique_ptr<intake::BodySink> events(const Call& call);
   intake::Answer begin_run();
-  /// Instead of a ledger that cannot be read.
+  /// Replaces a ledger that cannot be read.
   intake::Answer begin_ledger();
-  /// An action on a message that the Command Post did not take.
+  /// An action on a rejected message.
   template <RejectedAction action>
   intake::Answer rejected(std::uint64_t number) {
     return rejected(number, action);
   }
-  /// An operator has seen an alarm.
+  /// Acknowledges an alarm.
   intake::Answer acknowledge(const std::string& body);
-  /// The box's lights flash for some seconds, so that it can be told from others.
+  /// Flashes the box's lights for some seconds, to identify the box.
   intake::Answer identify(const std::string& body);
 
  private:

@@ -205,7 +205,7 @@ constexpr Member kView[] = {
     member<&RunView::alarms_over>("alarms_over", "the last few ended alarms, newest first"),
 };
 
-// By what a row of a list is told from the others.
+// Keys of the rows in lists.
 constexpr std::string_view kByNumber[] = {"number"}, kByName[] = {"name"}, kBySide[] = {"side"},
                            kByTraffic[] = {"kind", "robot"}, kByMoment[] = {"at", "uri", "sender"};
 

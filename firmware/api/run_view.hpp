@@ -19,12 +19,12 @@
 
 namespace adit::api {
 
-// What each member says, and its bounds, is in the descriptions: run_view.cpp.
+// Meaning and bounds of each member: descriptions in run_view.cpp.
 
-/// The Command Post's two, as the API names them.
+/// The API's names of the endpoints.
 inline constexpr std::string_view kEndpoints[] = {"scoring", "mapping"};
 
-/// One artifact report and where it is in its life.
+/// An artifact report and its state.
 struct ReportRow {
   std::int64_t number = 0;
   std::string type;
@@ -44,13 +44,13 @@ struct ReportRow {
   static const codec::Row kRow;
 };
 
-/// How many reports are where in their lives.
+/// Number of reports by state.
 struct ReportCounts {
-  std::array<std::uint64_t, std::size(dispatch::kStateWords)> in{};  // each state
+  std::array<std::uint64_t, std::size(dispatch::kStateWords)> in{};  // by state
   std::uint64_t asking = 0;
 };
 
-/// One step of a report's life.
+/// A step in a report's history.
 struct ReportStep {
   Time at = 0;
   std::string state, note;
@@ -66,13 +66,13 @@ struct ReportDetail {
   static const codec::Row kRow;
 };
 
-/// One robot's (or, with no name, the merged) traffic of one kind.
+/// Traffic of one kind from one robot, or merged (no name).
 struct ActivityRow {
   std::string kind, robot;
   std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
                 refused_upstream = 0, no_room = 0, queued = 0;
   std::optional<Time> behind_since, last_accepted, last_forwarded, last_no_room;
-  std::optional<double> behind, age;  // judge()'s
+  std::optional<double> behind, age;  // from judge()
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence;
@@ -80,12 +80,12 @@ struct ActivityRow {
   std::uint64_t points_left_out = 0, no_valid_point = 0, invisible = 0;
   alarms::Arrival arrival = alarms::Arrival::NotYet;
   alarms::Level level = alarms::Level::Quiet;
-  std::string word = {};  // judge()'s
+  std::string word = {};  // from judge()
 
   static const codec::Row kRow;
 };
 
-/// How a robot's data arrive.
+/// A robot's state by its data.
 struct StandingRow {
   std::string name;
   alarms::Level level = alarms::Level::Quiet;
@@ -96,7 +96,7 @@ struct StandingRow {
   static const codec::Row kRow;
 };
 
-/// What was refused to its sender.
+/// A message that Adit refused.
 struct RefusalRow {
   Time at = 0;
   std::string uri, sender;
@@ -116,12 +116,12 @@ struct EndpointRow {
   std::optional<double> answer_ms = {};
   std::uint64_t throttled = 0, foreign = 0;
   alarms::Level level = alarms::Level::Quiet;
-  std::string word = {};  // judge()'s
+  std::string word = {};  // from judge()
 
   static const codec::Row kRow;
 };
 
-/// A map, state or markers that the Command Post would not take: kept until it is sent again or discarded.
+/// A map, state or markers that the Command Post rejected, stored until it is sent again or discarded.
 struct RejectedRow {
   std::uint64_t number = 0;
   std::string kind, robot;
@@ -134,13 +134,13 @@ struct RejectedRow {
   static const codec::Row kRow;
 };
 
-/// A robot as the Command Post knows it.
+/// A robot's pose at the Command Post.
 struct RobotRow {
   std::string name;
   icd::Point position;
   double heading = 0;
-  std::optional<Time> at = {};  // nothing: before a start of the machine, whose clock may have been set since
-  std::optional<double> age = {};  // judge()'s
+  std::optional<Time> at = {};     // nullopt: before the boot, when the clock may have been different
+  std::optional<double> age = {};  // from judge()
 
   static const codec::Row kRow;
 };
@@ -159,7 +159,7 @@ struct LinkRow {
   static const codec::Row kRow;
 };
 
-/// All that the page, `adit status` and tests read.
+/// The data for the page, `adit status` and tests.
 struct RunView {
   Time now = 0;
   std::string version;

@@ -15,7 +15,7 @@ using codec::member;
 using codec::Row;
 using codec::Value;
 
-/// A hundredth is finer than any screen shows.
+/// Rounds to a hundredth, finer than any screen.
 Value rounded(double value) {
   return {std::round(value * 100) / 100};
 }
@@ -34,7 +34,7 @@ using Gone = std::pair<std::string, std::int32_t>;
 constexpr Member kGoneMembers[] = {member<&Gone::first>("ns"), member<&Gone::second>("id")};
 constexpr Row kGone = {"", kGoneMembers};
 
-/// "#rrggbbaa": a list may have a thousand of them.
+/// "#rrggbbaa", because a list may have a thousand colours.
 Value as_hex(const icd::Color& color) {
   std::string text = "#";
   for (const double part : {color.r, color.g, color.b, color.a}) {
@@ -81,7 +81,7 @@ struct KindOf<std::vector<api::FlatPoint>> : OnlyWritten {
       .type = "array", .items = &KindOf<double>::schema, .most = 2 * api::DrawnMarker::kMostPoints};
 };
 
-/// Five numbers: a track has thousands of them.
+/// Five numbers, because a track has thousands of poses.
 template <>
 struct KindOf<api::TrackPose> : OnlyWritten {
   static Value write(const api::TrackPose& pose) {

@@ -11,33 +11,33 @@
 
 namespace adit::api {
 
-/// Seconds since 1970 on the gateway's clock.
+/// Seconds since 1970 by the gateway's clock.
 using Time = double;
 
-/// A marker as the Command Post was last told of it.
+/// A marker as last delivered.
 struct MarkerRow {
   DrawnMarker marker;
-  Time at = 0;  // when that was forwarded
+  Time at = 0;  // time of delivery
 
   static const codec::Row kRow;
 };
 
-/// The markers' scene, or what changed of it.
+/// The scene of markers, or its changes.
 struct MarkerChanges {
   std::uint64_t version = 0;
-  bool whole = true;           // all that there is; else what changed since the version that was asked for
-  std::uint64_t left_out = 0;  // there were more than are kept
+  bool whole = true;           // the whole scene; otherwise changes since the requested version
+  std::uint64_t left_out = 0;  // markers beyond the limit
   std::vector<MarkerRow> markers;
   std::vector<std::pair<std::string, std::int32_t>> gone;  // ns and id
 
   static const codec::Row kRow;
 };
 
-/// Where a robot was, in the frame "darpa".
+/// A robot's pose at one time, in the frame "darpa".
 struct TrackPose {
-  Time at = 0;  // when it was forwarded
+  Time at = 0;  // time of delivery
   icd::Point position;
-  double heading = 0;  // radians about z: 0 along x, left is more
+  double heading = 0;  // radians about z; 0 is along x, left is positive
 };
 
 struct Track {

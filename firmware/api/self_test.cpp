@@ -38,7 +38,7 @@ constexpr Member kTest[] = {
     member<&TestView::endpoints>("endpoints"),
 };
 
-/// Refuses a member that is none of these: a wrong name would try something else than was meant.
+/// Rejects other members, because a misspelt name would test the wrong values.
 void know(const codec::Field& field, std::span<const std::string_view> names) {
   if (!field.is<codec::Value::Object>()) return field.refuse_kind("an object");
   for (const auto& [name, value] : std::get<codec::Value::Object>(field.value()->is)) {

@@ -11,12 +11,12 @@
 
 namespace adit::api {
 
-/// One question of the Test about one endpoint.
+/// One step of the Test for one endpoint.
 struct TestStep {
   std::string name;
   std::string state = "waiting";
-  std::string said;    // what was found
-  std::string advice;  // what to do about it; "" where nothing is to be done
+  std::string said;    // result
+  std::string advice;  // what to do, or ""
 
   static const codec::Row kRow;
 };
@@ -30,39 +30,39 @@ struct TestedEndpoint {
 };
 
 struct TestView {
-  std::uint64_t number = 0;  // of tests since aditd started; 0 before the first
+  std::uint64_t number = 0;  // number of tests since aditd started
   bool running = false;
-  bool applied = true;    // the settings in use are tested; false: named values are
-  bool outdated = false;  // settings or tokens have changed since the test began
-  std::string course;     // whose addresses and tokens count where none were named; "": none's
-  std::vector<TestedEndpoint> endpoints;  // of the test that runs, or of the last; empty: none so far
+  bool applied = true;                    // tests the settings in use; otherwise named values
+  bool outdated = false;                  // settings or tokens have changed since the start of the test
+  std::string course;                     // source of addresses and tokens that were not named; "": no course
+  std::vector<TestedEndpoint> endpoints;  // of the present or last test; empty before the first
 
   static const codec::Row kRow;
 };
 
-/// What is tried instead of what is in use. Nothing of it is kept.
+/// Values to test instead of those in use. They are not stored.
 struct Candidate {
   struct Endpoint {
-    std::optional<std::string> address;  // nothing: the course's
+    std::optional<std::string> address;  // nullopt: the course's
     std::optional<std::uint16_t> port;
     std::optional<icd::BearerToken> token;
   };
-  std::optional<std::string> course;         // nothing: the one in use; "": none
-  std::optional<Endpoint> scoring, mapping;  // where only one is named, only that one is tried
+  std::optional<std::string> course;         // nullopt: the one in use; "": none
+  std::optional<Endpoint> scoring, mapping;  // if only one is named, only that one is tested
 
   bool is_applied() const { return !course && !scoring && !mapping; }
 };
 
-/// Of `{"course": "B", "scoring": {"address", "port", "token"}, "mapping": {...}}`, of which all may be left
-/// out.
+/// Reads `{"course": "B", "scoring": {"address", "port", "token"}, "mapping": {...}}`; all members are
+/// optional.
 icd::Checked<Candidate> read_candidate(const std::string& body);
 
-/// Tries each endpoint step by step, and never spends a report.
+/// Tests each endpoint step by step, without spending a report.
 class SelfTest {
  public:
   virtual ~SelfTest() = default;
   virtual TestView test() const = 0;
-  /// 409 where one runs already: that one's result is to be watched. 422 where there can be no such endpoint.
+  /// Error 409: a test is running; watch its result. 422: an impossible endpoint.
   virtual icd::Checked<void> begin_test(const Candidate& candidate) = 0;
 };
 

@@ -28,7 +28,8 @@ intake::Header session_cookie(const std::string& id, std::chrono::seconds age) {
   return cookie(access::kCookie, id, age);
 }
 
-constexpr std::chrono::hours kDeviceKept{400 * 24};  // no browser keeps one for longer (RFC 6265bis)
+constexpr std::chrono::hours kDeviceKept{400 * 24};  // the longest lifetime that browsers accept (RFC
+                                                     // 6265bis)
 
 intake::Answer slow_down(const access::Wait& wait) {
   const auto seconds = std::chrono::ceil<std::chrono::seconds>(wait.left).count();
@@ -45,7 +46,7 @@ intake::Answer wrong(std::string_view what) {
   return refusal(icd::Status::Forbidden, icd::sentence("that is not ", what));
 }
 
-/// A string member; "" where it is absent.
+/// A string member, or "" if absent.
 std::string text_in(const codec::Field& object, std::string_view name) {
   const codec::Field field = object.member(name);
   return field.is_absent() ? "" : std::string(field.text());
@@ -129,7 +130,7 @@ void SessionRoutes::log_in(const Call& call) {
 }
 
 intake::Answer SessionRoutes::logged_in(Role role, const Poster& poster) {
-  entrance_.sessions().end(poster.asker.session);  // what the browser had before, it has no longer
+  entrance_.sessions().end(poster.asker.session);  // a login ends the browser's earlier session
   const access::Session& session = entrance_.sessions().begin(
       keys_.draw(), keys_.draw(), role, {poster.guesser.address, poster.agent}, loop_.now());
   auto answer = object({{"role", json(std::string(name_of(role)))}, {"csrf", json(session.csrf.reveal())}});
@@ -176,8 +177,8 @@ icd::Checked<SessionRoutes::Change> SessionRoutes::read_change(const std::string
   });
 }
 
-/// There is nothing to guess: whoever comes while set-up is open may, and he who opened it sees at the box
-/// when it is closed.
+/// No secret is checked: while set-up is open, any client may set the password. The box shows when set-up
+/// closes.
 bool SessionRoutes::is_by_button(const Change& change) const {
   return keys_.set_up_open() && change.role == Role::Operator && change.current.empty() &&
          change.code.empty();
@@ -197,7 +198,7 @@ void SessionRoutes::change_password(const Call& call) {
     guesses_.succeeded(poster.guesser, Role::Operator);
     return set(*change, poster);
   }
-  if (!poster.asker.admitted) {  // somebody else set it while this was on its way, or it is the viewers'
+  if (!poster.asker.admitted) {  // another client was faster, or the password is the viewers'
     return poster.responder->answer(
         turned_away({icd::Status::Unauthorized, "log in: a password has been set"}));
   }

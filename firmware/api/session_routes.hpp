@@ -13,13 +13,12 @@
 
 namespace adit::api {
 
-/// Logging in and out, passwords, sessions, and the reset that ends them all: README.md has the routes.
+/// Login, logout, passwords, sessions, and the reset that ends them all. Routes: README.md.
 class SessionRoutes {
  public:
-  static constexpr int kMostChecks =
-      4;  // of passwords at once: each takes memory, and one after the other is checked
+  static constexpr int kMostChecks = 4;  // queued password checks: each needs memory, and one runs at a time
 
-  /// All outlive this, and whatever `keys` still answers.
+  /// All must outlive this object, and pending answers of `keys`.
   SessionRoutes(loop::Loop& loop, Entrance& entrance, Keys& keys, Setup& setup)
       : loop_(loop), entrance_(entrance), keys_(keys), setup_(setup) {}
 
@@ -32,32 +31,32 @@ class SessionRoutes {
   void reset(const Call& call);
 
  private:
-  /// Who posts, kept while a password is checked.
+  /// The client, stored while a password is checked.
   struct Poster {
     access::Guesser guesser;
     std::string agent;
     Asker asker;
     std::shared_ptr<intake::Responder> responder;
   };
-  /// What is asked of /adit/password.
+  /// A request to /adit/password.
   struct Change {
     access::Role role = access::Role::Operator;
-    std::optional<std::string> password;  // nothing: none any more
+    std::optional<std::string> password;  // nullopt: remove it
     std::string current, code;
   };
 
   Poster poster_of(const Call& call);
   static icd::Checked<Change> read_change(const std::string& body);
   intake::Answer logged_in(access::Role role, const Poster& poster);
-  /// The role of the browser that has been in, if it has.
+  /// The role of the client's known device, if any.
   std::optional<access::Role> known_as(const Poster& poster);
   bool is_by_button(const Change& change) const;
   void set(const Change& change, const Poster& poster);
 
-  /// Calls `done` with the role whose password it is; answers 429 instead if it is not to be checked now.
+  /// Passes the role of the password to `done`, or answers 429 if it may not be checked now.
   template <class Done>
   void check(const std::string& password, const Poster& poster, Done done);
-  /// False: it is answered 429.
+  /// False: answered with 429 or 503.
   bool may_try(const Poster& poster);
 
   loop::Loop& loop_;

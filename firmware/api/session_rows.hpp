@@ -10,7 +10,7 @@
 
 namespace adit::api {
 
-/// Somebody who is logged in.
+/// A logged-in user.
 struct SessionRow {
   std::uint64_t number = 0;
   access::Role role = access::Role::Viewer;
@@ -21,9 +21,9 @@ struct SessionRow {
   static const codec::Row kRow;
 };
 
-/// What a page asks first.
+/// The first question of a page.
 struct WhoAsks {
-  std::optional<access::Role> role;  // nothing: nobody who is known
+  std::optional<access::Role> role;  // nullopt: not logged in
   std::string csrf;                  // "": none
   bool first_start = false, set_up_open = false;
 

@@ -20,7 +20,7 @@ using codec::Value;
 
 constexpr std::size_t kShortestTeamToken = 8;
 
-/// What is posted to be saved or checked: settings that need not be good, and the version they began from.
+/// Settings to save or check, perhaps invalid, and the version they are based on.
 struct Posted {
   Value settings;
   std::string base;
@@ -42,7 +42,7 @@ icd::Checked<Posted> read_posted(const std::string& body, bool with_base) {
   return reading.outcome(std::move(posted));
 }
 
-/// What may not be saved here, though a file may say it: a port that is another one after each change.
+/// Errors that a file may have, but a saved form may not: port 0, which changes with each start.
 std::vector<settings::Error> unfit_to_save(const settings::Settings& now, const settings::Settings& next) {
   std::vector<settings::Error> errors;
   for (std::size_t i = 0; i < next.team.listen.size(); ++i) {
@@ -66,7 +66,7 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
     if (token.is<std::nullptr_t>()) return posted;
     posted.token = icd::BearerToken::parse(token.text());
     if (!posted.token) token.refuse("expected null or 1 to 256 visible ASCII characters");
-    // The others are the Command Post's to choose.
+    // The Command Post chooses the other tokens.
     if (posted.token && posted.name == "team" && posted.token->reveal().size() < kShortestTeamToken) {
       token.refuse("expected at least ", kShortestTeamToken,
                    " characters, because the token has the password's rights");

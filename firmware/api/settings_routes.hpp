@@ -7,10 +7,10 @@
 
 namespace adit::api {
 
-/// Settings, tokens and courses: README.md has the routes.
+/// Settings, tokens and courses. Routes: README.md.
 class SettingsRoutes {
  public:
-  /// `setup` outlives this.
+  /// `setup` must outlive this object.
   explicit SettingsRoutes(Setup& setup) : setup_(setup) {}
 
   intake::Answer shown() const;
@@ -21,7 +21,7 @@ class SettingsRoutes {
   intake::Answer switch_course(const std::string& body);
 
  private:
-  /// Answers with what changes.
+  /// Answers with the changes.
   intake::Answer apply(const settings::Settings& next);
 
   Setup& setup_;

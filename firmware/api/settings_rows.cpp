@@ -23,7 +23,7 @@ constexpr Schema kSettingsSchema = {.type = "object",
 constexpr Kind kSettings = {
     .write = codec::kind_of<Value>.write, .read = codec::kind_of<Value>.read, .schema = &kSettingsSchema};
 
-/// Whole or real, as the key is.
+/// A whole or a real number, by key.
 constexpr Kind kNumber = {.write = codec::kind_of<Value>.write,
                           .read = codec::kind_of<Value>.read,
                           .schema = &codec::KindOf<double>::schema};
@@ -50,7 +50,7 @@ struct KindOf<settings::Error> : KindOfRow<settings::Error, api::kFaultRow> {};
 template <>
 struct KindOf<settings::Change> : KindOfRow<settings::Change, api::kChangeRow> {};
 
-/// An object with a member for each.
+/// An object with a member for each token.
 template <>
 struct KindOf<std::vector<api::TokenRow>> {
   static Value write(const std::vector<api::TokenRow>& tokens) {

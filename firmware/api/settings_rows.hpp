@@ -10,7 +10,7 @@
 
 namespace adit::api {
 
-/// What a form needs to know of one key of the settings.
+/// Data about one settings key, for a form.
 struct KeyRow {
   std::string path, meaning, kind;
   bool required = false;
@@ -22,7 +22,7 @@ struct KeyRow {
   static const codec::Row kRow;
 };
 
-/// The settings and tokens that the box runs with, and what a form needs for them.
+/// The settings and tokens in use, and the data for their form.
 struct SetupView {
   codec::Value settings;
   std::string tag;
@@ -35,7 +35,7 @@ struct SetupView {
   static const codec::Row kRow;
 };
 
-/// What was changed.
+/// The changes.
 struct ChangesView {
   std::vector<settings::Change> changes;
   std::vector<std::string> warnings;
@@ -43,7 +43,7 @@ struct ChangesView {
   static const codec::Row kRow;
 };
 
-/// What a change would be, of the settings or of the box's own addresses, or what is wrong with it.
+/// The effect of a change of the settings or the box's addresses, or its errors.
 struct CheckView {
   std::vector<settings::Error> errors;
   ChangesView changes;
@@ -51,7 +51,7 @@ struct CheckView {
   static const codec::Row kRow;
 };
 
-/// Of all keys, in the order of their table.
+/// All keys, in table order.
 std::vector<KeyRow> key_rows();
 
 SetupView setup_view(const Setup& setup);

@@ -18,34 +18,32 @@ struct TokenRow {
   std::string warning = {};
 };
 
-/// The settings and tokens that the box runs with, and what changes them. A change that is answered is on the
-/// disk and about to be applied; after a reset the gateway restarts. Refused: 409 while another change is
-/// being applied, 503 if it cannot be written.
+/// The settings and tokens in use, and their changes. An answered change is on disk and about to be applied;
+/// after a reset the gateway restarts. Error: 409 while another change is being applied, 503 if it cannot be
+/// written.
 class Setup {
  public:
   virtual ~Setup() = default;
 
-  /// As they are written: the Command Post's own endpoints, even if a course is in use.
+  /// As written: the Command Post's own endpoints, even if a course is in use.
   virtual const settings::Settings& settings() const = 0;
-  /// Whether they were saved here; else they are those that the box was given.
+  /// Whether they were saved here; otherwise they were given.
   virtual bool saved() const = 0;
-  /// Whether a change was taken and is about to be applied; the other functions still give what was before.
+  /// Whether a change is about to be applied. The other functions return the earlier values until then.
   virtual bool applying() const = 0;
-  /// Why the last change is not in use (it was reverted, it is half done): a sentence, or "".
+  /// Why the last change is not in use (reverted, incomplete), as a sentence; or "".
   virtual const std::string& trouble() const = 0;
-  /// All tokens that there can be with these courses.
+  /// All possible tokens with these courses.
   virtual std::vector<TokenRow> tokens() const = 0;
-  /// What the operator should know before `next` is applied.
+  /// Warnings for the operator before `next` is applied.
   virtual std::vector<std::string> warnings(const settings::Settings& next) const = 0;
 
-  /// Nothing is applied if the box runs with these already, and they are on the disk.
+  /// Has no effect if these settings are in use and on disk.
   virtual icd::Checked<void> save(const settings::Settings& next) = 0;
-  /// `name` is one of tokens(). Nothing: the saved one is removed, and the one that the box was given is
-  /// used.
+  /// `name`: one of tokens(). std::nullopt removes the saved token, so that the given one is used.
   virtual icd::Checked<void> set_token(const std::string& name,
                                        const std::optional<icd::BearerToken>& token) = 0;
-  /// Back to how the box was given: no saved settings and tokens, no passwords, nobody logged in. The ledger
-  /// stays.
+  /// Returns to the given settings and tokens, removes passwords and ends all sessions. The ledger stays.
   virtual icd::Checked<void> reset() = 0;
 };
 

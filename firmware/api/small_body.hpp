@@ -11,7 +11,7 @@
 
 namespace adit::api {
 
-/// Gathers a body of at most so many bytes, and hands it over once it is whole.
+/// Collects a body of at most `most` bytes and passes it to `done` when complete.
 class SmallBody final : public intake::BodySink {
  public:
   SmallBody(std::shared_ptr<intake::Responder> responder, std::size_t most,

@@ -17,48 +17,48 @@ class Mosaic;
 
 namespace adit::api {
 
-/// Where the API gets its answers.
+/// The API's source of data.
 class Source {
  public:
   virtual ~Source() = default;
   virtual RunView view() const = 0;
-  /// Of all runs, those that are numbered above `after`, oldest first, at most `most`.
+  /// Reports of all runs with a number above `after`, oldest first, at most `most`.
   virtual std::vector<ReportRow> reports(std::int64_t after, std::size_t most) const = 0;
   virtual ReportCounts report_counts() const = 0;  // of all runs
   virtual std::optional<ReportDetail> report(std::int64_t number) const = 0;
   virtual const picture::Mosaic& map() const = 0;
-  /// What changed after version `since`.
+  /// Changes after version `since`.
   virtual MarkerChanges markers(std::uint64_t since) const = 0;
-  /// Where each robot was in this run after `since`.
+  /// The robots' poses in this run after `since`.
   virtual std::vector<Track> tracks(Time since) const = 0;
 };
 
 /// An operator's action on a report: see dispatch::Reports.
 enum class Action : std::uint8_t { Send, Hold, Withdraw, Settle, Resubmit };
 
-/// An operator's action on a message that was rejected.
+/// An operator's action on a rejected message.
 enum class RejectedAction : std::uint8_t { Send, Discard };
 
-/// What carries out the operator's actions.
+/// Executes the operator's actions.
 class Operator {
  public:
   virtual ~Operator() = default;
-  /// Gives the number of the report that it moved, or a sentence why not.
+  /// Returns the number of the affected report. An error is a sentence.
   virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) = 0;
-  /// Takes a report that the operator composed, like one that a client posts. Gives its number, or that of
-  /// the same report if there is one already; a sentence: it was not taken.
+  /// Accepts the operator's report like a client's. Returns its number, or that of an equal report. An error
+  /// is a sentence.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
-  /// A sentence: why not.
+  /// An error is a sentence.
   virtual std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) = 0;
-  /// The alarm of that id is quiet until it gets worse or comes again. A sentence: why not.
+  /// Silences an alarm until it gets worse or ends. An error is a sentence.
   virtual std::expected<void, std::string> acknowledge(const std::string& id) = 0;
-  /// Gives the new run's number.
+  /// Returns the new run's number.
   virtual std::int64_t begin_run() = 0;
-  /// Instead of a ledger that cannot be read; the gateway restarts. Refused: 409 if it can be read, 503 if
-  /// its files cannot be renamed. Gives their new name.
+  /// Replaces a ledger that cannot be read; the gateway restarts. Returns the new name of the old files.
+  /// Error: 409 if it can be read, 503 if its files cannot be renamed.
   virtual icd::Checked<std::string> begin_ledger() = 0;
-  /// All lights blink for so long. Gives until when.
+  /// Flashes all lights. Returns the end time.
   virtual Time identify(double seconds) = 0;
 };
 

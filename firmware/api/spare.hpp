@@ -11,49 +11,49 @@
 
 namespace adit::api {
 
-/// An export of another box, taken in and opened, and not used yet.
+/// Another box's export, imported and opened, not used yet.
 struct ExportRow {
-  std::string name, version;  // of the box: where the team found it; its Adit
-  double at = 0;              // when that box came to rest; seconds since 1970
+  std::string name, version;  // its address for the team; its Adit
+  double at = 0;              // start of its standby; seconds since 1970
   std::int64_t reports = 0, open = 0;
   std::string post;
   std::optional<icd::RunStatus> run;
-  std::vector<std::string> left_out = {};  // settings that are not known here: their paths
+  std::vector<std::string> left_out = {};  // paths of settings unknown here
   static const codec::Row kRow;
 };
 
-/// An export on the stick in the box, as its name tells of it.
+/// An export on the stick, described by its name.
 struct StickExportRow {
   std::string name;  // of the file
-  std::string box;   // where the team found the box that made it; "": the name does not say
+  std::string box;   // address of the exporting box; "": not in the name
   std::optional<double> at;
   static const codec::Row kRow;
 };
 
-/// What exports and the stick in the box have to do with each other.
+/// The stick in the box.
 struct StickRow {
-  std::string hindrance;  // why no export can be written to it; "": it can
-  std::string doing;      // "writing", "checking", "reading"; "": nothing
-  std::string refusal;    // why the last that was asked of it came to nothing; or ""
-  std::string written;    // the file of this box's export that is on it, read back and whole; or ""
+  std::string hindrance;                // why no export can be written, or ""
+  std::string doing;                    // "writing", "checking", "reading" or ""
+  std::string refusal;                  // why the last request failed, or ""
+  std::string written;                  // the verified file of this box's export, or ""
   std::vector<StickExportRow> exports;  // the latest first
   static const codec::Row kRow;
 };
 
-/// How the box stands to its spare, or to the box that it is the spare of.
+/// The box's state as a standby or a spare.
 struct SpareView {
   bool standby = false;
-  std::string why;              // it is on standby; "" if it is not
-  std::optional<double> since;  // when standby began; seconds since 1970
-  std::string code;             // of its export, in groups; "": there is none
-  bool asks_code = false;       // an export was taken in, and waits for its code
+  std::string why;              // why the box is a standby, or ""
+  std::optional<double> since;  // start of the standby; seconds since 1970
+  std::string code;             // of its export, in groups; or ""
+  bool asks_code = false;       // an imported export needs its code
   std::optional<ExportRow> taken_in;
-  bool takes_over = false;        // that is under way
-  std::optional<StickRow> stick;  // nothing: here no stick is written or read
+  bool takes_over = false;        // a takeover is in progress
+  std::optional<StickRow> stick;  // nullopt: sticks cannot be used here
   static const codec::Row kRow;
 };
 
-/// The export for a spare box, and its taking in. A refusal says why not.
+/// Export for a spare box, and import. A refusal says why not.
 class Spare {
  public:
   using Sealed = std::function<void(icd::Checked<std::string>)>;
@@ -61,21 +61,21 @@ class Spare {
 
   virtual ~Spare() = default;
   virtual SpareView spare() const = 0;
-  /// From now on the box takes nothing and sends nothing, until resume(), also after a power cut.
+  /// Makes the box a standby until resume(), across power cuts.
   virtual icd::Checked<void> stand_by() = 0;
   virtual icd::Checked<void> resume() = 0;
-  /// The export's file, later. Only on standby.
+  /// Passes the export's file to `done` later. Only on standby.
   virtual void export_to(Sealed done) = 0;
-  /// Writes it to the stick in the box: `done` once that is asked for. Only on standby.
+  /// Requests an export to the stick, then calls `done`. Only on standby.
   virtual void export_to_stick(Done done) = 0;
-  /// Takes in the export of that name on the stick, soon.
+  /// Requests the import of that export from the stick.
   virtual icd::Checked<void> take_from_stick(const std::string& name) = 0;
-  /// Takes in an export; one that was taken in before is forgotten.
+  /// Imports an export in place of an earlier one.
   virtual icd::Checked<void> take_in(std::string file) = 0;
-  /// Opens it by its code; `done`, later.
+  /// Opens the import with its code. Calls `done` later.
   virtual void open(const std::string& code, Done done) = 0;
   virtual icd::Checked<void> forget() = 0;
-  /// Soon the box goes on where the other one came to rest.
+  /// Starts the takeover.
   virtual icd::Checked<void> take_over() = 0;
 };
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kFileName = "export.adit-spare";
 
-/// An export as it comes. What is none is refused by its first bytes, and nothing more of it is kept.
+/// Receives an export. Rejects other data by its first bytes and discards the rest.
 class ReceivingExport final : public intake::BodySink {
  public:
   explicit ReceivingExport(std::function<void(icd::Checked<std::string>)> done) : done_(std::move(done)) {}

@@ -9,10 +9,10 @@
 
 namespace adit::api {
 
-/// A spare box, and the box that it is the spare of. README.md has the routes.
+/// Spare and standby. Routes: README.md.
 class SpareRoutes {
  public:
-  /// `spare` outlives this.
+  /// `spare` must outlive this object.
   explicit SpareRoutes(Spare& spare) : spare_(spare) {}
 
   intake::Answer shown() const;
@@ -27,7 +27,7 @@ class SpareRoutes {
   intake::Answer take_over(const std::string& body);
 
  private:
-  /// How it stands now, or why the action was refused.
+  /// The present state, or the refusal.
   intake::Answer after(const icd::Checked<void>& done) const;
 
   Spare& spare_;

@@ -12,7 +12,7 @@
 namespace adit::api {
 namespace {
 
-/// A body that goes to an Upload as it comes.
+/// Streams a body to an Upload.
 class Receiving final : public intake::BodySink {
  public:
   Receiving(std::unique_ptr<Upload> upload, std::uint64_t size, std::function<void(icd::Checked<void>)> done)
@@ -34,7 +34,7 @@ class Receiving final : public intake::BodySink {
   void on_gone() override { upload_.reset(); }
 
  private:
-  /// Else it is refused, and nothing more of it is taken.
+  /// False: rejected, and the rest is discarded.
   bool may_be_a_bundle() {
     const std::string why = update::not_a_bundle(head_, size_);
     if (why.empty()) return true;
@@ -43,13 +43,13 @@ class Receiving final : public intake::BodySink {
     return false;
   }
 
-  std::unique_ptr<Upload> upload_;  // null: it was refused
+  std::unique_ptr<Upload> upload_;  // null: rejected
   std::uint64_t size_;
   std::vector<std::uint8_t> head_;
   std::function<void(icd::Checked<void>)> done_;
 };
 
-/// The one flag that a body may have.
+/// The only possible flag of a body.
 icd::Checked<bool> flag_in(const std::string& body, std::string_view name) {
   if (body.empty()) return false;
   return read_body<bool>(body, [name](const codec::Field& root) {

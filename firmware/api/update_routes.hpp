@@ -8,14 +8,14 @@
 
 namespace adit::api {
 
-/// The update of the box: README.md.
+/// Updates of the box: README.md.
 class UpdateRoutes {
  public:
-  /// `updates` outlives this.
+  /// `updates` must outlive this object.
   explicit UpdateRoutes(Updates& updates) : updates_(updates) {}
 
   intake::Answer shown() const;
-  /// Takes a bundle as it comes.
+  /// Receives a bundle as a stream.
   std::unique_ptr<intake::BodySink> receive(const Call& call);
   intake::Answer install_from_stick(const std::string& body);
   intake::Answer restart(const std::string& body);
@@ -23,7 +23,7 @@ class UpdateRoutes {
   intake::Answer stay();
 
  private:
-  /// How it stands now, or why the action was refused.
+  /// The present state, or the refusal.
   intake::Answer after(const icd::Checked<void>& done) const;
 
   Updates& updates_;

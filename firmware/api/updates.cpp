@@ -8,7 +8,7 @@ using codec::Member;
 using codec::Row;
 using update::LastUpdate;
 
-constexpr auto kStages = std::span(update::kStageWords).subspan(1);  // but for none
+constexpr auto kStages = std::span(update::kStageWords).subspan(1);  // without the empty one
 constexpr std::string_view kDoing[] = {"receiving", "checking", "installing", "restarting"};
 
 constexpr Member kLastMembers[] = {
@@ -19,7 +19,7 @@ constexpr Member kLastMembers[] = {
 };
 constexpr Row kLast = {"", kLastMembers};
 
-/// null where there was none.
+/// null without an update.
 struct LastOrNull {
   static codec::Value write(const LastUpdate& last) {
     return last.stage == update::Stage::None ? codec::Value{} : write_row(kLast, &last);

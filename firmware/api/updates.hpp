@@ -13,48 +13,48 @@
 
 namespace adit::api {
 
-/// The box's version, and how an update of it stands.
+/// The box's version and the state of its update.
 struct UpdateView {
-  bool managed = false;  // it can be updated here
-  std::string why;       // why not; "" where it can
+  bool managed = false;  // whether it can be updated here
+  std::string why;       // why not, or ""
   update::Running running;
-  std::string doing;            // "": nothing
+  std::string doing;            // "": idle
   std::optional<int> progress;  // per cent of receiving and installing
-  std::string refusal;          // why the last one was not installed; "" where it was, or there was none
+  std::string refusal;          // why the last request failed, or ""
   update::LastUpdate last;
-  bool trial = false;  // what runs was installed last, and has not been healthy for long yet
-  std::string stray;   // which other slot runs than the one that was good last, and why; "": none does
+  bool trial = false;  // the running version is on trial
+  std::string stray;   // why an unexpected slot runs, with its name, or ""
   std::optional<update::Offer> stick;
-  std::string stick_why;  // why what is on a stick cannot be installed; "" where there is none
+  std::string stick_why;  // why the stick's files cannot be installed, or ""
 
   static const codec::Row kRow;
 };
 
-/// A bundle on its way in. Dropping it before finish() forgets it.
+/// A bundle being received. Destroying it before finish() discards it.
 class Upload {
  public:
   virtual ~Upload() = default;
-  /// Takes a piece, valid during the call. False: no more until `resume` (Updates::receive()) is called.
+  /// Accepts a piece, valid during the call. False: pause until `resume` (Updates::receive()).
   virtual bool write(std::span<const std::uint8_t> piece) = 0;
-  /// It is whole: asks for its installation once it is on the disk, and says whether that could be asked for.
+  /// Ends the upload. Once the bundle is on disk, requests its installation and passes the result to `done`.
   virtual void finish(std::function<void(icd::Checked<void>)> done) = 0;
 };
 
-/// What updates the box. A refusal says why not.
+/// Updates the box. A refusal says why not.
 class Updates {
  public:
   virtual ~Updates() = default;
   virtual UpdateView update() const = 0;
-  /// Begins to receive a bundle of `size` bytes; one at a time. `again`: also the version that runs.
+  /// Starts to receive a bundle of `size` bytes, one at a time. `again`: allows the running version.
   virtual icd::Checked<std::unique_ptr<Upload>> receive(std::uint64_t size, bool again,
                                                         std::function<void()> resume) = 0;
-  /// Installs what the USB stick has.
+  /// Installs the stick's update.
   virtual icd::Checked<void> install_from_stick(bool again) = 0;
-  /// Restarts the box. Unless `anyway`, not while a report is under way.
+  /// Restarts the box. Rejected while a report is in flight, unless `anyway`.
   virtual icd::Checked<void> restart(bool anyway) = 0;
-  /// Where UpdateView::stray says so: restarts the box into the slot that was good last.
+  /// If UpdateView::stray is set: restarts into the proven slot.
   virtual icd::Checked<void> go_back(bool anyway) = 0;
-  /// Where UpdateView::stray says so: the slot that runs is the one to keep.
+  /// If UpdateView::stray is set: makes the running slot the proven one.
   virtual icd::Checked<void> stay() = 0;
 };
 

@@ -10,12 +10,12 @@ namespace {
 
 constexpr std::size_t kBlock = 512;
 
-/// The header of a file, one block: fields at fixed places (POSIX.1-1988 10.1.1).
+/// A file's header block with fields at fixed places (POSIX.1-1988 10.1.1).
 class Header {
  public:
   void text(std::size_t at, std::string_view text) { std::ranges::copy(text, block_.begin() + at); }
 
-  /// `digits` octal digits, and the zero byte that is there already.
+  /// `digits` octal digits before the existing zero byte.
   void octal(std::size_t at, std::size_t digits, std::uint64_t number) {
     for (std::size_t i = digits; i > 0; --i, number /= 8) {
       block_[at + i - 1] = static_cast<char>('0' + number % 8);
@@ -23,7 +23,7 @@ class Header {
   }
 
   std::string_view finish() {
-    std::ranges::fill_n(block_.begin() + kSum, 8, ' ');  // as which the checksum counts itself
+    std::ranges::fill_n(block_.begin() + kSum, 8, ' ');  // the checksum counts its own field as spaces
     std::uint64_t sum = 0;
     for (const char byte : block_) sum += static_cast<std::uint8_t>(byte);
     block_[kSum + 6] = '\0';

@@ -7,14 +7,14 @@
 
 namespace adit::api {
 
-/// A tar archive of plain files (POSIX.1-1988 ustar), each of mode 0600 and of nobody in particular.
+/// A tar archive of plain files (POSIX.1-1988 ustar) with mode 0600 and no owner.
 class Ustar {
  public:
   static constexpr std::size_t kLongestName = 100;
 
-  /// `name`: a path without a leading slash, of at most kLongestName bytes; `modified`: seconds since 1970.
+  /// `name`: a relative path of at most kLongestName bytes. `modified`: seconds since 1970.
   void add(std::string_view name, std::string_view body, std::int64_t modified);
-  /// The whole archive, once, after the last file.
+  /// Returns the whole archive. Call once, after the last file.
   icd::ChunkedBytes finish();
 
  private:

@@ -8,7 +8,7 @@
 namespace adit::cli {
 namespace {
 
-/// Adit's answer to a decision on a report: `report` is the number of the new one, if there is one.
+/// Adit's answer to a decision. `report`: number of the new report, if any.
 struct DecidedReport {
   std::int64_t report = 0;
   static const codec::Row kRow;
@@ -21,7 +21,7 @@ struct BegunRun {
 };
 constexpr codec::Member kBegun[] = {codec::member<&BegunRun::run>("run")};
 
-/// The end of the sentence "report 5 is queued", by the subcommand.
+/// The end of the sentence "report 5 is queued", by subcommand.
 struct Decision {
   std::string_view verb;
   const char* done;
@@ -32,7 +32,7 @@ constexpr Decision kDecisions[] = {{"send", " is queued"},
                                    {"settle", " is settled"},
                                    {"resubmit", " is sent again as report "}};
 
-/// Asks the operator about a report in doubt.
+/// Asks the operator for confirmation if the report is in doubt.
 Result<void> confirm_sending(const Call& call, const std::string& target, std::int64_t number) {
   const auto told = fetch<api::ReportDetail>(call.adit, target);
   if (!told) return std::unexpected(told.error());

@@ -11,7 +11,7 @@
 namespace adit::cli {
 namespace {
 
-/// The option's value, or else the variable's; "" if neither is set.
+/// The option's value, or else the environment variable's, or "".
 std::string given(const std::string& option, const char* variable) {
   const char* const value = std::getenv(variable);
   return option.empty() && value != nullptr ? value : option;
@@ -40,7 +40,7 @@ std::expected<settings::Address, std::string> address_of(const Options& options)
                   : address_in(options.settings, "");
 }
 
-/// For an answer that is not 200.
+/// For an answer other than 200.
 Failure failure_of(const Adit& adit, const HttpReply& reply) {
   if (reply.status == 401)
     return {Exit::Unable, "Adit rejects the token in " + adit.token.file, reply.status};

@@ -16,10 +16,10 @@
 namespace adit::cli {
 
 inline constexpr std::chrono::milliseconds kReadPatience{3000};
-/// An action is on the disk before it is answered.
+/// Longer, because an action is on disk before its answer.
 inline constexpr std::chrono::milliseconds kActionPatience{10000};
 
-/// The Adit that the options mean: its address and the token for it.
+/// Address and token of the Adit that the options select.
 struct Adit {
   settings::Address address;
   Token token;
@@ -27,48 +27,48 @@ struct Adit {
 
 /// Why a command failed.
 struct Failure {
-  Exit exit = Exit::Unable;  // Attention: Adit rejected the action, or the thing asked for does not exist
+  Exit exit = Exit::Unable;  // Attention: Adit rejected the action, or its target does not exist
   std::string sentence;
-  int status = 0;  // of Adit's answer; 0: there was none
+  int status = 0;  // of Adit's answer; 0: no answer
 };
 template <class T>
 using Result = std::expected<T, Failure>;
 
 std::unexpected<Failure> failed(std::string sentence, Exit exit = Exit::Unable);
 
-/// What a command that asks Adit works with.
+/// Context of a command that asks Adit.
 struct Call {
   const Adit& adit;
   const Options& options;
   const Console& console;
 };
 
-/// Without a token, the sentence says how to name one.
+/// If there is no token, the error says how to name one.
 Result<Adit> adit_of(const Options& options);
 
-/// The body of a 200.
+/// The body of an answer 200.
 Result<std::string> get(const Adit& adit, const std::string& target,
                         std::chrono::milliseconds within = kReadPatience);
 
 struct Post {
   std::string target;
-  std::string check;      // the command that tells whether an action was done whose answer was lost
-  std::string body = "";  // JSON, or nothing
+  std::string check;      // command that shows whether an action was done, if its answer is lost
+  std::string body = "";  // JSON or ""
   std::chrono::milliseconds within = kActionPatience;
   std::string content_type = "application/json";
 };
-/// The body of an action's 200.
+/// The body of an action's answer 200.
 Result<std::string> post(const Adit& adit, Post action);
 
-/// The sentence that an error's body is (a JSON string); "" if it is none.
+/// The sentence in an error's body (a JSON string), or "".
 std::string sentence_in(const std::string& body);
 
 Result<codec::Value> json_in(const Adit& adit, std::string_view body);
-/// Reads the answer into a row of that kind, or says why this Adit does not write such an answer.
+/// Reads the answer into a row of that kind. Error: not an answer of this Adit.
 Result<void> read_into(const Adit& adit, const Result<codec::Value>& answer, const codec::Kind& kind,
                        void* row);
 
-/// What Adit answers, and the row (or the rows) that it is.
+/// Adit's answer as JSON, and as a row or rows.
 template <class Row>
 struct Told {
   std::string json;
@@ -87,13 +87,13 @@ Result<Told<Row>> fetch(const Adit& adit, const std::string& target) {
   return told<Row>(adit, get(adit, target));
 }
 
-/// How long, and how often, Adit is asked for the outcome of an action.
+/// Time limit and interval of questions for an action's outcome.
 struct Waiting {
   std::chrono::milliseconds within, every;
-  bool may_be_away = false;  // Adit need not answer meanwhile
-  const char* late = "";     // the sentence if the time is over
+  bool may_be_away = false;  // Adit need not answer until then
+  const char* late = "";     // the error at the time limit
 };
-/// Fetches the row until `is_over` says so of it.
+/// Fetches the row until `is_over` returns true for it.
 template <class Row, class IsOver>
 Result<Told<Row>> fetch_until(const Adit& adit, const std::string& target, const Waiting& waiting,
                               IsOver is_over) {
@@ -107,7 +107,7 @@ Result<Told<Row>> fetch_until(const Adit& adit, const std::string& target, const
   }
 }
 
-/// With --json, `json` (without the end of its line), else `text`.
+/// With --json `json` (without its newline), else `text`.
 Outcome said(const Call& call, const std::string& json, const std::string& text, Exit exit = Exit::Fine);
 
 /// Shows a row of Adit's. The exit status is 1 unless `is_fine`.
@@ -121,18 +121,18 @@ Result<Outcome> show(
               is_fine(answer->row) ? Exit::Fine : Exit::Attention);
 }
 
-/// Does an action, and prints Adit's JSON or `done`.
+/// Executes an action, and prints Adit's JSON or `done`.
 Result<Outcome> act(const Call& call, Post action, const std::string& done);
 
-/// Does an action for each number of the options, as far as Adit can be asked.
+/// Executes an action for each number in the options, until Adit cannot be asked.
 Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on);
 
-/// Nothing if --yes is given or the operator confirms. `why` is the reason to ask. A failure says that it was
-/// not done: `undone` if the operator says no.
+/// Succeeds with --yes, or if the operator confirms. `why`: the reason for the question. `undone`: the error
+/// if the operator declines.
 Result<void> confirm(const Options& options, const Console& console, const std::string& why,
                      const std::string& question, const std::string& undone = "it was not done");
 
-/// The failure on standard error.
+/// Prints the failure on standard error.
 Outcome unable(const Failure& failure);
 
 }  // namespace adit::cli

@@ -39,7 +39,7 @@ std::string lines_of(const settings::Panel& panel) {
   return lines;
 }
 
-/// The team's own subnets, as far as settings and interfaces tell.
+/// The team's subnets, as far as settings and interfaces show.
 std::vector<settings::Subnet> team_subnets(const settings::Team& team,
                                            const std::vector<host::Interface>& interfaces) {
   std::vector<settings::Subnet> subnets;
@@ -58,7 +58,7 @@ std::vector<settings::Subnet> team_subnets(const settings::Team& team,
   return subnets;
 }
 
-/// Warnings. aditd accepts the settings.
+/// Warnings about settings that aditd accepts.
 std::vector<std::string> warnings_of(const Options& options, const Settings& settings) {
   std::vector<std::string> sentences;
   const auto secrets =
@@ -86,7 +86,7 @@ std::vector<std::string> warnings_of(const Options& options, const Settings& set
   return sentences;
 }
 
-/// What the settings come to: that the file is right does not yet say that it is the right file.
+/// Shows the settings, so that a user sees whether a valid file is the right one.
 std::string summary(const std::string& file, const Settings& settings,
                     const std::vector<std::string>& warnings, bool colour) {
   const settings::CommandPost& post = settings.command_post;

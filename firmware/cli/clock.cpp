@@ -12,13 +12,13 @@
 namespace adit::cli {
 namespace {
 
-constexpr double kAsHere = 2;  // seconds
+constexpr double kAsHere = 2;  // seconds of difference that count as equal
 
 double time_here() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
 }
 
-/// By clock::Source.
+/// In the order of clock::Source.
 constexpr std::string_view kSetBy[] = {"not set since boot",          "continued from the last known time",
                                        "set by the robots' stamps",   "set by the Command Post's answers",
                                        "set by the box's clock chip", "set by an operator",

@@ -9,10 +9,10 @@
 
 namespace adit::cli {
 
-/// The whole of `adit`: `words` are its arguments.
+/// Runs `adit` with the arguments `words`.
 Outcome run(std::span<const std::string_view> words, const Console& console = {});
 
-/// The command of a line that has been read, neither help nor the version.
+/// Runs the command of a parsed line, except help and version.
 Outcome run(const Options& options, const Console& console);
 
 }  // namespace adit::cli

@@ -9,15 +9,15 @@
 
 namespace adit::cli {
 
-/// What stands behind a command, or behind its word.
+/// The arguments of a command or subcommand.
 struct Argument {
-  const char* shown;  // in the help, and for completion: "NUMBER..."
+  const char* shown;  // in help and completion: "NUMBER..."
   const char* noun;   // "a report's number"
   std::size_t least, most;
-  std::int64_t largest;  // of a number; 0: it is a text
+  std::int64_t largest;  // of a number; 0: a text
 };
 
-/// The function of a command: one that asks Adit, or one that does not.
+/// The function of a command, with or without a connection to Adit.
 struct Run {
   using Asks = Result<Outcome> (*)(const Call& call);
   using Alone = Result<Outcome> (*)(const Options& options, const Console& console);
@@ -29,28 +29,28 @@ struct Run {
   Alone alone = nullptr;
 };
 
-/// What a command does at a word of its own; "": without one.
+/// A subcommand; `word` "": without one.
 struct Form {
   const char* word;
   Run run;
   Argument argument;
   const char* sentence;
-  std::string_view options = "";  // that other commands do not take
-  bool usual = false;             // also if the line has no word
+  std::string_view options = "";  // taken by no other command
+  bool usual = false;             // the default if the line has no word
 };
 
-/// A command: what reads, runs, explains, documents and completes it comes from here.
+/// A command, as data for parsing, running, help, documents and completion.
 struct CommandRow {
   const char* name;
   const char* sentence;
-  std::span<const Form> forms;  // none: it is help
+  std::span<const Form> forms;  // empty: help
   const char* details;          // as `about` of command_line::Program
-  const char* fine;             // what exit status 0 means
-  const char* attention;        // and 1; "": it is none of its
+  const char* fine;             // meaning of exit status 0
+  const char* attention;        // meaning of exit status 1; "": not used
   const char* examples;
 };
 
-/// The last is help.
+/// The last one is help.
 std::span<const CommandRow> commands();
 
 }  // namespace adit::cli

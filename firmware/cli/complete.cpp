@@ -13,12 +13,12 @@
 namespace adit::cli {
 namespace {
 
-/// A word that may stand there, and what it is.
+/// A possible word and its meaning.
 struct Candidate {
   std::string word, what;
 };
 
-/// Whether no shell takes it for more than a word.
+/// Whether the word has no special characters of shells.
 bool is_plain(std::string_view word) {
   return !word.empty() && word.find_first_not_of(
                               "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
@@ -41,7 +41,7 @@ std::string json_of(const std::vector<Candidate>& all) {
   return codec::write_json({list});
 }
 
-/// The words that `candidates_of` finds in Adit's answer.
+/// Prints the words that `candidates_of` finds in Adit's answer.
 template <class Row>
 Result<Outcome> listed(const Call& call, const char* target,
                        const std::function<std::vector<Candidate>(const Row&)>& candidates_of) {
@@ -97,7 +97,7 @@ Result<Outcome> complete_runs(const Call& call) {
   });
 }
 
-/// Each with the beginning of its meaning.
+/// Prints each key with the beginning of its meaning.
 Result<Outcome> complete_keys(const Options& options, const Console& /*console*/) {
   const auto rows = api::key_rows();
   std::vector<Candidate> all;

@@ -6,13 +6,13 @@
 
 namespace adit::cli {
 
-/// Who reads what is printed, and may be asked.
+/// The terminal or other receiver of the output.
 struct Console {
   bool colour = false;
   bool screen = false;  // standard output is a terminal
-  /// What takes a while gives its lines here as they come, and the rest in the Outcome.
+  /// Prints lines of a long command at once; the rest goes into the Outcome.
   std::function<void(const std::string&)> print = [](const std::string&) {};
-  /// Whether a question is answered with yes; nothing: there is nobody to ask.
+  /// Whether the user answers yes; std::nullopt: no user.
   std::function<std::optional<bool>(const std::string&)> ask = [](const std::string&) {
     return std::nullopt;
   };

@@ -6,24 +6,24 @@
 
 namespace adit::cli {
 
-/// A server-sent event (HTML Living Standard 9.2) as Adit writes one: its data is one line.
+/// A server-sent event (HTML Living Standard 9.2) in Adit's form, with one line of data.
 struct Event {
-  std::string type;  // "": it has no `event:` line
+  std::string type;  // "": without an `event:` line
   std::string data;
 };
 
-/// The events of a stream that comes in pieces.
+/// Reads events from a stream in pieces.
 class EventReader {
  public:
   void feed(std::string_view piece) { unread_ += piece; }
-  /// The next whole one that has data.
+  /// The next complete event with data, or std::nullopt.
   std::optional<Event> next();
-  /// Bytes that have come of one that is not whole.
+  /// Bytes of an incomplete event.
   std::size_t waiting() const { return unread_.size(); }
 
  private:
   std::string unread_;
-  std::size_t searched_ = 0;  // of unread_, in which no event ends
+  std::size_t searched_ = 0;  // searched bytes of unread_ without an event's end
 };
 
 }  // namespace adit::cli

@@ -43,7 +43,7 @@ std::optional<Look> Follower::open() {
   return std::nullopt;
 }
 
-/// One that has told something is asked for again at once: only where that fails it is known to be away.
+/// After a stream that had events, asks again at once. Only if that fails is Adit away.
 std::optional<Look> Follower::ended(const HttpStream::Ended& end) {
   if (end.status != 0) {
     stream_.reset();

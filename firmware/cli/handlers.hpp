@@ -4,14 +4,14 @@
 
 namespace adit::cli {
 
-// What the commands and subcommands of commands.cpp do.
+// The functions of the commands in commands.cpp.
 
 Result<Outcome> status(const Call& call);
 Result<Outcome> watch(const Call& call);
 
 Result<Outcome> list_reports(const Call& call);
 Result<Outcome> show_report(const Call& call);
-/// send, hold, withdraw, settle and resubmit. Asks before it sends a report in doubt.
+/// send, hold, withdraw, settle and resubmit. Asks for confirmation to send a report in doubt.
 Result<Outcome> decide_on_reports(const Call& call);
 Result<Outcome> export_reports(const Call& call);
 
@@ -31,12 +31,12 @@ Result<Outcome> check_settings(const Call& call);
 Result<Outcome> apply_settings(const Call& call);
 Result<Outcome> set_setting(const Call& call);
 Result<Outcome> export_settings(const Call& call);
-/// Lists the courses, or switches to one.
+/// Lists the courses, or selects one.
 Result<Outcome> course(const Call& call);
 
 Result<Outcome> identify(const Call& call);
 Result<Outcome> show_network(const Call& call);
-/// confirm and revert: waits for the outcome.
+/// confirm and revert. Waits for the outcome.
 Result<Outcome> decide_on_network(const Call& call);
 Result<Outcome> show_clock(const Call& call);
 Result<Outcome> set_clock(const Call& call);
@@ -49,9 +49,9 @@ Result<Outcome> resume_service(const Call& call);
 Result<Outcome> begin_ledger(const Call& call);
 Result<Outcome> dump_ledger(const Options& options, const Console& console);
 
-/// Begins the test, or joins one that runs, and prints each step as it ends.
+/// Starts the test, or follows a running one, and prints each finished step.
 Result<Outcome> test(const Call& call);
-/// Shows the update; or installs one from a file or the stick, and waits for its end; or restarts the box.
+/// Shows the update, or installs one from a file or the stick and waits for its end, or restarts the box.
 Result<Outcome> update(const Call& call);
 
 Result<Outcome> check(const Options& options, const Console& console);

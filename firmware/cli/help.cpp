@@ -15,15 +15,15 @@ using command_line::Row;
 constexpr const char* kUnable =
     "\n  2  if Adit cannot be reached, or the token, a file or the command line is wrong\n";
 
-/// Options that most commands take.
+/// Options of most commands.
 constexpr std::string_view kUsual = "--at --settings --token-file --json --version --help";
 
-/// Rows that are only read by people, before the options.
+/// Inserts rows of help text before the options.
 void put_first(Program& program, const std::vector<Row>& rows) {
   program.rows.insert(program.rows.begin(), rows.begin(), rows.end());
 }
 
-/// Leaves the options that the command takes. That of the settings is a word of check's own.
+/// Removes options that the command does not take. --settings has another meaning in check.
 void limit_to(Program& program, const CommandRow& command) {
   const bool checks = command.name == std::string_view("check");
   std::erase_if(program.rows, [&](const Row& row) {
@@ -32,8 +32,7 @@ void limit_to(Program& program, const CommandRow& command) {
   });
 }
 
-/// "with export: " or "without a subcommand: ", where not all words of a command take an option; "" where
-/// they do.
+/// "with export: " or "without a subcommand: " if only some forms take an option; "" if all do.
 std::string takers_of(const CommandRow& command, const char* option) {
   std::string words;
   bool by_all = true;
@@ -78,7 +77,7 @@ void explain_all(Program& program) {
       "  /var/lib/adit/secrets        team.token or else scoring.token; without them, /etc/adit/secrets");
 }
 
-/// `sentences` keeps what the program's rows point to.
+/// `sentences` owns texts that the program's rows refer to.
 void explain(Program& program, const CommandRow& command, std::deque<std::string>& sentences) {
   program.name.append(" ").append(command.name);
   program.usage = usage_of(command);

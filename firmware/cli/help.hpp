@@ -6,10 +6,10 @@
 
 namespace adit::cli {
 
-/// What `adit COMMAND --help` prints; null: `adit --help`.
+/// The text of `adit COMMAND --help`; null: of `adit --help`.
 [[gnu::cold]] std::string help_about(const CommandRow* command);
 
-/// The line below an error of a command line: which help to read.
+/// The line after an error that names the right help.
 [[gnu::cold]] std::string see_help(const CommandRow* command);
 
 }  // namespace adit::cli

@@ -21,7 +21,7 @@ std::string reason(int error) {
   return std::system_category().message(error);
 }
 
-/// 0, or the errno; ETIMEDOUT past the deadline.
+/// 0 or errno; ETIMEDOUT at the deadline.
 int wait_for(int fd, short events, Clock::time_point deadline) {
   while (true) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -45,12 +45,12 @@ uplink::Request upstream(HttpRequest request) {
   return asked;
 }
 
-/// The whole answer, or why there is none.
+/// The whole answer, or an error.
 std::expected<HttpReply, std::string> exchanged(int fd, uplink::Exchange& exchange,
                                                 Clock::time_point deadline) {
   while (true) {
     if (exchange.wants_to_write())
-      exchange.write(fd);  // who hangs up while he is written to may have said why
+      exchange.write(fd);  // after a write error, the peer's answer may still tell the reason
     switch (exchange.read(fd)) {
       case uplink::Exchange::Answer::Whole:
         return exchange.take_answer();
@@ -110,7 +110,7 @@ std::expected<std::unique_ptr<HttpStream>, std::string> HttpStream::ask(const se
   const icd::BearerToken token = request.token;
   auto stream = std::make_unique<HttpStream>(*std::move(fd), endpoint, token, upstream(std::move(request)));
   while (stream->exchange_.wants_to_write()) {
-    if (stream->exchange_.write(stream->fd()) != 0) break;  // reading tells why
+    if (stream->exchange_.write(stream->fd()) != 0) break;  // read() returns the reason
     if (!stream->exchange_.wants_to_write()) break;
     if (const int error = wait_for(stream->fd(), POLLOUT, deadline); error != 0) {
       return std::unexpected(cannot_reach(address, reason(error)));

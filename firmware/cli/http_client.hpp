@@ -19,40 +19,39 @@ struct HttpRequest {
   enum class Method : std::uint8_t { Get, Post } method = Method::Get;
   std::string target;  // "/adit/run"
   icd::BearerToken token;
-  std::string body = "";  // of a POST: JSON, or nothing
+  std::string body = "";  // of a POST: JSON or ""
   std::string content_type = "application/json";
 };
 
 using HttpReply = uplink::Answered;
 
 struct NoReply {
-  std::string sentence;  // names the address
-  bool sent = false;     // the request may have arrived all the same
+  std::string sentence;  // with the address
+  bool sent = false;     // the request may have arrived
 };
 
-/// One blocking request (RFC 9112) on a connection of its own: the whole reply, or why there is none. All of
-/// it within `within`.
+/// One blocking request (RFC 9112) on its own connection, with its whole reply, within `within`.
 std::expected<HttpReply, NoReply> http_ask(const settings::Address& address, HttpRequest request,
                                            std::chrono::milliseconds within);
 
-/// A request whose answer goes on for as long as both like.
+/// A request with an endless answer.
 class HttpStream {
  public:
-  /// Asks within that time; the answer is still to come. A sentence that names the address: why it could not.
+  /// Sends the request within `within`. An error names the address.
   static std::expected<std::unique_ptr<HttpStream>, std::string> ask(const settings::Address& address,
                                                                      HttpRequest request,
                                                                      std::chrono::milliseconds within);
   HttpStream(loop::FileDescriptor fd, const uplink::Endpoint& endpoint, const icd::BearerToken& token,
              uplink::Request request);
 
-  /// Something comes there, or its end.
+  /// Readable if there is data or the end.
   int fd() const { return fd_.get(); }
 
   struct Ended {
-    int status = 0;  // with which it was answered in the place of 200; 0: it was, or not at all
+    int status = 0;  // of an answer other than 200; 0: the answer was 200, or absent
     std::string why;
   };
-  /// What has come of a 200's body since the last call, without waiting.
+  /// The new data of a 200's body. Does not block.
   std::expected<std::string, Ended> read();
 
  private:

@@ -24,12 +24,12 @@ bool has_escapes() {
   return term != nullptr && std::string_view(term) != "" && std::string_view(term) != "dumb";
 }
 
-/// Elsewhere the bytes of a character could steer it.
+/// On other terminals the bytes of a character could be control codes.
 bool is_utf8_terminal() {
   return std::setlocale(LC_CTYPE, "") != nullptr && nl_langinfo(CODESET) == std::string_view("UTF-8");
 }
 
-/// A line from whoever is at the terminal.
+/// Asks the user at the terminal.
 std::optional<bool> ask(const std::string& question) {
   if (!is_terminal(STDIN_FILENO) || !is_terminal(STDERR_FILENO)) return std::nullopt;
   std::fprintf(stderr, "%s [y/N] ", question.c_str());

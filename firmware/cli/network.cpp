@@ -19,7 +19,7 @@ std::string side_line(const char* name, const std::string& interface, const std:
               gateway ? "  gateway " + settings::ipv4_text(*gateway) : "");
 }
 
-/// The addresses of both sides; `own`: of the team's.
+/// The addresses of both sides. `own`: the team's address.
 std::string sides_of(const network::Numbers& numbers, const std::string& own, const std::string& team = "",
                      const std::string& post = "") {
   const std::string mode(network::name_of(numbers.mode));
@@ -62,7 +62,7 @@ Result<Outcome> decide_on_network(const Call& call) {
   if (!accepted) return std::unexpected(accepted.error());
   const auto told = fetch_until<api::NetworkView>(call.adit, "/adit/network", kConfirming,
                                                   [](const api::NetworkView& view) { return !view.pending; });
-  // After a revert the box may no longer have the address that adit asked.
+  // After a revert, the box may no longer have the address that was asked.
   if (!told && !confirms) return said(call, "{}", "the box is returning to the old addresses\n");
   if (!told) return std::unexpected(told.error());
   const api::NetworkView& view = told->row;

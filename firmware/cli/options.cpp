@@ -39,7 +39,7 @@ std::vector<std::string_view> names_of_commands() {
   return names;
 }
 
-/// Takes the words that are no options, one by one.
+/// Reads the words that are not options.
 class Words {
  public:
   explicit Words(Options& options) : options_(options) {}
@@ -111,7 +111,7 @@ class Words {
     return options_.word().empty() ? missing : missing + " after " + options_.word();
   }
 
-  /// Two options of which the command takes only one.
+  /// The error about two options that exclude each other.
   Wrong disagreement() const {
     if (options_.csv && options_.json) return "give --csv or --json, not both";
     if (options_.command->name == std::string_view("spare")) return spare_disagreement();
@@ -125,7 +125,7 @@ class Words {
     return std::nullopt;
   }
 
-  /// An export is in a file here, or on the box's stick, where the file is named only to tell it from others.
+  /// An export is in a local file, or on the box's stick, where a name only selects it.
   Wrong spare_disagreement() const {
     const bool takes_file = options_.form->argument.most > 0, has_file = !options_.argument().empty();
     if (takes_file && !options_.stick && !has_file)
@@ -144,7 +144,7 @@ class Words {
   std::size_t count_ = 0;  // of arguments
 };
 
-/// An endpoint's address, to be tried.
+/// Reads an endpoint's address for a test.
 template <auto member>
 Wrong take_endpoint(Trial& trial, const std::string& value) {
   auto address = parse_address(value);

@@ -13,11 +13,11 @@
 
 namespace adit::cli {
 
-/// What aditd is given with the box, and what it keeps that was saved since and then counts.
+/// aditd's given settings, and the saved ones, which precede them.
 inline constexpr const char* kGivenSettings = "/etc/adit/settings.json";
 inline constexpr const char* kSavedSettings = "/var/lib/adit/settings.json";
 
-/// The values that a test tries instead of the present settings; "": the present one.
+/// Values that a test uses instead of the present settings; "": the present one.
 struct Trial {
   std::string course;
   std::optional<settings::Address> scoring, mapping;
@@ -33,45 +33,45 @@ struct Form;
 
 /// adit's command line.
 struct Options {
-  const CommandRow* command = nullptr;  // null: the line names none; of help, the command to explain
-  const Form* form = nullptr;           // its subcommand; null: of help and version
+  const CommandRow* command = nullptr;  // null: not named; of help: the command to explain
+  const Form* form = nullptr;           // the subcommand; null for help and version
   bool help = false, version = false;
-  std::vector<std::int64_t> numbers;   // the arguments of a form that takes numbers
-  std::vector<std::string> arguments;  // of any other form
-  std::optional<std::int64_t> run;     // whose reports to list; nothing: the present one's
+  std::vector<std::int64_t> numbers;   // arguments of a form with numbers
+  std::vector<std::string> arguments;  // arguments of other forms
+  std::optional<std::int64_t> run;     // of the listed reports; nullopt: the present run
   bool all_runs = false;
-  std::optional<std::int64_t> last;  // how many reports to list; nothing: all
+  std::optional<std::int64_t> last;  // most listed reports; nullopt: all
   bool json = false, csv = false;
-  bool yes = false;  // do not ask for confirmation
-  std::string at;    // "ADDR[:PORT]"; empty: as the settings say
-  std::string to;    // of runs: the file for its report; "": standard output
+  bool yes = false;  // skip the confirmation
+  std::string at;    // "ADDR[:PORT]"; "": from the settings
+  std::string to;    // of runs: the report's file; "": standard output
   bool restart = false, stick = false, again = false, anyway = false, back = false,
-       stay = false;  // of update; stick: of spare, too
-  std::string code;   // of spare: of the export
+       stay = false;  // of update; stick: also of spare
+  std::string code;   // of spare: the export's code
   Trial trial;        // of test
   std::string settings = kGivenSettings;
   std::string saved_settings = kSavedSettings;
-  std::string token_file;  // empty: in `secrets`
+  std::string token_file;  // "": from `secrets`
   std::string secrets = kSecrets, saved_secrets = kSavedSecrets;
 
-  /// The argument at that place; "" if it is not given.
+  /// The argument at `place`, or "".
   std::string argument(std::size_t place = 0) const {
     return place < arguments.size() ? arguments[place] : "";
   }
-  /// The word of the form: "send" of `adit reports send`.
+  /// The form's word: "send" of `adit reports send`.
   std::string word() const;
 };
 
 [[gnu::cold]] command_line::Program command_line_of(Options& options);
-/// Whether an option is one of `options`, which blanks divide.
+/// Whether an option is one of `options`, which are separated by blanks.
 bool is_among(std::string_view option, std::string_view options);
 /// Whether the form takes the option.
 bool takes(const Form& form, std::string_view option);
 
-/// Why a command line is wrong.
+/// An error in a command line.
 struct WrongLine {
-  std::string sentence;       // names the word it is about
-  const CommandRow* command;  // the command that the line named, or null
+  std::string sentence;       // names the wrong word
+  const CommandRow* command;  // the line's command, or null
 };
 
 [[gnu::cold]] std::expected<Options, WrongLine> parse_options(std::span<const std::string_view> words);

@@ -6,7 +6,7 @@ namespace adit::cli {
 
 enum class Exit : int { Fine = 0, Attention = 1, Unable = 2 };
 
-/// What a command prints and how it ends.
+/// A command's output and exit status.
 struct Outcome {
   Exit exit = Exit::Fine;
   std::string out, err;

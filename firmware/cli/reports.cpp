@@ -7,7 +7,7 @@
 namespace adit::cli {
 namespace {
 
-/// By default: the present run's, and the unfinished ones of other runs.
+/// Default: reports of the present run, and unfinished ones of other runs.
 bool is_listed(const api::ReportRow& report, const Options& options, std::int64_t present) {
   if (options.all_runs) return true;
   return options.run ? report.run == *options.run : report.run == present || !is_finished(report);
@@ -26,7 +26,7 @@ Result<Outcome> list_reports(const Call& call) {
   const Exit exit = std::ranges::any_of(rows, needs_the_operator) ? Exit::Attention : Exit::Fine;
   const std::size_t others = std::erase_if(
       rows, [&](const api::ReportRow& row) { return !is_listed(row, options, run->row.run_number); });
-  std::ranges::reverse(rows);  // the newest first
+  std::ranges::reverse(rows);  // newest first
   const auto all = static_cast<std::int64_t>(rows.size()), shown = std::min(all, options.last.value_or(all));
   rows.resize(static_cast<std::size_t>(shown));
   const NotListed rest{.older = static_cast<std::size_t>(all - shown), .of_other_runs = others};

@@ -31,7 +31,7 @@ std::string coordinate(const api::ReportRow& report, double icd::Point::* axis) 
   return report.position ? decimal((*report.position).*axis, 2) : "lost";
 }
 
-/// A state that this adit does not know is shown to the operator for a decision.
+/// A state unknown to this adit is shown as in doubt.
 ReportState state_of(const api::ReportRow& report) {
   return dispatch::state_named(report.state).value_or(ReportState::InDoubt);
 }

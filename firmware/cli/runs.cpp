@@ -16,13 +16,13 @@ namespace {
 using Align = Table::Align;
 using api::RunRow;
 
-constexpr std::chrono::seconds kPrinted{60};  // a run is read from the disk for it, and drawn
+constexpr std::chrono::seconds kPrinted{60};  // the box reads and draws the run first
 
 std::string number_or_none(const std::optional<std::int64_t>& number) {
   return number ? std::to_string(*number) : "";
 }
 
-/// Unknown for the first run of a box.
+/// "" for a box's first run, whose start is unknown.
 std::string begin_of(const RunRow& run) {
   return run.began > 0 ? api::iso_time(run.began) : "";
 }
@@ -98,7 +98,7 @@ std::string text_of(const api::RunView& view, bool colour) {
   return facts.written(colour);
 }
 
-/// Its path. A key is digits, with a hyphen if two runs have the same number.
+/// A key has digits, and a hyphen if two runs share a number.
 Result<std::string> path_of(const std::string& key) {
   if (!key.empty() && key.find_first_not_of("0123456789-") == std::string::npos) return "/adit/runs/" + key;
   return failed("there is no run " + key + ": see adit runs", Exit::Attention);

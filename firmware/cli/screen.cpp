@@ -14,7 +14,7 @@
 namespace adit::cli {
 namespace {
 
-// xterm's, which the Linux console and all in use today know.
+// xterm's sequences, known to the Linux console and present terminals.
 constexpr const char* kEnter = "\033[?1049h\033[?25l";
 constexpr const char* kLeave = "\033[?25h\033[?1049l";
 constexpr const char* kHome = "\033[H";
@@ -66,7 +66,7 @@ Screen::Screen(std::function<void(const std::string&)> print) : print_(std::move
   if (tcgetattr(STDIN_FILENO, &now) == 0) {
     before_ = now;
     now.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-    now.c_cc[VSUSP] = _POSIX_VDISABLE;  // a stopped program would leave the terminal so
+    now.c_cc[VSUSP] = _POSIX_VDISABLE;  // a stopped program would leave the terminal in this mode
     tcsetattr(STDIN_FILENO, TCSANOW, &now);
   }
   print_(kEnter);

@@ -12,19 +12,18 @@
 
 namespace adit::cli {
 
-/// Waits while signals that would end the program only end the waiting: SIGINT, SIGTERM and SIGHUP. For a
-/// thread that is the only one.
+/// Waits; SIGINT, SIGTERM and SIGHUP end the wait instead of the program. Only for a process with one thread.
 class Patience {
  public:
   enum class Woken : std::uint8_t { ByTime, ByChange, ToEnd };
 
-  /// `keys`: standard input is looked at, too, and a q (or its end) ends the waiting.
+  /// `keys`: q or the end of standard input also ends the wait.
   explicit Patience(bool keys);
   ~Patience();
   Patience(const Patience&) = delete;
   Patience& operator=(const Patience&) = delete;
 
-  /// ByTime: or something came at `fd`, unless that is -1. ByChange: the screen has another size.
+  /// ByTime: the time is over, or `fd` (unless -1) is readable. ByChange: the screen's size has changed.
   Woken wait(std::chrono::milliseconds longest, int fd);
 
  private:
@@ -35,7 +34,7 @@ class Patience {
   loop::FileDescriptor signals_;
 };
 
-/// A terminal's other screen, without cursor and echo; what was there before is there again afterwards.
+/// A terminal's alternate screen, without cursor and echo. The destructor restores the earlier screen.
 class Screen {
  public:
   /// `print` writes to the terminal.
@@ -44,12 +43,12 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  /// As much as there is room for.
+  /// Shows as much as fits.
   void show(std::string_view text) const;
 
  private:
   std::function<void(const std::string&)> print_;
-  std::optional<termios> before_;  // of standard input; nothing: it is no terminal
+  std::optional<termios> before_;  // of standard input; nullopt: not a terminal
 };
 
 }  // namespace adit::cli

@@ -41,7 +41,7 @@ std::string errors_text(const std::vector<settings::Error>& errors) {
   return text;
 }
 
-/// The file's JSON. Adit checks the settings in it.
+/// The file's JSON; Adit checks its settings.
 Result<Value> read_file(const std::string& file) {
   const auto text = host::read_file(file);
   if (!text) return failed(text.error());
@@ -68,13 +68,13 @@ Result<Told<api::CheckView>> ask_check(const Adit& adit, const Value& settings) 
                         .body = codec::write_json({Value::Object{{"settings", settings}}})}));
 }
 
-/// Posts a change, and waits until the box uses it. Error: the box reverted the change, or does not say in
-/// time that it uses it.
+/// Posts a change and waits until the box uses it. Error: the box reverted the change, or does not use it in
+/// time.
 Result<Told<api::ChangesView>> change(const Adit& adit, const std::string& target, const Value::Object& body,
                                       const char* check) {
   auto changed = told<api::ChangesView>(
       adit, post(adit, {.target = target, .check = check, .body = codec::write_json({body})}));
-  if (!changed || changed->row.changes.empty()) return changed;  // `trouble` is of an earlier change
+  if (!changed || changed->row.changes.empty()) return changed;  // `trouble` may be older
   const auto now = fetch_until<api::SetupView>(adit, kSettings, kApplied,
                                                [](const api::SetupView& setup) { return !setup.applying; });
   if (!now) {
@@ -86,14 +86,14 @@ Result<Told<api::ChangesView>> change(const Adit& adit, const std::string& targe
   return failed(now->row.trouble, Exit::Attention);
 }
 
-/// VALUE of the command line: JSON, or a text without quotes. `before`: the value that it replaces.
+/// VALUE of the command line: JSON, or a text without quotes. `before`: the present value.
 Value value_in(const std::string& text, const Value& before) {
   auto value = codec::parse_json(text);
   const auto is_text = [](const Value& any) { return std::holds_alternative<std::string>(any.is); };
   return value && (!is_text(before) || is_text(*value)) ? *std::move(value) : Value{text};
 }
 
-/// Checks the settings, and applies them to a box that has those of `now`.
+/// Checks the settings and applies them to a box with the settings of `now`.
 Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& settings) {
   const auto checked = ask_check(call.adit, settings);
   if (!checked) return std::unexpected(checked.error());
@@ -104,7 +104,7 @@ Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& 
   return said(call, done->json, text_of(checked->row.changes, call.console.colour));
 }
 
-/// "" stands for the endpoints of command_post itself.
+/// "" stands for the endpoints of command_post.
 std::string courses_text(const settings::Settings& settings, bool colour) {
   const settings::CommandPost& post = settings.command_post;
   Table table({{"course"}, {"scoring"}, {"mapping"}, {""}});

@@ -14,7 +14,7 @@ namespace {
 
 using codec::Value;
 
-template <class SomeValue>  // const, or not
+template <class SomeValue>  // const or not
 SomeValue* member_of(SomeValue& object, std::string_view name) {
   auto* const members = std::get_if<Value::Object>(&object.is);
   if (members == nullptr) return nullptr;
@@ -28,7 +28,7 @@ std::string text_at(const Value& object, std::string_view name) {
   return text == nullptr ? "" : *text;
 }
 
-/// The item of that index or that name; null if there is none.
+/// The item with that index or name, or null.
 Value* item_of(Value& list, std::string_view which) {
   auto* const items = std::get_if<Value::Array>(&list.is);
   if (items == nullptr) return nullptr;
@@ -46,7 +46,7 @@ bool begins(std::string_view path, std::string_view name) {
                                     path[name.size()] == '[' || name.ends_with("[]"));
 }
 
-/// What stands at `pattern` ("robots[].alias") in `value`, which stands at `path`.
+/// Adds the values at `pattern` ("robots[].alias") in `value`, whose own path is `path`.
 void put_values(const Value& value, std::string_view pattern, const std::string& path, Value::Object& into) {
   if (pattern.empty()) return into.emplace_back(path, value), void();
   if (pattern.starts_with("[]")) {

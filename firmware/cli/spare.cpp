@@ -19,8 +19,7 @@ constexpr const char* kSpare = "/adit/spare";
 constexpr const char* kSeeSpare = "adit spare";
 constexpr std::chrono::seconds kFile{60};
 
-/// Until the present requests are answered and the box is up again. The stick may be slow, and another
-/// request may go first.
+/// Waits for a busy or restarting box. The stick may be slow, and another request may come first.
 Waiting for_box(std::chrono::seconds within) {
   return {.within = within,
           .every = std::chrono::milliseconds(300),
@@ -77,7 +76,7 @@ Result<SpareView> put_on_standby(const Call& call) {
   return std::move(told->row);
 }
 
-/// Asks for an action on the stick, and waits until it is done.
+/// Requests an action on the stick and waits for its end.
 Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::string& body) {
   const auto accepted = post(adit, {.target = target, .check = kSeeSpare, .body = body});
   if (!accepted) return std::unexpected(accepted.error());
@@ -91,7 +90,7 @@ Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::str
   return std::move(told->row);
 }
 
-/// As it is before anything is asked.
+/// The stick's state before a request.
 Result<api::StickRow> stick_of(const Adit& adit) {
   auto told = fetch<SpareView>(adit, kSpare);
   if (!told) return std::unexpected(told.error());
@@ -99,7 +98,7 @@ Result<api::StickRow> stick_of(const Adit& adit) {
   return failed("this box cannot use a stick: name a file");
 }
 
-/// `where` the export is.
+/// `where`: place of the export.
 Outcome on_standby(const Call& call, const SpareView& view, const std::string& where) {
   return said(call, codec::to_json(view),
               line("This box is on standby. Its export is ", where) +
@@ -134,7 +133,7 @@ Result<std::string> read_export(const std::string& path) {
   return bytes;
 }
 
-/// Which export on the stick is meant.
+/// The name of the stick's export to use.
 Result<std::string> name_on_stick(const Call& call) {
   if (!call.options.argument().empty()) return call.options.argument();
   const auto stick = stick_of(call.adit);

@@ -18,7 +18,7 @@ namespace {
 using api::RunView;
 using Align = Table::Align;
 
-/// A shape and a word beside the colour.
+/// A shape and a word in addition to the colour.
 Cell severity_cell(const alarms::Alarm& alarm) {
   constexpr struct {
     const char* word;
@@ -59,7 +59,7 @@ std::string clock_text(const alarms::ShownClock& shown, double seconds) {
   return (shown.old && shown.runs ? "about " : "") + clock(seconds);
 }
 
-/// What is left of the run, by the settings.
+/// Remaining time of the run by the settings.
 std::string to_go(const RunView& view, const alarms::ShownClock& shown) {
   const double left = static_cast<double>(view.run_seconds) - shown.seconds;
   return clock_text(shown, std::abs(left)) + (left < 0 ? " over time" : " to go");
@@ -125,12 +125,12 @@ std::string ago(double seconds) {
   return duration(seconds) + " ago";
 }
 
-/// Of the last that was sent. What came last is another map.
+/// Size of the last sent map. The last accepted map may be another.
 std::string sent_size(const api::ActivityRow& row) {
   return row.age ? size(row.bytes_sent) : "";
 }
 
-/// With the mode of its clouds, and the points that were not sent.
+/// With the mode of clouds, and the points that were not sent.
 std::string kind_of(const api::ActivityRow& row) {
   std::string kind = row.kind;
   if (!row.clouds.empty()) kind += ", " + row.clouds;

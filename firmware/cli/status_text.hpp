@@ -9,7 +9,7 @@ namespace adit::cli {
 
 Tone tone_of_level(alarms::Level level);
 
-/// What `adit status` prints.
+/// The output of `adit status`.
 std::string status_text(const api::RunView& view, bool colour);
 
 }  // namespace adit::cli

@@ -11,7 +11,7 @@ namespace {
 std::string row_text(const std::vector<Cell>& cells, const std::vector<Table::Column>& columns,
                      const std::vector<std::size_t>& widths, bool colour) {
   std::string text;
-  std::size_t owed = 0;  // spaces, written only before something that shows: lines do not end in any
+  std::size_t owed = 0;  // spaces written only before visible text, so that lines have none at their ends
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const std::size_t spare = widths[i] - width_of(cells[i].text);
     const bool right = columns[i].align == Table::Align::Right;

@@ -12,7 +12,7 @@ struct Cell {
   Tone tone = Tone::Plain;
 };
 
-/// Rows of cells in aligned columns. What others wrote is escaped on the way in.
+/// Rows of cells in aligned columns. Escapes all text.
 class Table {
  public:
   enum class Align : std::uint8_t { Left, Right };
@@ -23,11 +23,11 @@ class Table {
 
   explicit Table(std::vector<Column> columns) : columns_(std::move(columns)) {}
 
-  /// As many cells as there are columns.
+  /// One cell for each column.
   void add(std::vector<Cell> cells);
   bool empty() const { return rows_.empty(); }
 
-  /// With a line of names above, unless all of them are empty; each line begins with two spaces.
+  /// With a heading, unless all names are empty. Each line begins with two spaces.
   std::string written(bool colour) const;
 
  private:
@@ -35,10 +35,10 @@ class Table {
   std::vector<std::vector<Cell>> rows_;
 };
 
-/// Lines of a name and its value.
+/// Lines of a name and a value.
 class Facts {
  public:
-  /// Adds no line if `text` is empty.
+  /// Skips an empty `text`.
   void add(const char* name, const std::string& text, Tone tone = Tone::Plain);
   std::string written(bool colour) const { return table_.written(colour); }
 

@@ -10,7 +10,7 @@
 namespace adit::cli {
 namespace {
 
-/// Far longer than all steps may take.
+/// Much longer than all steps together.
 constexpr Waiting kTesting{.within = std::chrono::minutes(2),
                            .every = std::chrono::milliseconds(250),
                            .late = "the test has not ended after 2 minutes: see journalctl -u adit"};
@@ -30,7 +30,7 @@ std::string line_of(const api::TestStep& step, bool colour) {
   return line;
 }
 
-/// Prints what has ended since it was last called, in the order of the steps.
+/// Prints newly finished steps, in order.
 class Progress {
  public:
   Progress(bool colour, const std::function<void(const std::string&)>& print)
@@ -62,7 +62,7 @@ bool is_bad(const api::TestView& view) {
   });
 }
 
-/// An aditd that has been restarted in the midst of it knows of none.
+/// False also for an aditd that restarted during the test, because it has no steps.
 bool is_whole(const api::TestView& view) {
   return !view.endpoints.empty() && std::ranges::all_of(view.endpoints, [](const auto& endpoint) {
     return std::ranges::all_of(endpoint.steps, has_ended);
@@ -71,7 +71,7 @@ bool is_whole(const api::TestView& view) {
 
 using codec::Value;
 
-/// An endpoint to try, as POST /adit/test takes it; null if none is named.
+/// An endpoint for POST /adit/test; null if none is named.
 Result<Value> endpoint_to_try(const std::optional<settings::Address>& at, const std::string& token_file) {
   Value::Object endpoint;
   if (at) endpoint = {{"address", {at->address}}, {"port", {std::int64_t{at->port}}}};
@@ -83,7 +83,7 @@ Result<Value> endpoint_to_try(const std::optional<settings::Address>& at, const 
   return endpoint.empty() ? Value{} : Value{std::move(endpoint)};
 }
 
-/// The body of POST /adit/test; "" for what is in use.
+/// The body of POST /adit/test; "": test the settings in use.
 Result<std::string> body_for(const Trial& trial) {
   if (trial.is_of_what_is_in_use()) return "";
   const auto scoring = endpoint_to_try(trial.scoring, trial.scoring_token);

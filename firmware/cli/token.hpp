@@ -9,22 +9,23 @@
 
 namespace adit::cli {
 
-/// Where adit.service has its tokens from, and where it keeps those that were saved since.
+/// Directories of adit.service's given tokens and of its saved ones.
 inline constexpr const char* kSecrets = "/etc/adit/secrets";
 inline constexpr const char* kSavedSecrets = "/var/lib/adit/secrets";
 
-/// What Adit is asked with, and where it was.
+/// A token and its file.
 struct Token {
   icd::BearerToken token;
   std::string file;
 };
 
-/// The one token in a file. An error names the file, never what is in it.
+/// Reads the token in a file. An error names the file, never its content.
 std::expected<Token, std::string> token_in_file(const std::string& file);
 
-/// The token in `file`; or, if that is "", in the first of team.token and scoring.token in `folders`, each in
-/// the first folder (the saved tokens) first; perhaps none. An empty file counts as none, except in the first
-/// folder. An error names the file, never its content: the file cannot be read, or holds no token.
+/// The token in `file`. If `file` is "", the first of team.token and scoring.token in `folders`, each in the
+/// first directory (the saved tokens) first; std::nullopt if there is none. An empty file is no token, except
+/// in the first directory. An error names the file, never its content: the file cannot be read, or holds no
+/// token.
 std::expected<std::optional<Token>, std::string> find_token(const std::string& file,
                                                             std::span<const std::string> folders);
 

@@ -14,9 +14,9 @@ using update::Stage;
 
 constexpr const char* kUpdate = "/adit/update";
 constexpr const char* kSeeUpdate = "adit update";
-/// For a bundle over a slow link.
+/// Allows for a bundle over a slow link.
 constexpr std::chrono::minutes kUpload{30};
-/// For a slot of a slow card.
+/// Allows for a slot on a slow card.
 constexpr Waiting kInstalling{.within = std::chrono::minutes(25),
                               .every = std::chrono::milliseconds(500),
                               .late = "the box has not finished: see adit update"};

@@ -22,12 +22,12 @@ namespace {
 
 using Clock = Follower::Clock;
 
-/// How what was seen is shown.
+/// A form of display.
 class Shown {
  public:
   virtual ~Shown() = default;
   virtual void show(const Look& seen) = 0;
-  /// How long what was shown stays, whatever comes.
+  /// Least time between two displays.
   virtual std::chrono::milliseconds spacing() const { return std::chrono::seconds(1); }
 };
 
@@ -55,7 +55,7 @@ class AsLines : public Shown {
                            : status_text(seen->view, console_.colour) + '\n');
     before_ = seen->view;
   }
-  std::chrono::milliseconds spacing() const override { return {}; }  // no change is passed over
+  std::chrono::milliseconds spacing() const override { return {}; }  // shows every change
 
  private:
   const Console& console_;
@@ -100,7 +100,7 @@ Result<Outcome> watch(const Call& call) {
   const bool drawn = console.screen && !options.json;
   Patience patience(drawn && isatty(STDIN_FILENO) == 1);
   Follower follower(adit);
-  std::unique_ptr<Shown> shown;  // once there is something to show
+  std::unique_ptr<Shown> shown;  // created with the first display
   std::optional<Look> seen;
   bool is_news = false;
   Clock::time_point next{};

@@ -44,7 +44,7 @@ void alarms_told(const api::RunView& before, const api::RunView& now, Lines& lin
   }
 }
 
-/// What is told of the run; not its clock, which always changes.
+/// The run without its clock, which always changes.
 std::string told_of_run(const api::RunView& view) {
   if (!view.run) return "no status from the Command Post yet";
   const icd::RunStatus& run = *view.run;
@@ -85,7 +85,8 @@ void endpoints(const api::RunView& before, const api::RunView& now, Lines& lines
 
 constexpr std::string_view kArrives = "arrives", kNotArriving = "NOT ARRIVING";
 
-/// By arrival. Late is none of its own: where many robots share the link, each is late in its turn.
+/// In the order of alarms::Arrival. Late is shown as arriving, because robots that share the link are late in
+/// turn.
 constexpr std::string_view kTold[] = {"none sent yet", kArrives,     kArrives,     kArrives, kNotArriving,
                                       kNotArriving,    kNotArriving, kNotArriving, kArrives, "silent"};
 static_assert(std::size(kTold) == std::size(alarms::kArrivalWords));
@@ -107,14 +108,14 @@ void arrivals(const api::RunView& before, const api::RunView& now, Lines& lines)
   }
 }
 
-/// Where the colour that begins there ends (ECMA-48's CSI ... m); `at` itself where none does.
+/// The end of the colour sequence (ECMA-48, CSI ... m) at `at`, or `at` if there is none.
 std::size_t behind_colour(std::string_view line, std::size_t at) {
   if (!line.substr(at).starts_with("\033[")) return at;
   const std::size_t end = line.find('m', at);
   return end == std::string_view::npos ? line.size() : end + 1;
 }
 
-bool continues(char byte) {  // a character of UTF-8
+bool continues(char byte) {  // UTF-8 continuation byte
   return (static_cast<unsigned char>(byte) & 0xc0u) == 0x80u;
 }
 

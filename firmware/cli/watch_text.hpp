@@ -8,11 +8,11 @@
 
 namespace adit::cli {
 
-/// A line for each thing that changed from one view to the next, with the time of day; "" where nothing did.
+/// A line with the time of day for each change between two views, or "".
 std::string changes_text(const api::RunView& before, const api::RunView& now, bool colour);
 
-/// As much of `text` as a screen of that size shows, which ends without a line's end: longer lines are cut,
-/// and in place of the last a line says how many more there are. Colours count for nothing.
+/// The part of `text` that fits a screen of that size, without a final newline. Long lines are cut. The last
+/// line says how many lines are missing. Colour sequences have no width.
 std::string fitted(std::string_view text, std::size_t rows, std::size_t columns);
 
 }  // namespace adit::cli

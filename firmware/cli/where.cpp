@@ -38,7 +38,7 @@ std::optional<std::uint16_t> parse_port(std::string_view text) {
   return port;
 }
 
-/// Link-local addresses are left out: connecting to one needs its interface, too.
+/// Skips link-local addresses, because a connection to one needs its interface.
 std::optional<std::string> text_of(const sockaddr& address) {
   char text[INET6_ADDRSTRLEN];
   if (address.sa_family == AF_INET) {
@@ -51,7 +51,7 @@ std::optional<std::string> text_of(const sockaddr& address) {
   return inet_ntop(AF_INET6, &ipv6.sin6_addr, text, sizeof text);
 }
 
-/// The interface's first address that somebody who listens at `any` answers at.
+/// The interface's first address that a listener at `any` accepts.
 std::optional<std::string> address_of(const std::string& interface, const std::string& any) {
   ifaddrs* first = nullptr;
   if (getifaddrs(&first) != 0) return std::nullopt;

@@ -25,7 +25,7 @@ const char* code_of(Tone tone) {  // ECMA-48 8.3.117, SGR
   return "";
 }
 
-constexpr double kLongestTime = 1e9;  // seconds; above it a peer talks nonsense
+constexpr double kLongestTime = 1e9;  // seconds; a larger value is an error of the peer
 
 }  // namespace
 

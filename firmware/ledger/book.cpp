@@ -28,7 +28,7 @@ bool is_number(const Report& report) {
   return !std::isnan(at.x) && !std::isnan(at.y) && !std::isnan(at.z) && is_number(report.before);
 }
 
-/// What makes a report what it is never changes.
+/// Compares the data of a report that never changes.
 bool is_same(const Report& one, const Report& other) {
   const icd::Point &at = one.report.position, &there = other.report.position;
   return one.report.type == other.report.type && at.x == there.x && at.y == there.y && at.z == there.z &&
@@ -145,7 +145,7 @@ std::vector<Step> Book::history(std::int64_t number) const {
 
 store::Result<Reading> read(const store::Contents& contents) {
   Reading reading;
-  bool is_cut = false;  // a log is shorter than it was: what its end held is unknown
+  bool is_cut = false;  // a log is truncated, so the content of its end is unknown
   for (const store::Item& item : contents.items) {
     if (const auto* const gap = std::get_if<store::Gap>(&item)) {
       reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "records are missing in ", gap->file);
@@ -164,7 +164,7 @@ store::Result<Reading> read(const store::Contents& contents) {
           icd::sentence(reading.gap.empty() ? "" : ", ", "record ", record.sequence, " cannot be understood");
       reading.end_is_lost = true;
     } else if (record.kind == kSteps) {
-      reading.end_is_lost = is_cut;  // it says how many numbers were given out
+      reading.end_is_lost = is_cut;  // the record has the highest number
     }
   }
   return reading;

@@ -16,24 +16,23 @@
 
 namespace adit::ledger {
 
-/// What the records of a ledger come to: each report as it was last, with all its steps, and each run.
+/// The sum of a ledger's records: each report's last state with all its steps, and each run.
 class Book {
  public:
   struct Kept {
-    std::string said, history;  // as records have them (record.hpp)
+    std::string said, history;  // as in records (record.hpp)
   };
 
-  /// False: the record cannot be understood, and changed nothing.
+  /// False: the record is invalid and has no effect.
   bool apply(std::uint8_t kind, std::string_view body);
-  /// The same as a few records.
+  /// The same content as few records.
   std::vector<std::pair<std::uint8_t, std::string>> records() const;
-  /// All reports and runs as one record's content.
+  /// All reports and runs as the body of one record.
   std::string copy() const;
 
-  /// The record of these steps. An error: it would put a report in another's place, or what it says is no
-  /// number.
+  /// The record of these steps. Error: a step would replace another report, or a value is not a number.
   store::Result<std::string> record(std::span<const dispatch::Report> steps, const dispatch::Run* run) const;
-  /// The record of a take-over from `there`.
+  /// The record of a takeover from `there`.
   store::Result<std::string> record(const dispatch::TakeOver& taken, const Book& there) const;
   bool knows(std::int64_t report) const { return reports_.contains(report); }
 
@@ -42,17 +41,17 @@ class Book {
   std::vector<Step> history(std::int64_t number) const;
   std::int64_t highest() const { return highest_; }
 
-  /// For a log with missing records: each report without a final state is in doubt, and a report stands for
-  /// each missing number. `expected`: at least so many numbers were given out. `end_is_lost`: the count of
-  /// the last reports is unknown. A sentence about the reports that were read and those that are lost.
+  /// Repairs a log with missing records: each unfinished report becomes in doubt, and a report stands for
+  /// each missing number. `expected`: least count of numbers given out. `end_is_lost`: the number of the last
+  /// reports is unknown. Returns a sentence about the reports read and lost.
   std::string salvage(double now, std::int64_t expected, bool end_is_lost);
 
  private:
   using Reports = std::map<std::int64_t, Kept>;
   using Runs = std::map<std::int64_t, std::string>;
-  /// One record of all these.
+  /// One record of these reports and runs.
   std::string record_of(const Reports& reports, const Runs& runs) const;
-  /// With the members of a later version that the run has here.
+  /// With members of a later version that the run has here.
   std::string said_again(const dispatch::Run& run) const;
   void put(const dispatch::Report& report);
   void lose(std::int64_t last, const std::string& note, double now);
@@ -63,13 +62,13 @@ class Book {
   std::vector<std::pair<std::uint8_t, std::string>> unknown_;  // records of a later version
 };
 
-/// What a log holds.
+/// The content of a log.
 struct Reading {
   Book book;
-  std::string gap = "";      // which records are missing, or ""
-  bool end_is_lost = false;  // the last ones are
+  std::string gap = "";      // a sentence about missing records, or ""
+  bool end_is_lost = false;  // the last records are missing
 };
-/// An error: a later version wrote a record that this one must understand.
+/// Error: a later version wrote a record that this one must understand.
 store::Result<Reading> read(const store::Contents& contents);
 
 }  // namespace adit::ledger

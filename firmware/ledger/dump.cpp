@@ -50,7 +50,7 @@ Value::Object dumped(const store::Gap& gap) {
            {Value::Object{{"first", json(gap.first)}, {"last", json(gap.last)}, {"file", json(gap.file)}}}}};
 }
 
-/// `damage`: a sentence is added if the record cannot be understood.
+/// `damage`: gets a sentence if the record is invalid.
 Value::Object dumped(const store::Record& record, std::vector<std::string>& damage) {
   Value::Object line{{"sequence", json(record.sequence)}, {"kind", json(record.kind)}};
   const bool is_known = record.kind == static_cast<std::uint8_t>(Kind::Steps);

@@ -8,9 +8,8 @@
 
 namespace adit::ledger {
 
-/// Gives each record in a ledger's directory, and each gap, as a line of JSON. Changes nothing, and may be
-/// called while aditd writes. Sentences about damage, if there is any; an error if a file cannot be read or
-/// no ledger is there.
+/// Prints each record and gap of a ledger's directory as a line of JSON. Does not change it, and works while
+/// aditd writes. Returns sentences about damage. Error: a file cannot be read, or there is no ledger.
 store::Result<std::vector<std::string>> dump(const std::string& directory,
                                              const std::function<void(const std::string&)>& print);
 

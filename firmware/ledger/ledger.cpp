@@ -71,7 +71,7 @@ class Ledger::Impl {
     return ready;
   }
 
-  /// Goes on behind the records that were read. A damaged ledger begins with a snapshot of the rest.
+  /// Continues after the records that were read. A damaged ledger begins with a snapshot of the rest.
   Result<void> begin() {
     if (has_begun_) return {};
     if (!directory_) return std::unexpected(Error{.what = refusal_});
@@ -108,26 +108,26 @@ class Ledger::Impl {
     spare_ = next_spare_;
   }
 
-  std::shared_ptr<store::Directory> directory_;  // null: closed. A worker may use it longer
-  store::Contents contents_;                     // until log_ goes on behind it
+  std::shared_ptr<store::Directory> directory_;  // null: closed. Workers may hold it longer
+  store::Contents contents_;                     // until log_ continues it
   std::optional<store::Log> log_;
   Book book_;
   std::string damage_, refusal_;
-  Known known_;  // the argument of open()
+  Known known_;  // from open()
   bool is_damaged_ = false, is_aside_ = false, has_turned_ = false, has_begun_ = false;
-  bool is_under_way_ = false;                       // upkeep
-  std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // the log with which the last one began
-  std::uint64_t spare_ = 0, next_spare_ = 0;        // the log that has a spare file behind it
+  bool is_under_way_ = false;                       // upkeep is running
+  std::uint64_t snapshot_ = 0, next_snapshot_ = 0;  // first log after the last snapshot
+  std::uint64_t spare_ = 0, next_spare_ = 0;        // the log with a spare file
   std::shared_ptr<std::atomic<bool>> enough_ = std::make_shared<std::atomic<bool>>(false);
 
  private:
-  /// If a step fails, the next try begins with that step.
+  /// After a failure, the next try resumes at the failed step.
   Result<void> begin_log() {
     if (!log_) {
       store::Log log(*directory_, kKeeping);
       if (auto started = log.start(contents_); !started) return started;
       log_.emplace(std::move(log));
-      // So a snapshot that a kill has ended is due again.
+      // So a snapshot that a kill interrupted is due again.
       if (!contents_.logs.empty()) snapshot_ = next_snapshot_ = contents_.logs.front();
       contents_ = {};
     }
@@ -173,7 +173,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
     reading->gap += icd::sentence(reading->gap.empty() ? "" : ", ", "its last records are not there");
     reading->end_is_lost = true;
   }
-  // A name that is taken once is not taken again, also of a log that is gone.
+  // File names are never reused, even of removed logs.
   contents->number = std::max(contents->number, known.log);
   std::string damage;
   const bool is_damaged = !reading->gap.empty();
@@ -189,7 +189,7 @@ Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
   }
   auto impl = std::make_unique<Impl>(std::move(*directory), std::move(*contents), std::move(book),
                                      std::move(damage), is_damaged, known);
-  (void)impl->make_ready();  // refusal() says why not
+  (void)impl->make_ready();  // refusal() has the reason
   return Ledger(std::move(impl));
 }
 

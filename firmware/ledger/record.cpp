@@ -55,7 +55,7 @@ class Take : public store::Reader {
   }
   void operator()(const char* /*name*/, auto& value) { store::walk(*this, value); }
 
-  /// The word of a state that this version does not know, or "".
+  /// The word of a state unknown to this version, or "".
   std::string_view unknown_state() const { return unknown_; }
 
  private:
@@ -82,8 +82,7 @@ class Show {
   codec::Value::Object members_;
 };
 
-// The members in their order in a record, with the names that people read. A new one comes last: an earlier
-// version keeps it as it is.
+// The members in record order, with names for people. Append new ones: earlier versions preserve them.
 
 void members(auto& each, auto& report)
   requires std::same_as<std::remove_const_t<std::remove_reference_t<decltype(report)>>, Report>
@@ -143,7 +142,7 @@ std::optional<Of> take(std::string_view said) {
   members(take, what);
   if (!take.ok() || what.number < 1) return std::nullopt;
   if constexpr (std::same_as<Of, Report>) {
-    if (!take.unknown_state().empty()) {  // without `before` nobody but the operator judges it
+    if (!take.unknown_state().empty()) {  // without `before`, only the operator may decide on it
       what.note =
           "its state '" + std::string(take.unknown_state()) + "' is unknown to this version; " + what.note;
       what.before.reset();

@@ -11,7 +11,7 @@ using dispatch::Report;
 using dispatch::ReportState;
 using dispatch::Run;
 
-constexpr std::int64_t kNumbersKeptFree = 1000;  // the most that can have waited, at least
+constexpr std::int64_t kNumbersKeptFree = 1000;  // at least the most that can have been queued
 constexpr const char* kDamaged = "the ledger was damaged: the Command Post's earlier counts are not certain";
 constexpr const char* kHeld = "the ledger was damaged: it may have been sent since; the operator decides";
 
@@ -38,8 +38,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
     report.before.reset();
     put(report);
   }
-  // The present run is that of the latest report, if no record of it is there. Any other may be taken up
-  // again.
+  // Without its record, the present run is the latest report's. Any other run may be resumed.
   std::int64_t last_run = runs_.empty() ? 1 : runs_.rbegin()->first;
   for (const Report& report : all) last_run = std::max(last_run, report.run);
   if (!runs_.contains(last_run)) {
@@ -58,7 +57,7 @@ std::string Book::salvage(double now, std::int64_t expected, bool end_is_lost) {
     lose(to, lost + ": it may have been sent", now);
     missing += "; " + lost;
   };
-  for (const Report& report : all) {  // one that stands for others leaves no gap before it
+  for (const Report& report : all) {  // a report that stands for others leaves no gap before it
     if (report.number > next && !report.is_lost()) miss(next, report.number - 1);
     next = report.number + 1;
   }
@@ -79,7 +78,7 @@ void Book::put(const Report& report) {
   highest_ = std::max(highest_, report.number);
 }
 
-/// A report that stands for all that are lost up to this number.
+/// Adds a report that stands for all lost ones up to this number.
 void Book::lose(std::int64_t last, const std::string& note, double now) {
   const std::vector<Run> all = runs();
   const auto present = std::ranges::max_element(all, {}, &Run::place);

@@ -7,7 +7,7 @@
 
 namespace adit::store {
 
-/// Puts the contents together from the files.
+/// Assembles the contents from the files.
 class Assembly {
  public:
   Assembly(const Directory& directory, const Keeping& keeping, std::uint64_t before)
@@ -68,7 +68,7 @@ class Assembly {
 
   void take_snapshot(const Scan& snapshot, bool is_whole) {
     const bool has_first = !logs_.empty() && logs_.front().header && logs_.front().header->base == 0;
-    if (!is_whole && has_first) return;  // the logs have all
+    if (!is_whole && has_first) return;  // the logs have all records
     std::erase_if(logs_, [&](const Scan& log) { return log.name.number < snapshot.name.number; });
     contents_.snapshot = snapshot.name.number;
     std::uint64_t next = 1;
@@ -89,8 +89,8 @@ class Assembly {
     if (logs_.empty()) gap(next_, std::nullopt, snapshot.name);
   }
 
-  /// A record that was written to a file after a sync of it had failed was never acknowledged: the next file
-  /// says so.
+  /// Removes records that were written after a failed sync of their file. They were never acknowledged, and
+  /// the next file's header says so.
   void drop_void() {
     std::uint64_t base = std::numeric_limits<std::uint64_t>::max();
     for (auto log = logs_.rbegin(); log != logs_.rend(); ++log) {
@@ -105,12 +105,12 @@ class Assembly {
       contents_.durable = std::max(contents_.durable, found.frame.durable);
   }
 
-  /// A log on a disk has its name once its zeros are synced.
+  /// A log on disk gets its name after its zeros are synced.
   std::uint64_t least_size(const Scan& log) const {
     return log.header ? log.header->size : keeping_.syncs ? keeping_.file_bytes : 0;
   }
 
-  /// False: the rest was never synced, and a frame of it is missing.
+  /// False: a frame is missing, and the rest was never synced.
   bool take(const Scan& log) {
     if (log.size < least_size(log)) gap(next_, std::nullopt, log.name);
     for (const Scan::Found& found : log.frames) {
@@ -122,7 +122,7 @@ class Assembly {
       }
       contents_.items.push_back(Record{frame.sequence, frame.kind, frame.body});
       next_ = frame.sequence + 1;
-      const bool was_synced = frame.sequence <= contents_.durable;  // else a kill or a power cut has torn it
+      const bool was_synced = frame.sequence <= contents_.durable;  // otherwise a kill or a power cut tore it
       if (found.good < layout_.copies && was_synced)
         contents_.notes.push_back(log.name.text() + ": a damaged copy of record " +
                                   std::to_string(frame.sequence));
@@ -149,7 +149,7 @@ class Assembly {
         FileHeader{.number = log.name.number,
                    .salt = log.name.salt,
                    .base = base,
-                   .size = std::max<std::uint64_t>(log.size, least_size(log))}  // a cut stays one
+                   .size = std::max<std::uint64_t>(log.size, least_size(log))}  // keeps a cut visible
             .written());
     const Frame header =
         log.begin ? log.begin->frame : Frame{.kind = kFileBegins, .durable = base, .body = body};
@@ -168,7 +168,7 @@ class Assembly {
   std::vector<FileName> names_;
   std::vector<Scan> logs_;
   Contents contents_;
-  std::uint64_t next_ = 1;        // the sequence number that is expected
+  std::uint64_t next_ = 1;        // expected sequence number
   std::uint64_t first_here_ = 0;  // of the last log
 };
 

@@ -23,7 +23,7 @@
 namespace adit::store {
 namespace {
 
-constexpr std::array<std::string_view, 3> kBeginnings{"log-", "snapshot-", "spare-"};  // by kind
+constexpr std::array<std::string_view, 3> kBeginnings{"log-", "snapshot-", "spare-"};  // by FileName::Kind
 constexpr std::size_t kSaltDigits = 16;
 
 std::optional<std::uint64_t> number_in(std::string_view text, int base) {

@@ -9,12 +9,12 @@ namespace adit::store {
 /// Why a log could not be read or written.
 struct Error {
   enum class Cause : std::uint8_t {
-    Full,     // no room on the disk (ENOSPC, EDQUOT)
-    NoWrite,  // the directory is read-only for this process (EROFS, EACCES, EPERM)
+    Full,     // the disk is full (ENOSPC, EDQUOT)
+    NoWrite,  // this process may not write the directory (EROFS, EACCES, EPERM)
     Failing,  // the disk reports an error (EIO)
-    InUse,    // another process has the log
+    InUse,    // another process has locked the log
     Newer,    // a later version wrote it
-    TooLong,  // the record is longer than kMostBody
+    TooLong,  // a record is longer than kMostBody
     Other,
   };
   Cause cause = Cause::Other;
@@ -24,7 +24,7 @@ struct Error {
 template <class T>
 using Result = std::expected<T, Error>;
 
-/// "PATH: No such file or directory", and its cause, of an errno.
+/// "PATH: No such file or directory", with the cause of errno `number`.
 std::unexpected<Error> failed(const std::string& path, int number);
 
 }  // namespace adit::store

@@ -8,10 +8,10 @@ namespace adit::store {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x4C544441;  // "ADTL"
-constexpr std::size_t kChecked = 8;           // offset of the first byte that the checksum covers
+constexpr std::size_t kChecked = 8;           // offset of the checksummed part
 constexpr std::size_t kHeader = 40;
 
-/// CRC-32 (RFC 1952) of the salt, the offset and the frame: the bytes of a frame are one in its place alone.
+/// CRC-32 (RFC 1952) of the salt, the offset and the frame, so that a frame is valid only in its place.
 std::uint32_t checksum(std::string_view checked, std::uint64_t salt, std::size_t offset) {
   std::string place;
   put_number(place, salt, 8);

@@ -12,10 +12,10 @@
 namespace adit::store {
 namespace {
 
-constexpr std::size_t kPiece = 256u << 10;  // of zeros, written and synced at once: nobody else waits long
+constexpr std::size_t kPiece = 256u << 10;  // bytes of zeros for one sync, so that others wait briefly
 
-/// Writes so many zeros to a new file and syncs them; the errno, else 0. A disk that has no room is not
-/// filled up first.
+/// Writes `size` zeros to a new file and syncs them. Returns 0 or errno. Checks the free space first, so that
+/// it does not fill the disk.
 int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
   struct statvfs disk {};
   if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size) return ENOSPC;
@@ -30,7 +30,7 @@ int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
   return 0;
 }
 
-/// A file of `size` zeros, which has its name once they are synced.
+/// Creates a file of `size` zeros, which gets its name once they are synced.
 Result<void> make_zeros(const Directory& directory, const FileName& name, std::size_t size,
                         const std::atomic<bool>& enough) {
   const std::string part = name.text() + std::string(Directory::kPart);
@@ -53,7 +53,7 @@ Result<void> Log::start(const Contents& contents) {
     if (each.frame.sequence > durable_) unsynced_.push_back({each.frame.kind, std::string(each.frame.body)});
   }
   if (auto removed = directory_.remove_parts(); !removed) return removed;
-  if (keeping_.syncs) {  // the process before may have made it, and ended
+  if (keeping_.syncs) {  // an earlier process may have created it and ended
     if (auto synced = directory_.sync_name(); !synced) return synced;
   }
   if (!contents.log) return {};
@@ -68,8 +68,8 @@ Result<void> Log::start(const Contents& contents) {
   return {};
 }
 
-/// A sync that failed in the process before may have left pages that read well and are not on the disk. They
-/// are written again, so that a sync that succeeds now means that they are.
+/// After a failed sync in an earlier process, pages may read well without being on disk. They are written
+/// again, so that a successful sync means they are on disk.
 Result<void> Log::rewrite(const Contents& contents) {
   std::map<std::string, loop::FileDescriptor> files;
   for (const Contents::Rewrite& each : contents.rewrites) {
@@ -99,7 +99,7 @@ Result<void> Log::append(std::uint8_t kind, std::string_view body, Durability du
     if (auto turned = turn_for(body.size()); !turned) return turned;
   }
   if (auto wrote = write(file_, {kind, last_ + 1, process_, durable_, body}); !wrote) {
-    is_dead_ = keeping_.syncs;  // in memory the next frame goes to the same place
+    is_dead_ = keeping_.syncs;  // in memory the next frame replaces it
     return wrote;
   }
   const bool is_durable = !keeping_.syncs || durability == Durability::Now;
@@ -129,17 +129,17 @@ Result<void> Log::turn() {
   return turn_for(0);
 }
 
-/// The file that is left was synced, or its records above durable_ are void: the header of the next one says
-/// so, and those that were accepted follow it.
+/// Starts the next file. The old file is synced, or its records above durable_ are void: the new header says
+/// so, and the accepted ones follow it.
 Result<void> Log::turn_for(std::size_t body) {
-  if (!is_dead_) (void)flush();  // an error: it is dead now
+  if (!is_dead_) (void)flush();  // after an error is_dead_ is set
   std::size_t size = bytes_of(FileHeader().written().size()) + bytes_of(body);
   for (const Unsynced& each : unsynced_) size += bytes_of(each.body.size());
   ++highest_;
   auto next = make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0);
   if (!next) return std::unexpected(next.error());
   if (auto filled = fill(*next); !filled) {
-    (void)directory_.remove(next->name.text());  // if that fails, the header of a later file says the same
+    (void)directory_.remove(next->name.text());  // if that fails, a later file's header says the same
     return filled;
   }
   file_ = std::move(*next);
@@ -149,7 +149,7 @@ Result<void> Log::turn_for(std::size_t body) {
   return {};
 }
 
-/// Its zeros and its name are synced.
+/// A file with synced zeros and name.
 Result<Log::File> Log::make_file(std::size_t size) const {
   const auto salt = random_salt();
   if (!salt) return std::unexpected(salt.error());

@@ -10,7 +10,7 @@ std::string FileHeader::written() const {
   return body;
 }
 
-/// A later version may add numbers behind these.
+/// A later version may append numbers.
 std::optional<FileHeader> FileHeader::parse(std::string_view body) {
   if (body.size() < 5 * 8) return std::nullopt;
   const auto value = [&body](std::size_t place) { return number_at(body, place * 8, 8); };

@@ -10,19 +10,19 @@
 
 namespace adit::store {
 
-/// Writes a file that stands for all records before a log's number. It has its name once it is whole; until
-/// then, and if it never comes to that, nothing has changed. For one thread at a time, beside the Log.
+/// Writes a snapshot, which replaces all records before a log's number. The file gets its name when it is
+/// complete; an unfinished one has no effect. Use from one thread at a time, also beside Log's.
 class Snapshot {
  public:
-  /// `log`: has just turned. `directory` outlives this.
+  /// `log` must have just turned. `directory` must outlive this object.
   static Result<Snapshot> begin(const Directory& directory, const Keeping& keeping, const Log& log);
   Snapshot(Snapshot&&) = default;
   Snapshot& operator=(Snapshot&&) = delete;
   ~Snapshot();
 
   Result<void> add(std::uint8_t kind, std::string_view body);
-  /// Syncs it, reads it back, names it. Then files go that neither it nor the snapshot before it needs; in
-  /// memory that one goes, too.
+  /// Syncs, verifies and names the file. Then removes files that neither it nor the previous snapshot needs,
+  /// and in memory also that snapshot.
   Result<void> finish();
   std::size_t bytes() const { return at_; }
 

@@ -13,16 +13,16 @@
 
 namespace adit::store {
 
-/// The members of a struct as a record has them: a tuple of pointers to members, in the order of their bytes.
-/// A room specializes it for the structs of its records. If a record is only written, a pointer may be that
-/// of a function that returns a reference.
+/// The members of a struct in a record, as a tuple of pointers to members in byte order. Rooms specialize it
+/// for their structs. For a struct that is only written, a function that returns a reference may take a
+/// pointer's place.
 template <class Of>
 inline constexpr auto kMembers = std::tuple();
 
-/// Calls `each` with the plain values in `value`, in their order: of a struct its kMembers; of an optional
-/// whether it has a value, then that or a default one; of a list its size, then its items; of a pair, tuple
-/// or array its items. A value for which `each` has an overload is plain. If `value` is const, `each` writes
-/// it, else `each` reads it and ok() says whether it could.
+/// Calls `each` with the plain values in `value`, in order. A struct has its kMembers. An optional has a
+/// flag, then its value or a default one. A list has its size, then its items. Pairs, tuples and arrays have
+/// their items. A value is plain if `each` has an overload for it. A const `value` is written; others are
+/// read, and ok() reports the result.
 template <class Of>
 void walk(auto& each, Of& value) {
   if constexpr (requires { each(value); }) {
@@ -54,8 +54,8 @@ void walk(auto& each, Of& value) {
   }
 }
 
-/// Puts plain values one after the other: a number in 8 bytes, little-endian; a real as the bits of its
-/// IEEE 754 double; a text behind its size, a number.
+/// Writes plain values in sequence: numbers in 8 bytes, little-endian; reals as IEEE 754 doubles; texts after
+/// their sizes.
 class Writer {
  public:
   void operator()(std::uint64_t number);
@@ -75,8 +75,8 @@ class Writer {
   std::string bytes_;
 };
 
-/// Reads the bytes of a Writer. A value behind their end reads as 0 or "", and ok() is false from then on, as
-/// it is once a number does not fit its type.
+/// Reads a Writer's bytes. Beyond their end, values read as 0 or "". Then, or if a number does not fit its
+/// type, ok() is false from then on.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : left_(bytes) {}
@@ -101,7 +101,7 @@ class Reader {
   void operator()(std::chrono::steady_clock::time_point& at) {
     at = std::chrono::steady_clock::time_point(read<std::chrono::nanoseconds>());
   }
-  /// The next value, of any type that walk() knows.
+  /// The next value, of any type that walk() supports.
   template <class Of>
   Of read() {
     Of value{};
@@ -109,7 +109,7 @@ class Reader {
     return value;
   }
 
-  /// Not ok() from now on unless `is_good`.
+  /// Makes ok() false from now on unless `is_good`.
   void check(bool is_good) { ok_ = ok_ && is_good; }
   bool ok() const { return ok_; }
   bool at_end() const { return left_.empty(); }
@@ -123,7 +123,7 @@ class Reader {
   bool ok_ = true;
 };
 
-/// The bytes of these values, one after the other.
+/// The bytes of these values in sequence.
 template <class Put = Writer, class... Of>
 std::string bytes_of(const Of&... values) {
   Put put;
@@ -131,8 +131,8 @@ std::string bytes_of(const Of&... values) {
   return put.finish();
 }
 
-/// Reads what bytes_of() wrote of such values. False if a value is missing or wrong, or bytes are left; the
-/// values are any then.
+/// Reads values that bytes_of() wrote. False, with undefined values, if one is missing or wrong, or bytes are
+/// left.
 template <class Take = Reader, class... Of>
 bool read(std::string_view bytes, Of&... values) {
   Take take(bytes);

@@ -8,7 +8,7 @@
 namespace adit::codec {
 namespace {
 
-constexpr std::size_t kMostRows = 100'000;  // that a patch may make of a list
+constexpr std::size_t kMostRows = 100'000;  // most rows that a patch may create in a list
 
 const Value* member_of(const Value::Object& object, std::string_view name) {
   const auto found = std::ranges::find(object, name, &Value::Member::first);
@@ -31,13 +31,13 @@ std::optional<std::size_t> place_of(std::string_view name) {
   return place;
 }
 
-/// Rows that stay, from their places before to those that they have now.
+/// Copies a run of rows that stay from `before` to their places in `now`.
 bool keep(const Value& run, Value::Array& before, Value::Array& now) {
   const auto* const numbers = std::get_if<Value::Array>(&run.is);
   if (numbers == nullptr || numbers->size() != 3) return false;
   const auto to = count_of((*numbers)[0]), from = count_of((*numbers)[1]), count = count_of((*numbers)[2]);
   if (!to || !from || !count || *from + *count > before.size() || *to + *count > now.size()) return false;
-  // A row of before may be asked for twice.
+  // A patch may use a row several times.
   for (std::size_t i = 0; i < *count; ++i) now[*to + i] = before[*from + i];
   return true;
 }

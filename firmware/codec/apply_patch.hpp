@@ -6,8 +6,8 @@
 
 namespace adit::codec {
 
-/// What a patch (patch.hpp) makes of what was told before; nothing where it is no patch of that. Both may be
-/// anything that a peer sends: nothing in it makes more of it than it says.
+/// Applies a patch (patch.hpp) to the value before it. std::nullopt: not a patch of that value. Both may come
+/// from any peer; the result's size is limited.
 std::optional<Value> apply_patch(Value before, const Value& patch);
 
 }  // namespace adit::codec

@@ -22,9 +22,9 @@ constexpr std::array<std::uint8_t, 256> kSextets = [] {
   return sextets;
 }();
 
-/// What each character adds to the three bytes of its group, the first of which is the lowest of the word.
+/// What each character adds to the three bytes of its group. The first byte is the word's lowest.
 using Addends = std::array<std::uint32_t, 256>;
-constexpr std::uint32_t kBad = 1U << 24;  // the character is none of the alphabet
+constexpr std::uint32_t kBad = 1U << 24;  // not in the alphabet
 constexpr std::array<Addends, 4> kAddends = [] {
   std::array<Addends, 4> places{};
   for (auto& place : places) place.fill(kBad);
@@ -40,7 +40,7 @@ constexpr std::array<Addends, 4> kAddends = [] {
 }();
 
 constexpr std::size_t kGroup = 4, kBytes = 3;
-constexpr std::size_t kBlock = 8;  // groups that are looked at together
+constexpr std::size_t kBlock = 8;  // groups decoded together
 
 std::uint8_t sextet(char c) {
   return kSextets[static_cast<std::uint8_t>(c)];
@@ -51,7 +51,7 @@ std::uint32_t group(const char* characters) {
   return at(0) | at(1) | at(2) | at(3);
 }
 
-/// Three bytes; the fourth, which is written too, is of no account.
+/// Writes three bytes, and a fourth without meaning.
 void put(std::uint32_t word, std::uint8_t* out) {
   if constexpr (std::endian::native == std::endian::big) word = std::byteswap(word);
   std::memcpy(out, &word, sizeof word);

@@ -17,8 +17,8 @@ std::unique_ptr<Splitter> splitter_for(Format format, Split split, const Limits&
   return std::make_unique<JsonSplitter>(split, most, data);
 }
 
-/// What a body may inflate to. Most that data takes is four characters for a byte, as the integers of an
-/// array; white space counts here alone.
+/// Limit for an inflated body. Data takes at most four characters for a byte, as integers of an array. Only
+/// here, white space counts too.
 std::size_t most_inflated(Split split, const Limits& limits) {
   if (split != Split::MapData) return limits.text_bytes;
   constexpr std::size_t kMost = std::numeric_limits<std::size_t>::max();
@@ -28,8 +28,8 @@ std::size_t most_inflated(Split split, const Limits& limits) {
 
 constexpr std::size_t kTelling = 2;  // bytes
 
-/// For a refusal: what a document that begins so looks like, if that is not what its headers say. Each
-/// verdict needs no more bytes than a splitter has taken when it refuses the document.
+/// A hint for a refusal if the document looks like another format than its headers say. Uses no more bytes
+/// than a splitter has read when it refuses.
 std::string_view other_format(Format said, std::string_view begin) {
   if (begin.empty()) return "";
   const auto first = static_cast<std::uint8_t>(begin.front()),
@@ -40,7 +40,7 @@ std::string_view other_format(Format said, std::string_view begin) {
   }
   const bool is_utf_16 = first == 0 || first >= 0xFE || (first == '{' && second == 0);
   if (is_utf_16) return " (this looks like UTF-16; expected UTF-8)";
-  const bool is_cbor = first >= 0x80 && first < 0xE0;  // RFC 8949 3.1: an array, a map, a tag
+  const bool is_cbor = first >= 0x80 && first < 0xE0;  // RFC 8949 3.1: an array, a map or a tag
   return is_cbor ? " (this looks like CBOR; Content-Type says JSON)" : "";
 }
 
@@ -84,7 +84,7 @@ class BodyDecoder::Impl {
   }
 
   Format format_;
-  std::string begin_;  // of the document
+  std::string begin_;  // beginning of the document
   BulkData data_;
   std::unique_ptr<Splitter> splitter_;
   ContentDecoder content_;

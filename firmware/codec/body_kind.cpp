@@ -1,4 +1,4 @@
-// What the headers say of a body.
+// Reads the form of a body from its headers.
 #include "codec/body_decoder.hpp"
 #include "icd/letter_case.hpp"
 

@@ -24,7 +24,8 @@ icd::Checked<void> BulkData::fits(std::uint64_t bytes) const {
 icd::Checked<void> BulkData::append(std::span<const std::uint8_t> bytes) {
   if (auto fit = fits(bytes.size()); !fit) return fit;
   if (bytes.empty()) return {};
-  constexpr std::uint8_t kGzip = 0x1F;  // RFC 1952 2.3.1; a grid whose first cell that is waits to be pressed
+  constexpr std::uint8_t kGzip = 0x1F;  // RFC 1952 2.3.1; a grid whose first cell has this value is
+                                        // compressed later
   if (came_ == 0 && is_grid_ && bytes.front() != kGzip) press_.emplace();
   came_ += bytes.size();
   if (press_) {

@@ -6,7 +6,7 @@
 
 namespace adit::codec {
 
-/// A byte in a sentence: 'x', or byte 0x1f where it cannot be printed.
+/// A byte for a sentence: 'x', or byte 0x1f if it is not printable.
 inline std::string byte_name(char byte) {
   if (byte > 0x20 && byte < 0x7F) return {'\'', byte, '\''};
   if (byte == ' ') return "a space";

@@ -9,14 +9,14 @@
 namespace adit::codec {
 namespace {
 
-/// Which value each byte of a point belongs to.
+/// The value that a byte of a point belongs to.
 struct Place {
   std::uint32_t begin = 0;
-  std::uint32_t size = 0;  // of that value in bytes; 0: padding
+  std::uint32_t size = 0;  // in bytes; 0: padding
   friend bool operator==(const Place&, const Place&) = default;
 };
 
-/// False: the value lies across another. The very same place may have two names.
+/// False: the value overlaps another. Two names for one place are allowed.
 bool take_place(std::span<Place> bytes, const Place& value) {
   const auto own = bytes.subspan(value.begin, value.size);
   if (std::ranges::all_of(own, [&](const Place& taken) { return taken == value; })) return true;

@@ -9,13 +9,13 @@
 
 namespace adit::codec {
 
-/// For each byte of a little-endian point, which byte of the big-endian one it is: every value turned,
-/// padding left where it is. Nothing where two values lie across each other, so that no turned point says
-/// what both said. Requires check(cloud).
+/// For each byte of a little-endian point, the index of the big-endian byte. Swaps every value and leaves
+/// padding. std::nullopt if two values overlap, because no swapped point preserves both. Requires
+/// check(cloud).
 std::optional<std::vector<std::uint32_t>> little_endian_order(const icd::PointCloud2& cloud);
 
-/// Points with their bytes in that order; consumes `points` chunk by chunk. What follows the last whole point
-/// stays as it is. Requires an order.
+/// Reorders the bytes of points; consumes `points` chunk by chunk. Bytes after the last whole point stay.
+/// Requires an order that is not empty.
 icd::ChunkedBytes in_order(icd::ChunkedBytes points, const std::vector<std::uint32_t>& order);
 
 }  // namespace adit::codec

@@ -10,7 +10,7 @@
 namespace adit::codec {
 namespace {
 
-/// RFC 8949 appendix D.
+/// A half-precision number (RFC 8949 appendix D).
 double half(std::uint16_t bits) {
   const int exponent = (bits >> 10) & 0x1F;
   const int mantissa = bits & 0x3FF;

@@ -7,30 +7,29 @@
 
 namespace adit::codec {
 
-/// RFC 8949 3.1.
+/// Major types (RFC 8949 3.1).
 enum class Major : std::uint8_t { Unsigned, Negative, Bytes, Text, Array, Map, Tag, Simple };
 
-/// The head of one CBOR item (RFC 8949 section 3): its first byte and the argument after it, given in pieces
-/// of any size.
+/// The head of a CBOR item (RFC 8949 section 3), its first byte and argument, read in pieces of any size.
 class CborHead {
  public:
-  /// How many bytes of `in` belong to the head. Requires !complete().
+  /// Reads `in` and returns the number of bytes that belong to the head. Requires !complete().
   std::size_t next(std::string_view in);
 
   bool empty() const { return size_ == 0; }
   bool complete() const { return size_ > 0 && size_ == length(); }
-  /// Begins the next one.
+  /// Prepares for the next head.
   void clear() { size_ = 0; }
 
-  // Of a complete head:
+  // For a complete head:
   Major major() const { return static_cast<Major>(bytes_[0] >> 5); }
   std::uint8_t info() const { return bytes_[0] & 0x1F; }
   bool indefinite() const { return info() == 31; }
   bool is_break() const { return bytes_[0] == 0xFF; }
-  /// Additional information that RFC 8949 keeps for later.
+  /// Additional information that RFC 8949 reserves.
   bool reserved() const { return info() >= 28 && info() <= 30; }
   std::uint64_t argument() const;
-  /// Of a floating-point number (major type 7, info 25 to 27).
+  /// The value of a floating-point item (major type 7, info 25 to 27).
   double number() const;
   std::string_view raw() const { return {reinterpret_cast<const char*>(bytes_.data()), size_}; }
 

@@ -63,7 +63,7 @@ icd::Checked<void> CborSplitter::check_head() const {
 icd::Checked<void> CborSplitter::item() {
   if (head_.is_break()) return end_of_nest();
   const bool is_key = at_key() && !leaves_out();
-  if (is_key) path_.key({});  // until it turns out to be a string
+  if (is_key) path_.key({});  // in case the key is not a string
   Into into = is_key ? Into::Key : Into::Rest;
   if (elements()) {
     if (auto taken = element(); !taken) return taken;
@@ -152,7 +152,7 @@ icd::Checked<void> CborSplitter::end_of_nest() {
   return {};
 }
 
-/// An item is whole, and with it each tag and each container whose last item it was.
+/// Ends an item, and each tag or container that it completes.
 void CborSplitter::item_ended() {
   while (!nests_.empty()) {
     if (nests_.size() < elements_of_) elements_of_ = 0;

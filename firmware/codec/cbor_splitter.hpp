@@ -15,12 +15,12 @@
 
 namespace adit::codec {
 
-/// CBOR (RFC 8949): checks that it is well-formed (section 5.3.1), that texts are UTF-8, and that nesting,
-/// tags included, is not too deep. No length is believed before its bytes are there. Tags that only remark on
-/// their value are left out; what stands under others is, and UnderTag in its place.
+/// Checks that CBOR (RFC 8949) is well-formed (section 5.3.1), texts are UTF-8, and nesting, with tags, is
+/// not too deep. Never trusts a length before its bytes arrive. Drops tags that only annotate their value. A
+/// value under another tag becomes UnderTag.
 class CborSplitter final : public Splitter {
  public:
-  /// `data` must outlive this.
+  /// `data` must outlive this object.
   CborSplitter(Split split, Most most, BulkData& data);
 
   icd::Checked<void> feed(std::string_view bytes) override;
@@ -30,13 +30,13 @@ class CborSplitter final : public Splitter {
   struct Nest {
     Major kind = Major::Array;  // Array, Map or Tag
     bool indefinite = false;
-    std::uint64_t left = 0;  // elements or pairs to come
-    bool key_next = false;   // of a Map
+    std::uint64_t left = 0;  // remaining elements or pairs
+    bool key_next = false;   // in a Map
   };
-  /// Where the bytes of a string go.
+  /// Destination of a string's bytes.
   enum class Into : std::uint8_t { Rest, Key, Data };
 
-  /// Each takes some of `in` (not empty) and says how much.
+  /// These functions read a part of `in` (not empty) and return its length.
   icd::Checked<std::size_t> head(std::string_view in);
   icd::Checked<std::size_t> string(std::string_view in);
 
@@ -62,7 +62,7 @@ class CborSplitter final : public Splitter {
   void keep(std::string_view raw) {
     if (!elements() && !leaves_out()) rest_ += raw;
   }
-  /// The array or map that the next item is in; nullptr at the top.
+  /// The array or map of the next item; null at the top level.
   const Nest* container() const;
   bool at_key() const;
 
@@ -71,29 +71,29 @@ class CborSplitter final : public Splitter {
 
   const Split split_;
   const Most most_;
-  std::size_t values_ = 0;  // kept, with the chunks of strings
+  std::size_t values_ = 0;  // kept so far, with chunks of strings
   BulkData& data_;
   DataPath path_;
 
-  std::size_t at_ = 0;       // bytes taken so far
-  std::size_t head_at_ = 0;  // where the head began
+  std::size_t at_ = 0;       // bytes read so far
+  std::size_t head_at_ = 0;  // start of the head
   std::vector<Nest> nests_;
   bool whole_ = false;
   CborHead head_;
 
-  std::optional<Major> string_;   // the string we are in: Bytes or Text
-  bool chunked_ = false;          // it is of indefinite length
-  std::uint64_t piece_left_ = 0;  // bytes of it before the next head
+  std::optional<Major> string_;   // the present string: Bytes or Text
+  bool chunked_ = false;          // its length is indefinite
+  std::uint64_t piece_left_ = 0;  // bytes before its next head
   Into into_ = Into::Rest;
   Utf8Checker utf8_;
   std::string key_;  // its first characters
 
-  std::size_t elements_of_ = 0;  // how many nests there are in the map's data, when it is an array
+  std::size_t elements_of_ = 0;  // nesting depth of the map's data if it is an array
 
-  std::size_t left_out_of_ = 0;  // how many nests there are with the tag whose value is left out
+  std::size_t left_out_of_ = 0;  // nesting depth of the tag whose value is dropped
 
-  /// The document without tags but those, with null for the map's data, and undefined for the simple values
-  /// that RFC 8949 3.3 gives no meaning.
+  /// The document without annotating tags. The map's data is null. Simple values without meaning (RFC 8949
+  /// 3.3) are undefined.
   std::string rest_;
 };
 

@@ -1,4 +1,4 @@
-// The CBOR splitter's strings, and the values that it diverts from the rest: the map's data.
+// The CBOR splitter's strings, and the map's data, which it splits off.
 #include <algorithm>
 #include <limits>
 
@@ -47,7 +47,7 @@ icd::Checked<void> CborSplitter::divert() {
       data_.begin(DataForm::Integers, path_.is_grid());
       elements_of_ = nests_.size() + 1;
       break;
-    case Major::Text:  // ICD 6.3 (b): refused here, because it may be too long for the rest
+    case Major::Text:  // ICD 6.3 (b); refused here, because it may be too long for the rest
       return std::unexpected(bad_data("expected a byte string, got a string"));
     default:
       break;  // the reader refuses it
@@ -74,8 +74,8 @@ icd::Checked<void> CborSplitter::element() {
   return std::unexpected(data_.bad_element(element_kind(head_)));
 }
 
-/// Those that stand there as every client writes them. The last one of a length that was told is not among
-/// them: with it the array ends.
+/// Fast path for elements in their usual form. Leaves the last element of a known length, which ends the
+/// array.
 icd::Checked<std::size_t> CborSplitter::plain_elements(std::string_view in) {
   std::string_view left = in;
   Nest& list = nests_.back();
@@ -145,7 +145,7 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
 }
 
 icd::Checked<void> CborSplitter::end_of_piece() {
-  // RFC 8949 3.2.3: no character may be cut in two by the chunks.
+  // RFC 8949 3.2.3: a chunk must not split a character.
   if (!utf8_.complete()) return std::unexpected(fault("a text that ends within a character"));
   if (!chunked_) string_ended();
   return {};

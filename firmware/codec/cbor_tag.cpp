@@ -9,15 +9,15 @@ namespace adit::codec {
 
 bool is_remark(std::uint64_t tag) {
   static constexpr auto kRemarks = std::to_array<std::uint64_t>({
-      0,     1,                      // date and time: as text, and in seconds
-      21,    22,    23,  108,        // how bytes are to be written elsewhere
-      28,    256,   296, 22098,      // for references (25, 29), which are no remarks
+      0,     1,                      // time as text, and in seconds
+      21,    22,    23,  108,        // preferred encoding of bytes
+      28,    256,   296, 22098,      // reference scopes; references (25, 29) are no annotations
       32,    33,    34,  35,    36,  // kinds of text
       39,                            // an identifier
-      41,    258,                    // of an array: elements of one kind; a set
-      64,    68,    72,              // RFC 8746: bytes that are an array of single bytes
-      201,   55799,                  // the content is CBOR
-      259,   275,                    // of a map: it is one; its keys are texts
+      41,    258,                    // of an array: equal types; a set
+      64,    68,    72,              // RFC 8746: bytes as an array of single bytes
+      201,   55799,                  // content is CBOR
+      259,   275,                    // of a map: a map; text keys
       266,   267,   301, 1004,       // more kinds of text
       21065,
   });

@@ -5,11 +5,11 @@
 
 namespace adit::codec {
 
-/// Of the tags that IANA has registered, one that leaves its content what it is: a text, a number, bytes, an
-/// array or a map.
+/// Whether a registered tag only annotates its content, so that a text, number, byte string, array or map
+/// keeps its meaning.
 bool is_remark(std::uint64_t tag);
 
-/// Another tag, for a sentence.
+/// Describes another tag for a sentence.
 std::string tag_that_changes(std::uint64_t tag);
 
 }  // namespace adit::codec

@@ -33,7 +33,7 @@ Value simple(const CborHead& head) {
   return {};
 }
 
-/// Reads items that are known to be well-formed. Recursion ends at BodyDecoder::kDeepest.
+/// Reads well-formed items. BodyDecoder::kDeepest limits the recursion.
 class CborReader {
  public:
   CborReader(std::string_view bytes, Lists* lists) : left_(bytes), lists_(lists) {}
@@ -52,11 +52,11 @@ class CborReader {
       case Major::Text:
         return {string(head)};
       case Major::Array:
-        return lists_ != nullptr ? lists_->next() : array(head);  // of a Cut, it is empty
+        return lists_ != nullptr ? lists_->next() : array(head);  // arrays in a Cut are empty
       case Major::Map:
         return object(head);
       case Major::Tag:
-        value();  // null, which a CborSplitter puts there
+        value();  // null, from CborSplitter
         return {Value::UnderTag{head.argument()}};
       case Major::Simple:
         break;
@@ -92,12 +92,12 @@ class CborReader {
     return text;
   }
 
-  /// `add` reads what each of an array's or a map's consists of.
+  /// `add` reads one element or pair.
   template <class Items, class Add>
   Value filled(const CborHead& head, const Add& add) {
     Items items;
     if (!head.indefinite()) {
-      items.reserve(head.argument());  // each of them has a byte at least
+      items.reserve(head.argument());  // each has at least one byte
       for (std::uint64_t left = head.argument(); left > 0; --left) add(items);
     } else {
       while (!take_break()) add(items);
@@ -117,8 +117,7 @@ class CborReader {
     });
   }
 
-  /// A member's name: a text, or a byte string that holds one, as Python 2 writes it. Nothing for another
-  /// key.
+  /// A member's name: a text, or a byte string of UTF-8, as Python 2 writes it. std::nullopt for other keys.
   static std::optional<std::string> name_of(Value key) {
     if (auto* text = std::get_if<std::string>(&key.is)) return std::move(*text);
     const auto* bytes = std::get_if<Value::Bytes>(&key.is);
@@ -139,7 +138,7 @@ std::optional<double> real_of(const CborHead& head) {
   return head.number();
 }
 
-/// List::reals() of well-formed bytes.
+/// List::reals() for well-formed bytes.
 bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into) {
   const auto next = [&] {
     CborHead head;
@@ -162,7 +161,7 @@ bool reals_in(std::string_view object, std::span<const std::string_view> names, 
 icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t end);
 constexpr ListFormat kCborLists = {.element = with_lists_at, .reals = reals_in, .gap = 0};
 
-/// The value from `begin` on.
+/// The value at `begin`.
 icd::Checked<Value> with_lists_at(const SharedText& text, std::size_t begin, std::size_t /*end*/) {
   Cut cut = cut_cbor(*text, begin);
   if (cut.values > kMostOutsideLists) return std::unexpected(too_many_outside_lists(kMostOutsideLists));

@@ -9,10 +9,10 @@
 
 namespace adit::codec {
 
-/// The document that a CborSplitter has passed and kept, which is not checked again: it is well-formed and
-/// has no tags. Undefined is null, and members whose keys are no text are left out.
+/// The value of a document that a CborSplitter has checked. Undefined becomes null; members without text keys
+/// are dropped.
 Value cbor_value(std::string_view bytes);
-/// The same, its arrays left as text. 413: as List::element().
+/// The same, with arrays left as text. Error 413: as List::element().
 icd::Checked<Value> cbor_value_with_lists(std::string bytes);
 
 }  // namespace adit::codec

@@ -7,7 +7,7 @@
 
 namespace adit::codec {
 
-/// The number's `size` bytes follow, the highest first.
+/// Writes the head, then `number` in `size` bytes, the highest first.
 void CborWriter::head(Major major, std::uint8_t info, std::uint64_t number, std::size_t size) {
   if (latest_.size() - used_ < 1 + sizeof number) flush();
   latest_[used_++] = static_cast<std::uint8_t>(static_cast<unsigned>(major) << 5 | info);
@@ -39,7 +39,7 @@ void CborWriter::text(std::string_view utf8) {
   if (utf8.size() > latest_.size() - used_) flush();
   if (utf8.size() > latest_.size())
     return out_.append({reinterpret_cast<const std::uint8_t*>(utf8.data()), utf8.size()});
-  utf8.copy(reinterpret_cast<char*>(latest_.data()) + used_, utf8.size());  // which may be none
+  utf8.copy(reinterpret_cast<char*>(latest_.data()) + used_, utf8.size());  // may be empty
   used_ += utf8.size();
 }
 

@@ -10,15 +10,15 @@
 
 namespace adit::codec {
 
-/// CBOR (RFC 8949), item after item, each length in its shortest form (4.1) and none indefinite. The caller
-/// writes as many items as it announced.
+/// Writes CBOR items (RFC 8949) with the shortest definite lengths (4.1). The caller must write as many items
+/// as announced.
 class CborWriter {
  public:
   void map(std::size_t members);
   void array(std::size_t elements);
   void text(std::string_view utf8);
   void whole(std::int64_t number);
-  /// Always as a 64-bit float, so that a reader who asks for a float gets one.
+  /// Always a 64-bit float, so that the reader gets a float.
   void real(double number);
   void truth(bool yes);
   /// A byte string that shares the chunks of `bytes`.
@@ -32,7 +32,7 @@ class CborWriter {
   void flush();
 
   icd::ChunkedBytes out_;
-  std::array<std::uint8_t, 4096> latest_;  // what follows, together: an item is a few bytes
+  std::array<std::uint8_t, 4096> latest_;  // buffer, because items are small
   std::size_t used_ = 0;
 };
 

@@ -10,20 +10,20 @@
 
 namespace adit::codec {
 
-/// The cells of a grid, gzipped and checked as they arrive: when the last one is there little is left to do,
-/// and none is held as it came.
+/// Compresses and checks a grid's cells on arrival, so that little work is left at the end and raw cells are
+/// not held.
 class CellPress {
  public:
   void feed(std::span<const std::uint8_t> cells);
 
-  /// How much take_some() would give.
+  /// Bytes that take_some() would return.
   std::size_t held() const { return gzipper_.held(); }
-  /// What has come of the gzip member since the last take_some().
+  /// The gzip member's bytes since the last take_some().
   icd::ChunkedBytes take_some() { return gzipper_.take_some(); }
-  /// The rest of the member, once.
+  /// The rest of the member. Call once.
   icd::ChunkedBytes finish() { return gzipper_.finish(); }
 
-  /// Of icd::check_cells(): the first that no cell may be, and where. Nothing after it is pressed any more.
+  /// The first invalid cell by icd::check_cells(). Cells after it are not compressed.
   const icd::Checked<void>& checked() const { return checked_; }
 
  private:

@@ -7,7 +7,7 @@
 
 namespace adit::codec {
 
-/// The Kind of a text that is such a one; what is not is refused by `kExpected`: "expected a MAC address".
+/// The Kind of a text that passes `is_such`; others are refused with `kExpected` ("expected a MAC address").
 template <bool (*is_such)(std::string_view), const auto& kExpected>
 inline constexpr Kind kCheckedText = {.write = kind_of<std::string>.write,
                                       .read =

@@ -14,8 +14,8 @@ namespace {
 
 constexpr std::size_t kInflatedPiece = 32UL * 1024;
 
-/// RFC 1950 2.2: method deflate, a window of at most 32 KiB, and a check of both bytes. No raw deflate that a
-/// compressor writes begins so.
+/// RFC 1950 2.2: method deflate, a window of at most 32 KiB, and a check value. Raw deflate from compressors
+/// never begins so.
 bool has_zlib_header(std::string_view head) {
   const auto cmf = static_cast<unsigned char>(head[0]);
   const auto flags = static_cast<unsigned char>(head[1]);
@@ -64,7 +64,7 @@ icd::Checked<void> ContentDecoder::begin(int window_bits) {
 }
 
 icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
-  std::array<char, kInflatedPiece> piece;  // not cleared: this is the hot path
+  std::array<char, kInflatedPiece> piece;  // not cleared, for speed
   while (true) {
     if (std::exchange(ended_, false)) {
       if (coding_ != ContentCoding::Gzip) return std::unexpected(bad("bytes after its end"));
@@ -90,7 +90,7 @@ icd::Checked<void> ContentDecoder::inflate(std::string_view bytes) {
     if (result != Z_OK && result != Z_BUF_ERROR) {
       return std::unexpected(bad(stream_->msg != nullptr ? stream_->msg : "damaged data"));
     }
-    if (bytes.empty() && stream_->avail_out > 0) return {};  // all that came is used up
+    if (bytes.empty() && stream_->avail_out > 0) return {};  // all input is used
   }
 }
 

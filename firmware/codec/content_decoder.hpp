@@ -13,19 +13,19 @@ struct z_stream_s;
 
 namespace adit::codec {
 
-/// Undoes a Content-Encoding (RFC 9110 8.4.1) as the bytes arrive: gzip, of one member or several (RFC
-/// 1952 2.2), or one deflate stream with or without zlib's wrapping, and nothing after it. Refusals are 400,
-/// or 413 over the limit, which is one for all members.
+/// Decodes a Content-Encoding (RFC 9110 8.4.1) on arrival: gzip with one or more members (RFC 1952 2.2), or
+/// one deflate stream with or without zlib's wrapping, without further data. Errors: 400, or 413 over the
+/// limit for all members together.
 class ContentDecoder {
  public:
   using Sink = std::function<icd::Checked<void>(std::string_view)>;
 
-  /// Gives `sink` at most `most` bytes in all.
+  /// `sink` gets at most `most` bytes in total.
   ContentDecoder(ContentCoding coding, std::size_t most, Sink sink);
 
   icd::Checked<void> feed(std::string_view bytes);
   icd::Checked<void> finish();
-  /// How many bytes `sink` was given.
+  /// Bytes passed to `sink`.
   std::size_t given() const { return given_; }
 
  private:
@@ -40,9 +40,9 @@ class ContentDecoder {
   ContentCoding coding_;
   std::size_t most_, given_ = 0;
   Sink sink_;
-  std::string head_;  // of a deflate body, until it tells which kind it is
+  std::string head_;  // of a deflate body, until its kind is known
   std::unique_ptr<z_stream_s, End> stream_;
-  bool ended_ = false;     // with a whole member or stream
+  bool ended_ = false;     // at the end of a member or stream
   bool is_later_ = false;  // not the first member
 };
 

@@ -4,12 +4,12 @@
 namespace adit::codec {
 namespace {
 
-/// A walk over well-formed items. Recursion ends at BodyDecoder::kDeepest.
+/// Walks well-formed items. BodyDecoder::kDeepest limits the recursion.
 class CborCutter {
  public:
   CborCutter(std::string_view text, std::size_t at, Cut& cut) : text_(text), at_(at), cut_(cut) {}
 
-  /// An item, without its outermost arrays.
+  /// Copies an item without its outermost arrays.
   void keep() {
     ++cut_.values;
     const std::size_t begin = at_;
@@ -34,7 +34,7 @@ class CborCutter {
     return head;
   }
 
-  /// What an array or a map has, or a string in chunks.
+  /// Visits each element, pair or chunk.
   template <class Visit>
   void each(const CborHead& head, const Visit& visit) {
     if (!head.indefinite()) {
@@ -54,7 +54,7 @@ class CborCutter {
   Starts starts_in(const CborHead& head) {
     Starts starts;
     each(head, [&] {
-      starts.push_back(static_cast<std::uint32_t>(at_));  // a text that is cut has a few MB
+      starts.push_back(static_cast<std::uint32_t>(at_));  // the text is at most a few MB
       skip();
     });
     if (starts.empty()) return starts;

@@ -9,37 +9,37 @@
 
 #include "codec/list.hpp"
 
-/// Well-formed documents whose arrays stay text: a large message is nowhere in memory as a tree.
+/// Well-formed documents whose arrays stay text, so that a large message is never a tree in memory.
 namespace adit::codec {
 
 using SharedText = std::shared_ptr<const std::string>;
-/// Where each element of an array begins in its text, and then where the next would; none: it is empty.
+/// Start of each array element in the text, then the start of a next one. Empty for an empty array.
 using Starts = std::vector<std::uint32_t>;
 
-/// The value at `begin` of a text without its outermost arrays, for which empty ones stand.
+/// The value at `begin` of a text, with its outermost arrays replaced by empty ones.
 struct Cut {
   std::string rest;
-  std::vector<Starts> arrays;  // as they come
-  std::size_t values = 0;      // in `rest`
+  std::vector<Starts> arrays;  // in order
+  std::size_t values = 0;      // number of values in `rest`
 };
 Cut cut_cbor(std::string_view text, std::size_t begin);
 
-/// How the elements of a format are read.
+/// Functions that read elements of a format.
 struct ListFormat {
   icd::Checked<Value> (*element)(const SharedText& text, std::size_t begin, std::size_t end);
   bool (*reals)(std::string_view element, std::span<const std::string_view> names, std::span<double> into);
-  std::size_t gap;  // bytes between two elements
+  std::size_t gap;  // bytes between elements
 };
 
 /// A List of these elements. `format` must outlive it.
 Value list_of(const SharedText& text, Starts starts, const ListFormat& format);
 
-/// What stands for the arrays of a Cut, one after the other.
+/// The replacements for the arrays of a Cut, in order.
 class Lists {
  public:
   Lists(SharedText text, std::vector<Starts> arrays, const ListFormat& format)
       : text_(std::move(text)), arrays_(std::move(arrays)), format_(format) {}
-  /// Requires that there is one more.
+  /// Requires another array.
   Value next();
 
  private:

@@ -8,12 +8,12 @@
 
 namespace adit::codec {
 
-/// Knows when the value that comes next is the one at "msg.data": the same walk for JSON and for CBOR.
+/// Tracks whether the next value is the one at "msg.data", for JSON and CBOR.
 class DataPath {
  public:
   explicit DataPath(Split split) : wanted_(split == Split::MapData) {}
 
-  /// Into an object or an array.
+  /// Enters an object or an array.
   void open() {
     ++depth_;
     in_msg_ = in_msg_ || (depth_ == 2 && msg_named_);
@@ -24,7 +24,7 @@ class DataPath {
     in_msg_ = in_msg_ && depth_ >= 2;
     data_named_ = false;
   }
-  /// The key of the member that comes; "" for one that is no text.
+  /// The key of the next member; "" if not a text.
   void key(std::string_view name) {
     if (depth_ == 1) msg_named_ = name == "msg";
     if (depth_ == 1) type_named_ = name == "type";
@@ -33,16 +33,16 @@ class DataPath {
 
   bool at_data() const { return wanted_ && depth_ == 2 && data_named_; }
 
-  /// A piece of a text that is no key.
+  /// A piece of a text value.
   void text(std::string_view piece) {
     if (depth_ == 1 && type_named_)
       type_ += piece.substr(0, kGrid.size() + 1 - std::min(type_.size(), kGrid.size() + 1));
   }
-  /// Whether the body has said that it is a grid. True also of one that says so and something else, which is
-  /// refused at its end: a member is given twice there.
+  /// Whether the body has declared a grid. Also true if it declares another type too; its end then refuses
+  /// the repeated member.
   bool is_grid() const { return type_ == kGrid; }
 
-  /// A longer key is neither "msg" nor "data": no more of it need be kept.
+  /// Characters of a key to keep: longer keys cannot match.
   static constexpr std::size_t kLongestKey = 5;
 
  private:

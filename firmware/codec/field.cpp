@@ -11,7 +11,7 @@
 namespace adit::codec {
 namespace {
 
-/// The whole number that a value is, if int64 holds it.
+/// The value as int64, if it is a whole number in range.
 std::optional<std::int64_t> whole_of(const Value& value) {
   if (const auto* given = std::get_if<std::int64_t>(&value.is)) return *given;
   if (const auto* given = std::get_if<std::uint64_t>(&value.is)) {
@@ -20,7 +20,7 @@ std::optional<std::int64_t> whole_of(const Value& value) {
   }
   const auto* given = std::get_if<double>(&value.is);
   constexpr double kEnd = 0x1p63;
-  if (!given || std::trunc(*given) != *given) return std::nullopt;  // NaN is unlike itself
+  if (!given || std::trunc(*given) != *given) return std::nullopt;  // also rejects NaN
   if (*given < -kEnd || *given >= kEnd) return std::nullopt;
   return static_cast<std::int64_t>(*given);
 }
@@ -32,7 +32,7 @@ std::optional<double> number_of(const Value& value) {
   return std::nullopt;
 }
 
-/// A value as a sentence says what was got: the number itself, else its kind.
+/// A value for a sentence: a number itself, otherwise its kind.
 std::string got(const Value& value) {
   if (const auto* given = std::get_if<std::int64_t>(&value.is)) return std::to_string(*given);
   if (const auto* given = std::get_if<std::uint64_t>(&value.is)) return std::to_string(*given);
@@ -40,7 +40,7 @@ std::string got(const Value& value) {
   return value.kind();
 }
 
-/// How ROS writes a time: ROS 1, ROS 2, and some C++ code of both. The nanoseconds tell them apart.
+/// Forms of a time in ROS 1, ROS 2 and some C++ code, told apart by the nanoseconds' name.
 struct TimeNames {
   std::string_view seconds, nanoseconds;
 };
@@ -144,7 +144,7 @@ std::string_view Field::text() const {
     refuse_kind("a string");
     return {};
   }
-  if (!is_utf8(*given)) {  // the splitters have looked at strings
+  if (!is_utf8(*given)) {  // splitters have checked strings
     refuse("expected a string, got a byte string that is not UTF-8");
     return {};
   }

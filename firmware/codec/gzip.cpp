@@ -15,16 +15,16 @@ namespace {
 
 constexpr std::size_t kPiece = icd::ChunkedBytes::kChunk;
 constexpr int kLevel = 6;
-constexpr int kGzip = MAX_WBITS + 16;  // zlib: a gzip wrapper, and no other
-constexpr int kRaw = -MAX_WBITS;       // without one
+constexpr int kGzip = MAX_WBITS + 16;  // zlib: only a gzip wrapper
+constexpr int kRaw = -MAX_WBITS;       // no wrapper
 constexpr int kMemoryLevel = 8;        // zlib's default
 
-/// zlib reads through a pointer to what it does not change.
+/// zlib's pointer is not const, but zlib only reads.
 Bytef* in_zlibs_hands(std::span<const std::uint8_t> bytes) {
   return const_cast<Bytef*>(bytes.data());
 }
 
-/// zlib can fail to start for want of memory alone, and then fails as `new` does.
+/// zlib can fail to start only for lack of memory.
 void require_started(int code) {
   if (code != Z_OK) throw std::bad_alloc();
 }
@@ -66,12 +66,12 @@ struct Gzipper::Stream {
   Stream& operator=(const Stream&) = delete;
 
   z_stream zlib{};
-  std::uint32_t checksum = 0;  // by libdeflate: zlib's takes a fifth of what Runs takes
+  std::uint32_t checksum = 0;  // by libdeflate, because zlib's would take a fifth of the time of Runs
   std::uint32_t size = 0;      // modulo 2^32
 };
 
 Gzipper::Gzipper(GzipStrategy strategy) : stream_(std::make_unique<Stream>(strategy)), piece_(kPiece) {
-  constexpr std::array<std::uint8_t, 10> kHead = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3};  // deflate; of Unix
+  constexpr std::array<std::uint8_t, 10> kHead = {0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 3};  // deflate; Unix
   std::ranges::copy(kHead, piece_.begin());
   made_ = kHead.size();
 }
@@ -86,7 +86,7 @@ void Gzipper::deflate_with(int flush) {
     if (made_ == kPiece) give_piece();
     zlib.next_out = piece_.data() + made_;
     zlib.avail_out = static_cast<uInt>(kPiece - made_);
-    deflate(&zlib, flush);  // cannot fail: the stream is sound and there is room for output
+    deflate(&zlib, flush);  // cannot fail: the stream is valid and has room
     full = zlib.avail_out == 0;
     made_ = kPiece - zlib.avail_out;
   }
@@ -113,7 +113,7 @@ void Gzipper::feed(std::span<const std::uint8_t> bytes) {
 
 icd::ChunkedBytes Gzipper::finish() {
   deflate_with(Z_FINISH);
-  member_.append(std::span(piece_).first(made_));  // a copy, so that a small member is small in memory
+  member_.append(std::span(piece_).first(made_));  // a copy, so that a small member takes little memory
   std::array<std::uint8_t, 8> tail{};
   for (std::size_t i = 0; i < tail.size(); ++i) {
     tail[i] = static_cast<std::uint8_t>((i < 4 ? stream_->checksum : stream_->size) >> 8 * (i % 4));
@@ -132,7 +132,7 @@ std::size_t claimed_size(const icd::ChunkedBytes& bytes) {
   constexpr std::size_t kSize = 4;
   if (bytes.size() < kSize) return 0;
   std::size_t claimed = 0;
-  std::size_t left = kSize;  // its last byte is the highest
+  std::size_t left = kSize;  // the last byte is the highest
   for (const auto& chunk : std::views::reverse(bytes.chunks())) {
     for (const std::uint8_t byte : std::views::reverse(*chunk) | std::views::take(left)) {
       claimed = claimed << 8 | byte;
@@ -150,7 +150,7 @@ icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::s
   std::vector<std::uint8_t> piece(kPiece);
   Gunzipped all;
   bool ended = false;
-  std::size_t after = 0;  // bytes behind the last whole member
+  std::size_t after = 0;  // bytes after the last whole member
   while (!bytes.empty()) {
     const auto chunk = bytes.pop_front();
     zlib.next_in = in_zlibs_hands(*chunk);

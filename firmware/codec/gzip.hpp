@@ -15,12 +15,11 @@
 namespace adit::codec {
 
 enum class GzipStrategy : std::uint8_t {
-  Default,  // zlib level 6: for text
-  Runs,     // zlib level 6 with Z_RLE: for grids, two to five times faster and mostly smaller
+  Default,  // zlib level 6, for text
+  Runs,     // zlib level 6 with Z_RLE, for grids: two to five times faster and mostly smaller
 };
 
-/// Makes one gzip member (RFC 1952) of what it is fed, with nothing after it, and no time or name in its
-/// header.
+/// Makes one gzip member (RFC 1952) without time or name in its header.
 class Gzipper {
  public:
   explicit Gzipper(GzipStrategy strategy);
@@ -29,11 +28,11 @@ class Gzipper {
   Gzipper& operator=(Gzipper&&) noexcept;
 
   void feed(std::span<const std::uint8_t> bytes);
-  /// How much take_some() would give.
+  /// Bytes that take_some() would return.
   std::size_t held() const { return member_.size(); }
-  /// What has come of the member since the last take_some(), in whole chunks.
+  /// The member's bytes since the last take_some(), in whole chunks.
   icd::ChunkedBytes take_some() { return std::move(member_); }
-  /// The whole member, or what take_some() has left of it, once, after the last feed.
+  /// The member, or its rest after take_some(). Call once, after the last feed().
   icd::ChunkedBytes finish();
 
  private:
@@ -42,29 +41,29 @@ class Gzipper {
   void give_piece();
 
   std::unique_ptr<Stream> stream_;
-  std::vector<std::uint8_t> piece_;  // what comes out, until it is a whole chunk...
-  std::size_t made_ = 0;             // ...and so much of it has
+  std::vector<std::uint8_t> piece_;  // output, until it is a whole chunk
+  std::size_t made_ = 0;             // bytes in piece_
   icd::ChunkedBytes member_;
 };
 
-/// One gzip member with nothing after it. `bytes` is consumed chunk by chunk.
+/// One gzip member. Consumes `bytes` chunk by chunk.
 icd::ChunkedBytes gzip(icd::ChunkedBytes bytes, GzipStrategy strategy);
 
-/// The size that the last gzip member claims (ISIZE, RFC 1952 2.3.1, modulo 2^32). It is right if gunzip()
-/// has passed the member. 0 if `bytes` are too short for the claim.
+/// The size in the last member's ISIZE (RFC 1952 2.3.1, modulo 2^32), which is right if gunzip() accepts the
+/// member. 0 if `bytes` is too short.
 std::size_t claimed_size(const icd::ChunkedBytes& bytes);
 
-/// Takes what was inflated, piece by piece, and may refuse it.
+/// Receives inflated pieces and may refuse them.
 using Sink = std::function<icd::Checked<void>(std::span<const std::uint8_t>)>;
 
-/// The number of bytes after inflating, and the number of members.
+/// Inflated bytes, and number of members.
 struct Gunzipped {
   std::size_t size = 0, members = 0;
 };
 
-/// Inflates gzip, one member or several (RFC 1952 2.2), into `sink`, consuming `bytes`. Refuses, with 422
-/// about the field at `path`, bytes that are not gzip, end early, have a bad checksum, or continue after the
-/// last member with anything else; with 413, more than `most` bytes after inflating.
+/// Inflates gzip with one or more members (RFC 1952 2.2) into `sink`, consuming `bytes`. Error 422 about the
+/// field at `path`: not gzip, truncated, a bad checksum, or other data after the last member. Error 413: more
+/// than `most` inflated bytes.
 icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::string_view path,
                                const Sink& sink);
 

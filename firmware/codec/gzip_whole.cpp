@@ -20,7 +20,7 @@ struct Freed {
 };
 using Memory = std::unique_ptr<std::uint8_t, Freed>;
 
-/// Of malloc, so that what is not used of it goes back to the system without a copy.
+/// From malloc, so that the unused part returns to the system without a copy.
 Memory memory_of(std::size_t size) {
   Memory memory(static_cast<std::uint8_t*>(std::malloc(size)));
   if (!memory) throw std::bad_alloc();

@@ -7,7 +7,7 @@
 #include "icd/map_update.hpp"
 #include "icd/markers_update.hpp"
 
-/// The ICD's messages (6), each member in the order of its listings, and what ROS has beside them.
+/// The ICD's messages (6), each member in the order of its listings, and ROS's further members.
 namespace adit::codec {
 
 /// "header": {"stamp", "frame_id"}.
@@ -19,7 +19,7 @@ struct HeaderMember {
   void write(CborWriter& out, const auto& from) const { write_header(out, from.header); }
 };
 
-/// "type" and "action": what a marker needs hangs on its action, which is read first.
+/// "type" and "action". The action is read first, because it decides which members a marker needs.
 struct TypeAndAction {
   void read(const Field& parent, icd::Marker& into, const icd::Rules& rules) const {
     into.action = read_action(parent.member("action"));
@@ -85,8 +85,8 @@ inline constexpr auto members_of<icd::Marker> = std::tuple(  // 6.6
     named("color", &icd::Marker::color).needed(Need::ToAdd),
     named("lifetime", &icd::Marker::lifetime).time_to(icd::kLongestLifetime).needed(Need::MayLack),
     named("text", &icd::Marker::text).needed(Need::MayLack),
-    // What ROS's Marker has and the ICD does not list. How many colors there are is the sender's business:
-    // whoever draws the marker ignores those that fit no points.
+    // ROS's further members of a Marker. The number of colors may differ from the number of points; viewers
+    // then ignore the colors.
     named("frame_locked", &icd::Marker::frame_locked).needed(Need::IfSaid),
     named("points", &icd::Marker::points).to(icd::kMostMarkerPoints).needed(Need::IfSaid),
     named("colors", &icd::Marker::colors).to(icd::kMostMarkerPoints).needed(Need::IfSaid),

@@ -11,7 +11,7 @@
 namespace adit::codec {
 namespace {
 
-/// Writes one value after what `text` holds. Recursion ends with the value's nesting.
+/// Appends one value to `text`. The value's nesting limits the recursion.
 struct Writer {
   std::string& text;
 
@@ -56,7 +56,7 @@ struct Writer {
 
 std::expected<Value, std::string> parse_json(std::string_view text) {
   if (auto plain = plain_json(text)) return std::move(*plain);
-  // Else it says what is wrong, and where.
+  // Otherwise finds the error and its place.
   BulkData none(0);
   JsonSplitter splitter(Split::Nothing, {.text = text.size()}, none);
   if (auto fed = splitter.feed(text); !fed) return std::unexpected(std::move(fed.error().sentence));

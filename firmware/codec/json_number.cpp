@@ -66,7 +66,7 @@ double take_json_number(std::string_view& text) {
   double number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
   const auto length = static_cast<std::size_t>(end - text.data());
-  // strtod(3) tells too small from too large.
+  // strtod(3) tells underflow from overflow.
   if (error != std::errc{}) number = std::strtod(std::string(text.substr(0, length)).c_str(), nullptr);
   text.remove_prefix(length);
   return number;

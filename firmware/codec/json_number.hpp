@@ -6,19 +6,19 @@
 
 namespace adit::codec {
 
-/// The grammar of one JSON number (RFC 8259 section 6), given in pieces of any size.
+/// The grammar of a JSON number (RFC 8259 section 6), read in pieces of any size.
 class JsonNumber {
  public:
-  /// How many bytes of `in` carry the number on: all of them, or fewer when it has ended.
+  /// Bytes of `in` that continue the number; fewer than all at its end.
   std::size_t next(std::string_view in);
 
-  /// It may end here.
+  /// Whether it may end here.
   bool complete() const {
     return place_ == Place::Zero || place_ == Place::Integer || place_ == Place::Fraction ||
            place_ == Place::Exponent;
   }
   bool has_exponent() const { return place_ == Place::Exponent; }
-  /// It is "0" or "-0" so far: no digit may follow.
+  /// Whether it is "0" or "-0" so far, so that no digit may follow.
   bool zero() const { return place_ == Place::Zero; }
 
  private:
@@ -28,11 +28,11 @@ class JsonNumber {
   Place place_ = Place::Start;
 };
 
-/// Whether a double holds the number `text`, whose grammar has been read.
+/// Whether the valid number `text`, which `grammar` has read, is in a double's range.
 bool is_finite(const JsonNumber& grammar, std::string_view text);
 
-/// Takes such a number, as which `text` begins, and gives what it means as a double, rounded to the nearest:
-/// 0 or infinite where it is too small or too large for one.
+/// Removes the valid number at the start of `text` and returns it as the nearest double; 0 or infinite if out
+/// of range.
 double take_json_number(std::string_view& text);
 
 }  // namespace adit::codec

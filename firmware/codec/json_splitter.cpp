@@ -12,7 +12,7 @@
 namespace adit::codec {
 namespace {
 
-/// How much text is kept without asking for more memory: any of the ICD's messages but its maps' data.
+/// Initial memory for text: enough for every ICD message without map data.
 constexpr std::size_t kSmallText = 1024;
 
 bool starts_number(char c) {
@@ -188,7 +188,7 @@ icd::Checked<std::size_t> JsonSplitter::close(char bracket) {
   keep(bracket == '}' ? "}" : "]");
   --depth_;
   path_.close();
-  diverted_ = Diverted::No;  // no brackets are taken among the elements, so these were theirs
+  diverted_ = Diverted::No;  // elements contain no brackets, so this one ends them
   value_ended();
   return 1;
 }
@@ -210,7 +210,7 @@ icd::Checked<std::size_t> JsonSplitter::literal(std::string_view in) {
 icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
   if (diverted_ == Diverted::Base64) {
     if (auto taken = base64_groups(in); !taken || *taken > 0) return taken;
-    in = in.substr(0, base64_.missing());  // up to where groups are whole again
+    in = in.substr(0, base64_.missing());  // up to the next whole group
   }
   const auto piece = string_.next(in);
   if (!piece) return std::unexpected(fault_at(at_ + piece.error().at, piece.error().what));

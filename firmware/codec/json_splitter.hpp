@@ -17,12 +17,12 @@
 
 namespace adit::codec {
 
-/// JSON (RFC 8259) as a pushdown automaton. A byte order mark before it is ignored (8.1).
-/// If no data is split off, most documents come in one piece, which is read at once (json_value.hpp). The
-/// automaton reads all others from their first piece, so that it refuses them as soon as they are wrong.
+/// Reads JSON (RFC 8259) as a pushdown automaton. A leading byte order mark is ignored (8.1). Without split
+/// data, a document in one piece is read by json_value(). The automaton reads all others from their first
+/// piece, and refuses them at the first error.
 class JsonSplitter final : public Splitter {
  public:
-  /// `data` must outlive this.
+  /// `data` must outlive this object.
   JsonSplitter(Split split, Most most, BulkData& data);
 
   icd::Checked<void> feed(std::string_view bytes) override;
@@ -34,10 +34,10 @@ class JsonSplitter final : public Splitter {
   enum class Diverted : std::uint8_t { No, Base64, Elements };
 
   icd::Checked<void> read(std::string_view bytes);
-  /// After the last feed: is the document whole?
+  /// Call after the last feed. Error: the document is incomplete.
   icd::Checked<void> end();
 
-  /// Each takes some of `in` (not empty) and says how much.
+  /// These functions read a part of `in` (not empty) and return its length.
   icd::Checked<std::size_t> step(std::string_view in);
   icd::Checked<std::size_t> structure(std::string_view in);
   icd::Checked<std::size_t> value(char first);
@@ -69,30 +69,30 @@ class JsonSplitter final : public Splitter {
 
   const Split split_;
   const Most most_;
-  std::size_t values_ = 0;  // kept
+  std::size_t values_ = 0;  // kept so far
   BulkData& data_;
   DataPath path_;
 
-  std::optional<Value> root_;  // the document, if the first piece was all of it
-  SharedText first_;           // that piece
+  std::optional<Value> root_;  // the document, if it came in one piece
+  SharedText first_;           // the first piece
 
   Expect expect_ = Expect::Value;
   Token token_ = Token::None;
   Diverted diverted_ = Diverted::No;
   std::size_t depth_ = 0;
-  std::bitset<BodyDecoder::kDeepest> objects_;  // of the open brackets, which are braces
-  std::size_t at_ = 0;                          // bytes taken so far
-  std::size_t mark_ = 0;                        // of the byte order mark
+  std::bitset<BodyDecoder::kDeepest> objects_;  // open brackets that are braces
+  std::size_t at_ = 0;                          // bytes read so far
+  std::size_t mark_ = 0;                        // size of the byte order mark
 
   JsonString string_;
   std::string key_;  // its first characters
   JsonNumber number_grammar_;
   std::string number_;
   std::size_t number_at_ = 0;
-  std::string_view word_;  // the part of the literal that must follow
+  std::string_view word_;  // rest of a literal
   Base64Decoder base64_;
 
-  /// The document without white space, with null for the map's data.
+  /// The document without white space; the map's data is null.
   std::string rest_;
 };
 

@@ -1,4 +1,4 @@
-// The JSON splitter's numbers, and the values that it diverts from the rest: the map's data.
+// The JSON splitter's numbers, and the map's data, which it splits off.
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -28,7 +28,7 @@ icd::Checked<void> JsonSplitter::divert(char first) {
 }
 
 icd::Checked<void> JsonSplitter::decode(std::string_view base64) {
-  std::array<std::uint8_t, 6144> bytes;  // not cleared: this is the hot path
+  std::array<std::uint8_t, 6144> bytes;  // not cleared, for speed
   while (!base64.empty()) {
     const auto size = base64_.decode(base64, bytes);
     if (!size) return std::unexpected(bad_data(size.error()));
@@ -37,10 +37,10 @@ icd::Checked<void> JsonSplitter::decode(std::string_view base64) {
   return {};
 }
 
-/// Right up to the string's end, without a look at it before.
+/// Decodes up to the string's end without searching for it.
 icd::Checked<std::size_t> JsonSplitter::base64_groups(std::string_view in) {
   if (!string_.between_characters()) return 0;
-  std::array<std::uint8_t, 6144> bytes;  // not cleared, as above
+  std::array<std::uint8_t, 6144> bytes;  // not cleared, for speed
   std::string_view left = in;
   while (const std::size_t size = base64_.decode_groups(left, bytes)) {
     if (auto taken = data_.append(std::span(bytes).first(size)); !taken)
@@ -49,7 +49,7 @@ icd::Checked<std::size_t> JsonSplitter::base64_groups(std::string_view in) {
   return in.size() - left.size();
 }
 
-/// Those that stand there as every client writes them; whatever else there is, the general way reads.
+/// Fast path for elements in their usual form; the general path reads others.
 icd::Checked<std::size_t> JsonSplitter::plain_elements(std::string_view in) {
   std::string_view left = in;
   while (const auto elements = take_plain_elements(left)) {
@@ -99,7 +99,7 @@ icd::Checked<void> JsonSplitter::divert_number() {
   if (const auto [end, error] = std::from_chars(first, last, value); error == std::errc{} && end == last) {
     return data_.append_element(value, number_);
   }
-  return std::unexpected(data_.bad_element(number_));  // neither fits: far out of range
+  return std::unexpected(data_.bad_element(number_));  // too long, so out of range
 }
 
 }  // namespace adit::codec

@@ -42,7 +42,7 @@ std::expected<JsonString::Piece, Fault> JsonString::plain(std::string_view in) {
       if (n == in.size() || static_cast<unsigned char>(in[n]) < 0x80) break;
     }
     if (!utf8_.next(static_cast<std::uint8_t>(in[n]))) {
-      if (n > 0) break;  // first what is good
+      if (n > 0) break;  // returns the good part first
       return std::unexpected(Fault{n, "a string that is not UTF-8 (" + byte_name(in[n]) + ")"});
     }
     ++n;

@@ -9,41 +9,40 @@
 
 namespace adit::codec {
 
-/// What is wrong with a text, and at which byte of what was given.
+/// An error in a text, and its byte.
 struct Fault {
   std::size_t at = 0;
   std::string what;
 };
 
-/// The inside of one JSON string (RFC 8259 section 7), from after its first quotation mark to its last, given
-/// in pieces of any size. Stricter than the RFC in one thing that it leaves open: a surrogate must have its
-/// partner.
+/// The inside of a JSON string (RFC 8259 section 7), from its first quotation mark to its last, read in
+/// pieces of any size. Stricter than the RFC in one point: a surrogate must be part of a pair.
 class JsonString {
  public:
   struct Piece {
-    std::size_t taken = 0;  // bytes used up of what was given
-    std::string_view raw;   // characters as they stand in the document...
-    std::string_view text;  // ...and what they mean, in UTF-8
-    bool ended = false;     // the closing quotation mark followed, and was taken
+    std::size_t taken = 0;  // bytes read
+    std::string_view raw;   // characters in the document
+    std::string_view text;  // the same in UTF-8
+    bool ended = false;     // the closing quotation mark was read
   };
 
-  /// The next run of characters, or the next escape. Requires !in.empty(). The views live until the next
+  /// The next run of characters, or the next escape. Requires !in.empty(). The views are valid until the next
   /// call.
   std::expected<Piece, Fault> next(std::string_view in);
-  /// Neither within an escape nor within a character: what comes next stands for itself if it is plain ASCII.
+  /// Whether it is outside escapes and characters, so that plain ASCII stands for itself.
   bool between_characters() const { return escape_.empty() && utf8_.complete(); }
 
  private:
   std::expected<Piece, Fault> plain(std::string_view in);
   std::expected<Piece, Fault> escape(std::string_view in);
-  /// Whether the escape is whole with `c`.
+  /// Whether `c` completes the escape.
   std::expected<bool, const char*> escape_ends_with(char c);
   std::expected<bool, const char*> unicode_escape_ends();
 
   Utf8Checker utf8_;
-  std::string escape_;    // as far as it has come; empty: not in an escape
-  std::string finished_;  // the last whole escape...
-  std::string meaning_;   // ...and its character
+  std::string escape_;    // the present escape so far; empty: none
+  std::string finished_;  // the last whole escape
+  std::string meaning_;   // its character
 };
 
 }  // namespace adit::codec

@@ -21,7 +21,7 @@ bool reals_in(std::string_view object, std::span<const std::string_view> names, 
 icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::size_t end);
 constexpr ListFormat kJsonLists = {.element = element_at, .reals = reals_in, .gap = 1};
 
-/// Each function reads what its name says and moves on behind it; false: the document cannot be read.
+/// Each function reads the named item and moves past it. False: invalid document.
 class JsonReader {
  public:
   JsonReader(std::string_view text, std::size_t most_values)
@@ -51,7 +51,7 @@ class JsonReader {
     return true;
   }
 
-  /// Null, here and below: it is checked and not kept.
+  /// `into`, here and below: null if the value is only checked.
   bool value(Value* into) {
     skip_blanks();
     if (values_left_ == 0 || (into != nullptr && outside_left_ == 0)) return false;
@@ -126,7 +126,7 @@ class JsonReader {
     return !std::isinf(number);
   }
 
-  /// The last ones of `waiting`, from `first` on, which have no other place there.
+  /// Removes and returns the items of `waiting` from `first` on.
   template <class Item>
   static std::vector<Item> take_from(std::vector<Item>& waiting, std::size_t first) {
     const auto begin = waiting.begin() + static_cast<std::ptrdiff_t>(first);
@@ -201,7 +201,7 @@ class JsonReader {
   std::size_t outside_left_ = std::numeric_limits<std::size_t>::max();  // values that are kept
   const SharedText* whole_ = nullptr;                                   // null: no array is left as text
   int depth_ = 0;
-  // Of all that are open, so that each gets room for what it holds and no more.
+  // Parts of all open values, so that each value gets exactly the memory it needs.
   std::vector<Value> elements_;
   std::vector<Value::Member> members_;
 };
@@ -243,7 +243,7 @@ icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::s
 }  // namespace
 
 Value json_number_value(double number) {
-  constexpr double kWholeBelow = 9007199254740992;  // 2^53: from there on it may stand for another integer
+  constexpr double kWholeBelow = 9007199254740992;  // 2^53: larger ones may stand for another integer
   const bool whole = std::abs(number) < kWholeBelow && number == std::floor(number);
   const bool negative_zero = number == 0 && std::signbit(number);
   if (whole && !negative_zero) return {static_cast<std::int64_t>(number)};

@@ -12,15 +12,14 @@
 
 namespace adit::codec {
 
-/// A whole JSON document (RFC 8259), read in one pass. Nothing: the text is not well-formed, begins with a
-/// byte order mark, has more than `most_values` values, or is nested deeper than BodyDecoder::kDeepest. A
-/// JsonSplitter says which.
+/// Reads a whole JSON document (RFC 8259) in one pass. std::nullopt: not well-formed, a byte order mark, more
+/// than `most_values` values, or nesting beyond BodyDecoder::kDeepest; JsonSplitter tells which.
 std::optional<Value> json_value(std::string_view text,
                                 std::size_t most_values = std::numeric_limits<std::size_t>::max());
 /// The same, whose arrays are left as text, and of which at most kMostOutsideLists values are outside them.
 std::optional<Value> json_value_with_lists(const SharedText& text, std::size_t most_values);
 
-/// A number of JSON: an integer where it surely stands for that one alone.
+/// A JSON number: an integer if it stands for exactly one.
 Value json_number_value(double number);
 
 }  // namespace adit::codec

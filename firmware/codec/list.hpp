@@ -9,8 +9,7 @@
 
 namespace adit::codec {
 
-/// An array that was left as text: each element is parsed when it is asked for, and nowhere but with who
-/// asks.
+/// An array left as text. Each element is parsed on request and not stored.
 class List {
  public:
   List() = default;
@@ -19,11 +18,10 @@ class List {
   List& operator=(const List&) = delete;
 
   virtual std::size_t size() const = 0;
-  /// `index` is below size(). 413: more than kMostOutsideLists values beside its own lists.
+  /// `index` must be below size(). Error 413: more than kMostOutsideLists values outside its own lists.
   virtual icd::Checked<Value> element(std::size_t index) const = 0;
-  /// The numbers of an element that is an object of these members alone, in this order, each a finite number.
-  /// False if the element is anything else: then element() tells what it is. A list of points or colors is
-  /// read so at a fifth of the cost.
+  /// Reads an element that is an object of exactly these members, in this order, with finite numbers. False:
+  /// another element, which element() then describes. Reads points and colors at a fifth of the cost.
   virtual bool reals(std::size_t index, std::span<const std::string_view> names,
                      std::span<double> into) const = 0;
 };

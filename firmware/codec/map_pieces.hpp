@@ -5,8 +5,8 @@
 
 namespace adit::codec {
 
-/// Gives a map's data to `sink`, inflated where it is compressed, in pieces of up to
-/// icd::ChunkedBytes::kChunk; the error says what is wrong with it, or is the sink's.
+/// Passes a map's data, inflated if compressed, to `sink` in pieces of at most icd::ChunkedBytes::kChunk. An
+/// error is about the data, or from `sink`.
 icd::Checked<void> for_each_piece(const icd::MapData& data, const Sink& sink);
 
 }  // namespace adit::codec

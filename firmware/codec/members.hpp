@@ -17,19 +17,19 @@
 #include "icd/markers_update.hpp"
 #include "icd/rules.hpp"
 
-/// The parts of a message, each member described once: its name, kind, bounds, and whether it may be absent.
-/// Reading JSON and CBOR and writing CBOR come from it; icd_members.hpp has the descriptions.
+/// Parts of a message, each member described once: name, kind, bounds, and whether it may be absent. Reading
+/// JSON and CBOR and writing CBOR use the description. Descriptions: icd_members.hpp.
 namespace adit::codec {
 
-/// Whether a message may be without a member. What is absent is as in a new struct.
+/// Whether a member may be absent. An absent one has the struct's default.
 enum class Need : std::uint8_t {
   Always,
-  MayLack,  // and is written all the same
-  IfSaid,   // and is written only where it says something
-  ToAdd,    // of a marker: those that are added have it
+  MayLack,  // optional, always written
+  IfSaid,   // optional, written only if it differs from the default
+  ToAdd,    // required for markers that are added
 };
 
-/// The members of a struct, a tuple: each reads itself from its parent's Field, and writes itself.
+/// The members of a struct as a tuple. Each reads itself from its parent's Field and writes itself.
 template <class Struct>
 inline constexpr std::nullptr_t members_of = nullptr;
 
@@ -38,7 +38,7 @@ using BoundOf =
     std::conditional_t<std::is_enum_v<T>, std::uint8_t,
                        std::conditional_t<std::is_arithmetic_v<T> && !std::same_as<T, bool>, T, std::size_t>>;
 
-/// A member that stands in the struct as it stands in the message.
+/// A member with the same place in struct and message.
 template <class Struct, class T>
 struct NamedMember {
   using Bound = BoundOf<T>;
@@ -48,11 +48,12 @@ struct NamedMember {
   T Struct::* at;
   Need need = Need::Always;
   Bound least = Limits::has_infinity ? -Limits::infinity() : Limits::lowest();  // of a number
-  Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();  // of a number; how many; how long
+  Bound most = Limits::has_infinity ? Limits::infinity() : Limits::max();       // value of a number, count or
+                                                                                // length
   std::string_view unit = "";  // of `most` in a sentence: " bytes"
   bool is_time = false;        // Field::seconds()
 
-  /// The same but for one of these.
+  /// A copy with one property changed.
   template <class Value>
   constexpr NamedMember with(Value NamedMember::* which, Value value) const {
     NamedMember other = *this;
@@ -148,7 +149,7 @@ constexpr NamedMember<Struct, T> named(std::string_view name, T Struct::* at) {
   return {name, at};
 }
 
-/// Members of a struct that the message has as an object of their own.
+/// Members of a struct that are a nested object in the message.
 template <class... Members>
 struct Group {
   std::string_view name;
@@ -172,8 +173,7 @@ struct Group {
   }
 };
 
-/// The names of a struct whose members are all numbers that a message always has; none if another is among
-/// them.
+/// The names of a struct's members if all are required numbers; otherwise empty.
 template <class Struct>
 inline constexpr auto kNamesOfReals = std::apply(
     []<class... Members>(const Members&... each) {
@@ -184,8 +184,8 @@ inline constexpr auto kNamesOfReals = std::apply(
     },
     members_of<Struct>);
 
-/// Reads such a struct from the element `index` of `list`, if it holds these members alone, each within its
-/// bounds. False: the general reader has to look at the element.
+/// Reads such a struct from element `index` of `list` if it has exactly these members within their bounds.
+/// False: use the general reader.
 template <class Struct>
 bool read_reals(const Field& list, std::size_t index, Struct& into) {
   constexpr auto& names = kNamesOfReals<Struct>;
@@ -219,7 +219,7 @@ void read_members(const Field& object, Struct& into, const icd::Rules& rules) {
   }
 }
 
-/// How many members write_members() writes.
+/// Number of members that write_members() writes.
 template <class Struct>
 std::size_t written(const Struct& from) {
   return std::apply([&](const auto&... each) { return (each.written(from) + ...); }, members_of<Struct>);

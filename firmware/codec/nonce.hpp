@@ -9,7 +9,7 @@ namespace adit::codec {
 
 inline constexpr std::size_t kNonceDigits = 32;
 
-/// 32 hexadecimal digits that name one request to a root program.
+/// Whether a text has 32 hexadecimal digits, the name of a request to a root program.
 constexpr bool is_nonce(std::string_view text) {
   return text.size() == kNonceDigits && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
 }

@@ -27,17 +27,17 @@ std::optional<Value> change(const Row& row, void* before, void* now) {
   return Value{std::move(changes)};
 }
 
-/// Which row of a list came from which place of the one before; `from` has nothing for a new one.
+/// The place of each row in the list before; std::nullopt for a new row.
 struct Places {
   std::vector<std::optional<std::size_t>> from;
-  bool moved = false;  // any of them
+  bool moved = false;  // whether a row moved
 };
 
 bool is_same(const Kind& kind, void* one, void* other) {
   return kind.same != nullptr ? kind.same(one, other) : kind.write(one) == kind.write(other);
 }
 
-/// By the members that a row is told by.
+/// Compares rows by their `id` members.
 class Identity {
  public:
   explicit Identity(const Row& row) {
@@ -56,7 +56,7 @@ class Identity {
   std::vector<std::span<const Member>::iterator> members_;
 };
 
-/// Rows mostly keep their order: that of one is looked for from behind that of the one before.
+/// Rows mostly keep their order, so the search starts after the previous row's place.
 std::optional<std::size_t> place_of(const Identity& identity, void* one, const Rows& before,
                                     std::size_t likely) {
   for (std::size_t tried = 0; tried < before.count; ++tried) {
@@ -80,7 +80,7 @@ Places places_of(const Row& row, const Rows& before, const Rows& now) {
   return places;
 }
 
-/// As runs of neighbours.
+/// As runs of adjacent rows.
 Value::Array kept(const Places& places) {
   const auto& from = places.from;
   Value::Array runs;
@@ -116,7 +116,7 @@ std::optional<Value> change(const Kind& kind, void* before, void* now) {
     const Rows rows_before = kind.rows(before), rows = kind.rows(now);
     if (kind.schema->items != nullptr) return list_change(row, rows_before, rows);
     if (rows_before.count > 0 && rows.count > 0) return change(row, rows_before.first, rows.first);
-    if (rows_before.count == rows.count) return std::nullopt;  // none before, none now
+    if (rows_before.count == rows.count) return std::nullopt;  // both absent
   } else if (is_same(kind, before, now)) {
     return std::nullopt;
   }
@@ -126,7 +126,7 @@ std::optional<Value> change(const Kind& kind, void* before, void* now) {
 }  // namespace
 
 std::optional<Value> patch(const Row& row, const void* before, const void* now) {
-  // They are only looked at.
+  // only read
   // NOLINTNEXTLINE(cppcoreguidelines-pro-type-const-cast)
   return change(row, const_cast<void*>(before), const_cast<void*>(now));
 }

@@ -7,20 +7,20 @@
 
 namespace adit::codec {
 
-/// What `before` becomes `now` by, or nothing where they are written the same. Both are structs of `row`;
-/// only what differs is written.
+/// The patch from `before` to `now`, or std::nullopt if they are written alike. Both are structs of `row`.
+/// Only differences are written.
 ///
-/// A JSON merge patch (RFC 7396), but for two things. A null says that the value is null, for the members of
-/// a row never go; one that went all the same is null. And a list of rows is patched by places, by an object:
-/// - `length`: how many there are, where that is another number;
-/// - `kept`: [to, from, count]: which rows moved with their neighbours from which place; left out where none
-///   moved. Where it is there, all that it does not name is new;
-/// - `rows`: by their places, the patches of those that changed, and the new ones whole.
-/// Which row is the same, the row's `id` says. Names in a patch are those of members and places alone: what
-/// somebody typed is always a value.
+/// A JSON merge patch (RFC 7396) with two exceptions. A null is a value, because members of a row are never
+/// removed; a missing one is null. A list of rows is patched by places, with an object:
+/// - `length`: the new number of rows, if changed;
+/// - `kept`: [to, from, count]: runs of rows that moved; absent if no row moved. If present, all other rows
+///   are new;
+/// - `rows`: by place, patches of changed rows, and new rows whole.
+/// The row's `id` identifies a row. Names in a patch are only members and places, so users' text is always a
+/// value.
 std::optional<Value> patch(const Row& row, const void* before, const void* now);
 
-/// The same for structs that say themselves what row they are.
+/// The same for structs with a row of their own.
 template <class T>
   requires requires { T::kRow; }
 std::optional<Value> patch(const T& before, const T& now) {

@@ -14,7 +14,7 @@ std::size_t blanks(std::string_view text, std::size_t at) {
   return at;
 }
 
-/// How many characters of `text` are the ones that stand `period` before them, from the one at `period` on.
+/// Number of characters from `period` on that equal the ones `period` before them.
 std::size_t repeated(std::string_view text, std::size_t period) {
   using Word = std::uint64_t;
   std::size_t n = 0;
@@ -30,13 +30,13 @@ std::size_t repeated(std::string_view text, std::size_t period) {
   return n;
 }
 
-/// One element as it stands there.
+/// One element of the text.
 struct Element {
   std::uint8_t value = 0;
   std::size_t end = 0;  // after its last character
 };
 
-/// At `at`, with a character behind it; nothing where there is another kind of element.
+/// The element at `at`, with a character after it; std::nullopt for another form.
 std::optional<Element> element(std::string_view text, std::size_t at) {
   if (text.substr(at).starts_with("-1")) return Element{.value = 255, .end = at + 2};
   constexpr std::size_t kMostDigits = 3;
@@ -50,7 +50,7 @@ std::optional<Element> element(std::string_view text, std::size_t at) {
   return Element{.value = static_cast<std::uint8_t>(value), .end = end};
 }
 
-/// One of CBOR; nothing where there is another kind, or less than all of it.
+/// A CBOR element; std::nullopt for another form or an incomplete one.
 std::optional<Element> cbor_element(std::string_view bytes) {
   constexpr std::uint8_t kInNextByte = 0x18, kMinusOne = 0x20;
   const auto at = [&](std::size_t i) { return static_cast<std::uint8_t>(bytes[i]); };
@@ -68,7 +68,7 @@ std::optional<PlainElements> take_plain_elements(std::string_view& text) {
   if (!one) return std::nullopt;
   const std::size_t comma = blanks(text, one->end);
   if (comma == text.size() || text[comma] != ',') return std::nullopt;
-  // White space that follows the comma belongs to what repeats itself: "0, " and "0, " again.
+  // White space after the comma is part of the repeated text: "0, " and "0, ".
   const std::size_t period = comma + 1;
   const std::size_t again = repeated(text, period) / period;
   text.remove_prefix(period * (1 + again));

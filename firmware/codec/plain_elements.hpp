@@ -7,20 +7,20 @@
 
 namespace adit::codec {
 
-/// The same element, one or many times over.
+/// Equal elements in sequence.
 struct PlainElements {
-  std::uint8_t value = 0;  // 255 where -1 stands there
+  std::uint8_t value = 0;  // 255 for -1
   std::size_t count = 0;
 };
 
-/// Takes elements of a JSON array off the beginning of `text`, each with the comma that follows it: integers
-/// from 0 to 255 or -1, white space around them. As many as stand there letter by letter the same come
-/// together, for a map's cells are mostly those of their neighbours. Nothing, and `text` as it was, where it
-/// does not begin with a whole such element and its comma: the general reader says what that is.
+/// Removes elements and their commas from the start of a JSON array in `text`: integers from 0 to 255 or -1,
+/// with white space. Takes elements together if their text is the same, because a map's cells mostly equal
+/// their neighbours. std::nullopt, with `text` unchanged, if there is no such element with a comma; the
+/// general reader decides then.
 std::optional<PlainElements> take_plain_elements(std::string_view& text);
 
-/// The same of a CBOR array: elements of one or two bytes, 0 to 255 or -1 (RFC 8949 3.1), at most `most` of
-/// them. Requires most > 0.
+/// The same for a CBOR array: elements of one or two bytes, 0 to 255 or -1 (RFC 8949 3.1), at most `most`.
+/// Requires most > 0.
 std::optional<PlainElements> take_plain_cbor_elements(std::string_view& bytes, std::uint64_t most);
 
 }  // namespace adit::codec

@@ -12,8 +12,8 @@
 namespace adit::codec {
 namespace {
 
-/// The length of a number at the start of `text`: a short one without exponent, which is surely a double. 0:
-/// none, or another.
+/// Length of a short number without exponent at the start of `text`, which fits a double. 0: not such a
+/// number.
 std::size_t plain_number(std::string_view text) {
   constexpr std::size_t kShort = 15;
   JsonNumber grammar;
@@ -51,7 +51,7 @@ std::size_t children_of(const cJSON& item) {
   return static_cast<std::size_t>(cJSON_GetArraySize(&item));
 }
 
-/// Recursion ends at BodyDecoder::kDeepest.
+/// BodyDecoder::kDeepest limits the recursion.
 Value value_of(const cJSON& item) {
   if (cJSON_IsBool(&item)) return {static_cast<bool>(cJSON_IsTrue(&item))};
   if (cJSON_IsNumber(&item)) return json_number_value(item.valuedouble);

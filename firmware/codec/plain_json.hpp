@@ -7,8 +7,8 @@
 
 namespace adit::codec {
 
-/// A document by cJSON, where that reads it as RFC 8259 has it without a second look: ASCII without escapes,
-/// shallow, its numbers short. Most of what is read in one piece is like that. Nothing: it is another, or not
+/// Reads a document with cJSON if it has only features that cJSON reads like RFC 8259: ASCII without escapes,
+/// little nesting, short numbers. Most documents in one piece are so. std::nullopt: another document, or not
 /// well-formed.
 std::optional<Value> plain_json(std::string_view text);
 

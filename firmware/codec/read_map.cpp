@@ -34,7 +34,7 @@ void check_data_is_there(const Field& data) {
   if (!data.is<Value::SplitOut>()) data.refuse_kind("a base64 string (JSON) or a byte string (CBOR)");
 }
 
-/// A grid or a cloud that has passed its rules.
+/// Reads a grid or cloud and checks its rules.
 template <class Map>
 Map read_msg(const Field& msg, const icd::Rules& rules) {
   Map map;
@@ -43,7 +43,7 @@ Map read_msg(const Field& msg, const icd::Rules& rules) {
   return map;
 }
 
-/// Everything but the data; what its `compression` is goes to `compression`.
+/// Reads all but the data. Sets `compression`.
 icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd::Rules& rules,
                                             icd::Compression& compression) {
   Reading reading;
@@ -66,7 +66,7 @@ icd::Checked<icd::MapUpdate> read_structure(const Document& document, const icd:
   return reading.outcome(std::move(update));
 }
 
-/// Nothing in them is ever refused.
+/// Never refuses.
 CloudRows read_rows(const Value& root) {
   Reading reading;
   const Field body(root, reading);
@@ -76,9 +76,8 @@ CloudRows read_rows(const Value& root) {
   return reading.refused() ? CloudRows{} : rows;
 }
 
-/// ICD 6.3.2 and what a server makes of it: points go up little-endian, for there is one that turns the
-/// points of a big-endian cloud with an origin wrongly. Where their values cannot be turned they go up as
-/// they came.
+/// ICD 6.3.2: points are sent little-endian, because one server reorders those of a big-endian cloud with an
+/// origin wrongly. If the values cannot be reordered, the points are sent as received.
 icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
   const auto order = little_endian_order(cloud);
   if (!order && cloud.origin) {
@@ -94,7 +93,7 @@ icd::Checked<icd::MapData> turned(icd::PointCloud2& cloud, icd::MapData data) {
 icd::Checked<icd::MapData> read_data(const icd::MapUpdate& update, Document document,
                                      icd::Compression compression, const icd::Rules& rules) {
   if (!update.is_grid()) {
-    icd::require(!document.pressed);  // its type was read before, and may be given once
+    icd::require(!document.pressed);  // the type is known first and may occur once
     return read_points(std::get<icd::PointCloud2>(update.msg), read_rows(document.root),
                        std::move(document.data), compression, rules);
   }
@@ -103,7 +102,8 @@ icd::Checked<icd::MapData> read_data(const icd::MapUpdate& update, Document docu
                           : read_cells(grid, std::move(document.data), compression, rules);
 }
 
-/// What Adit keeps (read.hpp: grids gzipped, clouds raw), as far as it shows without a look at the data.
+/// Checks Adit's stored form (read.hpp: grids as gzip, clouds raw) as far as possible without reading the
+/// data.
 icd::Checked<void> check_form(const icd::MapUpdate& map) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&map.msg);
   const auto expected = cloud == nullptr ? icd::Compression::Gzip : icd::Compression::None;
@@ -129,7 +129,7 @@ icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::Chunk
   if (checksum != checksum_of(before, after)) return icd::unprocessable("the message is damaged");
   std::string without_data(before.substr(0, before.size() - sizeof(std::uint64_t)));
   without_data.append(sizeof(std::uint64_t), '\0').append(after);
-  // Well-formed, for it is as it was written: what checks a client's message would take a third of the time.
+  // The text is as written and well-formed. The checks of a client's message would take a third of the time.
   Document document{
       .root = cbor_value(without_data), .data = {}, .data_form = DataForm::ByteString, .pressed = {}};
   mark_split_out(document.root);

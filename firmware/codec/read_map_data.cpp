@@ -12,14 +12,14 @@ namespace {
 
 constexpr std::string_view kPath = "msg.data";
 
-/// Counts and checks cells as they are inflated.
+/// Counts and checks cells during inflation.
 class CellCheck {
  public:
   explicit CellCheck(const icd::OccupancyGrid& grid) : grid_(grid) {}
 
   icd::Checked<void> take(std::span<const std::uint8_t> cells) {
     const std::size_t expected = icd::cells_of(grid_);
-    if (cells.size() > expected - taken_) {  // at once: a gzip bomb is not worth inflating further
+    if (cells.size() > expected - taken_) {  // at once, so that a gzip bomb is not inflated further
       return icd::unprocessable("msg.info.width: expected ", grid_.width, " x ", grid_.height, " = ",
                                 expected, " bytes of data, got more");
     }
@@ -35,21 +35,21 @@ class CellCheck {
   std::size_t taken_ = 0;
 };
 
-/// Of a grid as it is sent.
+/// A grid's data in the sent form.
 icd::MapData pressed(Gzipper& gzipper, const icd::OccupancyGrid& grid) {
   return {.bytes = gzipper.finish(), .compression = icd::Compression::Gzip, .raw_size = icd::cells_of(grid)};
 }
 
-/// Without a name, a comment or a checksum of its own (RFC 1952 2.3.1), which other readers may not expect.
+/// Whether the header has no name, comment or checksum (RFC 1952 2.3.1), which other readers may not expect.
 bool has_plain_head(const icd::ChunkedBytes& member) {
   constexpr std::size_t kFlags = 3;
   const auto& first = *member.chunks().front();
   return first.size() > kFlags && first[kFlags] == 0;
 }
 
-/// What it holds is proven by then. Its sender's member stays if it is smaller: many are made with more care.
-/// If the data does not claim to have the right size, it is several members or refused in the end: nothing of
-/// it is kept before that is known.
+/// Checks the cells first. Preserves the sender's member if it is smaller, because many senders compress
+/// better. If the data claims another size, it has several members or is invalid: the first pass then only
+/// checks it.
 icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               const icd::Rules& rules) {
   for (bool is_kept = claimed_size(data) == icd::cells_of(grid);; is_kept = true) {
@@ -65,7 +65,7 @@ icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, ic
     if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
     if (!is_kept) continue;
     icd::MapData ours = pressed(gzipper, grid);
-    const bool is_one = inflated->members == 1;  // a Command Post hangs on a second one
+    const bool is_one = inflated->members == 1;  // a Command Post hangs at a second member
     if (is_one && data.size() < ours.bytes.size() && has_plain_head(data)) ours.bytes = std::move(data);
     return ours;
   }
@@ -83,7 +83,7 @@ icd::Checked<void> check_points(const icd::PointCloud2& cloud, const CloudRows& 
 /// The first `row_size` of each `row_step` bytes.
 icd::ChunkedBytes without_row_padding(icd::ChunkedBytes data, std::size_t row_size, std::size_t row_step) {
   icd::ChunkedBytes points;
-  std::size_t at = 0;  // of the row
+  std::size_t at = 0;  // position in the row
   while (!data.empty()) {
     const auto chunk = data.pop_front();
     for (auto rest = *chunk; !rest.empty();) {
@@ -98,8 +98,8 @@ icd::ChunkedBytes without_row_padding(icd::ChunkedBytes data, std::size_t row_si
 
 icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, const CloudRows& rows,
                                                 const icd::ChunkedBytes& data, const icd::Rules& rules) {
-  for (std::size_t size = claimed_size(data);;) {  // or, of several members, what they turn out to hold
-    const bool is_kept = size <= rules.map_bytes && check_points(cloud, rows, size);  // as of a grid
+  for (std::size_t size = claimed_size(data);;) {  // in the second pass, the true size of several members
+    const bool is_kept = size <= rules.map_bytes && check_points(cloud, rows, size);  // as for a grid
     icd::ChunkedBytes points;
     const auto sink = [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
       if (is_kept && piece.size() <= size - points.size()) points.append(piece);
@@ -141,7 +141,8 @@ icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::Chunk
 
 icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               icd::Compression compression, const PressedCells& pressed) {
-  if (compression == icd::Compression::Gzip) {  // as gunzip() would say it: these do not begin as gzip does
+  if (compression == icd::Compression::Gzip) {  // gunzip()'s error, because these cells do not begin like
+                                                // gzip
     return icd::unprocessable(kPath, ": expected a gzip member, got ",
                               pressed.count < 2 ? "one that is cut short" : "incorrect header check");
   }

@@ -8,25 +8,24 @@
 
 namespace adit::codec {
 
-/// The data of a map whose other fields are checked, as it stood in the message under `compression`; consumed
-/// chunk by chunk.
+/// Read a map's data in the message's `compression`, after the other fields were checked. Consume it chunk by
+/// chunk.
 
 /// ICD 6.3.1: width * height cells, each 0 to 100 or 255, left as one gzip member.
 icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                       icd::Compression compression, const icd::Rules& rules);
-/// The same of cells that were pressed as they arrived.
+/// The same for cells compressed on arrival.
 icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                               icd::Compression compression, const PressedCells& pressed);
 
-/// How ROS lays out an organised cloud, which the ICD does not say. All 0: the message does not say it
-/// either.
+/// ROS's layout of an organised cloud, which the ICD does not have. All 0: not in the message.
 struct CloudRows {
-  std::uint64_t width = 0, height = 0;  // points in a row, and rows
-  std::uint64_t row_step = 0;           // bytes from one row to the next
+  std::uint64_t width = 0, height = 0;  // points in a row, and number of rows
+  std::uint64_t row_step = 0;           // bytes from row to row
 };
-/// ICD 6.3.2: a whole number of points, left as they are, without the padding at the ends of rows. Real
-/// drivers fill `rows` with anything (row_step 0, the size of all data, the number of points), so the rows
-/// count only if they are padded and add up to the data.
+/// ICD 6.3.2: a whole number of points, unchanged, without padding at row ends. Drivers fill `rows` with
+/// wrong values (row_step 0, the size of all data, the number of points), so rows count only if they are
+/// padded and match the size of the data.
 icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const CloudRows& rows,
                                        icd::ChunkedBytes data, icd::Compression compression,
                                        const icd::Rules& rules);

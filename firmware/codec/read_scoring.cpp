@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kLongestUnknownType = 64;
 
-/// A type that is none of the ICD's ten, where the settings forward those.
+/// A type outside the ICD's ten that may be forwarded if the settings allow it.
 bool is_forwardable(std::string_view type) {
   const auto printable = [](char letter) { return letter >= 0x20 && letter < 0x7f; };
   return !type.empty() && type.size() <= kLongestUnknownType && std::ranges::all_of(type, printable);
@@ -23,7 +23,7 @@ std::string_view read_type(const Field& field, const icd::Rules& rules, TypeHint
   if (!rules.forward_unknown_types) {
     std::string ten;
     for (const auto known : icd::kArtifactTypes) ten += icd::sentence(known, ", ");
-    std::string cure = hint(type);  // or the setting, which would waste a report on one that is misspelt
+    std::string cure = hint(type);  // else names the setting, which would waste a report on a misspelt type
     const bool is_curable = cure.empty() && is_forwardable(type);
     if (is_curable) cure = " (the setting rules.forward_unknown_types accepts others)";
     field.refuse_by_setting(is_curable ? "rules.forward_unknown_types" : "", "expected one of ", ten, "got ",
@@ -35,7 +35,7 @@ std::string_view read_type(const Field& field, const icd::Rules& rules, TypeHint
   return type;
 }
 
-/// What `read` makes of a reply's fields, or the sentence why not.
+/// Applies `read` to a reply's fields. The error is a sentence.
 template <class Message>
 std::expected<Message, std::string> read_reply(std::string_view json, Message (*read)(const Field&)) {
   const auto root = parse_json(json);
@@ -46,7 +46,7 @@ std::expected<Message, std::string> read_reply(std::string_view json, Message (*
   return *std::move(message);
 }
 
-/// A string, or a number as text; else nothing.
+/// A string, or a number as text, or "".
 std::string read_name(const Field& field) {
   if (field.is<std::string>()) return std::string(field.text());
   if (field.is<std::int64_t>()) return std::to_string(field.whole<std::int64_t>());
@@ -54,12 +54,12 @@ std::string read_name(const Field& field) {
   return {};
 }
 
-/// Whether a field that Adit can do without is a number.
+/// Whether an optional field is a number.
 bool has_number(const Field& field) {
   return field.is<double>() || field.is<std::int64_t>() || field.is<std::uint64_t>();
 }
 
-/// It has a reading of its own: an invalid name does not refuse the report.
+/// Uses its own Reading, because an invalid name does not refuse the report.
 icd::Checked<std::optional<icd::RobotName>> read_robot(const Document& document, const icd::Rules& rules) {
   Reading reading;
   const Field body(document.root, reading);
@@ -78,7 +78,7 @@ icd::RunStatus status_of(const Field& body) {
   return status;
 }
 
-/// The report that a reply tells of, if it says all of it.
+/// The report in a reply, if complete.
 std::optional<icd::ArtifactReport> report_in(const Field& body) {
   const Field type = body.member("type"), x = body.member("x"), y = body.member("y"), z = body.member("z");
   if (!type.is<std::string>() || !has_number(x) || !has_number(y) || !has_number(z)) return std::nullopt;

@@ -18,7 +18,7 @@ icd::Marker read_marker(const Field& field, const icd::Rules& rules) {
   return marker;
 }
 
-/// A state's newest pose of each robot, and where it stands.
+/// The newest pose of each robot in a state, and its place.
 class PoseList {
  public:
   explicit PoseList(std::vector<icd::NamedPose>& poses) : poses_(poses) {}
@@ -42,7 +42,7 @@ icd::Checked<icd::NamedPose> read_named_pose(const Field& field, const icd::Rule
   return field.reading().outcome(icd::NamedPose{.name = *name, .pose = pose});
 }
 
-/// Reads each element of `list` by itself: `keep` gets the good ones, `refused` is told of the others.
+/// Reads each element of `list` separately: `keep` gets good ones, `refused` the others.
 template <class Read, class Keep>
 void read_each(const Field& list, RefusedParts& refused, Read read, Keep keep) {
   const std::size_t count = list.size();
@@ -58,7 +58,7 @@ void read_each(const Field& list, RefusedParts& refused, Read read, Keep keep) {
   }
 }
 
-/// Nothing good in it: refused as a whole. Else the message, and what is not in it.
+/// Refuses a message without good parts. Otherwise returns it with its refused parts.
 template <class Message>
 icd::Checked<InParts<Message>> sorted(Reading& reading, Message message, RefusedParts refused) {
   if (!reading.refused() && refused.count > 0 && refused.others == 0) reading.refuse(refused.refusal());
@@ -68,7 +68,7 @@ icd::Checked<InParts<Message>> sorted(Reading& reading, Message message, Refused
 template <class Message>
 icd::Checked<Message> whole(icd::Checked<InParts<Message>> parts) {
   if (!parts) return std::unexpected(std::move(parts.error()));
-  parts->refused.others = 0;  // for nothing of it is taken
+  parts->refused.others = 0;  // no part is accepted
   if (parts->refused.count > 0) return std::unexpected(parts->refused.refusal());
   return std::move(parts->message);
 }

@@ -6,7 +6,7 @@
 namespace adit::codec {
 namespace {
 
-/// Where a member is in a row that is only looked at.
+/// A member's address in a row that is only read.
 const void* in(const Member& member, const void* row) {
   return member.in(const_cast<void*>(row));  // NOLINT(cppcoreguidelines-pro-type-const-cast)
 }

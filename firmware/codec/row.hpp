@@ -19,32 +19,31 @@
 #include "icd/geometry.hpp"
 #include "icd/run_status.hpp"
 
-/// Rows: structs whose members are described once. Their JSON, its reading, CSV and OpenAPI's schemas
-/// (schemas.hpp) come from the description; a new member is a line of its struct and a line of its table.
+/// Rows: structs with described members. JSON, its reading, CSV and OpenAPI's schemas (schemas.hpp) use the
+/// description. A new member is one line of its struct and one line of its table.
 namespace adit::codec {
 
 struct Member;
 
-/// What a struct is to whoever reads its JSON.
+/// Description of a struct for readers of its JSON.
 struct Row {
-  std::string_view name;  // among OpenAPI's schemas; "": it is described where it is used
+  std::string_view name;  // name of the OpenAPI schema; "": described in place
   std::span<const Member> members;
   std::string_view meaning = "";
-  std::span<const std::string_view> id =
-      {};  // the members by which one of a list is told; none: by its place
+  std::span<const std::string_view> id = {};  // members that identify a row of a list; empty: its place does
 };
 
-/// What OpenAPI says of the values of one C++ type.
+/// OpenAPI's description of one C++ type.
 struct Schema {
-  std::string_view type = "";        // JSON's: "string"; of rows "", for it is their row's
-  const Row* row = nullptr;          // of a row, or of one that may be absent
+  std::string_view type = "";        // JSON type: "string"; "" for rows
+  const Row* row = nullptr;          // of a row or an optional row
   const Schema* items = nullptr;     // of an array
-  std::size_t fewest = 0, most = 0;  // items; 0: any number
+  std::size_t fewest = 0, most = 0;  // items; 0: unlimited
   std::optional<std::int64_t> least = {};
-  std::string_view more = "";  // as JSON: R"("pattern":"^#[0-9a-f]{6}$")"
-  std::string_view name = "";  // among OpenAPI's schemas; "": it is described where it is used
+  std::string_view more = "";  // more JSON: R"("pattern":"^#[0-9a-f]{6}$")"
+  std::string_view name = "";  // name of the OpenAPI schema; "": described in place
   bool or_null = false;
-  bool has_reader = false;  // of its own, which looks at the members itself
+  bool has_reader = false;  // has a reader that checks the members
 
   constexpr Schema nullable() const {
     Schema other = *this;
@@ -53,49 +52,49 @@ struct Schema {
   }
 };
 
-/// Structs of one row, in memory one behind the other.
+/// Contiguous structs of one row.
 struct Rows {
   void* first = nullptr;
-  std::size_t count = 0, size = 0;  // size: of one, in bytes
+  std::size_t count = 0, size = 0;  // size: of one struct, in bytes
 
   void* at(std::size_t place) const { return static_cast<std::byte*>(first) + place * size; }
 };
 
-/// Of what is a row, or lists rows, their row; or null.
+/// The row of a row or a list of rows, or null.
 const Row* row_of(const Schema& schema);
 
-/// How the values of one C++ type are written, read, described and, for a patch, compared.
+/// Functions for one C++ type: writing, reading, description, and comparison for patches.
 struct Kind {
   using Same = bool (*)(const void* one, const void* other);
   using ToRows = Rows (*)(void* value);
 
   Value (*write)(const void* value);
-  /// Refuses what is no such value, and leaves something harmless.
+  /// Refuses another value and leaves a harmless one.
   void (*read)(const Field& field, void* value);
   const Schema* schema;
-  /// Whether both are written alike; null: only writing them tells.
+  /// Whether both are written alike; null: compare the written values.
   Same same = nullptr;
-  /// The row that the value is, if it is there, or the rows that it lists; null: it is written another way.
+  /// The row, if present, or the rows of a list; null: not rows.
   ToRows rows = nullptr;
 };
 
-/// How a member stands in CSV: not at all, as it is, as ISO 8601, or empty where it is 0.
+/// Form in CSV: none, plain, ISO 8601, or empty if 0.
 enum class Cell : std::uint8_t { None, Plain, Time, NotZero };
 
 /// One member of a row.
 struct Member {
-  std::string_view name;     // "": a row whose members stand among these
-  std::string_view meaning;  // what the name does not say: unit, what "" or 0 means
+  std::string_view name;     // "": a row whose members are among these
+  std::string_view meaning;  // beyond the name: unit, meaning of "" or 0
   const Kind* kind;
   void* (*in)(void* row);
-  std::span<const std::string_view> words = {};  // text that is one of these; empty: any
+  std::span<const std::string_view> words = {};  // possible values of a text; empty: any
   std::optional<std::int64_t> least = {}, most = {};
   Cell cell = Cell::None;
-  int column = 0;         // of CSV, from 1
-  bool is_needed = true;  // else it is left out where it would be null
-  bool is_exact = false;  // its numbers say what it is: they are never rounded
+  int column = 0;         // in CSV, from 1
+  bool is_needed = true;  // false: left out if null
+  bool is_exact = false;  // its numbers are identifiers and never rounded
 
-  /// The same but for one of these; before those that call it, for clang.
+  /// A copy with one property changed; before its callers, for clang.
   template <class T>
   constexpr Member with(T Member::* which, T value) const {
     Member other = *this;
@@ -116,10 +115,10 @@ struct Member {
 
 Value write_row(const Row& row, const void* from);
 void read_row(const Row& row, const Field& field, void* into);
-/// All reals in the row and in its rows, but for those of members that are exact.
+/// Changes all reals in the row and its rows, except those of exact members.
 void change_numbers(const Row& row, void* in, double (*changed)(double));
 
-/// What the Kind of each type does.
+/// The functions of a type's Kind.
 template <class T>
 struct KindOf;
 
@@ -147,7 +146,7 @@ constexpr Kind::ToRows rows_as() {
   }
 }
 
-/// A Kind out of a class that has what KindOf has; `same` and `rows` where it can.
+/// A Kind from a class with KindOf's members; `same` and `rows` are optional.
 template <class T, class As>
 inline constexpr Kind kind_as = {
     .write = [](const void* value) -> Value { return As::write(*static_cast<const T*>(value)); },
@@ -158,7 +157,7 @@ inline constexpr Kind kind_as = {
 template <class T>
 inline constexpr Kind kind_of = kind_as<T, KindOf<T>>;
 
-/// For the Kind of what is written alike where it is equal, and only there.
+/// For types that are written alike exactly if they are equal.
 struct Equal {
   static bool same(const auto& one, const auto& other) { return one == other; }
 };
@@ -177,7 +176,7 @@ struct KindOf<bool> : Equal {
   static constexpr Schema schema = {.type = "boolean"};
 };
 
-/// Anything at all.
+/// Any value.
 template <>
 struct KindOf<Value> : Equal {
   static Value write(const Value& value) { return value; }
@@ -199,7 +198,7 @@ struct KindOf<Whole> : Equal {
   static constexpr Schema schema = {.type = "integer"};
 };
 
-/// Counts: JSON's are below 2^63.
+/// Counts; JSON's are below 2^63.
 template <std::unsigned_integral Count>
 struct KindOf<Count> : Equal {
   static Value write(Count number) { return {std::uint64_t{number}}; }
@@ -211,7 +210,7 @@ struct KindOf<Count> : Equal {
   static constexpr Schema schema = {.type = "integer", .least = 0};
 };
 
-/// Of a row whose description is `kRow`.
+/// The kind of a row described by `kRow`.
 template <class T, const Row& kRow>
 struct KindOfRow {
   static Value write(const T& row) { return write_row(kRow, &row); }
@@ -221,7 +220,7 @@ struct KindOfRow {
   static constexpr Schema schema = {.row = &kRow};
 };
 
-/// A struct that says so itself: static const codec::Row kRow.
+/// A struct with static const codec::Row kRow.
 template <class T>
   requires requires { T::kRow; }
 struct KindOf<T> : KindOfRow<T, T::kRow> {};
@@ -229,7 +228,7 @@ struct KindOf<T> : KindOfRow<T, T::kRow> {};
 /// "a, b or c", for a sentence.
 std::string in_turn(std::span<const std::string_view> words);
 
-/// Of an enum whose values have these words, in their order from 0.
+/// The kind of an enum with these words, in order from 0.
 template <class Enum, const auto& kWords>
 struct KindOfWords : Equal {
   static Value write(Enum value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
@@ -241,12 +240,12 @@ struct KindOfWords : Equal {
   static constexpr Schema schema = {.type = "string"};
 };
 
-/// For the Kind of what nobody reads.
+/// For types that are never read.
 struct OnlyWritten {
   static void read(const Field& field, auto& /*value*/) { field.refuse("it is only written"); }
 };
 
-/// null where there is nothing.
+/// null if empty.
 template <class T>
 struct KindOf<std::optional<T>> {
   static Value write(const std::optional<T>& value) { return value ? KindOf<T>::write(*value) : Value{}; }
@@ -296,7 +295,7 @@ struct KindOf<std::vector<T>> {
 };
 
 inline constexpr Schema kTextOrNullSchema = KindOf<std::string>::schema.nullable();
-/// Text that is null where it is empty.
+/// Text; null if empty.
 inline constexpr Kind kTextOrNull = {
     .write = [](const void* value) -> Value {
       const auto& all = *static_cast<const std::string*>(value);
@@ -306,7 +305,7 @@ inline constexpr Kind kTextOrNull = {
                void* value) { *static_cast<std::string*>(value) = field.is_absent() ? "" : field.text(); },
     .schema = &kTextOrNullSchema};
 
-/// The member at the end of a way of pointers to members, of the row that the first one is of.
+/// The member at a path of pointers to members, which starts in the row.
 template <auto first, auto... rest>
 constexpr Member member(std::string_view name, std::string_view meaning = "") {
   return [=]<class In, class T>(T In::* /*first*/) {
@@ -316,12 +315,12 @@ constexpr Member member(std::string_view name, std::string_view meaning = "") {
   }(first);
 }
 
-/// A member that is made of the whole row.
+/// A member computed from the whole row.
 template <class In, class As>
 constexpr Member made_of(std::string_view name, std::string_view meaning = "") {
   return {name, meaning, &kind_as<In, As>, [](void* row) { return row; }};
 }
-/// Members of the row that stand in an object of their own.
+/// Members of the row as a nested object.
 template <class In, const Row& kGroup>
 constexpr Member group(std::string_view name, std::string_view meaning = "") {
   return made_of<In, KindOfRow<In, kGroup>>(name, meaning);

@@ -28,7 +28,7 @@ void check_value(const Schema& schema, const Field& field) {
 }
 
 void check_member(const Member& member, const Field& field) {
-  if (field.is_absent()) return;  // whether it may be is its kind's to say
+  if (field.is_absent()) return;  // its kind decides whether it may be absent
   if (!member.words.empty() && std::ranges::find(member.words, field.text()) == member.words.end())
     return field.refuse("expected ", in_turn(member.words));
   if (member.least || member.most)
@@ -36,7 +36,7 @@ void check_member(const Member& member, const Field& field) {
   check_value(*member.kind->schema, field);
 }
 
-/// What the kinds of its members do not look at: names, words and bounds. `besides`: a member more.
+/// Checks names, words and bounds, which the members' kinds do not. `besides`: an additional member.
 void check_row(const Row& row, const Field& field, std::string_view besides) {
   if (!field.is<Value::Object>()) return field.refuse_kind("an object");
   for (const auto& [name, value] : std::get<Value::Object>(field.value()->is)) {
@@ -44,7 +44,7 @@ void check_row(const Row& row, const Field& field, std::string_view besides) {
       field.refuse("no such member: ", icd::in_quotes(name));
   }
   for (const Member& member : row.members) {
-    icd::require(!member.name.empty());  // no file has rows whose members stand among its own
+    icd::require(!member.name.empty());  // files do not use rows with members of other rows
     const Field inner = field.member(member.name);
     check_member(member, inner);
   }

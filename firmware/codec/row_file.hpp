@@ -7,12 +7,12 @@
 
 #include "codec/row.hpp"
 
-/// The small files by which aditd and the programs with more rights speak, and in which these keep what
-/// lasts: each is one row, as an object of JSON with the member "format": 1.
+/// Small files of aditd and root programs, for messages and stored state. Each is one row as a JSON object
+/// with the member "format": 1.
 namespace adit::codec {
 
 std::string write_row_file(const Row& row, const void* from);
-/// A sentence about the first thing that is not as it must be; "": there is none.
+/// A sentence about the first error, or "".
 std::string read_row_file(const Row& row, void* into, std::string_view json);
 
 template <class T>
@@ -20,8 +20,8 @@ std::string write_file(const T& row) {
   return write_row_file(T::kRow, &row);
 }
 
-/// Strict, in rows within rows too: a member that is missing or unknown, a value that is not among its
-/// member's words or within its bounds, and one that is not what it must be, are errors that name it.
+/// Strict, in nested rows as well. Errors name the member: missing, unknown, not among its words, out of
+/// bounds, or invalid.
 template <class T>
 std::expected<T, std::string> read_file(std::string_view json) {
   T row;

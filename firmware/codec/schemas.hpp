@@ -11,13 +11,13 @@
 
 namespace adit::codec {
 
-/// OpenAPI's components.schemas of rows: {"Report": {"type": "object", ...}, ...}. Only the compiler writes
-/// it; what it cannot write stops the build.
+/// OpenAPI's components.schemas of rows: {"Report": {"type": "object", ...}, ...}. Computed by the compiler;
+/// an unsupported schema stops the build.
 class Schemas {
  public:
   static constexpr std::size_t kLongest = 49152;
 
-  /// Of those rows, which have names, and of all that they name.
+  /// Writes these named rows and all rows that they refer to.
   consteval explicit Schemas(std::initializer_list<const Schema*> roots) {
     for (const Schema* const root : roots) remember(*root);
     add("{");
@@ -32,11 +32,11 @@ class Schemas {
     for (std::size_t i = size_; i < kLongest; ++i) text[i] = ' ';
   }
 
-  /// JSON, with spaces behind it.
+  /// JSON, padded with spaces.
   constexpr std::array<char, kLongest> text() const { return text_; }
 
  private:
-  /// Also those of a row whose members stand among these.
+  /// Includes the members of rows without a member name.
   static constexpr void each_member(const Row& row, auto&& done) {
     for (const Member& member : row.members) {
       if (member.name.empty()) {
@@ -51,7 +51,7 @@ class Schemas {
     return schema.row == nullptr ? schema.name : schema.row->name;
   }
 
-  /// By pointers: compilers count the steps that they take for a constant.
+  /// Uses pointers, because compilers limit the steps of a constant.
   constexpr void add(std::string_view part) {
     char* const to = text_.data() + size_;
     const char* const from = part.data();
@@ -59,11 +59,11 @@ class Schemas {
     for (std::size_t i = 0; i < size; ++i) to[i] = from[i];
     size_ += size;
   }
-  /// What comes next in an object or an array.
+  /// Starts the next item of an object or array.
   constexpr void next() {
     if (text_[size_ - 1] != '{' && text_[size_ - 1] != '[') add(",");
   }
-  /// A member of an object, up to its value, which begins so.
+  /// Writes a member's name and the start of its value.
   constexpr void begin(std::string_view name, std::string_view value = "") {
     next();
     add_text(name);
@@ -95,7 +95,7 @@ class Schemas {
     if (!std::any_of(named_.begin(), named_.begin() + count_, is_same)) named_[count_++] = schema;
   }
 
-  /// The members of a schema where it is used.
+  /// The members of a schema at its use.
   constexpr void add_schema(const Schema& schema) {
     const bool is_simple = schema.row == nullptr && schema.name.empty();
     if (schema.or_null && !is_simple) begin("oneOf", R"([{"type":"null"},{)");

@@ -5,7 +5,7 @@
 namespace adit::codec {
 namespace {
 
-/// Gives each member of that name to `visit`; nothing where `value` is no object.
+/// Passes each member of that name to `visit`; without effect if `value` is not an object.
 template <class Visit>
 void each_member(Value& value, std::string_view name, const Visit& visit) {
   auto* const object = std::get_if<Value::Object>(&value.is);
@@ -37,7 +37,7 @@ icd::Refusal too_many_outside_lists(std::size_t most) {
 }
 
 void mark_split_out(Value& root) {
-  // A body with a second "msg.data" has been refused, so that at most one is found.
+  // A second "msg.data" was refused, so there is at most one.
   each_member(root, "msg",
               [](Value& msg) { each_member(msg, "data", [](Value& data) { data.is = Value::SplitOut{}; }); });
 }

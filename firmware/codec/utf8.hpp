@@ -8,27 +8,26 @@
 
 namespace adit::codec {
 
-/// Checks UTF-8 (Unicode 15, table 3-7: no overlong forms, no surrogates, nothing over U+10FFFF) byte by
-/// byte.
+/// Checks UTF-8 byte by byte (Unicode 15, table 3-7: no overlong forms, no surrogates, at most U+10FFFF).
 class Utf8Checker {
  public:
-  /// False: `byte` cannot stand here.
+  /// False: `byte` is invalid here.
   bool next(std::uint8_t byte) {
     if (left_ == 0 && byte < 0x80) return true;
     return next_of_several(byte);
   }
 
-  /// Where the first byte is that cannot stand there, if any.
+  /// Position of the first invalid byte, or std::nullopt.
   std::optional<std::size_t> feed(std::string_view bytes);
 
-  /// Not in the middle of a character.
+  /// Whether it is between characters.
   bool complete() const { return left_ == 0; }
 
  private:
   bool next_of_several(std::uint8_t byte);
 
-  int left_ = 0;               // continuation bytes to come
-  std::uint8_t least_ = 0x80;  // what the next of them may be
+  int left_ = 0;               // missing continuation bytes
+  std::uint8_t least_ = 0x80;  // range of the next one
   std::uint8_t most_ = 0xBF;
 };
 

@@ -11,36 +11,36 @@ namespace adit::codec {
 
 class List;
 
-/// A parsed document without its bulk data: what JSON (RFC 8259) and CBOR (RFC 8949) have in common.
-/// Members keep their order and their duplicates, so that a reader can refuse a member that is given twice.
+/// A parsed document without its bulk data, for JSON (RFC 8259) and CBOR (RFC 8949). Members keep their order
+/// and duplicates, so that a reader can refuse a repeated member.
 struct Value {
-  struct Bytes {  // a CBOR byte string; text where it is UTF-8 and text is asked for
+  struct Bytes {  // a CBOR byte string; accepted as text if it is UTF-8
     std::vector<std::uint8_t> bytes;
     friend bool operator==(const Bytes&, const Bytes&) = default;
   };
-  /// Replaces a value under a CBOR tag that changes the value's meaning. If a member is not read, its tag
-  /// refuses nothing.
+  /// Replaces a value under a CBOR tag that changes its meaning. The tag is an error only if the member is
+  /// read.
   struct UnderTag {
     std::uint64_t tag = 0;
     friend bool operator==(UnderTag, UnderTag) = default;
   };
-  /// Stands where the map's `data` was split out (Document::data holds it).
+  /// Replaces the map's `data`, which is in Document::data.
   struct SplitOut {
     friend bool operator==(SplitOut, SplitOut) = default;
   };
   using Array = std::vector<Value>;
-  using Member = std::pair<std::string, Value>;  // CBOR keys that are no text are left out
+  using Member = std::pair<std::string, Value>;  // CBOR keys that are not text are left out
   using Object = std::vector<Member>;
 
   std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Bytes, UnderTag,
                SplitOut, Array, Object,
-               std::shared_ptr<const List>>  // an array, where it is left as text (Split::Lists)
+               std::shared_ptr<const List>>  // an array left as text (Split::Lists)
       is = nullptr;
 
   /// "a string", "a whole number", "null", ...: for sentences.
   std::string kind() const;
 
-  /// The same kind, and the same value; lists that are left as text only where they are one.
+  /// Equal kinds and values. Lists left as text are equal only if they are the same object.
   friend bool operator==(const Value& one, const Value& other);
 };
 

@@ -1,4 +1,4 @@
-// The mapping endpoint's messages (ICD 6), members in the order of the ICD's listings.
+// The mapping endpoint's messages (ICD 6), with members in the ICD's order.
 #include <zlib.h>
 
 #include <cassert>
@@ -25,7 +25,7 @@ void write_type_and_name(CborWriter& out, const icd::MapUpdate& update) {
   write_text(out, "name", update.name ? update.name->text() : std::string_view());
 }
 
-/// Up to the data: all that has to be known before it is how much it is, and how many members msg has.
+/// Writes the message up to the data, from the data's size and the number of members in msg.
 std::string write_up_to_data(std::size_t members, std::uint64_t size) {
   CborWriter out;
   out.map(3);
@@ -33,7 +33,7 @@ std::string write_up_to_data(std::size_t members, std::uint64_t size) {
   out.map(members);
   out.text("data");
   std::string before = out.finish().to_string();
-  before += '\x5B';  // a byte string whose length stands in 8 bytes (RFC 8949 3)
+  before += '\x5B';  // a byte string with its length in 8 bytes (RFC 8949 3)
   for (int shift = 56; shift >= 0; shift -= 8) before += static_cast<char>(size >> shift & 0xFF);
   return before;
 }

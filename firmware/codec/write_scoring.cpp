@@ -10,14 +10,13 @@
 namespace adit::codec {
 namespace {
 
-/// In the fewest digits that give the same double back, and as what the ICD calls <float>: 11.0, not 11. No
-/// message holds NaN or an infinity; if one did, null is what JSON has for it, and a server refuses it where
-/// the field matters.
+/// The fewest digits that preserve the double, in the ICD's form of <float>: 11.0, not 11. Messages never
+/// hold NaN or infinity; if one did, it would become null, and the server would reject a needed field.
 std::string json_number(double number) {
   return std::isfinite(number) ? icd::real_text(number) : "null";
 }
 
-/// Bytes of the UTF-8 character at the front of `text`; 0 where there is none.
+/// Bytes of the first UTF-8 character of `text`, or 0.
 std::size_t character_size(std::string_view text) {
   Utf8Checker checker;
   for (std::size_t i = 0; i < text.size() && checker.next(static_cast<std::uint8_t>(text[i])); ++i) {

@@ -39,7 +39,7 @@ struct Request {
 /// NTP on the team's network, as set in the settings. Its file outlives a boot.
 struct Ntp {
   std::string server = "";   // IPv4 address; "": no server
-  std::string clients = "";  // subnet that the box serves: "10.0.0.0/24"; "": none
+  std::string clients = "";  // subnet that the box serves: "10.0.0.0/24"; "": unset
   bool is_on() const { return !server.empty() || !clients.empty(); }
   static const codec::Row kRow;
   friend bool operator==(const Ntp&, const Ntp&) = default;

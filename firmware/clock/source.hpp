@@ -22,7 +22,7 @@ inline constexpr double kEarliest = 1767225600, kLatest = 4102444800;
 /// Most seconds by which robots may advance the clock: a box may be stored for a season.
 inline constexpr double kRobotsMost = 200.0 * 86400;
 
-/// Whether the time is reliable enough to need no other source.
+/// Whether the time is reliable.
 inline bool is_set(Source source) {
   return source >= Source::CommandPost;
 }

@@ -10,7 +10,7 @@
 namespace adit::clock {
 
 struct Tracking {
-  std::uint32_t server = 0;  // IPv4 address of the selected server; 0: none
+  std::uint32_t server = 0;  // IPv4 address of the selected server; 0: not selected
   double heard = 0;          // last contact, in seconds since 1970 by the system clock
   double behind = 0;         // seconds by which the system clock was then behind the server
 };

@@ -35,12 +35,12 @@ class Ledger {
   /// Bytes that a new report must leave in the file for steps of the known reports.
   static constexpr std::size_t kForKnown = 64u << 10;  // bytes
 
-  /// Opens the ledger of a state directory. Creates one if there is none and `known` names none. If records
-  /// are missing, each report that may have been sent becomes in doubt, and damage() says so. If the
+  /// Opens the ledger of a state directory, or creates one. If records are missing, also because a ledger in
+  /// `known` is gone, each report that may have been sent becomes in doubt, and damage() says so. If the
   /// directory cannot be written, reports can be read, refusal() has the reason, and a later write may
   /// succeed. Error: unreadable, locked by another process, or from a later version; no file is changed.
   static Result<Ledger> open(const std::string& state, const Known& known = {});
-  /// A ledger that cannot be read, for `why`. It has no reports and accepts none.
+  /// A ledger that cannot be read, for `why`. It has no reports and rejects new ones.
   static Ledger closed(std::string why, const Known& known);
   /// Whether open() would succeed. Blocks on the disk; any thread.
   static bool can_be_read(const std::string& state);

@@ -17,7 +17,7 @@ inline constexpr int kRouteTable = 230;
 std::string team_file(const std::string& interface, const Numbers& numbers);
 /// The systemd.network(5) file of the Command Post's side: the addresses, and routes by the gateway to
 /// `endpoints` outside their subnets. It has no default route, because the two networks meet only inside
-/// Adit. The interface accepts no configuration from the network and announces nothing.
+/// Adit. The interface accepts no configuration from the network and sends no announcements.
 std::string command_post_file(const std::string& interface, const Numbers& numbers,
                               const std::vector<std::uint32_t>& endpoints);
 

@@ -36,7 +36,7 @@ struct Kind {
   std::span<const std::string_view> words = {};  // of a choice, in enumeration order
 };
 
-/// Sets the member to `value`. The error says what was expected and what was found.
+/// Sets the member to `value`. The error names the expected and the found value.
 std::expected<void, std::string> put(const Kind& kind, const codec::Value& value, Settings& settings);
 
 /// "1 to 65535"

@@ -38,12 +38,12 @@ struct Timeouts {
 
 struct CommandPost {
   Address scoring, mapping;
-  std::string interface;     // "": none (loopback); else at most 15 characters
+  std::string interface;     // "": unset (loopback); else at most 15 characters
   double budget_mbit = 100;  // of the link, shared by both endpoints (ICD 3)
   Rates rates;
   Timeouts timeouts;
   bool arrange_clouds = true;  // pack::CloudForm
-  std::string course;          // in use; its endpoints replace these; "": none
+  std::string course;          // in use; its endpoints replace these; "": unset
 };
 
 struct Team {
@@ -103,7 +103,7 @@ struct Panel {
 /// A registered robot (ICD 2).
 struct Robot {
   std::string name;   // icd::RobotName
-  std::string alias;  // the name in its messages, replaced by `name`; "": none
+  std::string alias;  // the name in its messages, replaced by `name`; "": unset
   lanes::Clouds clouds = lanes::Clouds::Auto;
   lanes::Precision precision = lanes::Precision::Exact;  // for its clouds
   double voxel_metres = 0;  // edge of a voxel, of which one point is sent; 0: all points are sent
@@ -117,7 +117,7 @@ struct Course {
 
 /// NTP on the team's network: room clock.
 struct Clock {
-  std::string ntp_server;  // IPv4 address; "": none
+  std::string ntp_server;  // IPv4 address; "": unset
   bool serve_ntp = false;
 };
 

@@ -11,7 +11,7 @@
 namespace adit::store {
 
 /// Writes a snapshot, which replaces all records before a log's number. The file gets its name when it is
-/// complete; an unfinished one has no effect. Use from one thread at a time, also beside Log's.
+/// complete; an unfinished one has no effect. Use from one thread at a time, which may run beside the Log's.
 class Snapshot {
  public:
   /// `log` must have just turned. `directory` must outlive this object.

@@ -7,7 +7,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// What is not done, of the runs at the Command Post that the settings name.
+/// Unfinished reports at the Command Post that the settings name.
 struct Open {
   std::size_t waiting = 0, in_doubt = 0, held = 0;
   std::size_t all() const { return waiting + in_doubt + held; }
@@ -20,14 +20,14 @@ Open open_here(const Reports& reports) {
     if (!reports.runs().is_at(report.run, reports.meant_run().post)) continue;
     open.waiting += report.state == ReportState::Queued ? 1 : 0;
     open.held += report.state == ReportState::Held ? 1 : 0;
-    // What is under way now is in doubt where it has no answer by then.
+    // A report in flight may still come into doubt.
     const bool unclear = report.state == ReportState::InDoubt || report.state == ReportState::Sending;
     open.in_doubt += unclear ? 1 : 0;
   }
   return open;
 }
 
-/// "2 reports wait, 1 is in doubt"
+/// "2 reports are queued, 1 is in doubt"
 std::string counted(const Open& open) {
   std::string text;
   const auto add = [&text](std::size_t count, const char* one, const char* many) {

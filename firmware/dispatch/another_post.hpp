@@ -6,8 +6,8 @@
 
 namespace adit::dispatch {
 
-/// What it would mean for the unfinished reports if the settings named the Command Post at `post`: a sentence
-/// with their counts.
+/// A sentence about the unfinished reports, with their counts, for the case that the settings name the
+/// Command Post at `post`.
 std::string meaning_of_another_post(const Reports& reports, const std::string& post);
 
 }  // namespace adit::dispatch

@@ -5,7 +5,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// "remaining_reports went from 20 to 19 and the score from 3 to 4, 1 report in doubt"
+/// "remaining_reports went from 20 to 18 and the score from 3 to 4, with 2 reports in doubt"
 std::string figures(const icd::RunStatus& before, std::int64_t doubts, const SentSince& since,
                     const icd::RunStatus& now) {
   std::string text =
@@ -31,7 +31,7 @@ Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSinc
   if (used < 0 || used > doubts || points < 0 || points > used) {
     return {Finding::Contradicts, seen + ": does another sender report with this token?", {}};
   }
-  // With nothing left of the allotment, or a clock at 0, a record would not show.
+  // Then the counts do not show a record.
   if (used == 0 && (before.remaining_reports - since.scored <= 0 || now.run_clock <= 0)) {
     return {Finding::Silent,
             seen + ": reports are not scored now, so that the counts do not show a recorded report",

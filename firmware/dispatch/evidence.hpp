@@ -8,30 +8,29 @@
 
 namespace adit::dispatch {
 
-/// What is known of the reports that Adit itself sent after the first one in doubt.
+/// Effect of Adit's reports after the first one in doubt.
 struct SentSince {
-  std::int64_t scored = 0;  // reports that used up one of the remaining reports each
-  std::int64_t points = 0;  // that they gained
+  std::int64_t scored = 0;  // remaining reports that they used up
+  std::int64_t points = 0;  // points that they gained
 };
 
-/// What the run's status says of the reports in doubt.
+/// What the run's status shows about all reports in doubt.
 enum class Finding : std::uint8_t {
-  Recorded,     // all of them were
-  NotRecorded,  // none of them was
-  Silent,       // the status would be the same either way; a later one may tell
-  Contradicts,  // it cannot be explained by Adit's own reports: the count proves nothing in this run
+  Recorded,
+  NotRecorded,
+  Silent,       // the status does not show it; a later one may
+  Contradicts,  // Adit's own reports do not explain the counts, so the counts prove no report in this run
 };
 
 struct Evidence {
   Finding finding = Finding::Silent;
   std::string why;  // a sentence with the figures
-  /// What each of them gained, if they were recorded and this is certain.
+  /// Points of each report, if certain.
   std::optional<std::int64_t> points_each;
 };
 
-/// Compares what /api/status says now with what it would have said just before the first of `doubts` reports
-/// in doubt was sent (ICD 5.1: remaining_reports, score). A recorded report lowers remaining_reports by one
-/// and gains 0 or 1 point (ICD 5.2).
+/// Compares the present status with the status expected before the first of `doubts` reports was sent. A
+/// recorded report lowers remaining_reports by one (ICD 5.1) and gains 0 or 1 point (ICD 5.2).
 Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSince& since,
                const icd::RunStatus& now);
 

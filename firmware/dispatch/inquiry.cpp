@@ -19,8 +19,7 @@ Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked,
   return finding;
 }
 
-/// A run clock that stands still is an administrative stop, in which reports are recorded unscored (ICD 5.2):
-/// the count would not show them.
+/// In an administrative stop (ICD 5.2) the clock stands, and the counts do not show reports.
 bool Inquiry::stands_still(double run_clock, Instant now) const {
   if (!first_heard_) return false;
   const double elapsed = std::chrono::duration<double>(now - *first_heard_).count();

@@ -8,8 +8,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// What a Command Post answers whose handler fails at a message; other 5xx come from something in between,
-/// and pass.
+/// A handler of the Command Post failed at a message. Proxies send other 5xx.
 constexpr int kHandlerFailed = 500;
 
 }  // namespace

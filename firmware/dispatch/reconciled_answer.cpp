@@ -11,7 +11,7 @@ namespace {
 
 using codec::Value;
 
-/// ISO 8601, combined date and time, in UTC (ICD 5.2 submitted_datetime).
+/// ISO 8601 in UTC (ICD 5.2 submitted_datetime).
 std::string date_and_time(double stamp) {
   const auto seconds = static_cast<std::time_t>(std::floor(stamp));
   std::tm parts{};

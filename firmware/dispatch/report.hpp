@@ -12,51 +12,49 @@
 
 namespace adit::dispatch {
 
-/// The time by both clocks that the rules need: one for waiting, one for writing down.
 struct Time {
   std::chrono::steady_clock::time_point now;
   double stamp = 0;  // seconds since 1970
 };
 
-/// With a restart of the machine the clock for stamps may go ahead by more than the time that went by: the
-/// time of day was set, and the machine begins with that.
+/// A step of the stamp clock at a boot. The clock may step by more than the time for which the machine was
+/// off.
 struct Leap {
   double to = 0;  // stamps from here on are later by `by`; seconds since 1970
   double by = 0;  // seconds
 
-  /// The seconds that went by from one stamp to a later one.
+  /// The seconds that passed between two stamps, without the step.
   double between(double from, double until) const {
     return until - from - (from < to && to <= until ? by : 0);
   }
   friend bool operator==(const Leap&, const Leap&) = default;
 };
 
-/// One artifact report and all that is known of it: what the ledger holds.
+/// What the ledger holds of an artifact report.
 struct Report {
-  std::int64_t number = 0;  // Adit's own, from 1, never used twice
+  std::int64_t number = 0;  // assigned by Adit from 1, never reused
   icd::ArtifactReport report = {};
-  std::string sender = "";  // address of who posted it, "operator", or kLost
+  std::string sender = "";  // the client's address, "operator", or kLost
   double received = 0;      // seconds since 1970
   double changed = 0;
   ReportState state = ReportState::Queued;
-  std::string note = "";  // a sentence for the operator: why it is where it is
+  std::string note = "";  // the reason for its state, for the operator
 
-  std::int64_t run = 0;      // Run::number of the run that it belongs to
-  bool asked = false;        // sent on purpose: not held as a repeat, a near duplicate or one of an old run
-  std::int64_t same_as = 0;  // the earlier report that it turned out to be; 0: none
-  std::int64_t tries = 0;    // how often it was sent and no answer came
-  std::int64_t sending = 0;  // its place among all sendings, the last time; 0: never sent
-  double sent = 0;           // when, the last time; seconds since 1970
-  /// What /api/status would have answered just before it was sent; nothing: that was not known for certain.
+  std::int64_t run = 0;      // Run::number of its run
+  bool asked = false;        // sent on purpose: no comparison holds it
+  std::int64_t same_as = 0;  // earlier report that it repeats, or 0
+  std::int64_t tries = 0;    // sendings without an answer
+  std::int64_t sending = 0;  // place of the last sending among all; 0: never sent
+  double sent = 0;           // last sending; seconds since 1970
+  /// The status expected just before it was sent. nullopt: uncertain.
   std::optional<icd::RunStatus> before = std::nullopt;
 
-  int status = 0;                 // of its answer; 0: none yet
-  std::string content_type = "";  // of that answer
-  std::string answer = "";        // its body, byte for byte
-  bool reconciled = false;        // the answer is Adit's, found out from the run's status
+  int status = 0;                 // of the answer; 0: unanswered
+  std::string content_type = "";  // of the answer
+  std::string answer = "";        // the body, byte for byte
+  bool reconciled = false;        // Adit made the answer
 
-  /// It stands for reports that damage took from the ledger: all that is known is that they may have been
-  /// sent. Its note says which they are.
+  /// A stand-in for reports that damage removed from the ledger, listed in its note. They may have been sent.
   bool is_lost() const { return sender == kLost; }
   static constexpr std::string_view kLost = "lost";
   friend bool operator==(const Report&, const Report&) = default;

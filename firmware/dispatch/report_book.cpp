@@ -8,8 +8,8 @@
 namespace adit::dispatch {
 namespace {
 
-/// What the Command Post, or the way there, has done cannot be undone; and what a restart finds is what
-/// the ledger has already.
+/// The Command Post or the network has acted, so a failed write cannot undo it. After a restart the ledger
+/// has the state already.
 bool has_happened(ReportEvent event) {
   switch (event) {
     case ReportEvent::Recorded:
@@ -25,7 +25,7 @@ bool has_happened(ReportEvent event) {
   }
 }
 
-/// With its answer lost in a power cut the report would be in doubt, and the run's status would tell.
+/// After a power cut the run's status would show it.
 bool can_be_found_out(const Report& report, ReportEvent event) {
   const bool is_answer = event == ReportEvent::Recorded || event == ReportEvent::Rejected;
   return is_answer && report.before.has_value();
@@ -79,7 +79,7 @@ void ReportBook::change(std::span<const Report> steps, const Run& run) {
   write(steps, true);
 }
 
-/// All but the one that changed last: what becomes of reports goes with that one.
+/// The last changed run is written with its reports.
 bool ReportBook::write_earlier_runs() {
   while (unwritten_runs_.size() > 1) {
     if (!output_.write({}, &unwritten_runs_.front(), Flush::Now)) return false;
@@ -88,12 +88,12 @@ bool ReportBook::write_earlier_runs() {
   return true;
 }
 
-/// What is still unwritten goes first, so that the ledger never has a later step without an earlier one.
+/// Writes failed steps first, so that the ledger has no gaps.
 bool ReportBook::write(std::span<const Report> steps, bool happened, Flush flush) {
   bool written = write_earlier_runs();
   const Run* const run = unwritten_runs_.empty() ? nullptr : &unwritten_runs_.back();
   if (!written) {
-    // The disk refuses.
+    // The write failed.
   } else if (unwritten_.empty()) {
     written = output_.write(steps, run, flush);
   } else {

@@ -15,14 +15,12 @@
 
 namespace adit::dispatch {
 
-/// All reports and the state of each: in memory to be read; Output writes each step to disk before anything
-/// follows from it.
+/// All reports in memory. Output writes each step to disk before the step has effects.
 class ReportBook {
  public:
-  /// What changes beside the state.
+  /// Changes other fields than the state.
   using Edit = std::function<void(Report&)>;
 
-  /// What happens to a report, with a note for the operator.
   struct Step {
     std::int64_t number = 0;
     ReportEvent event = ReportEvent::Held;
@@ -35,37 +33,35 @@ class ReportBook {
 
   void open(std::vector<Report> all);
 
-  /// A new report that waits, and the events that happen to it at once, all in one write; `edit` is
-  /// done after each of them. Its number; 0: the disk refused, and there is no such report.
+  /// Adds a queued report and applies `events`, in one write. `edit` runs after each event. Returns the
+  /// number; 0: the write failed and there is no report.
   std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
                    const Edit& edit = nullptr);
 
-  /// Takes the steps that the table has, each of another report, all in one write. A step that the Command
-  /// Post made has happened even if the disk refuses: then it is written later, and until then the ledger is
-  /// on the safe side ("sending", which a restart reads as in doubt). Other steps are then not taken, none of
-  /// them, and it gives false.
+  /// Applies steps of different reports in one write. False: no step was applied, because the table lacks one
+  /// or the write failed. If a step is an act of the Command Post or the network, all are applied even if the
+  /// write fails, and are written later. The ledger then has "sending", which a restart reads as in doubt.
   bool move(std::span<const Step> steps, double stamp);
   bool move(const Step& step, double stamp) { return move({&step, 1}, stamp); }
-  /// Changes what is known of reports, but not their states, all in one write.
+  /// Changes reports but not their states, in one write. False: the write failed, no report changed.
   bool note(std::span<const Report> noted) { return noted.empty() || write(noted, false); }
-  /// Writes the run, and all that its change means for the reports, in one write.
+  /// Writes the run and its reports in one write. A failed write is repeated later.
   void change(std::span<const Report> steps, const Run& run);
   void write(const Run& run) { change({}, run); }
-  /// Tries again to write what could not be written. True: nothing is left.
+  /// Retries failed writes. True: all is on disk.
   bool catch_up();
 
   const Report& at(std::int64_t number) const { return reports_.at(number); }
   const Report* find(std::int64_t number) const;
   const std::map<std::int64_t, Report>& all() const { return reports_; }
-  /// The same report (same_report.hpp), in any run, oldest first.
+  /// Same reports (same_report.hpp) in all runs, oldest first.
   std::vector<const Report*> same_as(const icd::ArtifactReport& report) const;
-  /// Those in state Queued, oldest first.
+  /// Queued, oldest first.
   const std::set<std::int64_t>& waiting() const { return waiting_; }
-  /// Those with which something is still to happen, oldest first: few of many.
+  /// Unfinished, oldest first.
   const std::set<std::int64_t>& open() const { return open_; }
-  /// How many are in this state.
   std::size_t count(ReportState state) const { return counts_.at(static_cast<std::size_t>(state)); }
-  /// Those in doubt in `run`, in the order in which they were sent.
+  /// In doubt in `run`, in the order of sending.
   std::vector<const Report*> doubts(std::int64_t run) const;
 
  private:
@@ -75,13 +71,13 @@ class ReportBook {
 
   Output& output_;
   std::map<std::int64_t, Report> reports_;
-  std::multimap<double, std::int64_t> by_x_;  // numbers
+  std::multimap<double, std::int64_t> by_x_;  // report numbers
   std::array<std::size_t, std::size(kStateWords)> counts_{};
   std::set<std::int64_t> waiting_;
   std::set<std::int64_t> open_;
   std::set<std::int64_t> in_doubt_;
-  std::set<std::int64_t> unwritten_;  // their last step has happened, but is not on disk
-  std::vector<Run> unwritten_runs_;   // each as it now is, the one that changed last at the end
+  std::set<std::int64_t> unwritten_;  // last step not on disk
+  std::vector<Run> unwritten_runs_;   // last changed run at the end
 };
 
 }  // namespace adit::dispatch

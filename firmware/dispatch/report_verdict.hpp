@@ -5,21 +5,18 @@
 
 namespace adit::dispatch {
 
-/// What an answer to a report means for its life (the table in this room's README). Lost are: a 2xx whose
-/// body says nothing of a report and a refusal that is a page, which anybody may have sent (a captive portal,
-/// a proxy); and a 3xx, 408 or 5xx, which something in between may have sent after the Command Post recorded
-/// it.
+/// The event that an answer causes (table in README.md). Lost: 2xx without a report, pages, 3xx, 408 and 5xx.
+/// A proxy may send these after the Command Post has recorded the report.
 ReportEvent event_of(int status, bool tells_of_a_report, Body body);
 
-/// What an answered or reconciled report did to the run.
+/// Effect of a report on the run.
 struct Effect {
   bool scored = false;  // it used up one of the remaining reports
-  bool again = false;   // the run was not being scored (admin stop, not started): it is worth posting again
+  bool again = false;   // not scored (admin stop, run not started): worth posting again
   std::int64_t points = 0;
 };
-/// Of an answer.
 Effect effect_of(const icd::ReportReply& reply);
-/// Of the report's stored answer; Effect{} if it was not recorded.
+/// From the report's stored answer. Effect{} if the report was not recorded.
 Effect effect_of(const Report& report);
 
 }  // namespace adit::dispatch

@@ -1,4 +1,4 @@
-// The life of reports towards the Command Post: choosing, sending, answers.
+// Reports towards the Command Post: choosing, sending, answers.
 #include "dispatch/reports.hpp"
 
 #include <algorithm>
@@ -41,19 +41,19 @@ void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, co
 void Reports::open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
                    Reports& before) {
   icd::require(before.sending() == nullptr);
-  clients_ = std::exchange(before.clients_, {});  // first: what is found out now, they are told
+  clients_ = std::exchange(before.clients_, {});  // first, so that open() can answer them
   taken_at_ = std::exchange(before.taken_at_, {});
   open(std::move(all), std::move(runs), time, post);
 }
 
-/// Takes a step, and does what the table says follows from it. False: it is not on disk, and not taken.
+/// Applies an event and then its action. False: not on disk, not applied.
 bool Reports::step(std::int64_t number, ReportEvent event, const std::string& note, Time time,
                    const ReportBook::Edit& edit) {
   const ReportBook::Step one{number, event, note, edit};
   return take_steps({&one, 1}, time);
 }
 
-/// The same for several reports: all of them, or none.
+/// All or none.
 bool Reports::take_steps(std::span<const ReportBook::Step> steps, Time time) {
   std::vector<ReportAction> actions;
   for (const ReportBook::Step& one : steps) {
@@ -89,8 +89,8 @@ bool Reports::is_young(const Report& report, Instant now) const {
   return taken != taken_at_.end() && now - taken->second < kYoung;
 }
 
-/// It is sure to be meant for the run that is on now; or that cannot be found out, and it was asked for just
-/// now.
+/// The report is certainly meant for the present run. If no status comes, a young one or one sent on purpose
+/// may go.
 bool Reports::may_go(const Report& report, Instant now) const {
   if (barred_) return false;
   if (inquiry_ && inquiry_->is_pending(now)) return false;
@@ -99,7 +99,6 @@ bool Reports::may_go(const Report& report, Instant now) const {
   return report.asked || is_young(report, now);
 }
 
-/// Those that wait for the Command Post that the settings name. Others are kept for theirs.
 std::vector<std::int64_t> Reports::waiting_here() const {
   return waiting_at(run().post);
 }
@@ -121,7 +120,6 @@ std::map<std::string, std::size_t> Reports::waiting_elsewhere() const {
   return counts;
 }
 
-/// The first of those that wait that may go; nothing: none may.
 std::optional<std::int64_t> Reports::next(Instant now) const {
   for (const std::int64_t number : waiting_here()) {
     if (may_go(book_.at(number), now)) return number;
@@ -147,12 +145,12 @@ const Report* Reports::choose(Time time) {
           step(*number, ReportEvent::Chosen, "", time, [&](Report& report) { prepare(report, time); });
       return chosen ? &book_.at(*number) : nullptr;
     }
-    if (book_.at(*number).state == ReportState::Queued) return nullptr;  // the disk refuses
+    if (book_.at(*number).state == ReportState::Queued) return nullptr;  // the write failed
   }
   return nullptr;
 }
 
-/// What is written down with the step to Sending, so that its fate can be found out even after a crash.
+/// Fields that decide a doubt. Written before the bytes leave, they survive a crash.
 void Reports::prepare(Report& report, Time time) {
   report.run = run().number;
   report.sending = ++last_sending_;
@@ -163,7 +161,7 @@ void Reports::prepare(Report& report, Time time) {
   report.answer.clear();
 }
 
-/// The step of the report that was under way.
+/// For the report in flight.
 void Reports::ended(ReportEvent event, const std::string& note, Time time, const ReportBook::Edit& edit) {
   const std::int64_t number = *std::exchange(sending_, std::nullopt);
   step(number, event, note, time, [&](Report& report) {
@@ -173,8 +171,7 @@ void Reports::ended(ReportEvent event, const std::string& note, Time time, const
   });
 }
 
-/// For a report that was under way when a new run was noticed or declared: it may have been recorded in
-/// either.
+/// A new run began while it was in flight: either may have recorded it.
 void Reports::enter_run(Report& report) const {
   if (report.run == run().number) return;
   report.run = run().number;
@@ -204,8 +201,8 @@ ReportEvent Reports::answered(const HttpAnswer& answer, Time time) {
   return event;
 }
 
-/// An answer may be that of a report before, said again by a server or by something in between: then nothing
-/// is known of the report that was sent.
+/// The other sent report in `reply`, or null. Servers and proxies may repeat an answer, which is no evidence
+/// here.
 const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
   if (!reply.report || is_same(*reply.report, sending()->report)) return nullptr;
   for (const Report* const other : book_.same_as(*reply.report)) {
@@ -215,7 +212,7 @@ const Report* Reports::told_of_another(const icd::ReportReply& reply) const {
 }
 
 void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time) {
-  meet(reply, time);  // it was recorded in the run that is on by now, whichever it was meant for
+  meet(reply, time);  // the answer decides the run
   const Effect effect = effect_of(reply);
   std::string note;
   if (effect.again) {

@@ -19,122 +19,119 @@
 
 namespace adit::dispatch {
 
-/// Which reports the operator has to release before they are sent.
+/// Reports that need the operator's release.
 enum class Review : std::uint8_t { Off, Duplicates, All };
 
 struct ReportRules {
-  std::chrono::milliseconds answer_within{20000};  // a client that waits longer is told how its report stands
+  std::chrono::milliseconds answer_within{20000};  // then a client gets the state instead of the answer
   Review review = Review::Off;
-  double near_metres = 5;  // a report of the same type within this distance is a near duplicate
+  double near_metres = 5;  // same type and so near: a near duplicate
   Patience patience;
   std::size_t most_waiting = 1000;
 };
 
-/// What a client posts.
 struct Posted {
   icd::ArtifactReport report;
-  std::string sender;     // its address
-  bool resubmit = false;  // as a new report, even if it is the same as one that is finished
+  std::string sender;     // client's address
+  bool resubmit = false;  // a new report, even if it repeats a finished one
 };
 
-/// A whole answer of the Command Post's.
 struct HttpAnswer {
   int status = 0;
   std::string content_type;
   std::string body;
 };
 
-/// What is to be asked of the Command Post next.
+/// Next requests to the Command Post.
 struct Wish {
-  bool report = false;  // the first of those that wait may be sent
-  /// From when on the run's status is needed; nothing: it is not needed.
+  bool report = false;  // a queued report may be sent
+  /// When to request the run's status. nullopt: not needed.
   std::optional<std::chrono::steady_clock::time_point> status;
-  bool in_doubt = false;  // it decides what became of a report
+  bool in_doubt = false;  // the status decides a doubt
 };
 
-/// The life of all reports, with all its rules (promise 1): no I/O and no clock. Output puts each step on
-/// disk before anything follows from it.
+/// The rules of all reports (promise 1), without I/O or clock. Output writes each step to disk before the
+/// step has effects.
 ///
-/// One request is under way at a time: choose(), or a take() that gives true, is followed by exactly one of
-/// answered(), never_left() and lost() before anything else is sent or asked for; asking for the status, by
+/// At most one request is in flight. After choose() returns a report, or take() true, call exactly one of
+/// answered(), never_left() and lost() before the next request. After a request for the status, call
 /// status_heard() or status_failed().
 class Reports {
  public:
   using Instant = std::chrono::steady_clock::time_point;
   using Outcome = std::expected<std::int64_t, std::string>;  // a report's number, or why not
 
-  static constexpr std::chrono::seconds kYoung{10};  // how long a report is surely meant for the present run
-  static constexpr std::int64_t kMostTries = 5;      // sent so often and never recorded, it is held
+  static constexpr std::chrono::seconds kYoung{10};  // a posted report is for the present run
+  static constexpr std::int64_t kMostTries = 5;      // losses until a report is held
 
   /// `output` outlives this.
   Reports(const ReportRules& rules, Output& output);
 
-  /// Begins with what the ledger holds. `post`: the Command Post's address. If it is another than before, the
-  /// run is another, too: the last one there, if there was one, or else a new one.
+  /// Starts from the ledger. If `post` is another Command Post than before, its last run or a new one becomes
+  /// the present run.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post = "");
 
-  /// The same, taking over the clients of `before`, which wait no longer than they would have. Requires that
-  /// `before` has nothing under way.
+  /// The same, and takes over the clients of `before` with their deadlines. Requires that `before` has no
+  /// report in flight.
   void open(std::vector<Report> all, std::vector<Run> runs, Time time, const std::string& post,
             Reports& before);
-  /// The settings now name `post`; open() follows once the request under way has ended. A report that comes
-  /// meanwhile is meant for the run there, also after a restart.
+  /// The settings name `post`. Call open() after the request in flight. Reports that arrive before that
+  /// belong to the run at `post`, also after a restart.
   void will_move(const std::string& post, Time time);
-  /// The rules from now on. A client that waits already keeps its deadline.
+  /// Waiting clients keep their deadlines.
   void go_by(const ReportRules& rules) { rules_ = rules; }
-  /// From one request to the next, as the Command Post's limit has it.
+  /// `spacing`: the time between requests by the Command Post's limit.
   void paced(Instant::duration spacing) { account_.paced(spacing); }
-  /// What is read was written down before it, or after.
+  /// Stamps that were read from disk may be from before the step.
   void leapt(const Leap& leap) { account_.leapt(leap); }
 
-  /// A client posts a report; it is told by Output, at once or later. `may_send`: nothing is under way and
-  /// the rate allows it. True: it is on disk as sending(): send it.
+  /// Accepts a report. Output answers the client now or later. `may_send`: no request is in flight and the
+  /// rate limit allows one. True: the report is on disk as sending(); send it.
   bool take(const Posted& posted, ClientId client, bool may_send, Time time);
 
   Wish wish(Time time) const;
-  /// The first of those that wait, on disk as sending(). Nothing: none may go, or the disk refuses.
+  /// The first queued report that may be sent, on disk as sending(). Null: no such report, or the write
+  /// failed.
   const Report* choose(Time time);
-  /// Gives what the answer means.
   ReportEvent answered(const HttpAnswer& answer, Time time);
   void never_left(const std::string& why, Time time);
   void lost(const std::string& why, Time time);
-  /// `asked`: when it was asked for.
+  /// `asked`: time of the request.
   void status_heard(const icd::RunStatus& status, Instant asked, Time time);
-  /// `reached`: the Command Post answered, but nothing that helps.
+  /// `reached`: the Command Post answered, without a usable status.
   void status_failed(bool reached, Time time);
 
-  /// Tells clients whose time is up, and writes what could not be written. Called at next_deadline() at the
-  /// latest, and now and then.
+  /// Answers clients whose time is up, repeats failed writes. Call at next_deadline() at the latest.
   void tick(Time time);
   std::optional<Instant> next_deadline() const { return clients_.next_deadline(); }
-  /// The gateway stops: tells all clients but those whose report is under way; if `all`, those too.
+  /// aditd stops: answers all clients. Without `all`, clients of the report in flight wait on.
   void dismiss(bool all);
 
-  /// The operator's actions. Each gives the number of the report that it moved, or a sentence why not.
+  /// The operator's actions return the changed report's number, or why they failed.
   Outcome send(std::int64_t number, Time time);
   Outcome hold(std::int64_t number, Time time);
   Outcome withdraw(std::int64_t number, Time time);
   Outcome settle(std::int64_t number, Time time);
-  /// Sends the same as a new report.
+  /// Sends a copy as a new report. Returns its number, or that of an unfinished copy.
   Outcome resubmit(std::int64_t number, Time time);
-  /// The operator says that a new run begins. Gives its number.
+  /// Returns the new run's number.
   std::int64_t declare_new_run(Time time);
 
-  /// The report whose answer a client waits for; nothing: it was told at once, or waits no more.
+  /// The report that a client waits for. nullopt: the client does not wait.
   std::optional<std::int64_t> awaited_by(ClientId client) const { return clients_.awaited_by(client); }
   const ReportBook& book() const { return book_; }
   const Run& run() const { return account_.run(); }
   const Runs& runs() const { return account_.runs(); }
-  /// The run that a report posted now is meant for: run(), or that of will_move().
+  /// The run of a report that is posted now: run(), or the run of will_move().
   const Run& meant_run() const { return will_be_ != 0 ? *account_.runs().find(will_be_) : run(); }
-  /// Those that wait for the Command Post that the settings name, oldest first.
+  /// Queued reports for the Command Post of the present run, oldest first.
   std::vector<std::int64_t> waiting_here() const;
-  /// How many wait for each Command Post that the settings do not name.
+  /// Numbers of queued reports for other Command Posts than the settings name, by address.
   std::map<std::string, std::size_t> waiting_elsewhere() const;
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
-  /// What /api/status would answer now; nothing: it is not known for certain, or proves nothing.
+  /// The status expected now. nullopt: uncertain, or the counts prove no report.
   std::optional<icd::RunStatus> expected(Instant now) const { return account_.expected(now); }
-  /// Whether it is in doubt and Adit can find out by itself.
+  /// True if the report is in doubt and Adit still asks about it.
   bool is_asking(const Report& report) const;
 
  private:
@@ -143,17 +140,17 @@ class Reports {
   void join(ClientId client, const Report& earlier, Time time);
   void hand_clients_over(std::int64_t number, const Report& earlier);
 
-  // Taking and choosing.
+  // Accepting and choosing.
   bool is_of_run(const Report& report) const;
   bool is_fresh(Instant now) const { return will_be_ == 0 && account_.is_fresh(now); }
   std::vector<std::int64_t> waiting_at(const std::string& post) const;
   std::vector<const Report*> same_in_run(const icd::ArtifactReport& report) const;
   const Report* earlier(const Report& report) const;
   const Report* twin(const Report& report) const;
-  /// Why the operator has to release it first; "": he has not.
+  /// Why the operator must release a report. Empty: no reason.
   struct Hold {
     std::string why;
-    std::int64_t same_as = 0;  // it may be the same as this one: held until the run is known for certain
+    std::int64_t same_as = 0;  // the report that it may repeat: held until the run is certain
   };
   Hold reason_to_hold(const Report& report) const;
   Hold maybe_repeat(const Report& report) const;
@@ -206,14 +203,14 @@ class Reports {
   ReportBook book_;
   RunAccount account_;
   WaitingClients clients_;
-  std::map<std::int64_t, Instant> taken_at_;  // when somebody last posted it, in this program's life
-  std::set<std::int64_t> unchecked_;          // not yet compared with earlier ones: the run was not known
+  std::map<std::int64_t, Instant> taken_at_;  // last POST of each report, for kYoung
+  std::set<std::int64_t> unchecked_;          // not compared yet, because the run was unknown
   std::optional<std::int64_t> sending_;
-  std::int64_t will_be_ = 0;       // the run that will_move() leads to; 0: none
-  std::int64_t last_sending_ = 0;  // Report::sending of the last one sent
+  std::int64_t will_be_ = 0;       // the run of will_move(), or 0
+  std::int64_t last_sending_ = 0;  // Report::sending of the last sending
   std::optional<Inquiry> inquiry_;
-  bool barred_ = false;    // nothing is sent before a status is answered
-  bool stopping_ = false;  // for what clients are told
+  bool barred_ = false;    // no report is sent before a status arrives
+  bool stopping_ = false;  // for the sentences to clients
   Output& output_;
 };
 

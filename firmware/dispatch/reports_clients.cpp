@@ -1,4 +1,4 @@
-// The life of reports towards the team: taking them, joining the same one again, telling how they stand.
+// Reports and clients: accepting, repeats, answers.
 #include <algorithm>
 #include <cmath>
 #include <ranges>
@@ -19,9 +19,9 @@ std::string metres(double distance) {
   return icd::number_text(std::round(distance * 10) / 10) + " m";
 }
 
-/// A report in this state stands for all that are the same: they get its answer, or wait for it with it.
+/// True if repeats of the report get its answer or wait for it.
 bool stands_for_others(const Report& report) {
-  if (report.state == ReportState::Rejected) return false;  // not recorded: asking again costs nothing
+  if (report.state == ReportState::Rejected) return false;  // not recorded, so a repeat is sent
   return !effect_of(report).again;
 }
 
@@ -34,7 +34,7 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
   report.asked = posted.resubmit;
   const bool fresh = is_fresh(time.now);
   const Report* const same = earlier(report);
-  // What is finished may be of a run that has ended unnoticed: then it is compared later (check()).
+  // A finished report's run may have ended unnoticed: check() compares later.
   const bool repeats = same != nullptr && (fresh || !is_final(same->state));
   if (repeats && (!report.asked || (same->asked && !is_final(same->state)))) {
     join(client, *same, time);
@@ -59,7 +59,7 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
 
 bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
   const bool fresh = is_fresh(time.now);
-  // Received and chosen in one write: the disk is flushed once before it leaves.
+  // Accepting and choosing in one write flush the disk once.
   const bool now = may_send && hold.why.empty() && fresh && !sending_ && waiting_here().empty() &&
                    may_go(report, time.now);
   std::vector<ReportEvent> events;
@@ -81,13 +81,12 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
   return now;
 }
 
-/// What is under way counts for a run that was declared meanwhile, too: it may be recorded in it. Where the
-/// settings name another Command Post meanwhile, who posts it again asks after it.
+/// Also the report in flight, which a later run may record.
 bool Reports::is_of_run(const Report& report) const {
   return report.run == meant_run().number || report.number == sending_;
 }
 
-/// Those of the run that is meant that are the same, oldest first.
+/// The same reports of meant_run(), oldest first.
 std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& report) const {
   std::vector<const Report*> same;
   for (const Report* const other : book_.same_as(report)) {
@@ -96,7 +95,7 @@ std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& repor
   return same;
 }
 
-/// The latest report before this one, of the present run, that it would be a repeat of.
+/// The report that this one would repeat in the present run, or null.
 const Report* Reports::earlier(const Report& report) const {
   for (const Report* const other : std::views::reverse(same_in_run(report.report))) {
     if (report.number != 0 && other->number >= report.number) continue;
@@ -108,7 +107,7 @@ const Report* Reports::earlier(const Report& report) const {
   return nullptr;
 }
 
-/// Another one of the present run that is the same, and was sent, is under way or waits for its turn.
+/// Another same report of the present run, queued or sent, or null.
 const Report* Reports::twin(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
     const bool is_compared_later = other->state == ReportState::Queued && !other->asked &&
@@ -120,7 +119,7 @@ const Report* Reports::twin(const Report& report) const {
   return nullptr;
 }
 
-/// It is the same as one of which an answer is to tell yet whether it is of the present run.
+/// Same as a report whose run the next answer decides.
 Reports::Hold Reports::maybe_repeat(const Report& report) const {
   if (const Report* const other = same_in_maybe(report); other != nullptr) {
     return {icd::sentence("the same as report ", other->number,
@@ -137,7 +136,6 @@ Reports::Hold Reports::maybe_repeat(const Report& report) const {
   return {};
 }
 
-/// Why it must not go without the operator's word, if so.
 Reports::Hold Reports::reason_to_hold(const Report& report) const {
   if (report.asked) return {};
   for (const Report* const doubt : book_.doubts(run().number)) {
@@ -146,7 +144,7 @@ Reports::Hold Reports::reason_to_hold(const Report& report) const {
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
   if (rules_.review == Review::Off) return {};
   for (const auto& [number, other] : book_.all()) {
-    // Of two that wait, the later one is held.
+    // Of two queued reports the later one is held.
     const bool later = report.number != 0 && number > report.number && other.state == ReportState::Queued;
     const bool counts =
         is_of_run(other) && !later && number != report.number && other.state != ReportState::Withdrawn;
@@ -158,7 +156,7 @@ Reports::Hold Reports::reason_to_hold(const Report& report) const {
   return rules_.review == Review::All ? Hold{"every report is reviewed"} : Hold{};
 }
 
-/// What take() could not do because the run was not known. False: it is not to be sent (or not yet).
+/// The comparison that take() left out because the run was unknown. False: do not send it now.
 bool Reports::check(std::int64_t number, Time time) {
   const Report report = book_.at(number);
   if (report.run != run().number && !report.asked && !is_young(report, time.now)) {
@@ -188,11 +186,11 @@ bool Reports::check(std::int64_t number, Time time) {
 
 void Reports::join(ClientId client, const Report& earlier, Time time) {
   if (is_final(earlier.state)) return tell_how_it_stands(client, earlier);
-  taken_at_[earlier.number] = time.now;  // it is meant for the present run
+  taken_at_[earlier.number] = time.now;  // meant for the present run
   clients_.add(client, earlier.number, time.now + rules_.answer_within);
 }
 
-/// What was posted as `number` turned out to be `earlier` again.
+/// `number` repeats `earlier`.
 void Reports::hand_clients_over(std::int64_t number, const Report& earlier) {
   if (is_final(earlier.state)) {
     for (const ClientId client : clients_.take(number)) tell_how_it_stands(client, earlier);
@@ -205,7 +203,6 @@ void Reports::hand_clients_over(std::int64_t number, const Report& earlier) {
   }
 }
 
-/// Its answer, or the truth about it.
 void Reports::tell_how_it_stands(ClientId client, const Report& report) {
   const std::string name = icd::sentence("report ", report.number);
   const std::string why = report.note.empty() ? "" : " (" + report.note + ")";
@@ -214,7 +211,7 @@ void Reports::tell_how_it_stands(ClientId client, const Report& report) {
   switch (report.state) {
     case ReportState::Answered:
     case ReportState::Rejected:
-      break;  // the Command Post's own answer
+      break;  // stored answer
     case ReportState::Settled:
       if (report.reconciled) break;
       answer.status = icd::Status::Conflict;

@@ -1,4 +1,4 @@
-// The life of reports whose answer was lost.
+// Reports whose answer was lost.
 #include "codec/write.hpp"
 #include "dispatch/reconciled_answer.hpp"
 #include "dispatch/report_verdict.hpp"
@@ -8,7 +8,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// Why the run's status cannot say what became of it, or "".
+/// Empty if the run's status can decide.
 std::string undecidable(const Report& report, const Run& run, const Run* its) {
   if (its != nullptr && !its->post.empty() && its->post != run.post) {
     return "it was sent to the Command Post at " + its->post +
@@ -32,7 +32,7 @@ bool Reports::is_asking(const Report& report) const {
          report.run == run().number;
 }
 
-/// Also when another is in doubt already: from now on both are asked for.
+/// The inquiry covers older doubts.
 void Reports::doubt_began(Instant now) {
   inquiry_.reset();
   const auto doubts = book_.doubts(run().number);
@@ -41,7 +41,6 @@ void Reports::doubt_began(Instant now) {
   }
 }
 
-/// What Adit sent after a report in doubt, and how that was answered.
 SentSince Reports::sent_since(const Report& doubt) const {
   SentSince since;
   for (const auto& [number, report] : book_.all()) {
@@ -94,7 +93,7 @@ void Reports::inquire(const icd::RunStatus& status, Instant asked, Time time) {
     case Finding::Silent:
       return explain(doubts, evidence.why, time);
   }
-  if (!book_.doubts(run().number).empty()) return;  // the disk refused: it is asked again
+  if (!book_.doubts(run().number).empty()) return;  // the disk write failed: ask again
   inquiry_.reset();
   account_.settle(status, time);
 }
@@ -113,8 +112,7 @@ void Reports::settle(const std::vector<const Report*>& doubts, const Evidence& e
   take_steps(steps, time);
 }
 
-/// What became of a report in doubt that was not recorded. The same may have been sent meanwhile, at the
-/// operator's word, when another run seemed to have begun.
+/// The operator may have sent the same report since. Then this one is held.
 ReportBook::Step Reports::after_loss(const Report& doubt, const Evidence& evidence) const {
   const Report* const same = doubt.asked ? nullptr : twin(doubt);
   if (same != nullptr) {
@@ -138,11 +136,11 @@ void Reports::send_again(const std::vector<const Report*>& doubts, const Evidenc
   take_steps(steps, time);
 }
 
-/// Says at each report in doubt how it stands.
+/// Notes the state of the inquiry.
 void Reports::explain(const std::vector<const Report*>& doubts, const std::string& seen, Time time) {
   std::vector<Report> noted;
   for (const Report* const doubt : doubts) {
-    if (doubt->is_lost()) continue;  // it says all that is known
+    if (doubt->is_lost()) continue;  // its note is complete
     const Report& first = *doubts.front();
     const std::string why = undecidable(first, run(), account_.runs().find(first.run));
     const std::string note =
@@ -155,9 +153,9 @@ void Reports::explain(const std::vector<const Report*>& doubts, const std::strin
   book_.note(noted);
 }
 
-/// Of the reports sent around one that the operator judges it can no longer be told which was recorded. Done
-/// before his word is, so that no power cut in between leaves evidence that means something else. False: the
-/// disk refuses.
+/// Forgets the expected counts of other doubts, which no longer show the result. Call it before the
+/// operator's decision is written, so that a power cut between leaves no wrong evidence. False: the write
+/// failed.
 bool Reports::blur_doubts(std::int64_t judged, Time time) {
   const std::int64_t its_run = book_.at(judged).run;
   std::vector<Report> blurred;
@@ -165,13 +163,13 @@ bool Reports::blur_doubts(std::int64_t judged, Time time) {
     if (doubt->number != judged && doubt->before) blurred.emplace_back(*doubt).before.reset();
   }
   if (!book_.note(blurred)) return false;
-  if (its_run != run().number) return true;  // nobody asks after it now
+  if (its_run != run().number) return true;  // no inquiry there
   account_.lose(time.now + rules_.patience.doubt_for);
   doubt_began(time.now);
   return true;
 }
 
-/// After the operator judged one.
+/// After the operator's decision.
 void Reports::ask_for_others(Time time) {
   doubt_began(time.now);
   explain(book_.doubts(run().number), "", time);

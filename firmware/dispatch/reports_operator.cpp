@@ -1,4 +1,4 @@
-// The operator's word on a report.
+// The operator's actions on a report.
 #include "dispatch/reports.hpp"
 #include "icd/sentence.hpp"
 
@@ -12,7 +12,6 @@ std::unexpected<std::string> no_such(std::int64_t number) {
   return std::unexpected(icd::sentence("there is no report ", number));
 }
 
-/// "report 7 is answered: ..."
 std::unexpected<std::string> cannot(const Report& report, const std::string& what) {
   return std::unexpected(
       icd::sentence("report ", report.number, " is ", shown_name_of(report.state), ": ", what));
@@ -56,7 +55,7 @@ Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   if (!step(number, ReportEvent::HeldBack, "the operator held it", time)) {
     return std::unexpected(kDisk);
   }
-  unchecked_.erase(number);  // his later word is enough
+  unchecked_.erase(number);  // the operator decides
   return number;
 }
 
@@ -91,7 +90,7 @@ Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {
   if (!is_final(report->state)) return cannot(*report, "it is not finished yet");
   if (report->is_lost()) return cannot(*report, kLost);
   for (const Report* const other : same_in_run(report->report)) {
-    if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, it is sent once
+    if (other->asked && !is_final(other->state)) return other->number;  // pressed twice, sent once
   }
   Report again{.report = report->report, .sender = "operator", .received = time.stamp, .changed = time.stamp};
   again.note = icd::sentence("report ", number, " again");

@@ -1,4 +1,4 @@
-// The run that all reports belong to: when it is another one, and what that does to them.
+// Changes of the run and their effect on reports.
 #include <algorithm>
 #include <iterator>
 #include <set>
@@ -11,14 +11,14 @@
 namespace adit::dispatch {
 namespace {
 
-/// It reached the Command Post, or may have.
+/// True if the Command Post has it or may have it.
 bool was_sent(const Report& report) {
   return report.state == ReportState::Answered || report.state == ReportState::Settled ||
          report.state == ReportState::InDoubt;
 }
 
-/// What was taken before any word of its run is meant for the first one that is heard of. The operator's word
-/// on it was for the other one.
+/// Moves a report from a run without any status to run `run`. The operator's order to send it applied to the
+/// other run alone.
 Report passed_on(Report report, std::int64_t run, Time time) {
   if (report.run != run) report.asked = false;
   report.run = run;
@@ -27,12 +27,12 @@ Report passed_on(Report report, std::int64_t run, Time time) {
   return report;
 }
 
-/// Until it is known which run is on.
+/// Until the run is certain.
 bool is_held_as_repeat(const Report& report) {
   return report.state == ReportState::Held && report.same_as != 0;
 }
 
-/// What is_held_as_repeat() is a repeat of `original` for certain.
+/// It certainly repeats `original`.
 Report joined_to(std::int64_t original, Report report, Time time) {
   report.state = transition(report.state, ReportEvent::Joined)->to;
   report.note = icd::sentence("the same as report ", original);
@@ -40,7 +40,7 @@ Report joined_to(std::int64_t original, Report report, Time time) {
   return report;
 }
 
-/// The name that a recorded report's answer gives to its run; "": none.
+/// From a recorded report's answer; "" if missing.
 std::string run_in(const std::string& answer) {
   const auto reply = codec::read_report_reply(answer);
   return reply ? reply->run : "";
@@ -69,7 +69,7 @@ void Reports::will_move(const std::string& post, Time time) {
   if (!steps.empty()) book_.change(steps, run());
 }
 
-/// The settings name another Command Post: its run is on, and what is meant for the old one is kept for that.
+/// Queued reports for the old Command Post are kept for it.
 void Reports::change_post(const std::string& post, Time time) {
   const std::string from = run().post;
   const Run* const known = account_.runs().at_post(post);
@@ -96,7 +96,6 @@ void Reports::change_post(const std::string& post, Time time) {
   doubt_began(time.now);
 }
 
-/// A status that is not of the present run.
 void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time time) {
   const bool other_team = run().last && are_other_teams(run().last->current_team, status.current_team);
   const Run* const known = other_team ? account_.of_team(status.current_team) : nullptr;
@@ -105,12 +104,11 @@ void Reports::meet(const AnotherRun& another, const icd::RunStatus& status, Time
     if (!differs) return take_up_run(*known, another.why, time);
     return begin_run(another.why, differs->certain ? 0 : known->number, status, time);
   }
-  // The earlier run cannot be on, for more reports are left now. So the held reports repeat none of its own.
+  // More reports are left, so the earlier run has ended and its reports have no repeats here.
   if (run().may_be != 0 && another.certain && !other_team && !anything_was_sent_here()) clear_held(time);
   begin_run(another.why, another.certain ? 0 : run().number, status, time);
 }
 
-/// An answer names the run that is on.
 void Reports::meet(const icd::ReportReply& reply, Time time) {
   if (const auto another = account_.another(reply, time)) {
     const Run* const known = another->certain ? account_.of_name(reply.run) : nullptr;
@@ -132,9 +130,8 @@ bool Reports::anything_was_sent_here() const {
   return false;
 }
 
-/// What waits was meant for the run before, but for what was posted just now. What is in doubt and was sent
-/// since shortly before the old run was last heard of may have been recorded in either: from now on it stands
-/// for the same report in the new one.
+/// Queued reports are held, young ones go on into the new run. Either run may have recorded a doubt that was
+/// sent around the last status, so it enters the new one.
 std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& why, Time time) {
   const std::chrono::duration<double> late = rules_.patience.doubt_for + kYoung;
   const double last_word = run().heard - late.count();
@@ -163,8 +160,7 @@ std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& wh
   return steps;
 }
 
-/// What was answered since the last status of the run that ends. A status that shows a new run for certain
-/// does not tell in which of the two it was recorded.
+/// Either run may have recorded them.
 std::vector<Report> Reports::answered_since_status(std::int64_t next) const {
   std::vector<Report> steps;
   for (const auto& [number, report] : book_.all()) {
@@ -174,15 +170,14 @@ std::vector<Report> Reports::answered_since_status(std::int64_t next) const {
   return steps;
 }
 
-/// It was answered before its run was noticed, and no answer has named that run: it may be of the one before.
+/// Answered before the run was noticed, and its name is not known: it may be of the earlier run.
 bool Reports::is_unclaimed(const Report& report) const {
   return report.run == run().number && report.state == ReportState::Answered &&
          report.changed < run().began && run().id.empty();
 }
 
-/// The first answer that names the present run, `name`, tells what was recorded in it: what was held as a
-/// repeat of that gets its answer. What another name was given is of the run before, and none of its repeats
-/// is one. What was given none stays: nothing is sent twice for that.
+/// The first answer with a name decides about unclaimed reports. Same name: held repeats get their answer.
+/// Another name: they move to that run. No name: they stay, so that no report is sent twice.
 void Reports::claim(const std::string& name, Time time) {
   std::vector<Report> steps;
   for (const auto& [number, report] : book_.all()) {
@@ -216,7 +211,6 @@ void Reports::begin_run(const std::string& why, std::int64_t may_be,
   explain(doubts, "", time);
 }
 
-/// One that was seen before goes on.
 void Reports::take_up_run(const Run& known, const std::string& why, Time time) {
   const std::int64_t number = known.number;
   const auto doubts = book_.doubts(run().number);
@@ -226,8 +220,8 @@ void Reports::take_up_run(const Run& known, const std::string& why, Time time) {
   doubt_began(time.now);
 }
 
-/// The present run is `known`, and so are the runs between the two: all their reports are of that run. What
-/// was held as a repeat of one of its reports is one.
+/// The present run is `known`, and so are the runs between them: all their reports move there. Held repeats
+/// get the originals' answers.
 void Reports::return_to(const Run& known, Time time) {
   const std::int64_t number = known.number;
   const auto maybe = account_.runs().maybe_present();
@@ -252,7 +246,7 @@ void Reports::return_to(const Run& known, Time time) {
   doubt_began(time.now);
 }
 
-/// The present run is another for certain: what was held because that was not known is none of its repeats.
+/// The present run is certainly another.
 void Reports::clear_held(Time time) {
   std::vector<ReportBook::Step> steps;
   for (const std::int64_t number : book_.open()) {
@@ -266,8 +260,7 @@ void Reports::clear_held(Time time) {
   if (!steps.empty()) take_steps(steps, time);
 }
 
-/// The same report as this one that was sent in another run of which `counts` is true; nothing: there is
-/// none.
+/// The same report, sent in another run that satisfies `counts`, or null.
 const Report* Reports::sent_elsewhere(const Report& report,
                                       const std::function<bool(const Run&)>& counts) const {
   for (const Report* const other : book_.same_as(report.report)) {
@@ -278,7 +271,7 @@ const Report* Reports::sent_elsewhere(const Report& report,
   return nullptr;
 }
 
-/// The same report that was answered when the present run may have begun already.
+/// The same report, answered when the present run may already have begun, or null.
 const Report* Reports::unclaimed_same(const Report& report) const {
   for (const Report* const other : book_.same_as(report.report)) {
     if (is_unclaimed(*other) && !effect_of(*other).again) return other;
@@ -286,13 +279,13 @@ const Report* Reports::unclaimed_same(const Report& report) const {
   return nullptr;
 }
 
-/// The same report that was sent in the run that the present one may be still.
+/// The same report, sent in a run that the present one may still be, or null.
 const Report* Reports::same_in_maybe(const Report& report) const {
   return sent_elsewhere(report,
                         [this](const Run& its) { return account_.runs().may_be_present(its.number); });
 }
 
-/// The same report that was sent to a Command Post at another place, while nothing was heard of this one.
+/// The same report, sent to another Command Post, if this one has not answered yet. Otherwise null.
 const Report* Reports::sent_to_another_post(const Report& report) const {
   if (run().was_heard() || report.asked) return nullptr;
   return sent_elsewhere(report, [this](const Run& its) { return its.post != run().post; });

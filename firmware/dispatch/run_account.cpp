@@ -8,7 +8,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// An answer may have been the last word of the run that was written down; seconds.
+/// Seconds; the last write may be of an answer.
 constexpr double kAnswerWritten = 1;
 
 }  // namespace
@@ -24,7 +24,7 @@ void RunAccount::open(std::vector<Run> all, std::int64_t latest, const std::stri
   post_ = post.empty() ? run().post : post;
   if (post.empty() || !run().post.empty()) return;
   runs_.present().post = post;
-  book_.write(run());  // before any report of it: who finds none there takes it for that of the next place
+  book_.write(run());  // before its reports: without an address they would count as the next Command Post's
 }
 
 std::optional<icd::RunStatus> RunAccount::expected(Instant now) const {
@@ -66,9 +66,8 @@ const Run* RunAccount::named_before() const {
   return named;
 }
 
-/// In seconds. Over a restart by the box's clock, which may be set in between; else not, so that a clock that
-/// is set makes no new run. Over a restart of the machine it may begin ahead of all stamps before: what is
-/// left is silence for certain.
+/// In one process by the monotonic clock. After a restart by stamps, less the step and the possible lead
+/// after a boot.
 double RunAccount::silence(Time time) const {
   if (clock_at_) return std::chrono::duration<double>(time.now - *clock_at_).count();
   return std::max(0.0, leap_.between(run().heard, time.stamp) - kClockAhead);
@@ -93,7 +92,7 @@ std::int64_t RunAccount::announce(const std::string& why, const std::string& pos
   runs_.begin({.began = time.stamp, .why = why, .heard = time.stamp, .post = post});
   const Run next = run();
   runs_.take_up(present);
-  book_.write(run());  // first: the other one never is the latest
+  book_.write(run());  // first, so that the other run is never the last on disk
   book_.write(next);
   written_ = time.stamp;
   return next.number;
@@ -141,7 +140,7 @@ void RunAccount::forget_counts() {
 void RunAccount::heard(const icd::RunStatus& status, Time time) {
   heard_ = clock_at_ = time.now;
   Run& run = runs_.present();
-  // What another run is told by is on disk at once.
+  // Signs of another run are written at once.
   const bool is_news = !run.last || run.last->remaining_reports != status.remaining_reports ||
                        run.last->current_team != status.current_team;
   const Clock clock = seen_again(run.status_clock, status.run_clock);
@@ -183,12 +182,12 @@ void RunAccount::lose(Instant until) {
 
 void RunAccount::settle(const icd::RunStatus& status, Time time) {
   if (uncertain_until_ && time.now < *uncertain_until_) return;
-  // Before the start of a run its counts may be set to anything.
+  // Before a run starts, the Command Post may set its counts to any value.
   if (known_ && known_->status.run_clock > 0) {
     const std::int64_t remaining = known_->status.remaining_reports - known_->since.scored;
     const std::int64_t score = known_->status.score + known_->since.points;
     const bool fits = status.remaining_reports == remaining && status.score == score;
-    if (!fits && !odd_) {  // it may be a count that lags behind: the next status decides
+    if (!fits && !odd_) {  // the count may lag: wait for the next status
       odd_ = true;
       return;
     }

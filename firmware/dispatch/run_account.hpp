@@ -14,54 +14,51 @@
 
 namespace adit::dispatch {
 
-/// The present run, and what /api/status would answer now: the last status, less what Adit's own reports
-/// have changed since.
+/// The present run and its expected status: the last one, less the effect of Adit's own reports.
 class RunAccount {
  public:
   using Instant = std::chrono::steady_clock::time_point;
-  static constexpr std::chrono::seconds kFresh{15};  // how long a status vouches for the run, at least
-  static constexpr double kWriteEvery = 30;          // seconds between writes of the run clock alone
+  static constexpr std::chrono::seconds kFresh{15};  // a status proves the run at least so long
+  static constexpr double kWriteEvery = 30;          // seconds between writes for the run clock alone
 
   /// `book` outlives this.
   explicit RunAccount(ReportBook& book) : book_(book) {}
 
-  /// Over which the run's silence is counted.
+  /// The step that is subtracted from the run's silence.
   void leapt(const Leap& leap) { leap_ = leap; }
   double between(double from, double until) const { return leap_.between(from, until); }
-  /// `latest`: the highest run that a report belongs to; it may have been written down before its run was.
+  /// `latest`: highest run number of a report, which may have been written before its run.
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
   const Run& run() const { return runs_.present(); }
-  /// When the present run's last status was heard: what was answered since may be of the next one. Seconds
-  /// since 1970; not later than it was, where that was before this program's life.
+  /// Last status of the present run, seconds since 1970; a lower bound after a restart. Reports that were
+  /// answered later may belong to the next run.
   double status_at() const { return status_at_; }
   const Runs& runs() const { return runs_; }
-  /// Requests are so far apart: a status vouches for the run until the next one may go.
+  /// `spacing`: between requests. A status proves the run until the next can arrive.
   void paced(Instant::duration spacing);
-  /// A status still vouches for the run.
   bool is_fresh(Instant now) const { return heard_ && now - *heard_ <= fresh_; }
-  /// The Command Post was asked as short a time ago, and answered nothing that helps.
+  /// True if the Command Post answered recently, but without a usable status.
   bool is_dumb(Instant now) const { return !is_fresh(now) && dumb_at_ && now - *dumb_at_ <= fresh_; }
-  /// What /api/status would answer; nothing: it is not known for certain, or proves nothing.
+  /// The status expected now. nullopt: uncertain, or the counts prove no report.
   std::optional<icd::RunStatus> expected(Instant now) const;
 
-  /// Why this is one of another run; nothing: it is not.
+  /// Why this status or answer is of another run. nullopt: it may be of the present run.
   std::optional<AnotherRun> another(const icd::RunStatus& status, Time time) const;
   std::optional<AnotherRun> another(const icd::ReportReply& reply, Time time) const;
-  /// A run of that status' team here, from before another team's; nothing: none was seen.
+  /// Last earlier run of `team` at this Command Post, or null.
   const Run* of_team(const std::string& team) const;
-  /// A run of that name here, from before one of another name.
+  /// Last earlier run named `id` here, or null.
   const Run* of_name(const std::string& id) const;
-  /// Of the runs that the present one may be, the latest that has a name.
+  /// Latest named run that the present one may still be, or null.
   const Run* named_before() const;
 
-  /// Another run begins, at the place that the settings name, with this status if one was heard; what that
-  /// does to the reports is written down with it. `may_be`: the run that it may be still; 0: none.
+  /// Begins a run at the address in the settings. Writes it with `steps`. `may_be`: the run that it may still
+  /// be, or 0.
   void begin(const std::string& why, std::int64_t may_be, const std::optional<icd::RunStatus>& status,
              std::span<const Report> steps, Time time);
-  /// Another run, at `post`, will be the present one: a restart finds it. Gives its number.
+  /// Writes a run at `post` that will be the present one, so that a restart finds it. Returns its number.
   std::int64_t announce(const std::string& why, const std::string& post, Time time);
-  /// An earlier one is the present one again.
   void take_up(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run is `number`, which it may be, and so are the runs between them. `number` becomes the
   /// present run, with what is known of all of them.
@@ -69,19 +66,16 @@ class RunAccount {
   /// The present run is not `number`, for certain. It may still be a run between the two.
   void is_not(std::int64_t number);
 
-  /// A status of this run.
   void heard(const icd::RunStatus& status, Time time);
-  /// An answer to a report, of this run.
   void answered(const icd::ReportReply& reply, Time time);
   void dumb(Instant now) { dumb_at_ = now; }
-  /// A report came into doubt: what follows from the last status is not certain.
+  /// A report came into doubt: the expected status is uncertain.
   void lose() { known_.reset(); }
-  /// The same, and it stays so until `until`: what is in doubt no longer, because the operator judged it, may
-  /// still be recorded.
+  /// The same until `until`, because a report that the operator decided may still be recorded.
   void lose(Instant until);
-  /// Compares a status with what was expected, when nothing is in doubt, and starts from it.
+  /// Compares a status with the expected one, and starts from it. Call it only while no report is in doubt.
   void settle(const icd::RunStatus& status, Time time);
-  /// From now on, and until the next run, the count of reports proves nothing.
+  /// The counts prove no report until the next run.
   void distrust(const std::string& why, double stamp);
 
  private:
@@ -98,17 +92,17 @@ class RunAccount {
   Runs runs_;
   std::string post_;
   Leap leap_;
-  double written_ = 0;  // Run::heard as it is on disk
+  double written_ = 0;  // Run::heard on disk
   double status_at_ = 0;
   Instant::duration fresh_ = kFresh;
-  std::optional<Instant> heard_;  // the last word of the run, by a status or an answer
+  std::optional<Instant> heard_;  // the last status or answer of the run
   std::optional<Instant> dumb_at_;
-  std::optional<Instant> clock_at_;  // when one of the run's clocks was heard, if in this program's life
+  std::optional<Instant> clock_at_;  // last clock of the run in this process
   std::optional<Known> known_;
   std::optional<Instant> uncertain_until_;
-  bool odd_ = false;        // the last status was not as expected
-  bool has_moved_ = false;  // a count changed from one status to the next
-  bool unscored_ = false;   // the last answer says that reports are not being scored
+  bool odd_ = false;        // last status not as expected
+  bool has_moved_ = false;  // a count has changed
+  bool unscored_ = false;   // by the last answer, reports are not scored
 };
 
 }  // namespace adit::dispatch

@@ -5,14 +5,13 @@
 namespace adit::dispatch {
 namespace {
 
-/// What `shows` says where `clock` was seen before.
 std::optional<AnotherRun> clock_of_another(const std::optional<Clock>& clock, double shows, double silence) {
   if (!clock || !clock->runs) return std::nullopt;
   const double before = clock->shows;
   if (shows < before - kClockJitter) {
     return AnotherRun{icd::sentence("the run clock went back from ", before, " s to ", shows, " s"), false};
   }
-  // A clock at 0 belongs to a run that has not started: it may stay there for as long as it likes.
+  // At 0 the run has not started, and the clock may stand.
   if (before > 0 && silence > kShortSilence && shows - before < silence / 2) {
     return AnotherRun{
         icd::sentence("after ", static_cast<std::int64_t>(silence), " s of silence the run clock was only ",
@@ -22,12 +21,12 @@ std::optional<AnotherRun> clock_of_another(const std::optional<Clock>& clock, do
   return std::nullopt;
 }
 
-/// Before the start of a run its counts may be set to anything.
+/// Before a run starts, the Command Post may set its counts to any value.
 bool has_started(const Run& run) {
   return run.last->run_clock > 0 || (run.answer_clock && run.answer_clock->shows > 0);
 }
 
-/// Adit has taken the two for different runs. If a run has no status, the operator said so.
+/// Without a status of both, the operator has decided.
 bool are_certainly_different(const Run& before, const Run& now) {
   const bool are_heard = before.last && now.last;
   if (are_heard && are_other_teams(before.last->current_team, now.last->current_team)) return true;
@@ -61,7 +60,7 @@ std::optional<AnotherRun> another_run(const Run& run, const icd::ReportReply& re
     return AnotherRun{icd::sentence("the Command Post calls it run ", icd::in_quotes(reply.run), ", it was ",
                                     icd::in_quotes(run.id))};
   }
-  if (reply.run_clock <= 0) return std::nullopt;  // it has none
+  if (reply.run_clock <= 0) return std::nullopt;  // no clock
   return clock_of_another(run.answer_clock, reply.run_clock, silence);
 }
 

@@ -9,7 +9,7 @@ void Runs::open(std::vector<Run> all, std::int64_t latest) {
   runs_.clear();
   for (Run& run : all) runs_[run.number] = std::move(run);
   if (runs_.empty() || runs_.rbegin()->first < latest) runs_[latest] = {.number = latest};
-  // One after all others, without a turn: it was begun by an Adit that knew of no turns.
+  // The last run is the present one if it has no turn.
   present_ = runs_.rbegin()->first;
   if (runs_.at(present_).turn == 0) return take_up(present_);
   present_ = std::ranges::max_element(runs_, {}, [](const auto& item) { return item.second.place(); })->first;
@@ -58,7 +58,7 @@ bool Runs::is_at(std::int64_t number, const std::string& post) const {
 
 std::vector<std::int64_t> Runs::maybe_present() const {
   std::vector<std::int64_t> numbers;
-  // A run has a lower number than one that may be it.
+  // The last condition ends a damaged chain.
   for (const Run* run = &present(); run != nullptr;) {
     numbers.push_back(run->number);
     run = run->may_be != 0 && run->may_be < run->number ? find(run->may_be) : nullptr;

@@ -10,12 +10,10 @@
 
 namespace adit::dispatch {
 
-/// All runs that Adit has seen, and which is the present one. None is ever forgotten: a run is taken up again
-/// where its Command Post is back.
+/// All runs seen. Adit keeps them, because a run continues when its Command Post returns.
 class Runs {
  public:
-  /// `latest`: the highest number of a run that a report belongs to; the report may have been written down
-  /// before its run was.
+  /// `latest`: highest run number of a report, which may have been written before its run.
   void open(std::vector<Run> all, std::int64_t latest);
 
   const Run& present() const { return runs_.at(present_); }
@@ -23,24 +21,21 @@ class Runs {
   const Run* find(std::int64_t number) const;
   const std::map<std::int64_t, Run>& all() const { return runs_; }
 
-  /// Of those that fit, the one that was the present one last, but not now; nothing: none fits.
+  /// Of the fitting runs the one that was present last, except the present one; or null.
   const Run* latest(const std::function<bool(const Run&)>& fits) const;
-  /// The latest() at `post`: it is taken up again where the settings name that Command Post.
+  /// latest() at `post`.
   const Run* at_post(const std::string& post) const;
-  /// The number of the run that begins next.
   std::int64_t next_number() const { return runs_.rbegin()->first + 1; }
-  /// It is the present one from now on; its number and turn are given to it.
+  /// Gives it a number and a turn.
   void begin(Run run);
-  /// An earlier one is the present one again.
   void take_up(std::int64_t number);
 
-  /// `number` is a run at `post`; one that is not known counts as being there.
+  /// True if run `number` is at `post`. A run that is unknown, or has no address, counts as there.
   bool is_at(std::int64_t number, const std::string& post) const;
-  /// It is at the present run's Command Post.
   bool is_here(std::int64_t number) const { return is_at(number, present().post); }
   /// The present run, the run that it may still be, the run that that one may be, and so on.
   std::vector<std::int64_t> maybe_present() const;
-  /// `number` is one of maybe_present(), but not the present run.
+  /// True if `number` is one of maybe_present(), but not the present run.
   bool may_be_present(std::int64_t number) const;
   /// The present run is not `number`, which may_be_present(). Returns the run in which another run began.
   const Run& is_not(std::int64_t number);

@@ -5,8 +5,7 @@
 
 namespace adit::dispatch {
 
-/// What the Command Post said in an answer, for people: a JSON string without its quotation marks, `detail`
-/// of an object, else the status alone. At most 300 bytes.
+/// The answer's text for people: a JSON string, an object's `detail`, or else the status. Cut at 300 bytes.
 std::string said(int status, std::string_view body);
 
 /// "the Command Post answered 404"

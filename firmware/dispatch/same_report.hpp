@@ -4,13 +4,13 @@
 
 namespace adit::dispatch {
 
-/// Metres, on each axis: less than any robot knows, and more than a float32 rounds off.
+/// Metres per axis: below a robot's accuracy, above the rounding of float32.
 inline constexpr double kSamePlace = 1e-3;
 
-/// The same report again: the same type, whatever its letter case (ICD 5.2), at the same place.
+/// Same type in any letter case (ICD 5.2) and same place.
 bool is_same(const icd::ArtifactReport& one, const icd::ArtifactReport& other);
 
-/// Both of one type and at most `metres` apart.
+/// Same type, at most `metres` apart.
 bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, double metres);
 
 /// In metres.

@@ -14,7 +14,7 @@
 namespace adit::dispatch {
 namespace {
 
-/// What never changes of a report, whichever box it is at.
+/// The fields that identify a report at both boxes.
 auto identity_of(const Report& report) {
   const icd::Point& at = report.report.position;
   return std::tuple(report.received, report.report.type, at.x, at.y, at.z);
@@ -25,7 +25,7 @@ bool was_recorded(const Report& report) {
   return report.state == ReportState::Answered || report.state == ReportState::Settled;
 }
 
-/// It reached the Command Post, or may have, and stands for what is the same.
+/// True if the Command Post has it or may have it, and repeats get its answer.
 bool stands(const Report& report) {
   const bool was_sent =
       was_recorded(report) || report.state == ReportState::InDoubt || report.state == ReportState::Sending;
@@ -47,7 +47,7 @@ Runs runs_of(const Books& books) {
   return runs;
 }
 
-/// What is known of one run at both boxes: nothing that is known here is forgotten.
+/// The later box wins. No field becomes empty.
 Run joined(Run here, const Run& there) {
   if (there.heard > here.heard) {
     here.heard = there.heard;
@@ -94,12 +94,12 @@ class TakingOver {
     return found == known_.end() ? nullptr : found->second;
   }
 
-  /// The spare was never at a run: it may count them as the first box did.
+  /// No report and no heard run: the first box's numbers stay.
   bool is_blank() const { return here_.reports.empty() && std::ranges::none_of(here_.runs, &Run::was_heard); }
 
   // Runs.
 
-  /// One that both know: by its reports, or by its name and begin. 0: it is new here.
+  /// By common reports, or by address and begin. 0: unknown here.
   std::int64_t run_known_as(const Run& run) const {
     std::int64_t found = 0;
     for (const Report& report : there_.reports) {
@@ -109,7 +109,7 @@ class TakingOver {
         found = here->run;
     }
     if (found != 0) return found;
-    // Each box's first run began at no known time.
+    // First runs have no begin.
     const auto is_it = [&run](const Run& here) {
       return here.post == run.post && here.began == run.began && here.why == run.why &&
              (run.began != 0 || (here.last == run.last && here.id == run.id));
@@ -157,8 +157,7 @@ class TakingOver {
     merged_[number] = std::move(next);
   }
 
-  /// The run that was the last one here at the same Command Post; nothing: it is the first box's present one
-  /// itself, or there is none of which anything is known.
+  /// The last own run at the same Command Post that the first box does not know; or null.
   const Run* own_run() const {
     const Run& present = merged_.at(runs_.at(there_runs_.present().number));
     const Run* own = nullptr;
@@ -174,7 +173,7 @@ class TakingOver {
     return std::ranges::find(here_.reports, run, &Report::run) != here_.reports.end();
   }
 
-  /// The first box's present run may be the one that the spare was at before.
+  /// The first box's present run may be the spare's own.
   void link_to_own() {
     present_ = runs_.at(there_runs_.present().number);
     const Run* const own = own_run();
@@ -196,7 +195,6 @@ class TakingOver {
     numbers_[report.number] = here != nullptr ? here->number : next_number_++;
   }
 
-  /// It in the numbers of here.
   Report renumbered(const Report& report) const {
     Report next = report;
     next.number = numbers_.at(report.number);
@@ -218,14 +216,14 @@ class TakingOver {
                                .has_stepped = has_stepped});
   }
 
-  /// What the first box knows of it says more than what is known here.
+  /// True if the first box knows more about the report.
   static bool is_better(const Report& there, const Report& here) {
-    // Of those that stand for what is lost nothing tells one from the other.
+    // Lost reports cannot be told apart.
     if (was_recorded(here) || here.is_lost()) return false;
     return was_recorded(there) || there.changed > here.changed;
   }
 
-  /// What the change of boxes does to it. False: nothing.
+  /// Applies the change of boxes. False: no change.
   bool move(Report& next, const Report& there) {
     if (there.state == ReportState::Sending) {
       ++next.tries;
@@ -250,7 +248,7 @@ class TakingOver {
     return true;
   }
 
-  /// The same one, that this box sent, or may have, in what may be the first box's present run.
+  /// The same report that this box may have sent in the first box's present run, or null.
   const Report* sent_here(const Report& report) const {
     if (own_ == 0 || own_is_another_ || report.run != present_ || report.asked) return nullptr;
     for (const Report& own : here_.reports) {
@@ -259,7 +257,7 @@ class TakingOver {
     return nullptr;
   }
 
-  /// What waits here was posted for the run that is on, which the first box knew better.
+  /// A report queued here belongs to the present run, which the first box knew.
   void meet_first_box(const Report& own) {
     const Run* const its = here_runs_.find(own.run);
     const bool is_of_own = own_ != 0 && own.run == own_;
@@ -294,12 +292,12 @@ class TakingOver {
   const Runs here_runs_, there_runs_;
   const Handover& handover_;
   std::map<Identity, const Report*> known_;
-  std::map<const Report*, const Report*> met_;           // of here, and the same report there
-  std::map<std::int64_t, std::int64_t> runs_, numbers_;  // those of there, and what they are here
-  std::map<std::int64_t, bool> is_new_run_;              // by its number there
-  std::map<std::int64_t, Run> merged_;                   // by their numbers here
-  std::int64_t present_ = 0;                             // the first box's, by its number here
-  std::int64_t own_ = 0;  // the spare's run at the same Command Post, if that is none of the first box's
+  std::map<const Report*, const Report*> met_;           // a report here, and the same report there
+  std::map<std::int64_t, std::int64_t> runs_, numbers_;  // from numbers there to numbers here
+  std::map<std::int64_t, bool> is_new_run_;              // by the number there
+  std::map<std::int64_t, Run> merged_;                   // number here
+  std::int64_t present_ = 0;                             // number here
+  std::int64_t own_ = 0;  // own run at the same Command Post, unknown to the first box
   bool own_is_another_ = false;
   std::int64_t next_number_ = 1, sendings_here_ = 0, next_sending_ = 0;
   TakeOver result_;

@@ -10,35 +10,32 @@
 
 namespace adit::dispatch {
 
-/// All that a box knows of reports and runs.
 struct Books {
   std::vector<Report> reports;
   std::vector<Run> runs;
 };
 
-/// A report as the spare is to know it.
 struct TakenOver {
   Report report;
-  std::int64_t there = 0;   // its number at the first box, where it is new here; 0: it was known here
-  bool has_stepped = true;  // it is not as it was where it comes from: its life has one step more
+  std::int64_t there = 0;   // number at the first box; 0: known here
+  bool has_stepped = true;  // it differs from its source, so its history has one more step
 };
 
-/// What a spare writes down that takes over, all of it as one.
+/// The changes that a spare writes in one transaction when it takes over.
 struct TakeOver {
   std::vector<TakenOver> reports;
   std::vector<Run> runs;
 };
 
-/// How the first box came to rest.
+/// The first box's state at its stop.
 struct Handover {
-  /// What /api/status would have answered; nothing: that is not known for certain.
+  /// nullopt: uncertain.
   std::optional<icd::RunStatus> expected = std::nullopt;
   double stamp = 0;  // now, at the spare; seconds since 1970
-  double ahead = 0;  // so many seconds the spare's clock for stamps is ahead of the first box's
+  double ahead = 0;  // the spare's stamps less the first box's, seconds
 };
 
-/// What the spare (`here`) knows once it takes over from the first box (`there`). README.md has the rules.
-/// Done twice, the second time changes nothing.
+/// Merges the first box (`there`) into the spare (`here`) by README.md. A repetition has no effect.
 TakeOver take_over(const Books& here, const Books& there, const Handover& handover);
 
 }  // namespace adit::dispatch

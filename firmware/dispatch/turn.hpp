@@ -9,23 +9,21 @@ namespace adit::dispatch {
 
 using Instant = std::chrono::steady_clock::time_point;
 
-/// One kind of message that shares a connection with others.
+/// One of several message kinds on a connection.
 struct Candidate {
-  std::optional<Instant> oldest;  // when the oldest news it has was accepted; nothing: it has no news
-  Instant ready;                  // before this its rate limit or its back-off forbids it
+  std::optional<Instant> oldest;  // when its oldest message was accepted; nullopt: no message
+  Instant ready;                  // end of its rate limit or back-off
 };
 
-/// Whose turn it is, or when to ask again.
 struct Turn {
-  std::optional<std::size_t> candidate;  // index of who may send now
-  std::optional<Instant> wake;  // nobody may: the earliest time somebody will; nothing: nobody has news
+  std::optional<std::size_t> candidate;  // its index
+  std::optional<Instant> wake;           // without a candidate: when to ask again; nullopt: no messages
 };
 
-/// The oldest news first, among those that may send now.
+/// Chooses the oldest message among the candidates that are ready.
 Turn oldest_first(std::span<const Candidate> candidates, Instant now);
 
-/// Strictly in order: a later candidate waits while an earlier one has news, even if that may not send yet
-/// (a status is never asked for ahead of a waiting report).
+/// The first candidate with a message. The others wait for it, even if it is not ready.
 Turn in_order(std::span<const Candidate> candidates, Instant now);
 
 }  // namespace adit::dispatch

@@ -9,19 +9,19 @@
 
 namespace adit::dispatch {
 
-/// The clients that wait for the answer to a report, several for one if they posted it again.
+/// Clients per report.
 class WaitingClients {
  public:
   using Instant = std::chrono::steady_clock::time_point;
 
   void add(ClientId client, std::int64_t number, Instant deadline) { clients_[client] = {number, deadline}; }
-  /// Takes out those that wait for a report.
+  /// Removes and returns the clients of a report.
   std::vector<ClientId> take(std::int64_t number);
-  /// Those that wait for `from` wait for `to` from now on, no longer than they would have.
+  /// Moves the clients of `from` to `to`, with their deadlines.
   void hand_over(std::int64_t from, std::int64_t to);
-  /// Takes out all but those that wait for one report.
+  /// Removes and returns all clients but those of one report.
   std::vector<std::pair<ClientId, std::int64_t>> take_but(std::optional<std::int64_t> number);
-  /// Takes out those whose time is up.
+  /// Removes and returns clients whose time is up.
   std::vector<std::pair<ClientId, std::int64_t>> take_late(Instant now);
   std::optional<std::int64_t> awaited_by(ClientId client) const;
   std::optional<Instant> next_deadline() const;
@@ -34,7 +34,7 @@ class WaitingClients {
   template <class Which>
   std::vector<std::pair<ClientId, std::int64_t>> take_those(Which which);
 
-  std::map<ClientId, Client> clients_;  // as they came, so that the first deadline is the first's
+  std::map<ClientId, Client> clients_;  // in the order of arrival
 };
 
 }  // namespace adit::dispatch

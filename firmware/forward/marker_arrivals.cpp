@@ -17,7 +17,7 @@ std::size_t bytes_of_all(const icd::MarkersUpdate& update) {
   return bytes;
 }
 
-constexpr std::string_view kMostThatWait = "queues.marker_bytes";  // the setting
+constexpr std::string_view kMostThatWait = "queues.marker_bytes";
 
 icd::Refusal no_memory() {
   return {icd::Status::ServiceUnavailable, "Adit has no memory for these markers; send them again later"};
@@ -130,7 +130,7 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
   return true;
 }
 
-/// Tens of thousands of markers, where all are deleted.
+/// Up to tens of thousands of markers after a deletion.
 void MarkerArrivals::free_needless() {
   auto needless = std::make_shared<std::vector<lanes::MarkerChanges>>(lane_.needless());
   if (!needless->empty()) workers_.submit(loop::Urgency::CanWait, [needless] { needless->clear(); }, [] {});

@@ -16,26 +16,24 @@
 
 namespace adit::forward {
 
-/// Markers updates on their way into the lane, one after the other and each as a whole: first the journal has
-/// it, then the lane. A worker makes the record of a large one, which goes into the lane over several turns
-/// of the loop.
+/// Markers updates on their way into the queue, one at a time and whole: first the journal, then the queue.
+/// For large updates a worker makes the record, and the queue takes several turns of the loop.
 class MarkerArrivals {
  public:
-  /// It is kept and waits; or 429 where the lane is full, 503 where it cannot be kept. Of markers for which
-  /// there is no room, those that change one which waits are taken all the same; the refusal is about the
-  /// others, and says how many they are.
+  /// 429: the queue is full; 503: it cannot be stored. A full queue still accepts changes of queued markers.
+  /// Then the refusal counts the others.
   using Done = std::function<void(icd::Checked<void>)>;
-  /// What is no larger is taken at once; as icd::bytes_of counts.
+  /// Larger updates need a worker; bytes as in icd::bytes_of.
   static constexpr std::size_t kSmall = 128u << 10;
-  static constexpr std::size_t kPart = 500;  // markers that go into the lane in one turn
+  static constexpr std::size_t kPart = 500;  // markers per turn
 
-  /// `came` is called when the lane has more than before.
+  /// `came` is called after each update.
   MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal, lanes::MarkerLane& lane,
                  Record& record, std::function<void()> came);
 
   void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
 
-  /// Whether the journal has all of one and the lane not yet: nothing may be taken out of it meanwhile.
+  /// True while an update is in the journal and only partly in the queue. Do not send then.
   bool is_in_part() const { return !empty() && arrivals_.front().is_kept; }
   bool empty() const { return arrivals_.empty(); }
 
@@ -46,16 +44,16 @@ class MarkerArrivals {
     Done done;
     icd::Checked<void> outcome = {};
     std::string record = {};
-    bool is_kept = false;                                                // by the journal
-    std::size_t added = 0;                                               // of its markers, to the lane
-    lanes::MarkerChanges::Place last = lanes::WaitingUpdates::kNowhere;  // of those
+    bool is_kept = false;                                                // in the journal
+    std::size_t added = 0;                                               // markers in the queue
+    lanes::MarkerChanges::Place last = lanes::WaitingUpdates::kNowhere;  // place of the last one
   };
-  /// A step with the first of them: true where its outcome is known.
+  /// True: the outcome is known.
   using Step = bool (MarkerArrivals::*)(Arrival&);
 
   void go(Step step) noexcept;
   bool begin(Arrival& arrival);
-  /// Where there is no room for it: whether some of it may be taken all the same.
+  /// The queue has no room for the whole update. True: some of its markers can be accepted.
   bool takes_some(Arrival& arrival);
   void make_record(const Arrival& arrival);
   bool keep(Arrival& arrival);
@@ -70,7 +68,7 @@ class MarkerArrivals {
   lanes::MarkerLane& lane_;
   Record& record_;
   std::function<void()> came_;
-  std::deque<Arrival> arrivals_;  // the first is being taken
+  std::deque<Arrival> arrivals_;  // the first is in progress
   loop::Source next_turn_;
 };
 

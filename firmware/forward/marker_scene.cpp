@@ -6,7 +6,7 @@
 
 namespace adit::forward {
 
-/// Versions grow over a restart too: a page that comes back with an older one gets all.
+/// Versions rise over restarts, so that pages with older ones get all markers.
 void MarkerScene::begin_change(api::Time now) {
   const auto by_clock = now > 0 ? static_cast<std::uint64_t>(now * 1000) : 0;
   version_ = std::max(version_ + 1, by_clock);
@@ -74,7 +74,7 @@ void MarkerScene::keep_bounds() {
     return held.in_order.size() > kMost || held.bytes > kMostBytes;
   };
   while (exceeds(standing_)) {
-    ++version_;  // a change of its own
+    ++version_;  // a separate change
     remove(standing_.in_order.begin()->second);
     ++left_out_;
   }

@@ -12,30 +12,29 @@
 
 namespace adit::forward {
 
-/// The markers as the Command Post was last told of them, by ns and id, as a map draws them, and which of
-/// them changed after a version. At most kMost, and kMostBytes of them; if there are more, those forwarded
-/// longest ago are left out and counted.
+/// The Command Post's markers by ns and id, as drawn on a map, with changes by version. Beyond kMost or
+/// kMostBytes the oldest are left out and counted.
 class MarkerScene {
  public:
   static constexpr std::size_t kMost = 2000;
-  static constexpr std::size_t kMostBytes = 1'000'000;  // as DrawnMarker::size() has it
+  static constexpr std::size_t kMostBytes = 1'000'000;  // as in DrawnMarker::size()
 
   MarkerScene() = default;
-  MarkerScene(MarkerScene&&) = default;  // a copy's order would be of the other's markers
+  MarkerScene(MarkerScene&&) = default;  // a copy would refer to the original
   MarkerScene& operator=(MarkerScene&&) = default;
   ~MarkerScene() = default;
 
-  /// The Command Post took these, at `now`; the first is at number 1, later ones never run backward.
+  /// Each marker gets a higher version.
   void forwarded(std::span<const icd::Marker> markers, api::Time now);
-  /// The time of day was set ahead by so many seconds.
+  /// The time of day was set ahead by `seconds`.
   void move(double seconds) {
     for (auto& [key, entry] : entries_) entry.at += seconds;
   }
-  /// A new run begins with none.
+  /// Clears all markers for a new run.
   void wipe(api::Time now);
 
   std::uint64_t version() const { return version_; }
-  /// What changed after `since`; all markers if that is no longer known.
+  /// All markers if `since` is too old.
   api::MarkerChanges changes(std::uint64_t since) const;
 
  private:
@@ -44,9 +43,9 @@ class MarkerScene {
     api::DrawnMarker marker;
     api::Time at = 0;
     std::uint64_t version = 0;
-    bool gone = false;  // of the marker only the ns is left, which counts
+    bool gone = false;  // only the ns remains
   };
-  /// By the id first, which alone tells most of them apart.
+  /// By the id first, which differs most.
   struct ByKey {
     bool operator()(const Key& a, const Key& b) const {
       return a.second != b.second ? a.second < b.second : a.first < b.first;
@@ -68,9 +67,9 @@ class MarkerScene {
   void let_go(const Entry& entry);
   Held& held_with(const Entry& entry) { return entry.gone ? gone_ : standing_; }
 
-  Entries entries_;  // those that are gone too, as long as there is room
+  Entries entries_;  // with deleted ones
   Held standing_, gone_;
-  std::uint64_t version_ = 0, forgotten_ = 0;  // all that went up to this version is not told any more
+  std::uint64_t version_ = 0, forgotten_ = 0;  // forgotten_: last deletion not kept
   std::uint64_t left_out_ = 0;
 };
 

@@ -13,7 +13,7 @@ namespace adit::forward {
 
 namespace {
 
-/// Markers that are written in the turn of the loop that takes them.
+/// Markers to write in one turn.
 constexpr std::size_t kAtOnce = 500;
 
 lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
@@ -52,7 +52,7 @@ void Telemetry::carry_on(const journal::Carried& carried) {
     record_.accepted({Kind::State, name.text()}, 0,
                      time_of(loop_, robot.posted.stamp.value_or(loop_.stamp_now())));
   }
-  state_.begin_run();  // they may have been posted before this run: each goes once
+  state_.begin_run();  // perhaps from before this run: each goes once
   if (icd::MarkersUpdate markers = carried.markers(); !markers.markers.empty()) {
     record_.accepted({Kind::Markers, ""}, 0, loop_.wall_now());
     markers_.add(std::move(markers), loop_.now());
@@ -72,7 +72,7 @@ void Telemetry::endpoint_changed(std::optional<icd::BearerToken> token) {
   pump();
 }
 
-/// It may serve another Command Post, which knows of no robot yet.
+/// Another Command Post knows no robots yet.
 void Telemetry::endpoint_turned() {
   state_pace_.link_is_back();
   markers_pace_.link_is_back();
@@ -168,11 +168,11 @@ bool Telemetry::send_again(const lanes::Message& message) {
 }
 
 bool Telemetry::wait_again(const icd::StateUpdate& state) {
-  state_.add_unless_known(state, loop_.now());  // of a robot that posted since, its newer pose goes
+  state_.add_unless_known(state, loop_.now());  // a newer pose wins
   return journal_.accepted(state_.unsent()).has_value();
 }
 
-/// In the journal what comes last is the newest: the one that deletes all stands there before what waits.
+/// In the journal the last one wins, so a deletion of all must precede queued markers.
 bool Telemetry::wait_again(icd::MarkersUpdate markers) {
   const auto deletes_all = [](const icd::Marker& marker) {
     return marker.action == icd::MarkerAction::DeleteAll;

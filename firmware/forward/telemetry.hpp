@@ -21,62 +21,57 @@
 
 namespace adit::forward {
 
-/// Robots' states and markers on their way to the mapping endpoint, on one connection of their own, whichever
-/// has the older news first.
+/// States and markers to the mapping endpoint on one connection, oldest first.
 class Telemetry {
  public:
-  /// `as_forwarded` is told what the Command Post took. What is accepted is in the journal first, until then.
+  /// `as_forwarded` gets delivered messages. Until then the journal has them.
   Telemetry(loop::Loop& loop, loop::Workers& workers, const settings::Settings& settings,
             std::optional<icd::BearerToken> token, Record& record, RejectedStore& rejected,
             std::mt19937_64& random, journal::Journal& journal, AsForwarded& as_forwarded);
 
-  /// Takes up what the lives before have left.
+  /// Restores the messages of earlier processes.
   void carry_on(const journal::Carried& carried);
-  /// As if something had just been sent, by whoever sent before.
+  /// As if messages had just been sent.
   void hold_back() {
     state_pace_.sent(loop_.now());
     markers_pace_.sent(loop_.now());
   }
-  /// Of states, of which the operator's test sends one that is refused.
+  /// For the operator's test, which sends one rejected state.
   UriPace& state_pace() { return state_pace_; }
-  /// The settings are others, by which it goes from now on.
   void settings_changed();
-  /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
-  /// sent again to this one.
+  /// Requests to another address or token are given up and retried at the new one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// Before start(): connects to nobody, and sends nothing.
+  /// Before start(): opens no connection and sends no request.
   void stand_by() { stopping_ = true; }
   void start() {
     if (stopping_) return;
     channel_.keep_warm();
     pump();
   }
-  /// An error of 429: the lane is full.
+  /// 429: too many robots.
   icd::Checked<void> has_room_for(const icd::StateUpdate& update);
-  /// A state for which there is room. An error of 503: it cannot be kept.
+  /// A state for which there is room. 503: it cannot be stored.
   icd::Checked<void> take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received) noexcept;
-  /// Stamps are on the gateway's clock. Refused with 429 where the lane is full, and with 503 where it cannot
-  /// be kept.
+  /// Stamps are on the stamp clock. 429: the queue is full; 503: it cannot be stored.
   void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
     arrivals_.take(std::move(update), bytes_received, std::move(done));
   }
 
-  /// Another run is on: it is told of no robot that has not posted since, but for news that waits.
+  /// Another run is on. It gets robots that post in it, and queued news.
   void change_run() { state_.begin_run(); }
 
-  /// What was rejected, on the operator's word: before what came since, and not what that says more than.
-  /// Not a map. False: it stays aside, for it is not kept, or newer markers that it would delete are under
-  /// way, or some come in just now.
+  /// Queues a rejected message before later ones, without parts that they contain. Not for maps. False: it
+  /// stays rejected, because it cannot be stored, it would delete markers in flight, or markers are arriving.
   bool send_again(const lanes::Message& message);
 
-  /// Sends nothing more. False while an answer is still awaited.
+  /// Stops sending. False while an answer is awaited.
   bool stop();
-  /// The cable is: nothing waits any more for what failed without it.
+  /// The cable is in again: retries at once.
   void link_is_back();
   const Channel& channel() const { return channel_; }
   std::size_t waiting(Kind kind) const;
-  /// When the oldest news that waits or is under way was accepted; nothing if there is none. Of a robot's
-  /// state, at the latest: robots go together.
+  /// When the oldest news, queued or in flight, was accepted. Robots go together, so one robot's state may be
+  /// newer.
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
@@ -85,15 +80,15 @@ class Telemetry {
   void send_next();
   void send_state();
   void send_markers();
-  /// Those under way leave; many do so in a turn of their own.
+  /// Sends the markers in flight. Many get a turn of their own.
   void write_markers();
-  /// What is under way, and is not copied.
+  /// A message in flight, which is not copied.
   template <class Waiting>
   using Shared = std::shared_ptr<const Waiting>;
   template <class Waiting>
   void answered(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
                 const uplink::Outcome& outcome);
-  /// Whose news it has: what goes along unchanged counts for nobody.
+  /// Robots with news. Repeated poses do not count.
   std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
   std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
   void put_back(const lanes::WaitingState& state) {
@@ -105,7 +100,6 @@ class Telemetry {
     journal_.markers_answered(false);
     markers_.put_back(markers);
   }
-  /// They need no more care.
   void done(const lanes::WaitingState&) { journal_.state_answered(true); }
   void done(const lanes::WaitingMarkers& markers) {
     if (!markers.is_ahead) journal_.markers_answered(true);
@@ -116,22 +110,22 @@ class Telemetry {
              const uplink::Outcome& outcome);
   void passed(const lanes::WaitingState& state);
   void passed(const lanes::WaitingMarkers& markers);
-  /// What the Command Post has taken, to as_forwarded_.
+  /// Passes accepted messages to as_forwarded_.
   void show(const Shared<lanes::WaitingState>& state);
   void show(const Shared<lanes::WaitingMarkers>& markers);
-  /// Before anything more is sent. False: that was all, at once; otherwise the turn is over.
+  /// Call before sending. True: the markers were too many for one turn, and the turn is over.
   bool show_some();
-  /// It is done once what it replaced is written down as replaced: the other way round, a kill in between
-  /// would leave a life to come that knows of neither, and lets an operator send the older one.
+  /// Finishes `sent` after its rejected predecessors are marked. Otherwise a kill could leave both unmarked,
+  /// and an operator could send the older one.
   template <class Waiting>
   void replace(const Shared<Waiting>& sent);
-  /// Refused, or failed alone: the one at fault is looked for among several, and rejected by itself.
+  /// Rejects a single message. Among several it looks for the one at fault.
   void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
   void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
                std::size_t bytes);
   void set_aside(const lanes::Message& message, int status, const std::string& sentence, std::size_t bytes,
                  std::function<void(bool kept)> told);
-  /// The handler failed: true where it is this message's fault, and else it is put back.
+  /// True: the message is at fault. False: it is queued again.
   bool is_to_blame(const lanes::WaitingState& state);
   bool is_to_blame(const lanes::WaitingMarkers& markers);
   bool wait_again(const icd::StateUpdate& state);
@@ -150,15 +144,15 @@ class Telemetry {
   lanes::StateLane state_;
   lanes::MarkerLane markers_;
   MarkerArrivals arrivals_;
-  Shared<lanes::WaitingMarkers> markers_under_way_;  // null: none
+  Shared<lanes::WaitingMarkers> markers_under_way_;  // null: not in flight
   Shared<lanes::WaitingMarkers> to_show_;            // null: all are shown
-  std::size_t shown_ = 0;                            // of these
+  std::size_t shown_ = 0;                            // of to_show_
   lanes::StampOrder state_stamps_, marker_stamps_;
-  int state_failed_ = 0, markers_failed_ = 0;  // answers in a row of a handler that failed
+  int state_failed_ = 0, markers_failed_ = 0;  // successive handler failures
   lanes::Blame state_blame_, marker_blame_;
   std::map<std::pair<std::string, std::int32_t>, lanes::Trial> marker_trials_;  // by ns and id
   std::optional<std::pair<Kind, loop::Instant>> under_way_;  // and when its oldest news was accepted
-  bool rejected_writes_ = false;  // nothing is sent meanwhile: the journal knows of one answer at a time
+  bool rejected_writes_ = false;  // do not send: the journal has one answer at a time
   bool stopping_ = false;
 };
 

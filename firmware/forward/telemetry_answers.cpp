@@ -1,4 +1,4 @@
-// What becomes of a state, or of markers, by the Command Post's answer.
+// Answers to states and markers.
 #include <algorithm>
 #include <span>
 #include <utility>
@@ -12,14 +12,14 @@ using dispatch::MappingVerdict;
 
 namespace {
 
-/// A state or markers of several fail so often together before the one at fault is looked for.
+/// Joint failures before the search for the one at fault.
 constexpr int kTriesTogether = 3;
-/// Markers that are shown in one turn of the loop.
+/// Markers per turn.
 constexpr std::size_t kShown = 500;
-/// Markers on trial; beyond them all trials begin again.
+/// Beyond this all trials restart.
 constexpr std::size_t kMostTrials = 1000;
 
-/// For a verdict that is not Taken.
+/// For verdicts other than Taken.
 NotTaken why_not(MappingVerdict verdict) {
   if (verdict == MappingVerdict::Throttled) return NotTaken::Throttled;
   return verdict == MappingVerdict::Refused ? NotTaken::Refused : NotTaken::Failed;

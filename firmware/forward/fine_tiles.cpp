@@ -8,7 +8,7 @@
 namespace adit::forward {
 namespace {
 
-/// The tile of the base that one of another level lies in.
+/// The base tile around it.
 picture::TileAt base_of(picture::TileAt at) {
   while (at.level < 0) at = picture::coarser(at);
   return at;
@@ -22,7 +22,6 @@ std::size_t bytes_of(const picture::FineBlock& tiles) {
 
 }  // namespace
 
-/// One block: the worker reads all else, and writes `tiles`.
 struct FineTiles::Job {
   Place place;
   Of of;
@@ -78,7 +77,7 @@ void FineTiles::pump() {
   }
 }
 
-/// Who asks for it from now on waits for the next one: a grid may come meanwhile.
+/// Later requests wait for the next block, because a grid may arrive.
 void FineTiles::draw(const Place& place, Of of, std::vector<Asker> askers) {
   is_drawing_ = true;
   const auto job = std::make_shared<Job>(Job{.place = place,
@@ -87,7 +86,7 @@ void FineTiles::draw(const Place& place, Of of, std::vector<Asker> askers) {
                                              .grids = grids_.in(place.layer, picture::area_of(place.over))});
   workers_.submit(
       loop::Urgency::CanWait,
-      [job, &workers = workers_] {  // they outlive this
+      [job, &workers = workers_] {  // workers outlive the jobs
         job->tiles = picture::draw_fine_from_base(job->askers.front().at, job->grids, job->of.base,
                                                   [&workers] { workers.give_way(); });
         job->grids.clear();

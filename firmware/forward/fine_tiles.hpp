@@ -15,18 +15,17 @@
 
 namespace adit::forward {
 
-/// Finer tiles of the grids that the Command Post took. A worker draws them where somebody looks: one block
-/// after the other, each of which can wait and gives way to what is on its way to the Command Post. What was
-/// drawn is kept until a grid comes there.
+/// Finer tiles of delivered grids. A worker draws one block at a time on request and gives way to messages.
+/// Blocks are kept until a grid arrives there.
 class FineTiles final : public api::FinerMap {
  public:
   static constexpr std::size_t kMostDrawn = std::size_t{4} << 20;  // bytes of tiles
   static constexpr std::size_t kMostAskers = 256;
 
-  /// Both outlive this; `mosaic` is what the grids were drawn upon.
+  /// Both outlive this. `mosaic`: the base of the grids.
   FineTiles(loop::Workers& workers, const picture::Mosaic& mosaic) : workers_(workers), mosaic_(mosaic) {}
 
-  /// False where no finer tile can differ by it.
+  /// False if no finer tile can differ.
   bool take(std::shared_ptr<const picture::ForwardedGrid> grid, std::uint64_t number) {
     return grids_.take(std::move(grid), number);
   }
@@ -39,13 +38,13 @@ class FineTiles final : public api::FinerMap {
   std::size_t bytes() const { return grids_.bytes() + drawn_bytes_; }
 
  private:
-  /// Which tile of the next coarser level a block is in the place of.
+  /// A block, by the coarser tile that it replaces.
   struct Place {
     picture::Layer layer;
     picture::TileAt over;
     friend auto operator<=>(const Place&, const Place&) = default;
   };
-  /// What a block was drawn of.
+  /// The source of a block.
   struct Of {
     std::uint64_t newest = 0;
     picture::Tile base;
@@ -55,7 +54,7 @@ class FineTiles final : public api::FinerMap {
     Of of;
     picture::FineBlock tiles;
     std::size_t bytes = 0;
-    std::uint64_t used = 0;  // grows
+    std::uint64_t used = 0;  // order of use
   };
   struct Asker {
     picture::TileAt at;
@@ -77,7 +76,7 @@ class FineTiles final : public api::FinerMap {
   std::size_t drawn_bytes_ = 0;
   std::uint64_t uses_ = 0;
   std::map<Place, std::vector<Asker>> askers_;
-  std::deque<Place> waiting_;  // each of which has askers
+  std::deque<Place> waiting_;  // each has askers
   bool is_drawing_ = false;
 };
 

@@ -10,7 +10,7 @@ MapArrival::MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool,
                        std::function<std::uint64_t()> spare, Take take)
     : writer_(std::move(writer)), spool_(spool), spare_(std::move(spare)), take_(std::move(take)) {}
 
-/// The writer removes a file that has got no name: the loop waits for none.
+/// The writer removes an unnamed file. The loop does not wait.
 MapArrival::~MapArrival() {
   const auto writer = writer_.lock();
   if (!writer || !stored_->file) return;
@@ -19,7 +19,7 @@ MapArrival::~MapArrival() {
 
 void MapArrival::store(icd::ChunkedBytes bytes, std::function<void(icd::ChunkedBytes left)> done) {
   const auto writer = writer_.lock();
-  if (!writer) return;  // the gateway has ended, and with it whoever would be told
+  if (!writer) return;  // the gateway has ended
   const auto held = std::make_shared<icd::ChunkedBytes>(std::move(bytes));
   writer->submit(
       [&spool = spool_, stored = stored_, held, spare = spare_()] {

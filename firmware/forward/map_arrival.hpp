@@ -9,19 +9,17 @@
 
 namespace adit::forward {
 
-/// A map whose data the writer puts into the spool as it arrives. Until it is known whether the map will be
-/// taken, it leaves as much room there for others as it takes itself, and `spare` more. Data without room is
-/// held in memory until the map is complete and can be judged: it may be a grid that compresses to a tenth.
-/// To be called on the loop, except stored().
+/// A map that is stored in the spool as it arrives. Until it is accepted, it leaves its own size and `spare`
+/// bytes free. Data without room stays in memory until the map is complete, because a grid may compress to a
+/// tenth. On the loop, except stored().
 class MapArrival final : public intake::MapArrival {
  public:
-  /// What takes it when it is whole, with its file; null: nothing was stored.
+  /// Accepts the complete map with its file; null if it has none.
   using Take =
       std::function<void(icd::MapUpdate update, const intake::Sender& sender,
                          std::shared_ptr<spool::MapFile> file, std::function<void(icd::Checked<void>)> done)>;
 
-  /// `spare`: of bytes. `writer` and `spool` live as long as `writer`
-  /// can be locked.
+  /// `writer` and `spool` live while `writer` can be locked.
   MapArrival(std::weak_ptr<loop::Writer> writer, spool::Spool& spool, std::function<std::uint64_t()> spare,
              Take take);
   ~MapArrival() override;
@@ -34,9 +32,9 @@ class MapArrival final : public intake::MapArrival {
             std::function<void(icd::Checked<void>)> done) override;
 
  private:
-  /// The writer's; anybody's while the writer does not work on it.
+  /// The writer's while it works on it.
   struct Stored {
-    std::shared_ptr<spool::MapFile> file;  // null: nothing is stored
+    std::shared_ptr<spool::MapFile> file;  // null: none
   };
 
   std::weak_ptr<loop::Writer> writer_;

@@ -10,7 +10,7 @@
 namespace adit::forward {
 namespace {
 
-/// Whether `newer` shows all that `older` showed. A cloud never does: senders post what is new alone.
+/// False for clouds: senders post new points only.
 bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
   const auto* grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
   const auto* old = std::get_if<icd::OccupancyGrid>(&older.msg);
@@ -19,12 +19,11 @@ bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
 
 }  // namespace
 
-/// One drawing: the worker reads the map and the canvas, and writes the rest.
 struct MapPicture::Job {
   Waiting waiting;
   picture::Canvas canvas;
   icd::Checked<picture::Drawing> drawing = icd::refuse(icd::Status::ServiceUnavailable, "no memory");
-  std::shared_ptr<const picture::ForwardedGrid> forwarded{};  // null: a cloud
+  std::shared_ptr<const picture::ForwardedGrid> forwarded{};  // null for a cloud
 };
 
 MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed)
@@ -47,7 +46,7 @@ void MapPicture::forwarded(icd::MapUpdate map) {
     waiting_bytes_ -= waiting_.front().map.data.bytes.size();
     waiting_.pop_front();
   }
-  wake_.call_at(loop_.now());  // not at once: the next map may begin to be packed first
+  wake_.call_at(loop_.now());  // the next map may be packed first
 }
 
 void MapPicture::hold() {
@@ -91,10 +90,10 @@ void MapPicture::draw(Waiting waiting) {
   job->canvas = mosaic_.canvas(picture::layer_of(job->waiting.map));
   workers_.submit(
       loop::Urgency::CanWait,
-      [job, &workers = workers_] {  // they outlive this
+      [job, &workers = workers_] {  // workers outlive the jobs
         job->drawing = picture::draw(job->waiting.map, job->canvas, [&workers] { workers.give_way(); });
         job->forwarded = picture::forwarded_grid(job->waiting.map);
-        job->waiting.map.data = {};  // here: that takes milliseconds of a file that is mapped
+        job->waiting.map.data = {};  // unmapping takes milliseconds
       },
       [this, job] { drawn(*job); });
 }

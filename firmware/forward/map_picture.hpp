@@ -14,29 +14,25 @@
 
 namespace adit::forward {
 
-/// The picture of the maps as the Command Post took them. They are drawn on a worker, one after the other:
-/// each can wait, and gives way to what is on its way to the Command Post (loop::JobQueue).
+/// The picture of delivered maps. A worker draws one at a time and gives way to messages (loop::JobQueue).
 class MapPicture {
  public:
-  /// Bytes of maps that wait to be drawn; above it the oldest is not drawn, and is counted as missed.
+  /// Bytes of maps to be drawn. Beyond that the oldest are not drawn and count as missed.
   static constexpr std::size_t kMostWaiting = std::size_t{64} << 20;
 
-  /// How long what was drawn before is waited for.
+  /// Longest wait for the earlier picture.
   static constexpr std::chrono::seconds kMostHeld{10};
 
-  /// `changed` is called after each change of the picture.
   MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<void()> changed);
 
-  /// The Command Post took this map. It need not be drawn if a later one covers it.
+  /// Draws an accepted map, unless a later one covers it.
   void forwarded(icd::MapUpdate map);
-  /// What was drawn of this run before is about to come: until it has, nothing is drawn, for kMostHeld at
-  /// most.
+  /// Draws no map until go_on_from(), at most for kMostHeld.
   void hold();
-  /// It has come.
   void go_on_from(picture::Mosaic earlier);
-  /// A new run: forgets all that was drawn, and all that waits to be.
+  /// Forgets the picture and its queue.
   void begin_run();
-  /// The time of day was set ahead by so many seconds.
+  /// The time of day was set ahead by `seconds`.
   void move(double seconds);
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
@@ -46,7 +42,7 @@ class MapPicture {
  private:
   struct Waiting {
     icd::MapUpdate map;
-    double stamp = 0;  // when it was forwarded, by the time of day
+    double stamp = 0;  // forwarded at this time of day
   };
   struct Job;
 
@@ -62,7 +58,7 @@ class MapPicture {
   FineTiles fine_;
   std::deque<Waiting> waiting_;  // oldest first
   std::size_t waiting_bytes_ = 0;
-  std::optional<double> drawing_;  // when the map that is being drawn was forwarded
+  std::optional<double> drawing_;  // time of the map that is being drawn
   loop::Instant held_until_{};
 };
 

@@ -13,12 +13,12 @@ namespace {
 
 using dispatch::MappingVerdict;
 
-/// How a map that is under way goes on is looked at no more often.
+/// How often a map in flight is checked.
 constexpr std::chrono::milliseconds kLookAtSending{10}, kLookAtConnecting{100};
-/// A server may wait no longer for a request that does not go on.
+/// Servers may close an idle request.
 constexpr std::chrono::seconds kLongestHeldBack{2};
 
-/// What the link carries between two maps, in bytes.
+/// Bytes between two maps.
 std::size_t slot_of(const settings::CommandPost& post) {
   const double bytes = static_cast<double>(pace::map_bytes_per_second(post.budget_mbit)) / post.rates.map_hz;
   return static_cast<std::size_t>(std::max(bytes, 1.0));
@@ -28,7 +28,7 @@ lanes::Sender sender_of(const Traffic& traffic) {
   return {icd::RobotName::parse(traffic.robot), traffic.kind == Kind::Grid};
 }
 
-/// For lanes::Blame: a robot's maps of one kind.
+/// For lanes::Blame.
 std::string whose(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
 }
@@ -121,15 +121,14 @@ void Maps::go_on() {
   wake_.call_at(begin);
 }
 
-/// The earliest time for the next map, whose last byte is held back.
+/// Of the next map, whose last byte is held back.
 loop::Instant Maps::starts() const {
   const pace::Span earliest = pace_.earliest();
   return std::max(earliest.first, earliest.last - kLongestHeldBack);
 }
 
-/// As late as can be, so that newer data still replaces what waits, but so early that the next map is packed
-/// when it may start, or when the one that is under way has left. While the way there is down it is not
-/// packed.
+/// Late, so that newer data replaces queued maps, but in time for its start or the end of the map in flight.
+/// No packing while the link is down.
 loop::Instant Maps::begins_to_pack(loop::Instant now) const {
   loop::Instant free = now;
   if (channel_.busy() && !prepared_->arrived) {
@@ -152,7 +151,7 @@ void Maps::send(const Place& prepared) {
   prepared->is_under_way = true;
   prepared->went_ahead = ahead;
   prepared->arrived.reset();
-  wake_.call_at(loop_.now());  // for the one that follows
+  wake_.call_at(loop_.now());  // for the following map
 }
 
 void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
@@ -168,7 +167,7 @@ void Maps::judge(const Place& sent, const uplink::Outcome& outcome) {
   again(sent);
 }
 
-/// The one that follows it is the next; it may be under way already.
+/// The next one may be in flight already.
 void Maps::leaves(const Place& sent) {
   if (sent == following_) return following_.reset();
   if (sent == prepared_) prepared_ = std::exchange(following_, nullptr);
@@ -183,7 +182,7 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   icd::MapUpdate& map = sent->waiting.map;
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
-  // First: the writer does the one before the other.
+  // First: the writer works in order.
   for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) rejected_.taken(*said);
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
@@ -222,7 +221,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
   }
 }
 
-/// The newer one first: old cells never follow newer ones.
+/// Newer first: old cells never follow newer ones.
 void Maps::again(const Place& sent) {
   ahead_.failed(sent->went_ahead || channel_.busy());
   if (sent == prepared_) put_back(following_);
@@ -230,7 +229,7 @@ void Maps::again(const Place& sent) {
   if (!prepared_) prepared_ = std::exchange(following_, nullptr);
 }
 
-/// One that is under way stays so.
+/// Except one in flight.
 void Maps::put_back(Place& prepared) {
   if (!prepared || prepared->is_under_way) return;
   const auto replaced = lane_.put_back(prepared->waiting);
@@ -238,8 +237,7 @@ void Maps::put_back(Place& prepared) {
   forget(replaced);
 }
 
-/// A map that will not be taken is rejected; of one that was merged or stitched each part is tried by
-/// itself.
+/// Parts of a merged or stitched map are tried separately.
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   ahead_.failed(false);
   lanes::WaitingMap& waiting = sent->waiting;
@@ -283,7 +281,6 @@ std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
   return oldest;
 }
 
-/// The one under way, and the one that follows.
 std::vector<const Maps::Prepared*> Maps::prepared_of(const Traffic& traffic) const {
   std::vector<const Prepared*> all;
   for (const Prepared* each : {prepared_.get(), following_.get()}) {

@@ -28,24 +28,23 @@
 
 namespace adit::forward {
 
-/// Maps on their way to the mapping endpoint: are kept by the writer before they are taken, wait in their
-/// lane, are packed on a worker, the next one while one is sent, and go out one at a time by a way of their
-/// own, paced within the link's budget. Where the Command Post answers well, the next one goes ahead: it
-/// begins once the one before has arrived, and its answer is still awaited (lanes::Ahead). So the link is not
-/// idle meanwhile, and a second of the Command Post's is never shared by two.
+/// Maps to the mapping endpoint. The writer stores a map before Adit accepts it. A worker packs one map while
+/// another is sent. They go one at a time on a connection of their own, within the link's budget. If the
+/// Command Post answers well, a map starts when the one before has arrived, without its answer
+/// (lanes::Ahead). Two maps never share a second of the Command Post's limit.
 ///
-/// Each of the two under way ends by itself: what fails goes back into the lane, where the other one stays
-/// under way, and no new one is sent before that has ended as well. A 429 says nothing of what was sent
-/// before it came (pace::RateLimit). Stamps go up in the order in which maps are sent.
+/// Each of two maps in flight ends separately. A failed one returns to the queue, and no other starts before
+/// both have ended. A 429 does not count for maps sent before it (pace::RateLimit). Stamps rise in the order
+/// of sending.
 class Maps {
  public:
-  /// So many may wait, however small: each has a file that is mapped (vm.max_map_count is 65,530). Up to
-  /// kMostWithJoined are taken where they join what waits of their robot and kind.
+  /// Each map has a mapped file (vm.max_map_count is 65,530). Beyond kMostMaps only maps that merge with
+  /// queued ones are accepted.
   static constexpr std::size_t kMostMaps = 20'000, kMostWithJoined = 40'000;
-  /// In the spool those below are sent again by hand.
+  /// Maps with lower numbers in the spool are sent again by the operator.
   static constexpr std::uint64_t kFirstNumber = 1u << 20;
 
-  /// `taken` is given each map that the Command Post took. `spool` outlives the writer.
+  /// `taken` gets delivered maps. `spool` outlives the writer.
   Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool::Spool& spool,
        const settings::Settings& settings, std::optional<icd::BearerToken> token, Record& record,
        RejectedStore& rejected, std::mt19937_64& random, journal::Journal& journal,
@@ -53,72 +52,66 @@ class Maps {
 
   /// `ran_before`: this box may have sent maps before.
   void carry_on(const journal::Carried& carried, bool ran_before);
-  /// As if something had just been sent, by whoever sent before.
+  /// As if a map had just been sent.
   void hold_back() { pace_.sent(loop_.now()); }
-  /// The settings are others, by which it goes from now on.
   void settings_changed();
-  /// The endpoint is, or its token, or the way there: what is under way to another place is given up, and
-  /// sent again to this one.
+  /// Requests to another address or token are given up and retried at the new one.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// A status shows that the present run is on.
+  /// A status confirms the present run.
   void heard();
-  /// Another run is on: what the Command Post took of the one before it may have no more.
+  /// Another run is on, so the Command Post may have another map.
   void change_run(dispatch::NextMap next);
-  /// The maps that the spool kept. A map's data is looked at when it is packed.
+  /// Queues the stored maps. Their data is checked when they are packed.
   void restore(spool::Spool::Kept kept);
 
-  /// For a map that begins to arrive. What is stored of it goes to the writer until this ends.
   std::shared_ptr<intake::MapArrival> arrives(MapArrival::Take take);
-  /// `update`'s stamp is on the gateway's clock; `file`: where its data was stored, or null. `done` is told
-  /// once it is kept and waits, or why not: 429 where the queue is full and it replaces nothing, 503 where
-  /// there is no room for it.
+  /// Stamps are on the stamp clock. `file`: of its data, or null. `done`: stored and queued, 429 for a full
+  /// queue, 503 if it cannot be stored.
   void take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
             std::function<void(icd::Checked<void>)> done);
 
-  /// What was rejected, on the operator's word: before all that waits of its sender's. `done` is told
-  /// whether it is kept; if not, nothing has become of it. It says whether it is still to go: nothing newer
-  /// that says all of it was taken since.
+  /// Queues a rejected map before its sender's other maps. `done` is called with true if it is stored, or if
+  /// a queued or sent map contains it. It returns false if such a map was accepted since; then it is not
+  /// sent.
   void send_again(icd::MapUpdate update, std::function<bool(bool kept)> done);
 
-  /// Sends nothing more. False while an answer is awaited.
+  /// Stops sending. False while an answer is awaited.
   bool stop();
-  /// Sends nothing from the beginning.
   void stand_by() { stopping_ = true; }
-  /// Whether nothing that was to be taken has still to be kept.
+  /// True if no map is being stored.
   bool all_kept() const { return being_kept_ == 0; }
-  /// Why the last map could not be kept, or "".
+  /// Why the last map could not be stored, or "".
   const std::string& trouble() const { return trouble_; }
-  /// The cable is: nothing waits any more for what failed without it.
+  /// The cable is in again: retries at once.
   void link_is_back();
 
   bool packing() const { return preparing_; }
   const Channel& channel() const { return channel_; }
   std::size_t queued_bytes() const { return lane_.bytes(); }
   std::size_t waiting(const Traffic& traffic) const;
-  /// When the oldest news that waits or is under way was accepted; nothing if there is none.
+  /// When the oldest map, queued or in flight, was accepted.
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
 
  private:
-  /// A map whose data is not what it should be.
+  /// A map with damaged data.
   struct Damaged {
     std::uint64_t number = 0;
     std::string why;
   };
-  /// A map out of the lane, in the form that goes upstream.
   struct Prepared {
     lanes::WaitingMap waiting;
-    Packed packed;                   // without a body: not packed, or nothing is left to be sent
-    std::vector<Damaged> damaged;    // of it, which cannot be sent
-    loop::Duration packing_took{0};  // the worker
+    Packed packed;                   // empty body: not packed, or nothing to send
+    std::vector<Damaged> damaged;    // cannot be sent
+    loop::Duration packing_took{0};  // by the worker
     bool is_under_way = false, went_ahead = false;
     loop::Instant last_byte_not_before{};
-    std::optional<loop::Instant> arrived{};  // about when, once that was seen
+    std::optional<loop::Instant> arrived{};  // estimate
   };
   using Place = std::shared_ptr<Prepared>;
 
   std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate update);
   void restore(std::uint64_t number, icd::MapUpdate update);
-  void tell_clouds(const icd::MapUpdate& update);  // what the settings say of its sender's
+  void tell_clouds(const icd::MapUpdate& update);  // kind of clouds by the settings
   void take_settings();
   void leads_elsewhere();
   void pack_again();
@@ -127,15 +120,15 @@ class Maps {
   bool is_told(const icd::MapUpdate& update);
   void compare();
   void compared(const lanes::Successive& two, bool has_all);
-  /// A map on its way to its file: the writer's, until it is handed back.
+  /// A map that is being stored. The writer owns it until then.
   struct Keeping {
     std::uint64_t number = 0;
     std::size_t bytes_received = 0, size = 0;
-    std::uint64_t spare = 0;          // that is to be left
-    std::optional<icd::Stamp> again;  // lanes::WaitingMap's
-    bool says_nothing = false;        // it has no valid point, and is not kept
+    std::uint64_t spare = 0;          // bytes to leave free
+    std::optional<icd::Stamp> again;  // lanes::WaitingMap::again
+    bool says_nothing = false;        // no valid point: not stored
     icd::MapUpdate update;
-    std::shared_ptr<spool::MapFile> file;  // where its data was stored as it came
+    std::shared_ptr<spool::MapFile> file;  // with the data that arrived
     icd::Checked<icd::MapUpdate> kept;
   };
   bool has_room_for(const icd::MapUpdate& update, bool replaces) const;
@@ -181,7 +174,7 @@ class Maps {
   loop::Loop& loop_;
   loop::Workers& workers_;
   loop::Writer& writer_;
-  const std::shared_ptr<loop::Writer> while_alive_;  // the same, for arrivals, which may outlive this
+  const std::shared_ptr<loop::Writer> while_alive_;  // the same, for arrivals that outlive this
   spool::Spool& spool_;
   const settings::Settings& settings_;
   Record& record_;
@@ -201,14 +194,14 @@ class Maps {
   std::size_t bytes_being_kept_ = 0;
   std::string trouble_;
   bool preparing_ = false;
-  bool comparing_ = false;  // a worker is comparing two clouds
-  Place prepared_;          // while it is packed, waits for its time, or is under way
-  Place following_;         // the next one, while that is under way; may be so itself, too
+  bool comparing_ = false;  // a worker compares two clouds
+  Place prepared_;          // packed, ready or in flight
+  Place following_;         // next; may be in flight
   lanes::Ahead ahead_;
-  std::set<std::uint64_t> unread_;  // numbers of maps whose data is still to be checked
+  std::set<std::uint64_t> unread_;  // data not checked yet
   lanes::Blame blame_;
   bool stopping_ = false;
-  bool are_grids_told_ = true;  // the journal has where grids are posted
+  bool are_grids_told_ = true;  // the journal has the areas of grids
 };
 
 }  // namespace adit::forward

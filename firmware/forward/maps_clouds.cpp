@@ -1,5 +1,4 @@
-// Which clouds that wait are said by newer ones, where no setting tells: a worker looks. And what becomes of
-// one of which nothing is left to be sent.
+// Clouds without a setting: a worker finds those that newer ones contain.
 #include <utility>
 
 #include "forward/maps.hpp"
@@ -7,8 +6,7 @@
 
 namespace adit::forward {
 
-/// One pair after the other, so that this takes little of the workers and of memory. Meanwhile both wait, and
-/// may go: nothing is lost by it.
+/// One pair at a time, to save memory. Both stay queued and may be sent.
 void Maps::compare() {
   if (comparing_ || stopping_) return;
   auto next = lane_.to_compare();
@@ -39,7 +37,7 @@ void Maps::compared(const lanes::Successive& two, bool has_all) {
   compare();
 }
 
-/// All that it says was taken already. If that is forgotten by now, it is packed again.
+/// All points were accepted before. If that was forgotten, the cloud is packed again.
 void Maps::is_there(Place& place) {
   const LeftOut& left_out = place->packed.left_out;
   if (!points_.hold(left_out)) return;
@@ -50,7 +48,7 @@ void Maps::is_there(Place& place) {
   forget(there->waiting.updates);
 }
 
-/// From here on the map has the points that were sent.
+/// Keeps only the points that were sent.
 void Maps::points_taken(Prepared& sent) {
   icd::MapUpdate& map = sent.waiting.map;
   LeftOut& left_out = sent.packed.left_out;
@@ -62,7 +60,7 @@ void Maps::points_taken(Prepared& sent) {
   points_.taken(map, std::move(left_out));
 }
 
-/// It was taken, but while it was under way what had been left out of it was forgotten.
+/// Delivered, but the points left out were forgotten since.
 void Maps::goes_whole(const Place& sent, int status) {
   record_.forwarded(traffic_of(sent->waiting.map), 0, sent->packed.body.size(), status, loop_.wall_now());
   again(sent);

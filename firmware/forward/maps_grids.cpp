@@ -1,13 +1,11 @@
-// What is known of the grids that were sent before: in a life before this one, in another run, and to another
-// Command Post.
+// Grids that were sent before: by an earlier process, in another run, or to another Command Post.
 #include <vector>
 
 #include "forward/maps.hpp"
 
 namespace adit::forward {
 
-/// After a power cut the journal is gone: then it is not known where grids were sent, if any were. That is
-/// told by the record that begins them, for a life may end after each.
+/// After a power cut the areas of earlier grids are unknown. The record that begins grids shows it.
 void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
   lanes::Canvases::Posted posted = carried.grids().value_or(lanes::Canvases::Posted{});
   if (!carried.grids()) {
@@ -20,9 +18,8 @@ void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
   lane_.canvases().carry_on(std::move(posted));
 }
 
-/// Records where grids are posted, so that a later process knows which cells cannot have been sent. False:
-/// the journal cannot record it. The grid must not be accepted then: if the journal could not be read at the
-/// start, the next process reads it as the process before left it.
+/// Journals posted areas, so that later processes know the cells that were never sent. False: not journaled,
+/// do not accept the grid. If the start could not read the journal, it is left for the next process.
 bool Maps::is_told(const icd::MapUpdate& update) {
   if (!update.is_grid()) return true;
   if (!are_grids_told_) {
@@ -37,7 +34,7 @@ bool Maps::is_told(const icd::MapUpdate& update) {
   return true;
 }
 
-/// False while maps still go to another Command Post than the settings name: its statuses are not read.
+/// False if maps go to another Command Post, whose statuses Adit does not read.
 bool Maps::is_heard_from() const {
   return channel_.address() == address_text(settings_.command_post.mapping);
 }
@@ -65,7 +62,7 @@ void Maps::leads_elsewhere() {
   pack_again();
 }
 
-/// What is not under way yet may hold what lay there before.
+/// Maps not in flight may cover old cells.
 void Maps::pack_again() {
   put_back(following_);
   put_back(prepared_);

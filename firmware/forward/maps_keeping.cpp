@@ -1,5 +1,4 @@
-// How maps come to wait, each in a file of its own: kept by the writer before they are taken, forgotten when
-// they are not needed.
+// The writer stores each map before Adit accepts it, and deletes it later.
 #include <algorithm>
 
 #include "forward/maps.hpp"
@@ -10,12 +9,11 @@
 namespace adit::forward {
 namespace {
 
-/// Until the writer has kept it.
 icd::Refusal not_kept() {
   return {icd::Status::ServiceUnavailable, "Adit cannot store this map; send it again later"};
 }
 
-/// Frees it on this thread, with the file that `data` may be in.
+/// In this thread, with the file.
 icd::Checked<icd::MapUpdate> without_data(icd::MapUpdate map, std::shared_ptr<spool::MapFile> file) {
   map.data = {};
   file.reset();
@@ -28,8 +26,7 @@ icd::Stamp stamp_of(const icd::MapUpdate& map) {
 
 }  // namespace
 
-/// What replaces something that waits is taken by a full queue too; what joins it, by a queue that is full by
-/// number alone.
+/// A full queue accepts replacing maps. If it is full by number alone, it accepts merging maps.
 bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
   const std::size_t waiting = lane_.bytes() + bytes_being_kept_;
   const std::size_t count = lane_.count() + static_cast<std::size_t>(being_kept_);
@@ -37,7 +34,7 @@ bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
   return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
 }
 
-/// What arrives leaves room for a grid that replaces one.
+/// With room for a grid that replaces one.
 std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
   return std::make_shared<MapArrival>(
       while_alive_, spool_, [this] { return lane_.largest_replaceable(); }, std::move(take));
@@ -60,7 +57,7 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
   if (!is_told(update)) return refuse(not_kept());
   const auto keeping = std::make_shared<Keeping>();
   keeping->bytes_received = bytes_received;
-  // Only a grid or a whole cloud is replaced as it comes, and the newer one must find room beside it.
+  // Newer grids and whole clouds need room beside the old one.
   const bool is_whole =
       update.is_grid() || lane_.clouds_of(lanes::Sender::of(update)) == lanes::Clouds::Whole;
   const std::uint64_t of_its_own = is_whole ? update.data.bytes.size() : 0;
@@ -70,13 +67,12 @@ void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_p
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
 }
 
-/// What is sent again is older than what waits, and has the lower numbers also for a life to come, which
-/// reads the maps in their order.
+/// Lower numbers for older maps: later processes follow them.
 std::uint64_t Maps::next_number(bool again) {
   return again && again_numbers_ < kFirstNumber - 1 ? ++again_numbers_ : ++numbers_;
 }
 
-/// By the writer, under the next number; then `told` has it, kept or not.
+/// By the writer, under the next number, then `told`.
 void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<void(Keeping&)>& told) {
   keeping->number = next_number(keeping->again.has_value());
   keeping->size = keeping->update.data.bytes.size();
@@ -98,7 +94,7 @@ void Maps::keep(const std::shared_ptr<Keeping>& keeping, const std::function<voi
   bytes_being_kept_ += keeping->size;
 }
 
-/// It waits from now on, and its sender may know.
+/// Queued now; the sender may know.
 void Maps::kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done) {
   if (keeping.says_nothing) {
     record_.no_valid_point(traffic_of(*keeping.kept), keeping.bytes_received, loop_.wall_now());
@@ -139,7 +135,7 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   pump();
 }
 
-/// The numbers of the maps that this one replaced.
+/// Returns the numbers of replaced maps.
 std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
   tell_clouds(update);
   const Traffic traffic = traffic_of(update);
@@ -162,7 +158,7 @@ void Maps::forget(std::span<const std::uint64_t> numbers) {
       [] {});
 }
 
-/// What waits or is under way may say all of it by now: it must not follow that.
+/// It must not follow a newer map that contains it.
 void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
   const icd::Stamp again = stamp_of(update);
   const lanes::WaitingMap back = waiting_again(again_numbers_ + 1, update, again);
@@ -185,7 +181,7 @@ void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& do
   }
   lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
   if (!is_wanted || is_said_by_what_goes(back)) return forget({&keeping.number, 1});
-  unread_.insert(keeping.number);  // it may have been rejected in a life before
+  unread_.insert(keeping.number);  // perhaps rejected by an earlier process
   forget(lane_.put_back(std::move(back)));
   pump();
 }

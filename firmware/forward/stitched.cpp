@@ -16,12 +16,12 @@
 namespace adit::forward {
 namespace {
 
-/// Whether its cells are in its parts alone.
+/// Its cells are only in parts.
 bool is_to_be_stitched(const lanes::WaitingMap& waiting) {
   return waiting.map.is_grid() && !waiting.parts.empty() && waiting.map.data.bytes.empty();
 }
 
-/// The cells of `data` over what lies under them; nothing where they are damaged.
+/// nullopt: damaged data.
 std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::MapData& data) {
   lanes::Drawing drawing(under);
   std::size_t left = static_cast<std::size_t>(under.cells.width * under.cells.height);
@@ -40,7 +40,7 @@ double unit_of(lanes::Precision precision) {
   return precision == lanes::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
 }
 
-/// pack() says so by the origin.
+/// The origin shows it.
 bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
   const auto* const cloud = std::get_if<icd::PointCloud2>(&after.msg);
   return cloud != nullptr && cloud->origin != std::get<icd::PointCloud2>(before.msg).origin;
@@ -61,7 +61,7 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
     whole->data.compression = icd::Compression::Gzip;
   }
   const double unit = unit_of(waiting.precision);
-  if (unit == 0) packed.effort = pack::effort_for(*whole, packing.hurry);  // rounding is for Full alone
+  if (unit == 0) packed.effort = pack::effort_for(*whole, packing.hurry);  // only Full rounds
   packed.expected = pack::seconds_for(packed.effort, *whole);
   icd::MapUpdate map = *std::move(whole);
   if (map.is_grid()) {

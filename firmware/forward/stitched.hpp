@@ -13,32 +13,30 @@
 
 namespace adit::forward {
 
-/// A map in the form that goes upstream.
+/// A map in its form for the Command Post.
 struct Packed {
-  icd::ChunkedBytes body;  // empty: all of it is left out, or its data or that of a part is damaged
-  icd::MapData stitched;   // its cells, where they were in its parts alone
+  icd::ChunkedBytes body;  // empty: all points left out, or the data of a part is damaged
+  icd::MapData stitched;   // cells from its parts
   LeftOut left_out;
-  lanes::Precision precision = lanes::Precision::Exact;  // of a cloud: what it was rounded to
-  std::size_t points_size = 0;  // of a cloud: bytes of the points that are sent, before they were packed
+  lanes::Precision precision = lanes::Precision::Exact;  // a cloud's rounding
+  std::size_t points_size = 0;                           // sent points, unpacked
   pack::Effort effort = pack::Effort::Full;
-  double expected = 0;  // seconds for packing it (pack::seconds_for)
-  /// What it was packed over, with it; absent where that is not wanted, or its cells are damaged.
+  double expected = 0;  // packing seconds (pack::seconds_for)
+  /// `ground` with the map drawn over it; nullopt: not wanted, or damaged.
   std::optional<lanes::Ground> drawn;
 };
 
-/// What is done to a map on its way to that form.
 struct Packing {
   bool arranges_clouds = true;
-  /// Decides the effort for a grid, and for a cloud that is not rounded.
+  /// Decides the effort for grids and for clouds that are not rounded.
   pack::Hurry hurry{};
 };
 
-/// A cloud goes by waiting.precision, or exact where that cannot be held. CPU-bound in the size of the map:
-/// meant for a worker.
+/// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. CPU-bound: call on a worker.
 Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
-/// The map with its cells, which are put together of its parts where they are there alone, over what lies
-/// under them where they leave gaps. The error says what is wrong with the data of one.
+/// The map with its cells, stitched from its parts over the ground if necessary. An error says what is wrong
+/// with the data.
 icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting);
 
 }  // namespace adit::forward

@@ -7,7 +7,7 @@
 
 namespace adit::forward {
 
-/// Points that are not finite go first: what they leave behind may be nothing.
+/// Points that are not finite go first: no others may remain.
 LeftOut LeavingOut::operator()(icd::MapUpdate& map) {
   if (!known_) return {};
   if (known_->epoch != epoch_) known_->voxels.forget();
@@ -38,7 +38,7 @@ void TakenPoints::forget() {
   taken_.clear();
 }
 
-/// Where no robot has an edge any more, what is known is forgotten by the worker, and then there is nothing.
+/// Without edges the worker clears its voxels.
 LeavingOut TakenPoints::leaving_out(const icd::MapUpdate& map) {
   if (edges_.empty()) return {std::exchange(known_, nullptr), epoch_, 0, {}};
   if (!known_) known_ = std::make_shared<LeavingOut::Known>();

@@ -14,26 +14,26 @@
 
 namespace adit::forward {
 
-/// What was left out of a cloud that was packed, and what is to be told once it was taken.
+/// What packing left out of a cloud, to be recorded on delivery.
 struct LeftOut {
   std::size_t points = 0;
-  bool is_all = false;      // nothing is left to be sent
-  std::uint64_t epoch = 0;  // of TakenPoints, by which the points are there
-  double edge = 0;          // of a voxel, in metres; 0: nothing is left out of this robot's clouds
-  std::vector<pack::VoxelBlock> voxels;  // of the points that are not left out
-  std::optional<icd::MapUpdate> sent;    // the cloud of these, as it goes upstream, where any are left out
+  bool is_all = false;                   // no point remains
+  std::uint64_t epoch = 0;               // of TakenPoints when the points were left out
+  double edge = 0;                       // of a voxel, metres; 0: the robot's clouds are sent whole
+  std::vector<pack::VoxelBlock> voxels;  // of sent points
+  std::optional<icd::MapUpdate> sent;    // if points were left out
 };
 
-/// What a worker leaves out of clouds, one after the other.
+/// A worker's task: leaves points out of clouds, one cloud at a time.
 class LeavingOut {
  public:
-  /// What the Command Post took of a cloud.
+  /// A delivered cloud.
   struct Taken {
     icd::RobotName robot;
     double edge = 0;
     std::vector<pack::VoxelBlock> voxels;
   };
-  /// The voxels themselves, which no other thread uses meanwhile.
+  /// For one thread at a time.
   struct Known {
     std::uint64_t epoch = 0;
     pack::TakenVoxels voxels;
@@ -43,39 +43,39 @@ class LeavingOut {
   LeavingOut(std::shared_ptr<Known> known, std::uint64_t epoch, double edge, std::vector<Taken> taken)
       : known_(std::move(known)), epoch_(epoch), edge_(edge), taken_(std::move(taken)) {}
 
-  /// Takes out of `map`, which is not packed yet, the points that need not be sent. For the worker.
+  /// Removes points from `map`, which is not packed yet. Call on the worker.
   LeftOut operator()(icd::MapUpdate& map);
 
  private:
-  std::shared_ptr<Known> known_;  // null: nothing is ever left out
+  std::shared_ptr<Known> known_;  // null: leaves nothing out
   std::uint64_t epoch_ = 0;
   double edge_ = 0;
   std::vector<Taken> taken_;  // since the last cloud
 };
 
-/// Points that the Command Post has taken, so that others of their voxels need not be sent
-/// (robots[].voxel_metres). On the loop; the voxels are the worker's that packs, for as long as it does.
+/// Points at the Command Post, whose voxels need no others (robots[].voxel_metres). On the loop; the packing
+/// worker owns the voxels.
 ///
-/// What was left out by an epoch before must go: the Command Post of today may never have had it.
+/// A cloud reduced in an earlier epoch must be sent whole, because the Command Post may lack the points.
 class TakenPoints {
  public:
-  /// Of each robot that has any, in metres. Where they are others, all is forgotten.
+  /// Metres, per robot. A change forgets all points.
   void edges_are(std::map<icd::RobotName, double> edges);
-  /// The Command Post has nothing, or may have nothing, of what it took: a new epoch begins.
+  /// The Command Post may have lost its points: begins a new epoch.
   void forget();
 
-  /// For a map that is to be packed, while none other is.
+  /// For the next map to pack; only one at a time.
   LeavingOut leaving_out(const icd::MapUpdate& map);
-  /// Whether what was left out is still there.
+  /// True if the points left out are still at the Command Post.
   bool hold(const LeftOut& left_out) const { return left_out.points == 0 || left_out.epoch == epoch_; }
-  /// The Command Post took what was left of this cloud.
+  /// The Command Post accepted the rest of this cloud.
   void taken(const icd::MapUpdate& map, LeftOut left_out);
 
  private:
   std::map<icd::RobotName, double> edges_;
   std::uint64_t epoch_ = 1;
-  std::shared_ptr<LeavingOut::Known> known_;  // null: no robot has had an edge
-  std::vector<LeavingOut::Taken> taken_;      // that the worker does not know of
+  std::shared_ptr<LeavingOut::Known> known_;  // null before the first edge
+  std::vector<LeavingOut::Taken> taken_;      // new to the worker
 };
 
 }  // namespace adit::forward

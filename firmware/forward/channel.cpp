@@ -15,19 +15,18 @@ namespace adit::forward {
 
 namespace {
 
-/// Bytes of a body. A status is four numbers and a name; a report's answer a dozen of them; a mapping answer
-/// null, or whatever a wrong address says.
+/// Bytes. A status is small, a mapping answer is null or a wrong address's text.
 std::size_t longest_answer_to(icd::Uri uri) {
   return uri == icd::Uri::Status ? 16u << 10 : uplink::Request::kLongestAnswer;
 }
 
-/// No Command Post says so much; what it says is not looked at.
+/// Other without a complete answer.
 dispatch::Body body_of(const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   return answered != nullptr ? dispatch::body_of(answered->body) : dispatch::Body::Other;
 }
 
-/// A 2xx to GET /api/status has the status of a run as its body (ICD 5.1).
+/// A 2xx to GET /api/status must be a run's status (ICD 5.1).
 bool lacks_status(icd::Uri uri, const uplink::Outcome& outcome) {
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
   return uri == icd::Uri::Status && answered != nullptr && icd::is_success(answered->status) &&
@@ -134,9 +133,9 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
     last_status_ = answered->status;
     learn_path(request, *answered);
     if (last_status_ == 429) ++throttled_;
-    // Nobody else's clock is to be taken for the Command Post's.
+    // Only the Command Post's own clock counts.
     if (answered->date && !foreign_now_ && dispatch::is_the_command_post(answered->status, body)) {
-      constexpr double kHalf = 0.5;  // it says whole seconds
+      constexpr double kHalf = 0.5;  // Date has whole seconds
       date_ = static_cast<double>(answered->date->time_since_epoch().count()) + kHalf;
       dated_ = heard_;
     }
@@ -149,7 +148,7 @@ void Channel::note(const UnderWay& request, const uplink::Outcome& outcome) {
 }
 
 void Channel::learn_path(const UnderWay& request, const uplink::Answered& answered) {
-  // The measured mapping server answers 501 to a path that it does not know.
+  // The measured mapping server answers 501 to an unknown path.
   const bool is_unknown = answered.status == 404 || answered.status == 501;
   bool wants_slash = wants_slash_ && !(request.has_slash && is_unknown);
   if (answered.wants_slash && request.uri != icd::Uri::ArtifactReports) wants_slash = true;

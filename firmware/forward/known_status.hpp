@@ -9,21 +9,20 @@
 
 namespace adit::forward {
 
-/// What the Command Post last said of the run, for clients that ask while Adit cannot ask it, with its age
-/// (RFC 9111 5.1).
+/// The last known status of the run, with its age (RFC 9111 5.1), for clients while Adit cannot ask.
 class KnownStatus {
  public:
-  static constexpr std::chrono::seconds kFresh{1};                 // so long it need not be asked again
-  static constexpr std::chrono::seconds kOldest{15};               // so long it is better than no answer
-  static constexpr std::chrono::seconds kOldestBehindReports{60};  // and so long while reports go first
+  static constexpr std::chrono::seconds kFresh{1};                 // no request needed
+  static constexpr std::chrono::seconds kOldest{15};               // better than no answer
+  static constexpr std::chrono::seconds kOldestBehindReports{60};  // while reports go first
 
   /// `body`: JSON.
   void heard(std::string body, loop::Instant asked);
-  /// It has changed, or may have: still an answer, but not a fresh one.
+  /// The status may have changed: still an answer, but not a fresh one.
   void no_longer_fresh() { fresh_ = false; }
 
   bool is_fresh(loop::Instant now) const;
-  /// Nothing if it is older than `oldest`.
+  /// nullopt if older.
   std::optional<intake::Answer> answer(loop::Instant now, std::chrono::seconds oldest = kOldest) const;
 
  private:

@@ -13,7 +13,7 @@ using dispatch::ReportState;
 
 intake::Answer answer_of(const dispatch::ClientAnswer& answer, const dispatch::Report& report) {
   if (!answer.sentence.empty()) return intake::error_answer(answer.status, answer.sentence);
-  // What tells of a report has been read as JSON.
+  // A report's answer has been parsed as JSON.
   if (report.state == ReportState::Answered || report.state == ReportState::Settled) {
     return {.status = static_cast<icd::Status>(report.status), .body = report.answer, .headers = {}};
   }
@@ -44,7 +44,7 @@ void ReportOutput::tried(const ledger::Result<void>& result) {
   if (!result) try_again_.call_at(loop_.now() + kTryEvery);
 }
 
-/// The flush first: the log waits where its reader is slow.
+/// The log may wait for its reader.
 void ReportOutput::follow_up() {
   const auto flushed = ledger_.flush();
   if (!flushed)

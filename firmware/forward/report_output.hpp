@@ -12,22 +12,20 @@
 
 namespace adit::forward {
 
-/// Does what the rules of reports ask for: writes steps to the ledger and the log, answers the clients.
+/// Writes report steps to the ledger and the log, and answers clients.
 class ReportOutput final : public dispatch::Output {
  public:
-  /// What can follow once a report has left, or its client has its answer, follows so soon: Flush::Soon, and
-  /// the log.
+  /// Delay of work that can follow a sent report or an answered client: Flush::Soon and the log.
   static constexpr std::chrono::milliseconds kSoon{2};
-  /// While the ledger takes no report it is tried so often.
+  /// Retry interval while the ledger cannot be written.
   static constexpr std::chrono::seconds kTryEvery{5};
 
   ReportOutput(loop::Loop& loop, ledger::Ledger& ledger);
 
-  /// A client that waits from now on.
   dispatch::ClientId add(std::shared_ptr<intake::Responder> responder);
-  /// A client that is told nothing: the operator, who watches the report itself.
+  /// A client without answers, for the operator, who watches the report.
   dispatch::ClientId add_nobody() { return ++last_client_; }
-  /// What the last one was told, whoever it was.
+  /// The last answer to any client.
   const dispatch::ClientAnswer& last_told() const { return last_told_; }
 
   bool write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
@@ -35,11 +33,11 @@ class ReportOutput final : public dispatch::Output {
   void tell(dispatch::ClientId client, const dispatch::ClientAnswer& answer,
             const dispatch::Report& report) override;
 
-  /// Why the ledger takes no report, by the last try, or "".
+  /// Why the last write to the ledger failed, or "".
   const std::string& trouble() const { return trouble_; }
 
  private:
-  /// A step as the log tells of it.
+  /// A step for the log.
   struct Step {
     std::int64_t number;
     std::string type, sender;

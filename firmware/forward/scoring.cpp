@@ -22,7 +22,7 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
           .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks}};
 }
 
-/// For who asked, where the Command Post has answered, and not with a status.
+/// If the Command Post answered without a status.
 intake::Answer no_status_in(const uplink::Answered& answered) {
   if (answered.status >= 400) return client_answer(answered);
   return intake::error_answer(icd::Status::BadGateway,
@@ -54,8 +54,7 @@ void Scoring::start() {
   poll();
 }
 
-/// On standby nothing is sent, so no other Command Post begins a
-/// run.
+/// On standby without the address, so that no run begins.
 void Scoring::open_reports() {
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
   next->leapt(clocks_.leap());
@@ -124,14 +123,13 @@ void Scoring::status(std::shared_ptr<intake::Responder> responder) {
   watch_deadlines();
 }
 
-/// Neither does a report go first, nor is the pace in the way for longer than an asker waits.
+/// No report goes first, and the pace allows it in time.
 bool Scoring::may_ask_soon(loop::Instant now) const {
   const dispatch::Wish wish = reports_->wish(time());
   return !channel_.busy() && !wish.report && pace_.status_ready(wish.in_doubt) <= now + kAskerWaits;
 }
 
-/// What can be told until the Command Post is asked again. It may be older if only reports are in the way of
-/// that: the Command Post has just spoken of the run, or a report is under way to it.
+/// It may be older if only reports delay a request, because the Command Post answers them.
 std::optional<intake::Answer> Scoring::known_status() const {
   const dispatch::Wish wish = reports_->wish(time());
   const bool reports_go_first =
@@ -150,7 +148,7 @@ std::string Scoring::why_no_status() const {
   return asked_status_ ? "the Command Post has not answered yet" : "reports go first";
 }
 
-/// For a client that asks while the last known status is too old. `why`: the reason.
+/// Without a recent status.
 intake::Answer Scoring::no_status(const std::string& why) {
   intake::Answer answer =
       intake::error_answer(icd::Status::ServiceUnavailable, "the status of the run is not known: " + why);
@@ -179,8 +177,7 @@ void Scoring::pump() noexcept {
   if (turn.candidate == 1) ask_status(/*decides=*/wish.status.has_value());
 }
 
-/// Whether nothing is under way. What is gives way to a report if that may go and needs no answer to it. If
-/// it has had too little time for that, this is asked again.
+/// False: a request is in flight. A status that no report needs gives way to a report after a while.
 bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
   if (!channel_.busy()) return true;
   if (!asked_status_ || asked_status_->decides || !wish.report) return false;
@@ -198,7 +195,7 @@ bool Scoring::is_free(const dispatch::Wish& wish, loop::Instant now) {
 
 void Scoring::send_next() {
   if (const dispatch::Report* const chosen = reports_->choose(time())) return send(*chosen);
-  // The disk refused it (or it was the same as another one): it must not leave.
+  // The write failed, or it was a repeat: do not send it.
   if (!trouble().empty()) pace_.report_failed(loop_.now());
   wake_.call_at(std::max(pace_.report_ready(), loop_.now()));
 }
@@ -211,7 +208,7 @@ void Scoring::send(const dispatch::Report& report) {
                 [this](const uplink::Outcome& outcome) { report_answered(outcome); });
 }
 
-/// Before what it says is judged, which goes by how long nothing was heard.
+/// First, because judging uses the length of the silence.
 void Scoring::hear_time() {
   const auto there = channel_.time_there();
   if (there && clocks_.hear(*there)) reports_->leapt(clocks_.leap());
@@ -219,7 +216,7 @@ void Scoring::hear_time() {
 
 void Scoring::report_answered(const uplink::Outcome& outcome) {
   judge_report(outcome);
-  known_status_.no_longer_fresh();  // score and remaining reports have changed, or may have
+  known_status_.no_longer_fresh();  // score and remaining reports may have changed
   poll_due_ = true;
   watch_deadlines();
   record_.changed();
@@ -259,7 +256,7 @@ std::optional<loop::Instant> Scoring::first_asker() const {
   return std::ranges::min_element(askers_, {}, &Asker::until)->until;
 }
 
-/// Those who have waited until `now`: what is known, or else what is under way is waited for a little longer.
+/// By the known status; else they wait longer for the request in flight.
 void Scoring::tell_askers(loop::Instant now) {
   const auto known = known_status();
   const loop::Instant longest = asked_status_ ? asked_status_->at + kSlow : now;
@@ -310,10 +307,10 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
                                                                   : std::unexpected<std::string>("");
   if (answered != nullptr && answered->wants_slash) {
     pace_.status_taken(answered->sent, now);
-    poll_due_ = true;  // those who ask wait on
+    poll_due_ = true;  // askers keep waiting
     return;
   }
-  if (run) known_status_.heard(answered->body, asked);  // and so told with its age
+  if (run) known_status_.heard(answered->body, asked);  // sent with its age
   if (answered == nullptr) {
     pace_.status_failed(outcome, now);
     answer_askers(known_or(no_status(sentence_of(outcome))));
@@ -334,7 +331,7 @@ void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) 
   }
 }
 
-/// Better than a failure that may be over in a second.
+/// Failures may end within a second.
 intake::Answer Scoring::known_or(intake::Answer failure) const {
   return known_status().value_or(std::move(failure));
 }
@@ -375,7 +372,7 @@ std::int64_t Scoring::begin_run() noexcept {
 void Scoring::link_is_back() {
   pace_.link_is_back();
   channel_.hurry();
-  poll();  // what the Command Post says now is news
+  poll();  // its state is news
 }
 
 bool Scoring::stop() {

@@ -25,41 +25,39 @@
 
 namespace adit::forward {
 
-/// The scoring endpoint: sends reports, one at a time, by the rules of dispatch::Reports (promise 1), and
-/// asks for the run's status, but never ahead of a report that may go. A status that no report needs gives
-/// way to a report if it is not answered in time.
+/// The scoring endpoint. Sends reports one at a time by dispatch::Reports (promise 1), and requests the
+/// status behind them. A status that no report needs gives way after a while.
 ///
-/// The ICD's rate (5) is of API requests, and a report's answer tells what a status would: the status follows
-/// a report no sooner than another report would, unless it decides what became of one. A report follows a
-/// status at once, until a 429 shows that the Command Post has one limit over both.
+/// The ICD limits API requests (5), and a report's answer shows as much as a status. A status keeps a
+/// report's distance after a report, unless it decides a doubt. A report follows a status at once, until a
+/// 429 shows one limit over both.
 class Scoring {
  public:
-  /// So long a client that asks for the status waits for the Command Post; then it gets the last known one.
+  /// A client waits so long for a new status. Then it gets the last known one.
   static constexpr std::chrono::milliseconds kAskerWaits{100};
-  /// If none is known, it waits for the answer under way, until so long after that was asked for.
+  /// Without a known status the client waits for the request in flight, until so long after its start.
   static constexpr std::chrono::seconds kSlow{2};
-  static constexpr std::chrono::seconds kAskEvery{10};  // the status is asked for at least this often
-  /// So long a report waits for the answer to a status that no report needs; then that is given up.
+  static constexpr std::chrono::seconds kAskEvery{10};  // longest interval between status requests
+  /// A report waits so long for a status that no report needs. Then Adit gives up the status.
   static constexpr std::chrono::milliseconds kGivesWayAfter{200};
 
-  /// `clocks`: tell how far the clock that the ledger was written by has leapt since. All outlive this.
+  /// `clocks`: has the step of the stamp clock since the ledger was written. All outlive this.
   Scoring(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings,
           std::optional<icd::BearerToken> token, Record& record, std::mt19937_64& random,
           journal::Journal& journal, Clocks& clocks);
 
   void carry_on(const journal::Carried& carried) { pace_.carry_on(carried, loop_.now()); }
-  /// As if something had just been sent: the flow before may have.
+  /// As if a request had just been sent.
   void hold_back() { pace_.hold_back(loop_.now()); }
-  /// Of the run's status, which the operator's test asks for too.
+  /// For the operator's test.
   UriPace& status_pace() { return pace_.of_status(); }
-  /// The settings have changed.
   void settings_changed();
-  /// The endpoint's address, token or way has changed. The answer under way still comes from the old one. If
-  /// the place is another, what is known of the run is forgotten; clients whose reports wait go on waiting.
+  /// Answers in flight still come from the old endpoint. At another endpoint the run's data is cleared.
+  /// Clients keep waiting.
   void endpoint_changed(std::optional<icd::BearerToken> token);
-  /// Before start(): connects to nobody, and sends nothing.
+  /// Call before start(): opens no connection and sends no request.
   void stand_by() { stopping_ = true; }
-  /// Begins with what the ledger holds, and connects.
+  /// Starts from the ledger, and connects.
   void start();
 
   void take(const icd::ArtifactReport& report, const intake::Sender& sender,
@@ -68,18 +66,18 @@ class Scoring {
   /// Once a second.
   void tick();
 
-  /// An operator's action on a report; gives the number of the report that it moved, or a sentence why not.
+  /// Returns the number of the changed report, or why the action failed.
   dispatch::Reports::Outcome judge(std::int64_t number, api::Action action) noexcept;
-  /// The operator's own report, as if a client had posted it; gives its number once it is on disk.
+  /// Accepts the operator's report. Returns its number when it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
   std::int64_t begin_run() noexcept;
 
-  /// Sends and takes nothing more; clients whose reports wait are told so. False while an answer is still
-  /// awaited. Called again until it is true or there is no more time.
+  /// Stops accepting and sending, and answers the clients of queued reports. False while an answer is
+  /// awaited: call again.
   bool stop();
-  /// The cable is in again: nothing rests any longer because sending failed without it.
+  /// The cable is in again: retries at once.
   void link_is_back();
-  /// Also tells the client whose report is still under way.
+  /// Also answers the client of the report in flight.
   void dismiss();
 
   const Channel& channel() const { return channel_; }
@@ -90,19 +88,18 @@ class Scoring {
   const std::string& trouble() const { return output_.trouble(); }
 
  private:
-  /// The status that was asked for, and is still to be answered.
+  /// The status request in flight.
   struct AskedStatus {
     loop::Instant at;
-    bool decides;  // whether a report can go, or what became of one
+    bool decides;  // a report waits for it
   };
-  /// Somebody who asked for the status.
   struct Asker {
     std::shared_ptr<intake::Responder> responder;
-    loop::Instant until;  // then it is told what is known
+    loop::Instant until;  // end of the wait
   };
 
   void hear_time();
-  /// Reports are written down by the clock for stamps, which nobody sets: rules compare their times.
+  /// Reports get stamps, because the stamp clock is never set and rules compare the times.
   dispatch::Time time() const { return {loop_.now(), loop_.stamp_now()}; }
   void open_reports();
   void endpoint_turned();
@@ -140,7 +137,7 @@ class Scoring {
   loop::Source wake_, poll_, deadline_;
 
   std::deque<Asker> askers_;
-  bool poll_due_ = false;  // Adit itself wants to know the status
+  bool poll_due_ = false;  // Adit needs a status
 
   std::optional<icd::RunStatus> run_;
   alarms::RunClock run_clock_;

@@ -13,8 +13,7 @@
 
 namespace adit::forward {
 
-/// When the next request to one URI may go: its rate limit, which the journal keeps for the next life, and
-/// its back-off after failures.
+/// When a URI's next request may go: its rate limit, which the journal keeps, and its back-off.
 class UriPace {
  public:
   UriPace(icd::Uri uri, double hertz, std::mt19937_64& random, journal::Journal& journal)
@@ -24,18 +23,17 @@ class UriPace {
         backoff_(std::chrono::milliseconds(500), std::chrono::milliseconds(4000)),
         random_(random) {}
 
-  /// For a request that leaves at once, whole.
+  /// For a request that leaves whole.
   pace::Instant ready() const { return std::max(rate_.next(), retry_at_); }
-  /// For one whose last byte may be held back.
+  /// For a request whose last byte may be held back.
   pace::Span earliest() const {
     const pace::Span earliest = rate_.earliest();
     return {.first = std::max(earliest.first, retry_at_), .last = std::max(earliest.last, retry_at_)};
   }
 
-  /// pace::RateLimit::may_go_ahead(), where nothing failed just now.
+  /// pace::RateLimit::may_go_ahead(), and no back-off.
   bool may_go_ahead(pace::Instant now) const { return rate_.may_go_ahead() && now >= retry_at_; }
 
-  /// Between two requests.
   pace::Duration spacing() const { return rate_.spacing(); }
 
   void carry_on(const journal::Carried& carried, pace::Instant now) {
@@ -43,13 +41,12 @@ class UriPace {
     if (learned != carried.paces().end()) rate_.carry_on(learned->second, now);
   }
 
-  /// The next request goes no sooner than that of `other` may.
+  /// Not before the next request of `other`.
   void wait_for(const UriPace& other) { retry_at_ = std::max(retry_at_, other.ready()); }
 
-  /// The rate that is allowed from now on.
   void allow(double hertz, pace::Instant now) { rate_.allow(hertz, now); }
 
-  /// pace::RateLimit::claim(), for a question of the operator's.
+  /// pace::RateLimit::claim(), for the operator's test.
   std::optional<pace::Instant> claim(pace::Instant now, pace::Instant latest) {
     const auto at = rate_.claim(now, latest);
     keep();
@@ -60,12 +57,12 @@ class UriPace {
     keep();
   }
 
-  /// To be called before it leaves, so that the journal has it even if the program ends in between.
+  /// Call before it leaves, so that the journal has it if the process ends.
   void sent(pace::Instant now, bool ahead = false) {
     rate_.sent(now, ahead);
     keep();
   }
-  /// The one sent last has arrived, and is still to be answered.
+  /// The last request has arrived, and is not answered yet.
   void left(const uplink::Sent& sent) { rate_.left({.first = sent.first, .last = sent.last}); }
   /// `sent`: when its bytes left.
   void taken(const uplink::Sent& sent, pace::Instant now) {
@@ -77,13 +74,12 @@ class UriPace {
     rate_.throttled(now, retry_after);
     keep();
   }
-  /// The spacing to the next request begins now.
+  /// The spacing begins now.
   void count_from(pace::Instant now) {
     rate_.lost(now);
     keep();
   }
-  /// It failed, but may have been heard. The journal need not be told: what sent() wrote makes the next
-  /// process wait as long.
+  /// It failed, but may have arrived. The record of sent() makes the next process wait as long.
   void lost(pace::Instant now) {
     rate_.lost(now);
     failed(now);
@@ -93,12 +89,12 @@ class UriPace {
     rate_.not_sent();
     failed(now);
   }
-  /// The next one could not be sent.
+  /// The next request could not be sent.
   void failed(pace::Instant now) {
     retry_at_ = now + backoff_.failed(std::uniform_real_distribution<double>(0, 1)(random_));
   }
 
-  /// The cable is in again: the next try need not wait.
+  /// The cable is in again: no wait.
   void link_is_back() {
     backoff_.succeeded();
     retry_at_ = {};

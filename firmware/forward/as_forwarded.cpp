@@ -14,7 +14,6 @@ void AsForwarded::forwarded(std::span<const icd::NamedPose> poses, api::Time now
   }
 }
 
-/// The one that was silent for longest: a robot that goes on posting keeps its place.
 void AsForwarded::forget_the_oldest() {
   const auto oldest = std::ranges::min_element(robots_, {}, [](const auto& item) { return item.second.at; });
   tracks_.forget(oldest->first);

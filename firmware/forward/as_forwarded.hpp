@@ -13,26 +13,26 @@
 
 namespace adit::forward {
 
-/// Robots and markers as the Command Post knows them: what it took, and nothing that waits.
+/// Robots and markers as the Command Post has them, without queued messages.
 class AsForwarded {
  public:
-  static constexpr std::size_t kMostRobots = 100;  // those heard of last
+  static constexpr std::size_t kMostRobots = 100;  // the latest ones
 
-  /// Poses that robots posted. Do not pass poses that a state only repeats: a robot may have moved since.
+  /// Poses that robots posted, not ones that a state repeats.
   void forwarded(std::span<const icd::NamedPose> poses, api::Time now);
   void forwarded(std::span<const icd::Marker> markers, api::Time now) { markers_.forwarded(markers, now); }
-  /// A new run begins without tracks and markers; where each robot is, it still is.
+  /// Robots keep their positions.
   void begin_run(api::Time now);
 
-  /// The time of day was set ahead by so many seconds: each robot was there as long ago as it was.
+  /// The time of day was set ahead by `seconds`: adjusts all times.
   void move(double seconds);
 
-  /// Where they were in this run before a restart.
+  /// Restores the tracks of this run from before a restart.
   void go_on_from(std::vector<api::Track> earlier);
 
-  /// Each robot's last pose, by name.
+  /// Last poses, by name.
   std::vector<api::RobotRow> robots() const;
-  /// When each was heard last in this run before a restart.
+  /// Last pose of each robot in this run before a restart.
   const std::map<std::string, api::Time>& before() const { return before_; }
   const MarkerScene& markers() const { return markers_; }
   const Tracks& tracks() const { return tracks_; }

@@ -10,7 +10,7 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());
   carried.machine_is(boot);
   const auto& clock = carried.clock();
-  boot_ = clock || kept_ ? boot : "unknown";  // a clock that began without the bound is not carried on
+  boot_ = clock || kept_ ? boot : "unknown";  // without the bound the clock is not carried on
   ran_before_ = clock || !kept_ || kept.floor > 0;
   if (clock) {
     senders_ = carried.senders();
@@ -22,7 +22,7 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   }
   if (kept.least > loop_.stamp_now()) {
     loop_.set_stamp(kept.least);
-    senders_ = {};  // they were brought to the clock as it was
+    senders_ = {};  // offsets to the earlier clock
   }
   journal_.begin(now());
 }
@@ -37,8 +37,8 @@ journal::Clock Clocks::now() const {
           .off_since = off_.since};
 }
 
-/// Of the machine, which may have no clock that went on. How long it was off is told by the time of day,
-/// which may have been set long after stamps were begun: they begin with it now.
+/// A boot may set both clocks back. The file corrects them. Time off comes from the time of day, which may
+/// have been set long after the stamps began.
 void Clocks::begin_start(const StampFloor::Kept& kept) {
   if (kept.floor > loop_.stamp_now()) loop_.set_stamp(kept.floor);
   if (kept.wall > loop_.wall_now()) loop_.set_wall(kept.wall);

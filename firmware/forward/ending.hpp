@@ -7,26 +7,26 @@
 
 namespace adit::forward {
 
-/// How a flow ends: it waits for requests under way and for messages being kept, for each only a bounded
-/// time; then the clients that still wait are dismissed, and their answers leave.
+/// A flow's end: waits for requests in flight and for storing, each for a limited time, then dismisses
+/// clients and lets their answers leave.
 class Ending {
  public:
-  static constexpr std::chrono::milliseconds kAnswers{800};      // so long it waits for answers under way
-  static constexpr std::chrono::milliseconds kKeepWithin{3000};  // and so long for what is being kept
+  static constexpr std::chrono::milliseconds kAnswers{800};      // for requests in flight
+  static constexpr std::chrono::milliseconds kKeepWithin{3000};  // for messages that are being stored
   static constexpr std::chrono::milliseconds kStep{10};
-  static constexpr std::chrono::milliseconds kFlush{50};  // in which the answers just given leave
+  static constexpr std::chrono::milliseconds kFlush{50};  // for the last answers
 
   void begin(loop::Instant now) { began_ = now; }
   bool has_begun() const { return began_.has_value(); }
-  /// Whether the clients are dismissed by now. `quiet`: nothing is under way; `kept`: nothing is being kept.
-  /// Requires has_begun().
+  /// True if clients are to be dismissed now. `quiet`: no request in flight; `kept`: all is stored. Requires
+  /// has_begun().
   bool dismisses(loop::Instant now, bool quiet, bool kept);
-  /// They were dismissed, or something fails again and again. Requires has_begun().
+  /// True after the dismissal, or if storing fails for too long. Requires has_begun().
   bool is_over(loop::Instant now) const;
 
  private:
   std::optional<loop::Instant> began_;
-  bool dismissed_ = false;  // all clients have been told; only their answers have to leave
+  bool dismissed_ = false;  // only answers are still to leave
 };
 
 }  // namespace adit::forward

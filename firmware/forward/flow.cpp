@@ -1,4 +1,4 @@
-// What the flow takes in, and what it shows. Its begin and end are in flow_life.cpp.
+// Accepting and showing. flow_life.cpp has start and end.
 #include "forward/flow.hpp"
 
 #include <cmath>
@@ -52,7 +52,7 @@ void Flow::status(const intake::Sender&, std::shared_ptr<intake::Responder> resp
   scoring_.status(std::move(responder));
 }
 
-/// A sentence quotes the message, and a client may have put a token into a wrong field of it.
+/// A sentence may quote a client's token from a wrong field.
 std::string Flow::without_tokens(std::string sentence) const {
   for (const icd::BearerToken& token : tokens_.all) token.strike_from(sentence);
   return sentence;
@@ -64,7 +64,7 @@ void Flow::left_out(icd::Uri uri, const intake::Sender& sender, const std::strin
       {{"uri", std::string(icd::path_of(uri))}, {"sender", sender.address}, {"why", without_tokens(why)}});
 }
 
-/// Wrong tokens are logged together (gateway::Crowding).
+/// gateway::Crowding logs wrong tokens together.
 void Flow::refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) {
   icd::Refusal refusal = told;
   refusal.sentence = without_tokens(told.sentence);
@@ -98,27 +98,25 @@ void Flow::changed() {
   told_.changed();
 }
 
-/// `run` is the present run now, in place of `before`. The first run of this process may have begun before
-/// the process did, and so may a run at another Command Post.
+/// Runs may have begun before this process or before a change of the Command Post.
 dispatch::NextMap Flow::next_map(std::int64_t before, const dispatch::Run& run) const {
   const dispatch::Run* const known = reports().runs().find(before);
   const bool is_here = known != nullptr && reports().runs().is_here(before) && is_by_settings(run);
   return is_here ? dispatch::next_map(*known, run) : dispatch::NextMap::MayBeTheSame;
 }
 
-/// It is at the Command Post that the settings name.
+/// At the Command Post in the settings.
 bool Flow::is_by_settings(const dispatch::Run& run) const {
   return run.post == address_text(settings_.command_post.scoring);
 }
 
-/// A status was heard: its clock goes on.
+/// True if the clock of the status has changed.
 bool Flow::status_came() {
   const auto& clock = reports().run().status_clock;
   const double shows = clock ? clock->shows : 0;
   return std::exchange(clock_shown_, shows) != shows;
 }
 
-/// A new run begins with a blank picture.
 void Flow::picture_the_run() {
   if (!has_started_) return;
   const dispatch::Run& run = reports().run();
@@ -137,8 +135,7 @@ void Flow::picture_the_run() {
   keep_the_run();
 }
 
-/// By the clock of the view, to the millisecond: two clocks are read for it, and what waits is to be the same
-/// each time.
+/// Rounded, because each view reads two clocks.
 std::optional<api::Time> Flow::behind_since(const Traffic& traffic) const {
   const auto since = is_map(traffic.kind) ? maps_.waits_since(traffic) : telemetry_.waits_since(traffic);
   if (!since) return std::nullopt;

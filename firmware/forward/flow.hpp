@@ -33,65 +33,61 @@
 
 namespace adit::forward {
 
-/// What the flow hears of the time of day, in seconds since 1970, now.
+/// The present time of day by other clocks, in seconds since 1970.
 struct KnownTimes {
   std::optional<double> command_post, robots;
 };
 
-/// The flow's tokens, and all tokens that there are: no sentence may quote one.
+/// `all`: every token, which sentences must not quote.
 struct Tokens {
   std::optional<icd::BearerToken> scoring, mapping;
   std::vector<icd::BearerToken> all;
 };
 
-/// The way of the team's messages from intake to uplink: this is the Desk that takes them, and Scoring, Maps
-/// and Telemetry send them.
+/// The team's messages from intake (this is its Desk) to uplink, sent by Scoring, Maps and Telemetry.
 class Flow final : public intake::Desk {
  public:
-  /// Upkeep of the ledger begins so long after the start, because the first messages have priority, and
-  /// again so long after a failure.
+  /// Delay of the ledger's upkeep after a start or a failure. The first messages have priority.
   static constexpr std::chrono::seconds kUpkeepEvery{60};
-  /// Directories of messages below the runtime folder.
+  /// Directories of messages, below the runtime directory.
   static constexpr const char *kJournal = "/journal", *kWaiting = "/waiting", *kRejected = "/rejected";
   struct Folders {
     std::string runtime, state;
   };
-  /// Who is told what. Each is called on the loop.
+  /// Callbacks, called on the loop.
   struct Told {
-    std::function<void()> changed;                        // what the page shows
-    std::function<void(const std::string& name)> posted;  // a robot posts
+    std::function<void()> changed;                        // the page's contents changed
+    std::function<void(const std::string& name)> posted;  // a robot posted
   };
 
   /// `settings`: with the course in use. All references outlive this.
   Flow(loop::Loop& loop, ledger::Ledger& ledger, const settings::Settings& settings, Tokens tokens,
        const Folders& folders, Told told);
 
-  /// Goes on where the life before ended, and connects.
+  /// Continues the work of the previous process, and connects.
   void start();
-  /// Which queued maps were put aside, and why; or "".
+  /// Maps put aside because processes ended while they worked on them, and why; or "".
   const std::string& put_aside() const { return spool_.ended_processes(); }
-  /// Why a file without which nothing may be sent cannot be read, as a sentence; or "".
+  /// Why a file that sending needs is unreadable, or "".
   std::string unread() const { return clocks_.unread(); }
-  /// After start(): whether the files of all messages of the process before were read.
+  /// After start(): all files of messages were read.
   bool has_read_messages() const {
     return journal_.unread().empty() && spool_.unread().empty() && rejected_.unread().empty();
   }
-  /// Whether the files of all messages below the runtime folder can be read now.
+  /// All files of messages can be read now.
   static bool can_be_read(const std::string& runtime_folder);
-  /// Before start(): shows what there is, and takes nothing and sends nothing. `why`: a sentence for who
-  /// asks.
+  /// Before start(): accepts and sends no message. Clients get the sentence `why`.
   void stand_by(const std::string& why);
-  /// The settings have changed; `restarts` names the endpoints that have another address, way or token.
-  /// Clients that wait go on waiting.
+  /// `restarts`: endpoints with a new address, way or token. Clients keep waiting.
   void settings_changed(const settings::Restarts& restarts, Tokens tokens);
-  /// Once a second. `disk`: the writer of small files of the state folder.
+  /// Once a second. `disk`: for small files of the state directory.
   void tick(loop::Writer& disk);
   KnownTimes known_times() const;
-  /// Somebody set the time of day ahead by so many seconds.
+  /// The time of day was set ahead by `seconds`.
   void wall_was_set(double seconds);
-  /// The Command Post's cable is in again: what would wait because sending failed without it need not wait.
+  /// The cable is in again: retries at once.
   void link_is_back();
-  /// Takes nothing new, waits for the answers under way, keeps what waits, and then calls `over`.
+  /// Stops sending, waits for answers in flight, stores messages, and calls `over`.
   void end(std::function<void()> over);
   bool is_ending() const { return ending_.has_begun(); }
 
@@ -104,14 +100,14 @@ class Flow final : public intake::Desk {
   void left_out(icd::Uri uri, const intake::Sender& sender, const std::string& why) override;
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& told) override;
 
-  /// When the operator's test may ask an endpoint that the run uses for its status, or send it a state: a
-  /// turn of the run's own, so that neither is throttled. Nothing: not before `latest`.
+  /// When the operator's test may send one status request or state, as a turn of the run's pace. nullopt: not
+  /// before `latest`.
   std::optional<loop::Instant> claim(icd::Uri uri, loop::Instant latest) {
     return pace_of(uri).claim(loop_.now(), latest);
   }
   void claimed(icd::Uri uri) { pace_of(uri).claimed(loop_.now()); }
 
-  /// The operator's actions: api::Operator.
+  /// Operator's actions: api::Operator.
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
     if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.judge(number, action);
@@ -127,28 +123,27 @@ class Flow final : public intake::Desk {
   const dispatch::Reports& reports() const { return scoring_.reports(); }
   const Maps& maps() const { return maps_; }
   const Telemetry& telemetry() const { return telemetry_; }
-  /// When robots were heard before a restart, by robot.
+  /// The last messages before a restart, by robot.
   const std::map<std::string, journal::Heard>& heard_before() const { return heard_before_; }
-  /// For the next process start.
+  /// Stores `heard` for the next process.
   void keep(const journal::Heard& heard) { journal_.heard(heard); }
   const RejectedStore& rejected() const { return rejected_; }
   const Record& record() const { return record_; }
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   api::FinerMap& finer() { return picture_.finer(); }
-  /// What is kept of runs.
   archive::Archive& archive() { return archive_; }
   const archive::Archive& archive() const { return archive_; }
-  /// Record's, with what waits.
+  /// The record's rows with the queued messages.
   std::vector<api::ActivityRow> activities() const;
-  /// Why states and markers cannot be kept, or "".
+  /// Why states and markers cannot be stored, or "".
   const std::string& journal_trouble() const { return journal_.trouble(); }
   std::uint64_t sent_bytes() const;
   double sent_mbit() const { return meter_.mbit(); }
 
-  /// For work that takes long; they end before anything that the flow holds.
+  /// For long work. They end before the other members.
   loop::Workers& workers() { return workers_; }
-  /// All its threads, to be asked for signs of life.
+  /// For the watchdog.
   std::vector<loop::Workers*> threads() { return {&workers_, &writer_, &archive_.thread()}; }
 
  private:
@@ -177,14 +172,14 @@ class Flow final : public intake::Desk {
   loop::Loop& loop_;
   ledger::Ledger& ledger_;
   loop::Instant upkeep_at_ = loop_.now() + kUpkeepEvery;  // of the ledger
-  std::string upkeep_trouble_;                            // why the last one failed, or ""
+  std::string upkeep_trouble_;                            // why it failed, or ""
   const settings::Settings& settings_;
   Tokens tokens_;
   Told told_;
   std::mt19937_64 random_;
   spool::Spool spool_;     // before its writer, whose jobs use it to the end
-  loop::Writer writer_;    // of the runtime folder, in memory: an answer to a map waits for it
-  loop::Workers workers_;  // after the writer: what a job holds is the writer's to the end
+  loop::Writer writer_;    // of the runtime directory: answers to maps wait for it
+  loop::Workers workers_;  // after the writer: jobs hold its objects
   journal::Journal journal_;
   Clocks clocks_;
   std::map<std::string, journal::Heard> heard_before_;
@@ -196,10 +191,10 @@ class Flow final : public intake::Desk {
   AsForwarded as_forwarded_;
   Telemetry telemetry_;
   Meter meter_;
-  std::int64_t pictured_run_ = 0;  // whose maps the picture shows; 0: none yet
-  double clock_shown_ = 0;         // by the last status of it
-  std::string standby_;            // why nothing is taken and sent; "": it is
-  bool has_started_ = false;       // until then the ledger has not said which run it is
+  std::int64_t pictured_run_ = 0;  // 0: not set
+  double clock_shown_ = 0;         // clock of its last status
+  std::string standby_;            // why the flow stands by, or ""
+  bool has_started_ = false;       // before that the run is unknown
   archive::Archive archive_;
   Ending ending_;
   std::function<void()> over_;

@@ -1,4 +1,4 @@
-// What is kept of the run on the disk.
+// The disk's copy of the run.
 #include <algorithm>
 #include <map>
 #include <set>
@@ -9,7 +9,7 @@
 
 namespace adit::forward {
 
-/// Takes up what is kept of the present run, and keeps it from now on.
+/// Restores the present run, then records it.
 void Flow::keep_the_run() {
   const dispatch::Run& run = reports().run();
   picture_.hold();

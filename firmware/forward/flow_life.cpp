@@ -1,4 +1,4 @@
-// How the flow begins, goes on and ends.
+// Start, life and end of the flow.
 #include <cmath>
 #include <utility>
 
@@ -10,8 +10,8 @@
 namespace adit::forward {
 namespace {
 
-/// What is in the runtime folder beside maps: of the journal, which is made smaller beside itself, four times
-/// queued messages, rejected messages, and the files of other rooms.
+/// Bytes of the runtime directory without maps: the journal with its compaction, rejected messages, and other
+/// rooms' files.
 std::uint64_t beside_maps(const settings::Settings& settings) {
   constexpr std::uint64_t kOthers = 8u << 20;
   return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::RejectedMessages::kMostBytes + kOthers;
@@ -65,7 +65,7 @@ void Flow::start() {
   scoring_.start();
   telemetry_.start();
   has_started_ = true;
-  status_came();  // what the life before heard is none
+  status_came();  // the previous process's status does not count
   picture_the_run();
 }
 
@@ -76,7 +76,7 @@ void Flow::stand_by(const std::string& why) {
   telemetry_.stand_by();
 }
 
-/// Takes up what the process before left: rates and stamps go on as if nothing had been.
+/// Rates and stamps go on without a gap.
 void Flow::carry_on() {
   journal::Carried carried = journal_.read();
   const bool is_first = !carried.clock();
@@ -89,8 +89,7 @@ void Flow::carry_on() {
   restore_record();
 }
 
-/// Takes up the messages that have files of their own. If the journal tells nothing of the process before,
-/// when that sent last is not known: its maps get new stamps, and every request waits.
+/// Messages in files. Without a journal the last sending is unknown: maps get new stamps, all requests wait.
 void Flow::restore(bool is_first) {
   rejected_.restore();
   spool::Spool::Kept kept = spool_.read();
@@ -105,7 +104,7 @@ void Flow::restore(bool is_first) {
   maps_.restore(std::move(kept));
 }
 
-/// After restore(), which notes when queued messages were accepted.
+/// After restore(), which records queued messages.
 void Flow::restore_record() {
   for (const auto& [robot, heard] : heard_before_) {
     for (std::size_t kind = 0; kind < heard.kinds.size(); ++kind) {
@@ -121,7 +120,7 @@ void Flow::settings_changed(const settings::Restarts& restarts, Tokens tokens) {
   archive_.limit(limits_of(settings_));
   spool_.leave_to_others(beside_maps(settings_));
   if (restarts.scoring)
-    scoring_.endpoint_changed(tokens_.scoring);  // first: nothing more goes to the old one
+    scoring_.endpoint_changed(tokens_.scoring);  // first: no more requests to the old endpoint
   if (restarts.mapping) maps_.endpoint_changed(tokens_.mapping);
   if (restarts.mapping) telemetry_.endpoint_changed(tokens_.mapping);
   scoring_.settings_changed();
@@ -147,8 +146,7 @@ KnownTimes Flow::known_times() const {
   return {.command_post = scoring_.channel().time_there(), .robots = clocks_.told_by_robots()};
 }
 
-/// What is told of this life and this run is as long ago as it was. Stamps, the ledger and what is kept of
-/// other runs stay as they are.
+/// Stamps, the ledger and earlier runs keep their times.
 void Flow::wall_was_set(double seconds) {
   clocks_.wall_was_set();
   record_.move(seconds);
@@ -161,7 +159,7 @@ void Flow::keep_ledger(loop::Writer& disk) {
   if (loop_.now() < upkeep_at_ || is_ending()) return;
   auto work = ledger_.upkeep();
   if (!work) return;
-  upkeep_at_ = loop_.now() + kUpkeepEvery;  // if it fails
+  upkeep_at_ = loop_.now() + kUpkeepEvery;  // in case of failure
   const auto result =
       std::make_shared<ledger::Result<void>>(std::unexpected(ledger::Error{.what = "an exception"}));
   disk.submit([work = std::move(work), result] { *result = work(); },

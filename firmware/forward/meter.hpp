@@ -6,12 +6,12 @@
 
 namespace adit::forward {
 
-/// How fast bytes leave, over the last seconds.
+/// Sending rate of the last seconds.
 class Meter {
  public:
   static constexpr std::size_t kSeconds = 5;
 
-  /// To be called once a second with the number of bytes that have left in all.
+  /// Call once a second with the total of sent bytes.
   void second(std::uint64_t bytes) {
     bytes_.push_back(bytes);
     if (bytes_.size() > kSeconds + 1) bytes_.pop_front();
@@ -23,7 +23,7 @@ class Meter {
   }
 
  private:
-  std::deque<std::uint64_t> bytes_;  // in all, at each of the last seconds
+  std::deque<std::uint64_t> bytes_;  // totals of the last seconds
 };
 
 }  // namespace adit::forward

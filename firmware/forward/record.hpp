@@ -24,18 +24,18 @@ namespace adit::forward {
 
 enum class Kind : std::uint8_t { Grid, Cloud, State, Markers };
 
-/// Why a message was not taken upstream: sent too often, failed (both are sent again), or refused for good.
+/// Throttled and Failed messages are retried.
 enum class NotTaken : std::uint8_t { Throttled, Failed, Refused };
 
-/// The kinds whose times outlive a restart, by their names in the API; the first ones of Kind.
+/// Kinds whose times survive a restart, in the API's words; the first ones of Kind.
 inline constexpr std::string_view kHeardKinds[] = {"grid", "cloud", "state"};
 
-/// The time of day of a stamp by the clock for stamps; now, if the stamp is ahead of that. NaN of NaN.
+/// The time of day of a stamp, at most now. NaN for NaN.
 inline api::Time time_of(const loop::Loop& loop, icd::Stamp stamp) {
   return loop.wall_now() - std::max(loop.stamp_now() - stamp, 0.0);
 }
 
-/// The robot and the kind of its messages: "" is a merged map, or markers.
+/// A robot and a kind of message. `robot` "": merged maps, or markers.
 struct Traffic {
   Kind kind = Kind::Grid;
   std::string robot;
@@ -46,46 +46,45 @@ inline bool is_map(Kind kind) {
   return kind == Kind::Grid || kind == Kind::Cloud;
 }
 
-/// What happened to the team's messages, counted and kept for the page: how many were accepted, forwarded,
-/// replaced, delayed, refused, and why (promise 7). Holds at most kMostRows rows and kMostRefusals refusals.
+/// Counts and reasons for the page: messages accepted, forwarded, replaced, delayed, refused (promise 7). At
+/// most kMostRows and kMostRefusals.
 class Record {
  public:
   static constexpr std::size_t kMostRows = 200;
   static constexpr std::size_t kMostRefusals = 50;
 
-  /// `changed` is called whenever something is noted.
+  /// `changed`: the page's contents changed.
   explicit Record(std::function<void()> changed) : changed_(std::move(changed)) {}
 
   void accepted(const Traffic& traffic, std::size_t bytes, api::Time now);
-  /// Restores when the last message was accepted, and delivered (NaN: never), before a restart. Call after
-  /// accepted() for queued messages, which may be newer.
+  /// Restores times from before a restart (NaN: never). Call after accepted() for queued messages, which may
+  /// be newer.
   void restore(const Traffic& traffic, api::Time accepted, api::Time forwarded);
-  /// It was refused to the robot, because too much waits.
+  /// A message was rejected because the queue is full.
   void no_room(const Traffic& traffic, api::Time now);
   void replaced(const Traffic& traffic, std::size_t updates);
-  /// So many points of its clouds were not sent, for others of their voxels had been taken.
+  /// Points were left out because the Command Post has others of their voxels.
   void left_out(const Traffic& traffic, std::size_t points);
-  /// A cloud was accepted that has no valid point, so that nothing of it is sent.
+  /// A cloud without a valid point was accepted. It is not sent.
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
-  /// So many markers were accepted that nobody will see.
   void invisible(std::size_t markers);
-  /// What its clouds were taken for.
+  /// The detected kind of a robot's clouds.
   void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
-  /// How far the cloud was rounded that the Command Post took last.
+  /// The rounding of the last delivered cloud.
   void rounded_to(const Traffic& traffic, lanes::Precision precision);
-  /// The Command Post took a message of `bytes` that stands for `updates` accepted ones.
+  /// A message of `bytes` was delivered for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
-  /// The Command Post did not take it; 0: no status came.
+  /// `status` 0: no status came.
   void not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence);
 
   void refused(icd::Uri uri, const intake::Sender& sender, const icd::Refusal& refusal, api::Time now);
 
-  /// The time of day was set ahead by so many seconds: what is noted is as long ago as it was.
+  /// The time of day was set ahead.
   void move(double seconds);
 
-  /// Without `waiting` and `behind_since`, which the lanes know.
+  /// Rows without `queued` and `behind_since`, which the queues have.
   const std::map<Traffic, api::ActivityRow>& rows() const { return rows_; }
-  /// What was ever refused, by URI and status.
+  /// Counts of rejected messages by URI and status.
   std::vector<api::RefusedCount> refused_counts() const;
   /// Newest first.
   std::vector<api::RefusalRow> refusals() const { return {refusals_.begin(), refusals_.end()}; }
@@ -97,7 +96,7 @@ class Record {
   std::function<void()> changed_;
   std::map<Traffic, api::ActivityRow> rows_;
   std::deque<api::RefusalRow> refusals_;
-  std::map<std::pair<icd::Uri, icd::Status>, api::RefusedCount> refused_;  // its counts
+  std::map<std::pair<icd::Uri, icd::Status>, api::RefusedCount> refused_;  // counts only
 };
 
 Traffic traffic_of(const icd::MapUpdate& update);

@@ -37,7 +37,7 @@ std::expected<void, std::string> write_message(const std::string& path, const ic
   return spool::write_whole(path, codec::write_markers_update(markers));
 }
 
-constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // as the alternatives of lanes::Message
+constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // in the order of lanes::Message
 
 std::string reason_of(const lanes::RejectedMessage& item, bool replaced) {
   return codec::write_json({Value::Object{{"kind", {std::string(kKinds[item.message.index()])}},
@@ -52,7 +52,7 @@ icd::ChunkedBytes text_bytes(const std::string& text) {
   return icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-/// The two files of a message, and what its reason says from now on.
+/// A message's files, and its new reason.
 struct Files {
   std::string reason, message, text;
 };
@@ -63,7 +63,7 @@ void remove(const std::string& reason, const std::string& message) {
   fs::remove(message, error);
 }
 
-/// If the disk has no room for the mark, deletes the message: a newer message contains it.
+/// A full disk deletes the message, because a newer one contains it.
 void write_replaced(const Files& files) {
   if (!spool::write_whole(files.reason, text_bytes(files.text))) remove(files.reason, files.message);
 }
@@ -81,7 +81,7 @@ icd::Checked<lanes::Message> read_message(const std::string& path, std::string_v
   return icd::unprocessable("kind: expected map, state or markers");
 }
 
-/// All but number and message. Refused with 503 if the file cannot be read, else because it is damaged.
+/// 503: unreadable. Otherwise: damaged.
 icd::Checked<std::pair<std::string, lanes::RejectedMessage>> read_reason(const std::string& path) {
   const auto file = spool::map_file(path);
   if (!file) return std::unexpected(spool::unreadable(path, file.error()));
@@ -205,7 +205,6 @@ void RejectedStore::kept(std::uint64_t number, bool well, const Origin& origin) 
   in_memory_[number] = origin.let_go;
 }
 
-/// Of memory it has gone.
 void RejectedStore::forget(std::uint64_t number) {
   if (unread_.empty())
     writer_.submit(

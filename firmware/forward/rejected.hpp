@@ -15,45 +15,44 @@
 
 namespace adit::forward {
 
-/// Maps, states and markers that the Command Post would not take (lanes::RejectedMessages), on the page and
-/// in a folder that outlives the service: `N.cbor`, the message as it goes upstream, and `N.json`, why it is
-/// there. Its files are written by the writer, in order.
+/// Rejected maps, states and markers (lanes::RejectedMessages), in a directory that survives the process:
+/// `N.cbor`, the message, and `N.json`, the reason. The writer writes in order.
 ///
-/// A message that comes here or goes from here is never without a file: whoever had it keeps its own until it
-/// is told that there is one here, and the one here stays until it has one again.
+/// A message always has a file: its origin keeps the old file until told(), and this store keeps the new one
+/// until the message is queued again.
 class RejectedStore {
  public:
-  /// Who kept a message before it was rejected. Both are called on the loop, and never from within add().
+  /// The keeper of a message before its rejection. Both are called on the loop, not inside their own add().
   struct Origin {
-    /// Once: whether it is kept here now. If not, it is rejected in memory alone.
+    /// Called once: whether the message has a file here. If not, it is in memory alone.
     std::function<void(bool kept)> told = [](bool) {};
-    /// Once: it is kept here, or has gone from here, so that the origin's own file can go.
+    /// Called once: the origin may delete its file.
     std::function<void()> let_go = [] {};
   };
 
   /// `writer` outlives this.
   RejectedStore(const loop::Loop& loop, loop::Writer& writer, std::string folder);
 
-  /// What an earlier service kept.
+  /// Restores the messages of the previous process.
   void restore();
   /// Why restore() could not read a file, or "".
   const std::string& unread() const { return unread_; }
 
   void add(lanes::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
-  /// The Command Post took it: what it says all of is not to be sent again, in a life to come neither.
-  /// Whoever keeps the message forgets it only once that is written: then `written` is called, on the loop.
-  /// False: there is nothing to write, and `written` is not called.
+  /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
+  /// never sent. Forget `message` only after `written`, which is called on the loop. False: no mark to write,
+  /// and `written` is not called.
   bool taken(const lanes::Message& message, std::function<void()> written = [] {});
   bool empty() const { return items_.items().empty(); }
-  /// What made place for newer ones and was not replaced, ever.
+  /// Messages that were removed for newer ones.
   std::uint64_t dropped() const { return dropped_; }
-  /// Whether all that was to be told by the writer has been.
+  /// True if the writer has finished.
   bool all_kept() const { return being_written_ == 0; }
 
-  /// For whoever sends it again and then says so by sent_again(). An error: a sentence why it is not sent.
+  /// Takes a message for sending. Call sent_again() next. An error: why it cannot be sent.
   std::expected<lanes::Message, std::string> to_be_sent(std::uint64_t number);
-  /// `kept`: it waits, and is kept elsewhere. Otherwise it is rejected as before. False: something newer
-  /// that says all of it was taken meanwhile.
+  /// `kept`: the message is queued and stored elsewhere; otherwise it stays rejected. False: a newer message
+  /// that contains it was accepted.
   bool sent_again(std::uint64_t number, bool kept);
   std::expected<void, std::string> discard(std::uint64_t number);
 
@@ -70,11 +69,11 @@ class RejectedStore {
   const loop::Loop& loop_;
   loop::Writer& writer_;
   const std::string folder_;
-  std::string unread_;  // why restore() could not read it: its files' numbers may be given again
+  std::string unread_;  // why restore() failed; file numbers may be reused then
   lanes::RejectedMessages items_;
   int being_written_ = 0;
   std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()
-  std::map<std::uint64_t, std::function<void()>> in_memory_;  // those without a file, and who is let go then
+  std::map<std::uint64_t, std::function<void()>> in_memory_;  // messages without a file, and their origins
   std::uint64_t dropped_ = 0;
 };
 

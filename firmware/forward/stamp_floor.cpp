@@ -11,10 +11,10 @@
 namespace adit::forward {
 namespace {
 
-/// Year 2200: what is later is no stamp.
+/// Year 2200: later values are no stamps.
 constexpr double kLatest = 7.26e9;
 
-/// The number in the line at the beginning of `rest`, which is taken away; -1: it is none.
+/// Of the first line, which is removed; -1: no number.
 template <class Number>
 Number take(std::string_view& rest) {
   Number number = -1;
@@ -61,7 +61,7 @@ void StampFloor::write(const Kept& kept) {
   for (const double time : {kept.floor, kept.wall, kept.least}) text += std::to_string(time) + '\n';
   text += std::to_string(kept.ledger.reports) + '\n' + std::to_string(kept.ledger.log) + '\n';
   auto written = host::write_file(file_, text, host::kOursAlone);
-  if (!written && host::write_over(file_, text)) written = {};  // on a full disk
+  if (!written && host::write_over(file_, text)) written = {};  // for a full disk
   const std::string why = written ? "" : written.error();
   if (std::exchange(*trouble_, why) == why || written) return;
   host::log(host::Level::Warning,

@@ -10,33 +10,32 @@
 
 namespace adit::forward {
 
-/// Keeps stamps from going back when the machine restarts (promise 5): a box without a battery-backed clock
-/// has about the same time at each start. A file in the state folder holds a bound that no stamp has passed.
-/// It is ahead of the stamps, so that it need be written only now and then, and nobody waits for it. Beside
-/// it is the time of day as it was then.
+/// Prevents stamps from running back after a boot (promise 5). A box without a battery-backed clock has about
+/// the same time at each boot. A file in the state directory holds a bound above all stamps, ahead of them,
+/// so that it is written seldom and without a wait. The file also has the time of day.
 class StampFloor {
  public:
   struct Kept {
-    double floor = 0, wall = 0;  // seconds since 1970; 0: nothing is known
-    double least = 0;  // no stamp may be earlier, even where the machine did not restart: another box's were
-    ledger::Known ledger = {};  // if the ledger has less, it is damaged
+    double floor = 0, wall = 0;  // seconds since 1970; 0: unknown
+    double least = 0;            // lowest allowed stamp, for stamps of another box
+    ledger::Known ledger = {};   // a ledger with less is damaged
   };
   static constexpr const char* kFile = "stamps";
   static constexpr double kEvery = 10;  // seconds
-  /// Stamps are up to kJump ahead of now, and a disk may be slow.
+  /// Stamps may be kJump ahead of now, and a disk may be slow.
   static constexpr double kAhead = lanes::StampShift::kJump + kEvery + 15;
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 
-  /// A damaged file is logged and counts as none. An error: the file cannot be read, and must not be written.
+  /// A file with a damaged bound is logged and ignored. An error: the file is unreadable, and must not be
+  /// written.
   std::expected<Kept, std::string> read() const;
 
-  /// What is to be written by now, if anything. `now`: by the clock for stamps; `wall`: the time of day.
+  /// The values to write now, if due. `now`: stamp clock; `wall`: time of day.
   std::optional<Kept> due(double now, double wall, const ledger::Known& ledger);
-  /// By the next time that this is asked.
+  /// The next due() returns values.
   void is_due() { next_ = 0; }
-  /// May be called on a worker, one call after the other, and on copies. A failure to write is logged once,
-  /// until a write succeeds or fails in another way.
+  /// May run on a worker, one call at a time, on copies. Logs a failure when its text changes.
   void write(const Kept& kept);
 
  private:

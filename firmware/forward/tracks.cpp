@@ -7,7 +7,7 @@
 namespace adit::forward {
 namespace {
 
-constexpr double kEarly = 0.1;  // seconds: poses that come once a second come not quite so
+constexpr double kEarly = 0.1;  // seconds: tolerance for poses once a second
 
 bool has_moved(const api::TrackPose& from, const api::TrackPose& to) {
   const double x = to.position.x - from.position.x, y = to.position.y - from.position.y,

@@ -9,25 +9,25 @@
 
 namespace adit::forward {
 
-/// Where each robot was during the run, as the Command Post was told: about one pose a second while it moves,
-/// one each kStill while it stands. A full track drops every other pose, and takes new ones half as often.
+/// Positions that the Command Post has of the run: one a second in motion, one per kStill at rest. A full
+/// track halves its poses and its rate.
 class Tracks {
  public:
-  static constexpr std::size_t kMostPoses = 4000;     // of one robot: over an hour on its way
+  static constexpr std::size_t kMostPoses = 4000;     // per robot: over an hour
   static constexpr double kSpacing = 1, kStill = 10;  // seconds
   static constexpr double kMoved = 0.1;               // metres
   static constexpr double kTurned = 0.2;              // radians
 
-  /// The caller bounds the number of robots.
+  /// Callers bound the number of robots.
   void forwarded(const std::string& robot, const api::TrackPose& pose);
-  /// Where they were before; what is here already is later.
+  /// Adds earlier poses before the present ones.
   void go_on_from(const std::vector<api::Track>& earlier);
   void wipe() { tracks_.clear(); }
-  /// The time of day was set ahead by so many seconds.
+  /// The time of day was set ahead by `seconds`.
   void move(double seconds);
   void forget(const std::string& robot) { tracks_.erase(robot); }
 
-  /// By name, the poses later than `since`; robots without any are left out.
+  /// By name: poses later than `since`. Robots without such poses are left out.
   std::vector<api::Track> since(api::Time since) const;
 
  private:

@@ -12,8 +12,8 @@
 
 namespace adit::gateway {
 
-/// What becomes of the team's connections where there are too many, and of who shows wrong tokens: counted,
-/// told of for as long as it goes on, and logged once a minute.
+/// Rejected or closed connections and wrong tokens of the team's side: counts, shows the present ones, and
+/// logs them once a minute.
 class Crowding {
  public:
   static constexpr std::chrono::minutes kRecent{1}, kLogEvery{1};
@@ -21,21 +21,21 @@ class Crowding {
 
   struct Line {
     std::string sentence;
-    std::uint64_t times;  // since it was logged last
+    std::uint64_t times;  // since the last log line
   };
 
   void ended(intake::Ended why, const std::string& address, loop::Instant now);
   std::uint64_t count(intake::Ended why) const { return at(why).count; }
-  /// What goes on now.
+  /// Of the last kRecent.
   std::vector<alarms::Crowd> crowds(loop::Instant now) const;
-  /// What is to be logged now.
+  /// Lines that are due.
   std::vector<Line> to_log(loop::Instant now);
 
  private:
   struct Kind {
     std::uint64_t count = 0, logged = 0;
     loop::Instant last{}, log_at{};
-    std::map<std::string, std::uint64_t> by_address;  // since its start
+    std::map<std::string, std::uint64_t> by_address;  // in the present crowd
   };
   static constexpr std::array kTold{intake::Ended::NoRoom, intake::Ended::GaveWay, intake::Ended::WrongToken};
 

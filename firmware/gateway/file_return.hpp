@@ -9,13 +9,13 @@
 
 namespace adit::gateway {
 
-/// While the ledger, the settings, a message or another saved file cannot be read: tries after each `rest`,
-/// and says once that all can.
+/// Tries unreadable files again after each `rest`: the ledger, the settings, messages or other saved files.
+/// Calls `is_back` once when all can be read.
 class FileReturn {
  public:
   static constexpr std::chrono::seconds kRest{5}, kLongestRest{300};
 
-  /// `writer` calls `can_be_read`, which waits for the disk. `loop` and `writer` outlive this.
+  /// `writer` runs `can_be_read`, which waits for the disk. `loop` and `writer` outlive this.
   FileReturn(loop::Loop& loop, loop::Writer& writer, std::function<bool()> can_be_read,
              std::chrono::seconds rest, std::function<void()> is_back);
 
@@ -30,8 +30,7 @@ class FileReturn {
   loop::Source timer_;
 };
 
-/// How long the next one rests, if files that seemed to be back were not: a gateway that restarts turns
-/// clients away.
+/// The next rest, if the files were not readable after all. Each restart of the gateway rejects clients.
 inline std::chrono::seconds longer(std::chrono::seconds rest) {
   return std::min(2 * rest, FileReturn::kLongestRest);
 }

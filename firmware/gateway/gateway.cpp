@@ -24,7 +24,7 @@ namespace {
 constexpr std::chrono::minutes kKeepSessionsEvery{1};
 constexpr std::chrono::seconds kAnswerLeaves{1};
 
-/// Whether the files of Gateway::unread() can be read now.
+/// The files of Gateway::unread().
 bool can_be_read(const std::string& state_folder) {
   for (const char* const name :
        {admin::Accounts::kFile, admin::Accounts::kCodeFile, forward::StampFloor::kFile,
@@ -130,7 +130,7 @@ icd::Redaction Gateway::redaction() const {
   return redaction;
 }
 
-/// Why a saved file cannot be read, so that the box has to be on standby; or "".
+/// Why the box must stand by: an unreadable file; or "".
 std::string Gateway::unread() const {
   const std::string& settings = parts_.store.unread();
   if (!settings.empty()) return "the saved settings or tokens cannot be read: " + settings;
@@ -163,7 +163,7 @@ std::vector<loop::Workers*> Gateway::threads() {
   return threads;
 }
 
-/// A journal that is new has read all once it could be opened.
+/// The journal may have become readable by itself.
 void Gateway::files_are_back() {
   if (has_read_all()) return;
   host::log(host::Level::Notice, "all files can be read again; restarting");
@@ -196,7 +196,7 @@ void Gateway::stop() {
   end();
 }
 
-/// A stop that has begun stays one.
+/// A stop in progress stays a stop.
 void Gateway::make_way() {
   if (flow_.is_ending()) return;
   makes_way_ = true;
@@ -259,7 +259,7 @@ void Gateway::every_second() {
   }
 }
 
-/// Somebody set the time of day: whoever may, and either way. And whoever knows it better than who set it.
+/// Anybody may set the time of day, in both directions. Offers better sources too.
 void Gateway::look_at_clock() {
   clock_.every_second(wanted_ntp());
   const forward::KnownTimes known = flow_.known_times();
@@ -281,7 +281,7 @@ clock::Ntp Gateway::wanted_ntp() const {
   return ntp;
 }
 
-/// The team's interface came back as another one.
+/// The team's interface may have been replaced.
 void Gateway::look_at_sockets() {
   const ListenSockets::Reach reach = parts_.sockets.reach();
   if (reach == ListenSockets::Reach::Well || flow_.is_ending()) return;
@@ -294,7 +294,7 @@ void Gateway::log_crowding() {
     host::log(host::Level::Warning, line.sentence, {{"times", std::to_string(line.times)}});
 }
 
-/// When somebody was seen last need not be known to the second.
+/// The last use of a session needs no exact time.
 void Gateway::keep_sessions() {
   if (loop_.now() < sessions_kept_ + kKeepSessionsEvery) return;
   sessions_kept_ = loop_.now();

@@ -44,42 +44,42 @@
 
 namespace adit::gateway {
 
-/// What the gateway is made of: all of it has passed its checks.
+/// Checked parts of a gateway.
 struct Parts {
   const Options& options;          // outlives the gateway
-  admin::Store& store;             // so does this
-  admin::FactoryReset& reset;      // this
-  admin::TakingOver& taking_over;  // this
-  ListenSockets& sockets;          // and this
+  admin::Store& store;             // outlives the gateway
+  admin::FactoryReset& reset;      // outlives the gateway
+  admin::TakingOver& taking_over;  // outlives the gateway
+  ListenSockets& sockets;          // outlives the gateway
   admin::Store::Loaded loaded;
-  std::string trouble;    // for the operator: why the settings are not those that were wanted; or ""
-  std::string put_aside;  // a sentence: which queued messages are put aside, and why; or ""
-  std::string stuck;      // why a take-over is not finished, so that the box has to be on standby; or ""
+  std::string trouble;    // why other settings are in use than wanted, or ""
+  std::string put_aside;  // queued messages put aside, and why; or ""
+  std::string stuck;      // why a take-over is unfinished and the box stands by, or ""
   ledger::Ledger ledger;
-  std::chrono::seconds file_rest;  // before files that cannot be read are tried again
+  std::chrono::seconds file_rest;  // until unreadable files are tried again
   settings::Board board;
-  std::string board_trouble;  // why what the board's file says does not count; or ""
+  std::string board_trouble;  // why the board's file is ignored, or ""
   std::unique_ptr<panel::Lines> lines;
-  std::unique_ptr<panel::ButtonLine> button;  // null: there is none
+  std::unique_ptr<panel::ButtonLine> button;  // null: no button
   std::string runtime_folder;
 };
 
-/// The whole of Adit at work: the flow, the team's listeners, the page and the box, wired together.
+/// Adit at work: the flow, the listeners, the page and the box.
 class Gateway final : public api::Source, public api::Operator {
  public:
   Gateway(loop::Loop& loop, Parts parts);
 
-  /// Listens and connects. An error says what could not be done.
+  /// Listens and connects. An error says what failed.
   std::expected<void, std::string> start();
-  /// Takes nothing new, waits for the answers under way, keeps what waits, and stops the loop.
+  /// Rejects new messages, waits for answers in flight, stores messages, and stops the loop.
   void stop();
-  /// Whether it stopped for the process to start again, with what the disk holds by now.
+  /// It stopped for a restart from the disk.
   bool makes_way() const { return makes_way_; }
-  /// Whether it runs without a file that it needs, and makes way when it can have it.
+  /// It runs without a necessary file and restarts when the file returns.
   bool awaits_files() const { return file_return_.has_value(); }
-  /// All its threads, to be asked for signs of life.
+  /// For the watchdog.
   std::vector<loop::Workers*> threads();
-  /// What systemd shows: one line.
+  /// A line for systemd.
   std::string status_line() const;
 
   api::RunView view() const override;
@@ -116,7 +116,7 @@ class Gateway final : public api::Source, public api::Operator {
   void keep_sessions();
   void look_at_sockets();
   void log_crowding();
-  /// Whether the start could read all files that it needs.
+  /// At the start.
   bool has_read_all() const;
   void await_files();
   void files_are_back();
@@ -152,9 +152,9 @@ class Gateway final : public api::Source, public api::Operator {
   loop::Loop& loop_;
   Parts parts_;
   settings::Settings settings_;  // with the course in use
-  loop::Writer disk_writer_;     // of the state folder, on the disk, for which no map waits
-  forward::Flow flow_;           // its workers' jobs end before that writer
-  loop::Workers log_ins_;        // of their own: nobody who logs in waits behind maps, nor maps behind him
+  loop::Writer disk_writer_;     // of the state directory; no map waits for it
+  forward::Flow flow_;           // its workers end before that writer
+  loop::Workers log_ins_;        // separate: log-ins and maps do not wait for each other
   box::Lights lights_;
   box::Links links_;
   box::ButtonWatch button_;
@@ -174,7 +174,7 @@ class Gateway final : public api::Source, public api::Operator {
   Crowding crowding_;
   Lookout lookout_;
   alarms::Board board_;
-  std::vector<alarms::Condition> conditions_;  // as found at looked_at_
+  std::vector<alarms::Condition> conditions_;  // as of looked_at_
   double looked_at_ = 0;                       // alarms::Facts::now
   admin::AcknowledgedFile acknowledged_;
   intake::TokenGuesses guesses_;
@@ -186,7 +186,7 @@ class Gateway final : public api::Source, public api::Operator {
   mutable ReadAnswers answers_;  // of the view's reports
   std::string notified_;
   std::map<std::string, std::string> notices_;  // box/notices.hpp
-  panel::Lights told_lights_{};                 // what pages were told that the lights show
+  panel::Lights told_lights_{};                 // the lights as sent to pages
 };
 
 }  // namespace adit::gateway

@@ -1,4 +1,4 @@
-// The alarms: found, shown, and acknowledged.
+// Alarms: finding, showing, acknowledging.
 #include "alarms/conditions.hpp"
 #include "gateway/gateway.hpp"
 
@@ -11,7 +11,7 @@ void Gateway::look_for_alarms() {
   conditions_ = alarms::conditions_of(found);
   looked_at_ = found.now;
   board_.take(conditions_, looked_at_);
-  // What goes because the service does is no alarm that went.
+  // At a stop conditions end that are not cleared.
   if (!flow_.is_ending()) acknowledged_.keep(board_.acknowledged());
   std::vector<std::string> headlines;
   for (const alarms::Condition& each : conditions_) {

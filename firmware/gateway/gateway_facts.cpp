@@ -1,4 +1,4 @@
-// What the rules of alarms go by, gathered from all that the gateway is made of.
+// Facts for the rules of alarms.
 #include <algorithm>
 
 #include "api/judged.hpp"
@@ -9,7 +9,7 @@
 namespace adit::gateway {
 namespace {
 
-/// Nothing: the operator need not know of it.
+/// nullopt: not the operator's business.
 std::optional<alarms::ReportFact> fact_of(const dispatch::Report& report) {
   using enum dispatch::ReportState;
   if (report.state != Held && report.state != InDoubt) return std::nullopt;
@@ -38,7 +38,7 @@ void Gateway::add_flow(alarms::Facts& facts) const {
   const double steady = loop_.stamp_now();
   facts.endpoints = lookout_.endpoints(flow_, settings_.command_post, steady);
   for (alarms::Endpoint& each : facts.endpoints) {
-    if (each.since != 0) each.since += facts.now - steady;  // 0: nobody knows since when
+    if (each.since != 0) each.since += facts.now - steady;  // 0: unknown
   }
   facts.robots = lookout_.robots(settings_.alarms, steady);
   facts.turn = static_cast<double>(std::ranges::count_if(facts.streams, &alarms::Stream::is_map)) /

@@ -1,4 +1,4 @@
-// What the box itself shows and takes: its lights and its button.
+// Lights and button.
 #include <algorithm>
 #include <vector>
 
@@ -83,7 +83,7 @@ void Gateway::show_address() {
   if (!address.empty()) lights_.play_digits(panel::address_digits(address));
 }
 
-/// Where the team reaches the box, by IPv4; "" where it does not.
+/// The box's IPv4 address for the team, or "".
 std::string Gateway::team_address() const {
   const settings::Team& team = settings_.team;
   if (!team.interface.empty()) {

@@ -1,5 +1,4 @@
-// Settings and tokens that are saved while the gateway runs: it takes them over in place, and restarts
-// what they change.
+// Changes of settings and tokens while the gateway runs.
 #include <utility>
 
 #include "box/open_panel.hpp"
@@ -10,8 +9,8 @@
 
 namespace adit::gateway {
 
-/// What the disk holds by now is run with, or reverted. If a file could not be read, now or at the start, the
-/// next process reads it.
+/// Applies or reverts the settings on disk. If a file is unreadable, now or at the start, the next process
+/// reads it.
 void Gateway::apply_change() {
   if (flow_.is_ending()) return;
   const bool was_unread = !parts_.store.unread().empty();
@@ -26,7 +25,7 @@ void Gateway::apply_change() {
   api_.changed();
 }
 
-/// An error: all is as it was, but that sockets may be closed.
+/// An error: unchanged, but sockets may be closed.
 std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
   settings::Settings in_use = settings::in_use(next.settings);
   settings::Restarts restarts = settings::restarts_by(settings_, in_use);
@@ -62,7 +61,7 @@ void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward
   self_test_.settings_changed();
 }
 
-/// A line can be had once: the old ones are let go of first.
+/// A line has one holder, so the old ones are released first.
 void Gateway::reopen_panel() {
   lights_.let_go();
   button_.let_go();
@@ -72,7 +71,7 @@ void Gateway::reopen_panel() {
   button_.take(std::move(panel.button));
 }
 
-/// The settings before are in use still. Where they cannot be served either, another gateway may.
+/// The earlier settings stay in use. If their sockets fail, the process restarts.
 void Gateway::revert(const std::string& why) {
   const bool is_back = parts_.store.revert();
   parts_.trouble = (is_back ? "the last change was reverted: " : "the last change cannot be used: ") + why;

@@ -1,4 +1,4 @@
-// What the gateway shows of itself.
+// The gateway's view.
 #include <algorithm>
 
 #include "alarms/conditions.hpp"
@@ -46,7 +46,7 @@ std::vector<api::EndpointRow> Gateway::endpoints() const {
            .foreign = maps.foreign() + telemetry.foreign()}};
 }
 
-/// For the export; no stamp is given out any more.
+/// For the export. No stamp is used after it.
 std::expected<spare::Content, std::string> Gateway::content() const {
   auto ledger = parts_.ledger.copy();
   if (!ledger) return std::unexpected(std::move(ledger.error().what));
@@ -107,7 +107,7 @@ api::RunView Gateway::view() const {
   return view;
 }
 
-/// Why the box should not be restarted just now, or "".
+/// Why a restart is harmful now, or "".
 std::string Gateway::report_under_way() const {
   const dispatch::Reports& reports = flow_.reports();
   if (const auto* report = reports.sending())
@@ -117,7 +117,6 @@ std::string Gateway::report_under_way() const {
   return icd::sentence(waiting, waiting == 1 ? " report is" : " reports are", " queued");
 }
 
-/// What is to be thought of it.
 void Gateway::judge(api::RunView& view) const {
   const alarms::Facts found = facts(view.activities);
   view.alarms = board_.shown(alarms::conditions_of(found), found.now);

@@ -15,10 +15,10 @@
 namespace adit::gateway {
 namespace {
 
-constexpr std::string_view kStored = "listen-";  // no socket unit of Adit's is called so
+constexpr std::string_view kStored = "listen-";  // no socket unit of Adit has this name
 
-/// What a socket was opened for, as systemd's store may have it: "listen-team0-10.0.0.1-8000". The port may
-/// be 0, and is that of the settings.
+/// The name in systemd's store: "listen-team0-10.0.0.1-8000". The port is the one in the settings, and may be
+/// 0.
 std::string name_of(const intake::Listen& listen) {
   std::string address = listen.address;
   std::ranges::replace(address, ':', '_');
@@ -114,7 +114,7 @@ void ListenSockets::settle() {
   }
 }
 
-/// systemd has a copy of each of them. The next start opens the others.
+/// systemd has copies of these. The next start opens the others.
 std::vector<host::Inherited> ListenSockets::hand_over() {
   std::vector<host::Inherited> given;
   for (Held& held : held_) {
@@ -124,7 +124,7 @@ std::vector<host::Inherited> ListenSockets::hand_over() {
   return given;
 }
 
-/// Two entries may ask for any free port of one address: each takes one.
+/// Entries with port 0 at one address get different sockets.
 bool ListenSockets::is_held(const intake::Listen& listen) {
   const std::string name = name_of(listen);
   for (Held& held : held_) {
@@ -136,7 +136,7 @@ bool ListenSockets::is_held(const intake::Listen& listen) {
   return false;
 }
 
-/// "0.0.0.0" cannot be bound to beside 10.0.0.1 at the same port.
+/// "0.0.0.0" cannot be bound beside 10.0.0.1 at the same port.
 void ListenSockets::make_way(std::uint16_t port) {
   std::erase_if(held_, [port](const Held& held) {
     const bool goes = !held.wanted && held.at.port == port;
@@ -145,7 +145,7 @@ void ListenSockets::make_way(std::uint16_t port) {
   });
 }
 
-/// Deaf at once, whoever has a copy: systemd lets go of its own only when it comes to it.
+/// Shuts down all copies at once, because systemd closes its own later.
 void ListenSockets::end(const Held& held) {
   shutdown(held.socket.get(), SHUT_RDWR);
   if (!held.door) host::forget_descriptor(held.name);

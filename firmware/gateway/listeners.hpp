@@ -17,28 +17,28 @@
 
 namespace adit::gateway {
 
-/// The servers at the team's sockets. Where the settings change, those whose socket stays go on, and whoever
-/// is connected to another is served for as long as he can be waiting for an answer.
+/// Servers at the team's sockets. After a change of the settings servers with the same socket go on. Clients
+/// of other sockets are served while they may wait for an answer.
 class Listeners {
  public:
-  /// All outlive this. `ended`: told of each connection that was not gone on with.
+  /// All outlive this. `ended`: for each connection that was ended early.
   Listeners(loop::Loop& loop, ListenSockets& sockets, intake::Handler& handler, intake::TokenGuesses& guesses,
             std::function<void(intake::Ended why, const std::string& address)> ended)
       : loop_(loop), sockets_(sockets), handler_(handler), guesses_(guesses), ended_(std::move(ended)) {}
 
-  /// From now on at these. An error says what cannot be listened at: then sockets that were in the way may be
-  /// closed, and it has to be told again what was served before.
+  /// Serves these. An error names the address. Sockets in the way may be closed then: call again
+  /// with the old settings.
   std::expected<void, std::string> serve(const settings::Team& team);
-  /// Who is connected to a socket that is served no more is served for so long.
+  /// How long clients of a closed socket are served.
   void let_go_within(loop::Duration longest) { longest_ = longest; }
-  /// Lets go of servers that nobody needs any more; called now and then.
+  /// Ends unused servers. Call now and then.
   void tick();
-  /// Takes no new connections.
+  /// Accepts no new connections.
   void stop();
 
   bool serves() const { return !serving_.empty(); }
   std::size_t connections() const { return sum(&intake::Server::connections); }
-  /// Those of them that have shown no token.
+  /// Unauthenticated ones.
   std::size_t strangers() const { return sum(&intake::Server::strangers); }
 
  private:
@@ -51,10 +51,10 @@ class Listeners {
     Bounds bounds;
     std::unique_ptr<intake::Server> server;
   };
-  /// Takes no new connections.
+  /// Accepts no new connections.
   struct Leaving {
     std::unique_ptr<intake::Server> server;
-    std::optional<loop::Instant> until;  // nothing: its socket is served by another, with other bounds
+    std::optional<loop::Instant> until;  // nullopt: its socket has a new server with other bounds
   };
   std::expected<Serving, std::string> start(ListenSockets::Open open, const Bounds& bounds);
   bool has(std::uint64_t socket) const;

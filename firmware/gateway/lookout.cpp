@@ -26,13 +26,13 @@ alarms::Endpoint named(const char* name, const settings::Address& address, const
   return endpoint;
 }
 
-/// What the activities say of one robot.
+/// One robot's activities.
 struct OfRobot {
   std::uint64_t accepted = 0, forwarded = 0;
   journal::Heard heard;
 };
 
-/// `now`, `time`: the clock for stamps, and the time of day of the activities.
+/// `now`: stamp clock; `time`: the activities' time of day.
 std::map<std::string, OfRobot> of_robots(const std::vector<api::ActivityRow>& activities, double now,
                                          api::Time time) {
   std::map<std::string, OfRobot> all;

@@ -1,4 +1,3 @@
-/// aditd.
 
 #include <malloc.h>
 #include <sys/prctl.h>
@@ -16,8 +15,8 @@ int main(int argc, char** argv) {
   const auto options = adit::command_line::read(command_line_of, {argv + 1, argv + argc});
   if (const auto exit = adit::command_line::answer(command_line_of, adit::box::kVersion, options))
     return *exit;
-  ::prctl(PR_SET_NAME, "aditd");  // after an exec of /proc/self/exe it is "exe"
-  // The chunks of a map are mappings of their own: what is freed of it goes back to the machine at once.
+  ::prctl(PR_SET_NAME, "aditd");  // after exec of /proc/self/exe it is "exe"
+  // Each chunk of a map is a mapping, which returns to the system when freed.
   ::mallopt(M_MMAP_THRESHOLD, int{adit::icd::ChunkedBytes::kChunk});
   adit::loop::tell_of_caught([](const char* where, const char* what) {
     adit::host::log(adit::host::Level::Error, "unhandled exception", {{"ended", where}, {"why", what}});

@@ -4,14 +4,13 @@
 
 namespace adit::gateway {
 
-/// aditd's command line.
 struct Options {
   std::string settings, secrets, state;
   std::string network = "/run/adit-network", update = "/run/adit-update", clock = "/run/adit-clock",
               spare = "/run/adit-spare";
   std::string watch = "/run/adit-network-watch";
-  std::string board;  // "": none
-  std::string panel;  // the socket of adit-panel; "": none
+  std::string board;  // or ""
+  std::string panel;  // adit-panel's socket, or ""
   std::string notices = "/run/adit-notices";
   bool help = false, version = false;
 };

@@ -15,40 +15,37 @@
 
 namespace adit::gateway {
 
-/// What the Command Post's answers to reports say. Each is read once, for as long as it is the same: a page
-/// looks at hundreds of them several times a second.
+/// Parsed answers to reports. Each is parsed once, because pages read hundreds several times a second.
 class ReadAnswers {
  public:
-  /// Nothing: there is none, or it is no answer to a report.
+  /// nullopt: no answer, or not to a report.
   const std::optional<icd::ReportReply>& of(const dispatch::Report& report);
 
  private:
-  static constexpr std::size_t kMost = 1000;  // are known at once
+  static constexpr std::size_t kMost = 1000;  // entries
   struct Known {
     std::string answer;
     std::optional<icd::ReportReply> reply;
   };
-  std::map<std::int64_t, Known> known_;  // by the report's number
+  std::map<std::int64_t, Known> known_;  // by report number
 };
 
-/// Reports as the page and `adit reports` show them.
+/// For the page and `adit reports`.
 api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& report, ReadAnswers& answers);
-/// Those that are numbered above `after`, oldest first, at most `most`.
+/// Reports above number `after`, oldest first.
 std::vector<api::ReportRow> rows_after(const dispatch::Reports& reports, std::int64_t after,
                                        std::size_t most);
 api::ReportCounts counts_of(const dispatch::Reports& reports);
-/// At most `most` of them, newest first: those with which something is still to happen, and the newest
-/// others.
+/// Unfinished reports and the newest others, newest first.
 std::vector<const dispatch::Report*> latest_of(const dispatch::ReportBook& book, std::size_t most);
 std::vector<api::ReportRow> latest_rows(const dispatch::Reports& reports, std::size_t most,
                                         ReadAnswers& answers);
 
-/// Of a time in the ledger, which is by the clock for stamps, the time of day as it is set now; one of an
-/// earlier start of the machine is as it was written.
+/// The present time of day of a stamp in the ledger. Stamps of earlier boots stay as written.
 double time_of_day(double at, const loop::Loop& loop);
 void tell_time_of_day(api::ReportRow& row, const loop::Loop& loop);
 
-/// One report with its history, or nothing where there is none of that number.
+/// nullopt: no such report.
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,
                                            std::int64_t number);
 

@@ -9,28 +9,28 @@
 
 namespace adit::gateway {
 
-/// Who of those that post is none of the robots that were set up: taken all the same (the ICD forbids no
-/// name), but told of, as it may be misspelt.
+/// Robots that are not in the settings. Their messages are accepted, because the ICD forbids no name, but
+/// shown, because the name may be misspelt.
 class Roster {
  public:
-  static constexpr std::chrono::minutes kRecent{2};  // for how long after its last message
+  static constexpr std::chrono::minutes kRecent{2};  // since the last message
   static constexpr std::size_t kMostUnknown = 8;
 
   explicit Roster(const std::vector<settings::Robot>& robots);
 
-  /// These were set up, and no others, from now on.
+  /// Replaces the list.
   void set_up(const std::vector<settings::Robot>& robots);
-  /// A robot's message was taken. True: an unknown one's first.
+  /// Call for each accepted message. True: the first of an unknown robot.
   bool posted(const std::string& name, loop::Instant now);
-  /// Those that have posted lately.
+  /// Within kRecent.
   std::vector<std::string> unknown(loop::Instant now) const;
-  /// "unknown robot 'x' is posting; set-up has ugv1, ugv2"
+  /// "unknown robot 'x' sends messages; the settings list ugv1, ugv2"
   std::string sentence(const std::string& name) const;
   const std::vector<std::string>& names() const { return names_; }
 
  private:
-  std::vector<std::string> names_;                // none: all are welcome
-  std::map<std::string, loop::Instant> unknown_;  // and when each posted last
+  std::vector<std::string> names_;                // empty: all names pass
+  std::map<std::string, loop::Instant> unknown_;  // last messages
 };
 
 }  // namespace adit::gateway

@@ -19,11 +19,10 @@
 namespace adit::gateway {
 namespace {
 
-/// What a process leaves to the start that follows it in exec: why the last change was reverted, and how many
-/// seconds files that cannot be read rest.
+/// For the process after exec: why the last change was reverted, and the rest of FileReturn in seconds.
 constexpr const char *kTrouble = "ADIT_TROUBLE", *kFileRest = "ADIT_FILE_REST";
 
-/// A variable of the environment, or ""; from now on there is none.
+/// Reads and removes a variable of the environment.
 std::string take_variable(const char* variable) {
   const char* const value = std::getenv(variable);
   std::string text = value != nullptr ? value : "";
@@ -31,13 +30,13 @@ std::string take_variable(const char* variable) {
   return text;
 }
 
-/// Where what need not outlive the box is kept.
+/// For files that need not survive the box.
 std::string runtime_folder(const Options& options) {
   const char* const runtime = std::getenv("RUNTIME_DIRECTORY");
   return runtime != nullptr ? runtime : options.state;
 }
 
-/// Renames a directory of the runtime folder; an older one of that name goes.
+/// Renames a directory and deletes an older copy.
 std::string renamed_aside(const std::string& directory) {
   const std::string aside = directory + ".aside";
   std::error_code error;
@@ -47,7 +46,7 @@ std::string renamed_aside(const std::string& directory) {
   return error ? directory + ": " + error.message() + "; " : aside + "; ";
 }
 
-/// The state folder, made where it is not there yet, for this user alone.
+/// Creates the state directory for this user alone.
 std::expected<void, std::string> make_folder(const std::string& folder) {
   std::error_code error;
   if (std::filesystem::create_directories(folder, error)) {
@@ -57,10 +56,10 @@ std::expected<void, std::string> make_folder(const std::string& folder) {
   return {};
 }
 
-/// If the ledger cannot be read, reports are refused; maps and states flow all the same.
+/// If the ledger is unreadable, reports are rejected, and other messages flow.
 ledger::Result<ledger::Ledger> open_ledger(const Options& options) {
   using enum ledger::Error::Cause;
-  const auto kept = forward::StampFloor(options.state).read();  // an error: the box will be on standby
+  const auto kept = forward::StampFloor(options.state).read();  // an error puts the box on standby
   const ledger::Known known = kept ? kept->ledger : ledger::Known();
   auto opened = ledger::Ledger::open(options.state, known);
   if (!opened && opened.error().cause != InUse && opened.error().cause != Newer)
@@ -90,7 +89,7 @@ Service::Service(const Options& options, char* const* arguments)
 int Service::run(void (*count_faults)(const char* file) noexcept) {
   const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
   const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
-  // First: the lights show a start that fails.
+  // First: the lights show a failed start.
   if (!options_.panel.empty()) announced_ = panel::announce(options_.panel);
   if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
   if (auto made = make_folder(options_.state); !made) {
@@ -140,7 +139,7 @@ void Service::start_again(const std::string& trouble) {
                     {{kTrouble, trouble}, {kFileRest, std::to_string(file_rest_.count())}});
 }
 
-/// Whether the process is to start again; an error: the gateway could not start.
+/// True: restart. An error: the gateway could not start.
 std::expected<bool, std::string> Service::run_gateway() {
   if (const auto done = reset_.finish(); !done) {
     trouble_ = "the factory reset is incomplete: " + done.error();
@@ -177,7 +176,7 @@ std::expected<bool, std::string> Service::run_gateway() {
   return run(gateway, settings);
 }
 
-/// Why it is not finished, as a sentence, or "".
+/// Why it is unfinished, or "".
 std::string Service::finish_taking_over() {
   const auto done = taking_over_.finish(loop_);
   if (done) return "";

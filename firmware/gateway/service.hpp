@@ -16,20 +16,20 @@
 
 namespace adit::gateway {
 
-/// The life of aditd: a gateway that runs until it is stopped, or until the process starts again by exec,
-/// after a factory reset or if a file can be read again that could not be. Each start reads the disk.
+/// aditd's process: a gateway that runs until a stop, or until a restart by exec after a factory reset or
+/// when unreadable files return. Each start reads the disk.
 class Service {
  public:
   /// `options` and `arguments`, main()'s, outlive this.
   Service(const Options& options, char* const* arguments);
 
-  /// After so many ends by a fault of its own, each less than kWell after its start, a start puts aside what
-  /// is queued: it may be the reason.
+  /// After this many faults, each within kWell of its start, a start puts queued messages aside, because they
+  /// may be the cause.
   static constexpr std::uintmax_t kMostFaults = 3;
   static constexpr std::chrono::seconds kWell{60};
 
-  /// Until SIGTERM or SIGINT: 0; 1: it could not start, and has said why. Else it ends in exec.
-  /// `count_faults`: loop::count_faults(); it gets the name of the file.
+  /// Returns 0 after SIGTERM or SIGINT, 1 if it could not start, with a log entry. Otherwise it ends in exec.
+  /// `count_faults`: loop::count_faults(), with the file's name.
   int run(void (*count_faults)(const char* file) noexcept);
 
  private:
@@ -37,7 +37,7 @@ class Service {
   std::expected<bool, std::string> run(Gateway& gateway, const settings::Settings& settings);
   std::expected<void, std::string> take_over_sockets();
   std::string finish_taking_over();
-  /// Has a byte for each fault.
+  /// One byte per fault.
   std::string faults_file() const;
   std::string put_queue_aside();
   [[noreturn]] void start_again(const std::string& trouble);
@@ -49,10 +49,10 @@ class Service {
   admin::TakingOver taking_over_;
   ListenSockets sockets_;
   loop::Loop loop_;
-  loop::FileDescriptor announced_;  // to adit-panel, until its lights are opened
-  Gateway* running_ = nullptr;      // signals come while the loop runs, and so does it
-  std::string trouble_;             // a sentence about the last change
-  std::chrono::seconds file_rest_;  // if a file cannot be read; then that of the next start
+  loop::FileDescriptor announced_;  // to adit-panel, until the lights are opened
+  Gateway* running_ = nullptr;      // valid while the loop runs
+  std::string trouble_;             // about the last change
+  std::chrono::seconds file_rest_;  // for unreadable files
 };
 
 }  // namespace adit::gateway

@@ -12,7 +12,7 @@ namespace {
 
 using panel::Button;
 
-constexpr std::chrono::seconds kAgain{2};  // it is looked at where it could not be read
+constexpr std::chrono::seconds kAgain{2};  // to the next try after a failed read
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void ButtonWatch::take(std::unique_ptr<panel::ButtonLine> line) {
   look();
 }
 
-/// The line is looked at also when time alone calls: what it says by now may not have been told yet.
+/// Reads the line at each timer event, because its last change may not have been reported yet.
 void ButtonWatch::look() {
   const auto level = line_->pressed();
   if (!level) return lose(level.error());
@@ -62,7 +62,7 @@ void ButtonWatch::begin(bool pressed) {
   if (pressed) host::log(host::Level::Warning, "button is pressed at the start: release it before use");
 }
 
-/// Without it the page does all that the button does, but for the forgotten password.
+/// The page can replace the button, except for a forgotten password.
 void ButtonWatch::lose(const std::string& why) {
   due_.call_at(loop_.now() + kAgain);
   if (std::exchange(button_, std::nullopt)) show();

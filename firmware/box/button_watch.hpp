@@ -12,17 +12,17 @@
 
 namespace adit::box {
 
-/// Watches the button on the loop, and shows while it is held what letting go would do. Where it cannot be
-/// read, what was pressed comes to nothing, and it is looked at again: as at the start, a button that is
-/// pressed then is none until it was let go.
+/// Watches the button on the loop and shows the effect of a release while it is held. If the line cannot be
+/// read, the press is cancelled and the line is tried again. A button that is pressed then, or at the start,
+/// counts from its next press.
 class ButtonWatch {
  public:
-  /// `line` may be null: there is no button. `lights` outlives this. A press that has ended is told by
-  /// `pressed`, which may not destroy this.
+  /// A null `line`: no button. `lights` outlives this. `pressed` is called when a press ends, and must not
+  /// destroy this.
   ButtonWatch(loop::Loop& loop, std::unique_ptr<panel::ButtonLine> line, Lights& lights,
               std::function<void(panel::Press)> pressed);
 
-  /// Lets go of the line: another, which may be the same, is taken next.
+  /// Releases the line, before take() with another or the same.
   void let_go();
   void take(std::unique_ptr<panel::ButtonLine> line);
 
@@ -36,8 +36,8 @@ class ButtonWatch {
   std::unique_ptr<panel::ButtonLine> line_;
   Lights& lights_;
   std::function<void(panel::Press)> pressed_;
-  std::optional<panel::Button> button_;  // nothing: there is none, or it cannot be read
-  bool is_lost_ = false;                 // which was logged
+  std::optional<panel::Button> button_;  // nullopt: no button, or not readable
+  bool is_lost_ = false;                 // and logged
   loop::Source edges_, due_;             // after line_: ended before its descriptor is closed
 };
 

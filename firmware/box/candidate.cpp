@@ -18,7 +18,7 @@ void put(const Endpoint& typed, settings::Address& address) {
   address.port = typed->port.value_or(address.port);
 }
 
-/// Errors of the settings, by the names that the candidate has for them.
+/// Names errors by the candidate's members.
 icd::Refusal unfit(std::vector<settings::Error> errors) {
   constexpr std::string_view kOwn = "command_post.";
   for (settings::Error& error : errors) {
@@ -41,10 +41,10 @@ icd::Checked<Tried> tried_of(const api::Candidate& candidate, const settings::Se
                              const host::Secrets& secrets) {
   settings::Settings next = written;
   if (candidate.course) next.command_post.course = *candidate.course;
-  const auto known = settings::parse(settings::value_of(next));  // is there such a course?
+  const auto known = settings::parse(settings::value_of(next));  // checks the course
   if (!known) return std::unexpected(unfit(known.error()));
   const settings::Settings in_use = settings::in_use(*known);
-  // As if they were typed where no course is in use, which then would count instead:
+  // Clears the course, which would replace these addresses.
   next.command_post = in_use.command_post;
   put(candidate.scoring, next.command_post.scoring);
   put(candidate.mapping, next.command_post.mapping);

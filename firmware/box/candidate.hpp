@@ -10,15 +10,15 @@
 
 namespace adit::box {
 
-/// What a Test asks, and with which tokens.
+/// Endpoints and tokens of a Test.
 struct Tried {
-  settings::CommandPost post;  // with the addresses to ask; `course`: whose they are
+  settings::CommandPost post;  // addresses to test, and their course
   std::optional<icd::BearerToken> scoring, mapping;
-  icd::Redaction typed = icd::Redaction();  // the tokens of these that are kept nowhere
+  icd::Redaction typed = icd::Redaction();  // tokens that are not stored
 };
 
-/// What a candidate comes to beside the settings as they are written, which have to be right with it as if it
-/// were saved. Refused with 422, each error by the candidate's member: "scoring.address: ...".
+/// The written settings with the candidate, checked as if it were saved. Refused with 422 by the candidate's
+/// members: "scoring.address: ...".
 icd::Checked<Tried> tried_of(const api::Candidate& candidate, const settings::Settings& written,
                              const host::Secrets& secrets);
 

@@ -96,7 +96,7 @@ void Lights::log_trouble() {
 void Lights::wake_for_what_is_next(const panel::Frame& frame) {
   std::optional<loop::Instant> next = painter_.next();
   const auto no_later_than = [&next](loop::Instant when) { next = std::min(when, next.value_or(when)); };
-  // A millisecond more: what is left of one was cut off.
+  // One more millisecond, because durations are rounded down.
   if (frame.lasts) no_later_than(loop_.now() + *frame.lasts + Milliseconds(1));
   for (const auto& end : until_) {
     if (end) no_later_than(*end);

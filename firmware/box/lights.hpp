@@ -13,29 +13,28 @@
 
 namespace adit::box {
 
-/// Shows states on the panel: patterns, and what is set again (panel::Painter), are timed by the loop.
+/// Shows states on the panel. The loop times patterns and repetitions (panel::Painter).
 class Lights {
  public:
   Lights(loop::Loop& loop, std::unique_ptr<panel::Lines> lines);
 
-  /// Lets go of the lines: others, which may be the same, are taken next.
+  /// Releases the lines, before take() with others or the same.
   void let_go();
   void take(std::unique_ptr<panel::Lines> lines);
 
   /// Call once a second: sets watched lines again, which shows their holder that the loop turns.
   void beat();
 
-  /// Asserts or clears a state.
   void set(panel::State state, bool asserted);
-  /// Asserts it for so long from now on.
+  /// For `length` from now on.
   void set_for(panel::State state, loop::Duration length);
-  /// Asserts panel::State::Address while these steps are played, once.
+  /// Asserts panel::State::Address while the steps play once.
   void play_digits(std::vector<panel::Step> steps);
   bool has(panel::State state) const { return states_.has(state); }
-  /// For how much longer set_for() asserts it; nothing: it does not.
+  /// Remaining time of set_for(), or nullopt.
   std::optional<loop::Duration> left(panel::State state) const;
   const panel::Lights& shown() const { return shown_; }
-  /// Why the panel may show something else; or "".
+  /// Why the panel may differ, or "".
   const std::string& trouble() const { return painter_.trouble(); }
 
  private:
@@ -53,7 +52,7 @@ class Lights {
   loop::Instant began_, digits_began_;
   loop::Source tick_;
   panel::States states_;
-  std::array<std::optional<loop::Instant>, panel::kStates> until_;  // of those that end by themselves
+  std::array<std::optional<loop::Instant>, panel::kStates> until_;  // ends of timed states
   std::vector<panel::Step> digits_;
   panel::Lights shown_{};
 };

@@ -13,24 +13,23 @@
 
 namespace adit::box {
 
-/// The two cables: looked at as soon as the kernel tells of a change, so that one that is out is shown, and
-/// what waited for it goes on as soon as it is back.
+/// The two cables. The kernel reports changes, so that the page shows them and retries start at once.
 class Links {
  public:
   using Look = std::function<std::optional<bool>(const std::string& interface)>;
 
-  /// `changed` is called as a cable comes or goes, `back` after it where the Command Post's came.
-  /// `look`: host::carrier(). `kernel`: host::link_changes(), or none.
+  /// `changed`: a cable came or went. `back`: after it, if the Command Post's came. `look`: host::carrier().
+  /// `kernel`: host::link_changes(), or empty.
   Links(loop::Loop& loop, const settings::Settings& settings, Look look, loop::FileDescriptor kernel,
         std::function<void()> changed, std::function<void()> back);
 
-  /// To be called each second: the kernel may have told of nothing.
+  /// Call once a second, because the kernel may miss a change.
   void look();
 
-  /// The settings may name others from now on.
+  /// Takes the interfaces of changed settings.
   void look_at(const settings::Settings& settings);
 
-  /// The team's, then the Command Post's; without one whose interface the settings do not name.
+  /// The team's, then the Command Post's, without unnamed interfaces.
   std::vector<api::LinkRow> rows() const;
 
  private:

@@ -5,8 +5,8 @@
 
 namespace adit::box {
 
-/// What root's programs have to tell the box's operator, a sentence a file of this folder; by the files'
-/// names. A folder that is not there, or cannot be read, has none.
+/// Sentences of root's programs for the operator, one per file in `folder`, by file name. Empty if the
+/// directory is absent or unreadable.
 std::map<std::string, std::string> read_notices(const std::string& folder);
 
 }  // namespace adit::box

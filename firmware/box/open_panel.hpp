@@ -8,21 +8,21 @@
 
 namespace adit::box {
 
-/// What the board's file says.
+/// Contents of the board's file.
 struct KnownBoard {
-  settings::Board board;  // empty where there is none
-  std::string trouble;    // why it does not count; or ""
+  settings::Board board;  // empty without a file
+  std::string trouble;    // why the file is ignored, or ""
 };
-/// `file` may be "", and need not be there.
+/// `file` may be "" or absent.
 KnownBoard read_board(const std::string& file);
 
-/// Where the panel is, other than at the lines of the settings.
+/// The panel's place, if not the lines in the settings.
 struct PanelPlace {
-  std::string socket;  // of adit-panel, which holds the lines; "": nobody does
+  std::string socket;  // adit-panel's socket; "": not used
   std::string folder;  // of a simulated panel
 };
-/// The panel that adit-panel holds. Where nobody does, what this program holds itself, with the file `panel`
-/// of the folder as the simulated one. `announced`: panel::announce(), or empty.
+/// adit-panel's panel, or one that this process holds. The simulated panel is the file `panel` in the folder.
+/// `announced`: panel::announce(), or empty.
 panel::Held open_panel(const settings::Panel& settings, const PanelPlace& place,
                        loop::FileDescriptor announced = {});
 

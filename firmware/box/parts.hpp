@@ -7,7 +7,7 @@
 
 namespace adit::box {
 
-/// The libraries in the program: the version of each as it tells it now, or else as of the build.
+/// Libraries of the program, with versions at run time if known, else of the build.
 std::vector<api::PartRow> parts();
 
 /// "9f1c2ab0d3e4, GNU 12.2.0, Release"

@@ -20,7 +20,7 @@ namespace {
 constexpr const char* kSteps[] = {"link", "address", "cables", "reach", "token", "clock"};
 constexpr int kTooMany = 429;
 
-/// Of an answer to GET /api/status.
+/// From an answer to GET /api/status.
 std::optional<double> run_clock_in(const uplink::Answered& answer) {
   if (answer.status != 200) return std::nullopt;
   const auto status = codec::read_run_status(answer.body);
@@ -100,10 +100,10 @@ void SelfTest::run_step() {
   }
 }
 
-/// On to the next step, in a later turn of the loop.
+/// The next step runs in a later turn of the loop.
 void SelfTest::finish(api::TestStep step) {
   const bool is_bad = step.state == "bad";
-  tried_.typed.strike_from(step.said);  // an answer may echo it
+  tried_.typed.strike_from(step.said);  // an answer may echo tokens
   const std::string said = step.said;
   endpoint().steps[static_cast<std::size_t>(at_)] = std::move(step);
   if (is_bad && at_ != At::Address && at_ != At::Cables && at_ != At::Token)
@@ -136,7 +136,7 @@ void SelfTest::over() {
   changed_();
 }
 
-/// Both endpoints are on the same interface: it is asked about once.
+/// Once for both endpoints, which share the interface.
 void SelfTest::ask_address() {
   if (tested_ > 0 && view_.endpoints.front().steps[1].state != "skipped")
     return finish(view_.endpoints.front().steps[1]);
@@ -201,14 +201,13 @@ void SelfTest::connected(int error, const std::string& why) {
   finish(steps::reach(endpoint().address, error, why));
 }
 
-/// Where the run asks the same of the same endpoint, a turn of its own is taken, so that nothing of the run's
-/// is throttled for this.
+/// At an endpoint of the run this takes one of the run's turns, so that the run is not throttled.
 void SelfTest::ask(std::function<void(uplink::Outcome)> done) {
   if (!is_of_the_run()) return send(std::move(done));
   const auto at = turns_.claim(uri(), loop_.now() + kLongestTurn);
   if (!at) return finish(steps::no_turn(kSteps[static_cast<std::size_t>(at_)]));
   when_due_ = [this, done = std::move(done)] {
-    turns_.claimed(uri());  // now, which may be later than it was to be
+    turns_.claimed(uri());  // at the time of sending, which may be later
     send([this, uri = uri(), done](uplink::Outcome outcome) {
       turns_.claimed(uri);
       done(std::move(outcome));
@@ -236,8 +235,7 @@ void SelfTest::ask_token() {
   ask([this](const uplink::Outcome& outcome) { token_answered(outcome); });
 }
 
-/// Adit itself asks for the run's status, too: asked too often in all, it is asked once more. A redirect to
-/// the path with a slash is followed.
+/// Repeats once after a 429, because Adit requests the status too. Follows a redirect to a slash.
 void SelfTest::token_answered(const uplink::Outcome& outcome) {
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   answered_at_ = loop_.wall_now();

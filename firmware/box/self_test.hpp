@@ -17,29 +17,27 @@
 
 namespace adit::box {
 
-/// The Test, step by step on the loop, on connections of its own: of what is in use, or of what an operator
-/// is about to apply, whose tokens are forgotten once it is over. It asks nothing that changes anything at
-/// the Command Post: the scoring endpoint for the run's status, the mapping endpoint to take `{}` for a
-/// state, which it refuses as it lacks everything (ICD 5.2), but only once it has looked at the token.
+/// The Test, step by step on the loop, on its own connections: of the settings in use, or of a candidate,
+/// whose tokens it forgets at the end. It changes no data at the Command Post. It requests the run's status,
+/// and posts `{}` as a state, which the mapping endpoint rejects (ICD 5.2) after it has checked the token.
 class SelfTest final : public api::SelfTest {
  public:
   static constexpr std::chrono::milliseconds kReachWithin{3000}, kAnswerWithin{5000};
   static constexpr std::chrono::milliseconds kProbeWithin{8000}, kProbePoll{100};
-  /// Between two questions to the scoring endpoint, so that it does not answer 429.
+  /// Between requests to an endpoint, to avoid 429.
   static constexpr std::chrono::milliseconds kAskAgain{1500};
 
-  /// So long a question to an endpoint of the run waits for its turn among the run's own; then it is not
-  /// asked.
+  /// Longest wait for one of the run's turns. After that the step is skipped.
   static constexpr std::chrono::seconds kLongestTurn{40};
 
-  /// How it asks an endpoint that the run uses, too: forward::Flow.
+  /// Turns at the run's endpoints: forward::Flow.
   struct Turns {
     std::function<std::optional<loop::Instant>(icd::Uri uri, loop::Instant latest)> claim;
-    std::function<void(icd::Uri uri)> claimed;  // it leaves; it was answered, or not
+    std::function<void(icd::Uri uri)> claimed;  // at the request, and at its end
   };
 
-  /// `settings`: as they are in use. `tried`: tried_of() beside those that are written. `changed` is called
-  /// as steps end. All outlive this.
+  /// `settings`: in use. `tried`: tried_of() with the written settings. `changed`: after each step. All
+  /// outlive this.
   SelfTest(loop::Loop& loop, const settings::Settings& settings,
            std::function<icd::Checked<Tried>(const api::Candidate&)> tried, Turns turns,
            host::RootProgram<network::Status>& adit_network, const admin::NetworkChange& network,
@@ -47,7 +45,7 @@ class SelfTest final : public api::SelfTest {
 
   api::TestView test() const override { return view_; }
   icd::Checked<void> begin_test(const api::Candidate& candidate) override;
-  /// Call when settings or tokens are applied: the result, or that of the test that runs, is of those before.
+  /// Call when settings or tokens are applied. Marks the present result as outdated.
   void settings_changed() { view_.outdated = view_.number > 0; }
 
  private:
@@ -86,13 +84,13 @@ class SelfTest final : public api::SelfTest {
   const settings::Settings& settings_;
   std::function<icd::Checked<Tried>(const api::Candidate&)> tried_of_;
   Turns turns_;
-  Tried tried_;  // whatever the settings say by now
+  Tried tried_;  // fixed during a test
   std::vector<steps::Asked> asked_;
   host::RootProgram<network::Status>& adit_network_;
   const admin::NetworkChange& network_;
   std::function<void()> changed_;
   api::TestView view_;
-  std::size_t tested_ = 0;  // which endpoint
+  std::size_t tested_ = 0;  // index of the endpoint
   At at_ = At::End;
 
   loop::Source timer_;
@@ -107,7 +105,7 @@ class SelfTest final : public api::SelfTest {
   double answered_at_ = 0;
   std::optional<double> run_clock_;
   bool asked_again_ = false;
-  bool wants_slash_ = false;  // the endpoint, at the end of each path
+  bool wants_slash_ = false;  // at the end of each path
 };
 
 }  // namespace adit::box

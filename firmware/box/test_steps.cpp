@@ -21,10 +21,9 @@ std::string answered(int status, const std::string& body) {
   return icd::sentence("the answer is ", status, ": ", dispatch::said(status, body));
 }
 
-/// The mapping endpoint is asked an empty question, so that what is wrong is the question: it has got past
-/// the token.
+/// An error about the empty request shows that the token passed.
 bool took_the_token(Asked asked, int status, dispatch::Body body) {
-  if (body == dispatch::Body::Other) return false;  // a page is no answer of a Command Post
+  if (body == dispatch::Body::Other) return false;  // not a Command Post's answer
   if (status >= 200 && status < 300) return true;
   return asked == Asked::Mapping && (status == 400 || status == 415 || status == 422);
 }
@@ -182,7 +181,7 @@ TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash) {
 
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {
   if (!date) return skipped("clock", "its answers have no Date");
-  // The Date is a whole second that has begun: anything up to one second later is the same time.
+  // A Date stands for one whole second.
   const double there = static_cast<double>(date->time_since_epoch().count());
   const double ahead = now < there ? now - there : now > there + 1 ? now - there - 1 : 0;
   if (std::abs(ahead) <= static_cast<double>(kOff.count())) {

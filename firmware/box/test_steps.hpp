@@ -10,47 +10,44 @@
 #include "settings/settings.hpp"
 #include "uplink/connection.hpp"
 
-/// What each step of the Test makes of what was found: its state, what was found in words, and what to do
-/// about it.
+/// Results of the Test's steps: a state, the finding in words, and advice.
 namespace adit::box::steps {
 
 using api::TestStep;
 
-/// The kinds of endpoint, which are asked differently.
 enum class Asked : std::uint8_t { Scoring, Mapping };
 const char* name_of(Asked asked);
 const settings::Address& address_in(const settings::CommandPost& post, Asked asked);
 
-/// `carrier` as host::carrier() tells it; "" as `interface`: none is set.
+/// `carrier`: host::carrier(). `interface` "": not set.
 TestStep link(const std::string& interface, std::optional<bool> carrier);
 
-/// `own`: the interface's address; `probed`: what adit-network heard; `not_asked`: why it was not asked.
+/// `own`: the interface's address; `probed`: adit-network's finding; `not_asked`: why it has none.
 TestStep address(const std::string& interface, const std::optional<settings::Subnet>& own,
                  const std::optional<network::Probed>& probed, const std::string& not_asked);
 
-/// Whether the Command Post is at its own port, or at the team's: by who answers for `sought`, the endpoint
-/// or the gateway to it.
+/// Whether the Command Post is at its own port or at the team's, by the port that finds `sought`, its
+/// endpoint or gateway.
 TestStep cables(const std::string& interface, const std::string& team, const std::string& sought,
                 const std::optional<network::Probed>& probed);
 
-/// How connecting ended: 0 or an errno, and why in words.
+/// `error`: 0 or an errno; `why`: in words.
 TestStep reach(const std::string& at, int error, const std::string& why);
 
-/// Of the answer to a question that changes nothing; `slash`: it was asked with a slash at the end of its
-/// path, because the endpoint redirects there.
+/// `slash`: the endpoint redirected to a slash at the end of the path.
 TestStep token(Asked asked, const uplink::Outcome& outcome, bool slash = false);
 TestStep no_token(Asked asked);
-/// It was not asked: the run asks as often as the endpoint lets itself be asked.
+/// The run uses all requests that the endpoint allows.
 TestStep no_turn(const std::string& name);
 
-/// By the Date of an answer; `now`: seconds since 1970 on the box's clock.
+/// By an answer's Date; `now`: the box's time of day.
 TestStep clock(std::optional<std::chrono::sys_seconds> date, double now);
-/// Where answers have no Date: the run clock, in seconds, asked for twice, so long apart.
+/// Without Date: by two readings of the run clock, in seconds.
 TestStep run_clock(std::optional<double> first, std::optional<double> second);
 
 TestStep skipped(const std::string& name, const std::string& why);
 
-/// A clock that is off by more is told.
+/// Largest difference that passes.
 inline constexpr std::chrono::seconds kOff{2};
 
 }  // namespace adit::box::steps

@@ -92,7 +92,7 @@ api::NetworkState ThisBox::network() const {
 
 void ThisBox::work(std::function<void()> work, std::function<void()> done) {
   workers_.submit(loop::Urgency::CanWait, std::move(work), std::move(done),
-                  [] {});  // who waits for it is told by being dropped
+                  [] {});  // waiting objects are destroyed unanswered
 }
 
 }  // namespace adit::box

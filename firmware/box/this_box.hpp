@@ -10,10 +10,10 @@
 
 namespace adit::box {
 
-/// What the page tells of the box: asked of the kernel, the logger and the libraries.
+/// The page's facts about the box, from the kernel, the logger and the libraries.
 class ThisBox final : public api::Box {
  public:
-  /// `add_to` adds what the gateway itself counts. `loop` and `workers` outlive this.
+  /// `add_to` adds the gateway's counts. `loop` and `workers` outlive this.
   ThisBox(const loop::Loop& loop, loop::Workers& workers, settings::Board board, std::string settings,
           std::function<void(api::Usage&)> add_to);
 
@@ -27,7 +27,7 @@ class ThisBox final : public api::Box {
   void work(std::function<void()> work, std::function<void()> done) override;
 
  private:
-  /// Of the process, of which the gateway may not be the first; by the clock as it is set now.
+  /// Of the process, by the present time of day. The process may have had earlier gateways.
   api::Time started() const;
 
   const loop::Loop& loop_;

@@ -61,7 +61,7 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
     whole->data.compression = icd::Compression::Gzip;
   }
   const double unit = unit_of(waiting.precision);
-  if (unit == 0) packed.effort = pack::effort_for(*whole, packing.hurry);  // only Full rounds
+  packed.effort = pack::effort_for(*whole, unit > 0 ? pack::Hurry{} : packing.hurry);  // only Full rounds
   packed.expected = pack::seconds_for(packed.effort, *whole);
   icd::MapUpdate map = *std::move(whole);
   if (map.is_grid()) {

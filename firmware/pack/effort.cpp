@@ -42,12 +42,11 @@ double tried(const icd::ChunkedBytes& points) {
   return member ? static_cast<double>(member->size()) / static_cast<double>(some.size()) : 1;
 }
 
-/// True if the cells are too many to be held in memory. Measured: a byte of a stored cave holds 35 to 220
-/// cells, but only 2 to 20 if libdeflate can make it much smaller.
+/// True if the cells are not worth their memory. Measured: a byte of a stored cave holds 35 to 220 cells, but
+/// only 2 to 20 if libdeflate can make it much smaller.
 bool is_left(const icd::MapData& cells) {
-  constexpr std::size_t kMany = std::size_t{16} << 20, kMost = std::size_t{40} << 20, kPerByte = 40;
-  return cells.raw_size > kMost ||
-         (cells.raw_size > kMany && cells.bytes.size() <= cells.raw_size / kPerByte);
+  constexpr std::size_t kMany = std::size_t{16} << 20, kPerByte = 40;
+  return cells.raw_size > kMany && cells.bytes.size() <= cells.raw_size / kPerByte;
 }
 
 Effort for_cells(const icd::MapUpdate& grid, const Hurry& hurry) {
@@ -86,6 +85,7 @@ Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
 
 /// If even a cloud that Quick shrinks to nothing is best sent uncompressed, no sample is tried.
 Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
+  if (map.data.raw_size > kMostPacked) return Effort::None;
   if (map.is_grid()) return for_cells(map, hurry);
   const std::size_t size = map.data.bytes.size();
   if (hurry.bytes_per_second == 0) return Effort::Full;

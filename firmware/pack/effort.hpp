@@ -26,6 +26,10 @@ struct Hurry {
 inline constexpr double kSecondsPerByte[] = {0, 7e-9, 15e-9};
 inline constexpr double kFullOfQuick = 0.85;
 
+/// A map with more bytes of points or cells is not packed (Effort::None), because packing holds it up to
+/// twice in memory beside its file.
+inline constexpr std::size_t kMostPacked = std::size_t{40} << 20;
+
 /// libdeflate's levels for cells. The next higher level takes 9 MiB of memory; a lower one is hardly faster.
 inline constexpr int kCellsLevel = 9, kQuickCellsLevel = 2;
 
@@ -34,11 +38,12 @@ inline constexpr int kCellsLevel = 9, kQuickCellsLevel = 2;
 /// because larger messages delay others.
 Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry);
 
-/// The same for an exact, uncompressed cloud. Compresses a sample if the result can matter.
+/// The same for an uncompressed cloud, or None for more than kMostPacked. Compresses a sample if the result
+/// can matter.
 ///
 /// For a stored grid: the greatest effort that takes at most half of `longest`, half a second, and the time
-/// in which the grid as stored is sent. None for more than 40 MiB of cells, because all cells are in memory
-/// meanwhile. Also None for more than 16 MiB of cells if the stored form has at most one byte per 40 cells.
+/// in which the grid as stored is sent. None for more than kMostPacked. Also None for more than 16 MiB of
+/// cells if the stored form has at most one byte per 40 cells.
 Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry);
 
 /// Seconds to pack `map` (uncompressed points or stored cells) on the box of tests/bench/README.md: typical

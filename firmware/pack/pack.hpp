@@ -11,7 +11,7 @@ namespace adit::pack {
 struct CloudForm {
   bool is_arranged = true;       // its padding is dropped and its points are reordered
   double unit = 0;               // metres; if it is arranged, coordinates are rounded to this; 0: no rounding
-  Effort effort = Effort::Full;  // if nothing is rounded
+  Effort effort = Effort::Full;  // with another effort, nothing is rounded
 };
 /// The units in use.
 inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
@@ -19,8 +19,8 @@ inline constexpr double kMillimetre = 0x1p-10, kEightMillimetres = 0x1p-7;
 /// Makes an uncompressed cloud as small as `form` allows, ready to be written. Points that are not finite are
 /// dropped, because clouds are dense (ICD 6.3.2). Otherwise only rounding loses anything; it changes the
 /// cloud's origin (rounding.hpp). The points are gzipped if that makes them smaller; if not, they keep their
-/// order. A compressed cloud is returned unchanged. Takes one and a half times the memory of the cloud, and
-/// time by its size, so call it on a worker.
+/// order. A compressed cloud is returned unchanged. Takes memory of up to twice the cloud's size, or three
+/// times if points are dropped, and time by its size, so call it on a worker.
 icd::MapUpdate pack(icd::MapUpdate map, const CloudForm& form = {});
 
 /// `data` without the points whose x, y or z is not finite. `data` must be uncompressed.

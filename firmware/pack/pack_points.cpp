@@ -11,14 +11,14 @@
 namespace adit::pack {
 
 void pack_points(icd::PointCloud2& cloud, icd::MapData& data, const CloudForm& form) {
-  const Effort effort = form.unit > 0 ? Effort::Full : form.effort;
-  if (data.bytes.empty() || effort == Effort::None) return;
+  if (data.bytes.empty() || form.effort == Effort::None) return;
+  const bool is_full = form.effort == Effort::Full;
   const auto tight = form.is_arranged ? without_padding(cloud) : std::nullopt;
   const PointLayout layout = tight ? *tight : unchanged(cloud);
   Arranged arranged = in_one_piece(layout, data, cloud.point_step);
-  if (tight && form.unit > 0) round_to(form.unit, arranged);
-  if (tight && effort == Effort::Full) put_in_order(arranged);
-  const int level = effort == Effort::Full ? kPointsLevel : codec::kFastestLevel;
+  if (tight && is_full && form.unit > 0) round_to(form.unit, arranged);
+  if (tight && is_full) put_in_order(arranged);
+  const int level = is_full ? kPointsLevel : codec::kFastestLevel;
   auto member = codec::gzip_whole(arranged.points, level, arranged.points.size() - 1);
   if (!member && layout.cloud == cloud) return;
   if (!member) arranged = in_one_piece(layout, data, cloud.point_step);  // exact and in their order

@@ -116,5 +116,20 @@ TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
       << "which gzip does not make smaller";
 }
 
+TEST(PackedCloud, IsAsItCameIfPackingWouldTakeTooMuchMemory) {
+  constexpr std::size_t kMost = pack::kMostPacked / 12;
+  for (const auto precision : {lanes::Precision::Exact, lanes::Precision::Millimetre}) {
+    lanes::WaitingMap waiting = cloud_at(5, 2000, precision);
+    const auto is_packed = [&](std::size_t points) {
+      waiting.map.data = cloud_along_x("r1", std::vector<float>(points)).data;
+      const Packed map = packed(waiting);
+      EXPECT_EQ(map.effort == pack::Effort::None, map.body.size() > waiting.map.data.raw_size);
+      return map.effort == pack::Effort::Full;
+    };
+    EXPECT_TRUE(is_packed(kMost));
+    EXPECT_FALSE(is_packed(kMost + 1));
+  }
+}
+
 }  // namespace
 }  // namespace adit::forward

@@ -120,6 +120,16 @@ TEST(Effort, IsNoneForNoPoints) {
   EXPECT_NO_FATAL_FAILURE((void)effort_for(update_of(icd::xyz(), Bytes(12)), {1, 1, 100}));
 }
 
+TEST(Effort, IsNoneForMoreThanIsPacked) {
+  icd::MapUpdate cloud = update_of(icd::xyz(), {});
+  const auto effort = [&](std::size_t size) {
+    cloud.data.raw_size = size;
+    return effort_for(cloud, {});
+  };
+  EXPECT_EQ(effort(kMostPacked), Effort::Full);
+  EXPECT_EQ(effort(kMostPacked + 1), Effort::None);
+}
+
 struct GridRow {
   const char* what;
   double megacells, kept_megabytes;

@@ -203,6 +203,12 @@ TEST(RoundingOf, IsPartOfTheArrangement) {
   EXPECT_EQ(pack(map, {.is_arranged = false, .unit = kMillimetre}), pack(map, {.is_arranged = false}));
 }
 
+TEST(RoundingOf, IsForFullEffortAlone) {
+  const icd::MapUpdate map = tunnel(xyz_and_number(icd::Datatype::Float32));
+  for (const Effort effort : {Effort::None, Effort::Quick})
+    EXPECT_EQ(pack(map, {.unit = kMillimetre, .effort = effort}), pack(map, {.effort = effort}));
+}
+
 TEST(RoundingOf, RecordedCloudsIsWithinItsBound) {
   const auto clouds = recorded_clouds();
   if (clouds.empty()) GTEST_SKIP() << "ADIT_MAPS names no folder of recorded maps";

@@ -51,7 +51,7 @@ Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Requ
     : authority_(authority_of(endpoint)),
       request_(std::move(request)),
       head_(head_of(authority_, token, request_)),
-      paced_(endpoint.bytes_per_second > 0),
+      bytes_per_second_(endpoint.bytes_per_second),
       total_(head_.size() + request_.body.size()),
       may_go_(request_.last_byte_not_before == loop::Instant{}
                   ? total_
@@ -80,7 +80,8 @@ int Exchange::write(int fd) {
     pieces[count++] = piece(chunks[i]->data() + skip, chunks[i]->size() - skip);
   }
   const std::span<iovec> may_go = first_of(std::span(pieces).first(count), may_go_ - sent_);
-  const auto taken = paced_ ? write_evenly(fd, may_go) : uplink::write(fd, may_go);
+  const auto taken =
+      bytes_per_second_ > 0 ? write_evenly(fd, may_go, bytes_per_second_) : uplink::write(fd, may_go);
   if (taken) {
     advance(*taken);
     return 0;

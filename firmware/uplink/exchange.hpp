@@ -80,7 +80,7 @@ class Exchange {
   std::string authority_;
   Request request_;
   std::string head_;
-  bool paced_ = false;
+  std::uint64_t bytes_per_second_ = 0;  // 0: not paced
   std::size_t total_ = 0;
   std::size_t may_go_ = 0;  // bytes of total_; the rest is held back
   std::size_t sent_ = 0;

@@ -30,8 +30,10 @@ constexpr std::uint64_t kMostUnsentPaced = 256 * 1024;
 /// For a paced connection: bytes unsent and in flight.
 constexpr int kPacedSendBuffer = 512 * 1024;
 
-/// Two full Ethernet segments. MSG_EOR keeps each burst separate. All bursts of one call are about 180 kB.
-constexpr std::size_t kBurst = 2 * 1448, kMostBursts = 64;
+/// A burst has at least two full Ethernet segments. MSG_EOR keeps each burst separate. All bursts of one call
+/// are at least about 180 kB. Small bursts take 1 ms of CPU time for each MB.
+constexpr std::uint64_t kLeastBurst = 2 * 1448, kMostBurst = 65536, kBurstsPerSecond = 5000;
+constexpr std::size_t kMostBursts = 64;
 
 /// The kernel's times have the resolution of its tick: 10 ms if CONFIG_HZ is 100.
 constexpr std::chrono::milliseconds kTick{10};
@@ -125,14 +127,16 @@ std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces) {
   return std::unexpected(errno);
 }
 
-std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces) {
+std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces,
+                                             std::uint64_t bytes_per_second) {
+  const std::size_t burst = std::clamp(bytes_per_second / kBurstsPerSecond, kLeastBurst, kMostBurst);
   std::array<iovec, kMostBursts> parts{};
   std::array<mmsghdr, kMostBursts> messages{};
   unsigned count = 0;
   for (const iovec& piece : pieces) {
-    for (std::size_t from = 0; from < piece.iov_len && count < kMostBursts; from += kBurst, ++count) {
+    for (std::size_t from = 0; from < piece.iov_len && count < kMostBursts; from += burst, ++count) {
       parts[count] = {.iov_base = static_cast<char*>(piece.iov_base) + from,
-                      .iov_len = std::min(kBurst, piece.iov_len - from)};
+                      .iov_len = std::min(burst, piece.iov_len - from)};
       messages[count].msg_hdr.msg_iov = &parts[count];
       messages[count].msg_hdr.msg_iovlen = 1;
     }

@@ -31,10 +31,12 @@ std::expected<loop::FileDescriptor, NoSocket> begin_connect(const Endpoint& endp
 /// no room now).
 std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces);
 
-/// As write(), but the kernel sends at most two full segments at once, at the socket's pace
-/// (SO_MAX_PACING_RATE). Otherwise it sends up to 64 KB at once if the round trip is short
-/// (net.ipv4.tcp_tso_rtt_log), and a report on the same link waits 5 ms behind them at 100 Mbit/s.
-std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces);
+/// As write(), but the kernel sends at the socket's pace (SO_MAX_PACING_RATE) at most two full segments at
+/// once, or what a faster pace of `bytes_per_second` sends within 0.2 ms. Otherwise it sends up to 64 KB at
+/// once if the round trip is short (net.ipv4.tcp_tso_rtt_log), and a report on the same link waits 5 ms
+/// behind them at 100 Mbit/s.
+std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces,
+                                             std::uint64_t bytes_per_second);
 
 /// Reads into `bytes`. Returns the number of bytes, 0 after the peer has closed its direction, or an errno
 /// (EAGAIN: no bytes yet).

@@ -45,7 +45,7 @@ std::expected<std::size_t, int> write(int fd, std::span<const iovec> pieces) {
   return taken;
 }
 
-std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces) {
+std::expected<std::size_t, int> write_evenly(int fd, std::span<const iovec> pieces, std::uint64_t) {
   return write(fd, pieces);
 }
 

@@ -1,9 +1,13 @@
 #include "uplink/socket.hpp"
 
 #include <gmock/gmock.h>
+#include <linux/tcp.h>
 #include <netinet/in.h>
-#include <netinet/tcp.h>
+#include <poll.h>
 #include <sys/socket.h>
+#include <unistd.h>
+
+#include <array>
 
 #include "peer.hpp"
 
@@ -32,6 +36,23 @@ TEST(Socket, SendsAtOnceAndNoticesADeadPeer) {
   EXPECT_EQ(option<int>(fd, IPPROTO_TCP, TCP_KEEPIDLE), 5);
   give_up_after(fd.get(), std::chrono::milliseconds(1234));
   EXPECT_EQ(option<int>(fd, IPPROTO_TCP, TCP_USER_TIMEOUT), 1234);
+}
+
+TEST(Socket, SendsLargerBurstsAtAFasterPace) {
+  const ListeningPeer peer([](Wire& wire) { wire.wait_for_close(); });
+  std::array<char, 20 * 2896> bytes{};
+  const iovec piece{bytes.data(), bytes.size()};
+  const auto segments = [&](std::uint64_t bytes_per_second) {
+    const auto fd = socket_of(peer.endpoint());
+    pollfd writable{.fd = fd.get(), .events = POLLOUT, .revents = 0};
+    EXPECT_EQ(::poll(&writable, 1, 10'000), 1);
+    EXPECT_EQ(write_evenly(fd.get(), {&piece, 1}, bytes_per_second), bytes.size());
+    for (int i = 0; i < 10'000 && unacknowledged_bytes(fd.get()) > 0; ++i) ::usleep(1000);
+    return option<tcp_info>(fd, IPPROTO_TCP, TCP_INFO).tcpi_data_segs_out;
+  };
+  EXPECT_EQ(segments(11'800'000), 20);
+  EXPECT_LE(segments(118'000'000), 5);
+  EXPECT_LE(segments(11'800'000'000), 2);
 }
 
 TEST(Socket, IsPacedByTheKernelWhereAPaceIsAskedFor) {

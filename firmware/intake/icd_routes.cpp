@@ -93,7 +93,8 @@ IcdRoutes::IcdRoutes(IcdOptions options, Desk& desk, loop::Workers& workers, Han
       desk_(desk),
       workers_(workers),
       other_(other),
-      budget_(std::make_shared<UploadBudget>(options_.upload_bytes)),
+      maps_(std::make_shared<UploadBudget>(options_.upload_bytes)),
+      markers_(std::make_shared<UploadBudget>(options_.marker_bytes)),
       small_(std::make_shared<UploadBudget>(options_.small_bytes)),
       without_room_(std::make_shared<UploadBudget>(MapUpload::kWithoutRoom)) {}
 
@@ -190,7 +191,7 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
     return nullptr;
   }
   if (visit.uri == icd::Uri::MarkersUpdate) {
-    return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, budget_,
+    return std::make_unique<MarkersUpload>(std::move(visit), *kind, options_.rules, workers_, markers_,
                                            large_markers_, under_way_);
   }
   if (visit.uri != icd::Uri::MapUpdate) {
@@ -200,7 +201,7 @@ std::unique_ptr<BodySink> IcdRoutes::take_in(Visit visit, const RequestHead& hea
       std::move(visit),
       MapUploadOptions{
           .kind = *kind, .rules = options_.rules, .most_bytes = most, .without_room = without_room_},
-      std::move(flow), workers_, budget_, under_way_);
+      std::move(flow), workers_, maps_, under_way_);
 }
 
 void IcdRoutes::stop() {

@@ -27,8 +27,10 @@ struct IcdOptions {
   bool asks_token = true;  // true: a client must show a token; if `tokens` is empty, each client gets 401
   std::vector<std::string> origins;  // their pages need no token if clients need no token
   icd::Rules rules;
-  std::size_t upload_bytes = 512u << 20;  // limit for all arriving maps and markers together: UploadBudget
-  std::size_t small_bytes = 32u << 20;    // limit for all arriving states and reports together
+  // Limits for all arriving messages together: UploadBudget. Maps are in files, the others in memory.
+  std::size_t upload_bytes = 512u << 20;  // maps
+  std::size_t marker_bytes = 64u << 20;   // markers
+  std::size_t small_bytes = 32u << 20;    // states and reports
 };
 
 /// Serves the ICD's five URIs to the team: checks tokens, methods and content types, handles CORS, decodes
@@ -50,7 +52,7 @@ class IcdRoutes final : public Handler {
   std::unique_ptr<BodySink> open(const RequestHead& head, std::shared_ptr<Responder> responder,
                                  std::shared_ptr<Flow> flow) override;
 
-  /// Sets the options for new requests. `upload_bytes` and `small_bytes` do not change.
+  /// Sets the options for new requests. `upload_bytes`, `marker_bytes` and `small_bytes` do not change.
   void serve_with(IcdOptions options) { options_ = std::move(options); }
 
   /// Accepts no more messages: clients that are sending one, or send a map, a state or markers later, get
@@ -71,7 +73,8 @@ class IcdRoutes final : public Handler {
   Desk& desk_;
   loop::Workers& workers_;
   Handler& other_;
-  std::shared_ptr<UploadBudget> budget_;
+  std::shared_ptr<UploadBudget> maps_;
+  std::shared_ptr<UploadBudget> markers_;
   std::shared_ptr<UploadBudget> small_;         // for states and reports
   std::shared_ptr<UploadBudget> without_room_;  // for maps that cannot be stored
   std::shared_ptr<OneAtATime> large_markers_ = std::make_shared<OneAtATime>();

@@ -196,7 +196,7 @@ TEST(MarkersUpload, WaitsWhileAnotherIsRead) {
 
 TEST(MarkersUpload, IsRefusedOverTheBudgetOfAll) {
   IcdOptions options = Team::with_tokens();
-  options.upload_bytes = 1'000'000;
+  options.marker_bytes = 1'000'000;
   Team team(options);
   const std::string body = message_of(50'000);
   for (int again = 0; again < 2; ++again) {

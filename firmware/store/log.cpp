@@ -17,7 +17,7 @@ constexpr std::size_t kPiece = 256u << 10;  // bytes of zeros for one sync, so t
 /// Writes `size` zeros to a new file and syncs them. Returns 0 or errno. Checks the free space first, so that
 /// it does not fill the disk.
 int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
-  struct statvfs disk {};
+  struct statvfs disk{};
   if (::fstatvfs(fd, &disk) == 0 && std::uint64_t{disk.f_bavail} * disk.f_frsize < size) return ENOSPC;
   const std::string zeros(std::min(size, kPiece), '\0');
   for (std::size_t at = 0; at < size; at += zeros.size()) {

@@ -176,6 +176,7 @@ void Box::one_life() {
     world_.disk().mount(folder_);
   }
   world_.end_life();
+  if (boots_) starts_again_ = false;  // the power was cut within exec
   if (starts_again_) return;
   const auto& [least, most] = std::exchange(boots_, false) ? kBoot : kRestart;
   if (!finished_) world_.run_for(seconds(random_.between(least, most)));

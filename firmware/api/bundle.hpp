@@ -17,7 +17,8 @@ struct BundleFile {
 /// begins with a line that says so.
 void cut_to(std::vector<BundleFile>& files, std::size_t most);
 
-/// The files as a .tar.gz in directory `folder`, at most kMostBundle bytes. Slow: for a worker.
+/// Returns the files as a .tar.gz with the directory `folder`, at most kMostBundle bytes. Call it on a worker
+/// thread, because it is slow.
 inline constexpr std::size_t kMostBundle = 10'000'000;
 std::string write_bundle(std::vector<BundleFile> files, const std::string& folder, Time now);
 

@@ -28,8 +28,8 @@ std::expected<loop::FileDescriptor, std::string> open_plain(const std::string& p
   return file;
 }
 
-/// Makes this user the only one who can open the file. The kernel grants the lease only if no process has the
-/// file open for writing (fcntl(2)).
+/// Gives the file to this user, so that no other user can open it. The kernel grants the lease only if no
+/// process has the file open for writing (fcntl(2)).
 std::expected<void, std::string> make_ours(const loop::FileDescriptor& file, const std::string& name) {
   if (fchown(file.get(), geteuid(), getegid()) != 0 || fchmod(file.get(), S_IRUSR) != 0)
     return std::unexpected(host::trouble(name, errno));

@@ -15,7 +15,7 @@ namespace adit::codec {
 class Base64Decoder {
  public:
   /// Decodes as much of `run` as fits `out` and removes it from `run`. Returns the number of bytes written.
-  /// The error says what is wrong at which character.
+  /// The error names the fault and the position of the character.
   std::expected<std::size_t, std::string> decode(std::string_view& run, std::span<std::uint8_t> out);
 
   /// Fast path for text that may continue after the base64. Decodes whole groups of four valid characters,

@@ -135,7 +135,7 @@ class JsonReader {
     return taken;
   }
 
-  /// What is between the brackets: `each` reads an item, from behind the bracket or the comma.
+  /// Reads the items up to the closing `bracket`. `each` starts after the opening bracket or a comma.
   template <class Each>
   bool items(char bracket, Each each) {
     if (take(bracket)) return true;

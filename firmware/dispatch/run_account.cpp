@@ -59,11 +59,11 @@ const Run* RunAccount::of_name(const std::string& id) const {
 }
 
 const Run* RunAccount::named_before() const {
-  const Run* named = nullptr;
-  for (const auto& [number, run] : runs_.all()) {
-    if (!run.id.empty() && runs_.may_be_present(number)) named = &run;
+  for (const std::int64_t number : runs_.maybe_present()) {
+    const Run* const each = runs_.find(number);
+    if (each != &run() && !each->id.empty()) return each;
   }
-  return named;
+  return nullptr;
 }
 
 /// In one process by the monotonic clock. After a restart by stamps, less the step and the possible lead

@@ -60,8 +60,8 @@ class RunAccount {
   /// Writes a run at `post` that will be the present one, so that a restart finds it. Returns its number.
   std::int64_t announce(const std::string& why, const std::string& post, Time time);
   void take_up(std::int64_t number, std::span<const Report> steps, Time time);
-  /// The present run is `number`, which it may be, and so are the runs between them. `number` becomes the
-  /// present run, with what is known of all of them.
+  /// The present run and the runs between are the same run as `number`. `number` becomes the present run, and
+  /// gets the latest status and clocks of all of them.
   void merge_into(std::int64_t number, std::span<const Report> steps, Time time);
   /// The present run is not `number`, for certain. It may still be a run between the two.
   void is_not(std::int64_t number);

@@ -35,8 +35,8 @@ struct Packing {
 /// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. CPU-bound: call on a worker.
 Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
-/// The map with its cells, stitched from its parts over the ground if necessary. An error says what is wrong
-/// with the data.
+/// The map with its cells, stitched from its parts over the ground if necessary. An error describes the fault
+/// in the data.
 icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting);
 
 }  // namespace adit::forward

@@ -69,7 +69,7 @@ class Gateway final : public api::Source, public api::Operator {
  public:
   Gateway(loop::Loop& loop, Parts parts);
 
-  /// Listens and connects. An error says what failed.
+  /// Listens and connects. An error names the failed step.
   std::expected<void, std::string> start();
   /// Rejects new messages, waits for answers in flight, stores messages, and stops the loop.
   void stop();

@@ -21,8 +21,8 @@ struct Proven {
 /// it was on `trial`.
 Proven proven_now(Proven before, const Running& running, bool trial);
 
-/// A sentence about an unexpected slot that runs, and why. "": the proven slot runs, none is known, or the
-/// running slot is on `trial`.
+/// Returns a sentence with the reason if an unexpected slot runs. "": the proven slot runs or is unknown, or
+/// the running slot is on `trial`.
 std::string stray(const Proven& proven, const Running& running, bool trial);
 /// Why go_back() and stay() are rejected then.
 inline constexpr std::string_view kNoStray = "no unexpected slot is running";

@@ -19,18 +19,14 @@ void Maps::prepare(Place& place) {
   pack(place);
 }
 
-/// Whether its slot was free already when it came. One that has to wait is made smaller meanwhile.
+/// Whether its slot was free already when it came. A grid that has to wait is made smaller meanwhile.
 bool Maps::is_awaited(const lanes::WaitingMap& waiting) const {
   return !channel_.busy() && starts() <= waiting.accepted;
 }
 
-/// A small cloud is packed in a few milliseconds. If others wait, the link is theirs, too.
 Packing Maps::packing_for(const lanes::WaitingMap& waiting) const {
-  constexpr std::size_t kLargeCloud = 256u << 10;  // bytes
   Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
-  const bool may_save_time = waiting.map.is_grid() || (waiting.map.data.raw_size >= kLargeCloud &&
-                                                       lane_.count() == 0 && slot_.is_link_known());
-  if (!may_save_time || !is_awaited(waiting)) packing.hurry.bytes_per_second = 0;
+  if (waiting.map.is_grid() && !is_awaited(waiting)) packing.hurry.bytes_per_second = 1;
   return packing;
 }
 
@@ -63,7 +59,7 @@ void Maps::pack(const Place& prepared) {
         spool_.work_ends();
         if (prepared->damaged.empty()) {
           for (const std::uint64_t number : unread) unread_.erase(number);
-          if (prepared->packed.effort != pack::Effort::None) slot_.packing_took(loop_.now() - began);
+          slot_.packing_took(loop_.now() - began);
         }
         is_packed(prepared);
         pump();
@@ -78,12 +74,10 @@ Maps::Place* Maps::place_of(const Place& prepared) {
   return prepared == following_ ? &following_ : nullptr;
 }
 
-/// A cloud that was packed in a hurry does not say how small clouds become.
 void Maps::learn_from(const Prepared& prepared) {
   const Packed& packed = prepared.packed;
   slot_.worker_took(prepared.packing_took, packed.expected);
-  if (packed.effort == pack::Effort::Full)
-    slot_.packed(packed.points_size, packed.body.size(), packed.precision);
+  slot_.packed(packed.points_size, packed.full_size, packed.precision);
 }
 
 /// The numbers of those maps in `waiting` whose data is still to be checked.

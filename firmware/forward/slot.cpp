@@ -21,7 +21,6 @@ constexpr std::chrono::milliseconds kHeldBack{20};
 
 void Slot::allow(std::uint64_t most) {
   most_ = bytes_per_second_ = static_cast<double>(most);
-  is_link_known_ = false;
 }
 
 /// After eight shorter ones, a third of what is above them is left.
@@ -46,12 +45,14 @@ void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_
   const double seen = std::min(static_cast<double>(bytes) / took, most_);
   const bool was_held_back = sent.last <= last_byte_not_before + kHeldBack;
   bytes_per_second_ = was_held_back ? std::max(seen, bytes_per_second_) : seen;
-  is_link_known_ = is_link_known_ || !was_held_back;
 }
 
-/// A small map, or one that was not packed, says little; and many grids take far less than is expected.
+/// A small map says little, and many grids take far less than is expected. A map that was not compressed
+/// shows nothing: with each of them the box counts as a little less slow, so that a stall is forgotten.
 void Slot::worker_took(loop::Duration took, double expected) {
   constexpr double kLeastExpected = 0.5e-3, kFastest = 0.5, kSlowest = 100;
+  constexpr double kForgets = 1.0 / 32;
+  if (expected == 0 && slowness_ > 1) slowness_ -= (slowness_ - 1) * kForgets;
   if (expected < kLeastExpected) return;
   slowness_ = std::clamp((slowness_ + Seconds(took).count() / expected) / 2, kFastest, kSlowest);
 }

@@ -22,9 +22,10 @@ class Slot {
 
   /// A map was packed, which took so long.
   void packing_took(loop::Duration took);
-  /// So many bytes of a cloud's points were packed to so many, at that precision.
+  /// Effort::Full packs so many bytes of a cloud's points to so many, at that precision.
   void packed(std::size_t points, std::size_t bytes, lanes::Precision precision);
-  /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds.
+  /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds; 0: the map
+  /// was not compressed.
   void worker_took(loop::Duration took, double expected);
   /// So many bytes left, of which the last were held back until then.
   void left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_byte_not_before);
@@ -37,10 +38,9 @@ class Slot {
   loop::Duration lead() const;
   /// How long so many bytes take to leave.
   loop::Duration transfer(std::size_t bytes) const;
-  /// What the effort for a map hangs on that is to leave at once and within `spacing`.
+  /// The conditions that decide the effort for a map, if maps are `spacing` apart. Until a map has shown how
+  /// fast the link is, it is as fast as allow() says.
   pack::Hurry hurry(loop::Duration spacing) const;
-  /// Whether a map has shown how fast the link is; until then it is taken to be as fast as allow() says.
-  bool is_link_known() const { return is_link_known_; }
   /// How many bytes of points, not packed, leave within `spacing`, at each precision: by the last cloud, and
   /// by what rounding makes of clouds.
   lanes::PointsAt points_within(loop::Duration spacing) const;
@@ -48,7 +48,6 @@ class Slot {
  private:
   loop::Duration packing_takes_{0};
   double most_ = 1, bytes_per_second_ = 1;
-  bool is_link_known_ = false;
   double packed_to_ = 1;  // of a byte of a cloud that is exact
   double slowness_ = 1;   // pack::Hurry's
 };

@@ -61,7 +61,8 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
     whole->data.compression = icd::Compression::Gzip;
   }
   const double unit = unit_of(waiting.precision);
-  packed.effort = pack::effort_for(*whole, unit > 0 ? pack::Hurry{} : packing.hurry);  // only Full rounds
+  const pack::Choice choice = unit > 0 ? pack::Choice{} : pack::effort_for(*whole, packing.hurry);  // only Full rounds
+  packed.effort = choice.effort;
   packed.expected = pack::seconds_for(packed.effort, *whole);
   icd::MapUpdate map = *std::move(whole);
   if (map.is_grid()) {
@@ -74,6 +75,9 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
   }
   if (was_rounded(waiting.map, map)) packed.precision = waiting.precision;
   packed.body = codec::write_map_update(map);
+  packed.full_size = packed.effort == pack::Effort::Full
+                         ? packed.body.size()
+                         : static_cast<std::size_t>(choice.full_to * static_cast<double>(packed.points_size));
   if (is_to_be_stitched(waiting)) packed.stitched = std::move(map.data);
   if (packed.left_out.points > 0) packed.left_out.sent = std::move(map);
   return packed;

@@ -20,6 +20,7 @@ struct Packed {
   LeftOut left_out;
   lanes::Precision precision = lanes::Precision::Exact;  // a cloud's rounding
   std::size_t points_size = 0;                           // sent points, unpacked
+  std::size_t full_size = 0;                             // the same, packed by Effort::Full or as estimated
   pack::Effort effort = pack::Effort::Full;
   double expected = 0;  // packing seconds (pack::seconds_for)
   /// `ground` with the map drawn over it; nullopt: not wanted, or damaged.

@@ -1,7 +1,9 @@
 #include "pack/effort.hpp"
 
 #include <algorithm>
+#include <compare>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "codec/gzip_whole.hpp"
@@ -51,9 +53,8 @@ bool is_left(const icd::MapData& cells) {
 
 Effort for_cells(const icd::MapUpdate& grid, const Hurry& hurry) {
   if (is_left(grid.data)) return Effort::None;
-  double most = std::min(hurry.longest, 1.0) / 2;
-  if (hurry.bytes_per_second > 0)
-    most = std::min(most, static_cast<double>(grid.data.bytes.size()) / hurry.bytes_per_second);
+  const double as_stored = static_cast<double>(grid.data.bytes.size()) / hurry.bytes_per_second;
+  const double most = std::min({hurry.longest / 2, 0.5, as_stored});
   for (const Effort effort : {Effort::Full, Effort::Quick}) {
     if (hurry.slowness * seconds_for(effort, grid) <= most) return effort;
   }
@@ -63,34 +64,36 @@ Effort for_cells(const icd::MapUpdate& grid, const Hurry& hurry) {
 }  // namespace
 
 Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry) {
-  struct Way {
-    Effort effort;
-    double leaves;  // seconds
-    double takes(const Hurry& on, double bytes) const {
-      return on.slowness * seconds_per_byte(effort) * bytes + leaves;
-    }
+  const double bytes = static_cast<double>(size);
+  struct Cost {
+    double delay, takes;  // seconds, of all maps and of this one
+    auto operator<=>(const Cost&) const = default;
   };
-  const double bytes = static_cast<double>(size), as_it_came = bytes / hurry.bytes_per_second;
-  const Way full{Effort::Full, as_it_came * quick_to * kFullOfQuick};
-  double soonest = full.takes(hurry, bytes) * kWorthIt;
+  const auto cost = [&](Effort effort, double to) -> Cost {
+    const double packs = hurry.slowness * seconds_per_byte(effort) * bytes;
+    const double leaves = to * bytes / hurry.bytes_per_second;
+    return {std::max({packs, leaves, hurry.longest}), packs + leaves};
+  };
+  Cost least = cost(Effort::Full, quick_to * kFullOfQuick);
+  least.takes *= kWorthIt;
   Effort best = Effort::Full;
-  for (const Way& way : {Way{Effort::Quick, as_it_came * quick_to}, Way{Effort::None, as_it_came}}) {
-    const double takes = way.takes(hurry, bytes);
-    if (way.leaves > hurry.longest || takes > soonest) continue;
-    soonest = takes;
-    best = way.effort;
+  for (const auto& [effort, to] : {std::pair{Effort::Quick, quick_to}, std::pair{Effort::None, 1.0}}) {
+    const Cost other = cost(effort, to);
+    if (other > least) continue;
+    least = other;
+    best = effort;
   }
   return best;
 }
 
 /// If even a cloud that Quick shrinks to nothing is best sent uncompressed, no sample is tried.
-Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
-  if (map.data.raw_size > kMostPacked) return Effort::None;
-  if (map.is_grid()) return for_cells(map, hurry);
+Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
+  if (map.data.raw_size > kMostPacked) return {Effort::None};
+  if (map.is_grid()) return {for_cells(map, hurry)};
   const std::size_t size = map.data.bytes.size();
-  if (hurry.bytes_per_second == 0) return Effort::Full;
-  if (effort_for(size, 0, hurry) == Effort::None) return Effort::None;
-  return effort_for(size, tried(map.data.bytes), hurry);
+  if (effort_for(size, 0, hurry) == Effort::None) return {Effort::None};
+  const double quick_to = tried(map.data.bytes);
+  return {effort_for(size, quick_to, hurry), quick_to * kFullOfQuick};
 }
 
 /// Measured: the maximum over all grids. A high level takes its time for the bytes of the stored form.

@@ -16,9 +16,9 @@ enum class Effort : std::uint8_t {
 
 /// The conditions that decide the effort for a map.
 struct Hurry {
-  double bytes_per_second = 0;  // the rate of its link, if the map can leave at once; 0: the map must wait
+  double bytes_per_second = 1;  // the rate of its link
   double slowness = 1;          // of this box: a factor for seconds_for()
-  double longest = 1;           // seconds that sending may take
+  double longest = 1;           // seconds from one map to the next
 };
 
 /// The time of each effort per byte, and the size of Full's output relative to Quick's. Measured on exact
@@ -33,18 +33,25 @@ inline constexpr std::size_t kMostPacked = std::size_t{40} << 20;
 /// libdeflate's levels for cells. The next higher level takes 9 MiB of memory; a lower one is hardly faster.
 inline constexpr int kCellsLevel = 9, kQuickCellsLevel = 2;
 
-/// The effort with which a cloud of `size` bytes is sent completely first, if Quick compresses a byte to
-/// `quick_to`. Another effort than Full must save a tenth of the time and must be sent within `longest`,
-/// because larger messages delay others.
+/// The effort for a map, and the size to which Full compresses a byte of its points.
+struct Choice {
+  Effort effort = Effort::Full;
+  double full_to = 1;
+};
+
+/// The effort for a cloud of `size` bytes, if Quick compresses a byte to `quick_to`. A worker packs one cloud
+/// while the link carries another: the slower of the two, if it takes longer than `longest`, delays all maps,
+/// and the effort with the shortest delay is chosen. Among several, it is the effort with which the cloud is
+/// sent completely first. Another effort than Full must save a tenth of that time.
 Effort effort_for(std::size_t size, double quick_to, const Hurry& hurry);
 
-/// The same for an uncompressed cloud, or None for more than kMostPacked. Compresses a sample if the result
-/// can matter.
+/// The same for an exact, uncompressed cloud, or None for more than kMostPacked. Compresses a sample if the
+/// result can matter; otherwise `full_to` is 1.
 ///
 /// For a stored grid: the greatest effort that takes at most half of `longest`, half a second, and the time
 /// in which the grid as stored is sent. None for more than kMostPacked. Also None for more than 16 MiB of
 /// cells if the stored form has at most one byte per 40 cells.
-Effort effort_for(const icd::MapUpdate& map, const Hurry& hurry);
+Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry);
 
 /// Seconds to pack `map` (uncompressed points or stored cells) on the box of tests/bench/README.md: typical
 /// for a cloud, the maximum for a grid.

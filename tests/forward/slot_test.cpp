@@ -98,19 +98,13 @@ TEST(Slot, FindsASlowLinkFastAgain) {
   EXPECT_EQ(exact_in(slot, 1), 10 * kMegabyte);
 }
 
-TEST(Slot, KnowsTheLinkOnceAMapHasShownIt) {
+TEST(Slot, SaysWhatDecidesTheEffort) {
   Slot slot(10 * kMegabyte);
   const auto hurry = [&slot] { return slot.hurry(std::chrono::seconds(2)); };
-  EXPECT_FALSE(slot.is_link_known());
   EXPECT_EQ(hurry().bytes_per_second, 10 * kMegabyte);
-  slot.left(kMegabyte, sent_in(std::chrono::seconds(1)), kBegin + std::chrono::seconds(1));
-  EXPECT_FALSE(slot.is_link_known()) << "it was held back";
   slot.left(2 * kMegabyte, sent_in(std::chrono::seconds(1)), kBegin);
-  EXPECT_TRUE(slot.is_link_known());
   EXPECT_EQ(hurry().bytes_per_second, 2 * kMegabyte);
   EXPECT_EQ(hurry().longest, 2);
-  slot.allow(20 * kMegabyte);
-  EXPECT_FALSE(slot.is_link_known());
 }
 
 TEST(Slot, LearnsHowSlowTheBoxIs) {
@@ -123,6 +117,19 @@ TEST(Slot, LearnsHowSlowTheBoxIs) {
   EXPECT_NEAR(slowness(), 4, 0.01);
   for (int i = 0; i < 20; ++i) slot.worker_took(milliseconds(1), 0.1);
   EXPECT_EQ(slowness(), 0.5) << "grids that take far less than is expected say little of the next";
+}
+
+TEST(Slot, ForgetsAStallWhileNoMapIsCompressed) {
+  Slot slot(10 * kMegabyte);
+  const auto slowness = [&slot] { return slot.hurry(std::chrono::seconds(1)).slowness; };
+  slot.worker_took(std::chrono::seconds(10), 0.1);
+  const double stalled = slowness();
+  EXPECT_GT(stalled, 50);
+  slot.worker_took(milliseconds(1), 0);
+  EXPECT_LT(slowness(), stalled);
+  EXPECT_GT(slowness(), 0.9 * stalled) << "one of them says little";
+  for (int i = 0; i < 500; ++i) slot.worker_took(milliseconds(1), 0);
+  EXPECT_NEAR(slowness(), 1, 0.01);
 }
 
 }  // namespace

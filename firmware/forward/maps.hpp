@@ -145,8 +145,6 @@ class Maps {
   loop::Instant starts() const;
   loop::Instant begins_to_pack(loop::Instant now) const;
   void prepare(Place& place);
-  bool is_awaited(const lanes::WaitingMap& waiting) const;
-  Packing packing_for(const lanes::WaitingMap& waiting) const;
   void pack(const Place& prepared);
   void not_packed(const Place& prepared);
   Place* place_of(const Place& prepared);

@@ -19,24 +19,13 @@ void Maps::prepare(Place& place) {
   pack(place);
 }
 
-/// Whether its slot was free already when it came. A grid that has to wait is made smaller meanwhile.
-bool Maps::is_awaited(const lanes::WaitingMap& waiting) const {
-  return !channel_.busy() && starts() <= waiting.accepted;
-}
-
-Packing Maps::packing_for(const lanes::WaitingMap& waiting) const {
-  Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
-  if (waiting.map.is_grid() && !is_awaited(waiting)) packing.hurry.bytes_per_second = 1;
-  return packing;
-}
-
 void Maps::pack(const Place& prepared) {
   icd::Header& header = prepared->waiting.map.header();
   header.stamp = stamps_.next(header.stamp.value_or(loop_.stamp_now()));
   journal_.stamped(icd::Uri::MapUpdate, *header.stamp);
   const loop::Instant began = loop_.now();
   const auto leaving_out = std::make_shared<LeavingOut>(points_.leaving_out(prepared->waiting.map));
-  const Packing packing = packing_for(prepared->waiting);
+  const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
   const auto unread = unread_in(prepared->waiting);
   std::vector<std::uint64_t> own;
   lanes::add_own_numbers(own, prepared->waiting);

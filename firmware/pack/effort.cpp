@@ -100,7 +100,7 @@ Choice effort_for(const icd::MapUpdate& map, const Hurry& hurry) {
 double seconds_for(Effort effort, const icd::MapUpdate& map) {
   const double size = static_cast<double>(map.data.raw_size);
   if (!map.is_grid()) return seconds_per_byte(effort) * size;
-  constexpr double kQuickPerCell = 12e-9, kFullPerCell = 5e-9, kFullPerKeptByte = 2.4e-6;
+  constexpr double kQuickPerCell = 17e-9, kFullPerCell = 5e-9, kFullPerKeptByte = 2.5e-6;
   if (effort == Effort::None) return 0;
   if (effort == Effort::Quick) return kQuickPerCell * size;
   return kFullPerCell * size + kFullPerKeptByte * static_cast<double>(map.data.bytes.size());

@@ -61,7 +61,8 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
     whole->data.compression = icd::Compression::Gzip;
   }
   const double unit = unit_of(waiting.precision);
-  const pack::Choice choice = unit > 0 ? pack::Choice{} : pack::effort_for(*whole, packing.hurry);  // only Full rounds
+  const bool is_rounded = unit > 0 && whole->data.raw_size <= pack::kMostPacked;  // by Full alone
+  const pack::Choice choice = is_rounded ? pack::Choice{} : pack::effort_for(*whole, packing.hurry);
   packed.effort = choice.effort;
   packed.expected = pack::seconds_for(packed.effort, *whole);
   icd::MapUpdate map = *std::move(whole);

@@ -131,10 +131,10 @@ TEST(Effort, IsNoneForNoPoints) {
 }
 
 TEST(Effort, IsNoneForMoreThanIsPacked) {
-  icd::MapUpdate cloud = update_of(icd::xyz(), {});
+  icd::MapUpdate cloud = update_of(icd::xyz(), Bytes(12000));
   const auto effort = [&](std::size_t size) {
     cloud.data.raw_size = size;
-    return effort_for(cloud, {});
+    return effort_for(cloud, {}).effort;
   };
   EXPECT_EQ(effort(kMostPacked), Effort::Full);
   EXPECT_EQ(effort(kMostPacked + 1), Effort::None);

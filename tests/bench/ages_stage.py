@@ -6,11 +6,13 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import time
 
 from ages_ways import LISTEN, MAPPING, SCORING, TOKEN
 
+HERE = os.path.dirname(os.path.abspath(__file__))
 RATE = 100e6 / 8  # bytes a second
 CONTROL = ("10.91.3.2", 9002)  # on a cable of its own, on which no map goes
 
@@ -122,9 +124,9 @@ class Stage:
                                           capture_output=True, check=True).stdout)
         return shown[0]["bytes"]
 
-    def play(self, way, robots, seconds, before=lambda: None, meanwhile=time.sleep, post=()):
+    def play(self, way, robots, seconds, before=lambda: None, meanwhile=time.sleep, post=(), beside=None):
         """`before` is called right before the robots begin, `meanwhile` with the seconds that they post. `post`: more options
-        of the Command Post."""
+        of the Command Post. `beside`: what ages_worst.py posts meanwhile; it is not in the figures of ages."""
         place = tempfile.mkdtemp(dir=self.folder)
         where = ["--scoring", "%s:%d" % SCORING, "--mapping", "%s:%d" % MAPPING, "--control", "%s:%d" % CONTROL]
         self.start("post", ["nice", "-n", "10", f"{self.programs}/adit-rehearsal", *where, "--secrets", f"{self.folder}/secrets",
@@ -138,7 +140,12 @@ class Stage:
         team = self.start("team", ["nice", "-n", "15", f"{self.programs}/adit-robots", "--post", "http://%s:%d" % LISTEN,
                                    "--control", "http://%s:%d" % CONTROL, "--secrets", f"{self.folder}/secrets",
                                    "--for", str(seconds), "--quiet", *robots], "team")
+        worst = beside and self.start("team", ["nice", "-n", "15", sys.executable, f"{HERE}/ages_worst.py", beside, *map(str, LISTEN),
+                                               TOKEN], beside)
         meanwhile(seconds)
+        if worst and worst.poll() is not None:
+            with open(f"{self.folder}/{beside}.log", encoding="utf-8") as file:
+                raise RuntimeError(f"{beside}: {file.read()}")
         sent, took = self.sent() - at_first, time.monotonic() - began
         team.wait()
         record = self.ask("team", CONTROL, "/record")

@@ -18,10 +18,9 @@ api::ClockView ClockSetting::clock() const {
       .now = loop_.wall_now(), .managed = status != nullptr, .why = adit_clock_.why(), .refusal = trouble()};
   view.ntp = ntp_said();
   view.is_kept = is_kept_by_ntp();
-  view.is_set = view.now >= clock::kEarliest;
+  view.is_set = is_set().value_or(!adit_clock_.is_starting());
   if (!status) return view;
   view.source = status->source;
-  view.is_set = clock::is_set(status->source);
   if (!adit_clock_.waits() && view.refusal.empty()) view.refusal = status->refusal;
   return view;
 }
@@ -105,6 +104,7 @@ bool ClockSetting::is_kept_by_ntp() const {
 std::string ClockSetting::ntp_trouble() const {
   if (!ntp_.is_on()) return "";
   const auto status = adit_clock_.status();
+  if (adit_clock_.is_starting()) return "";
   if (!status && adit_clock_.runs_here()) return adit_clock_.why();
   if (!status) return "the settings ask for NTP, but Adit does not set the clock of this machine";
   if (status->ntp == ntp_ && !status->trouble.empty()) return status->trouble;

@@ -21,11 +21,12 @@ class ClockSetting final : public api::Clock {
   /// Wait before an unanswered or failed request is repeated.
   static constexpr std::chrono::seconds kAskAgain{60};
 
-  /// `state_folder`: for requests. `status_folder`: for answers. `loop` must outlive this object.
+  /// `state_folder`: for requests. `status_folder`: for answers. `units`: as host::kStartedAtBoot.
+  /// `loop` must outlive this object.
   ClockSetting(loop::Loop& loop, const std::string& state_folder, const std::string& status_folder,
-               std::uint16_t chronyd)
+               std::uint16_t chronyd, const std::string& units = host::kStartedAtBoot)
       : loop_(loop),
-        adit_clock_(loop, "adit-clock", state_folder, status_folder, kTakenUpWithin),
+        adit_clock_(loop, "adit-clock", state_folder, status_folder, kTakenUpWithin, units),
         watch_(loop, chronyd) {}
 
   api::ClockView clock() const override;
@@ -35,7 +36,7 @@ class ClockSetting final : public api::Clock {
   void every_second(const clock::Ntp& ntp);
   /// Requests the offered time if to_be_set() accepts it.
   void offered(const clock::Offer& offer);
-  /// std::nullopt: adit-clock does not run here, and the time may be right.
+  /// std::nullopt: adit-clock is starting or does not run here, and the time may be right.
   std::optional<bool> is_set() const;
   /// Why NTP does not follow the settings, as a sentence; or "".
   std::string ntp_trouble() const;

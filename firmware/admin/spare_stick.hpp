@@ -15,7 +15,7 @@ namespace adit::admin {
 /// Exports to and from the USB stick in the box, copied by adit-spare (firmware/spare/README.md).
 class SpareStick {
  public:
-  /// Time in which adit-spare must start; later, it does not run here.
+  /// Time in which adit-spare must read a request.
   static constexpr std::chrono::seconds kTakenUpWithin{60};
   /// Interval at which a request's result is read.
   static constexpr std::chrono::milliseconds kLook{100};

@@ -16,7 +16,7 @@ namespace adit::admin {
 /// The operator's updates of the box, executed by adit-update.
 class Updates final : public api::Updates {
  public:
-  /// Time in which adit-update must start; later, it does not run here.
+  /// Time in which adit-update must read a request.
   static constexpr std::chrono::seconds kTakenUpWithin{60};
   /// Bytes left free beside a bundle, above all for the ledger.
   static constexpr std::uint64_t kSpared = 16 << 20;

@@ -11,10 +11,10 @@ namespace adit::api {
 
 /// The time of day and its source.
 struct ClockView {
-  double now = 0;        // seconds since 1970
-  bool managed = false;  // whether it can be set here
-  std::string why;       // why not, or ""
-  clock::Source source = clock::Source::None;
+  double now = 0;                                      // seconds since 1970
+  bool managed = false;                                // whether it can be set here
+  std::string why;                                     // why not, or ""
+  std::optional<clock::Source> source = std::nullopt;  // std::nullopt: not managed
   bool is_set = false;
   std::string refusal;   // why the last change failed
   std::string ntp = "";  // state of NTP, or why it does not work; "": not in the settings

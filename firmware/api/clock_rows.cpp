@@ -8,7 +8,8 @@ constexpr codec::Member kClockMembers[] = {
     codec::member<&ClockView::now>("now", "seconds since 1970"),
     codec::member<&ClockView::managed>("managed", "whether the clock can be set here"),
     codec::member<&ClockView::why>("why", "why the clock cannot be set here"),
-    codec::member<&ClockView::source>("source", "source that set the clock last since the boot")
+    codec::member<&ClockView::source>("source",
+                                      "source that set the clock last since the boot; null if not managed")
         .one_of(clock::kSourceWords),
     codec::member<&ClockView::is_set>("is_set", "whether the time is known well enough"),
     codec::member<&ClockView::refusal>("refusal", "why the last change failed"),

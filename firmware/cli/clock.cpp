@@ -33,8 +33,8 @@ std::string text_of(const api::ClockView& view, bool /*colour*/) {
           : icd::sentence(duration(std::abs(ahead)), ahead > 0 ? " ahead of" : " behind", " this computer");
   const std::string date = icd::utc(view.now);
   std::string out = line(date.empty() ? "date unknown" : date + " UTC", ", ", apart);
-  out += view.managed ? line(kSetBy[static_cast<std::size_t>(view.source)])
-                      : line("Adit cannot set it: ", view.why);
+  out += view.source ? line(kSetBy[static_cast<std::size_t>(*view.source)])
+                     : line("Adit cannot set it: ", view.why);
   if (!view.refusal.empty()) out += line("Not set: ", view.refusal);
   if (!view.ntp.empty()) out += line(view.ntp);
   if (!view.is_set && view.managed) out += line("To set it to this computer's time: adit clock set");

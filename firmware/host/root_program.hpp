@@ -50,6 +50,10 @@ void withdraw_request(const std::string& path, const std::string& program);
 
 /// Age at which a status is read again.
 inline constexpr std::chrono::milliseconds kFresh{100};
+/// Time after the start of aditd in which systemd starts the root programs.
+inline constexpr std::chrono::minutes kBoot{5};
+/// Links to the units that systemd starts at each boot.
+inline constexpr const char* kStartedAtBoot = "/etc/systemd/system/multi-user.target.wants";
 
 /// A root program seen by aditd: its status and the last request. `Status` has `bool names(std::string_view
 /// nonce) const`: whether the program has read that request.
@@ -57,14 +61,16 @@ template <class Status>
 class RootProgram {
  public:
   /// `name`: "adit-clock". `requests`: aditd's state directory. `directory`: the program's runtime directory.
-  /// `within`: time in which the program must read a request. `loop` must outlive this object.
+  /// `within`: time in which the program must read a request. `units`: as kStartedAtBoot. `loop` must outlive
+  /// this object.
   RootProgram(loop::Loop& loop, std::string name, std::string requests, std::string directory,
-              std::chrono::seconds within)
+              std::chrono::seconds within, const std::string& units = kStartedAtBoot)
       : loop_(loop),
         name_(std::move(name)),
         requests_(std::move(requests)),
         directory_(std::move(directory)),
-        within_(within) {}
+        within_(within),
+        started_until_(may_exist(units + '/' + name_ + ".service") ? loop.now() + kBoot : loop.now()) {}
 
   const std::string& requests() const { return requests_; }
   const std::string& directory() const { return directory_; }
@@ -74,12 +80,15 @@ class RootProgram {
     refresh();
     return status_.value_or(nullptr);
   }
-  /// Whether the program has a status file, readable or not.
-  bool runs_here() const { return status() || !status_; }
-  /// Why there is no status, as a sentence: the program does not run here, or its status cannot be read. "":
-  /// there is a status.
+  /// Whether systemd has yet to start the program.
+  bool is_starting() const { return !status() && status_ && loop_.now() < started_until_; }
+  /// Whether the program has a status file, readable or not, or is starting.
+  bool runs_here() const { return status() || !status_ || is_starting(); }
+  /// Why there is no status, as a sentence: the program is starting, does not run here, or its status cannot
+  /// be read. "": there is a status.
   std::string why() const {
     if (status()) return "";
+    if (is_starting()) return name_ + " is starting: wait a minute";
     return status_ ? name_ + " does not run here: it has no status in " + directory_
                    : "cannot read the status of " + name_ + ": " + status_.error();
   }
@@ -142,6 +151,7 @@ class RootProgram {
   loop::Loop& loop_;
   const std::string name_, requests_, directory_;
   const std::chrono::seconds within_;
+  const loop::Instant started_until_;
   mutable std::expected<std::shared_ptr<const Status>, std::string> status_;  // null: no file
   mutable std::optional<loop::Instant> read_at_;
   mutable std::optional<Asked> asked_;  // the last request, until the status names it

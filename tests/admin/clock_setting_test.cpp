@@ -57,11 +57,22 @@ class ClockSettingTest : public testing::Test {
 TEST_F(ClockSettingTest, SaysWhyItCannotSetTheClockWhereAditClockDoesNotRun) {
   setting_.every_second(ntp_);
   EXPECT_FALSE(setting_.clock().managed);
+  EXPECT_EQ(setting_.clock().source, std::nullopt) << "no source is known, but the time may be right";
+  EXPECT_TRUE(setting_.clock().is_set);
   EXPECT_THAT(setting_.clock().why, HasSubstr("adit-clock"));
   EXPECT_EQ(setting_.is_set(), std::nullopt) << "the machine's own affair";
   EXPECT_EQ(setting_.set_clock(now()).error().status, icd::Status::Conflict);
   setting_.offered({Source::CommandPost, now() + 60});
   EXPECT_FALSE(asked());
+}
+
+TEST_F(ClockSettingTest, ClaimsNoTimeAndNoTroubleWhileAditClockStarts) {
+  run_.put("adit-clock.service", "");
+  ClockSetting starting{loop_, state_.path(), run_.path(), chronyd_.port(), run_.path()};
+  starting.every_second({.server = "10.0.0.5", .clients = ""});
+  EXPECT_FALSE(starting.clock().is_set) << "the time at boot";
+  EXPECT_EQ(starting.clock().why, "adit-clock is starting: wait a minute");
+  EXPECT_EQ(starting.ntp_trouble(), "");
 }
 
 TEST_F(ClockSettingTest, AsksForTheOperatorsTimeAsOfThatInstant) {

@@ -67,6 +67,22 @@ TEST_F(RootProgramTest, DoesNotRunHereIfItHasNoStatus) {
   EXPECT_THAT(program_.why(), HasSubstr("adit-x does not run here"));
 }
 
+TEST_F(RootProgramTest, StartsAfterABootIfSystemdStartsItsUnit) {
+  const Folder units;
+  units.put("adit-x.service", "");
+  const RootProgram<Status> program{loop_, "adit-x", requests_.path(), run_.path(), 60s, units.path()};
+  EXPECT_TRUE(program.is_starting() && program.runs_here());
+  EXPECT_EQ(program.why(), "adit-x is starting: wait a minute");
+  tell("");
+  time_.pass(kFresh);
+  EXPECT_FALSE(program.is_starting());
+  EXPECT_EQ(program.why(), "");
+  fs::remove(run_ / kStatusFile);
+  time_.pass(kBoot);
+  EXPECT_FALSE(program.is_starting() || program.runs_here()) << "it failed to start";
+  EXPECT_THAT(program.why(), HasSubstr("adit-x does not run here"));
+}
+
 TEST_F(RootProgramTest, WhoseStatusCannotBeReadIsNotOneThatDoesNotRun) {
   run_.put(kStatusFile, "{");
   EXPECT_TRUE(program_.runs_here());

@@ -23,12 +23,13 @@ const SOURCES = {
   chip: "set by the box’s own clock",
   operator: "set by an operator",
   ntp: "set by an NTP server",
+  machine: "kept by the machine itself",
 };
 
 /** What the box says of its time, in words; "" where it does not. */
 export async function clockSaid() {
-  const { managed, source, ntp } = await get("/adit/clock");
-  return [managed ? SOURCES[source] : "kept by the machine itself", ntp].filter(Boolean).join("; ");
+  const { source, is_set: isSet, ntp } = await get("/adit/clock");
+  return [SOURCES[source ?? (isSet ? "machine" : "none")], ntp].filter(Boolean).join("; ");
 }
 
 /** To be asked as a page begins. Gives whether the box was asked to set its clock. */

@@ -8,7 +8,7 @@ const MEANING = "The restart takes about a minute. Robots must post again what t
 
 /** If the box cannot restart itself, it says why, and what to do. */
 function showRestart({ managed, why, doing }, operator) {
-  restartNote.textContent = managed ? MEANING : `This page cannot restart the box: ${why}. Switch the box off and on.`;
+  restartNote.textContent = managed ? MEANING : `This page cannot restart the box: ${why}. To restart it now, switch the box off and on.`;
   restart.hidden = !operator || !managed;
   restart.disabled = Boolean(doing);
   if (doing === "restarting") restarted.textContent = "The box is restarting.";

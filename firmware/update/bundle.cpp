@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <functional>
+#include <utility>
 
 #include "codec/field.hpp"
 #include "codec/json.hpp"
@@ -19,6 +20,14 @@ constexpr std::size_t kLongestFault = 300;
 constexpr std::string_view kLastError = "LastError: ";
 /// Message of RAUC's service (RAUC 1.8, src/service.c) while it installs or marks.
 constexpr std::string_view kBusy = "already processing a different method";
+/// RAUC's words (RAUC 1.8, src/bundle.c) and GLib's for what an operator can mend; the first that fit count.
+constexpr std::string_view kDamaged = "the update's file is damaged: download or copy it again";
+constexpr std::pair<std::string_view, std::string_view> kMeanings[] = {
+    {"Verify error", "the update is signed by a key that this box does not accept"},
+    {"signature verification failed", kDamaged},
+    {"Invalid bundle format: Signature size", kDamaged},
+    {"Error reading from file", kDamaged},
+};
 
 /// Reads one of RAUC's slots, an object with one member, the slot's name. `next`: name of the slot to start
 /// next.
@@ -34,6 +43,15 @@ void take_slot(const Value& slot, const std::string& booted, const std::string& 
   running.other = name.text();
   running.other_good = good.is<std::string>() && good.text() == "good";
   running.other_next = named->front().first == next;
+}
+
+/// RAUC's words, after their meaning if that is known.
+std::string explained(std::string_view fault) {
+  const std::string said(fault.substr(0, kLongestFault));
+  const auto* const meaning = std::ranges::find_if(
+      kMeanings, [fault](std::string_view words) { return fault.contains(words); },
+      &std::pair<std::string_view, std::string_view>::first);
+  return meaning == std::end(kMeanings) ? said : icd::sentence(meaning->second, " (RAUC: ", said, ")");
 }
 
 void for_each_line(std::string_view text, const std::function<void(std::string_view)>& tell) {
@@ -106,7 +124,7 @@ Fault fault_in(std::string_view out, std::string_view err) {
     if (line.starts_with(kLastError)) fault = line.substr(kLastError.size());
   });
   const bool busy = fault.find(kBusy) != std::string_view::npos;
-  return {busy ? Fault::Kind::Busy : Fault::Kind::Other, std::string(fault.substr(0, kLongestFault))};
+  return {busy ? Fault::Kind::Busy : Fault::Kind::Other, explained(fault)};
 }
 
 std::string hindrance(const Bundle& bundle, const Running& running, bool again) {

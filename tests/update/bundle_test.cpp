@@ -95,16 +95,28 @@ TEST(Progress, IsTheNumberBeforeThePerCent) {
 }
 
 TEST(Fault, IsTheLastThingThatRaucSays) {
-  EXPECT_EQ(
-      fault_in("",
-               "rauc-Message: 15:05:30.310: Reading bundle: x\nInvalid bundle format: Signature size is 0\n")
-          .sentence,
-      "Invalid bundle format: Signature size is 0");
+  EXPECT_EQ(fault_in("", "rauc-Message: 15:05:30.310: Reading bundle: x\nfailed to open x\n").sentence,
+            "failed to open x");
   EXPECT_EQ(fault_in("installing\n100% Installing failed.\nLastError: No space left on device\nidle\n",
                      "rauc-Message: 1\nInstalling `x` failed\n"),
             (Fault{Fault::Kind::Other, "No space left on device"}));
   EXPECT_EQ(fault_in("", "rauc-Message: 1\n"), Fault{});
   EXPECT_EQ(fault_in("", std::string(5000, 'x')).sentence.size(), 300u);
+}
+
+TEST(Fault, IsThatTheFileIsDamagedAndWhatToDo) {
+  for (const std::string& said :
+       {"Installation error: Failed updating slot rootfs.1: Failed splicing data: Error reading from file "
+        "descriptor: Input/output error",
+        "Invalid bundle format: Signature size (17357689848845855539) exceeds bundle size",
+        "signature verification failed: error:0200008A:rsa routines::invalid padding"}) {
+    EXPECT_EQ(fault_in("", said + '\n').sentence,
+              "the update's file is damaged: download or copy it again (RAUC: " + said + ")");
+  }
+  const std::string full = "Failed splicing data: Error writing to file descriptor: No space left on device";
+  EXPECT_EQ(fault_in("", full).sentence, full) << "the file is whole";
+  EXPECT_THAT(fault_in("", "signature verification failed: Verify error: self-signed certificate\n").sentence,
+              HasSubstr("signed by a key that this box does not accept (RAUC: "));
 }
 
 TEST(Fault, IsThatItIsBusyWhileItInstalls) {

@@ -171,8 +171,9 @@ class Greeting(Scripts):
         return [(devices / name).read_text() for name in consoles.split()]
 
     def test_each_console_shows_where_the_page_is_and_the_code(self):
-        screen, serial = self.shown()
+        screen, serial = self.shown(addresses=("169.254.47.111", "10.0.0.1", "192.168.7.11"))
         self.assertEqual(screen, serial)
+        self.assertRegex(screen, r"(?s)10\.0\.0\.1.*192\.168\.7\.11.*169\.254\.47\.111", "the link-local one is the last resort")
         for words in "http://10.0.0.1", "http://192.168.7.11", "code that it asks for: 12345678":
             self.assertEqual(screen.count(words), 1, screen)
         self.assertNotIn("\n\n", screen.replace("\r", "").strip())

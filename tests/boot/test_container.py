@@ -214,7 +214,7 @@ class Everyday(Contained):
         self.assertIsNone(ntp.asked_of(network.post, hosts.BOX_DARPA), "on darpa0")
         self.shell("nft flush chain inet adit input; nft add chain inet adit input '{ policy accept; }'")
         self.assertIsNone(ntp.asked_of(network.post, hosts.BOX_DARPA), "on darpa0, where no firewall is")
-        self.shell("systemctl reload adit-nftables.service")
+        self.shell("systemctl restart adit-nftables.service")
         self.asks_for_ntp()
         programs.wait_until(lambda: not self.speaks_ntp(), "chronyd to be stopped", 60)
         self.assertIsNone(ntp.asked_of(network.team, network.box_address))

@@ -56,6 +56,10 @@ class Pc(container.Nspawn):
             self.shell(f"echo 'adit adit/{name.replace('_', '-')} {kind} {answer}' | debconf-set-selections")
         return self.shell(f"DEBIAN_FRONTEND=noninteractive apt-get -y {words}", good)
 
+    def made_inside(self, make):
+        """What `make()` makes in its network namespace: a socket that is of there."""
+        return self.network.made_in(f"../../proc/{self.leader()}/ns/net", make)
+
     def is_active(self, unit):
         return self.run("systemctl", "is-active", unit).stdout.strip() == "active"
 

@@ -2,6 +2,8 @@
 downgraded, removed and purged, as their user does it; and the rehearsal from its package."""
 
 import concurrent.futures
+import contextlib
+import socket
 import subprocess
 import unittest
 
@@ -43,7 +45,9 @@ class Packages(Story):
     def the_ports_are_the_machines(self):
         names = set(self.box.shell("ls /sys/class/net").split())
         self.assertTrue(names.issuperset(pc.PORTS.values()) and names.isdisjoint(("team0", "darpa0")), names)
-        self.assertEqual(self.box.shell(" ".join(f"ip -4 -o address show dev {port};" for port in pc.PORTS.values())), "")
+        for port in pc.PORTS.values():
+            self.assertEqual(self.box.shell(f"ip -4 -o address show dev {port}"), "")
+            self.assertIn("MULTICAST", self.box.shell(f"ip -o link show dev {port}"))
 
     def test_without_interfaces_it_is_installed_and_does_nothing(self):
         said = self.box.apt(f"install {BEFORE}")
@@ -74,7 +78,8 @@ class Packages(Story):
                 systemctl start adit-interfaces || systemctl start adit.socket adit-nftables || true""")
             self.assertEqual(self.box.listens(), [])
             self.the_ports_are_the_machines()
-        self.box.shell(f"rm {INTERFACES}; systemctl stop adit.socket adit.service adit-nftables; systemctl reset-failed")
+        self.box.shell(f"""rm {INTERFACES}; systemctl stop adit.socket adit.service adit-nftables; systemctl reset-failed
+            /usr/lib/adit/interfaces free""")
         self.assertEqual(self.box.shell("nft list ruleset"), "")
 
     def test_what_a_newcomer_reads_is_there(self):
@@ -149,24 +154,49 @@ class Packages(Story):
             other.leave()
             programs.wait_until(lambda: "address is taken" not in self.box.shell("adit status", good=False), "the alarm to go", 60)
 
-    def test_an_upgrade_turns_nobody_away_and_keeps_all(self):
+    def entered(self, upgrade):
+        """How often the Command Post's side reached port 22 of the machine while `upgrade` went on, and how often it tried."""
+        entered = tried = 0
+        while not upgrade.done():
+            tried += 1
+            with contextlib.suppress(OSError):
+                self.stage.network.connect(self.stage.network.post, hosts.BOX_DARPA, 22, 0.02).close()
+                entered += 1
+        return entered, tried
+
+    def test_an_upgrade_turns_nobody_away_lets_nobody_in_and_keeps_all(self):
         """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
         self.box.shell(f"sed -i '1i # asked {OFFICE_KEEPER}' {INTERFACES}")
         named = self.box.shell(f"cat {INTERFACES}")
+        login = self.box.made_inside(lambda: socket.create_server(("0.0.0.0", 22), backlog=1000))
+        self.addCleanup(login.close)
+        self.stage.network.connect(self.stage.network.team, pc.OFFICE_ADDRESS, 22, 5).close()
         with concurrent.futures.ThreadPoolExecutor(2) as pool:
             upgrade = pool.submit(self.box.apt, f"install {NOW}")
+            entered = pool.submit(self.entered, upgrade)
             posted = []
             while not upgrade.done():
                 posted.append(another(len(posted) + 1))
                 self.assertIn(insist(self.stage, posted[-1], 30).status_code, (201, 503, 504))
             upgrade.result()
         self.assertNotEqual(self.box.version(), "0.0.9")
+        self.assertEqual(entered.result()[0], 0, "of the tries to log in from the Command Post's side")
+        self.assertGreater(entered.result()[1], 100)
         self.assertEqual(self.box.shell(f"cat {INTERFACES}"), named, "as somebody wrote it")
         programs.wait_until(self.box.knows_the_run, "the box to know the run", 60)
         for report in posted:
             programs.wait_until(lambda report=report: submit(self.stage, report).status_code == 201, "its answer", 60)
             self.assertEqual(len(self.stage.post.recorded(report)), 1)
         self.assertEqual(len(self.stage.post.recorded(REPORT)), 1)
+
+    def test_rules_that_cannot_be_loaded_leave_those_from_before_and_a_notice(self):
+        rules, notice, servers = "/usr/share/adit/nftables.conf", "/run/adit-notices/firewall", "nft list set inet adit ntp_servers"
+        self.box.shell(f"""nft add element inet adit ntp_servers '{{ 10.0.0.77 }}'; nft list ruleset >/root/loaded
+            mv {rules} /root/; echo 'table inet adit {{' >{rules}; ! systemctl restart adit-nftables
+            nft list ruleset | diff /root/loaded -; grep -q 'could not be loaded' {notice}""")
+        self.box.shell(f"""mv /root/nftables.conf {rules}; systemctl restart adit-nftables
+            nft list ruleset | diff /root/loaded -; test ! -e {notice}; {servers} | grep -q 10.0.0.77
+            systemctl stop adit-nftables; nft list ruleset | diff /root/loaded -; systemctl start adit-nftables""")
 
     def test_an_upgrade_that_was_cut_off_is_finished(self):
         self.box.shell(f"dpkg --unpack {NOW}")

@@ -1,4 +1,4 @@
-/// adit-network: changes the box's addresses as root, for aditd, which has no privileges.
+/// adit-network: changes the box's addresses, for aditd, which has no privileges.
 
 #include <csignal>
 #include <optional>

@@ -11,7 +11,7 @@
 #include "codec/row_file.hpp"
 #include "network/numbers.hpp"
 
-/// Messages, as files, between aditd, which has no privileges, and adit-network, which runs as root:
+/// Messages, as files, between aditd, which has no privileges, and adit-network, which has them:
 /// README.md.
 namespace adit::network {
 

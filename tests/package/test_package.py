@@ -164,6 +164,17 @@ class Packages(Story):
                 entered += 1
         return entered, tried
 
+    def test_the_networks_services_have_no_way_to_the_first_process(self):
+        """From copies of the units, and from one without their sandbox, which has."""
+        self.box.shell("""cd /run/systemd/system; printf '[Service]\nType=oneshot\nExecStart=true\n' >adit-tried.service
+            echo 'systemctl start adit-tried.service && exit 1; curl -sm 5 --unix-socket /run/systemd/private http://x; [ $? = 7 ]' >/run/adit-try.sh""")
+        for unit, keeps in (("adit-nftables", False), ("adit-network", True), ("adit-network-start", True), ("adit-nftables", True)):
+            sandbox = "/^Exec/d" if keeps else r"/^\[Service/,/^\[Install/d"
+            self.box.shell(f"""cd /run/systemd/system; sed '{sandbox}; /^Restart/d' /lib/systemd/system/{unit}.service >adit-try.service
+                printf '[Service]\nType=oneshot\nExecStart=sh /run/adit-try.sh\n' >>adit-try.service; systemctl daemon-reload
+                [ $(systemctl start adit-try.service; echo $?) = {int(not keeps)} ] || {{ journalctl -u adit-try | tail; exit 1; }}""")
+        self.box.shell("rm /run/systemd/system/adit-tried.service /run/systemd/system/adit-try.service; systemctl daemon-reload; systemctl reset-failed")
+
     def test_an_upgrade_turns_nobody_away_lets_nobody_in_and_keeps_all(self):
         """Reports are posted all the while, again where a connection was open as the older aditd ended: each is recorded once."""
         self.box.shell(f"sed -i '1i # asked {OFFICE_KEEPER}' {INTERFACES}")

@@ -38,12 +38,10 @@ void strike_cut(std::string& text, std::string_view token) {
   }
 }
 
-/// The number of characters, at most `most`, before the first one that JSON, CSV or HTML escapes.
-std::size_t until_escaped(std::string_view token, std::size_t most) {
-  return std::min(token.find_first_of("\"\\&<>'"), most);
-}
-
 }  // namespace
+
+BearerToken::BearerToken(std::string text)
+    : text_(std::move(text)), sought_(std::min({text_.find_first_of("\"\\&<>'"), text_.size(), kLeast})) {}
 
 std::optional<BearerToken> BearerToken::parse(std::string_view text) {
   const auto visible = [](char letter) { return letter > 0x20 && letter < 0x7f; };
@@ -61,9 +59,8 @@ bool BearerToken::matches(std::string_view presented) const {
 }
 
 bool BearerToken::may_be_in(std::string_view text) const {
-  const auto beginning = std::string_view(text_).substr(0, until_escaped(text_, kLeast));
   // memmem() is fast enough for megabytes.
-  return ::memmem(text.data(), text.size(), beginning.data(), beginning.size()) != nullptr;
+  return ::memmem(text.data(), text.size(), text_.data(), sought_) != nullptr;
 }
 
 void BearerToken::strike_from(std::string& text) const {

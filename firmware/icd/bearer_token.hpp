@@ -31,8 +31,9 @@ class BearerToken {
   bool may_be_in(std::string_view text) const;
 
  private:
-  explicit BearerToken(std::string text) : text_(std::move(text)) {}
+  explicit BearerToken(std::string text);
   std::string text_;
+  std::size_t sought_;  // characters before the first one that JSON, CSV or HTML escapes, at most 8
 };
 
 /// True if both are the same token, or both are absent.

@@ -37,8 +37,8 @@ bool Carried::apply(Kind kind, std::string_view said) {
     case Kind::LifeBegins:
       state_comes_back(), markers_come_back();
       return true;
-    case Kind::Sender:
-      return read_sender(said);
+    case Kind::Senders:
+      return read_senders(said);
     case Kind::StateSent:
       return read_state_sent(said);
     case Kind::StateDone:
@@ -88,11 +88,13 @@ void Carried::machine_is(const std::string& boot) {
   heard_.clear();
 }
 
-bool Carried::read_sender(std::string_view said) {
-  lanes::Stamper stamper;
-  lanes::SenderClock clock;
-  if (!store::read(said, stamper, clock) || !is_known(stamper.uri)) return false;
-  senders_.carry_on(stamper, clock);
+bool Carried::read_senders(std::string_view said) {
+  lanes::StampShift::Clocks clocks;
+  if (!store::read(said, clocks)) return false;
+  for (const auto& [stamper, clock] : clocks) {
+    if (!is_known(stamper.uri)) return false;
+    senders_.carry_on(stamper, clock);
+  }
   return true;
 }
 
@@ -183,7 +185,7 @@ icd::MarkersUpdate Carried::markers() const {
 
 void Carried::write(const std::function<void(Kind, std::string_view)>& to) const {
   if (clock_) to(Kind::Clock, store::bytes_of(*clock_));
-  for (const auto& [stamper, clock] : senders_.clocks()) to(Kind::Sender, store::bytes_of(stamper, clock));
+  to(Kind::Senders, store::bytes_of(senders_.clocks()));
   for (const auto& [uri, learned] : paces_) to(Kind::Pace, store::bytes_of(uri, learned));
   for (const auto& [uri, stamp] : stamps_) to(Kind::Stamp, store::bytes_of(uri, stamp));
   if (grids_) {

@@ -84,7 +84,7 @@ class Carried {
 
  private:
   bool read_clock(std::string_view said);
-  bool read_sender(std::string_view said);
+  bool read_senders(std::string_view said);
   bool read_poses(std::string_view said);
   bool read_state_sent(std::string_view said);
   bool read_markers(std::string_view said);

@@ -79,7 +79,7 @@ void Journal::begin(const Clock& clock) {
 }
 
 void Journal::senders(const lanes::StampShift::Clocks& clocks) {
-  for (const auto& [stamper, clock] : clocks) note(Kind::Sender, store::bytes_of(stamper, clock));
+  if (!clocks.empty()) note(Kind::Senders, store::bytes_of(clocks));
 }
 
 void Journal::state_answered(bool done) {

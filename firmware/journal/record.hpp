@@ -8,7 +8,7 @@ namespace adit::journal {
 enum class Kind : std::uint8_t {
   Clock = 1,         // a boot, a monotonic time and its stamp
   LifeBegins = 2,    // a process started; its predecessor's messages in flight count as not delivered
-  Sender = 18,       // a sender's clock
+  Senders = 18,      // senders' clocks
   StateSent = 5,     // poses by robot
   StateDone = 6,     // delivered or rejected
   StateBack = 7,     // queued again

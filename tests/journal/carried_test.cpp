@@ -169,13 +169,14 @@ TEST(Carried, HasClocksPacesAndStamps) {
       .under_way = true,
       .from_answers = true,
       .single = 2};
-  const lanes::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"};
+  const lanes::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"}, r2{"10.0.0.5", icd::Uri::MapUpdate, "r2"};
   Carried carried;
   EXPECT_FALSE(carried.clock());
   tell(carried, Kind::Clock,
        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
-  tell(carried, Kind::Sender,
-       store::bytes_of(r1, lanes::SenderClock{.theirs = 100, .ours = 1.5e9, .latest = 104}));
+  tell(carried, Kind::Senders,
+       store::bytes_of(lanes::StampShift::Clocks{{r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}},
+                                                 {r2, {.theirs = 7, .ours = 1.5e9, .latest = 8}}}));
   tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
   tell(carried, Kind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
   for (const Carried& each : {carried, again(carried)}) {
@@ -184,8 +185,9 @@ TEST(Carried, HasClocksPacesAndStamps) {
     EXPECT_EQ(each.clock()->stamp, 1.5e9);
     EXPECT_THAT(each.paces(), ElementsAre(Pair(icd::Uri::MapUpdate, learned)));
     EXPECT_THAT(each.stamps(), ElementsAre(Pair(icd::Uri::StateUpdate, 1.5e9 + 4)));
-    ASSERT_THAT(each.senders().clocks(), ElementsAre(Pair(r1, testing::_)));
-    EXPECT_EQ(each.senders().clocks()[0].second.latest_given(), 1.5e9 + 4);
+    ASSERT_THAT(each.senders().clocks(), ElementsAre(Pair(r2, testing::_), Pair(r1, testing::_)));
+    EXPECT_EQ(each.senders().clocks()[0].second.latest_given(), 1.5e9 + 1);
+    EXPECT_EQ(each.senders().clocks()[1].second.latest_given(), 1.5e9 + 4);
   }
   tell(carried, Kind::Clock,
        store::bytes_of(Clock{.boot = "b2", .at = pace::Instant(seconds(1)), .stamp = 1.6e9}));

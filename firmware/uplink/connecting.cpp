@@ -55,6 +55,7 @@ void Connection::Impl::connect_in_time() {
 void Connection::Impl::connecting_ended(int error) {
   if (error != 0) return connecting_failed(std::strerror(error));
   phase_ = Phase::Open;
+  sent_twice_ = transmission(fd_.get()).sent_twice;
   trouble_.clear();
   pause_ = kFirstPause;
   fresh_ = exchange_ != nullptr;

@@ -97,7 +97,7 @@ void Connection::Impl::begin() {
   // A request that is given up must not arrive after the next request on another connection, and must not be
   // recorded later.
   reset_on_close(fd_.get(), true);
-  exchange_->begin(fd_.get(), loop_.now());
+  exchange_->begin(loop_.now(), sent_twice_);
   listen_again();
   write();
 }
@@ -159,6 +159,7 @@ void Connection::Impl::answered() {
   Answered answer = exchange_->take_answer();
   const Transmission seen = transmission(fd_.get());
   answer.sent = exchange_->left(seen, loop_.now());
+  sent_twice_ = seen.sent_twice;
   reset_on_close(fd_.get(), exchange_->sent() < exchange_->total());
   // The measured mapping server promises keep-alive with a 4xx and still closes.
   const bool keep = exchange_->may_keep_alive() && answer.status < 400;

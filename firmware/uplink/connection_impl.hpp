@@ -85,6 +85,7 @@ class Connection::Impl : public std::enable_shared_from_this<Impl> {
   Phase phase_ = Phase::Closed;
   loop::FileDescriptor fd_;
   std::chrono::milliseconds gives_up_after_{};  // TCP_USER_TIMEOUT of fd_; 0: not set
+  std::uint64_t sent_twice_ = 0;                // Transmission::sent_twice of fd_ while it is idle
   loop::Source source_;                         // of fd_; destroyed before it
   std::uint32_t watched_ = 0;
   loop::Source timer_;  // the end of a pause, connecting, idling or waiting for the peer

@@ -58,9 +58,9 @@ Exchange::Exchange(const Endpoint& endpoint, const icd::BearerToken& token, Requ
                   : total_ - std::min(request_.body.size(), Request::kHeldBack)),
       parser_(request_.longest_answer) {}
 
-void Exchange::begin(int fd, loop::Instant now) {
+void Exchange::begin(loop::Instant now, std::uint64_t sent_twice) {
   heard_ = now;
-  sent_twice_ = transmission(fd).sent_twice;
+  sent_twice_ = sent_twice;
   release(now);
 }
 

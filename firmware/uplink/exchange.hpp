@@ -47,8 +47,8 @@ class Exchange {
   /// For Lost.
   InDoubt doubt() const { return {.why = fault_, .too_long_status = parser_.too_long_status()}; }
 
-  /// Starts to measure the peer's silence.
-  void begin(int fd, loop::Instant now);
+  /// Starts to measure the peer's silence. `sent_twice`: of the connection so far.
+  void begin(loop::Instant now, std::uint64_t sent_twice);
   /// Records whether the peer's TCP has acknowledged more bytes since the last call. Received bytes do not
   /// count, because a peer that sends an endless answer slowly would hold the connection for ever. So the
   /// whole answer must arrive within answer_within of the last acknowledgement.

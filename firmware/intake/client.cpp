@@ -78,6 +78,7 @@ void Client::give_way() {
 }
 
 void Client::happened(std::uint32_t events) {
+  arrived_ = arrived_ || (events & EPOLLIN) != 0;
   if ((events & (EPOLLHUP | EPOLLERR)) != 0) {
     hung_up_ = true;
     resume();
@@ -92,12 +93,17 @@ void Client::happened(std::uint32_t events) {
 void Client::hold_back() {
   if (hung_up_ || leaving_) return;
   suspend();
-  happened(state_of(fd_));
+  if (phase_ == Phase::Head) {
+    happened(state_of(fd_));
+  } else if (arrived_ || ended_) {  // happened() will tell later bytes
+    look_at_head();
+  }
 }
 
 void Client::look_at_head() {
   if (gate_.has_refused() && (!gate_.read_away() || ended_)) cut();
   if (!gate_.is_waiting() || !suspended_) return;
+  arrived_ = false;
   switch (gate_.look(engine_.now(), ended_)) {
     case Gate::Finding::Whole:
       resume();
@@ -173,9 +179,14 @@ void Client::body_came(std::size_t bytes) {
   if (rate_) rate_->moved(bytes);
 }
 
+bool Client::is_last_answer() {
+  const Gate::Traffic traffic = gate_.traffic();
+  taken_before_ = traffic.taken;
+  return gate_.is_passed_by(traffic.received);
+}
+
 void Client::expect_steady_reading() {
   expect_nothing();
-  taken_before_ = taken();
   rate_.emplace(engine_.listen().rate_over, engine_.now());
   set_deadline(rate_->look_at());
 }
@@ -209,16 +220,10 @@ void Client::set_deadline(loop::Instant when) {
   engine_.look_at(deadline_);
 }
 
-std::uint64_t Client::taken() const {
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  return ::getsockopt(fd_, IPPROTO_TCP, TCP_INFO, &info, &size) == 0 ? info.tcpi_bytes_acked : 0;
-}
-
 bool Client::keeps_up() {
   if (!rate_) return false;
   if (!bytes_expected_) {
-    const std::uint64_t before = std::exchange(taken_before_, taken());
+    const std::uint64_t before = std::exchange(taken_before_, gate_.traffic().taken);
     rate_->moved(taken_before_ - before);
   }
   if (rate_->is_too_slow(engine_.now())) return false;

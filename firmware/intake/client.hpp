@@ -84,6 +84,9 @@ class Client {
   /// authenticated one at the least rate.
   void expect_body();
   void body_came(std::size_t bytes);
+  /// Call this before an answer begins. True: the connection must end with it, because libmicrohttpd has read
+  /// bytes of the next request that the gate has not checked.
+  bool is_last_answer();
   /// The client must read its answer at the least rate.
   void expect_steady_reading();
   /// The client must read each part of a stream within kStreamWithin. The kernel holds few unsent bytes,
@@ -110,8 +113,6 @@ class Client {
   Held::Doing doing() const;
   void enter(Phase phase);
   void expect_head();
-  /// Bytes of the answer that the client's machine has acknowledged.
-  std::uint64_t taken() const;
   bool keeps_up();
   void happened(std::uint32_t events);
   void set_deadline(loop::Instant when);
@@ -135,7 +136,8 @@ class Client {
   bool known_ = false;
   bool leaving_ = false;            // cut() was called
   std::optional<LeastRate> rate_;   // of the body, or of reading the answer
-  std::uint64_t taken_before_ = 0;  // the last value of taken()
+  std::uint64_t taken_before_ = 0;  // the last value of Gate::Traffic::taken
+  bool arrived_ = false;            // bytes arrived since the last look at the head
   bool ended_ = false;              // the client has closed its direction
   bool suspended_ = false;
   bool hung_up_ = false;

@@ -6,7 +6,6 @@
 #include <sys/socket.h>
 
 #include <array>
-#include <optional>
 
 namespace adit::intake {
 namespace {
@@ -22,16 +21,6 @@ constexpr std::chrono::milliseconds kBetweenLooks(10);
 std::size_t unread(int fd) {
   int bytes = 0;
   return ::ioctl(fd, FIONREAD, &bytes) == 0 && bytes > 0 ? static_cast<std::size_t>(bytes) : 0;
-}
-
-/// The bytes of the client that were read from its socket. Too large if bytes arrive during the call. nullopt
-/// if the socket is no TCP socket (a socketpair of the simulation).
-std::optional<std::uint64_t> read_so_far(int fd) {
-  const std::size_t waits = unread(fd);
-  tcp_info info{};
-  socklen_t size = sizeof info;
-  if (::getsockopt(fd, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return std::nullopt;
-  return info.tcpi_bytes_received - waits;
 }
 
 }  // namespace
@@ -103,10 +92,17 @@ bool Gate::let_in() {
   return true;
 }
 
-bool Gate::is_passed_by() const {
-  if (next_ < sound_.size()) return false;
-  const auto read = read_so_far(fd_);
-  return read && *read != requests_end_;
+Gate::Traffic Gate::traffic() const {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  if (::getsockopt(fd_, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {requests_end_, 0};
+  return {info.tcpi_bytes_received, info.tcpi_bytes_acked};
+}
+
+bool Gate::is_passed_by(std::uint64_t received) const {
+  if (next_ < sound_.size() || received == requests_end_) return false;
+  const std::size_t waits = unread(fd_);  // first: bytes that arrive between the calls count as read
+  return traffic().received - waits != requests_end_;
 }
 
 bool Gate::read_away() {

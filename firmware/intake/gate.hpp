@@ -40,9 +40,17 @@ class Gate {
   bool let_in();
   /// Of the last request that was let in.
   const Framing& framing() const { return framing_; }
+  /// The kernel's counts of the connection's bytes, from the first one. If the socket is no TCP socket (a
+  /// socketpair of the simulation): those of the requests that were let in.
+  struct Traffic {
+    std::uint64_t received;  // from the client, also unread ones
+    std::uint64_t taken;     // bytes to the client that its machine has acknowledged
+  };
+  Traffic traffic() const;
   /// True if libmicrohttpd has read beyond the end of the last request that was let in, so that a part of the
-  /// next head would not be checked. Only for a request with a length that has been read.
-  bool is_passed_by() const;
+  /// next head would not be checked. Only for a request with a length that has been read. `received`: of
+  /// traffic(), just now.
+  bool is_passed_by(std::uint64_t received) const;
 
   bool has_refused() const { return stage_ == Stage::Refused; }
   /// Discards the received bytes, because closing a socket with unread bytes resets it, and the last answer

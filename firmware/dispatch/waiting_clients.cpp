@@ -1,5 +1,7 @@
 #include "dispatch/waiting_clients.hpp"
 
+#include <algorithm>
+
 namespace adit::dispatch {
 
 template <class Which>
@@ -43,7 +45,9 @@ std::optional<std::int64_t> WaitingClients::awaited_by(ClientId client) const {
 
 std::optional<WaitingClients::Instant> WaitingClients::next_deadline() const {
   if (clients_.empty()) return std::nullopt;
-  return clients_.begin()->second.deadline;
+  const auto first =
+      std::ranges::min_element(clients_, {}, [](const auto& item) { return item.second.deadline; });
+  return first->second.deadline;
 }
 
 }  // namespace adit::dispatch

@@ -41,6 +41,11 @@ TEST_F(WaitingClientsTest, AreTakenOnceTheirTimeIsUp) {
   EXPECT_EQ(clients_.next_deadline(), at_second(22));
 }
 
+TEST_F(WaitingClientsTest, MayWaitLessLongThanEarlierOnes) {
+  clients_.add(4, 9, at_second(5));
+  EXPECT_EQ(clients_.next_deadline(), at_second(5));
+}
+
 TEST_F(WaitingClientsTest, AreTakenButForThoseOfOneReport) {
   EXPECT_THAT(clients_.take_but(7), ElementsAre(Pair(2, 8)));
   EXPECT_THAT(clients_.take_but(std::nullopt), ElementsAre(Pair(1, 7), Pair(3, 7)));

@@ -175,19 +175,23 @@ void Applier::answer_probe(const network::Probe& probe) {
       probed.own = (*claim)->own;
     }
   }
-  if (const auto sought = settings::ipv4_of(probe.sought)) probed.found_on = side_of(*sought);
+  if (const auto sought = settings::ipv4_of(probe.sought)) seek(*sought, probed);
   const auto written = host::write_file(options_.status + '/' + network::kProbedFile,
                                         codec::write_file(probed), host::kForAll);
   if (!written) host::log(Level::Error, "cannot write an answer", {{"why", written.error()}});
 }
 
-/// The interface on which a machine answers for an address, or "". A failed probe counts as no answer.
-std::string Applier::side_of(std::uint32_t address) const {
+/// Finds the interface on which a machine answers for an address.
+void Applier::seek(std::uint32_t address, network::Probed& probed) const {
   for (const std::string& interface : {options_.command_post, options_.team}) {
     const auto claim = applier::probe(interface, {address});
-    if (claim && *claim) return interface;
+    if (!claim) {
+      probed.not_sought = claim.error();
+    } else if (*claim) {
+      probed.found_on = interface;
+      return;
+    }
   }
-  return "";
 }
 
 /// Writes the status if it has changed. False: cannot write.

@@ -43,7 +43,7 @@ class Applier {
   void after();
   bool tell();
   void answer_probe(const network::Probe& probe);
-  std::string side_of(std::uint32_t address) const;
+  void seek(std::uint32_t address, network::Probed& probed) const;
   /// Reads and removes the request in a file. std::nullopt: no valid request.
   template <class Request>
   std::optional<Request> asked(const char* name);

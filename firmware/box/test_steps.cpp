@@ -96,6 +96,9 @@ TestStep cables(const std::string& interface, const std::string& team, const std
                 const std::optional<network::Probed>& probed) {
   if (!probed || sought.empty()) return skipped("cables", "could not check which network is at which port");
   if (probed->found_on == interface) return good("cables", icd::sentence(sought, " is at ", interface));
+  if (probed->found_on.empty() && !probed->not_sought.empty())
+    return skipped("cables",
+                   icd::sentence("could not check which network is at which port: ", probed->not_sought));
   if (probed->found_on.empty() || probed->found_on != team) {
     return skipped("cables", icd::sentence("no machine answers for ", sought, " at either port"));
   }

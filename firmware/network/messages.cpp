@@ -153,6 +153,7 @@ constexpr Member kProbedMembers[] = {
     member<&Probed::own>("own"),
     member<&Probed::found_on>("found_on"),
     member<&Probed::trouble>("trouble"),
+    member<&Probed::not_sought>("not_sought"),
 };
 
 constexpr Member kTakenAddressMembers[] = {

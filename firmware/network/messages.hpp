@@ -103,11 +103,12 @@ struct Status {
 
 struct Probed {
   std::string nonce;
-  std::string address = "";   // first address with a conflict, else the box's first address; "": no address
-  std::string claimant = "";  // MAC address of the other machine; "": no conflict
-  std::string own = "";       // this box's interface with that MAC address, or ""
-  std::string found_on = "";  // the interface on which a machine answers for `sought`; "": no answer
-  std::string trouble = "";   // why the probe failed
+  std::string address = "";     // first address with a conflict, else the box's first address; "": no address
+  std::string claimant = "";    // MAC address of the other machine; "": no conflict
+  std::string own = "";         // this box's interface with that MAC address, or ""
+  std::string found_on = "";    // the interface on which a machine answers for `sought`; "": no answer
+  std::string trouble = "";     // why the probe failed
+  std::string not_sought = "";  // why the probe for `sought` failed at an interface
   static const codec::Row kRow;
 };
 

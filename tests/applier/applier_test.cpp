@@ -120,6 +120,17 @@ TEST_F(ApplierTest, SaysWhereARequestCannotBeTakenAway) {
   EXPECT_TRUE(runs_well()) << "once it can be";
 }
 
+TEST_F(ApplierTest, SaysWhyItCouldNotSeekAnAddress) {
+  options.team = options.command_post = "none0";
+  EXPECT_TRUE(runs_well());
+  ask(network::kProbeFile, network::Probe{kNonce, "10.100.1.200"});
+  EXPECT_TRUE(runs_well());
+  const auto probed = host::read_row<network::Probed>(options.status + '/' + network::kProbedFile);
+  ASSERT_TRUE(probed && *probed);
+  EXPECT_EQ((*probed)->found_on, "");
+  EXPECT_THAT((*probed)->not_sought, testing::StartsWith("none0: "));
+}
+
 TEST_F(ApplierTest, HearsAWordThatCameInTimeWhileItWasBusy) {
   EXPECT_TRUE(runs_well());
   want(network::kLeastWithin);

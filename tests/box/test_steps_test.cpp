@@ -51,6 +51,8 @@ TEST(TheCablesStep, LooksForTheCommandPostAtBothPorts) {
          "10.100.1.200 is not at darpa0 but at team0");
   probed.found_on = "";
   expect(cables("darpa0", "team0", "10.100.1.200", probed), "skipped", "no machine answers for 10.100.1.200");
+  probed.not_sought = "team0: Network is down";
+  expect(cables("darpa0", "team0", "10.100.1.200", probed), "skipped", "team0: Network is down");
   expect(cables("darpa0", "team0", "", probed), "skipped", "could not check");
   expect(cables("darpa0", "team0", "10.100.1.200", std::nullopt), "skipped", "could not check");
 }

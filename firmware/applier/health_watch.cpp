@@ -39,11 +39,13 @@ std::expected<void, std::string> restart(const std::string& systemctl) {
   return std::unexpected("cannot restart the machine: " + restarted.error());
 }
 
-/// A failure to store this does not change the slot's state: a later start stores it.
+/// A failure to store this does not change the slot's state: a later start stores it. Only a trial or the
+/// operator replaces an unreadable record.
 void keep_proven(const UpdateOptions& options, const update::Running& running, bool trial) {
-  const update::Proven before = load_proven(options.state);
-  const update::Proven proven = update::proven_now(before, running, trial);
-  if (proven != before) save(options.state, proven);
+  const auto before = load_proven(options.state);
+  if (!before && !trial) return;  // adit-update reports it
+  const update::Proven proven = update::proven_now(before.value_or(update::Proven{}), running, trial);
+  if (!before || proven != *before) save(options.state, proven);
 }
 
 std::expected<void, std::string> pass_trial(const UpdateOptions& options, update::LastUpdate last_update) {
@@ -67,8 +69,9 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
   auto running = rauc.status();
   if (!running) return std::unexpected(running.error());
   running->version = version_in(options.os_release);
-  const update::LastUpdate last_update = load_last_update(options.state);
-  const bool trial = update::on_trial(last_update, *running, host::boot());
+  const auto last_update = load_last_update(options.state);
+  if (!last_update) host::log(Level::Error, "a trial would not be noticed", {{"why", last_update.error()}});
+  const bool trial = last_update && update::on_trial(*last_update, *running, host::boot());
   const auto late_at = now() + options.within;
   while (true) {
     const auto health = update::judge(trial, ready(options.systemctl), now() >= late_at);
@@ -78,7 +81,7 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
   }
   if (auto marked = rauc.mark_good(); !marked) return marked;
   keep_proven(options, *running, trial);
-  auto passed = trial ? pass_trial(options, last_update) : std::expected<void, std::string>{};
+  auto passed = trial ? pass_trial(options, *last_update) : std::expected<void, std::string>{};
   if (passed) start_adit_update(options.systemctl);
   return passed;
 }

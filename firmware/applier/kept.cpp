@@ -3,18 +3,18 @@
 #include "host/log.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"
+#include "icd/sentence.hpp"
 #include "update/messages.hpp"
 
 namespace adit::applier {
 namespace {
 
-/// `what`: for the log, as in "cannot read ...".
+/// `what`: for the error, as in "cannot read ...".
 template <class Message>
-Message load(const std::string& path, std::string_view what) {
+std::expected<Message, std::string> load(const std::string& path, std::string_view what) {
   auto kept = host::read_row<Message>(path);
   if (kept) return (*std::move(kept)).value_or(Message{});
-  host::log(host::Level::Error, "cannot read " + std::string(what), {{"why", kept.error()}});
-  return {};
+  return std::unexpected(icd::sentence("cannot read ", what, ": ", kept.error()));
 }
 
 bool save(const std::string& path, const std::string& text, std::string_view what) {
@@ -36,7 +36,7 @@ std::string proven_in(const std::string& folder) {
 
 }  // namespace
 
-update::LastUpdate load_last_update(const std::string& folder) {
+std::expected<update::LastUpdate, std::string> load_last_update(const std::string& folder) {
   return load<update::LastUpdate>(last_update_in(folder), kLast);
 }
 
@@ -44,7 +44,7 @@ bool save(const std::string& folder, const update::LastUpdate& last_update) {
   return save(last_update_in(folder), codec::write_file(last_update), kLast);
 }
 
-update::Proven load_proven(const std::string& folder) {
+std::expected<update::Proven, std::string> load_proven(const std::string& folder) {
   return load<update::Proven>(proven_in(folder), kGood);
 }
 

@@ -46,7 +46,9 @@ void Updater::find_out() {
     status_.trouble = "RAUC does not run here: " + running.error();
   }
   status_.running.version = version_in(options_.os_release);
-  const update::LastUpdate kept = load_last_update(options_.state);
+  const auto read = load_last_update(options_.state);
+  const update::LastUpdate kept =  // not saved: the next update replaces an unreadable one
+      read ? *read : update::LastUpdate{.stage = Stage::Failed, .why = read.error()};
   update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
   if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
     if (const auto left = rauc_.leave_other(); !left)
@@ -59,7 +61,9 @@ void Updater::find_out() {
     tell_of(std::move(last_update));
   }
   status_.trial = update::on_trial(status_.last, status_.running, boot_);
-  status_.stray = update::stray(load_proven(options_.state), status_.running, status_.trial);
+  const auto proven = load_proven(options_.state);
+  status_.stray = proven ? update::stray(*proven, status_.running, status_.trial)
+                         : update::stray_if_unknown(status_.running, status_.trial, proven.error());
   if (!status_.stray.empty()) host::log(Level::Error, "unexpected slot started", {{"what", status_.stray}});
 }
 
@@ -113,8 +117,9 @@ std::string Updater::install(const std::expected<BundleFile, std::string>& file,
 /// Gives up the content of the slot to be written: go_back() is no longer possible, and it is not the next
 /// slot to start. If the slot is next afterwards, RAUC has written all of it.
 std::string Updater::give_up_other() {
-  if (load_proven(options_.state).slot == status_.running.other && !save(options_.state, update::Proven{}))
-    return kNotKept;
+  const auto proven = load_proven(options_.state);
+  const bool may_be_other = !proven || proven->slot == status_.running.other;
+  if (may_be_other && !save(options_.state, update::Proven{})) return kNotKept;
   status_.stray.clear();
   const auto now = rauc_.status();
   if (!now) return now.error();

@@ -21,4 +21,10 @@ std::string stray(const Proven& proven, const Running& running, bool trial) {
                        proven.slot, " with ", proven.version, ", ", why);
 }
 
+std::string stray_if_unknown(const Running& running, bool trial, std::string_view why) {
+  if (trial) return "";
+  return icd::sentence("slot ", running.slot, " is running, with ", running.version,
+                       ", and may not be the last good one: ", why);
+}
+
 }  // namespace adit::update

@@ -24,7 +24,9 @@ Proven proven_now(Proven before, const Running& running, bool trial);
 /// Returns a sentence with the reason if an unexpected slot runs. "": the proven slot runs or is unknown, or
 /// the running slot is on `trial`.
 std::string stray(const Proven& proven, const Running& running, bool trial);
-/// Why go_back() and stay() are rejected then.
+/// The same if the proven slot cannot be read; `why` says so.
+std::string stray_if_unknown(const Running& running, bool trial, std::string_view why);
+/// Why go_back() and stay() are rejected without a stray.
 inline constexpr std::string_view kNoStray = "no unexpected slot is running";
 
 }  // namespace adit::update

@@ -64,10 +64,12 @@ class Stray(OnB):
             self.assertIn("no unexpected slot", self.box.update()["refusal"])
         self.assertNotIn("reboot", self.box.calls.read_text())
 
-    def test_a_record_that_is_damaged_is_none(self):
+    def test_while_the_record_cannot_be_read_it_is_told_until_the_operator_decides(self):
         (self.box.folder / "state/proven.json").write_text('{"format": 1, "slot": 7')
+        self.good()  # which does not make it the good one
+        self.assertIn("may not be the last good one: cannot read the slot that was good last", self.box.update()["stray"])
+        self.box.ask("stay")
         self.assertEqual(self.box.update()["stray"], "")
-        self.good()
         self.assertEqual(self.proven(), "A")
 
 

@@ -204,12 +204,13 @@ class AHindrance(OnABox):
 
 
 class AlwaysTrue(unittest.TestCase):
-    def test_the_stories_of_a_damaged_file_are_none(self):
+    def test_a_damaged_record_of_the_last_update_is_told(self):
         raucs.needs_rauc()
         with tempfile.TemporaryDirectory() as folder:
             box = raucs.Box(raucs.Bundles(pathlib.Path(folder)))
             self.addCleanup(box.stop)
-            (box.folder / "state/last.json").write_text("{")
-            self.assertEqual(box.update()["last"]["stage"], "")
-            (box.folder / "state/last.json").write_text(json.dumps({"format": 9}))
-            self.assertEqual(box.update()["last"]["stage"], "")
+            for text in "{", json.dumps({"format": 9}):
+                (box.folder / "state/last.json").write_text(text)
+                last = box.update()["last"]
+                self.assertEqual(last["stage"], "failed")
+                self.assertIn("cannot read the outcome of the last update", last["why"])

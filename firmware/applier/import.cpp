@@ -105,12 +105,16 @@ void rename_taken(UntrustedFolder& folder, const std::string& name) {
 /// Wipes accepted tokens, because the card can be read elsewhere. Each token is renamed first, so that a
 /// start after an interrupted wipe finds it here.
 void wipe_taken(UntrustedFolder& card) {
+  const auto stays = [](const std::string& why) {
+    host::log(Level::Warning, "an accepted token may still be on the card", {{"why", why}});
+  };
   auto secrets = card.folder(kCardSecrets);
-  if (!secrets || !*secrets) return;
-  const std::vector<std::string> names = (*secrets)->names().value_or(std::vector<std::string>());
-  for (const std::string& name : names) {
-    if (!name.ends_with(kTakenEnding) || (*secrets)->wipe(name)) continue;
-    host::log(Level::Warning, "an accepted token may still be on the card", {{"file", name}});
+  if (!secrets) return stays(secrets.error());
+  if (!*secrets) return;
+  const auto names = (*secrets)->names();
+  if (!names) return stays(names.error());
+  for (const std::string& name : *names) {
+    if (name.ends_with(kTakenEnding) && !(*secrets)->wipe(name)) stays("cannot wipe " + name);
   }
 }
 

@@ -53,7 +53,9 @@ void SpareKeeper::answer(const spare::StickRequest& request, host::UntrustedFold
 std::string SpareKeeper::write(const std::string& name,
                                const std::expected<std::string, std::string>& bytes) {
   if (!bytes) return bytes.error();
-  const auto medium = spare::medium_for(sticks_.media(), bytes->size());
+  const auto media = sticks_.media();
+  if (!media) return media.error();
+  const auto medium = spare::medium_for(*media, bytes->size());
   if (!medium) return medium.error();
   doing("writing");
   std::string why = write_to(*medium, name, *bytes);
@@ -91,9 +93,9 @@ std::string SpareKeeper::check(const spare::Medium& medium, const std::string& n
 
 std::string SpareKeeper::take(const std::string& name) {
   doing("reading");
-  const std::string folder = sticks_.folder_with(name);
-  if (folder.empty()) return "no stick has this export";
-  const auto bytes = read_export(folder, name);
+  const auto folder = sticks_.folder_with(name);
+  if (!folder) return folder.error();
+  const auto bytes = read_export(*folder, name);
   if (!bytes) return bytes.error();
   if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));
       !why.empty())
@@ -108,9 +110,15 @@ void SpareKeeper::doing(const char* what) {
 }
 
 void SpareKeeper::look() {
-  const auto medium = spare::medium_for(sticks_.media(), 0);
+  const auto media = sticks_.media();
+  if (!media) {
+    status_.hindrance = media.error();
+    status_.exports.clear();
+    return;
+  }
+  const auto medium = spare::medium_for(*media, 0);
   status_.hindrance = medium ? "" : medium.error();
-  status_.exports = sticks_.exports();
+  status_.exports = sticks_.exports(*media);
 }
 
 bool SpareKeeper::tell() {

@@ -4,10 +4,12 @@
 #include <sys/statvfs.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <thread>
 
 #include "host/disk.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
@@ -46,9 +48,11 @@ bool Sticks::is_mounted(const std::string& name) const {
          mounted.st_dev != around.st_dev;
 }
 
-std::vector<spare::Medium> Sticks::media() const {
+std::expected<std::vector<spare::Medium>, std::string> Sticks::media() const {
   std::vector<spare::Medium> media;
-  for (const std::string& name : host::names_in(options_.sticks).value_or(std::vector<std::string>())) {
+  const auto names = host::names_in(options_.sticks);
+  if (!names) return std::unexpected("cannot list the sticks: " + options_.sticks + ": " + names.error());
+  for (const std::string& name : *names) {
     if (!is_in(name)) continue;  // directory of a removed stick
     const std::string block = options_.block + '/' + name;
     std::error_code error;
@@ -63,9 +67,9 @@ std::vector<spare::Medium> Sticks::media() const {
   return media;
 }
 
-std::vector<std::string> Sticks::exports() const {
+std::vector<std::string> Sticks::exports(std::span<const spare::Medium> media) const {
   std::vector<std::string> found;
-  for (const spare::Medium& medium : media()) {
+  for (const spare::Medium& medium : media) {
     if (!medium.is_mounted) continue;
     for (std::string& name : names_at(folder(medium.name), kMostAtTop)) {
       if (spare::is_file_name(name) && std::ranges::find(found, name) == found.end())
@@ -77,13 +81,18 @@ std::vector<std::string> Sticks::exports() const {
   return found;
 }
 
-std::string Sticks::folder_with(const std::string& name) const {
-  for (const spare::Medium& medium : media()) {
+std::expected<std::string, std::string> Sticks::folder_with(const std::string& name) const {
+  const auto all = media();
+  if (!all) return std::unexpected(all.error());
+  std::string why = "no stick has this export";
+  for (const spare::Medium& medium : *all) {
+    if (!medium.is_mounted) continue;
+    const std::string file = folder(medium.name) + '/' + name;
     struct stat status{};
-    if (medium.is_mounted && lstat((folder(medium.name) + '/' + name).c_str(), &status) == 0)
-      return folder(medium.name);
+    if (lstat(file.c_str(), &status) == 0) return folder(medium.name);
+    if (errno != ENOENT) why = host::trouble(file, errno);
   }
-  return "";
+  return std::unexpected(why);
 }
 
 std::expected<void, std::string> Sticks::unmount(const std::string& name) const {
@@ -114,7 +123,10 @@ std::expected<void, std::string> Sticks::remount(const std::string& name, Mode m
 }
 
 void Sticks::settle() const {
-  for (const spare::Medium& medium : media()) {
+  const auto all = media();
+  if (!all)
+    return host::log(host::Level::Error, "cannot mount sticks read-only again", {{"why", all.error()}});
+  for (const spare::Medium& medium : *all) {
     struct statvfs now{};
     if (!medium.is_mounted || statvfs(folder(medium.name).c_str(), &now) != 0 ||
         (now.f_flag & ST_RDONLY) != 0)

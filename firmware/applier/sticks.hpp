@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <expected>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ class Sticks {
   /// `options` must outlive this object.
   explicit Sticks(const SpareOptions& options) : options_(options) {}
 
-  std::vector<spare::Medium> media() const;
+  /// An error is a sentence.
+  std::expected<std::vector<spare::Medium>, std::string> media() const;
   /// Its mount point.
   std::string folder(const std::string& name) const { return options_.sticks + '/' + name; }
   bool is_in(const std::string& name) const;
@@ -28,9 +30,9 @@ class Sticks {
   static constexpr std::size_t kMostAtTop = 4096;
   /// Names of exports on all mounted sticks, the latest first, at most kMost.
   static constexpr std::size_t kMost = 8;
-  std::vector<std::string> exports() const;
-  /// The directory that has an export of that name, or "".
-  std::string folder_with(const std::string& name) const;
+  std::vector<std::string> exports(std::span<const spare::Medium> media) const;
+  /// The directory that has an export of that name. An error is a sentence.
+  std::expected<std::string, std::string> folder_with(const std::string& name) const;
 
   /// Unmounts the stick, which completes its writes, and mounts it in `mode`. Errors are sentences.
   std::expected<void, std::string> remount(const std::string& name, Mode mode) const;

@@ -146,6 +146,14 @@ class Stick(Sticks):
         self.expect_refused(self.write(), "there is no stick in the box")
         self.expect_refused(self.ask("take"), "no stick has this export")
 
+    def test_among_more_than_can_be_listed_is_not_missed(self):
+        for i in range(257):
+            self.place(f"old{i}").mkdir(parents=True)
+        why = "cannot list the sticks"
+        self.expect_refused(self.write(), why)
+        self.expect_refused(self.ask("take"), why)
+        self.assertIn(why, self.run_it()["hindrance"])
+
     def test_beside_another_is_not_guessed(self):
         self.plug()
         self.plug("sdb1")

@@ -45,7 +45,7 @@ std::expected<void, std::string> GrowingFile::look() {
   for (const std::uint64_t number : *numbers) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path(number), error);
-    files_.push_back({number, error ? 0 : size});
+    files_.push_back({number, error ? kLargest : size});  // unknown: nothing is added to it
   }
   return {};
 }

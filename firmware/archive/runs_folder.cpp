@@ -7,6 +7,7 @@
 
 #include "codec/row_file.hpp"
 #include "host/disk.hpp"
+#include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
 
@@ -17,15 +18,16 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kGone = "gone-";
 
-/// Total size of the files.
-std::uint64_t bytes_in(const std::string& folder) {
+/// Total size of the files, or why the directory cannot be listed.
+std::expected<std::uint64_t, std::string> bytes_in(const std::string& folder) {
   std::uint64_t bytes = 0;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
-    std::error_code unknown;
-    const auto size = entry->file_size(unknown);
+  const auto listed = host::for_each_name(folder, [&](std::string_view name) {
+    std::error_code unknown;  // a file may be gone
+    const auto size = fs::file_size(fs::path(folder) / name, unknown);
     if (!unknown) bytes += size;
-  }
+    return true;
+  });
+  if (!listed) return std::unexpected(host::trouble(folder, listed.error()));
   return bytes;
 }
 
@@ -75,7 +77,9 @@ std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(cons
         .run = told.head()->run, .post = told.head()->post, .began = told.head()->began, .last = told.last()};
   }
   row->key = key;
-  row->bytes = bytes_in(folder);
+  const auto bytes = bytes_in(folder);
+  if (!bytes) return std::unexpected(bytes.error());
+  row->bytes = *bytes;
   row->is_present = false;
   return row;
 }
@@ -146,7 +150,10 @@ void RunsFolder::tidy(std::uint64_t most, const std::string& present) {
   if (const auto disk = host::disk_of(path_)) most = std::min(most, (disk->free + all) / 2);
   for (auto row = rows.rbegin(); row != rows.rend() && all > most; ++row) {
     if (row->key == present) continue;
-    if (const auto removed = remove(row->key); !removed) continue;
+    if (const auto removed = remove(row->key); !removed) {
+      host::log(host::Level::Warning, "cannot delete an old run", {{"why", removed.error()}});
+      continue;
+    }
     all -= row->bytes;
     host::log(host::Level::Notice, "oldest run deleted to free space", {{"run", row->key}});
   }

@@ -57,6 +57,14 @@ TEST_F(RunFolderTest, GoesOnInTheFileOfTheLifeBefore) {
   EXPECT_LT(files, 5U);
 }
 
+/// Without its size, an error could cut it.
+TEST_F(RunFolderTest, AddsNothingToAFileWhoseSizeIsUnknown) {
+  std::filesystem::create_symlink(folder / "map-00000001", folder / "map-00000001");
+  const auto written = RunFolder(folder.path(), run.head).write(tiles(0), kMost);
+  ASSERT_TRUE(written) << written.error();
+  EXPECT_GT(written->bytes, std::size_t{900} << 10) << "it counts as full";
+}
+
 TEST_F(RunFolderTest, SaysWhoseRunItIsInAFileThatADeathLeftEmpty) {
   std::ofstream(folder / "map-00000001");
   ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(0), kMost));

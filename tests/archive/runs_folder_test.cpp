@@ -1,6 +1,7 @@
 #include "archive/runs_folder.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/fsuid.h>
 
 #include <filesystem>
 
@@ -89,6 +90,19 @@ TEST_F(RunsFolderTest, ARunThatCannotBeReadIsNotTakenForANewOne) {
   const auto begun = runs.begin({.run = 5, .began = 1000, .post = "here:1"});
   ASSERT_FALSE(begun) << *begun;
   EXPECT_THAT(begun.error(), testing::HasSubstr(path));
+}
+
+TEST_F(RunsFolderTest, ARunWhoseFilesCannotBeListedDoesNotTakeNoRoom) {
+  const std::string path = runs.folder_of(run(5, 1000, 10));
+  for (const char* open : {"", "/runs", "/runs/5", "/runs/5/facts.json"})
+    fs::permissions(folder.path() + open, fs::perms{0755});
+  fs::permissions(path, fs::perms{0311});
+  const int before = setfsuid(65534);  // root may list all directories
+  const auto facts = runs.facts_of("5");
+  setfsuid(before);
+  fs::permissions(path, fs::perms{0700});
+  ASSERT_FALSE(facts) << (*facts)->bytes;
+  EXPECT_EQ(facts.error(), path + ": Permission denied");
 }
 
 TEST_F(RunsFolderTest, AFolderWhoseRunNobodyKnowsIsNotGoneOnWith) {

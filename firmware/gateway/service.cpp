@@ -8,6 +8,7 @@
 
 #include "box/open_panel.hpp"
 #include "forward/stamp_floor.hpp"
+#include "host/files.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
@@ -86,7 +87,7 @@ Service::Service(const Options& options, char* const* arguments)
   if (file_rest_ < FileReturn::kRest) file_rest_ = FileReturn::kRest;
 }
 
-int Service::run(void (*count_faults)(const char* file) noexcept) {
+int Service::run(int (*count_faults)(const char* file) noexcept) {
   const auto terminated = loop_.signal(SIGTERM, [this] { running_->stop(); });
   const auto interrupted = loop_.signal(SIGINT, [this] { running_->stop(); });
   // First: the lights show a failed start.
@@ -95,7 +96,9 @@ int Service::run(void (*count_faults)(const char* file) noexcept) {
   if (auto made = make_folder(options_.state); !made) {
     host::log(host::Level::Error, "cannot create the state directory", {{"why", made.error()}});
   }
-  count_faults(faults_file().c_str());
+  if (const int error = count_faults(faults_file().c_str()); error != 0)
+    host::log(host::Level::Error, "faults are not counted, and no queue is put aside after them",
+              {{"why", host::trouble(faults_file(), error)}});
   for (const std::string& folder :
        {options_.state, options_.state + '/' + settings::kSecretsFolder, runtime_folder(options_)}) {
     host::remove_unwritten(folder);
@@ -128,10 +131,17 @@ std::string Service::put_queue_aside() {
                                   "markers were put aside: ");
   for (const char* const directory : {forward::Flow::kJournal, forward::Flow::kWaiting})
     why += renamed_aside(runtime_folder(options_) + directory);
-  std::filesystem::resize_file(faults_file(), 0, error);
+  forget_faults();
   why.resize(why.size() - 2);
   host::log(host::Level::Error, why);
   return why;
+}
+
+void Service::forget_faults() {
+  std::error_code error;
+  std::filesystem::resize_file(faults_file(), 0, error);
+  if (error && error != std::errc::no_such_file_or_directory)
+    host::log(host::Level::Warning, "cannot forget earlier faults", {{"why", error.message()}});
 }
 
 void Service::start_again(const std::string& trouble) {
@@ -196,11 +206,7 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
   }
   running_ = &gateway;
   file_rest_ = gateway.awaits_files() ? longer(file_rest_) : FileReturn::kRest;
-  const auto forget_faults = [this] {
-    std::error_code none;
-    std::filesystem::resize_file(faults_file(), 0, none);
-  };
-  loop::Source well = loop_.timer(forget_faults);
+  loop::Source well = loop_.timer([this] { forget_faults(); });
   well.call_at(loop_.now() + kWell);
   loop_.run();
   forget_faults();

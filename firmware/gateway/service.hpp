@@ -30,7 +30,7 @@ class Service {
 
   /// Returns 0 after SIGTERM or SIGINT, 1 if it could not start, with a log entry. Otherwise it ends in exec.
   /// `count_faults`: loop::count_faults(), with the file's name.
-  int run(void (*count_faults)(const char* file) noexcept);
+  int run(int (*count_faults)(const char* file) noexcept);
 
  private:
   std::expected<bool, std::string> run_gateway();
@@ -40,6 +40,7 @@ class Service {
   /// One byte per fault.
   std::string faults_file() const;
   std::string put_queue_aside();
+  void forget_faults();
   [[noreturn]] void start_again(const std::string& trouble);
 
   const Options& options_;

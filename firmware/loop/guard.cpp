@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
@@ -49,8 +50,9 @@ void end_by_uncaught() noexcept {
   });
 }
 
-void count_faults(const char* file) noexcept {
+int count_faults(const char* file) noexcept {
   faults_file.store(::open(file, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600));
+  if (faults_file.load() < 0) return errno;
   struct sigaction action{};
   action.sa_flags = static_cast<int>(SA_RESETHAND);  // the signal that is raised again ends the process
   action.sa_handler = [](int signal) {
@@ -59,6 +61,7 @@ void count_faults(const char* file) noexcept {
   };
   for (const int signal : {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT})
     (void)::sigaction(signal, &action, nullptr);
+  return 0;
 }
 
 }  // namespace adit::loop

@@ -22,8 +22,8 @@ void tell_of_caught(void (*told)(const char* where, const char* what)) noexcept;
 void end_by_uncaught() noexcept;
 
 /// From now on each such end, and each end by SIGSEGV, SIGBUS, SIGILL, SIGFPE or SIGABRT, appends a byte to
-/// `file`. If `file` cannot be opened, ends are not counted.
-void count_faults(const char* file) noexcept;
+/// `file`. Errno: `file` cannot be opened, and ends are not counted. 0: they are.
+int count_faults(const char* file) noexcept;
 
 /// Calls `work`. If `work` throws, reports that by caught() and returns false. Requests and jobs of workers
 /// are called by guarded(), so that each fails alone.

@@ -82,6 +82,10 @@ TEST(FaultsDeathTest, AreCountedByExceptionsAndSignalsOfTheProcessItself) {
   std::filesystem::remove(file);
 }
 
+TEST(Faults, AreNotCountedInAFileThatCannotBeOpened) {
+  EXPECT_EQ(count_faults("/none/adit-faults"), ENOENT);
+}
+
 TEST_F(Guard, EndsTheJobThatThrowsAndTellsWhoeverWaitsForIt) {
   Loop loop;
   Workers workers(loop, 1);

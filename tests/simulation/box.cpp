@@ -162,7 +162,7 @@ void Box::one_life() {
       {.actor = Actor::Disk, .kind = Kind::Serves, .what = "settings", .who = world_.disk().settings()});
   if (const auto how = std::exchange(dies_at_start_, std::nullopt)) die_soon(*how);
   try {
-    const bool began = gateway::Service(options, nullptr).run([](const char*) noexcept {}) == 0;
+    const bool began = gateway::Service(options, nullptr).run([](const char*) noexcept { return 0; }) == 0;
     if (!began && !world_.is_dead()) world_.note({.kind = Kind::Fails, .what = "aditd", .who = ""});
   } catch (const Killed&) {
   } catch (const StartsAgain&) {

@@ -15,6 +15,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pair;
 using testing::SizeIs;
+using testing::StartsWith;
 
 class NoticesTest : public testing::Test {
  protected:
@@ -41,11 +42,13 @@ TEST_F(NoticesTest, AreNoneWhereThereIsNoFolderOrNothingInIt) {
   EXPECT_THAT(read_notices(folder_ / "absent"), IsEmpty());
 }
 
-TEST_F(NoticesTest, AreNeitherFoldersNorPipesNorEmptyFiles) {
+TEST_F(NoticesTest, SayWhatCannotBeRead) {
   std::filesystem::create_directory(folder_ / "folder");
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   write("empty", "");
-  EXPECT_THAT(read_notices(folder_), IsEmpty());
+  EXPECT_THAT(read_notices(folder_), ElementsAre(Pair("folder", StartsWith("cannot read ")),
+                                                 Pair("pipe", StartsWith("cannot read "))));
+  EXPECT_THAT(read_notices(folder_ / "empty"), ElementsAre(Pair("notices", StartsWith("cannot list "))));
 }
 
 TEST_F(NoticesTest, AreFewAndShortWhateverIsThere) {

@@ -66,8 +66,9 @@ class Flow final : public intake::Desk {
 
   /// Continues the work of the previous process, and connects.
   void start();
-  /// Maps put aside because processes ended while they worked on them, and why; or "".
-  const std::string& put_aside() const { return spool_.ended_processes(); }
+  /// Which queued messages of the previous process are not sent, because they are damaged or processes ended
+  /// while they worked on them; or "".
+  std::string put_aside() const;
   /// Why a file that sending needs is unreadable, or "".
   std::string unread() const { return clocks_.unread(); }
   /// After start(): all files of messages were read.

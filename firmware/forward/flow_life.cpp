@@ -60,6 +60,11 @@ bool Flow::can_be_read(const std::string& runtime_folder) {
          spool::can_be_read(runtime_folder + kWaiting) && spool::can_be_read(runtime_folder + kRejected);
 }
 
+std::string Flow::put_aside() const {
+  const std::string &maps = spool_.put_aside(), &records = journal_.damage();
+  return maps.empty() || records.empty() ? maps + records : maps + "; " + records;
+}
+
 void Flow::start() {
   carry_on();
   scoring_.start();

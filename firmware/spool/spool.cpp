@@ -23,6 +23,8 @@ namespace fs = std::filesystem;
 
 /// Bytes of a map's file beside the data, in whole pages.
 constexpr std::uint64_t kBeside = 8192;
+/// Most bytes of put_aside(), beside its last map. The log names all.
+constexpr std::size_t kMostTold = 300;
 constexpr std::string_view kMap = "map-", kEnding = ".cbor";
 
 std::unexpected<icd::Refusal> not_kept(const std::string& why) {
@@ -92,6 +94,12 @@ void Spool::set_aside(std::uint64_t number, const std::string& why) {
   host::set_damaged_aside(file_of(number), "a queued map", why);
 }
 
+void Spool::put_aside(std::uint64_t number, const std::string& why) {
+  set_aside(number, why);
+  if (put_aside_.size() < kMostTold)
+    put_aside_ += icd::sentence(put_aside_.empty() ? "" : "; ", file_of(number), ": ", why);
+}
+
 void Spool::work_begins(const std::vector<std::uint64_t>& numbers) {
   std::string text;
   for (const std::uint64_t number : numbers)
@@ -115,9 +123,7 @@ void Spool::count_ends() {
       ended_once_.insert(number);
       continue;
     }
-    set_aside(number, "two processes ended while they packed it");
-    ended_processes_ += icd::sentence(ended_processes_.empty() ? "aditd ended twice while it packed " : ", ",
-                                      file_of(number));
+    put_aside(number, "two processes ended while they packed it");
   }
   work_ends();
 }
@@ -135,7 +141,7 @@ Spool::Kept Spool::read() {
     } else if (map.error().status == icd::Status::ServiceUnavailable) {
       unread_ = map.error().sentence;
     } else {
-      set_aside(number, map.error().sentence);
+      put_aside(number, map.error().sentence);
     }
   }
   if (unread_.empty()) return kept;

@@ -48,8 +48,8 @@ class Spool {
   /// read() sets the map aside.
   void work_begins(const std::vector<std::uint64_t>& numbers);
   void work_ends() const;
-  /// A sentence that names the maps set aside for that reason, or "".
-  const std::string& ended_processes() const { return ended_processes_; }
+  /// A sentence that names maps that read() set aside, and why; or "".
+  const std::string& put_aside() const { return put_aside_; }
 
   /// Reads all stored maps. A damaged file is logged and set aside. If a file cannot be read, all files stay,
   /// the result is empty, and keep() rejects every map until the next start, because a newer map must not
@@ -64,10 +64,11 @@ class Spool {
   std::string file_of(std::uint64_t number) const;
   std::string work_file() const { return folder_ + "/at-work"; }
   void count_ends();
+  void put_aside(std::uint64_t number, const std::string& why);
 
   std::string folder_, unread_;         // unread_: why read() failed
   std::set<std::uint64_t> ended_once_;  // maps that the previous process was working on when it ended
-  std::string ended_processes_;
+  std::string put_aside_;
   std::atomic<std::uint64_t> left_to_others_;  // also read by the writer thread
 };
 

@@ -1,6 +1,6 @@
 #include "spool/spool.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <sys/statvfs.h>
 
@@ -93,6 +93,7 @@ TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
   fs::resize_file(folder_ / "map-00000001.cbor", 100);
   fs::resize_file(folder_ / "map-00000002.cbor", fs::file_size(folder_ / "map-00000002.cbor") + 1);
   EXPECT_EQ(spool.read().size(), 1U);
+  EXPECT_THAT(spool.put_aside(), testing::HasSubstr("map-00000001.cbor: the file is cut short; "));
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
   EXPECT_TRUE(fs::exists(folder_ / "map-00000002.cbor.damaged"));
 }
@@ -104,7 +105,7 @@ TEST_F(SpoolTest, SetsAMapAsideInWorkOnWhichTwoProcessesEnded) {
     const auto kept = spool.read();
     spool.work_begins(numbers);
     fs::copy(folder, folder.string() + ".killed");
-    return std::pair(kept.size(), spool.ended_processes());
+    return std::pair(kept.size(), spool.put_aside());
   };
   const auto again = [&folder] {
     fs::remove_all(folder);
@@ -121,7 +122,7 @@ TEST_F(SpoolTest, SetsAMapAsideInWorkOnWhichTwoProcessesEnded) {
   again();
   const auto [left, sentence] = kill_in_work_on({1});
   EXPECT_EQ(left, 2u) << "the second one is put aside, and the first is tried again";
-  EXPECT_EQ(sentence, "aditd ended twice while it packed " + (folder / "map-00000002.cbor").string());
+  EXPECT_EQ(sentence, (folder / "map-00000002.cbor").string() + ": two processes ended while they packed it");
   EXPECT_TRUE(fs::exists(folder / "map-00000002.cbor.damaged"));
 }
 

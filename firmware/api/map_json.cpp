@@ -128,6 +128,7 @@ constexpr Member kMap[] = {
     member<&MapView::colours>("colours"),
     member<&MapView::spacing>("spacing", "seconds between two stored states"),
     member<&MapView::wiped>("wiped", "begin of the last run, if the box saw it begin"),
+    member<&MapView::missed>("missed", "number of maps whose layer is one too many"),
     member<&MapView::layers>("layers"),
 };
 
@@ -148,6 +149,7 @@ MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
                   .heights = {heights.begin(), heights.end()}},
       .spacing = map.spacing(),
       .wiped = map.wiped(),
+      .missed = map.missed(),
       .layers = map.layers(since)};
 }
 

@@ -25,6 +25,7 @@ struct MapView {
   MapColours colours;
   double spacing = 0;
   std::optional<double> wiped;
+  std::size_t missed = 0;
   std::vector<picture::LayerView> layers;
 
   static const codec::Row kRow;

@@ -59,9 +59,8 @@ bool Mosaic::has_room(const State& state, const Drawing& drawing) const {
 bool Mosaic::apply(Drawing drawing, double stamp) {
   if (drawing.run != run_) return false;
   State* state = state_of(drawing.layer, stamp);
-  if (state == nullptr) return false;
-  if (!has_room(*state, drawing)) {
-    ++state->view.missed;
+  if (state == nullptr || !has_room(*state, drawing)) {
+    ++(state == nullptr ? missed_ : state->view.missed);
     return false;
   }
   const double now = drawing.tiles.empty() ? std::max(stamp, last_) : begin_change(stamp);
@@ -77,13 +76,15 @@ bool Mosaic::apply(Drawing drawing, double stamp) {
 }
 
 void Mosaic::missed(const Layer& layer, double stamp) {
-  if (State* state = state_of(layer, stamp)) ++state->view.missed;
+  State* state = state_of(layer, stamp);
+  ++(state == nullptr ? missed_ : state->view.missed);
 }
 
 void Mosaic::wipe(double stamp) {
   const double now = begin_change(stamp);
   ++run_;
   wiped_ = now;
+  missed_ = 0;
   for (auto& [layer, state] : layers_) {
     state.view.bounds.reset();
     state.view.heights.reset();

@@ -58,8 +58,8 @@ class Mosaic {
   Canvas canvas(const Layer& layer) const;
 
   /// Adds the drawing of a map that came at `stamp`. A stamp before the last one counts as the last one.
-  /// False if there is no room for the drawing (it counts as missed), if there are too many layers, or if the
-  /// drawing was begun before the last wipe.
+  /// False if there is no room for the drawing or its layer (it counts as missed), or if the drawing was
+  /// begun before the last wipe.
   bool apply(Drawing drawing, double stamp);
   /// A map of that layer came and will not be drawn.
   void missed(const Layer& layer, double stamp);
@@ -102,6 +102,8 @@ class Mosaic {
   std::optional<double> wiped() const { return wiped_; }  // time of the last wipe
   double spacing() const { return spacing_; }             // of earlier states, in seconds: see History
   std::size_t bytes() const { return bytes_; }
+  /// Maps of this run whose layer is one too many.
+  std::size_t missed() const { return missed_; }
 
  private:
   struct State {
@@ -117,6 +119,7 @@ class Mosaic {
 
   std::size_t budget_;
   std::map<Layer, State> layers_;
+  std::size_t missed_ = 0;
   std::size_t bytes_ = 0, newest_bytes_ = 0;  // of all states; of the newest states
   double spacing_ = 1;
   double last_ = 0;  // the last stamp

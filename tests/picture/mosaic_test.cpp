@@ -205,6 +205,8 @@ TEST(Mosaic, TakesNoMoreLayersThanItMay) {
   const auto map = of("onemore", grid_at(0, 0, 1, 0.25, {0}));
   EXPECT_FALSE(easel.mosaic.apply(*draw(map, easel.mosaic.canvas(layer_of(map))), 3000));
   EXPECT_EQ(easel.mosaic.layers().size(), Mosaic::kMostLayers);
+  easel.mosaic.missed({"twomore", Kind::Cloud}, 3001);
+  EXPECT_EQ(easel.mosaic.missed(), 2U);
 }
 
 }  // namespace

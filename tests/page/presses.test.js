@@ -2,7 +2,6 @@
 // from which the browser itself makes its clicks.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { until } from "./box.js";
 import { canvas } from "./pictures.js";
 import { armed, settled, toTab, watch } from "./watch.js";
 

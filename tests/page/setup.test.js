@@ -3,7 +3,7 @@ import { readFile } from "node:fs/promises";
 import { existsSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { test } from "node:test";
-import { come, freePort, freshBox, LOOKING, PASSWORD, TOKENS, until } from "./fresh_box.js";
+import { come, freePort, freshBox, LOOKING, TOKENS, until } from "./fresh_box.js";
 import { complaints, COURSES, field, fill, hears, ready, review, step, type } from "./setup_page.js";
 
 /** Runs the Test, and gives of each endpoint each step's state. */

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { come, freshBox, LOOKING, PASSWORD } from "./fresh_box.js";
+import { come, freshBox, PASSWORD } from "./fresh_box.js";
 import { complaints, hears, type } from "./setup_page.js";
 import { axeFindsNothing, shoot } from "./watch.js";
 
@@ -80,15 +80,4 @@ test("can be used by keyboard alone", async (t) => {
   assert.equal(await page.evaluate(() => document.activeElement.textContent), "Test", "a new step is read out");
   await page.goBack();
   await page.getByRole("heading", { name: "Robots" }).waitFor();
-});
-
-test("asks nothing of anybody but the box", async (t) => {
-  const box = await freshBox(t, { settings: SETTINGS });
-  await box.settle();
-  for (const password of [PASSWORD, LOOKING]) {
-    const page = await come(t, box, "setup", password);
-    for (const name of STEPS) await turnTo(page, name);
-    assert.ok(page.requests.length > 10);
-    assert.deepEqual(page.requests.filter((url) => !url.startsWith(box.url)), []);
-  }
 });

@@ -89,8 +89,6 @@ test("says that one of three robots is silent over a kill of the service and a n
 
 const CASES = [
   { is: "command_post_refusing", word: "refused", fault: "401,for=600" },
-  { is: "command_post_foreign", word: "wrong host", fault: "html-200,for=600" },
-  { is: "command_post_failing", word: "failing", fault: "500,for=600" },
   { is: "command_post_silent", word: "silent", fault: "answer-after=60,for=600" },
   { is: "command_post_unreachable", word: "unreachable" },
 ];

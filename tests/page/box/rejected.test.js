@@ -1,21 +1,15 @@
-// What the Command Post would not take: sent again, discarded, and kept where that is refused, by mouse, keyboard and touch.
+// What the Command Post would not take: sent again, discarded, and kept where that is refused. As a touch does it: presses.test.js.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
 import { pickyPost } from "./picky_post.js";
 import { box, canBeDeaf, look, openMore } from "./visits.js";
 
-const HANDS = {
-  mouse: { options: {}, press: (button) => button.click() },
-  keyboard: {
-    options: {},
-    press: async (button) => {
-      await button.page().waitForSelector("[data-given]", { state: "detached" }); // a second press might be one too many
-      await button.press("Enter");
-    },
-  },
-  touch: { options: { hasTouch: true, viewport: { width: 360, height: 740 } }, press: (button) => button.tap() },
-};
+/** By keyboard: the focus is what each press leaves somewhere. */
+async function press(button) {
+  await button.page().waitForSelector("[data-given]", { state: "detached" }); // a second press might be one too many
+  await button.press("Enter");
+}
 const REFUSED = { robot_1: 422, robot_2: 400, robot_3: 413, robot_4: 422 };
 
 const pose = { position: { x: 0, y: 0, z: 0 }, orientation: { x: 0, y: 0, z: 0, w: 1 } };
@@ -52,58 +46,56 @@ const focusIs = (page, selector) => page.waitForFunction((selector) => document.
 const counted = (page, count) => page.locator("#rejected .count", { hasText: new RegExp(`^${count}$`) }).waitFor();
 const numberOf = (page, name) => row(page, name).getAttribute("data-key");
 
-for (const [hand, { options, press }] of Object.entries(HANDS)) {
-  test(`what is rejected is sent again or discarded by ${hand}, and the focus goes to what is next`, async (t) => {
-    const { page, made, post } = await withRefused(t, options);
-    for (const [name, status] of Object.entries(REFUSED)) assert.match(await row(page, name).innerText(), new RegExp(`${status}: .*not to my taste`));
-    await counted(page, 4);
-    const [, , third, fourth] = await Promise.all(Object.keys(REFUSED).map((name) => numberOf(page, name)));
+test("what is rejected is sent again or discarded, and the focus goes to what is next", async (t) => {
+  const { page, made, post } = await withRefused(t);
+  for (const [name, status] of Object.entries(REFUSED)) assert.match(await row(page, name).innerText(), new RegExp(`${status}: .*not to my taste`));
+  await counted(page, 4);
+  const [, , third, fourth] = await Promise.all(Object.keys(REFUSED).map((name) => numberOf(page, name)));
 
-    post.refuses.clear();
-    await press(button(page, "robot_2", "Send again"));
-    await until(() => post.taken.includes("robot_2"), "it to arrive at the Command Post");
-    await row(page, "robot_2").waitFor({ state: "detached" });
-    await counted(page, 3);
-    await focusIs(page, `#rejected li[data-key="${third}"] .send`);
-    await page.locator("#rejected .said", { hasText: "is queued again" }).waitFor();
+  post.refuses.clear();
+  await press(button(page, "robot_2", "Send again"));
+  await until(() => post.taken.includes("robot_2"), "it to arrive at the Command Post");
+  await row(page, "robot_2").waitFor({ state: "detached" });
+  await counted(page, 3);
+  await focusIs(page, `#rejected li[data-key="${third}"] .send`);
+  await page.locator("#rejected .said", { hasText: "is queued again" }).waitFor();
 
-    await press(button(page, "robot_3", "Discard"));
-    await row(page, "robot_3").waitFor({ state: "detached" });
-    await counted(page, 2);
-    await focusIs(page, `#rejected li[data-key="${fourth}"] .discard`);
+  await press(button(page, "robot_3", "Discard"));
+  await row(page, "robot_3").waitFor({ state: "detached" });
+  await counted(page, 2);
+  await focusIs(page, `#rejected li[data-key="${fourth}"] .discard`);
 
-    await press(button(page, "robot_4", "Discard"));
-    await row(page, "robot_4").waitFor({ state: "detached" });
-    await focusIs(page, "#rejected li:only-child .discard");
-    await press(button(page, "robot_1", "Discard"));
-    await row(page, "robot_1").waitFor({ state: "detached" });
-    await focusIs(page, "#post-title");
-    assert.deepEqual(await rejectedOf(made), []);
-    assert.deepEqual(post.taken, ["robot_2"]);
-    assert.deepEqual(page.complaints, []);
-  });
+  await press(button(page, "robot_4", "Discard"));
+  await row(page, "robot_4").waitFor({ state: "detached" });
+  await focusIs(page, "#rejected li:only-child .discard");
+  await press(button(page, "robot_1", "Discard"));
+  await row(page, "robot_1").waitFor({ state: "detached" });
+  await focusIs(page, "#post-title");
+  assert.deepEqual(await rejectedOf(made), []);
+  assert.deepEqual(post.taken, ["robot_2"]);
+  assert.deepEqual(page.complaints, []);
+});
 
-  test(`what something newer says all of stays where it is sent again by ${hand}, with the box's sentence`, async (t) => {
-    const { page, made, post } = await withRefused(t, { ...options, prepare: canBeDeaf });
-    await page.evaluate(() => (globalThis.deaf = true));
-    post.refuses.clear();
-    await send(made, "robot_2", [100, 0, 100, 0]);
-    await until(async () => (await rejectedOf(made)).some(({ robot, replaced }) => robot === "robot_2" && replaced), "it to be replaced");
-    const number = await numberOf(page, "robot_2");
-    const refused = page.waitForResponse((answer) => answer.url().endsWith(`/adit/rejected/${number}/send`));
-    await press(button(page, "robot_2", "Send again"));
-    await page.locator("#rejected .said", { hasText: await (await refused).json() }).waitFor();
-    await focusIs(page, `#rejected li[data-key="${number}"] .send`);
-    await page.evaluate(() => (globalThis.deaf = false));
-    await row(page, "robot_2").getByText("A newer message that contains it was sent.").waitFor();
-    await counted(page, 3);
-    await focusIs(page, `#rejected li[data-key="${number}"] .discard`);
-    assert.ok(await button(page, "robot_2", "Send again").isDisabled());
-    await press(button(page, "robot_2", "Discard"));
-    await row(page, "robot_2").waitFor({ state: "detached" });
-    assert.deepEqual(post.taken, ["robot_2"]);
-  });
-}
+test("what something newer says all of stays where it is sent again, with the box's sentence", async (t) => {
+  const { page, made, post } = await withRefused(t, { prepare: canBeDeaf });
+  await page.evaluate(() => (globalThis.deaf = true));
+  post.refuses.clear();
+  await send(made, "robot_2", [100, 0, 100, 0]);
+  await until(async () => (await rejectedOf(made)).some(({ robot, replaced }) => robot === "robot_2" && replaced), "it to be replaced");
+  const number = await numberOf(page, "robot_2");
+  const refused = page.waitForResponse((answer) => answer.url().endsWith(`/adit/rejected/${number}/send`));
+  await press(button(page, "robot_2", "Send again"));
+  await page.locator("#rejected .said", { hasText: await (await refused).json() }).waitFor();
+  await focusIs(page, `#rejected li[data-key="${number}"] .send`);
+  await page.evaluate(() => (globalThis.deaf = false));
+  await row(page, "robot_2").getByText("A newer message that contains it was sent.").waitFor();
+  await counted(page, 3);
+  await focusIs(page, `#rejected li[data-key="${number}"] .discard`);
+  assert.ok(await button(page, "robot_2", "Send again").isDisabled());
+  await press(button(page, "robot_2", "Discard"));
+  await row(page, "robot_2").waitFor({ state: "detached" });
+  assert.deepEqual(post.taken, ["robot_2"]);
+});
 
 test("what alone gets a 500 while others pass is listed, and arrives once it is sent again", async (t) => {
   const made = await box(t, { settings: { command_post: { rates: QUICK } }, post: ["--rate", "0"] });

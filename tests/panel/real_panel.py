@@ -24,33 +24,6 @@ class Watching(Running):
         client.send(b"lit 0001")
         self.shows("0001")
 
-    def test_a_death_is_shown_at_once_and_until_the_next_one_tells(self):
-        client = self.connect("lit 1110")
-        self.shows("1110")
-        client.close()
-        self.shows_fault()
-        self.connect("lit 0111")
-        self.shows("0111")
-
-    def test_an_end_that_is_told_leaves_the_lights_dark(self):
-        client = self.connect("lit 1110")
-        self.shows("1110")
-        client.send(b"end")
-        client.close()
-        self.shows(DARK)
-        end = time.monotonic() + 2.5  # a fault would be seen in this time
-        while time.monotonic() < end:
-            self.assertEqual(self.lit(), DARK)
-            time.sleep(0.01)
-
-    def test_silence_is_a_fault_and_its_end_is_not(self):
-        client = self.connect("lit 1110")
-        self.shows("1110")
-        took = self.shows_fault()
-        print(f"\nadit-panel: from the last word to the fault: {took:.2f} s", file=sys.stderr)
-        client.send(b"lit 1110")
-        self.shows("1110")
-
     def test_whoever_connected_last_is_heard(self):
         first = self.connect("lit 1000")
         self.shows("1000")

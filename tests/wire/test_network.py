@@ -1,5 +1,5 @@
-"""adit-network on the box: changes of its addresses that take themselves back, and whether anybody else has them. Other courses are in
-network/change_test, applier/applier_test and applier/networkd_files_test."""
+"""adit-network on the box: a change of its addresses that stays, hostile requests, and whether anybody else has an address. How a change
+is reverted is in network/change_test, applier/applier_test, applier/networkd_files_test and test_networkd."""
 
 import os
 import subprocess
@@ -18,17 +18,6 @@ class WithAStandIn(Change):
         self.box = networkd.AditNetwork(self.network, self.folder)
         self.assertEqual(self.box.run(), 0)
         self.confirm_first()
-
-    def test_a_change_takes_itself_back(self):
-        self.box.want(within_ms=15000, team="192.168.8.11")
-        self.has(NEW)
-        pending = self.box.pending()
-        self.assertEqual(pending["wanted"]["team"]["address"], "192.168.8.11")
-        self.ends()
-        self.has(OLD)
-        status = self.box.status()
-        self.assertEqual((status["pending"], status["last"]), (None, "reverted"))
-        self.assertNotIn("04-adit-team.network", self.box.files("networkd"))
 
     def test_a_confirmed_change_stays(self):
         nonce = self.box.want(team="192.168.8.11")
@@ -51,21 +40,6 @@ class WithAStandIn(Change):
         self.assertEqual(self.box.run(), 0, self.box.said())
         hosts.ip("-n", self.network.box, "address", "flush", "dev", "team0")
         subprocess.run(["ip", "netns", "exec", self.network.box, self.box.networkctl, "reload"], check=True)
-
-    def test_a_change_is_reverted_after_a_kill(self):
-        self.box.want(team="192.168.8.11")
-        self.has(NEW)
-        self.box.stop()
-        self.assertEqual(self.box.run(), 0)
-        self.has(OLD)
-        self.assertEqual(self.box.status()["last"], "reverted")
-
-    def test_a_change_is_reverted_by_one_word(self):
-        nonce = self.box.want(team="192.168.8.11")
-        self.has(NEW)
-        self.box.ask("word.json", nonce=nonce, word="revert")
-        self.ends()
-        self.has(OLD)
 
     def test_what_is_wrong_or_hostile_is_refused_and_taken_away(self):
         secret = self.folder / "secret"

@@ -6,13 +6,11 @@ import unittest
 
 import requests
 
-import hosts
 import maps
 import messages
 import programs
 from messages import Style
 from programs import Stage, wait_until
-from reporting import submit
 
 CBOR = Style("cbor")
 UPRIGHT = {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0}
@@ -91,33 +89,3 @@ class Runs(unittest.TestCase):
         kept = [moment for moment in plots["at"] if moment in again["at"]]
         self.assertGreaterEqual(len(kept), len(plots["at"]) - 4)  # those of the last seconds are not on the disk yet
         self.assertEqual({robot["robot"] for robot in again["robots"]} & {"ugv1", "ugv2"}, {"ugv1", "ugv2"})
-
-    def test_an_earlier_run_is_listed_looked_at_again_printed_and_deleted(self):
-        stage = self.stage(courses=[{"name": "alpha", "scoring": {"address": hosts.SCORING, "port": programs.PORT},
-                                     "mapping": {"address": hosts.MAPPING, "port": programs.PORT}}],
-                           command_post__course="alpha")
-        self.drive(stage)
-        self.assertEqual(submit(stage, {"x": 1.0, "y": 2.0, "z": 3.0, "type": "Drill"}).status_code, 201)
-        self.wait_until_kept(stage)
-        first = self.ask(stage, "/adit/run")["run_number"]
-        picture, tracks = self.drawn(stage), self.tracks(stage)
-        self.assertEqual(stage.box.ask("POST /adit/runs", {"Content-Type": "application/json"})[0], 200)
-        runs = wait_until(lambda: (all := self.ask(stage, "/adit/runs")["runs"]) and len(all) == 2 and all, "two runs")
-        self.assertEqual({run["course"] for run in runs if run["run"] == first}, {"alpha"})
-        base = f"/adit/runs/{first}"
-        self.assertEqual(self.drawn(stage, base), picture)
-        self.assertEqual(self.ask(stage, f"{base}/tracks")["tracks"], tracks)
-        self.assertGreater(len(self.ask(stage, f"{base}/history")["at"]), 1)
-        page = requests.get(f"{stage.box.url}{base}/report.html", timeout=30,
-                            headers={"Authorization": f"Bearer {programs.TEAM_TOKEN}"})
-        self.assertEqual(page.status_code, 200)
-        for part in ("course alpha", "Drill", "answered", "data:image/png;base64,", "ugv1"):
-            self.assertIn(part, page.text)
-        self.assertNotIn("<script", page.text)
-        present = next(run["key"] for run in runs if run["is_present"])
-        no_body = {"Content-Type": "application/json"}
-        self.assertEqual(stage.box.ask(f"POST /adit/runs/{present}/delete", no_body)[0], 409)
-        self.assertEqual(stage.box.ask(f"POST {base}/delete", no_body)[0], 200)
-        self.assertEqual(stage.box.ask(f"GET {base}/map")[0], 404)
-        self.assertFalse((stage.box.state / "runs" / str(first)).exists())
-        self.assertEqual([report["type"] for report in stage.box.reports()], ["Drill"])

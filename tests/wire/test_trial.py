@@ -165,20 +165,6 @@ class Trial(Tried):
         for token in TYPED.values():
             self.assertNotIn(token, told)
 
-    def test_a_result_is_outdated_once_settings_or_tokens_change(self):
-        def robots(settings):
-            settings["robots"] = [{"name": "r1"}]
-        changes = (lambda: self.box.save(robots),
-                   lambda: self.box.apply("POST /adit/tokens", {"name": "mapping", "token": programs.MAPPING_TOKEN + "-2"}))
-        numbers = []
-        for change in changes:
-            view, _ = self.tried()
-            numbers.append(view["number"])
-            self.assertFalse(view["outdated"])
-            change()
-            self.assertEqual(self.box.ask("GET /adit/test")[1], view | {"outdated": True})
-        self.assertEqual(numbers, [1, 2])
-
 
 class ThatWantsASlash(Tried):
     POST = ("--slash",)

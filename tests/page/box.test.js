@@ -74,8 +74,10 @@ test("a reset from the page takes the box back to its first start, and keeps the
   const page = await visit(browser, `${url}/system`);
   await page.locator("#login").getByLabel("Password").fill(OPERATOR);
   await page.keyboard.press("Enter");
-  await page.locator("#reset").getByRole("button", { name: "Reset the box" }).click();
-  const dialog = page.locator("#wipe");
+  const open = page.locator("#reset").getByRole("button", { name: "Reset the box" }), dialog = page.locator("#wipe");
+  await open.click();
+  await dialog.getByRole("button", { name: "Cancel" }).click();
+  await open.click();
   await dialog.getByLabel("present password").fill("wrong horse");
   await page.keyboard.press("Enter");
   await dialog.getByRole("alert").filter({ hasText: "not the operator's present password" }).waitFor();

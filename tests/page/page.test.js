@@ -90,7 +90,7 @@ test("follows what changes, and says so to those who only listen", async (t) => 
   stage.play("trouble");
   await said(page, "Report 8 is in doubt");
   assert.match(await text(page, "#arriving"), /3 of 4 arrive.*not ANYmal1; oldest other \d+ s/);
-  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ s behind/ }).and(page.getByTitle(/grid: 247 queued/)).waitFor(); // though one was just sent
+  await page.locator("#robots li[data-level=wait]").filter({ hasText: /ANYmal2 grid \d+ (s|min) behind/ }).and(page.getByTitle(/grid: 247 queued/)).waitFor(); // though one was just sent
   assert.match(await text(page, "#sayings"), /ANYmal2 cloud: 429 "Cloud updates too frequent/);
   assert.match(await text(page, "#post"), /unreachable.*Connection refused/);
   assert.match(await text(page, "#reports .rows"), /Vent.*in doubt.*Helmet.*queued.*Cube.*sending/);
@@ -112,7 +112,7 @@ test("tells every state by a shape and a word, not by colour alone", async (t) =
   assert.deepEqual([...byLevel.keys()].sort(), ["ask", "bad", "good", "quiet", "wait"]);
   assert.equal(new Set(byLevel.values()).size, 5, "five levels, five shapes");
   for (const row of await page.$$eval("#robots li", (rows) => rows.map((row) => row.title))) {
-    assert.match(row, /: (up to date|(not )?arriving|\d+ s behind|throttled|quiet|silent)\n/);
+    assert.match(row, /: (up to date|(not )?arriving|\d+ (s|min) behind|throttled|quiet|silent)\n/);
   }
 });
 

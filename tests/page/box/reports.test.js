@@ -1,6 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { until } from "../box.js";
+import { patient } from "../patience.js";
 import { box, canBeDeaf, action, logIn, look, row, says, openMore } from "./visits.js";
 
 /** The second report waits for so many seconds. */
@@ -36,7 +37,7 @@ test("holds a report that waits, and sends it on the operator's further word", a
 });
 
 test("is sent once where two operators press send at once", async (t) => {
-  const made = await box(t, slow(8));
+  const made = await box(t, slow(patient(10))); // time enough to hold it
   const number = await waiting(made);
   await made.ask(`/adit/reports/${number}/hold`, {});
   const pages = [await logIn(t, made, canBeDeaf), await logIn(t, made, canBeDeaf)];

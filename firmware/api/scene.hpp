@@ -40,6 +40,9 @@ struct TrackPose {
   double heading = 0;  // radians about z; 0 is along x, left is positive
 };
 
+/// By 0.1 m or 0.2 radians.
+bool has_moved(const TrackPose& from, const TrackPose& to);
+
 struct Track {
   std::string robot;
   std::vector<TrackPose> poses;  // oldest first

@@ -57,12 +57,12 @@ void Archive::begin(const Head& head, GoOn go_on) {
   go_on_ = std::move(go_on);
   samples_.clear();
   attention_.clear();
-  lines_.clear();
-  lines_bytes_ = 0;
+  lines_ = {};
+  last_poses_.clear();
   moved_ = 0;
   steps_.clear();
   row_ = {};
-  next_facts_ = loop_.now();
+  be_due();
   const auto opening = std::make_shared<Opening>();
   opening->head = head;
   writer_.submit(
@@ -137,29 +137,24 @@ void Archive::move(double seconds) {
   due_.move(seconds);
   if (opening_) moved_ += seconds;
   const Step step{seconds, std::chrono::duration<double>(loop_.now().time_since_epoch()).count()};
-  line(step);
-  keep_lines_below(kLargestRecord);
+  facts_.clear();
+  lines_.add(record_of(step), true);
+  lines_.keep_below(kLargestRecord);
   steps_ += record_of(step);
 }
 
 void Archive::needs_attention(const std::vector<std::string>& sentences, api::Time now) {
   if (opening_) return;
   for (api::AttentionStep& step : attention_.look(sentences, now)) {
-    line(step);
+    lines_.add(record_of(step), true);
     samples_.add(std::move(step));
   }
 }
 
-void Archive::line(const Said& said) {
-  lines_bytes_ += lines_.emplace_back(record_of(said)).size();
-  keep_lines_below(kMostWaiting);
-}
-
-void Archive::keep_lines_below(std::size_t most) {
-  while (lines_bytes_ > most) {
-    lines_bytes_ -= lines_.front().size();
-    lines_.pop_front();
-  }
+void Archive::be_due() {
+  next_facts_ = loop_.now();
+  facts_.clear();
+  lines_.be_due();
 }
 
 void Archive::look_at_disk() {

@@ -2,8 +2,8 @@
 
 #include <atomic>
 #include <cstdint>
-#include <deque>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,6 +12,7 @@
 #include "api/kept_runs.hpp"
 #include "archive/allowance.hpp"
 #include "archive/due_tiles.hpp"
+#include "archive/lines.hpp"
 #include "archive/runs_folder.hpp"
 #include "archive/samples.hpp"
 #include "loop/loop.hpp"
@@ -41,8 +42,6 @@ struct Seen {
 class Archive final : public api::KeptRuns {
  public:
   static constexpr std::chrono::seconds kWriteEvery{5}, kFactsEvery{30};
-  /// Most bytes of queued records, because a disk may be slow. Beyond that the oldest are dropped.
-  static constexpr std::size_t kMostWaiting = std::size_t{256} << 10;
   /// Most bytes of a stored run's map when it is shown again.
   static constexpr std::size_t kLookedAt = std::size_t{12} << 20;
 
@@ -87,13 +86,13 @@ class Archive final : public api::KeptRuns {
   void has_folder(const Opening& opening);
   /// Retries if the run has no directory.
   void make_folder();
-  void line(const Said& said);
-  void keep_lines_below(std::size_t most);
+  /// The next write has all.
+  void be_due();
   void sample(const Seen& seen);
   void note(const Seen& seen);
   void note_poses(const Seen& seen);
+  bool moves(const api::Track& track);
   bool write(const Seen& seen, std::size_t most, api::Time tiles_of);
-  void put_lines(Batch& batch);
   void put_facts(Batch& batch);
   void put_layers(const Seen& seen, Batch& batch);
   void put_tiles(const Seen& seen, Batch& batch, std::size_t left, api::Time tiles_of);
@@ -109,14 +108,15 @@ class Archive final : public api::KeptRuns {
   DueTiles due_;
   Samples samples_;
   Attention attention_;
-  std::deque<std::string> lines_;  // oldest first
-  std::size_t lines_bytes_ = 0;
-  std::uint64_t throttled_ = 0;    // last count
-  api::Time last_pose_ = 0;        // newest stored or queued pose
-  std::uint64_t layers_seen_ = 0;  // Mosaic::version()
-  std::optional<double> wiped_;    // as stored
+  Lines lines_;
+  std::uint64_t throttled_ = 0;                       // last count
+  api::Time last_pose_ = 0;                           // newest stored or queued pose
+  std::map<std::string, api::TrackPose> last_poses_;  // by robot
+  std::uint64_t layers_seen_ = 0;                     // Mosaic::version()
+  std::optional<double> wiped_;                       // as stored
   loop::Instant next_write_{}, next_facts_{};
   api::RunRow row_;                      // the present run at the last tick, without its bytes
+  std::string facts_;                    // as written last, without the time
   std::optional<std::uint64_t> leaves_;  // the file to remove
   bool is_left_ = false;                 // it may be removed
   std::uint64_t writes_ = 0;

@@ -43,14 +43,14 @@ void Archive::write_now(const Seen& seen) {
   if (opening_ || !folder_) return;
   note(seen);
   note_poses(seen);
-  next_facts_ = loop_.now();
+  be_due();
   write(seen, allowance_.at(loop_.now()), kNoneRests);
 }
 
 void Archive::end_run(const Seen& seen) {
   if (opening_ || !folder_) return;
   note_poses(seen);
-  next_facts_ = loop_.now();
+  be_due();
   const Allowance of_the_next = allowance_;
   while (write(seen, static_cast<std::size_t>(Allowance::kMost), kNoneRests)) {
   }
@@ -70,12 +70,12 @@ void Archive::sample(const Seen& seen) {
   const std::uint64_t throttled = std::exchange(throttled_, now.throttled);
   now.throttled -= std::min(throttled, now.throttled);
   if (now.map_ages.size() > kMostRobots) now.map_ages.resize(kMostRobots);
-  line(now);
+  lines_.add(record_of(now), false);
   samples_.add(std::move(now));
 }
 
-/// Lines come first, because they are small and not replaced by newer ones. Tiles: those due at `tiles_of`.
-/// False: no data was due.
+/// Tiles: those due at `tiles_of`. Lines go with any write, and have room before tiles, because they are
+/// small and not replaced by newer ones. False: no data was due.
 bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
   next_write_ = loop_.now() + kWriteEvery;
   const auto writing = std::make_shared<Writing>();
@@ -83,12 +83,13 @@ bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
   writing->number = ++writes_;
   writing->begun = begun_;
   put_facts(batch);
-  put_lines(batch);
   writing->steps = std::exchange(steps_, "");
   batch.beside = writing->steps;
   put_layers(seen, batch);
-  const std::size_t taken = batch.facts.size() + batch.lines.size() + batch.beside.size();
+  const std::size_t taken = batch.facts.size() + lines_.bytes() + batch.beside.size();
   put_tiles(seen, batch, most - std::min(most, taken), tiles_of);
+  if (!batch.is_empty() || lines_.is_due(loop_.now())) batch.lines = lines_.take(loop_.now());
+  allowance_.spend(batch.lines.size());
   if (is_left_) writing->goes = std::exchange(leaves_, std::nullopt);
   is_left_ = false;
   if (batch.is_empty() && !writing->goes) return false;
@@ -107,6 +108,12 @@ bool Archive::write(const Seen& seen, std::size_t most, api::Time tiles_of) {
 void Archive::put_facts(Batch& batch) {
   if (row_.key.empty() || loop_.now() < next_facts_) return;
   next_facts_ = loop_.now() + kFactsEvery;
+  api::RunRow facts = row_;
+  facts.last = 0;
+  facts.stamp.reset();
+  std::string text = codec::write_file(facts);
+  if (text == facts_) return;
+  facts_ = std::move(text);
   batch.facts = codec::write_file(row_);
   allowance_.spend(batch.facts.size());
 }
@@ -115,22 +122,25 @@ void Archive::put_facts(Batch& batch) {
 /// again.
 void Archive::note_poses(const Seen& seen) {
   for (const api::Track& track : seen.tracks(last_pose_)) {
+    const bool is_news = moves(track);
     for (auto from = track.poses.begin(), end = track.poses.end(); from != end;) {
       const auto to = from + std::min<std::ptrdiff_t>(end - from, kLargestPoses);
-      line(api::Track{track.robot, {from, to}});
+      lines_.add(record_of(api::Track{track.robot, {from, to}}), is_news);
       from = to;
     }
   }
   last_pose_ = seen.now;
 }
 
-void Archive::put_lines(Batch& batch) {
-  while (!lines_.empty() && batch.lines.size() + lines_.front().size() <= kLargestRecord) {
-    batch.lines += lines_.front();
-    lines_bytes_ -= lines_.front().size();
-    lines_.pop_front();
+/// The first pose of a robot counts as a move.
+bool Archive::moves(const api::Track& track) {
+  bool moves = false;
+  for (const api::TrackPose& pose : track.poses) {
+    const auto [last, is_new] = last_poses_.try_emplace(track.robot, pose);
+    moves = moves || is_new || api::has_moved(last->second, pose);
+    last->second = pose;
   }
-  allowance_.spend(batch.lines.size());
+  return moves;
 }
 
 void Archive::put_layers(const Seen& seen, Batch& batch) {
@@ -177,11 +187,11 @@ void Archive::written(const Writing& writing) {
   if (std::exchange(trouble_, why) != why && !why.empty())
     host::log(host::Level::Warning, "cannot store the run's map and tracks", {{"why", why}});
   if (!outcome) {
-    next_facts_ = loop_.now();
+    be_due();
     steps_.insert(0, writing.steps);
     layers_seen_ = 0;  // so that the next write has all layers
     wiped_.reset();
-    if (!writing.batch.lines.empty()) lines_bytes_ += lines_.emplace_front(writing.batch.lines).size();
+    lines_.give_back(writing.batch.lines);
     return;
   }
   const auto row = std::ranges::find(list_, key_, &api::RunRow::key);

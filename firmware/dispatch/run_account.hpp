@@ -19,7 +19,7 @@ class RunAccount {
  public:
   using Instant = std::chrono::steady_clock::time_point;
   static constexpr std::chrono::seconds kFresh{15};  // a status proves the run at least so long
-  static constexpr double kWriteEvery = 30;          // seconds between writes for the run clock alone
+  static constexpr double kWriteEvery = 150;         // seconds between writes for the run clock alone
 
   /// `book` outlives this.
   explicit RunAccount(ReportBook& book) : book_(book) {}

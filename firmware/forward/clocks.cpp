@@ -4,7 +4,12 @@
 #include <chrono>
 #include <utility>
 
+#include "dispatch/run_watch.hpp"
+
 namespace adit::forward {
+
+// Dispatch subtracts the step of a boot from a silence.
+static_assert(StampFloor::kAhead <= dispatch::kClockAhead);
 
 void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   const StampFloor::Kept kept = kept_.value_or(StampFloor::Kept());

@@ -51,8 +51,10 @@ std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
 }
 
 std::optional<StampFloor::Kept> StampFloor::due(double now, double wall, const ledger::Known& ledger) {
-  if (now < next_) return {};
-  next_ = now + kEvery;
+  const bool is_soon = ledger != ledger_ || outcome_->has_failed;
+  if (now < last_ + (is_soon ? kSoon : kEvery)) return {};
+  last_ = now;
+  ledger_ = ledger;
   return Kept{.floor = now + kAhead, .wall = wall, .ledger = ledger};
 }
 
@@ -63,7 +65,8 @@ void StampFloor::write(const Kept& kept) {
   auto written = host::write_file(file_, text, host::kOursAlone);
   if (!written && host::write_over(file_, text)) written = {};  // for a full disk
   const std::string why = written ? "" : written.error();
-  if (std::exchange(*trouble_, why) == why || written) return;
+  outcome_->has_failed = !written;
+  if (std::exchange(outcome_->trouble, why) == why || written) return;
   host::log(host::Level::Warning,
             "cannot store the last time stamps; after a power cut, time stamps may run backward",
             {{"why", written.error()}});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <expected>
 #include <memory>
 #include <optional>
@@ -21,7 +22,8 @@ class StampFloor {
     ledger::Known ledger = {};   // a ledger with less is damaged
   };
   static constexpr const char* kFile = "stamps";
-  static constexpr double kEvery = 10;  // seconds
+  static constexpr double kEvery = 150;  // seconds
+  static constexpr double kSoon = 10;    // seconds, if the ledger has grown or the last write failed
   /// Stamps may be kJump ahead of now, and a disk may be slow.
   static constexpr double kAhead = lanes::StampShift::kJump + kEvery + 15;
 
@@ -34,14 +36,19 @@ class StampFloor {
   /// The values to write now, if due. `now`: stamp clock; `wall`: time of day.
   std::optional<Kept> due(double now, double wall, const ledger::Known& ledger);
   /// The next due() returns values.
-  void is_due() { next_ = 0; }
+  void is_due() { last_ = 0; }
   /// May run on a worker, one call at a time, on copies. Logs a failure when its text changes.
   void write(const Kept& kept);
 
  private:
   std::string file_;
-  std::shared_ptr<std::string> trouble_ = std::make_shared<std::string>();  // the writer's
-  double next_ = 0;
+  struct Outcome {
+    std::string trouble;  // the writer's
+    std::atomic<bool> has_failed = false;
+  };
+  std::shared_ptr<Outcome> outcome_ = std::make_shared<Outcome>();
+  double last_ = 0;
+  ledger::Known ledger_;
 };
 
 }  // namespace adit::forward

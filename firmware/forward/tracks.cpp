@@ -9,13 +9,6 @@ namespace {
 
 constexpr double kEarly = 0.1;  // seconds: tolerance for poses once a second
 
-bool has_moved(const api::TrackPose& from, const api::TrackPose& to) {
-  const double x = to.position.x - from.position.x, y = to.position.y - from.position.y,
-               z = to.position.z - from.position.z;
-  const double turned = std::abs(std::remainder(to.heading - from.heading, 2 * M_PI));
-  return std::hypot(x, y, z) >= Tracks::kMoved || turned >= Tracks::kTurned;
-}
-
 std::vector<api::TrackPose> every_other(const std::vector<api::TrackPose>& poses) {
   std::vector<api::TrackPose> kept;
   kept.reserve(poses.size());

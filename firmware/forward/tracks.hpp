@@ -15,8 +15,6 @@ class Tracks {
  public:
   static constexpr std::size_t kMostPoses = 4000;     // per robot: over an hour
   static constexpr double kSpacing = 1, kStill = 10;  // seconds
-  static constexpr double kMoved = 0.1;               // metres
-  static constexpr double kTurned = 0.2;              // radians
 
   /// Callers bound the number of robots.
   void forwarded(const std::string& robot, const api::TrackPose& pose);

@@ -24,6 +24,8 @@ using store::Result;
 struct Known {
   std::int64_t reports = 0;  // count of numbers given out
   std::uint64_t log = 0;     // number of its last log; 0: unknown
+
+  friend bool operator==(const Known&, const Known&) = default;
 };
 
 /// All artifact reports with all their steps, and all runs, in a log on disk (store/README.md; records:

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <thread>
 
 #include "archive/a_run.hpp"
 #include "host/folder.hpp"
@@ -142,6 +143,33 @@ TEST_F(ArchiveTest, GivesTheNextLifeAllThatItHasByTheTimeOfDayAsItWasSet) {
     EXPECT_NEAR(archive->history(0).at.back(), run.now(), 1);
     EXPECT_GT(archive->history(0).at.front(), then - 1000);
   }
+}
+
+TEST_F(ArchiveTest, WritesNothingForARunAtRestUntilOtherDataGo) {
+  live(run.head);
+  const auto tick = [&] {
+    archive->tick(run.seen());
+    ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
+  };
+  tick();
+  const std::uint64_t before = stored();
+  const auto facts = fs::last_write_time(folder / "runs/3/facts.json");
+  std::this_thread::sleep_for(Archive::kWriteEvery);
+  run.easel.now += 10;
+  api::TrackPose pose = run.tracks[0].poses.back();
+  pose.at = run.now();
+  run.tracks[0].poses.push_back(pose);
+  tick();
+  EXPECT_EQ(stored(), before);
+  archive->needs_attention({"no token"}, run.now());
+  std::this_thread::sleep_for(Archive::kWriteEvery);
+  tick();
+  EXPECT_GT(stored(), before);
+  EXPECT_EQ(fs::last_write_time(folder / "runs/3/facts.json"), facts) << "they are the same";
+  live(run.head);
+  ASSERT_EQ(tracks.size(), 1U);
+  EXPECT_EQ(tracks[0].poses.size(), 2U);
+  EXPECT_EQ(archive->history(0).at.size(), 2U);
 }
 
 TEST_F(ArchiveTest, KeepsEachRunByItself) {

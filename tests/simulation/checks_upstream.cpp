@@ -24,7 +24,7 @@ constexpr double kStampRounding = 1e-3;
 constexpr double kAhead = 5;  // seconds that a stamp may be after the clock for stamps
 /// Seconds: a start of the machine begins where no stamp has been, so much ahead at the most; what was
 /// written of that holds so long.
-constexpr double kFloorAhead = 30, kFloorHolds = 35;
+constexpr double kFloorAhead = 170, kFloorHolds = 35;
 constexpr double kMakesWay = 1;       // seconds until the next gateway has begun
 constexpr double kTriedAgain = 9;     // seconds
 constexpr double kLongestPause = 30;  // that a Retry-After is heeded for

@@ -29,7 +29,7 @@ std::vector<Event> with_losses(const std::vector<Event>& events) {
 Window window_of(const Evidence& evidence, double first, double last) {
   constexpr double kForever = 1e12;
   /// Of each cut: the time that was kept last is that old where the disk was at fault, and then no power.
-  constexpr double kBehind = 60;
+  constexpr double kBehind = 200;
   double behind = 0;  // by which the box's clock is, after a start
   DiskFaultsSeen disk;
   for (const Event& event : evidence.events) {

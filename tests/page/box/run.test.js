@@ -64,7 +64,10 @@ test("makes the lights flash, on the box as on the page, and lets them be again"
 test("does by every shortcut what the list of them says", async (t) => {
   made.freezeRobots(); // the map keeps still
   t.after(() => made.thawRobots());
-  await until(async () => (await made.run()).reports.every(({ state }) => !["queued", "sending"].includes(state)), "all reports to be answered");
+  await until(async () => {
+    const { reports, activities } = await made.run();
+    return reports.every(({ state }) => !["queued", "sending"].includes(state)) && activities.every(({ queued }) => !queued);
+  }, "all to be sent: what the whole map is does not change then", 120_000);
   const page = await look(t, made);
   const focus = () => page.evaluate(() => document.activeElement.closest("section")?.id ?? document.activeElement.tagName);
   const blur = () => page.evaluate(() => document.activeElement.blur());

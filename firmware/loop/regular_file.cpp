@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <system_error>
 
 namespace adit::loop {
@@ -23,14 +24,21 @@ FileDescriptor open_regular(const std::string& path, int flags, int folder) {
 }
 
 std::expected<std::string, int> read_all(const FileDescriptor& file, std::size_t most) {
+  struct stat found{};
+  if (::fstat(file.get(), &found) != 0) return std::unexpected(errno);
+  // In one piece, so that a large file is copied once. Files of /proc have no size.
+  const std::size_t whole = std::min<std::size_t>(std::max<off_t>(found.st_size, 255), most) + 1;
   std::string bytes;
-  char buffer[16384];
   while (true) {
-    const ssize_t count = ::read(file.get(), buffer, sizeof buffer);
+    const std::size_t had = bytes.size();
+    ssize_t count = 0;
+    bytes.resize_and_overwrite(had < whole ? whole : 2 * had, [&](char* data, std::size_t size) {
+      count = ::read(file.get(), data + had, size - had);
+      return had + static_cast<std::size_t>(std::max<ssize_t>(count, 0));
+    });
     if (count < 0 && errno == EINTR) continue;
     if (count < 0) return std::unexpected(errno);
     if (count == 0) return bytes;
-    bytes.append(buffer, static_cast<std::size_t>(count));
     if (bytes.size() > most) return std::unexpected(EFBIG);
   }
 }

@@ -7,6 +7,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 namespace adit::loop {
 namespace {
@@ -42,8 +43,17 @@ TEST_F(RegularFile, IsOpenedAndNothingElseIsWaitedFor) {
 
 TEST_F(RegularFile, IsReadToItsEndUpToTheMostBytes) {
   std::ofstream(folder_ / "file") << std::string(100'000, 'x');
-  EXPECT_EQ(read_all(open_regular(folder_ / "file", O_RDONLY), 100'000), std::string(100'000, 'x'));
+  const auto text = read_all(open_regular(folder_ / "file", O_RDONLY), 100'000);
+  EXPECT_EQ(text, std::string(100'000, 'x'));
+  EXPECT_LE(text->capacity(), 100'001) << "the memory grew in steps";
   EXPECT_EQ(read_all(open_regular(folder_ / "file", O_RDONLY), 99'999).error(), EFBIG);
+}
+
+TEST_F(RegularFile, IsReadToItsEndIfItsSizeIsUnknown) {
+  std::ostringstream whole;
+  whole << std::ifstream("/proc/self/limits").rdbuf();
+  ASSERT_GT(whole.view().size(), 512u);
+  EXPECT_EQ(read_all(open_regular("/proc/self/limits", O_RDONLY), 100'000), whole.str());
 }
 
 TEST_F(RegularFile, IsWrittenInItsPlaceOrSaysWhyNot) {

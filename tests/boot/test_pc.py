@@ -80,3 +80,11 @@ class Pc(Updating, Story):
         self.settled("good", NEWER, within=300)
         self.assertEqual((self.stands()["version"], self.stands()["slot"]), (NEWER, "B"))
         self.assertEqual(self.counts()["B_TRY"], "0")
+
+    def test_a_panic_leaves_its_trace_in_the_journal(self):
+        heard = len(self.box.console.heard)
+        self.box.console.type("echo c > /proc/sysrq-trigger")
+        self.box.console.wait_for(rb"Adit: slot .*/ # ", 300, heard)
+        self.box.console.wait_for_shell()
+        trace = "journalctl -b -t systemd-pstore -o cat --output-fields=FILE --no-pager"
+        self.box.wait_until(lambda: "sysrq triggered crash" in self.box.console.run(trace)[1], "the trace of the panic")

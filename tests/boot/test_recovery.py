@@ -13,6 +13,13 @@ from stage import Stage, Story, load_tests, note, setUpModule  # unittest looks 
 PID = "systemctl show -p MainPID --value adit.service"
 LATER = "/run/systemd/system/adit.service.d"  # what has systemd wait before it starts aditd again
 
+HANG = (  # makes slot B, whose initrd loops instead of looking for its root
+    "udevadm wait --timeout=100 /dev/disk/by-partlabel/adit-boot-a /dev/disk/by-partlabel/adit-boot-b /dev/disk/by-partlabel/adit-env",
+    "mkdir /run/b && cd /run/b && dd if=/dev/disk/by-partlabel/adit-boot-a of=/dev/disk/by-partlabel/adit-boot-b bs=1M",
+    "mount -t vfat /dev/disk/by-partlabel/adit-boot-b /mnt && busybox cpio -i init </mnt/initrd",
+    "sed -i 's/^root=.*/while :; do :; done/' init && echo init | busybox cpio -o -H newc >>/mnt/initrd && umount /mnt && cd /",
+)
+
 
 class Recovery(Story):
     @classmethod
@@ -105,6 +112,16 @@ class Recovery(Story):
         self.box.console.ask("echo 0 > /proc/sys/kernel/panic")  # so that the panic itself starts nothing
         self.box.console.type("echo c > /proc/sysrq-trigger")
         self.restarts("a kernel that hangs")
+
+    def test_a_slot_whose_initrd_hangs_is_reset_by_the_hardware_watchdog_and_left(self):
+        self.box.console.wait_for_shell()
+        for command in HANG:
+            self.box.console.ask(command)
+        self.box.console.ask("fw_setenv BOOT_ORDER 'B A' && fw_setenv BOOT_B_LEFT 1 && sync")
+        heard = len(self.box.console.heard)
+        self.box.console.type("echo b > /proc/sysrq-trigger")
+        self.box.console.wait_for(rb"Adit: slot b.*Starting kernel.*Adit: slot a", 400, heard)
+        self.box.wait_until(self.box.answers, "the good slot to answer", 400)
 
     def test_a_start_that_systemd_gives_up_is_tried_again(self):
         self.box.cut_power()

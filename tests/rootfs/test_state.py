@@ -14,7 +14,7 @@ SECTORS = {"env": 2048, "boot": 81920, "boot-a": 131072, "boot-b": 131072, "root
 OWN = ["unshare", "--mount"] if os.geteuid() == 0 else ["unshare", "--map-root-user", "--mount"]
 # It writes to /run, /var and the console: those of a mount namespace of its own.
 CALL = """mount -t tmpfs tmpfs /run && mount -t tmpfs tmpfs /var && eval "$3" && { [ ! -e /dev/console ] || mount --bind "$1/console" /dev/console; } || exit 99
-PATH="$1/bin:$PATH" sh "$2" "$1/mmcblk0"; cat /run/adit-notices/state 2>/dev/null
+PATH="$1/bin:$PATH" sh "$2" "$1/mmcblk0" 60; cat /run/adit-notices/state 2>/dev/null
 for folder in run var; do find /$folder ! -type l -printf '%P %m\\n' -o -printf '%P %l\\n' | sort >$1/$folder; done"""
 VALID, ERRORS = 1, 2  # s_state, as the kernel's ext4 has it
 MOUNTED = ["mount -t ext4 -o noatime,nosuid,nodev,errors=remount-ro /dev/mmcblk0p7 /var"]
@@ -72,6 +72,7 @@ class State(Script):
         self.room(2_000_000)
         for name in "modprobe", "mount", "systemd-growfs", "e2fsck":
             self.program(name)
+        self.program("busybox", "exec sleep 60\n")
         self.state_is(VALID)
         self.makes(7)
 
@@ -167,6 +168,13 @@ class State(Script):
         self.program("e2fsck", '[ "$1" = -f ] || exit 4\n')
         self.assertEqual(self.run_it(), "")
         self.assertEqual(self.called("e2fsck mount"), [*REPAIRED, "e2fsck -f -y /dev/mmcblk0p7", *MOUNTED])
+
+    def test_the_watchdog_is_fed_during_a_repair(self):
+        self.has_state()
+        self.state_is(ERRORS)
+        fed = 'grep -q "^busybox timeout .* watchdog -F -T 60 " "${0%/*}/../called" && exit 0'
+        self.program("e2fsck", f"for _ in $(seq 500); do {fed}; sleep 0.01; done\nexit 8\n")
+        self.assertEqual(self.run_it(), "")
 
     def test_one_beyond_repair_is_left_as_it_is(self):
         self.state_is(ERRORS)

@@ -32,12 +32,14 @@ class Runs(unittest.TestCase):
         for name in robots:
             self.post(stage, "/map/update", messages.map_update(maps.made_grid(120, 90, seed), name, time.time(), CBOR))
             self.post(stage, "/map/update", messages.map_update(maps.made_cloud(3000, seed), name, time.time(), CBOR))
-            place = {"x": 3.0 * seed, "y": 1.0, "z": 0.0}
-            self.post(stage, "/state/update", {"header": messages.header(time.time(), CBOR),
-                                               "poses": [{"name": name, "position": place, "orientation": UPRIGHT}]})
+            self.move(stage, name, 3.0 * seed)
         layers = 2 * len(robots)
         wait_until(lambda: len(self.drawn(stage)) == layers and len(self.tracks(stage)) == len(robots),
                    "all to be taken and drawn")
+
+    def move(self, stage, name, x):
+        self.post(stage, "/state/update", {"header": messages.header(time.time(), CBOR),
+                                           "poses": [{"name": name, "position": {"x": x, "y": 1.0, "z": 0.0}, "orientation": UPRIGHT}]})
 
     def ask(self, stage, path):
         status, said = stage.box.ask(f"GET {path}")
@@ -64,12 +66,13 @@ class Runs(unittest.TestCase):
         return self.ask(stage, "/adit/tracks")["tracks"]
 
     def wait_until_kept(self, stage):
-        """Nothing more is written of the map, and the tracks are there."""
+        """The map is written, and so are tracks and plots since a robot has moved."""
         def sizes():
             return [file.stat().st_size for file in (stage.box.state / "runs").glob("*/map-*")]
 
         def rests():
             before = sizes()
+            self.move(stage, "ugv1", time.monotonic() % 100)
             time.sleep(6)
             return before and before == sizes()
         wait_until(rests, "the map to be kept", within=120)

@@ -40,7 +40,7 @@ std::vector<settings::Address> at_any(const std::vector<settings::Address>& list
 void keep_hardware(settings::Settings& here, settings::Settings& taken) {
   taken.command_post.interface = std::move(here.command_post.interface);
   taken.team.interface = std::move(here.team.interface);
-  taken.team.listen = taken.team.interface.empty() ? std::move(here.team.listen) : at_any(taken.team.listen);
+  if (!taken.team.interface.empty()) taken.team.listen = at_any(taken.team.listen);
   taken.panel = std::move(here.panel);
 }
 

@@ -187,23 +187,6 @@ TEST_F(TakingOverTest, KeepsWhatIsOfThisMachine) {
   EXPECT_TRUE(settings.panel.is_simulated());
 }
 
-TEST_F(TakingOverTest, ListensWhereItDidIfItHasNoTeamInterface) {
-  std::string here = kSettings;
-  const std::string interface = R"("interface": "team0")";
-  ASSERT_TRUE(here.contains(interface));
-  here.replace(here.find(interface), interface.size(), R"("interface": "")");
-  given_.put("settings.json", here);
-  const auto before = store_.load()->settings.team.listen;
-  spare::Content other = content();
-  const std::string listen = R"("listen": [)";
-  other.settings.insert(other.settings.find(listen) + listen.size(),
-                        R"({"address": "10.9.9.9", "port": 80}, )");
-  ASSERT_TRUE(taking_over_.begin(spare::write(other)));
-  ASSERT_EQ(taking_over_.finish(loop_), true);
-  EXPECT_EQ(store_.load()->settings.team.listen, before)
-      << "it could not start at an address of the first box";
-}
-
 TEST_F(TakingOverTest, NamesTheSettingsThatItLeavesOut) {
   spare::Content other = content();
   other.settings.insert(other.settings.find("\"version\""), "\"later\": 1, ");

@@ -14,13 +14,16 @@ after(() => browser?.close());
 /** A page that looks at a scene, for the length of one test; `prepare(page)` before it is opened. */
 export async function watch(t, scene, { path = "", prepare, ...options } = {}) {
   const stage = await serve(scene);
-  t.after(() => stage.end());
-  const page = await look(browser, stage.url + path, options, async (page) => {
+  let page;
+  t.after(async () => {
+    if (page) await leave(page); // first: its requests must not fail with the server
+    await stage.end();
+  });
+  page = await look(browser, stage.url + path, options, async (page) => {
     await page.addInitScript(countAwaited);
     await page.route("**/adit/settings", (route) => route.fulfill({ json: { keys: [] } })); // which a scene has none of
     await prepare?.(page);
   });
-  t.after(() => leave(page));
   return { stage, page };
 }
 

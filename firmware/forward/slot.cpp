@@ -47,8 +47,8 @@ void Slot::left(std::size_t bytes, const uplink::Sent& sent, loop::Instant last_
   bytes_per_second_ = was_held_back ? std::max(seen, bytes_per_second_) : seen;
 }
 
-/// A small map says little, and many grids take far less than is expected. A map that was not compressed
-/// shows nothing: with each of them the box counts as a little less slow, so that a stall is forgotten.
+/// Small maps are ignored, because their times vary, and many grids take far less time than expected. After
+/// each map that was not compressed, the box counts as a little less slow, so that Adit forgets a stall.
 void Slot::worker_took(loop::Duration took, double expected) {
   constexpr double kLeastExpected = 0.5e-3, kFastest = 0.5, kSlowest = 100;
   constexpr double kForgets = 1.0 / 32;

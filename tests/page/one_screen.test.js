@@ -1,5 +1,5 @@
-// The run and the display in every scene: whole on each screen, and for who does not see them well. Trouble and reports, which have
-// each colour, in all themes.
+// In every scene, the run page and the display fit each screen, and axe finds no fault. The scenes `trouble` and `reports`, which have each
+// colour, are shown in all themes.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { axeFindsNothing, watch } from "./watch.js";

@@ -11,7 +11,6 @@
 #include "codec/read.hpp"
 #include "icd/map_update.hpp"
 #include "icd/sentence.hpp"
-#include "intake/memory_given_back.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -59,7 +58,6 @@ class Decoding {
 
  private:
   icd::Checked<icd::MapUpdate> finish(Before before) {
-    const MemoryGivenBack at_the_end(decoder_);
     auto document = decoder_.finish();
     if (!document) return std::unexpected(std::move(document.error()));
     if (before.stored) {

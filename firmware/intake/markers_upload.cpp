@@ -7,7 +7,6 @@
 
 #include "codec/read.hpp"
 #include "icd/sentence.hpp"
-#include "intake/memory_given_back.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -34,13 +33,11 @@ bool is_too_large(const icd::Refusal& refusal) {
 /// The worker's part. read_large() frees the body after it was decoded.
 Parts read_small(codec::BodyKind kind, const icd::Rules& rules, const Body& body) {
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kSmall);
-  const MemoryGivenBack at_the_end(decoder);
   if (auto fed = decoder.feed(body); !fed) return std::unexpected(std::move(fed.error()));
   return read_parts(decoder, rules);
 }
 
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
-  const MemoryGivenBack at_the_end(true);
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kLarge);
   if (auto fed = decoder.feed(body); !fed) return std::unexpected(std::move(fed.error()));
   Body().swap(body);
@@ -99,7 +96,6 @@ class MarkersUpload::State final : public Taking, public std::enable_shared_from
   }
   void failed() { turn_away(not_held()); }
 
-  MemoryGivenBack at_the_end_{false};  // first, so that it is destroyed last
   codec::BodyKind kind_;
   icd::Rules rules_;
   loop::Workers& workers_;
@@ -135,7 +131,6 @@ void MarkersUpload::State::whole() {
   if (over_) return;
   if (body_.size() > kSmall.text_bytes) return wait_for_turn();
   if (!at_once_) return give_to_worker();
-  const MemoryGivenBack at_the_end(*at_once_);
   decoded(read_parts(*at_once_, rules_));
 }
 
@@ -157,7 +152,6 @@ void MarkersUpload::State::small_was_read(std::shared_ptr<Body> body, Parts part
 }
 
 void MarkersUpload::State::wait_for_turn() {
-  at_the_end_.expect_much();
   const auto turns = turns_.lock();
   if (!turns) return;
   turns->wait(visit_.sender.address, [self = shared_from_this()] {

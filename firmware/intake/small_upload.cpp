@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "codec/read.hpp"
-#include "intake/memory_given_back.hpp"
 #include "intake/take_parts.hpp"
 #include "intake/type_hint.hpp"
 
@@ -24,7 +23,6 @@ bool SmallUpload::on_body(std::span<const std::uint8_t> piece) {
 
 void SmallUpload::on_end() {
   whole_ = true;
-  const MemoryGivenBack at_the_end(decoder_);
   const auto document = decoder_.finish();
   if (!document) {
     visit_.refuse(document.error());

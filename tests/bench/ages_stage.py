@@ -128,9 +128,13 @@ class Stage:
         """`before` is called right before the robots begin, `meanwhile` with the seconds that they post. `post`: more options
         of the Command Post. `beside`: what ages_worst.py posts meanwhile; it is not in the figures of ages."""
         place = tempfile.mkdtemp(dir=self.folder)
-        where = ["--scoring", "%s:%d" % SCORING, "--mapping", "%s:%d" % MAPPING, "--control", "%s:%d" % CONTROL]
-        self.start("post", ["nice", "-n", "10", f"{self.programs}/adit-rehearsal", *where, "--secrets", f"{self.folder}/secrets",
-                            *post], "post")
+        rehearsal = [f"{self.programs}/adit-rehearsal", "--secrets", f"{self.folder}/secrets", *post]
+        unused = f"{SCORING[0]}:0"
+        # A program of its own for each endpoint: the one that checks maps keeps no report waiting.
+        self.start("post", [*rehearsal, "--scoring", "%s:%d" % SCORING, "--mapping", unused], "scoring")
+        self.start("post", ["nice", "-n", "10", *rehearsal, "--scoring", unused, "--mapping", "%s:%d" % MAPPING,
+                            "--control", "%s:%d" % CONTROL], "post")
+        self.wait_for("post", SCORING, "scoring")
         self.wait_for("team", CONTROL, "post")
         self.start("gate", way.command(place), "way")
         self.wait_for("team", LISTEN, "way")

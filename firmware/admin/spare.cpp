@@ -82,7 +82,8 @@ api::SpareView Spare::spare() const {
                    .open = about.open,
                    .post = about.post,
                    .run = about.run,
-                   .left_out = left_out_};
+                   .port = taken_settings_.settings.team.listen.front().port,
+                   .left_out = taken_settings_.passed_over};
   return view;
 }
 
@@ -202,9 +203,9 @@ icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
   if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
   if (std::string why = file_.hindrance(content->about); !why.empty())
     return refuse(Status::Conflict, std::move(why));
-  auto left_out = taking_over_.check(*content);
-  if (!left_out) return refuse(Status::UnprocessableEntity, std::move(left_out.error()));
-  left_out_ = *std::move(left_out);
+  auto settings = taking_over_.check(*content);
+  if (!settings) return refuse(Status::UnprocessableEntity, std::move(settings.error()));
+  taken_settings_ = *std::move(settings);
   taken_in_ = *std::move(content);
   return {};
 }

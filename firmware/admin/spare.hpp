@@ -76,7 +76,7 @@ class Spare final : public api::Spare {
   bool takes_over_ = false;
   std::shared_ptr<const std::string> sealed_;  // imported and not opened yet, or null
   std::optional<spare::Content> taken_in_;
-  std::vector<std::string> left_out_;  // paths of settings that this box does not know
+  settings::Saved taken_settings_;  // of taken_in_
 };
 
 }  // namespace adit::admin

@@ -12,6 +12,7 @@
 #include "icd/sentence.hpp"
 #include "ledger/ledger.hpp"
 #include "settings/settings.hpp"
+#include "settings/written.hpp"
 
 namespace adit::admin {
 namespace {
@@ -26,21 +27,26 @@ double ahead(const spare::About& about, double stamp, double wall) {
   return stamp - since - about.stamp;
 }
 
-/// The same ports, at any address of the interface.
-std::vector<settings::Address> at_any(const std::vector<settings::Address>& listen) {
-  std::vector<settings::Address> all;
-  for (settings::Address each : listen) {
-    each.address = each.address.contains(':') ? "::" : "0.0.0.0";
-    if (std::ranges::find(all, each) == all.end()) all.push_back(std::move(each));
+/// The first box's ports (`taken`), at all addresses of the team interface or, without one, at the addresses
+/// at which this box listens.
+std::vector<settings::Address> listen_here(const settings::Team& here,
+                                           const std::vector<settings::Address>& taken) {
+  std::vector<settings::Address> own = here.listen, all;
+  for (const settings::Address& each : taken) {
+    if (!here.interface.empty()) own = {{.address = each.address.contains(':') ? "::" : "0.0.0.0"}};
+    for (settings::Address at : own) {
+      at.port = each.port;
+      if (std::ranges::find(all, at) == all.end()) all.push_back(std::move(at));
+    }
   }
   return all;
 }
 
 /// Preserves settings of the machine, which may differ from the first box's.
 void keep_hardware(settings::Settings& here, settings::Settings& taken) {
+  taken.team.listen = listen_here(here.team, taken.team.listen);
   taken.command_post.interface = std::move(here.command_post.interface);
   taken.team.interface = std::move(here.team.interface);
-  if (!taken.team.interface.empty()) taken.team.listen = at_any(taken.team.listen);
   taken.panel = std::move(here.panel);
 }
 
@@ -82,14 +88,14 @@ std::expected<void, std::string> TakingOver::take(const spare::Content& content,
   return note(content.about);
 }
 
-std::expected<std::vector<std::string>, std::string> TakingOver::check(const spare::Content& content) const {
+std::expected<settings::Saved, std::string> TakingOver::check(const spare::Content& content) const {
   auto saved = settings::parse_saved(content.settings);
   if (!saved)
     return std::unexpected("this box cannot use the export's settings: " +
                            settings::sentence_of(saved.error()));
   if (!ledger::Ledger::is_copy(content.ledger))
     return std::unexpected("this box cannot use the export's ledger: it is no copy of a ledger");
-  return std::move(saved->passed_over);
+  return *std::move(saved);
 }
 
 std::expected<void, std::string> TakingOver::abandon() {
@@ -112,6 +118,8 @@ std::expected<void, std::string> TakingOver::take_settings(const spare::Content&
   auto here = store_.load();
   if (!store_.unread().empty()) return std::unexpected(store_.unread());
   if (here) keep_hardware(here->settings, saved->settings);
+  if (const auto both = settings::parse(settings::file_of(saved->settings)); !both)
+    return std::unexpected("the two boxes' settings do not fit: " + settings::sentence_of(both.error()));
   for (const std::string& name : token_names(saved->settings)) {
     const auto found = content.tokens.find(name);
     const auto token = found == content.tokens.end() ? std::nullopt : std::optional(found->second);

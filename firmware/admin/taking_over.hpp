@@ -2,12 +2,12 @@
 
 #include <expected>
 #include <string>
-#include <vector>
 
 #include "admin/store.hpp"
 #include "dispatch/taking_over.hpp"
 #include "ledger/ledger.hpp"
 #include "loop/loop.hpp"
+#include "settings/settings.hpp"
 #include "spare/content.hpp"
 
 namespace adit::admin {
@@ -22,9 +22,8 @@ class TakingOver {
   /// `store` must outlive this object.
   TakingOver(Store& store, std::string state_folder) : store_(store), state_(std::move(state_folder)) {}
 
-  /// Paths of settings that this box does not know and will leave out. Error: the takeover is impossible.
-  /// Does not change the box.
-  std::expected<std::vector<std::string>, std::string> check(const spare::Content& content) const;
+  /// The export's settings. Error: the takeover is impossible. Does not change the box.
+  std::expected<settings::Saved, std::string> check(const spare::Content& content) const;
   /// `content`: from spare::write(). Error: the takeover has not begun.
   std::expected<void, std::string> begin(const std::string& content);
   /// If begun, takes over reports and runs into the ledger, settings, tokens and the stamp floor. Then

@@ -18,6 +18,7 @@ struct ExportRow {
   std::int64_t reports = 0, open = 0;
   std::string post;
   std::optional<icd::RunStatus> run;
+  std::int64_t port = 0;  // first of its ports for the team, at which this box listens after the take-over
   std::vector<std::string> left_out = {};  // paths of settings unknown here
   static const codec::Row kRow;
 };

@@ -11,6 +11,8 @@ constexpr codec::Member kExportMembers[] = {
     codec::member<&ExportRow::open>("open", "number of reports that are still open"),
     codec::member<&ExportRow::post>("post", "address and port of the Command Post"),
     codec::member<&ExportRow::run>("run", "the run's last status; null if there was none"),
+    codec::member<&ExportRow::port>(
+        "port", "first port of that box for the team; this box listens there after the take-over"),
     codec::member<&ExportRow::left_out>("left_out", "settings of that box that are unknown here"),
 };
 

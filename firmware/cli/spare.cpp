@@ -33,6 +33,7 @@ std::string text_of(const api::ExportRow& row) {
                     line("  ", row.reports, " reports, ", row.open,
                          " of them unfinished, for the Command Post at ", row.post);
   if (row.run) out += line("  score ", row.run->score, ", ", row.run->remaining_reports, " reports left");
+  if (row.port != 0) out += line("  team's port ", row.port, ", at this box after the take-over");
   for (const std::string& path : row.left_out)
     out += line("  left out, because this version does not know it: ", path);
   return out;

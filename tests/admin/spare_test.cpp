@@ -153,6 +153,7 @@ TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
   EXPECT_EQ(why(second.spare().take_over()), "no export is open: import and open one first");
   ASSERT_TRUE(second.opened(first.spare().spare().code));
   EXPECT_EQ(second.spare().spare().taken_in->name, "192.168.7.11");
+  EXPECT_EQ(second.spare().spare().taken_in->port, 8000);
   EXPECT_EQ(second.turned().restarts, 0) << "nothing has changed yet";
   ASSERT_TRUE(second.spare().take_over());
   EXPECT_EQ(second.turned().restarts, 1);

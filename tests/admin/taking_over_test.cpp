@@ -187,10 +187,43 @@ TEST_F(TakingOverTest, KeepsWhatIsOfThisMachine) {
   EXPECT_TRUE(settings.panel.is_simulated());
 }
 
+/// The settings of this box and the first one's, without a team interface.
+class WithoutTeamInterfaceTest : public TakingOverTest {
+ protected:
+  static std::string settings(const std::string& command_post, const std::string& listen) {
+    return R"({"version":1,"command_post":{"scoring":{"address":"127.0.0.1","port":)" + command_post +
+           R"(},"mapping":{"address":"127.0.0.1","port":9001}},"team":{"listen":[)" + listen + "]}}";
+  }
+  void begin(const std::string& of_the_first) {
+    given_.put("settings.json", settings("9000", R"({"address":"127.0.0.1","port":8001},)"
+                                                 R"({"address":"127.0.0.1","port":8002},)"
+                                                 R"({"address":"::1","port":8001})"));
+    spare::Content other = content();
+    other.settings = of_the_first;
+    ASSERT_TRUE(taking_over_.begin(spare::write(other)));
+  }
+};
+
+TEST_F(WithoutTeamInterfaceTest, ListensAtTheFirstBoxesPortsAtItsOwnAddresses) {
+  begin(settings("9000", R"({"address":"10.9.9.9","port":80})"));
+  ASSERT_EQ(taking_over_.finish(loop_), true);
+  EXPECT_THAT(store_.load()->settings.team.listen,
+              testing::ElementsAre(settings::Address{"127.0.0.1", 80}, settings::Address{"::1", 80}))
+      << "it cannot start at an address of the first box, and would return to its own settings";
+}
+
+TEST_F(WithoutTeamInterfaceTest, IsNotFinishedIfItWouldPostToItself) {
+  begin(settings("8000", R"({"address":"10.9.9.9","port":8000})"));
+  const auto done = taking_over_.finish(loop_);
+  ASSERT_FALSE(done);
+  EXPECT_THAT(done.error(), HasSubstr("the two boxes' settings do not fit: team.listen[0]"));
+  EXPECT_EQ(store_.load()->settings.team.listen.front().port, 8001);
+}
+
 TEST_F(TakingOverTest, NamesTheSettingsThatItLeavesOut) {
   spare::Content other = content();
   other.settings.insert(other.settings.find("\"version\""), "\"later\": 1, ");
-  EXPECT_EQ(taking_over_.check(other), std::vector<std::string>{"later"});
+  EXPECT_EQ(taking_over_.check(other)->passed_over, std::vector<std::string>{"later"});
 }
 
 TEST_F(TakingOverTest, RefusesSettingsThatCannotBeUsedHere) {

@@ -19,7 +19,7 @@ constexpr const char* kStandby =
 constexpr const char* kTakenIn =
     R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":{"name":"10.0.0.1",)"
     R"("version":"1.2.3","at":1.75e9,"reports":4,"open":1,"post":"10.100.1.200:8000","run":{"score":3,)"
-    R"("run_clock":100,"remaining_reports":20,"current_team":"adit"},"left_out":["later"]},"takes_over":false})";
+    R"("run_clock":100,"remaining_reports":20,"current_team":"adit"},"port":8000,"left_out":["later"]},"takes_over":false})";
 
 constexpr const char* kStick =
     R"({"standby":false,"why":"","since":null,"code":"","asks_code":false,"taken_in":null,"takes_over":false,)"
@@ -115,6 +115,7 @@ TEST_F(SpareCommand, ShowsWhatIsInItAndTakesOverOnlyWhereThatIsMeant) {
   EXPECT_THAT(unasked.err, HasSubstr("reports may be sent twice"));
   const Outcome meant = say(server, {"take", file, "--code", "1234567890123456", "--yes"});
   EXPECT_EQ(meant.exit, Exit::Fine) << meant.err;
+  EXPECT_THAT(meant.out, HasSubstr("team's port 8000, at this box after the take-over"));
   EXPECT_THAT(meant.out, HasSubstr("this box is taking over"));
   EXPECT_THAT(say(server, {"show"}).out, HasSubstr("4 reports, 1 of them unfinished"));
 }

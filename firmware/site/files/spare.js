@@ -9,7 +9,7 @@ const [note, outcome] = section.querySelectorAll(":scope > p"), facts = section.
 const form = section.querySelector("form"), file = section.querySelector("input[type=file]");
 const buttons = Object.fromEntries([...section.querySelectorAll("[data-does]")].map((button) => [button.dataset.does, button]));
 const EVERY = 2000, EVERY_OF_STICK = 300;
-let timer;
+let timer, next = null; // where the page goes once the take-over moves it
 
 function say(text, bad = false) {
   outcome.textContent = text;
@@ -87,6 +87,7 @@ async function look() {
   clearTimeout(timer);
   const view = await get("/adit/spare").catch(() => null);
   if (view) show(view);
+  else if (next && !next.isConnected) outcome.append(" The page moves to ", next);
   timer = setTimeout(look, view?.stick?.doing ? EVERY_OF_STICK : EVERY);
   return view;
 }
@@ -160,7 +161,9 @@ const DOES = {
   async over() {
     const text = "If the box that made the export is still plugged in, or was woken up since, a report may be sent twice.";
     if (!(await sure("Is the first box unplugged?", text, "It is: take over"))) return;
-    await post("/adit/spare/take-over", { unplugged: true });
+    const { taken_in: taken } = await post("/adit/spare/take-over", { unplugged: true });
+    if (taken?.port && taken.port !== Number(location.port || 80)) next = Object.assign(make("a"), { href: location.href, port: taken.port });
+    if (next) next.textContent = next.href;
     say("This box takes over with the settings of the first box. Then give it the first box’s addresses and cables.");
   },
   async forget() {

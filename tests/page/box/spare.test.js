@@ -67,6 +67,8 @@ test("one press puts the box to rest and downloads its export, and the other box
   await there.press("Take over");
   await yes(there.page);
 
+  await there.section.getByRole("link", { name: `:${first.port}/` }).click();
+  await notes(there.section, "A spare box can take over");
   spare.port = first.port; // the settings of the first are the spare's from now on
   const reports = await until(() => spare.ask("/adit/reports").then(({ said }) => said?.length && said, () => null), "the spare, where the first was");
   assert.deepEqual(reports.map(({ number, type, state }) => [number, type, state]), [[number, "Drill", "answered"]]);

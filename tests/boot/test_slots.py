@@ -16,8 +16,11 @@ TOP = boards.SOURCE
 MIB = 1 << 20
 # As rootfs/disk has them: the first four partitions, each as large as FAT needs.
 PARTITIONS = {"adit-env": (16, 1), "adit-boot": (17, 40), "adit-boot-a": (57, 40), "adit-boot-b": (97, 40)}
-STARTED = re.compile(rb"this is slot ([ab])|(no slot has come up)")
+STARTED = re.compile(rb"this is slot ([abx])|(no slot has come up|cannot decide)")
 AGAIN = "again"
+# A decision that starts no slot, and what is not one at all.
+HANGS = 'echo "this is slot x"\nwhile true; do true; done\n'
+BROKEN = "no_such_command\n", "if true; then\n", bytes(range(1, 256)) * 16
 
 
 class Machine:
@@ -52,15 +55,26 @@ class Machine:
                        env={"SOURCE_DATE_EPOCH": "1", "PATH": "/usr/sbin:/usr/bin:/sbin:/bin"})
         self.make_partition("adit-boot", files)
 
-    def fill(self, slot):
+    def fill(self, slot, decision=None):
+        """`decision`: the text of its script, or the bytes of the file; as a rule, those of the image."""
         files = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
         self.make_slot(files, slot)
+        if isinstance(decision, bytes):
+            (files / self.decision).write_bytes(decision)
+        else:
+            self.make_script(files / self.decision, decision or (TOP / "rootfs/boot" / self.source).read_text())
         self.make_partition(f"adit-boot-{slot}", files)
 
     def empty(self, slot):
         with open(self.disk, "r+b") as disk:
             disk.seek(PARTITIONS[f"adit-boot-{slot}"][0] * MIB)
             disk.write(bytes(MIB))
+
+    def counts(self):
+        """What adit-env holds."""
+        with open(self.disk, "rb") as disk:
+            disk.seek(PARTITIONS["adit-env"][0] * MIB)
+            return disk.read(4 * 512)
 
     def lose(self, *sectors):
         """Those of adit-env."""
@@ -70,7 +84,7 @@ class Machine:
                 disk.write(b"\xff" * 512)
 
     def start(self):
-        """Power, until the boot loader has decided: "a", "b", or AGAIN."""
+        """Power, until the boot loader has decided: "a", "b", "x" (HANGS), or AGAIN. Then the power is cut."""
         disk = ["-drive", f"if=none,id=card,format=raw,file={self.disk}", "-device", f"{self.board.card},drive=card"]
         emulator = [self.board.emulator, *self.soldered, "-m", str(self.board.memory), "-no-reboot", *disk, "-serial", "stdio"]
         with subprocess.Popen(emulator, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) as machine:
@@ -88,12 +102,15 @@ class Machine:
 
 
 class Arm(Machine):
-    architecture = "arm64"
+    architecture, source, decision = "arm64", "decide.cmd", "decide.scr"
 
     def make_slot(self, files, slot):
-        script = files / "slot.cmd"
-        script.write_text(f'echo "this is slot {slot}"\npoweroff\n')
-        subprocess.run(["mkimage", "-A", "arm64", "-T", "script", "-C", "none", "-d", script, files / "slot.scr"], check=True, capture_output=True)
+        self.make_script(files / "slot.scr", f'echo "this is slot {slot}"\npoweroff\n')
+
+    def make_script(self, file, text):
+        script = self.folder / "script.cmd"
+        script.write_text(text)
+        subprocess.run(["mkimage", "-A", "arm64", "-T", "script", "-C", "none", "-d", script, file], check=True, capture_output=True)
 
     def make_loader(self):
         super().make_loader()
@@ -103,6 +120,10 @@ class Arm(Machine):
         """What RAUC 1.8 sets: a slot was written and is to be started, or was found good."""
         left = {f"BOOT_{slot.upper()}_LEFT": "3" if primary else "a"}
         self.set(left | ({"BOOT_ORDER": "B A" if slot == "b" else "A B"} if primary else {}))
+
+    def rauc_writes(self, slot):
+        """What RAUC 1.8 sets before it writes a slot."""
+        self.set({f"BOOT_{slot.upper()}_LEFT": "0", "BOOT_ORDER": "A" if slot == "b" else "B"})
 
     def spend(self, slot, tries):
         self.set({f"BOOT_{slot.upper()}_LEFT": f"{10 - tries:x}"})
@@ -119,7 +140,7 @@ class Arm(Machine):
 
 
 class Pc(Machine):
-    architecture = "amd64"
+    architecture, source, decision = "amd64", "decide.cfg", "decide.cfg"
 
     def make_loader(self):
         with open(self.disk, "r+b") as disk:
@@ -137,7 +158,10 @@ class Pc(Machine):
         return names
 
     def make_slot(self, files, slot):
-        (files / "slot.cfg").write_text(f'echo "this is slot {slot}"\nsleep 30\n')
+        self.make_script(files / "slot.cfg", f'echo "this is slot {slot}"\nsleep 30\n')
+
+    def make_script(self, file, text):
+        file.write_text(text)
 
     def edit(self, *variables):
         """By the image's grub-editenv, on a copy of the partition."""
@@ -151,6 +175,9 @@ class Pc(Machine):
 
     def spend(self, slot, tries):
         self.edit(f"{slot.upper()}_TRY={tries}")
+
+    def rauc_writes(self, slot):
+        self.edit(f"{slot.upper()}_OK=0", f"{slot.upper()}_TRY=0")
 
     def rauc(self, slot, *, primary):
         name = slot.upper()
@@ -175,6 +202,7 @@ class Slots:
         self.machine.rauc("a", primary=True)
         self.machine.rauc("a", primary=False)
         self.assertEqual(self.starts(1), "a")
+        self.assertIn(self.one_used, self.machine.counts())
         self.machine.spend("a", 8)
         self.assertEqual(self.starts(3), "aab")
 
@@ -194,13 +222,40 @@ class Slots:
         # Where the only slot has no try left it is tried again at once, by one more start of the boot loader.
         self.assertEqual([self.machine.start() for _ in range(5)], ["a", "a", "a", AGAIN, "a"])
 
-    def test_an_environment_that_is_none_starts_the_first(self):
-        self.machine.lose(*self.counts)
+    def test_a_good_slot_decides_by_its_own_script_and_one_that_hangs_is_left_until_the_slot_is_good_again(self):
+        self.machine.fill("a", HANGS)
+        self.machine.spend("b", 8)
+        for _ in range(2):
+            self.machine.rauc("a", primary=False)
+            self.assertEqual(self.starts(2), "xa")
+
+    def test_a_script_that_is_broken_ends_in_another_start_without_it(self):
+        self.machine.spend("b", 8)
+        for decision in BROKEN:
+            with self.subTest(decision[:20]):
+                self.machine.fill("a", decision)
+                self.machine.rauc("a", primary=False)
+                self.assertEqual([self.machine.start() for _ in range(2)], [AGAIN, "a"])
+
+    def test_the_script_of_a_slot_that_is_written_or_on_trial_does_not_run(self):
+        self.machine.fill("b", HANGS)
+        self.machine.rauc("b", primary=True)
+        self.machine.rauc("b", primary=False)
+        self.machine.rauc_writes("b")
+        self.machine.spend("a", 8)
+        self.assertEqual(self.machine.start(), "a")
+        self.machine.rauc("b", primary=True)
+        self.assertEqual(self.machine.start(), "b")
+
+    def test_an_environment_that_is_none_starts_the_first_without_the_slots_scripts(self):
+        for slot in "ab":
+            self.machine.fill(slot, HANGS)
+        self.machine.lose(*self.sectors)
         self.assertEqual(self.machine.start(), "a")
 
 
 class UBoot(Slots, unittest.TestCase):
-    board, kind, counts = boards.QEMU_VIRT, Arm, (0,)
+    board, kind, sectors, one_used = boards.QEMU_VIRT, Arm, (0,), b"BOOT_A_LEFT=9"
 
 
 class BoardsLoaders(unittest.TestCase):
@@ -237,7 +292,7 @@ class BoardsLoaders(unittest.TestCase):
 
 
 class Grub(Slots, unittest.TestCase):
-    board, kind, counts = boards.PC, Pc, (1, 3)
+    board, kind, sectors, one_used = boards.PC, Pc, (1, 3), b"A_TRY=1"
 
     def test_where_the_first_counts_are_lost_it_goes_on_by_the_second(self):
         """And counts in them: one that does not come up is not started for ever."""

@@ -91,7 +91,7 @@ class Wiring(unittest.TestCase):
 class Loaders(unittest.TestCase):
     """Of the boards' own boot loaders, what can be known without the boards."""
 
-    SCRIPTS = ["rootfs/boot/boot.cmd", "rootfs/boot/slot.cmd.in"]
+    SCRIPTS = ["rootfs/boot/boot.cmd", "rootfs/boot/decide.cmd", "rootfs/boot/slot.cmd.in"]
     SHELL = {"if", "elif", "else", "fi", "for", "do", "done", "then"}
 
     def commands(self):
@@ -102,6 +102,6 @@ class Loaders(unittest.TestCase):
 
     def test_the_scripts_use_only_what_the_boot_loaders_of_2017_know(self):
         self.assertEqual(self.commands() - {"${devtype}"}, KNOWN)
-        text = (TOP / self.SCRIPTS[0]).read_text()
+        text = "".join((TOP / script).read_text() for script in self.SCRIPTS)
         for imported in some(re.findall(r"env import -[ct] (.*)", text)):  # address and size: a name after them would be taken for no size
             self.assertEqual(len(re.match(r"[^|;]*", imported)[0].split()), 2, imported)

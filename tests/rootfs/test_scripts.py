@@ -11,7 +11,7 @@ from recipe import TOP
 
 SECTOR = 512
 FIRST = b"# GRUB Environment Block\n"
-DEFAULTS = {"ORDER": "A B", "A_OK": "1", "B_OK": "1", "A_TRY": "0", "B_TRY": "0", "A_MOST": "10", "B_MOST": "10"}
+DEFAULTS = {"ORDER": "A B", "A_OK": "1", "B_OK": "1", "A_TRY": "0", "B_TRY": "0", "A_MOST": "9", "B_MOST": "9"}
 MACHINE_ID = b"0123456789abcdef0123456789abcdef\n"
 
 
@@ -61,10 +61,10 @@ class GrubsEnvironment(Scripts):
         self.set("ORDER=B A", "B_OK=1", "B_TRY=0")  # as RAUC has it
         self.set("B_TRY=2")
         listed = self.listed()
-        self.assertEqual((listed["A_MOST"], listed["B_MOST"]), ("10", "3"))
+        self.assertEqual((listed["A_MOST"], listed["B_MOST"]), ("9", "3"))
         self.set("B_OK=1", "B_TRY=0")
         listed = self.listed()
-        self.assertEqual((listed["A_MOST"], listed["B_MOST"]), ("10", "10"))
+        self.assertEqual((listed["A_MOST"], listed["B_MOST"]), ("9", "10"))
 
     def test_it_writes_two_sectors_and_not_a_byte_beside_them(self):
         self.set("B_TRY=3")

@@ -8,6 +8,7 @@
 #include "api/map_json.hpp"
 #include "api/map_tile.hpp"
 #include "api/number_in.hpp"
+#include "api/thinned.hpp"
 
 namespace adit::api {
 namespace {
@@ -98,7 +99,7 @@ void KeptRunsRoutes::tile(const Call& call) {
 
 void KeptRunsRoutes::tracks(const Call& call) {
   with_run(call,
-           [](const KeptRun& run) { return fresh("application/json", codec::to_json(Tracks{run.tracks})); });
+           [](const KeptRun& run) { return fresh("application/json", codec::to_json(thinned(run.tracks))); });
 }
 
 void KeptRunsRoutes::plots(const Call& call) {

@@ -4,6 +4,7 @@
 #include "api/map_json.hpp"
 #include "api/map_tile.hpp"
 #include "api/number_in.hpp"
+#include "api/thinned.hpp"
 
 namespace adit::api {
 
@@ -24,7 +25,7 @@ intake::Answer MapRoutes::markers(const intake::RequestHead& head) const {
 intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
   const AskedNumber since = asked_number(head, "since");
   if (since.wrong) return refusal(icd::Status::BadRequest, "since: expected seconds since 1970");
-  return fresh("application/json", codec::to_json(Tracks{source_.tracks(since.number.value_or(0))}));
+  return fresh("application/json", codec::to_json(thinned(source_.tracks(since.number.value_or(0)))));
 }
 
 void MapRoutes::tile(const Call& call) const {

@@ -53,6 +53,58 @@ TEST_F(SceneRoutesTest, GiveWhereRobotsWere) {
             (json{{"tracks", {{{"robot", "r1"}, {"poses", {{100.13, 1.23, 5.0, -6.0, 3.14}}}}}}}));
 }
 
+/// A pose each second: `to(second)`.
+template <typename To>
+std::vector<TrackPose> each_second(int count, To to) {
+  std::vector<TrackPose> poses;
+  for (int i = 0; i < count; ++i) {
+    poses.push_back(to(i));
+    poses.back().at = 100 + i;
+  }
+  return poses;
+}
+
+TEST_F(SceneRoutesTest, LeaveOutPosesThatInterpolationGives) {
+  const auto times_of = [this](std::vector<TrackPose> poses) {
+    source.robot_tracks = {{"r1", std::move(poses)}};
+    std::vector<int> seconds;
+    for (const json& pose : json::parse(get("/adit/tracks").body)["tracks"][0]["poses"])
+      seconds.push_back(pose[0].get<int>() - 100);
+    return seconds;
+  };
+  using testing::ElementsAre;
+  const auto ahead = [](double i) { return TrackPose{.position = {2 * i, i, 0}, .heading = 0.1 * i}; };
+  EXPECT_THAT(times_of(each_second(1, ahead)), ElementsAre(0));
+  EXPECT_THAT(times_of(each_second(25, ahead)), ElementsAre(0, 10, 20, 24)) << "a straight way, at most 10 s";
+  EXPECT_THAT(
+      times_of(each_second(7, [](double i) { return TrackPose{.position = {std::abs(i - 3), 0, 0}}; })),
+      ElementsAre(0, 3, 6))
+      << "a turn back";
+  EXPECT_THAT(
+      times_of(each_second(7, [](double i) { return TrackPose{.position = {i, 0, i > 3 ? 5.0 : 0}}; })),
+      ElementsAre(0, 3, 4, 6))
+      << "a step up";
+  EXPECT_THAT(
+      times_of(each_second(7, [](double i) { return TrackPose{.position = {i > 3 ? 2 * i : i, 0, 0}}; })),
+      ElementsAre(0, 3, 4, 6))
+      << "another speed";
+  EXPECT_THAT(
+      times_of(each_second(7, [](double i) { return TrackPose{.position = {}, .heading = 2 + 0.3 * i}; })),
+      ElementsAre(0, 6))
+      << "a turn past pi";
+  auto stepped = each_second(3, ahead);
+  stepped[2].at = 90;  // the clock was set back
+  EXPECT_THAT(times_of(stepped), ElementsAre(0, 1, -10));
+}
+
+TEST_F(SceneRoutesTest, CompressTheTracksOfTwentyRobotsAtTheirMost) {
+  const auto poses = each_second(
+      4000, [](int i) { return TrackPose{.position = {i % 97 / 7.0, i % 89 / 3.0, i % 7 / 9.0}}; });
+  for (int i = 0; i < 20; ++i) source.robot_tracks.push_back({"r" + std::to_string(i), poses});
+  const auto answer = request("GET", "/adit/tracks", {{"Accept-Encoding", "gzip"}, kByToken});
+  EXPECT_EQ(header(answer, "Content-Encoding"), "gzip");
+}
+
 TEST_F(SceneRoutesTest, NameWhatIsNoNumber) {
   for (const char* wrong : {"/adit/markers?since=x", "/adit/markers?since=-1", "/adit/markers?since=1.5",
                             "/adit/tracks?since=x", "/adit/tracks?since=inf", "/adit/tracks?since=nan"}) {

@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { Labels } from "../../firmware/site/files/map_labels.js";
 import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
+import { filled } from "../../firmware/site/files/map_tracks.js";
 import { MapView } from "../../firmware/site/files/map_view.js";
 
 const SIZE = 12;
@@ -96,4 +97,12 @@ test("knows what a plate with a rim covers", () => {
   assert.ok(!plate.covers(view));
   const [left, top] = plate.toPixel(view.toMetres(0, 0));
   assert.ok(Math.abs(left - (200 - 209)) < 1e-6 && Math.abs(top - (125 + 124)) < 1e-6);
+});
+
+test("has a pose each second where the box left out those of a straight way, and none where a robot stood or was not heard", () => {
+  const turned = 2 * Math.PI - 6;
+  assert.deepEqual(filled([[100, 0, 0, 1, 3], [102, 2, 4, 1, -3]]), [[100, 0, 0, 1, 3], [101, 1, 2, 1, 3 + turned / 2], [102, 2, 4, 1, -3]]);
+  for (const poses of [[[100, 0, 0, 0, 0]], [[100, 0, 0, 0, 0], [110, 0.05, 0, 0, 0]], [[100, 0, 0, 0, 0], [112, 9, 0, 0, 0]], [[100, 0, 0, 0, 0], [101, 1, 0, 0, 0]]]) {
+    assert.deepEqual(filled(poses), poses);
+  }
 });

@@ -5,10 +5,22 @@ import { fetchSoon } from "./session.js";
 
 const SPACING = 1, SAME_SPACING = 10; // s; the second while a robot stands
 const SILENCE = 5; // s without an event: some were missed
+const LONGEST = 10; // s: the box leaves out poses only between two that are no farther apart
 const GAP = 60; // s without a pose: where it went in between is not known
 const MIN_STEP = 2; // pixels: a line need not be finer
 // From the newest: up to how many seconds ago, how wide, how strong.
 const AGES = [[60, 2.25, 0.95], [300, 1.75, 0.6], [Infinity, 1.5, 0.35]];
+
+/** What the box left out of poses, [[at, x, y, z, heading]], because it is a straight way: a pose each second (README.md: GET
+ *  /adit/tracks). */
+export function filled(poses) {
+  return poses.flatMap((pose, i) => {
+    const next = poses[i + 1], steps = next ? Math.round((next[0] - pose[0]) / SPACING) : 1;
+    if (steps > LONGEST || !next?.some((value, j) => j > 0 && Math.abs(value - pose[j]) > 0.1)) return [pose];
+    const by = pose.map((value, j) => (j === 4 ? Math.atan2(Math.sin(next[j] - value), Math.cos(next[j] - value)) : next[j] - value));
+    return Array.from({ length: Math.max(1, steps) }, (_, step) => pose.map((value, j) => value + (step / steps) * by[j]));
+  });
+}
 
 export class Tracks {
   changes = 0; // counts what there is new to draw
@@ -62,7 +74,7 @@ export class Tracks {
       if (!answer.ok || run !== this.#run) return;
       for (const { robot, poses } of (await answer.json()).tracks) {
         const last = poses.at(-1)[0];
-        this.#all.set(robot, [...poses, ...this.#of(robot).filter(([at]) => at > last + 0.01)]);
+        this.#all.set(robot, [...filled(poses), ...this.#of(robot).filter(([at]) => at > last + 0.01)]);
       }
       this.isLoaded = true;
       ++this.changes;

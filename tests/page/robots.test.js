@@ -26,6 +26,17 @@ test("has twenty robots in sight, whole, where the screen is one of 720 or 1080 
   assert.match(await page.innerText('#robots li[data-key="ugv4"]'), /^ugv4\s+grid (now|\d s) · cloud (now|\d s)\s+(now|\d s)$/);
 });
 
+test("takes the height of its rows, and leaves the rest to the reports", async (t) => {
+  const heights = (page) => page.$$eval("#reports, #maps .scroll, #robots", (nodes) => nodes.map((node) => node.offsetHeight));
+  const { page: few } = await watch(t, "calm");
+  const [most, panel, rows] = await heights(few);
+  assert.ok(panel - rows < 24, `${panel} for rows of ${rows}`);
+  const { page: many } = await watchTwenty(t);
+  await many.locator("#robots li").nth(19).waitFor();
+  const [less] = await heights(many);
+  assert.ok(less >= 240 && most >= less + 100, `${most} beside few robots, ${less} beside many`);
+});
+
 test("cuts no word in the head of its list", async (t) => {
   const prepare = (page) => retell(page, () => (view) => {
     const grid = view.activities.find(({ kind, robot }) => kind === "grid" && !robot);

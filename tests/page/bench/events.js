@@ -37,7 +37,8 @@ export async function listen(made) {
   return heard;
 }
 
-async function withReports(robots) {
+/** A box with so many robots at work and 1,000 reports on record. */
+export async function withReports(robots) {
   const made = await begin({ robots, post: ["--reports", String(2 * REPORTS), "--rate", "0"], settings: { command_post: { rates: { reports_hz: 1000, status_hz: 2 } } } });
   for (let i = 0; i < REPORTS; i += AT_ONCE) await Promise.all(Array.from({ length: AT_ONCE }, (_, j) => made.compose("Rope", 10 * (i + j), i)));
   await until(async () => (await made.run()).run.remaining_reports <= REPORTS, "the reports to be recorded", 600_000);

@@ -1,7 +1,8 @@
-// Measures how smoothly the map moves: twenty robots at work, a hand that drags and zooms, a browser that draws without a GPU. It
-// asserts nothing: tests/bench/README.md has figures and how to run it.
+// Measures what a page takes of the browser, and how smoothly its map moves: twenty robots at work, 1,000 reports on record, a hand
+// that drags and zooms, a browser that draws without a GPU. It asserts nothing: tests/bench/README.md has figures and how to run it.
 import { launch, visit } from "../stage.js";
-import { begin, TOKENS } from "../box/box.js";
+import { TOKENS } from "../box/box.js";
+import { withReports } from "./events.js";
 
 const ROBOTS = Number(process.env.BENCH_ROBOTS ?? 20), SECONDS = Number(process.env.BENCH_SECONDS ?? 10), WARM = Number(process.env.BENCH_WARM ?? 60);
 const SCREENS = [[1280, 720], [1920, 1080]];
@@ -31,32 +32,34 @@ async function move(page, how) {
   }, { how, seconds: SECONDS });
 }
 
-/** Of one run of the map: frames a second, milliseconds between frames, the main thread's CPU time by the time that went by, and by frames. */
-async function measure(page, devtools, how) {
+/** Of one run of the map: frames a second, milliseconds between frames, CPU time by the time that went by (of the
+ *  main thread; of all processes of the browser, per cent of a core), and the main thread's by frames. */
+async function measure(page, devtools, all, how) {
   const busy = async () => {
+    const { processInfo } = await all.send("SystemInfo.getProcessInfo");
     const { metrics } = await devtools.send("Performance.getMetrics");
     const of = (name) => metrics.find((each) => each.name === name).value;
-    return { task: of("TaskDuration"), script: of("ScriptDuration"), at: performance.now() / 1000 };
+    return { task: of("TaskDuration"), script: of("ScriptDuration"), all: processInfo.reduce((sum, { cpuTime }) => sum + cpuTime, 0), at: performance.now() / 1000 };
   };
   const before = await busy(), times = (await move(page, how)).sort((a, b) => a - b), after = await busy();
   const share = (what) => `${((100 * (after[what] - before[what])) / (after.at - before.at)).toFixed(0)} %`;
   const at = (part) => `${times[Math.min(times.length - 1, Math.floor(times.length * part))].toFixed(0)} ms`;
   const each = `${((1000 * (after.task - before.task)) / times.length).toFixed(1)} ms`;
-  return [`${(times.length / SECONDS).toFixed(0)}/s`, at(0.5), at(0.95), at(1), share("task"), share("script"), each];
+  return [`${(times.length / SECONDS).toFixed(0)}/s`, at(0.5), at(0.95), at(1), share("all"), share("task"), share("script"), each];
 }
 
-const made = await begin({ robots: ROBOTS });
-const browser = await launch();
+const made = await withReports(ROBOTS);
+const browser = await launch(), all = await browser.newBrowserCDPSession();
 try {
   await sleep(WARM);
-  console.log(`${ROBOTS} robots, ${SECONDS} s each\n| screen | the map is | frames | median | 95 % | longest | main thread | of it script | each frame |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- |`);
+  console.log(`${ROBOTS} robots, ${SECONDS} s each\n| screen | the map is | frames | median | 95 % | longest | browser | main thread | of it script | each frame |\n| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |`);
   for (const [width, height] of SCREENS) {
     const page = await visit(browser, made.url, { extraHTTPHeaders: { Authorization: `Bearer ${TOKENS.team}` }, viewport: { width, height } });
     await page.waitForSelector("body[data-link=live]");
     const devtools = await page.context().newCDPSession(page);
     await devtools.send("Performance.enable", { timeDomain: "threadTicks" }); // CPU time, whatever else the machine does
     await sleep(5);
-    for (const how of ["left alone", "dragged", "zoomed"]) console.log(`| ${width} x ${height} | ${[how, ...(await measure(page, devtools, how))].join(" | ")} |`);
+    for (const how of ["left alone", "dragged", "zoomed"]) console.log(`| ${width} x ${height} | ${[how, ...(await measure(page, devtools, all, how))].join(" | ")} |`);
     await page.context().close();
   }
 } finally {

@@ -76,6 +76,38 @@ test("cuts no headline, of however many words, on any screen", async (t) => {
   }
 });
 
+test("offers the action of an alarm on a phone, or to acknowledge one without an action", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    for (const alarm of view.alarms) if (globalThis.without) alarm.action = { word: "", link: "" };
+    return view;
+  });
+  const { page } = await watch(t, "trouble", { prepare, viewport: { width: 390, height: 844 } });
+  const card = page.locator(".alarms .worst .alarm").first();
+  await card.getByRole("link", { name: "Open test" }).waitFor();
+  assert.equal(await card.getByRole("button", { name: "Acknowledge" }).isVisible(), false);
+  await page.evaluate(() => (globalThis.without = true));
+  await card.getByRole("button", { name: "Acknowledge" }).waitFor();
+  const { width, height } = await card.getByRole("button", { name: "Acknowledge" }).boundingBox();
+  assert.ok(width >= 44 && height >= 44);
+});
+
+test("counts its alarms on the tab to which they lead", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => {
+    const alarm = (severity, what, link) => ({ ...view.alarms[0], id: what, severity, what, action: { word: "Show", link } });
+    return { ...view, alarms: view.alarms.length ? [
+      alarm("bad", "uav5 is silent", "/#robot=uav5"), alarm("wait", "uav6 is late", "/#robot=uav6"),
+      alarm("ask", "Report 8 is in doubt", "/#report=8"), alarm("bad", "Mapping is unreachable", "/setup#test"),
+    ] : [] };
+  });
+  const { page } = await watch(t, "trouble", { prepare, viewport: { width: 390, height: 844 } });
+  await page.locator(".tabs .waits", { hasText: "2" }).waitFor();
+  const badges = await page.$$eval(".tabs button", (tabs) => tabs.map((tab) => {
+    const badge = tab.querySelector(".waits:not([hidden])");
+    return badge && [tab.dataset.tab, badge.textContent, badge.dataset.level, tab.title];
+  }).filter(Boolean));
+  assert.deepEqual(badges, [["reports", "1", "ask", "Report 8 is in doubt"], ["robots", "2", "bad", "uav5 is silent, uav6 is late"]]);
+});
+
 test("quiets what is acknowledged, and puts what is new before it", async (t) => {
   const { page } = await watch(t, "trouble");
   const first = page.locator(".alarms .worst .alarm").first();

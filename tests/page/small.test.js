@@ -1,6 +1,7 @@
 // The smallest phones: nothing is cut, and no text lies on another.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { retell } from "./retold.js";
 import { openMore, settled, toTab, watch } from "./watch.js";
 
 const PHONES = [[320, 640], [360, 740]];
@@ -47,6 +48,15 @@ for (const [width, height] of PHONES) {
     }
   });
 }
+
+test("cuts neither the verdict nor its reason", async (t) => {
+  const prepare = (page) => retell(page, () => (view) => ({ ...view, verdict: { level: "wait", what: "17 of 20 arrive", why: "not spot3, uav5, ugv12 and 2 more; oldest other 22 s" } }));
+  const { page } = await watch(t, "calm", { viewport: { width: 390, height: 844 }, prepare });
+  await page.locator("#arriving", { hasText: "17 of 20" }).waitFor();
+  const cut = await page.$$eval("#arriving strong, #arriving .reason", (parts) =>
+    parts.filter((part) => part.scrollWidth > part.clientWidth + 1 || part.scrollHeight > part.clientHeight + 1).map((part) => part.textContent));
+  assert.deepEqual(cut, []);
+});
 
 test("brings both reports of a pair into sight, and the button that closes them", async (t) => {
   const { page } = await watch(t, "reports", { viewport: { width: 360, height: 740 }, hasTouch: true });

@@ -5,6 +5,7 @@ import { sounds } from "./alarm_sound.js";
 import { alarmCard, BOX_LOST, fillCard, formerly } from "./alarm_card.js";
 import { open } from "./dialog.js";
 import { list, make, mark, say } from "./dom.js";
+import { showOnTab } from "./side.js";
 import { clip, timeOfDay } from "./words.js";
 
 const SHOWN = 2;
@@ -40,6 +41,12 @@ function showTab(alarms) {
   if (document.title !== title) document.title = title;
 }
 
+const TABS = { reports: /^\/#reports?\b/, robots: /^\/#robot=/ }; // by where an alarm's action leads
+
+function showOnTabs(alarms) {
+  for (const [tab, way] of Object.entries(TABS)) showOnTab(tab, alarms.filter(({ action }) => way.test(action.link)));
+}
+
 /** The box does not answer, or answers a page with `trouble`. */
 function lostAlarm(view, since, trouble) {
   if (trouble) return { ...LOST, since, what: "The box sends no data to this page", why: trouble };
@@ -57,5 +64,6 @@ export function showAlarms(view, time, lost, trouble) {
   say(all, shown.length ? `All ${shown.length}` : "History");
   fillAlarmList(dialog, shown, over, now);
   showTab(shown);
+  showOnTabs(shown);
   sounds(shown);
 }

@@ -7,7 +7,7 @@ import { comparePair } from "./pair.js";
 import { showHistory } from "./history.js";
 import { life } from "./arriving.js";
 import { Still } from "./still.js";
-import { closeSide, goTab, showOnTab } from "./side.js";
+import { closeSide, goTab } from "./side.js";
 import { ago, clip, placeOf } from "./words.js";
 
 const section = document.getElementById("reports");
@@ -188,8 +188,6 @@ export function showReports(view, now) {
   say(others, "All runs");
   newer.hidden = still.waiting === 0;
   say(newer, `${still.waiting} new`);
-  const asking = mine.filter((report) => life(report).level === "ask").length;
-  showOnTab("reports", asking, "ask", `${asking} need your decision`);
   rows.hidden = shown.length === 0;
   section.querySelector(".empty").hidden = shown.length > 0;
   say(section.querySelector(".barred"), barred());

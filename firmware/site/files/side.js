@@ -3,6 +3,7 @@
 
 import { drawn } from "./icons.js";
 import { isShown, mark, say } from "./dom.js";
+import { clip } from "./words.js";
 
 const sides = [...document.querySelectorAll("main > .side")];
 const tabs = [...document.querySelectorAll(".tabs button")];
@@ -63,11 +64,13 @@ export function offerSides() {
   });
 }
 
-/** How much waits behind a tab: a number and its level, "ask" or "bad"; 0: nothing. */
-export function showOnTab(name, count, level, words) {
+const LEVELS = ["bad", "ask", "wait"];
+
+/** How many alarms are of what is behind a tab, and the worst of them. */
+export function showOnTab(name, alarms) {
   const tab = tabs.find(({ dataset }) => dataset.tab === name), sign = tab.querySelector(".waits");
-  sign.hidden = count === 0;
-  mark(sign, "level", level);
-  say(sign, String(count));
-  tab.title = count ? words : "";
+  sign.hidden = alarms.length === 0;
+  mark(sign, "level", LEVELS.find((level) => alarms.some(({ severity }) => severity === level)) ?? "");
+  say(sign, String(alarms.length));
+  tab.title = alarms.map(({ what }) => clip(what, 60)).join(", ");
 }

@@ -4,16 +4,14 @@
 #include <utility>
 
 #include "box/candidate.hpp"
-#include "box/notices.hpp"
+#include "box/version.hpp"
 #include "dispatch/another_post.hpp"
 #include "forward/stamp_floor.hpp"
-#include "gateway/report_rows.hpp"
 #include "host/files.hpp"
 #include "host/interfaces.hpp"
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
-#include "loop/guard.hpp"
 #include "settings/subnet.hpp"
 #include "settings/written.hpp"
 #include "spare/sealed.hpp"
@@ -44,14 +42,13 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
       disk_writer_(loop),
       flow_(loop, parts_.ledger, settings_, tokens(), {parts_.runtime_folder, parts_.options.state},
             {.changed = [this] { api_.changed(); },
-             .posted = [this](const std::string& name) { note_robot(name); }}),
+             .posted = [this](const std::string& name) { overview_.posted(name); }}),
       log_ins_(loop, 1),
       lights_(loop, std::move(parts_.lines)),
       links_(
           loop, settings_, host::carrier, host::link_changes(), [this] { api_.changed(); },
           [this] { flow_.link_is_back(); }),
       button_(loop, std::move(parts_.button), lights_, [this](panel::Press press) { pressed(press); }),
-      roster_(settings_.robots),
       sessions_(parts_.runtime_folder + '/' + admin::SessionKeeper::kFile, loop.now()),
       accounts_(loop, log_ins_, disk_writer_, sessions_, parts_.options.state,
                 parts_.loaded.secrets.label_code),
@@ -64,7 +61,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
           },
           [this] { change_.call_at(loop_.now()); }, [this] { make_way(); }),
       box_(loop, flow_.workers(), parts_.board, settings::file_of(parts_.loaded.settings),
-           [this](api::Usage& usage) { add_to(usage); }),
+           [this](api::Usage& usage) { overview_.add_to(usage); }),
       network_(loop, settings_, adit_network_, parts_.options.watch),
       self_test_(
           loop, settings_,
@@ -82,8 +79,11 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
              {.content = [this] { return content(); },
               .is_time_set = [this] { return clock_.is_set().value_or(false); },
               .restart = [this] { make_way(); }}),
+      overview_({loop, parts_, settings_, flow_, lights_, links_, accounts_, network_, updates_, clock_,
+                 spare_, listeners_},
+                disk_writer_),
       api_(loop,
-           {.source = *this,
+           {.source = overview_,
             .judge = *this,
             .keys = accounts_,
             .setup = setup_,
@@ -97,12 +97,8 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .spare = spare_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),
-      acknowledged_(parts_.options.state, disk_writer_),
       listeners_(loop, parts_.sockets, routes_, guesses_,
-                 [this](intake::Ended why, const std::string& address) {
-                   crowding_.ended(why, address, loop_.now());
-                   log_crowding();
-                 }),
+                 [this](intake::Ended why, const std::string& address) { overview_.ended(why, address); }),
       second_(loop.timer([this] { every_second(); })),
       change_(loop.timer([this] { apply_change(); })) {}
 
@@ -177,9 +173,8 @@ std::expected<void, std::string> Gateway::start() {
         icd::sentence("this box is on standby: ", spare_.standby(), "; it accepts and sends no messages"));
   flow_.start();
   await_files();
-  lookout_.carry_on(flow_, loop_.stamp_now());
+  overview_.carry_on();
   if (auto listening = listen(settings_.team); !listening) return listening;
-  board_.remember(acknowledged_.read(), loop_.wall_now());
   every_second();
   return {};
 }
@@ -216,42 +211,18 @@ void Gateway::finish() {
   if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
-void Gateway::note_robot(const std::string& name) {
-  if (roster_.posted(name, loop_.now())) host::log(host::Level::Warning, roster_.sentence(name));
-}
-
-std::vector<api::ReportRow> Gateway::reports(std::int64_t after, std::size_t most) const {
-  auto rows = rows_after(flow_.reports(), after, most);
-  for (api::ReportRow& row : rows) tell_time_of_day(row, loop_);
-  return rows;
-}
-
-api::ReportCounts Gateway::report_counts() const {
-  return counts_of(flow_.reports());
-}
-
-std::optional<api::ReportDetail> Gateway::report(std::int64_t number) const {
-  auto detail = detail_of(flow_.reports(), parts_.ledger, number);
-  if (!detail) return detail;
-  tell_time_of_day(detail->row, loop_);
-  for (auto& step : detail->history) step.at = time_of_day(step.at, loop_);
-  return detail;
-}
-
 void Gateway::every_second() {
   second_.call_at(loop_.now() + std::chrono::seconds(1));
   look_at_clock();
   flow_.tick(disk_writer_);
   links_.look();
-  notices_ = box::read_notices(parts_.options.notices);
-  look_for_alarms();
+  overview_.look();
   show_lights();
   lights_.beat();
   network_.every_second();
   updates_.every_second();
   keep_sessions();
   look_at_sockets();
-  log_crowding();
   listeners_.tick();
   if (std::string line = status_line(); line != notified_) {
     host::notify_status(line);
@@ -270,7 +241,7 @@ void Gateway::look_at_clock() {
   if (step == 0) return;
   host::log(host::Level::Notice, "the clock was set", {{"ahead_by_s", icd::sentence(step)}});
   flow_.wall_was_set(step);
-  board_.move(step);
+  overview_.wall_was_set(step);
   api_.changed();
 }
 
@@ -286,12 +257,8 @@ void Gateway::look_at_sockets() {
   const ListenSockets::Reach reach = parts_.sockets.reach();
   if (reach == ListenSockets::Reach::Well || flow_.is_ending()) return;
   host::log(host::Level::Warning, "the team's interface was replaced; listening again");
-  reach == ListenSockets::Reach::Reopen ? make_way() : stop();
-}
-
-void Gateway::log_crowding() {
-  for (const Crowding::Line& line : crowding_.to_log(loop_.now()))
-    host::log(host::Level::Warning, line.sentence, {{"times", std::to_string(line.times)}});
+  if (reach == ListenSockets::Reach::Reopen) return make_way();
+  stop();
 }
 
 /// The last use of a session needs no exact time.
@@ -301,18 +268,33 @@ void Gateway::keep_sessions() {
   if (!sessions_.sessions().in_order().empty()) sessions_.keep();
 }
 
-void Gateway::add_to(api::Usage& usage) const {
-  usage.connections += listeners_.connections();
-  usage.unauthenticated = listeners_.strangers();
-  usage.ended = {{"no_room", crowding_.count(intake::Ended::NoRoom)},
-                 {"gave_way", crowding_.count(intake::Ended::GaveWay)},
-                 {"idle", crowding_.count(intake::Ended::Idle)},
-                 {"slow", crowding_.count(intake::Ended::Slow)}};
-  usage.wrong_tokens = crowding_.count(intake::Ended::WrongToken);
-  usage.sent_bytes = flow_.sent_bytes();
-  usage.exceptions = loop::caught_so_far();
-  usage.rejected_dropped = flow_.rejected().dropped();
-  usage.refused = flow_.record().refused_counts();
+/// Why a restart is harmful now, or "".
+std::string Gateway::report_under_way() const {
+  const dispatch::Reports& reports = flow_.reports();
+  if (const auto* report = reports.sending())
+    return icd::sentence("report ", report->number, " is in flight; a restart would leave it in doubt");
+  const std::size_t waiting = reports.waiting_here().size();
+  if (waiting == 0) return "";
+  return icd::sentence(waiting, waiting == 1 ? " report is" : " reports are", " queued");
+}
+
+/// For the export. No stamp is used after it.
+std::expected<spare::Content, std::string> Gateway::content() const {
+  auto ledger = parts_.ledger.copy();
+  if (!ledger) return std::unexpected(std::move(ledger.error().what));
+  const dispatch::Reports& reports = flow_.reports();
+  spare::Content content;
+  content.about.name = team_address();
+  content.about.version = box::kVersion;
+  content.about.stamps = loop_.stamp_now() + forward::StampFloor::kAhead;
+  content.about.reports = static_cast<std::int64_t>(reports.book().all().size());
+  content.about.open = static_cast<std::int64_t>(reports.book().open().size());
+  content.about.post = reports.run().post;
+  content.about.run = reports.run().last;
+  content.settings = settings::file_of(parts_.loaded.settings);
+  content.tokens = {parts_.loaded.secrets.tokens.begin(), parts_.loaded.secrets.tokens.end()};
+  content.ledger = *std::move(ledger);
+  return content;
 }
 
 }  // namespace adit::gateway

@@ -1,71 +1,26 @@
 #pragma once
 
 #include <expected>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "admin/accounts.hpp"
-#include "admin/acknowledged_file.hpp"
-#include "admin/clock_setting.hpp"
-#include "admin/network_change.hpp"
 #include "admin/session_keeper.hpp"
 #include "admin/setup.hpp"
-#include "admin/spare.hpp"
-#include "admin/store.hpp"
-#include "admin/taking_over.hpp"
-#include "admin/updates.hpp"
-#include "alarms/board.hpp"
-#include "alarms/facts.hpp"
 #include "api/api.hpp"
 #include "box/button_watch.hpp"
-#include "box/lights.hpp"
-#include "box/links.hpp"
 #include "box/self_test.hpp"
 #include "box/this_box.hpp"
-#include "forward/flow.hpp"
-#include "gateway/crowding.hpp"
 #include "gateway/file_return.hpp"
-#include "gateway/listen_sockets.hpp"
-#include "gateway/listeners.hpp"
-#include "gateway/lookout.hpp"
-#include "gateway/options.hpp"
-#include "gateway/report_rows.hpp"
-#include "gateway/roster.hpp"
+#include "gateway/overview.hpp"
 #include "host/service.hpp"
 #include "intake/icd_routes.hpp"
-#include "ledger/ledger.hpp"
-#include "loop/loop.hpp"
 #include "loop/workers.hpp"
-#include "panel/lines.hpp"
-#include "settings/board.hpp"
-#include "settings/settings.hpp"
 
 namespace adit::gateway {
 
-/// Checked parts of a gateway.
-struct Parts {
-  const Options& options;          // outlives the gateway
-  admin::Store& store;             // outlives the gateway
-  admin::FactoryReset& reset;      // outlives the gateway
-  admin::TakingOver& taking_over;  // outlives the gateway
-  ListenSockets& sockets;          // outlives the gateway
-  admin::Store::Loaded loaded;
-  std::string trouble;    // why other settings are in use than wanted, or ""
-  std::string put_aside;  // queued messages put aside, and why; or ""
-  std::string stuck;      // why a take-over is unfinished and the box stands by, or ""
-  ledger::Ledger ledger;
-  std::chrono::seconds file_rest;  // until unreadable files are tried again
-  settings::Board board;
-  std::string board_trouble;  // why the board's file is ignored, or ""
-  std::unique_ptr<panel::Lines> lines;
-  std::unique_ptr<panel::ButtonLine> button;  // null: no button
-  std::string runtime_folder;
-};
-
 /// Adit at work: the flow, the listeners, the page and the box.
-class Gateway final : public api::Source, public api::Operator {
+class Gateway final : public api::Operator {
  public:
   Gateway(loop::Loop& loop, Parts parts);
 
@@ -80,12 +35,8 @@ class Gateway final : public api::Source, public api::Operator {
   /// For the watchdog.
   std::vector<loop::Workers*> threads();
   /// A line for systemd.
-  std::string status_line() const;
+  std::string status_line() const { return overview_.status_line(); }
 
-  api::RunView view() const override;
-  std::vector<api::ReportRow> reports(std::int64_t after, std::size_t most) const override;
-  api::ReportCounts report_counts() const override;
-  std::optional<api::ReportDetail> report(std::int64_t number) const override;
   std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) override {
     return flow_.judge(number, action);
   }
@@ -99,13 +50,6 @@ class Gateway final : public api::Source, public api::Operator {
   std::int64_t begin_run() override { return flow_.begin_run(); }
   icd::Checked<std::string> begin_ledger() override;
   api::Time identify(double seconds) override;
-  const picture::Mosaic& map() const override { return flow_.picture(); }
-  api::MarkerChanges markers(std::uint64_t since) const override {
-    return flow_.as_forwarded().markers().changes(since);
-  }
-  std::vector<api::Track> tracks(api::Time since) const override {
-    return flow_.as_forwarded().tracks().since(since);
-  }
 
  private:
   void make_way();
@@ -115,13 +59,11 @@ class Gateway final : public api::Source, public api::Operator {
   void look_at_clock();
   void keep_sessions();
   void look_at_sockets();
-  void log_crowding();
   /// At the start.
   bool has_read_all() const;
   void await_files();
   void files_are_back();
   void show_lights();
-  void add_to(api::Usage& usage) const;
   std::expected<void, std::string> listen(const settings::Team& team);
   void apply_change();
   std::expected<void, std::string> take_over(admin::Store::Loaded next);
@@ -133,21 +75,12 @@ class Gateway final : public api::Source, public api::Operator {
   forward::Tokens tokens() const;
   icd::Redaction redaction() const;
   std::string unread() const;
-  void note_robot(const std::string& name);
   void assert_states();
   void pressed(panel::Press press);
   void show_address();
   std::string team_address() const;
-  alarms::Facts facts(const std::vector<api::ActivityRow>& activities) const;
-  void add_flow(alarms::Facts& facts) const;
-  void add_reports(alarms::Facts& facts) const;
-  void add_box(alarms::Facts& facts) const;
-  std::vector<alarms::Alarm> alarms() const { return board_.shown(conditions_, looked_at_); }
-  void judge(api::RunView& view) const;
-  void look_for_alarms();
   std::string report_under_way() const;
   std::expected<spare::Content, std::string> content() const;
-  std::vector<api::EndpointRow> endpoints() const;
 
   loop::Loop& loop_;
   Parts parts_;
@@ -158,7 +91,6 @@ class Gateway final : public api::Source, public api::Operator {
   box::Lights lights_;
   box::Links links_;
   box::ButtonWatch button_;
-  Roster roster_;
   admin::SessionKeeper sessions_;
   admin::Accounts accounts_;
   host::RootProgram<network::Status> adit_network_;
@@ -169,24 +101,17 @@ class Gateway final : public api::Source, public api::Operator {
   admin::Updates updates_;
   admin::ClockSetting clock_;
   admin::Spare spare_;
+  Overview overview_;
   api::Api api_;
   intake::IcdRoutes routes_;
-  Crowding crowding_;
-  Lookout lookout_;
-  alarms::Board board_;
-  std::vector<alarms::Condition> conditions_;  // as of looked_at_
-  double looked_at_ = 0;                       // alarms::Facts::now
-  admin::AcknowledgedFile acknowledged_;
   intake::TokenGuesses guesses_;
   Listeners listeners_;
   loop::Source second_, change_;
   loop::Instant sessions_kept_{};
   std::optional<FileReturn> file_return_;
   bool makes_way_ = false;
-  mutable ReadAnswers answers_;  // of the view's reports
   std::string notified_;
-  std::map<std::string, std::string> notices_;  // box/notices.hpp
-  panel::Lights told_lights_{};                 // the lights as sent to pages
+  panel::Lights told_lights_{};  // the lights as sent to pages
 };
 
 }  // namespace adit::gateway

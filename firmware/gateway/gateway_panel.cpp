@@ -21,13 +21,13 @@ void Gateway::assert_states() {
   const bool serving = listeners_.serves() && flow_.scoring().trouble().empty();
   lights_.set(State::Serving, serving);
   lights_.set(State::NotServing, !serving);
-  const auto posts = endpoints();
+  const auto posts = overview_.endpoints();
   lights_.set(State::ScoringConnected, posts[0].connected);
   lights_.set(State::ScoringFailing, !posts[0].trouble.empty());
   lights_.set(State::ReportWaiting, !flow_.reports().waiting_here().empty());
   lights_.set(State::MappingConnected, posts[1].connected);
   lights_.set(State::MappingFailing, !posts[1].trouble.empty());
-  const auto all = alarms();
+  const auto all = overview_.alarms();
   const auto calling = std::ranges::count_if(all, alarms::calls);
   const auto seen = std::ranges::count_if(
       all, [](const alarms::Alarm& alarm) { return alarms::calls(alarm) && alarm.acknowledged; });
@@ -42,6 +42,12 @@ void Gateway::assert_states() {
     host::log(host::Level::Notice, "set-up is closed");
   }
   lights_.set(State::SetUpOpen, accounts_.set_up_open());
+}
+
+std::expected<void, std::string> Gateway::acknowledge(const std::string& id) {
+  auto done = overview_.acknowledge(id);
+  show_lights();
+  return done;
 }
 
 void Gateway::show_lights() {

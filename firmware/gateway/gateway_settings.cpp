@@ -47,13 +47,11 @@ std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
 
 void Gateway::tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens) {
   flow_.settings_changed(restarts, tokens);
-  if (restarts.scoring) lookout_.forget_scoring();
-  if (restarts.mapping) lookout_.forget_mapping();
+  overview_.settings_changed(restarts);
   routes_.serve_with(icd_options());
   api_.let_in(tokens.all, redaction());
   host::keep_out_of_log(redaction());
   guesses_.forget();
-  roster_.set_up(settings_.robots);
   links_.look_at(settings_);
   box_.runs_with(settings::file_of(parts_.loaded.settings));
   if (restarts.panel && !parts_.board.panel) reopen_panel();

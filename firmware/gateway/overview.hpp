@@ -1,0 +1,107 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "admin/accounts.hpp"
+#include "admin/acknowledged_file.hpp"
+#include "admin/clock_setting.hpp"
+#include "admin/network_change.hpp"
+#include "admin/spare.hpp"
+#include "admin/updates.hpp"
+#include "alarms/board.hpp"
+#include "alarms/facts.hpp"
+#include "api/box.hpp"
+#include "api/source.hpp"
+#include "box/lights.hpp"
+#include "box/links.hpp"
+#include "forward/flow.hpp"
+#include "gateway/crowding.hpp"
+#include "gateway/listeners.hpp"
+#include "gateway/lookout.hpp"
+#include "gateway/parts.hpp"
+#include "gateway/report_rows.hpp"
+#include "gateway/roster.hpp"
+#include "loop/loop.hpp"
+#include "settings/settings.hpp"
+
+namespace adit::gateway {
+
+/// The state of the whole box: the view for pages, and the alarms with the facts behind them.
+class Overview final : public api::Source {
+ public:
+  /// The observed parts of the gateway. All outlive the overview.
+  struct Rooms {
+    const loop::Loop& loop;
+    const Parts& parts;
+    const settings::Settings& settings;
+    forward::Flow& flow;
+    const box::Lights& lights;
+    const box::Links& links;
+    const admin::Accounts& accounts;
+    const admin::NetworkChange& network;
+    const admin::Updates& updates;
+    const admin::ClockSetting& clock;
+    const admin::Spare& spare;
+    const Listeners& listeners;
+  };
+
+  /// `writer` stores acknowledged alarms and outlives the overview.
+  Overview(const Rooms& rooms, loop::Writer& writer);
+
+  /// Call after the flow's start and before any answer.
+  void carry_on();
+  /// Reads the notices, finds the alarms, logs rejected connections. Call once a second.
+  void look();
+  std::expected<void, std::string> acknowledge(const std::string& id);
+  /// A robot's message was accepted.
+  void posted(const std::string& robot);
+  /// A connection of the team was rejected or closed.
+  void ended(intake::Ended why, const std::string& address);
+  /// Settings or tokens have changed.
+  void settings_changed(const settings::Restarts& restarts);
+  /// The time of day was set ahead by `seconds`.
+  void wall_was_set(double seconds) { board_.move(seconds); }
+
+  /// Scoring, then mapping.
+  std::vector<api::EndpointRow> endpoints() const;
+  /// As of the last second.
+  std::vector<alarms::Alarm> alarms() const { return board_.shown(conditions_, looked_at_); }
+  /// A line for systemd.
+  std::string status_line() const;
+  /// Adds the counts of the flow and of the team's connections.
+  void add_to(api::Usage& usage) const;
+
+  api::RunView view() const override;
+  std::vector<api::ReportRow> reports(std::int64_t after, std::size_t most) const override;
+  api::ReportCounts report_counts() const override { return counts_of(rooms_.flow.reports()); }
+  std::optional<api::ReportDetail> report(std::int64_t number) const override;
+  const picture::Mosaic& map() const override { return rooms_.flow.picture(); }
+  api::MarkerChanges markers(std::uint64_t since) const override {
+    return rooms_.flow.as_forwarded().markers().changes(since);
+  }
+  std::vector<api::Track> tracks(api::Time since) const override {
+    return rooms_.flow.as_forwarded().tracks().since(since);
+  }
+
+ private:
+  void log_crowding();
+  alarms::Facts facts(const std::vector<api::ActivityRow>& activities) const;
+  void add_flow(alarms::Facts& facts) const;
+  void add_reports(alarms::Facts& facts) const;
+  void add_box(alarms::Facts& facts) const;
+
+  const Rooms rooms_;
+  Roster roster_;
+  Crowding crowding_;
+  Lookout lookout_;
+  alarms::Board board_;
+  std::vector<alarms::Condition> conditions_;  // as of looked_at_
+  double looked_at_ = 0;                       // alarms::Facts::now
+  admin::AcknowledgedFile acknowledged_;
+  mutable ReadAnswers answers_;                 // of the view's reports
+  std::map<std::string, std::string> notices_;  // box/notices.hpp
+};
+
+}  // namespace adit::gateway

@@ -112,7 +112,8 @@ void AddressWatch::hear(Side& side) {
     const auto arp = read_arp({packet, *size});
     if (!arp) continue;
     side.takers.hear(*arp, now);
-    &side == &team() ? exchanged_.hear_at_team(*arp, now) : exchanged_.hear_at_post(*arp, now);
+    if (&side == &team()) exchanged_.hear_at_team(*arp, now);
+    if (&side == &post()) exchanged_.hear_at_post(*arp, now);
   }
   side.rests_until = now + kRest;
   side.heard.wait_for(0);
@@ -135,7 +136,7 @@ void AddressWatch::work() {
   ask(post(), due.at_post);
   std::optional<Instant> next;
   const auto at = [&next](const std::optional<Instant>& when) {
-    if (when && (!next || *when < *next)) next = when;
+    if (when) next = std::min(*when, next.value_or(*when));
   };
   tell(now);
   if (written_at_) at(*written_at_ + kBetweenTellings);
@@ -144,7 +145,8 @@ void AddressWatch::work() {
     at(side.takers.wake());
     at(side.rests_until);
   }
-  next ? due_.call_at(*next) : due_.cancel();
+  due_.cancel();
+  if (next) due_.call_at(*next);
 }
 
 void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addresses) {

@@ -13,6 +13,7 @@ using Mode = Sticks::Mode;
 
 /// Takes the export to write out of a directory in which another user writes.
 std::expected<std::string, std::string> take_export(host::UntrustedFolder& folder) {
+  // path_by_descriptor() is a symbolic link, which read_export() does not follow. "/." makes it a directory.
   auto bytes = read_export(folder.path_by_descriptor() + "/.", spare::kForStickFile);
   if (const auto gone = folder.remove(spare::kForStickFile); !gone) return std::unexpected(gone.error());
   if (!bytes) return bytes;

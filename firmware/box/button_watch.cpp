@@ -46,11 +46,8 @@ void ButtonWatch::look() {
   const loop::Instant now = loop_.now();
   const auto before = button_->level(*level, now);
   const auto after = button_->advance(now);
-  if (const auto next = button_->next()) {
-    due_.call_at(*next);
-  } else {
-    due_.cancel();
-  }
+  due_.cancel();
+  if (const auto next = button_->next()) due_.call_at(*next);
   show();
   if (before) pressed_(*before);
   if (after) pressed_(*after);

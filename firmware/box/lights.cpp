@@ -101,11 +101,8 @@ void Lights::wake_for_what_is_next(const panel::Frame& frame) {
   for (const auto& end : until_) {
     if (end) no_later_than(*end);
   }
-  if (next) {
-    tick_.call_at(*next);
-  } else {
-    tick_.cancel();
-  }
+  tick_.cancel();
+  if (next) tick_.call_at(*next);
 }
 
 }  // namespace adit::box

@@ -186,7 +186,7 @@ TestStep clock(std::optional<std::chrono::sys_seconds> date, double now) {
   if (!date) return skipped("clock", "its answers have no Date");
   // A Date stands for one whole second.
   const double there = static_cast<double>(date->time_since_epoch().count());
-  const double ahead = now < there ? now - there : now > there + 1 ? now - there - 1 : 0;
+  const double ahead = now - std::clamp(now, there, there + 1);
   if (std::abs(ahead) <= static_cast<double>(kOff.count())) {
     return good("clock", "the box's clock agrees with the Command Post's");
   }

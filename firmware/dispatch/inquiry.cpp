@@ -22,8 +22,10 @@ Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked,
 /// In an administrative stop (ICD 5.2) the clock stands, and the counts do not show reports.
 bool Inquiry::stands_still(double run_clock, Instant now) const {
   if (!first_heard_) return false;
-  const double elapsed = std::chrono::duration<double>(now - *first_heard_).count();
-  return elapsed > 0.2 && run_clock - first_clock_ < elapsed / 4;
+  constexpr std::chrono::duration<double> kTooShort{0.2};  // two answers may take unequal times
+  constexpr double kRuns = 0.25;  // a running clock shows at least this part of the elapsed time
+  const std::chrono::duration<double> elapsed = now - *first_heard_;
+  return elapsed > kTooShort && run_clock - first_clock_ < elapsed.count() * kRuns;
 }
 
 Inquiry::Instant Inquiry::next_ask(Instant now) const {

@@ -129,8 +129,10 @@ void Telemetry::give_up(const lanes::WaitingState& state, int status, const std:
     return state_.put_back_apart(state);
   }
   for (const icd::NamedPose& pose : state.update.poses) state_.give_up(pose.name, loop_.now());
-  set_aside(state.update, status, sentence, bytes,
-            [this, state](bool kept) { kept ? done(state) : journal_.state_answered(false); });
+  set_aside(state.update, status, sentence, bytes, [this, state](bool kept) {
+    if (kept) return done(state);
+    journal_.state_answered(false);
+  });
 }
 
 void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
@@ -141,8 +143,10 @@ void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const 
     return markers_.put_back_narrower(markers);
   }
   for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
-  set_aside(markers.update, status, sentence, bytes,
-            [this, markers](bool kept) { kept ? done(markers) : journal_.markers_answered(false); });
+  set_aside(markers.update, status, sentence, bytes, [this, markers](bool kept) {
+    if (kept) return done(markers);
+    journal_.markers_answered(false);
+  });
 }
 
 void Telemetry::set_aside(const lanes::Message& message, int status, const std::string& sentence,

@@ -155,9 +155,8 @@ void MarkersUpload::State::wait_for_turn() {
   const auto turns = turns_.lock();
   if (!turns) return;
   turns->wait(visit_.sender.address, [self = shared_from_this()] {
-    const bool well =
-        loop::guarded("reading markers", [&] { self->over_ ? self->end_turn() : self->read_large_one(); });
-    if (well) return;
+    if (self->over_) return self->end_turn();
+    if (loop::guarded("reading markers", [&] { self->read_large_one(); })) return;
     self->end_turn();
     self->failed();
   });

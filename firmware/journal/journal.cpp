@@ -83,11 +83,13 @@ void Journal::senders(const lanes::StampShift::Clocks& clocks) {
 }
 
 void Journal::state_answered(bool done) {
-  done ? note(Kind::StateDone, {}) : comes_back(Kind::StateSent, Kind::StateBack);
+  if (done) return note(Kind::StateDone, {});
+  comes_back(Kind::StateSent, Kind::StateBack);
 }
 
 void Journal::markers_answered(bool done) {
-  done ? note(Kind::MarkersDone, {}) : comes_back(Kind::MarkersSent, Kind::MarkersBack);
+  if (done) return note(Kind::MarkersDone, {});
+  comes_back(Kind::MarkersSent, Kind::MarkersBack);
 }
 
 void Journal::note(Kind kind, std::string said) {

@@ -120,8 +120,9 @@ void Delivery::end_probe(bool in_vain, Instant now) {
 }
 
 double Delivery::pace() const {
-  const double gain = link_ >= most_ ? 1 : drains_ ? kLess : probes_ ? kMore : 1;
-  return std::min(link_ * gain, most_);
+  if (link_ >= most_) return most_;
+  if (drains_) return link_ * kLess;
+  return probes_ ? std::min(link_ * kMore, most_) : link_;
 }
 
 double Delivery::delivers() const {

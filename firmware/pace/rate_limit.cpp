@@ -86,11 +86,8 @@ bool RateLimit::end_one() {
 }
 
 void RateLimit::taken(const Span& sent, Instant now) {
-  if (end_one()) {
-    ++taken_since_;
-    return rule_.from_answers ? count({.first = now, .last = now}) : left(sent);
-  }
-  if (storm_) {
+  const bool sent_before = end_one();
+  if (storm_ && !sent_before) {
     last_was_short_ = now - storm_->began <= kShort;
     if (storm_->counts_anew && storm_->is_one) ++single_;
     if (calm_since_) on_average_ = (now - *calm_since_) / (taken_since_ + 1);
@@ -99,10 +96,11 @@ void RateLimit::taken(const Span& sent, Instant now) {
     storm_.reset();
   } else {
     ++taken_since_;
-    speed_up(now);
+    if (!sent_before) speed_up(now);
   }
-  floor_ = {};
-  rule_.from_answers ? count({.first = now, .last = now}) : left(sent);
+  if (!sent_before) floor_ = {};
+  if (!rule_.from_answers) return left(sent);
+  count({.first = now, .last = now});
 }
 
 void RateLimit::lost(Instant now) {

@@ -155,14 +155,12 @@ void Keeper::paint() {
                                                : "cannot set the lights, retrying: " + painter_.trouble());
   }
   std::optional<Instant> next = painter_.next();
-  // One millisecond more, because timers are rounded down.
-  if (const Instant ends = now + frame.lasts.value_or(Milliseconds{}) + Milliseconds(1); frame.lasts)
+  if (frame.lasts) {
+    const Instant ends = now + *frame.lasts + Milliseconds(1);  // timers are rounded down
     next = std::min(ends, next.value_or(ends));
-  if (next) {
-    tick_.call_at(*next);
-  } else {
-    tick_.cancel();
   }
+  tick_.cancel();
+  if (next) tick_.call_at(*next);
 }
 
 void Keeper::tell_what_is_new() {

@@ -133,7 +133,8 @@ void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing) {
   for (const Sheet::Part& part : sheet.parts()) {
     extend(drawing.area, area_of(part));
     layers.change(part.at, changed, [&](Pixels& pixels) {
-      is_grid ? lay_cells(*part.pixels, pixels) : lay_heights(*part.pixels, pixels);
+      if (is_grid) return lay_cells(*part.pixels, pixels);
+      lay_heights(*part.pixels, pixels);
     });
   }
   while (!changed.empty()) {

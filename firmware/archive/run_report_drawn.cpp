@@ -1,6 +1,7 @@
 // The drawings of a run's report.
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "archive/html.hpp"
@@ -20,7 +21,12 @@ using picture::kSide;
 /// Most bytes of images in a report. Further tiles are left out, and the report says so.
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostTiles = 120;
-constexpr const char* kColours[] = {"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#8a6d00", "#56b4e9"};
+/// Of robots in the order of their first poses: the page's in its light theme (site/files/robot_colour.js).
+constexpr const char* kColours[] = {
+    "#9e4930", "#025447", "#6b56a3", "#733200", "#007672", "#593279", "#7e620d", "#005259", "#844d90", "#524801",
+    "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674", "#395105", "#0d6ca5", "#782445", "#3c7630", "#144687"};
+/// Lengths of lines and gaps, by the line's width.
+constexpr double kDashes[][4] = {{1e6, 0, 1e6, 0}, {4, 2, 4, 2}, {1, 1.5, 1, 1.5}, {4.5, 1.5, 1, 1.5}};
 
 /// The finest level without too many tiles.
 int level_of(const std::vector<picture::LayerView>& layers) {
@@ -88,13 +94,22 @@ std::optional<picture::Area> area_of(const api::KeptRun& run, const std::vector<
   return area;
 }
 
-std::string polyline(const api::Track& track, const char* colour, double width) {
+std::string polyline(const api::Track& track, const char* colour, std::span<const double, 4> dashes, double width) {
   std::string points;
   for (const api::TrackPose& pose : track.poses)
     points += fixed(pose.position.x, 2) + ',' + fixed(-pose.position.y, 2) + ' ';
+  std::string lengths;
+  for (const double length : dashes) lengths += fixed(length * width, 3) + ' ';
   return icd::sentence("<polyline fill=\"none\" stroke=\"", colour, "\" stroke-width=\"", fixed(width, 3),
-                       "\" points=\"", points, "\"><title>", icd::in_html(track.robot),
+                       "\" stroke-dasharray=\"", lengths, "\" points=\"", points, "\"><title>", icd::in_html(track.robot),
                        "</title></polyline>\n");
+}
+
+/// Without tracks that have no pose.
+std::vector<api::Track> by_first_pose(std::vector<api::Track> tracks) {
+  std::erase_if(tracks, [](const api::Track& track) { return track.poses.empty(); });
+  std::ranges::stable_sort(tracks, {}, [](const api::Track& track) { return track.poses.front().at; });
+  return tracks;
 }
 
 /// With a label, so that colour alone does not identify a robot.
@@ -116,14 +131,12 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
   const double size = std::max(width, height) / 50, margin = 2 * size;
   std::size_t left_out = 0;
   std::string drawn = tiles_of(run.picture, layers, left_out);
-  std::size_t colour = 0;
-  for (const api::Track& track : run.tracks) {
-    const char* its = kColours[colour++ % std::size(kColours)];
-    drawn += polyline(track, its, size / 5);
-    if (!track.poses.empty()) {
-      const icd::Point& last = track.poses.back().position;
-      drawn += marked(last.x, last.y, track.robot, its, size);
-    }
+  std::size_t place = 0;
+  for (const api::Track& track : by_first_pose(run.tracks)) {
+    const char* its = kColours[place % std::size(kColours)];
+    drawn += polyline(track, its, kDashes[place++ % std::size(kDashes)], size / 5);
+    const icd::Point& last = track.poses.back().position;
+    drawn += marked(last.x, last.y, track.robot, its, size);
   }
   for (const api::ReportDetail& report : reports) {
     if (const auto& at = report.row.position)

@@ -19,7 +19,7 @@ const shows = (page, [red, green, blue, most]) =>
     return count > most;
   }, [red, green, blue, most]);
 
-const WALL = [0x6b, 0x78, 0x80, 200], ROBOT = [...robotRgb("Scout", "dark"), 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
+const WALL = [0x6b, 0x78, 0x80, 200], ROBOT = [...robotRgb(1, "dark"), 10], SCORED = [0x43, 0xd8, 0x93, 10], MARKER = [0xff, 0x33, 0xff, 10];
 async function hide(page, ...names) {
   for (const name of names) await box(page, name).uncheck();
   await settled(page);

@@ -6,7 +6,7 @@ import { until } from "./box.js";
 import { box, canvas } from "./pictures.js";
 import { hears, settled, toTab, watch } from "./watch.js";
 
-const SCOUT = robotRgb("Scout", "dark");
+const SCOUT = robotRgb(1, "dark");
 const measure = (page) => page.getByRole("button", { name: "Measure" });
 const told = (page) => page.textContent("#map .measured");
 
@@ -123,7 +123,7 @@ test("colours clouds by height or by robot, and at night all in red", async (t) 
   assert.ok(clouds().length && clouds().every((url) => !url.includes("from=")));
   assert.ok(await page.locator("#map .legend").isVisible());
   await box(page, "Clouds by robot").check();
-  const own = robotRgb("ugv1", "dark").map((part) => part.toString(16).padStart(2, "0")).join("");
+  const own = robotRgb(3, "dark").map((part) => part.toString(16).padStart(2, "0")).join("");
   await until(() => clouds().some((url) => url.endsWith(`to=${own}`)), "clouds in the robot's colour");
   assert.ok(await page.locator("#map .legend").isHidden());
   await page.locator(".strip .theme").click(); // light

@@ -3,10 +3,9 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { linesOf } from "../../firmware/site/files/artifact_icons.js";
-import { kindOf, rgbOf, robotRgb, toneOf } from "../../firmware/site/files/robot_colour.js";
+import { dashesOf, kindOf, orderRobots, placeInRun, rgbOf, robotRgb, toneOf } from "../../firmware/site/files/robot_colour.js";
 
-const TWENTY = [...Array(8).keys()].map((i) => `ugv${i + 1}`)
-  .concat([...Array(6).keys()].map((i) => `spot${i + 1}`), [...Array(6).keys()].map((i) => `uav${i + 1}`));
+const TWENTY = [...Array(20).keys()];
 const GROUNDS = { dark: "0b0e10", light: "eceae4", red: "080000" };
 
 const bytesOf = (hex) => [0, 2, 4].map((at) => parseInt(hex.slice(at, at + 2), 16));
@@ -24,32 +23,48 @@ test("a robot's kind is told from its name", () => {
   for (const [name, kind] of Object.entries(kinds)) assert.equal(kindOf(name), kind, name);
 });
 
-test("twenty robots have twenty colours by day", () => {
-  for (const theme of ["dark", "light"]) assert.equal(new Set(TWENTY.map((name) => `${robotRgb(name, theme)}`)).size, 20);
+test("twenty robots have twenty colours by day, those of neighbouring hues another lightness and pattern", () => {
+  for (const theme of ["dark", "light"]) assert.equal(new Set(TWENTY.map((place) => `${robotRgb(place, theme)}`)).size, 20);
+  const byHue = [...TWENTY].sort((a, b) => toneOf(a).hue - toneOf(b).hue);
+  byHue.forEach((place, i) => {
+    const next = byHue[(i + 1) % 20];
+    assert.notEqual(toneOf(place).lightness, toneOf(next).lightness);
+    assert.notDeepEqual(dashesOf(place), dashesOf(next));
+  });
+});
+
+test("a robot keeps its colour as others come, and has the same on each page: by the first poses", () => {
+  for (const name of ["r1", "r2", "r10"]) placeInRun(name); // as a page hears of them
+  assert.deepEqual(["r10", "r1", "r2", "r9", "r10"].map(placeInRun), [2, 0, 1, 3, 2]);
+  orderRobots(["r10", "r9"]); // as the tracks say
+  assert.deepEqual(["r10", "r9", "r1", "r2"].map(placeInRun), [0, 1, 2, 3]);
 });
 
 test("a robot's colour is read on the ground of each theme", () => {
   for (const [theme, ground] of Object.entries(GROUNDS)) {
-    for (const name of [...TWENTY, "X", "scout_99", "r2d2"]) {
-      const ratio = contrast(robotRgb(name, theme), bytesOf(ground));
-      assert.ok(ratio >= 4.5, `${name}, ${theme}: ${ratio.toFixed(2)}`);
+    for (let place = 0; place < 60; ++place) {
+      const ratio = contrast(robotRgb(place, theme), bytesOf(ground));
+      assert.ok(ratio >= 4.5, `${place}, ${theme}: ${ratio.toFixed(2)}`);
     }
   }
 });
 
-test("hues keep within their kind's, whatever the number", () => {
-  for (const [prefix, [from, to]] of Object.entries({ ugv: [195, 262], spot: [308, 348], uav: [108, 138] })) {
-    for (let i = 0; i < 200; ++i) {
-      const { hue } = toneOf(`${prefix}${i}`);
-      assert.ok(hue >= from && hue <= to, `${prefix}${i}: ${hue}`);
-    }
+test("no robot has the hue of a level", () => {
+  for (let place = 0; place < 60; ++place) {
+    for (const level of [25, 75, 158, 277]) assert.ok(Math.abs(toneOf(place).hue - level) >= 10, `${place}: ${toneOf(place).hue}`);
   }
 });
 
-test("at night lightness alone differs", () => {
-  const reds = new Set(TWENTY.map((name) => `${robotRgb(name, "red")}`));
-  assert.equal(reds.size, 3);
-  for (const rgb of reds) assert.ok(Number(rgb.split(",")[0]) > 2 * Number(rgb.split(",")[2]), rgb);
+test("the run's report has the colours of the light page", () => {
+  const source = `${readFileSync(new URL("../../firmware/archive/run_report_drawn.cpp", import.meta.url))}`;
+  const hex = (place) => `#${robotRgb(place, "light").map((part) => part.toString(16).padStart(2, "0")).join("")}`;
+  assert.deepEqual(source.match(/#[0-9a-f]{6}/g), TWENTY.map(hex));
+});
+
+test("at night lightness and pattern alone differ", () => {
+  const reds = new Set(TWENTY.map((place) => `${robotRgb(place, "red")} ${dashesOf(place)}`));
+  assert.equal(reds.size, 4);
+  for (const rgb of reds) assert.ok(Number(rgb.split(",")[0]) > 2 * Number(rgb.split(",")[2].split(" ")[0]), rgb);
 });
 
 test("OKLCH is converted as its author says", () => {

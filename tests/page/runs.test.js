@@ -42,7 +42,7 @@ test("lists runs, shows an earlier one's map at its times, and deletes it once t
   assert.deepEqual(await page.locator("#look .follow option").allTextContents(), ["Follow …", "ugv1"]);
   const slider = page.locator("#look input[type=range]");
   assert.equal(await slider.getAttribute("aria-valuetext"), "the end");
-  const robot = robotRgb("ugv1", "dark");
+  const robot = robotRgb(0, "dark");
   const hasRobot = () => page.$eval("#look .frame canvas", (node, robot) => {
     const { data } = node.getContext("2d").getImageData(0, 0, node.width, node.height);
     let count = 0;

@@ -1,6 +1,6 @@
 // Where each robot was. The box keeps about a pose a second (README.md: GET /adit/tracks); they are fetched once,
 // and what comes after is taken from the run's own events.
-import { robotColour } from "./robot_colour.js";
+import { dashesOf, orderRobots, placeInRun, robotColour } from "./robot_colour.js";
 import { fetchSoon } from "./session.js";
 
 const SPACING = 1, SAME_SPACING = 10; // s; the second while a robot stands
@@ -10,6 +10,7 @@ const GAP = 60; // s without a pose: where it went in between is not known
 const MIN_STEP = 2; // pixels: a line need not be finer
 // From the newest: up to how many seconds ago, how wide, how strong.
 const AGES = [[60, 2.25, 0.95], [300, 1.75, 0.6], [Infinity, 1.5, 0.35]];
+const PATTERNED = 2; // of these ages, a robot's pattern: dashes of whole tracks cost too much
 
 /** What the box left out of poses, [[at, x, y, z, heading]], because it is a straight way: a pose each second (README.md: GET
  *  /adit/tracks). */
@@ -56,6 +57,7 @@ export class Tracks {
   /** All are asked for again. */
   forget() {
     this.#all.clear();
+    orderRobots([]);
     this.isLoaded = false;
     ++this.changes;
   }
@@ -76,6 +78,8 @@ export class Tracks {
         const last = poses.at(-1)[0];
         this.#all.set(robot, [...filled(poses), ...this.#of(robot).filter(([at]) => at > last + 0.01)]);
       }
+      const first = (name) => this.#all.get(name)[0][0];
+      orderRobots([...this.#all.keys()].sort().sort((a, b) => first(a) - first(b)));
       this.isLoaded = true;
       ++this.changes;
       this.#changed();
@@ -103,7 +107,7 @@ export class Tracks {
   }
 }
 
-/** In each robot's colour; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. */
+/** In each robot's colour and pattern; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. */
 export function drawTracks(ctx, colours, view, tracks, now, unit) {
   ctx.lineJoin = "round";
   for (let age = AGES.length - 1; age >= 0; --age) {
@@ -115,7 +119,9 @@ export function drawTracks(ctx, colours, view, tracks, now, unit) {
         ctx.stroke();
       }
       Object.assign(ctx, { lineWidth: width * unit, strokeStyle: robotColour(name), globalAlpha: alpha });
+      if (age < PATTERNED) ctx.setLineDash(dashesOf(placeInRun(name)).map((length) => length * unit));
       ctx.stroke();
+      ctx.setLineDash([]);
     }
   }
   ctx.globalAlpha = 1;

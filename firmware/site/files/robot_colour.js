@@ -1,33 +1,47 @@
-// A colour for each robot, the same on every page and after every reload: it follows from the name alone. The hue tells the
-// kind (driving, walking, flying) and is never that of a level; the number in the name moves it and sets the lightness. At
-// night there is one hue, and lightness alone tells.
+// A colour and a pattern for each robot by its place in the run: the robot whose first pose is the oldest has the first place. Every page
+// and the run's report thus show the same (archive/run_report_drawn.cpp). Robots of neighbouring hues differ in lightness and pattern. At
+// night there is one hue.
 import { themeNow, whenThemeChanges } from "./theme_now.js";
 
-// Degrees of OKLCH, from and to, and how many numbers these are spread over.
-const HUES = { ground: [195, 262, 8], legged: [308, 348, 6], flying: [108, 138, 6] };
-const LIGHTNESS = [0.84, 0.72, 0.78];
+const HUES = [[37, 63], [87, 146], [170, 265], [289, 373]]; // degrees of OKLCH, away from those of the levels
+const ROBOTS = 20, STEP = 7; // hues; how many lie between those of two robots in a row
+const LIGHTNESS = [0.84, 0.73];
+const PATTERNS = ["solid", "dashed", "dotted", "dash-dot"];
+const DASHES = { "solid": [], "dashed": [8, 4], "dotted": [2, 3], "dash-dot": [9, 3, 2, 3] }; // units of length
 /** @type {[string, RegExp][]} */
 const KINDS = [
   ["flying", /^(uav|uas|mav|drone|quad|copter|heli|fly|air|dji|x500|scout_?air|bee|hawk|falcon|blimp)/i],
   ["legged", /^(spot|anymal|legged|dog|ghost|vision60|mule|hexa|daisy|alien|go[12]|b1|cheetah|walk)/i],
 ];
-const GOLDEN = 0.618034;
 
 /** "ground", "legged" or "flying", by how teams call their robots; what says neither drives. */
 export const kindOf = (name) => KINDS.find(([, pattern]) => pattern.test(name))?.[0] ?? "ground";
 
-const numberIn = (name) => {
-  const digits = /(\d{1,6})\D*$/.exec(name)?.[1];
-  if (digits) return Math.max(0, Number(digits) - 1);
-  return [...name].reduce((sum, letter) => (sum * 31 + letter.codePointAt(0)) % 997, 7);
-};
+let order = []; // names
+
+/** The place of a robot, from 0; a new one has the next. */
+export function placeInRun(name) {
+  if (!order.includes(name)) order.push(name);
+  return order.indexOf(name);
+}
+
+/** Sets the order to `names`; robots that are not among them follow by name. */
+export function orderRobots(names) {
+  const before = order.join();
+  order = [...names, ...order.filter((name) => !names.includes(name)).sort()];
+  if (order.join() !== before) repaint();
+}
 
 /** {hue, lightness} of OKLCH on a dark ground. */
-export function toneOf(name) {
-  const [from, to, count] = HUES[kindOf(name)], number = numberIn(name);
-  const share = number < count ? number / (count - 1) : (number * GOLDEN) % 1; // past those: in the gaps between
-  return { hue: from + share * (to - from), lightness: LIGHTNESS[number % LIGHTNESS.length] };
+export function toneOf(place) {
+  let left = (((place * STEP) % ROBOTS + Math.floor(place / ROBOTS) / 2) / ROBOTS) % 1 * HUES.reduce((sum, [from, to]) => sum + to - from, 0);
+  const [from] = HUES.find(([from, to]) => left < to - from || ((left -= to - from), false));
+  return { hue: (from + left) % 360, lightness: LIGHTNESS[place % LIGHTNESS.length] };
 }
+
+const patternOf = (place) => PATTERNS[place % PATTERNS.length];
+/** The same as lengths of lines and gaps. */
+export const dashesOf = (place) => DASHES[patternOf(place)];
 
 /** OKLCH to red, green and blue (0 to 255), after Björn Ottosson's "A perceptual color space for image processing"; what no
  *  screen shows is made greyer until one does. */
@@ -56,19 +70,23 @@ const THEMES = {
   red: ({ lightness }) => rgbOf(1.25 * lightness - 0.3, 0.17, 28),
 };
 
-/** [red, green, blue] of a robot in that theme. */
-export const robotRgb = (name, theme) => THEMES[theme](toneOf(name));
+/** [red, green, blue] of a robot's place in that theme. */
+export const robotRgb = (place, theme) => THEMES[theme](toneOf(place));
 
-/** The same for a style: "rgb(…)". */
-export const robotColour = (name, theme = themeNow()) => `rgb(${robotRgb(name, theme).join(" ")})`;
+/** The same of a robot for a style: "rgb(…)". */
+export const robotColour = (name, theme = themeNow()) => `rgb(${robotRgb(placeInRun(name), theme).join(" ")})`;
 
-/** Gives `node` the robot's colour as `--robot`, now and in every theme that comes. */
+/** Gives `node` the robot's colour as `--robot` and its pattern as data-pattern, now and after each change of theme or order. */
 export function tint(node, name) {
   if (node.dataset.tint === name) return;
-  if (!watched) whenThemeChanges(() => document.querySelectorAll("[data-tint]").forEach(paintOf));
+  if (!watched) whenThemeChanges(repaint);
   watched = true;
   node.dataset.tint = name;
-  paintOf(node);
+  paint(node);
 }
-const paintOf = (node) => node.style.setProperty("--robot", robotColour(node.dataset.tint));
+function paint(node) {
+  node.style.setProperty("--robot", robotColour(node.dataset.tint));
+  node.dataset.pattern = patternOf(placeInRun(node.dataset.tint));
+}
+const repaint = () => watched && document.querySelectorAll("[data-tint]").forEach(paint);
 let watched = false;

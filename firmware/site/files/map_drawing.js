@@ -39,8 +39,8 @@ export class MapDrawing {
       over: (ctx, view) => this.#drawOver(ctx, view),
       layers: [
         { key: this.#mapKey, draw: this.#drawMaps, pieces: () => this.#scene.tiles.pieces() },
-        { key: this.#tracksKey, draw: this.#drawTracks },
         { key: this.#markersKey, draw: this.#drawMarkers },
+        { key: this.#tracksKey, draw: this.#drawTracks },
         { key: this.#signsKey, draw: this.#drawSigns },
       ],
     });

@@ -5,6 +5,7 @@ import { themeNow } from "./theme_now.js";
 
 const MIN_HALF = 3; // units from the middle
 const [ARROW, CUBE, SPHERE, CYLINDER, LINE_STRIP, LINE_LIST, CUBE_LIST, SPHERE_LIST, POINTS, , MESH, TRIANGLES] = Array(12).keys();
+const LINE = [1, 3]; // units: the least and the most of a line's width, so that it hides no map
 const MIN_STEP = 2; // pixels: a line's next point is not drawn where it is nearer
 
 const byte = (value) => Math.round(255 * Math.min(1, Math.max(0, value)));
@@ -46,8 +47,9 @@ class Brush {
       finish(colour);
     }
   }
-  /** A line with a rim that sets it off from any map. */
-  line(width) {
+  /** A line of about that width, in pixels, with a rim that sets it off from any map. */
+  line(wanted) {
+    const width = Math.min(LINE[1] * this.unit, Math.max(LINE[0] * this.unit, wanted));
     return (colour) => {
       const { ctx, colours, unit } = this;
       ctx.setLineDash(isSeen(colour) ? [] : [4 * unit, 3 * unit]);
@@ -90,7 +92,7 @@ function dot(brush, place, colour) {
 function strip(brush, marker) {
   const { ctx } = brush, count = marker.points.length / 2 - 1;
   if (!count) return dot(brush, brush.place(marker, 0), marker.colors[0] ? ofHex(marker.colors[0]) : css(marker.color));
-  const finish = brush.line(Math.max(1.75 * brush.unit, brush.metres(marker.scale.x)));
+  const finish = brush.line(brush.metres(marker.scale.x));
   let last = brush.place(marker, 0), begun = true;
   brush.parts(marker, count, (i) => {
     if (begun) ctx.moveTo(...last);
@@ -108,11 +110,11 @@ const lines = (brush, marker) =>
   brush.parts(marker, marker.points.length / 4, (i) => {
     brush.ctx.moveTo(...brush.place(marker, 2 * i));
     brush.ctx.lineTo(...brush.place(marker, 2 * i + 1));
-  }, brush.line(Math.max(1.75 * brush.unit, brush.metres(marker.scale.x))));
+  }, brush.line(brush.metres(marker.scale.x)));
 
 const triangles = (brush, marker) =>
   brush.parts(marker, marker.points.length / 6, (i) => brush.polygon([0, 1, 2].map((corner) => brush.place(marker, 3 * i + corner))),
-    brush.line(1.75 * brush.unit));
+    brush.line(0));
 
 /** A shape at each point: `turned` where the pose turns it. */
 const atEachPoint = (shape, turned) => (brush, marker) => {

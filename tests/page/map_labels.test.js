@@ -1,6 +1,7 @@
 // What is reckoned for the map without a browser: names that do not collide, steps of the grid in metres, layers that are copied.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { groupReports } from "../../firmware/site/files/map_groups.js";
 import { Labels } from "../../firmware/site/files/map_labels.js";
 import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
 import { filled } from "../../firmware/site/files/map_tracks.js";
@@ -105,4 +106,17 @@ test("has a pose each second where the box left out those of a straight way, and
   for (const poses of [[[100, 0, 0, 0, 0]], [[100, 0, 0, 0, 0], [110, 0.05, 0, 0, 0]], [[100, 0, 0, 0, 0], [112, 9, 0, 0, 0]], [[100, 0, 0, 0, 0], [101, 1, 0, 0, 0]]]) {
     assert.deepEqual(filled(poses), poses);
   }
+});
+
+test("stands for three reports or more of one place with one sign, of their worst level, and for none that asks", () => {
+  const report = (number, x, y, more = {}) => ({ number, position: { x, y, z: 0 }, state: "answered", score_change: 1, ...more });
+  const crowd = [...Array(12).keys()].map((i) => report(i, 1 + i / 10, 1)).concat(report(12, 2, 2, { state: "rejected" }));
+  const asking = report(13, 1, 1, { state: "held" }), named = report(14, 1, 1), two = [report(15, 11, 1), report(16, 11, 1)];
+  const { singles, groups } = groupReports([...crowd, asking, named, ...two], 10, ({ number }) => number === 14);
+  assert.deepEqual(singles.map(({ number }) => number), [16, 15, 14, 13]);
+  assert.deepEqual(groups.map(({ count, level }) => [count, level]), [[13, "bad"]]);
+  const many = Array.from({ length: 1000 }, (_, i) => report(i, (i * 7) % 100, (i * 13) % 60));
+  const shown = (metres) => groupReports(many, metres, () => false), signs = (all) => all.singles.length + all.groups.length;
+  assert.ok(signs(shown(10)) <= 60 && signs(shown(1)) > 60);
+  assert.equal(shown(10).groups.reduce((sum, { count }) => sum + count, shown(10).singles.length), 1000);
 });

@@ -16,7 +16,9 @@ export const map = new MapOfRun(section.querySelector(".frame canvas"));
 map.takeInput();
 offerTools(section, map);
 for (const box of section.querySelectorAll("[data-shows]")) {
-  box.addEventListener("change", () => map.setShown(box.dataset.shows, box.checked));
+  const show = () => map.setShown(box.dataset.shows, box.checked);
+  box.addEventListener("change", show);
+  show();
 }
 section.querySelector(".by-robot").addEventListener("change", ({ target }) => map.colourBy(target.checked ? "robot" : "height"));
 

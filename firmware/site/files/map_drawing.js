@@ -1,11 +1,12 @@
 // How the map is drawn: four layers, each with a key that differs if the layer has to be drawn again, and what lies over them.
 import { Covers } from "./map_covers.js";
+import { groupReports } from "./map_groups.js";
 import { Labels } from "./map_labels.js";
 import { drawLayers, fetchLayers } from "./map_layers.js";
 import { writeMarkers } from "./map_markers.js";
 import { drawGridLabels, drawGridLines, drawOrigin, drawScaleBar, gridLabelBoxes } from "./map_metres.js";
 import { Picture } from "./map_picture.js";
-import { drawCross, drawPairRings, drawReports, nameReports } from "./map_reports.js";
+import { drawCross, drawPairRings, drawReports, groupMetres, nameReports } from "./map_reports.js";
 import { drawRobots, keepOffRobots, nameRobots } from "./map_robots.js";
 import { drawShapes } from "./map_shapes.js";
 import { looksOf, themeColours } from "./map_theme.js";
@@ -94,7 +95,7 @@ export class MapDrawing {
 
   #signsKey = () => {
     const { key, time, tracks, shown } = this.#scene, { followed, pair, isTapped } = this.#marks;
-    const seen = [key, time, tracks.changes, shown.robots, shown.reports, this.#markersKey()];
+    const seen = [key, time, tracks.changes, shown.robots, shown.reports, shown.pointless, this.#markersKey()];
     const numbers = pair?.map(({ number }) => number);
     return [...seen, followed, numbers, isTapped, this.#covers.boxes(), this.picture.hasNames].join();
   };
@@ -105,11 +106,12 @@ export class MapDrawing {
     const labels = this.#labels(ctx, view);
     keepOffRobots(labels, view, robots, robotSize);
     if (pair) drawPairRings(ctx, colours, labels, view, pair, fontSize);
-    drawReports(ctx, colours, labels, view, run, reports, reportSize);
+    const { singles, groups } = groupReports(reports, groupMetres(view, reportSize), ({ number }) => pair?.some((its) => its.number === number));
+    drawReports(ctx, colours, labels, view, run, singles, groups, reportSize);
     drawRobots(ctx, colours, view, robots, robotSize, followed);
     if (!hasNames) return;
     nameRobots(labels, view, robots, robotSize, this.#scene.isLive() ? lateRobots : new Set());
-    nameReports(labels, view, reports, reportSize, pair ?? []);
+    nameReports(labels, view, singles, reportSize, pair ?? []);
     writeMarkers(labels, view, markers);
   };
 

@@ -39,9 +39,9 @@ function drawShape(ctx, colours, level, left, top, size) {
   else ctx.fill();
 }
 
-/** A plate with the picture of what was found; its state's shape stands at its corner. */
-function drawPicture(ctx, colours, report, [left, top], size) {
-  const { level } = life(report), side = size * 1.25;
+/** A plate framed in the colour of a level, whose shape stands at its corner; `drawWithin(side)` draws what is on it. */
+function drawPlate(ctx, colours, level, [left, top], size, drawWithin) {
+  const side = size * 1.25;
   ctx.beginPath();
   ctx.roundRect(left - side, top - side, 2 * side, 2 * side, side * 0.45);
   Object.assign(ctx, { fillStyle: colours.panel, strokeStyle: colours.ground, lineWidth: size * 0.6 });
@@ -50,13 +50,24 @@ function drawPicture(ctx, colours, report, [left, top], size) {
   Object.assign(ctx, { strokeStyle: colours[level], lineWidth: Math.max(1.5, size * 0.2) });
   ctx.stroke();
   ctx.save();
+  drawWithin(side);
+  ctx.restore();
+  drawShape(ctx, colours, level, left + side, top - side, size * 0.45);
+}
+
+/** With the picture of what was found. */
+const drawPicture = (ctx, colours, report, [left, top], size) => drawPlate(ctx, colours, life(report).level, [left, top], size, (side) => {
   ctx.translate(left - side * 0.75, top - side * 0.75);
   ctx.scale((side * 1.5) / 24, (side * 1.5) / 24);
   Object.assign(ctx, { lineWidth: 2.2, lineCap: "round", lineJoin: "round" });
   ctx.stroke(iconPath(report.type));
-  ctx.restore();
-  drawShape(ctx, colours, level, left + side, top - side, size * 0.45);
-}
+});
+
+/** With the number of reports that it stands for. */
+const drawGroup = (ctx, colours, { count, level }, [left, top], size) => drawPlate(ctx, colours, level, [left, top], size, (side) => {
+  Object.assign(ctx, { font: `650 ${size * 1.4}px system-ui, sans-serif`, textAlign: "center", textBaseline: "middle", fillStyle: colours.ink });
+  ctx.fillText(String(count), left, top, 1.8 * side);
+});
 
 /** Two reports that may be of one artifact, joined by a line. */
 function drawPair(ctx, colours, labels, view, { one, other, metres: apart }) {
@@ -75,10 +86,16 @@ function drawPair(ctx, colours, labels, view, { one, other, metres: apart }) {
 
 const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;
 
-export function drawReports(ctx, colours, labels, view, run, reports, size) {
+/** Side of the square in which reports are a group, in metres. */
+export const groupMetres = (view, size) => (2.8 * size) / view.scale;
+
+/** `groups`: what stands for further reports: map_groups.js. */
+export function drawReports(ctx, colours, labels, view, run, reports, groups, size) {
   const isPicture = view.scale >= PICTURES_FROM;
+  for (const { position } of groups) labels.keepOff(view.toPixel(position), size * 1.3);
   for (const report of reports) labels.keepOff(view.toPixel(report.position), isPicture ? size * 1.3 : size * 0.8);
   for (const pair of nearPairs({ ...run, reports })) drawPair(ctx, colours, labels, view, pair);
+  for (const group of groups) drawGroup(ctx, colours, group, view.toPixel(group.position), size);
   for (const report of [...reports].reverse()) {
     const place = view.toPixel(report.position);
     if (isPicture) drawPicture(ctx, colours, report, place, size);

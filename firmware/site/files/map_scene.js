@@ -17,7 +17,7 @@ export class MapScene {
   base = ""; // of a run that is kept: what its paths begin with
   key = ""; // differs if robots or reports do
   time = null; // null: now
-  shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true };
+  shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true, pointless: true };
   hidden = new Set(); // robots whose maps are not shown
   lateRobots = new Set(); // robots whose map does not come
   #steps = new Steps();
@@ -104,7 +104,8 @@ export class MapScene {
   /** Finds what is where at the time that is shown. */
   updatePlaces() {
     const { reports = [], run_number } = this.run ?? {};
-    const isShown = (report) => report.position && report.run === run_number && report.received <= this.until();
+    const isShown = (report) => report.position && report.run === run_number && report.received <= this.until() &&
+      (this.shown.pointless || report.score_change !== 0);
     this.places = {
       reports: this.shown.reports ? reports.filter(isShown) : [],
       robots: this.#robots(),

@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { COUNT, withMany } from "./many_reports.js";
+import { until } from "./box.js";
 import { watch } from "./watch.js";
 
 const row = (page, number) => page.locator(`#reports li[data-key="${number}"]`);
@@ -53,4 +54,20 @@ test("reaches every report, also those past the newest 200, and looks for duplic
   for (const [axis, value] of [["x", "41"], ["y", "0"], ["z", "0"]]) await page.fill(`#compose input[name=${axis}]`, value);
   await page.getByRole("button", { name: "Check" }).click();
   assert.match(await page.textContent("#compose .notes"), /#4 Rope is 1\.0 m away/);
+});
+
+test("shows the reports of one state or type and those that ask, and all again for one that an alarm names", async (t) => {
+  const { page } = await watch(t, "reports");
+  const shown = () => page.$$eval("#reports .rows > li:not([data-level=ask])", (rows) => rows.map((row) => row.querySelector(".what").textContent));
+  const filter = page.getByLabel("Show", { exact: true });
+  await row(page, 28).waitFor();
+  const whole = await shown();
+  assert.ok(new Set(whole).size > 1);
+  await filter.selectOption("Drill");
+  await until(async () => (await shown()).every((type) => type === "Drill"), "Drills alone");
+  assert.equal((await shown()).length, whole.filter((type) => type === "Drill").length);
+  await row(page, 25).and(page.locator("[data-level=ask]")).waitFor();
+  await page.evaluate(() => (location.hash = "report=28"));
+  await row(page, 28).locator("[aria-expanded=true]").waitFor();
+  assert.equal((await shown()).length, whole.length);
 });

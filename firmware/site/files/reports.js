@@ -11,7 +11,7 @@ import { closeSide, goTab } from "./side.js";
 import { ago, clip, placeOf } from "./words.js";
 
 const section = document.getElementById("reports");
-const rows = section.querySelector(".rows"), others = section.querySelector(".others");
+const rows = section.querySelector(".rows"), others = section.querySelector(".others"), filter = section.querySelector(".filter select");
 const MANY = 100; // rows, until one scrolls to the end of them
 const opened = new Set();
 let last = null; // what was shown: {view, now}
@@ -32,6 +32,7 @@ newer.addEventListener("click", () => {
   still.release();
   rows.scrollTop = rows.parentNode.scrollTop = 0;
 });
+filter.addEventListener("change", () => still.release());
 let most = MANY; // rows that are shown
 const MORE = 200; // pixels from the end
 rows.parentNode.addEventListener("scroll", ({ target }) => {
@@ -65,7 +66,7 @@ others.addEventListener("click", () => {
   most = Math.max(most, at + MANY);
   still.release();
   // They may be far down:
-  if (first) rowOf(first.number).scrollIntoView({ block: "nearest" });
+  if (first) rowOf(first.number)?.scrollIntoView({ block: "nearest" });
 });
 
 /** Opens a report, brings it into view and puts the focus there. */
@@ -73,6 +74,7 @@ export function reveal(number) {
   closeSide();
   goTab("reports");
   opened.add(number);
+  filter.value = "";
   showsOthers ||= Boolean(last?.view.reports.some((report) => report.number === number && isOfOther(report, last.view)));
   if (last?.view.reports.length > most) most = last.view.reports.length;
   still.release();
@@ -176,10 +178,27 @@ function counted(reports) {
   return parts.filter(([n]) => n).map(([n, words]) => `${n} ${words}`).join(", ");
 }
 
+const keysOf = ({ state, type }) => [`state ${state}`, `type ${type}`];
+
+/** Offers the states and types that there are. Nothing changes in the list while it is open. */
+function showFilter(reports) {
+  if (document.activeElement === filter) return;
+  const keys = [...new Set(reports.map(({ state }) => `state ${state}`)), ...new Set(reports.map(({ type }) => `type ${type}`))];
+  const create = (key) => {
+    const option = make("option", clip(key.replace(/^\w+ /, "").replace("in_doubt", "in doubt"), 20) || "All");
+    option.value = key;
+    return option;
+  };
+  list(filter, ["", ...keys], (key) => key, create, () => {});
+}
+
 export function showReports(view, now) {
   const mine = view.reports.filter((report) => !isOfOther(report, view));
   last = { view, now, count: view.reports.length };
-  const shown = still.order(inOrder(showsOthers ? view.reports : mine).slice(0, most), ({ number }) => number);
+  const all = showsOthers ? view.reports : mine;
+  showFilter(all);
+  const isWanted = (report) => !filter.value || keysOf(report).includes(filter.value) || life(report).level === "ask";
+  const shown = still.order(inOrder(all.filter(isWanted)).slice(0, most), ({ number }) => number);
   const count = section.querySelector(".count");
   say(count, counted(mine));
   count.parentNode.title = count.textContent;
@@ -190,6 +209,7 @@ export function showReports(view, now) {
   say(newer, `${still.waiting} new`);
   rows.hidden = shown.length === 0;
   section.querySelector(".empty").hidden = shown.length > 0;
+  say(section.querySelector(".empty"), all.length ? "No such report." : "No report yet.");
   say(section.querySelector(".barred"), barred());
   list(rows, shown, (report) => report.number, create, (node, report) => update(node, report, view, now));
 }

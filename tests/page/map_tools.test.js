@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { robotRgb } from "../../firmware/site/files/robot_colour.js";
 import { until } from "./box.js";
 import { box, canvas } from "./pictures.js";
-import { hears, settled, toTab, watch } from "./watch.js";
+import { axeFindsNothing, hears, settled, toTab, watch } from "./watch.js";
 
 const SCOUT = robotRgb(1, "dark");
 const measure = (page) => page.getByRole("button", { name: "Measure" });
@@ -182,4 +182,30 @@ test("is copied while it is dragged: what is on it is drawn now and then, and wh
   assert.ok(frames >= 9, `${frames} different pictures`);
   assert.ok(during - before < frames / 2, `drawn ${during - before} times for ${frames} pictures`);
   await until(async () => (await drawn()) > during, "the reports to be drawn where they are now");
+});
+
+test("has the layers behind one tool, with sets of them, and none is cut", async (t) => {
+  for (const viewport of [{ width: 1280, height: 720 }, { width: 390, height: 844 }]) {
+    const { page } = await watch(t, "calm", { viewport, bypassCSP: true });
+    await toTab(page, "Map");
+    const panel = page.locator("#map .layers fieldset"), tool = page.getByText("Layers", { exact: true });
+    assert.ok(await panel.isHidden());
+    await tool.click();
+    const checked = () => panel.locator("[data-shows]:checked").evaluateAll((boxes) => boxes.map(({ dataset }) => dataset.shows).sort());
+    const sets = { Coverage: ["cloud", "grid"], Robots: ["grid", "robots", "tracks"], Reports: ["grid", "pointless", "reports"], Run: ["cloud", "grid", "markers", "reports", "robots", "tracks"] };
+    assert.deepEqual(await checked(), sets.Run);
+    for (const [name, layers] of Object.entries(sets)) {
+      const preset = panel.getByRole("button", { name, exact: true });
+      await preset.click();
+      assert.deepEqual([await checked(), await preset.getAttribute("aria-pressed")], [layers, "true"], name);
+    }
+    const cut = await panel.evaluate((node) => {
+      const [own, frame] = [node, node.closest(".frame")].map((each) => each.getBoundingClientRect());
+      return own.bottom > frame.bottom || own.right > frame.right || node.scrollWidth > node.clientWidth;
+    });
+    assert.ok(!cut, `${viewport.width}`);
+    await axeFindsNothing(page);
+    await page.keyboard.press("Escape");
+    assert.ok(await panel.isHidden());
+  }
 });

@@ -3,8 +3,11 @@ import { until } from "./box.js";
 
 export const canvas = "#map .frame canvas";
 export const picture = (page) => page.$eval(canvas, (node) => node.toDataURL());
-/** The box of a layer. */
-export const box = (page, name) => page.getByRole("checkbox", { name, exact: true });
+/** The box of a layer, which is checked without opening the panel that it is in. */
+export function box(page, name) {
+  const setChecked = (checked) => page.getByRole("checkbox", { name, exact: true, includeHidden: true }).evaluate((node, checked) => node.checked === checked || node.click(), checked);
+  return { setChecked, check: () => setChecked(true), uncheck: () => setChecked(false) };
+}
 
 /** The next picture that is not `before`. */
 export const changed = (page, before, what) =>

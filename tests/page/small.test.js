@@ -6,7 +6,7 @@ import { openMore, settled, toTab, watch } from "./watch.js";
 
 const PHONES = [[320, 640], [360, 740]];
 
-/** Texts of one row that lie on each other, leave their section or are cut short; the layers' row is moved sideways. */
+/** Texts of one row that lie on each other, leave their section or are cut short. */
 const faults = (page) => page.evaluate(() => {
   const linesOf = (node) => {
     const range = document.createRange();
@@ -14,7 +14,7 @@ const faults = (page) => page.evaluate(() => {
     return [...range.getClientRects()];
   };
   const isText = (node) => [...node.childNodes].some((child) => child.nodeType === Node.TEXT_NODE && child.data.trim());
-  const textsIn = (node) => [...node.querySelectorAll("*")].filter((each) => isText(each) && each.checkVisibility() && !each.closest(".spoken, .pattern, .layers"));
+  const textsIn = (node) => [...node.querySelectorAll("*")].filter((each) => isText(each) && each.checkVisibility() && !each.closest(".spoken, .pattern"));
   const meet = (a, b) => Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 4;
   const found = [];
   for (const row of document.querySelectorAll("main :is(li, tr, dl)")) {

@@ -15,11 +15,28 @@ const robots = section.querySelector(".robots");
 export const map = new MapOfRun(section.querySelector(".frame canvas"));
 map.takeInput();
 offerTools(section, map);
-for (const box of section.querySelectorAll("[data-shows]")) {
-  const show = () => map.setShown(box.dataset.shows, box.checked);
-  box.addEventListener("change", show);
-  show();
+const boxes = [...section.querySelectorAll("[data-shows]")], presets = [...section.querySelectorAll("[data-layers]")];
+const layersOf = ({ dataset }) => dataset.layers.split(" ");
+function showLayers() {
+  for (const box of boxes) map.setShown(box.dataset.shows, box.checked);
+  const isSet = (preset) => boxes.every((box) => box.checked === layersOf(preset).includes(box.dataset.shows));
+  for (const preset of presets) preset.setAttribute("aria-pressed", String(isSet(preset)));
 }
+for (const box of boxes) box.addEventListener("change", showLayers);
+for (const preset of presets) {
+  preset.addEventListener("click", () => {
+    for (const box of boxes) box.checked = layersOf(preset).includes(box.dataset.shows);
+    showLayers();
+  });
+}
+showLayers();
+const layers = section.querySelector(".layers");
+layers.addEventListener("keydown", (event) => {
+  if (event.key !== "Escape" || !layers.open) return;
+  event.preventDefault();
+  layers.open = false;
+  layers.querySelector("summary").focus();
+});
 section.querySelector(".by-robot").addEventListener("change", ({ target }) => map.colourBy(target.checked ? "robot" : "height"));
 
 /** The time that is shown. */

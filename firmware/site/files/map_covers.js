@@ -1,6 +1,6 @@
 // What of the page stands over the map: its tools, its legend. Names keep off it.
 
-const OVER = ".zoom, .follow, .measured, .leftout, .legend, .pair";
+const OVER = ".zoom, .follow, .layers summary, .layers fieldset, .measured, .leftout, .legend, .pair";
 
 export class Covers {
   #boxes = [];

@@ -5,6 +5,7 @@ import { groupReports } from "../../firmware/site/files/map_groups.js";
 import { Labels } from "../../firmware/site/files/map_labels.js";
 import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
 import { filled } from "../../firmware/site/files/map_tracks.js";
+import { lastSeen } from "../../firmware/site/files/map_robots.js";
 import { MapView } from "../../firmware/site/files/map_view.js";
 
 const SIZE = 12;
@@ -119,4 +120,11 @@ test("stands for three reports or more of one place with one sign, of their wors
   const shown = (metres) => groupReports(many, metres, () => false), signs = (all) => all.singles.length + all.groups.length;
   assert.ok(signs(shown(10)) <= 60 && signs(shown(1)) > 60);
   assert.equal(shown(10).groups.reduce((sum, { count }) => sum + count, shown(10).singles.length), 1000);
+});
+
+test("says of a silent robot when it was last seen", () => {
+  const silent = new Set(["ugv1"]);
+  assert.equal(lastSeen({ name: "ugv1", age: 94 }, silent), "ugv1 · last seen 1 min ago");
+  assert.equal(lastSeen({ name: "ugv1", age: null }, silent), "ugv1 · silent", "its pose is of before a start of the box");
+  assert.equal(lastSeen({ name: "ugv2", age: 94 }, silent), "ugv2");
 });

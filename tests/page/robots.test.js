@@ -1,6 +1,7 @@
 // The robots' panel: who is worst off is seen at once, and nothing of it moves under a hand.
 import assert from "node:assert/strict";
 import { test } from "node:test";
+import { until } from "./box.js";
 import { retell } from "./retold.js";
 import { twenty } from "./twenty.js";
 import { axeFindsNothing, openMore, toTab, watch } from "./watch.js";
@@ -63,6 +64,13 @@ test("has the worst first: who is silent is filled and says so, who is late has 
   assert.equal(styles[0][0], "rgb(196, 40, 30)");
   assert.deepEqual(styles.map(([, glyph]) => glyph === "none"), [false, false, true]);
   assert.deepEqual(styles.map(([, , level]) => level), ["bad", "wait", "good"]);
+});
+
+test("shows the number that the rows are sorted by", async (t) => {
+  const { page } = await watchTwenty(t);
+  const numbers = () => page.$$eval("#robots li[data-level=good] .age .text", (ages) => ages.map(({ textContent }) => (textContent === "now" ? 0 : parseInt(textContent))));
+  const isSorted = (values) => values.length === 18 && values[0] >= 6 && values.every((value, i) => i === 0 || value <= values[i - 1]);
+  await until(async () => isSorted(await numbers()), "numbers in order");
 });
 
 test("says of a robot that sends no map that it has none, and of one whose map never came that it never did", async (t) => {

@@ -100,7 +100,7 @@ export class MapDrawing {
     return [...seen, followed, numbers, isTapped, this.#covers.boxes(), this.picture.hasNames].join();
   };
   #drawSigns = (ctx, view) => {
-    const { places: { reports, robots, markers }, run, lateRobots } = this.#scene, { followed, pair } = this.#marks;
+    const { places: { reports, robots, markers }, run, lateRobots, silentRobots } = this.#scene, { followed, pair } = this.#marks;
     const { colours, picture: { fontSize, hasNames } } = this;
     const reportSize = fontSize / 2, robotSize = fontSize / 1.8;
     const labels = this.#labels(ctx, view);
@@ -110,7 +110,8 @@ export class MapDrawing {
     drawReports(ctx, colours, labels, view, run, singles, groups, reportSize);
     drawRobots(ctx, colours, view, robots, robotSize, followed);
     if (!hasNames) return;
-    nameRobots(labels, view, robots, robotSize, this.#scene.isLive() ? lateRobots : new Set());
+    const none = new Set(), isLive = this.#scene.isLive();
+    nameRobots(labels, view, robots, robotSize, isLive ? lateRobots : none, isLive ? silentRobots : none);
     nameReports(labels, view, singles, reportSize, pair ?? []);
     writeMarkers(labels, view, markers);
   };

@@ -1,6 +1,6 @@
 // Robots on the map: each in its colour, and in the shape of its kind.
 import { kindOf, robotColour } from "./robot_colour.js";
-import { clip } from "./words.js";
+import { ago, clip } from "./words.js";
 
 const STALE = 10; // s without a newer pose
 export const isStale = ({ age }) => age === null || age > STALE; // null: of before a start of the box
@@ -62,8 +62,14 @@ export function keepOffRobots(labels, view, robots, size) {
   for (const robot of robots) labels.keepOff(view.toPixel(robot.position), size * 0.9);
 }
 
+/** A robot's name; of one in `silent` also when its last pose came. */
+export function lastSeen({ name, age }, silent) {
+  if (!silent.has(name)) return clip(name, 20);
+  return `${clip(name, 20)} · ${age === null ? "silent" : `last seen ${ago(age)}`}`;
+}
+
 /** `late`: the names of those whose map does not come; theirs are written first. */
-export function nameRobots(labels, view, robots, size, late) {
+export function nameRobots(labels, view, robots, size, late, silent) {
   const { bad, soft, ink } = labels.colours;
   const colourOf = (robot) => {
     if (late.has(robot.name)) return bad;
@@ -71,7 +77,7 @@ export function nameRobots(labels, view, robots, size, late) {
   };
   const isLate = (robot) => Number(late.has(robot.name));
   for (const robot of [...robots].sort((a, b) => isLate(b) - isLate(a))) {
-    labels.write(clip(robot.name, 20), ...view.toPixel(robot.position), { colour: colourOf(robot), away: size * 1.9 });
+    labels.write(lastSeen(robot, silent), ...view.toPixel(robot.position), { colour: colourOf(robot), away: size * 1.9 });
   }
 }
 

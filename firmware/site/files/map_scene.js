@@ -1,6 +1,6 @@
 // What the map shows of a run: its maps, tracks, markers, robots and reports at one time, without those that are hidden.
 import { Markers } from "./map_markers.js";
-import { isStale } from "./map_robots.js";
+import { isStale, lastSeen } from "./map_robots.js";
 import { Tiles } from "./map_tiles.js";
 import { Tracks } from "./map_tracks.js";
 import { Steps } from "./steps.js";
@@ -20,6 +20,7 @@ export class MapScene {
   shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true, pointless: true };
   hidden = new Set(); // robots whose maps are not shown
   lateRobots = new Set(); // robots whose map does not come
+  silentRobots = new Set(); // of these, robots that send nothing
   #steps = new Steps();
   #version = -1;
   #isAsking = false;
@@ -43,8 +44,9 @@ export class MapScene {
     this.markers.follow(run.marker_version);
     this.tracks.follow(run);
     this.lateRobots = new Set(run.standings.filter(({ level }) => level === "bad").map(({ name }) => name));
+    this.silentRobots = new Set(run.standings.filter(({ silent }) => silent).map(({ name }) => name));
     const reports = run.reports.map(({ number, state, asking }) => [number, state, asking]);
-    const robots = run.robots.map((robot) => [robot.name, robot.position, robot.heading, isStale(robot)]);
+    const robots = run.robots.map((robot) => [lastSeen(robot, this.silentRobots), robot.position, robot.heading, isStale(robot)]);
     const key = JSON.stringify([reports, run.near_metres, robots, this.markers.at(run.now).length, [...this.lateRobots]]);
     if (key === this.key) return false;
     this.key = key;

@@ -10,7 +10,8 @@ const RANK = { bad: 0, wait: 1 };
 const PATIENCE = 5; // s: ages alone change the order no more often
 
 const rank = ({ level }) => RANK[level] ?? 2;
-const worse = (robot) => (rank(robot) < 2 ? robot.age ?? Infinity : worstAge(robot.name));
+/** By which rows are sorted, and which they show: seconds. */
+const ageOf = (robot) => (rank(robot) < 2 ? robot.age ?? Infinity : Math.max(robot.age ?? 0, worstAge(robot.name)));
 
 function createRow({ name }) {
   const spark = document.createElementNS(SVG, "svg");
@@ -33,10 +34,10 @@ function words({ silent, kinds }, isFull) {
 }
 
 /** Of its map, or if it is silent of its data; a silent robot that was not heard since a start of the box has none that is known. */
-function ageWords({ has_map, silent, kinds, age }) {
-  const isUnheard = kinds.length === 0;
+function ageWords(robot) {
+  const { has_map, silent, kinds, age } = robot, isUnheard = kinds.length === 0;
   if (age === null && (silent || isUnheard)) return "unknown";
-  return has_map || silent || isUnheard ? mapAge(age) : "no map";
+  return has_map || silent || isUnheard ? mapAge(age === null ? null : ageOf(robot)) : "no map";
 }
 
 function updateRow(row, robot, isFull) {
@@ -71,7 +72,7 @@ export class RobotRows {
     const place = new Map(this.#order.map((name, i) => [name, i]));
     const asBefore = (a, b) => (place.get(a.name) ?? Infinity) - (place.get(b.name) ?? Infinity) || 0;
     const byName = (a, b) => a.name.localeCompare(b.name, "en", { numeric: true });
-    const byWorst = (a, b) => rank(a) - rank(b) || Math.round(worse(b)) - Math.round(worse(a)) || byName(a, b);
+    const byWorst = (a, b) => rank(a) - rank(b) || Math.floor(ageOf(b)) - Math.floor(ageOf(a)) || byName(a, b);
     const ranks = robots.map((robot) => robot.name + rank(robot)).sort().join();
     const isDue = ranks !== this.#ranks || Math.abs(now - this.#ordered) >= PATIENCE;
     if (this.#isHeld() || !isDue) return [...robots].sort((a, b) => asBefore(a, b) || byName(a, b));

@@ -22,9 +22,10 @@ using picture::kSide;
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostTiles = 120;
 /// Of robots in the order of their first poses: the page's in its light theme (site/files/robot_colour.js).
-constexpr const char* kColours[] = {
-    "#9e4930", "#025447", "#6b56a3", "#733200", "#007672", "#593279", "#7e620d", "#005259", "#844d90", "#524801",
-    "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674", "#395105", "#0d6ca5", "#782445", "#3c7630", "#144687"};
+constexpr const char* kColours[] = {"#9e4930", "#025447", "#6b56a3", "#733200", "#007672",
+                                    "#593279", "#7e620d", "#005259", "#844d90", "#524801",
+                                    "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674",
+                                    "#395105", "#0d6ca5", "#782445", "#3c7630", "#144687"};
 /// Lengths of lines and gaps, by the line's width.
 constexpr double kDashes[][4] = {{1e6, 0, 1e6, 0}, {4, 2, 4, 2}, {1, 1.5, 1, 1.5}, {4.5, 1.5, 1, 1.5}};
 
@@ -94,15 +95,16 @@ std::optional<picture::Area> area_of(const api::KeptRun& run, const std::vector<
   return area;
 }
 
-std::string polyline(const api::Track& track, const char* colour, std::span<const double, 4> dashes, double width) {
+std::string polyline(const api::Track& track, const char* colour, std::span<const double, 4> dashes,
+                     double width) {
   std::string points;
   for (const api::TrackPose& pose : track.poses)
     points += fixed(pose.position.x, 2) + ',' + fixed(-pose.position.y, 2) + ' ';
   std::string lengths;
   for (const double length : dashes) lengths += fixed(length * width, 3) + ' ';
   return icd::sentence("<polyline fill=\"none\" stroke=\"", colour, "\" stroke-width=\"", fixed(width, 3),
-                       "\" stroke-dasharray=\"", lengths, "\" points=\"", points, "\"><title>", icd::in_html(track.robot),
-                       "</title></polyline>\n");
+                       "\" stroke-dasharray=\"", lengths, "\" points=\"", points, "\"><title>",
+                       icd::in_html(track.robot), "</title></polyline>\n");
 }
 
 /// Without tracks that have no pose.

@@ -1,4 +1,5 @@
 // The picture of the maps on a canvas: of which level a layer is drawn, which of its tiles are seen, and each in its place.
+import { themeNow } from "./theme_now.js";
 
 const MAX_PIXEL = 4; // pixels: where the base's are larger, a finer level is drawn, if there is one
 const MAX_FINER_TILES = 200; // tiles at a time, the uppermost layers first: a layer that finds no room is as coarse as the base
@@ -90,12 +91,17 @@ const intersection = (a, b) => ({
   top: Math.min(a.top, b.top),
 });
 
-/** Draws those tiles that lie in `piece`, metres, as far as that is seen; of `layers` the lowest first. */
+/** Draws those tiles that lie in `piece`, metres, as far as that is seen; of `layers` the lowest first. Walls are seen through clouds: what
+ *  is farther from the ground's colour wins, and free cells are nearest to it. */
 export function drawLayers(ctx, view, tiles, layers, at, density, piece = view.bounds()) {
   const seen = intersection(piece, view.bounds()); // a coarse tile is larger than that, and what lies in it is not to be asked for
-  for (const { layer, places } of visibleTiles(tiles, layers, view, density, at, seen)) {
-    for (const place of places) drawTile(ctx, view, tiles, place, imageOf(tiles, layer, place, at), density);
-  }
+  const visible = visibleTiles(tiles, layers, view, density, at, seen), isCloud = ({ layer }) => layer.kind === "cloud";
+  const draw = ({ layer, places }) => places.forEach((place) => drawTile(ctx, view, tiles, place, imageOf(tiles, layer, place, at), density));
+  visible.forEach(draw);
+  if (!visible.some(isCloud)) return;
+  ctx.globalCompositeOperation = themeNow() === "light" ? "darken" : "lighten";
+  visible.filter((each) => !isCloud(each)).forEach(draw);
+  ctx.globalCompositeOperation = "source-over";
 }
 
 function drawTile(ctx, view, tiles, { level, x, y }, { image, of }, density) {

@@ -91,9 +91,9 @@ export class MapScene {
   kinds = () => new Set([...this.tiles.layers.values()].map((layer) => layer.kind));
   #isShown = (layer) => this.shown[layer.kind] && !this.hidden.has(layer.robot);
 
-  /** The layers of the maps that are shown, the lowest first: clouds lie below grids, so that walls are seen, and merged maps below those of robots. */
+  /** The layers of the maps that are shown, the lowest first: the merged map lies below those of robots, and clouds lie upon grids. */
   layers() {
-    const rank = ({ kind, robot }) => 2 * Number(kind === "grid") + Number(robot !== "");
+    const rank = ({ kind, robot }) => 2 * Number(kind === "cloud") + Number(robot !== "");
     const layers = [...this.tiles.layers.values()].filter(this.#isShown);
     return layers.sort((a, b) => rank(a) - rank(b) || a.robot.localeCompare(b.robot));
   }

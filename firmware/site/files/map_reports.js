@@ -87,7 +87,7 @@ function drawPair(ctx, colours, labels, view, { one, other, metres: apart }) {
 const nameOf = (report) => `#${report.number} ${clip(report.type, 20)}`;
 
 /** Side of the square in which reports are a group, in metres. */
-export const groupMetres = (view, size) => (2.8 * size) / view.scale;
+export const groupMetres = (view, size) => (5 * size) / view.scale;
 
 /** `groups`: what stands for further reports: map_groups.js. */
 export function drawReports(ctx, colours, labels, view, run, reports, groups, size) {

@@ -63,6 +63,7 @@ test("gives who comes first the place at the right, the next one another, and th
   const found = [..."abcde"].map((letter) => labels.write(letter.repeat(6), 400, 250));
   assert.deepEqual(found, [true, true, true, true, false]);
   assert.ok(paint.written[0][0] > 400 && paint.written[1][2] < 400);
+  assert.ok(labels.write("silent", 400, 250, { isSure: true }));
 });
 
 test("draws a line each 1, 2 or 5 metres, times a power of ten, far enough apart to be read", () => {

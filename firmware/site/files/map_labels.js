@@ -37,16 +37,16 @@ export class Labels {
 
   #isFree = (box) => !this.#taken.some(([a, b, c, d]) => box[0] < c && box[2] > a && box[1] < d && box[3] > b);
 
-  /** Right of the place, else left of it, above or below; what is in sight is not cut at the edge. `away`: pixels from the place. Gives
-   *  whether it is written. */
-  write(text, left, top, { colour = this.colours.ink, rim = this.colours.ground, size = this.size, away = size } = {}) {
+  /** Right of the place, else left of it, above or below; what is in sight is not cut at the edge. `away`: pixels from the place;
+   *  `isSure`: it is written even upon something else. Gives whether it is written. */
+  write(text, left, top, { colour = this.colours.ink, rim = this.colours.ground, size = this.size, away = size, isSure = false } = {}) {
     const { ctx } = this;
     ctx.font = `600 ${size}px system-ui, sans-serif`;
     const width = widthOf(ctx, text), half = size * 0.6;
     const centred = left - width / 2;
     const places = [[left + away, top], [left - away - width, top], [centred, top - away - half], [centred, top + away + half]];
     const boxes = places.map(([from, middle]) => [from, middle - half, from + width, middle + half]);
-    const box = boxes.find((each) => !this.#isCut(each) && this.#isFree(each));
+    const whole = boxes.filter((each) => !this.#isCut(each)), box = whole.find(this.#isFree) ?? (isSure && whole[0]);
     if (!box) return false;
     const [from, above, to, below] = box;
     this.#taken.push([from - size * GAP, above, to + size * GAP, below]);

@@ -77,7 +77,7 @@ export function nameRobots(labels, view, robots, size, late, silent) {
   };
   const isLate = (robot) => Number(late.has(robot.name));
   for (const robot of [...robots].sort((a, b) => isLate(b) - isLate(a))) {
-    labels.write(lastSeen(robot, silent), ...view.toPixel(robot.position), { colour: colourOf(robot), away: size * 1.9 });
+    labels.write(lastSeen(robot, silent), ...view.toPixel(robot.position), { colour: colourOf(robot), away: size * 1.9, isSure: silent.has(robot.name) });
   }
 }
 

@@ -4,8 +4,8 @@ import { test } from "node:test";
 import { groupReports } from "../../firmware/site/files/map_groups.js";
 import { Labels } from "../../firmware/site/files/map_labels.js";
 import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
-import { filled } from "../../firmware/site/files/map_tracks.js";
 import { lastSeen } from "../../firmware/site/files/map_robots.js";
+import { filled } from "../../firmware/site/files/map_tracks.js";
 import { MapView } from "../../firmware/site/files/map_view.js";
 
 const SIZE = 12;

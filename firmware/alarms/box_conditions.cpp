@@ -94,6 +94,21 @@ void add(Found& found, const std::string& trouble, Condition condition) {
   found.push_back(std::move(condition));
 }
 
+void find_wear(const Disk& disk, Found& found) {
+  if (disk.life >= kWornLife || disk.spares >= kWornSpares) {
+    found.push_back({.id = "disk_health",
+                     .severity = Severity::Ask,
+                     .side = Side::Box,
+                     .headline = {"The disk", "nearly worn out"},
+                     .why = disk.life > kWornLife    ? "its expected life is over"
+                            : disk.life == kWornLife ? "90 % of its life is used"
+                                                     : "80 % of its spare blocks are used",
+                     .degree = disk.life + disk.spares});
+  }
+  add(found, disk.wear_unknown,
+      {.id = "disk_health", .severity = Severity::Wait, .headline = {"The disk's health", "unknown"}});
+}
+
 void find_disk_troubles(const Facts& facts, Found& found) {
   add(found, facts.ledger_refusal,
       {.id = "ledger_unwritable",
@@ -123,6 +138,7 @@ void find_disk_troubles(const Facts& facts, Found& found) {
                      .why = sentence(*facts.disk.free / 1000, " kB are free for reports"),
                      .action = kOpenSystem});
   }
+  find_wear(facts.disk, found);
 }
 
 void find_update_troubles(const UpdateFact& update, Found& found) {

@@ -17,6 +17,8 @@ inline constexpr std::int64_t kFewReports = 5;
 inline constexpr double kNearlyFull = 0.8;
 /// Free bytes on the ledger's disk below which the alarm starts.
 inline constexpr std::uint64_t kLeastFree = 1u << 20;
+/// An eMMC's wear (host::Wear) from which the alarm starts: 90 % of its life, 80 % of its spare blocks.
+inline constexpr unsigned kWornLife = 10, kWornSpares = 2;
 /// Most reports of one state that have a condition each; more share one.
 inline constexpr std::size_t kOneByOne = 10;
 

@@ -88,6 +88,8 @@ struct Disk {
   std::string run = {};                    // why the display data of the run is not stored, or ""
   std::string map = {}, state = {};        // why the last map, or states and markers, cannot be stored, or ""
   std::optional<std::uint64_t> free = {};  // bytes of the state directory
+  unsigned life = 0, spares = 0;           // the wear that its disk reports (host::Wear)
+  std::string wear_unknown = {};           // why the wear cannot be read, or ""
 };
 
 struct UpdateFact {

@@ -39,6 +39,10 @@ command_line::Program command_line_of(Options& options) {
                 "show the notices in DIR to the operator: one file each, from the programs that start and "
                 "watch the box",
                 &options.notices},
+               {"--block", "DIR",
+                "read the health of the state directory's disk from DIR, the kernel's directory of disks by "
+                "number",
+                &options.block},
                {"--version", "", "print the version", &options.version},
                {"--help", "", "print this help", &options.help}},
       .ending =

@@ -12,6 +12,7 @@ struct Options {
   std::string board;  // or ""
   std::string panel;  // adit-panel's socket, or ""
   std::string notices = "/run/adit-notices";
+  std::string block = "/sys/dev/block";
   bool help = false, version = false;
 };
 

@@ -72,6 +72,12 @@ void Overview::add_box(alarms::Facts& facts) const {
   const auto disk = host::disk_of(rooms_.parts.options.state);
   facts.disk = {rooms_.flow.archive().trouble(), rooms_.flow.maps().trouble(), rooms_.flow.journal_trouble(),
                 disk ? std::optional(disk->free) : std::nullopt};
+  if (rooms_.parts.wear) {
+    facts.disk.life = rooms_.parts.wear->life;
+    facts.disk.spares = rooms_.parts.wear->spares;
+  } else {
+    facts.disk.wear_unknown = rooms_.parts.wear.error();
+  }
   facts.time_set = rooms_.clock.is_set();
   facts.ntp_trouble = rooms_.clock.ntp_trouble();
   facts.put_aside = rooms_.parts.put_aside.empty() ? rooms_.flow.put_aside() : rooms_.parts.put_aside;

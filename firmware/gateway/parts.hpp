@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <expected>
 #include <memory>
 #include <string>
 
@@ -8,6 +9,7 @@
 #include "admin/taking_over.hpp"
 #include "gateway/listen_sockets.hpp"
 #include "gateway/options.hpp"
+#include "host/disk.hpp"
 #include "ledger/ledger.hpp"
 #include "panel/lines.hpp"
 #include "settings/board.hpp"
@@ -26,7 +28,8 @@ struct Parts {
   std::string put_aside;  // queued messages put aside, and why; or ""
   std::string stuck;      // why a take-over is unfinished and the box stands by, or ""
   ledger::Ledger ledger;
-  std::chrono::seconds file_rest;  // until unreadable files are tried again
+  std::expected<host::Wear, std::string> wear;  // of the state directory's disk
+  std::chrono::seconds file_rest;               // until unreadable files are tried again
   settings::Board board;
   std::string board_trouble;  // why the board's file is ignored, or ""
   std::unique_ptr<panel::Lines> lines;

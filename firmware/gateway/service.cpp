@@ -8,6 +8,7 @@
 
 #include "box/open_panel.hpp"
 #include "forward/stamp_floor.hpp"
+#include "host/disk.hpp"
 #include "host/files.hpp"
 #include "host/inherited.hpp"
 #include "host/log.hpp"
@@ -162,6 +163,8 @@ std::expected<bool, std::string> Service::run_gateway() {
   if (!loaded) return std::unexpected(loaded.error());
   auto ledger = open_ledger(options_);
   if (!ledger) return std::unexpected(ledger.error().what);
+  auto wear = host::wear_of(options_.state, options_.block);
+  if (!wear) host::log(host::Level::Warning, "the disk's health is unknown", {{"why", wear.error()}});
   auto known = box::read_board(options_.board);
   const std::string runtime = runtime_folder(options_);
   auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel),
@@ -177,6 +180,7 @@ std::expected<bool, std::string> Service::run_gateway() {
                           .put_aside = std::move(put_aside),
                           .stuck = std::move(stuck),
                           .ledger = std::move(*ledger),
+                          .wear = std::move(wear),
                           .file_rest = file_rest_,
                           .board = std::move(known.board),
                           .board_trouble = std::move(known.trouble),

@@ -74,6 +74,8 @@ void the_box(std::vector<Facts>& days) {
   facts.ledger_damage = "its reports were recovered";
   facts.put_aside = "aditd ended 3 times";
   facts.disk.free = 500u << 10;
+  facts.disk.life = 10;
+  facts.disk.wear_unknown = "life_time: Input/output error";
   facts.time_set = false;
   facts.ntp_trouble = "the NTP server ADDRESS does not answer";
   facts.change_trouble = "port 8000 is in use";

@@ -121,6 +121,14 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.disk.run = "no space"; }},
     {"disk_full", Bad, Side::Box, "The disk is nearly full", "512 kB",
      [](Facts& facts) { facts.disk.free = 500u << 10; }},
+    {"disk_health", Ask, Side::Box, "The disk is nearly worn out", "90 % of its life",
+     [](Facts& facts) { facts.disk.life = 10; }},
+    {"disk_health", Ask, Side::Box, "The disk is nearly worn out", "its expected life is over",
+     [](Facts& facts) { facts.disk.life = 11, facts.disk.spares = 3; }},
+    {"disk_health", Ask, Side::Box, "The disk is nearly worn out", "80 % of its spare blocks",
+     [](Facts& facts) { facts.disk.life = 9, facts.disk.spares = 2; }},
+    {"disk_health", Wait, Side::Box, "The disk's health is unknown", "life_time: Input/output error",
+     [](Facts& facts) { facts.disk.wear_unknown = "life_time: Input/output error"; }},
     {"time_not_set", Wait, Side::Box, "The time of day is not set", "adit clock set",
      [](Facts& facts) { facts.time_set = false; }},
     {"ntp", Wait, Side::Box, "NTP is not working", "10.0.0.5 does not answer",
@@ -167,6 +175,9 @@ const ConditionCase kConditionCases[] = {
 TEST(Conditions, AreNoneWhereAllIsWell) {
   EXPECT_THAT(conditions_of(well()), IsEmpty());
   EXPECT_THAT(conditions_of({}), IsEmpty()) << "nothing is known yet";
+  Facts used = well();
+  used.disk.life = 9, used.disk.spares = 1;
+  EXPECT_THAT(conditions_of(used), IsEmpty());
 }
 
 TEST(Conditions, AreEachFoundAloneAndSayWhatToDo) {

@@ -21,11 +21,12 @@ TEST(Options, AreTheThreeThatTheServiceNeeds) {
 
 TEST(Options, MayNameTheBoardAndTheFoldersOfOthers) {
   const auto options = parse({"--settings", "a", "--secrets", "b", "--state", "c", "--board", "d",
-                              "--network", "e", "--notices", "f"});
+                              "--network", "e", "--notices", "f", "--block", "g"});
   ASSERT_TRUE(options);
   EXPECT_EQ(options->board, "d");
   EXPECT_EQ(options->network, "e");
   EXPECT_EQ(options->notices, "f");
+  EXPECT_EQ(options->block, "g");
   EXPECT_EQ(parse({"--settings", "a", "--secrets", "b", "--state", "c"})->board, "");
   EXPECT_EQ(parse({"--board"}).error(), "--board wants a value");
 }

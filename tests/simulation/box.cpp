@@ -156,6 +156,7 @@ void Box::one_life() {
   options.clock = folder_ / "clock";
   options.update = folder_ / "update";
   options.notices = folder_ / "notices";
+  options.block = folder_ / "block";
   ::setenv("RUNTIME_DIRECTORY", (folder_ / "runtime").c_str(), 1);
   world_.begin_life(std::exchange(starts_again_, false));
   world_.note(

@@ -209,7 +209,8 @@ class Box(Program, Page):
         self.settings.write_text(json.dumps(settings(network, overrides)))
         command = [BIN / "aditd", "--settings", self.settings, "--secrets", folder / "secrets", "--state", self.state,
                    "--network", folder / "network" / "status", "--update", folder / "update", "--board", folder / "board.json",
-                   "--notices", folder / "notices", "--clock", folder / "clock", "--spare", folder / "spare-stick", "--watch", folder / "watch"]
+                   "--notices", folder / "notices", "--clock", folder / "clock", "--spare", folder / "spare-stick", "--watch", folder / "watch",
+                   "--block", folder / "block"]
         super().__init__(network, network.box, folder / "aditd.log", command)
         wait_until(self._answers, "aditd to listen")
 

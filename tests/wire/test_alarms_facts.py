@@ -100,6 +100,22 @@ class Facts(WithAlarms):
         self.assertEqual(stage.box.ask(f"POST /adit/rejected/{number}/discard", body={})[0], 200)
         self.goes(stage, "messages_rejected")
 
+    def test_the_disk_is_nearly_worn_out(self):
+        """As the kernel tells it of an eMMC at each boot."""
+        stage = self.stage()
+        device = os.stat(stage.box.state).st_dev
+        disk = stage.folder / "block" / f"{os.major(device)}:{os.minor(device)}" / "device"
+        disk.mkdir(parents=True)
+        for life, severity, why in (("0x02 0x0a", "ask", "90 %"), ("0x02 0x0c", "wait", "0x0c"), ("0x02 0x09", "", "")):
+            with self.subTest(life):
+                (disk / "life_time").write_text(life + "\n")
+                self.assertEqual(stage.box.stop(), 0)
+                stage.restart_box()
+                if severity:
+                    self.sees(stage, "disk_health", severity, "box", why)
+                else:
+                    self.assertIsNone(self.alarm(stage, "disk_health"))
+
     def test_three_faults_put_the_queue_aside(self):
         """As if a queued map ended each process: the next one leaves it alone, and reports flow."""
         runtime = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-runtime-")))

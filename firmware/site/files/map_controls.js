@@ -30,6 +30,7 @@ for (const preset of presets) {
   });
 }
 showLayers();
+/** @type {HTMLDetailsElement} */
 const layers = section.querySelector(".layers");
 layers.addEventListener("keydown", (event) => {
   if (event.key !== "Escape" || !layers.open) return;

@@ -36,7 +36,7 @@ async function sliderOf(page) {
 
 test("shows the maps, the robots on them and the reports, each by its box", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
-  await settled(page);
+  await hide(page, "Tracks"); // of the robots' colours
   for (const [name, colour] of [["Grids", WALL], ["Robots", ROBOT], ["Reports", SCORED], ["Markers", MARKER], ["merged", WALL]]) {
     await appears(page, colour, name);
     await box(page, name).uncheck();
@@ -44,7 +44,7 @@ test("shows the maps, the robots on them and the reports, each by its box", asyn
     await box(page, name).check();
     await appears(page, colour, `${name}, again`);
   }
-  await hide(page, "Robots", "Tracks"); // they change by themselves
+  await hide(page, "Robots"); // they move
   const before = await picture(page);
   await box(page, "Clouds").uncheck();
   await changed(page, before, "the clouds to go");

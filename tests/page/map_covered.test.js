@@ -32,6 +32,15 @@ async function crowded(page) {
   });
 }
 const names = (page) => page.evaluate(() => globalThis.written.filter(({ text }) => text.startsWith("#")).map(({ text, box }) => ({ text, box })));
+/** Until the reports are no groups. */
+async function zoomToNames(page) {
+  await until(async () => {
+    await page.getByRole("button", { name: "Zoom in" }).click();
+    await hears(page, 2);
+    await settled(page);
+    return (await names(page)).length > 5;
+  }, "names");
+}
 const covers = (page) => page.$$eval("#map :is(.zoom, .follow, .legend)", (nodes) => {
   const { left, top } = document.querySelector("#map .frame canvas").getBoundingClientRect();
   return nodes.filter((node) => node.offsetWidth).map((node) => node.getBoundingClientRect()).map((box) => [box.left - left, box.top - top, box.right - left, box.bottom - top]);
@@ -46,10 +55,7 @@ test("writes no name below the map's tools and its legend", async (t) => {
     await settled(page);
     await page.locator("#map .legend").waitFor();
     await page.getByRole("button", { name: "All", exact: true }).click();
-    for (let i = 0; i < 2; ++i) await page.getByRole("button", { name: "Zoom in" }).click();
-    await hears(page, 2);
-    await until(async () => (await names(page)).length > 5, "names");
-    await settled(page);
+    await zoomToNames(page);
     const over = await covers(page);
     assert.equal(over.length, 3);
     const hidden = (await names(page)).filter(({ box }) => over.some((each) => overlap(box, each)));
@@ -61,8 +67,7 @@ test("writes no name on the small map of a phone's first tab", async (t) => {
   const { page } = await watch(t, "calm", { prepare: crowded, viewport: { width: 390, height: 844 } });
   await toTab(page, "Map");
   await settled(page);
-  for (let i = 0; i < 2; ++i) await page.getByRole("button", { name: "Zoom in" }).click();
-  await until(async () => (await names(page)).length > 5, "names");
+  await zoomToNames(page);
   await toTab(page, "Run");
   await until(async () => (await names(page)).length === 0, "the names to go");
   assert.ok(!(await page.locator("#map .legend").isVisible()));

@@ -78,13 +78,15 @@ test("draws every kind of marker at its place, in its size and its colours", asy
 test("draws the markers once for a view, however often a robot moves on it", async (t) => {
   const prepare = (page) => page.addInitScript(() => {
     globalThis.drawn = { maps: 0, lines: 0 };
-    for (const [name, what] of [["clearRect", "maps"], ["setLineDash", "lines"]]) {
-      const real = CanvasRenderingContext2D.prototype[name];
-      CanvasRenderingContext2D.prototype[name] = function (...words) {
-        ++globalThis.drawn[what];
-        return real.apply(this, words);
-      };
-    }
+    const { clearRect, stroke } = CanvasRenderingContext2D.prototype;
+    CanvasRenderingContext2D.prototype.clearRect = function (...words) {
+      ++globalThis.drawn.maps;
+      return clearRect.apply(this, words);
+    };
+    CanvasRenderingContext2D.prototype.stroke = function (...words) {
+      if (this.strokeStyle === "#ff33ff") ++globalThis.drawn.lines; // the markers' colour
+      return stroke.apply(this, words);
+    };
   });
   const { page } = await watch(t, "calm", { prepare });
   const drawn = () => page.evaluate(() => ({ ...globalThis.drawn }));

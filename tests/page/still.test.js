@@ -59,11 +59,11 @@ test("reaches every report, also those past the newest 200, and looks for duplic
 test("shows the reports of one state or type and those that ask, and all again for one that an alarm names", async (t) => {
   const { page } = await watch(t, "reports");
   const shown = () => page.$$eval("#reports .rows > li:not([data-level=ask])", (rows) => rows.map((row) => row.querySelector(".what").textContent));
-  const filter = page.getByLabel("Show", { exact: true });
+  const filter = page.locator("#reports .filter select");
   await row(page, 28).waitFor();
   const whole = await shown();
   assert.ok(new Set(whole).size > 1);
-  await filter.selectOption("Drill");
+  await filter.selectOption({ label: "Drill" });
   await until(async () => (await shown()).every((type) => type === "Drill"), "Drills alone");
   assert.equal((await shown()).length, whole.filter((type) => type === "Drill").length);
   await row(page, 25).and(page.locator("[data-level=ask]")).waitFor();

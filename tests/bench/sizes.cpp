@@ -1,4 +1,5 @@
 // How small maps become, and in what time: each map by each way, in one run, as Markdown. Run by `sizes`.
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <string>
@@ -51,7 +52,19 @@ void print_table(const char* what, const std::vector<SizedMap>& maps, bool are_g
 
 int main(int argc, char** argv) {
   using namespace adit::bench;
-  const bool is_short = argc > 1 && std::string_view(argv[1]) == "--short";
+  bool is_short = false;
+  std::uint64_t seed = 0;
+  for (int i = 1; i < argc; ++i) {
+    const std::string_view option = argv[i];
+    if (option == "--short") {
+      is_short = true;
+    } else if (option == "--seed" && i + 1 < argc) {
+      seed = std::strtoull(argv[++i], nullptr, 10);
+    } else {
+      std::fprintf(stderr, "Usage: sizes [--short] [--seed N]\n");
+      return 2;
+    }
+  }
   const char* const folder = std::getenv("ADIT_MAPS");
   auto maps = recorded_maps(folder == nullptr ? "" : folder);
   if (!maps) {
@@ -59,8 +72,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   if (maps->empty()) std::printf("ADIT_MAPS names no folder of recorded maps: generated ones alone\n");
-  for (SizedMap& map : generated_grids(is_short)) maps->push_back(std::move(map));
-  for (SizedMap& map : generated_clouds(is_short)) maps->push_back(std::move(map));
+  for (SizedMap& map : generated_grids(is_short, seed)) maps->push_back(std::move(map));
+  for (SizedMap& map : generated_clouds(is_short, seed)) maps->push_back(std::move(map));
   print_table("grids", *maps, true, is_short, kBest);
   print_table("clouds", *maps, false, is_short, kUsual);
   return 0;

@@ -57,9 +57,9 @@ void put_all(std::uint8_t* point, const std::array<double, 3>& at) {
   }
 }
 
-icd::MapUpdate cloud_of(const Walls& walls) {
+icd::MapUpdate cloud_of(const Walls& walls, std::uint64_t seed) {
   constexpr double kSeen = 10, kMetresAPoint = 3e-4;
-  pack::Generator make{walls.points};
+  pack::Generator make{seed + walls.points};
   icd::PointCloud2 cloud = fields_of(walls);
   pack::Bytes bytes(walls.points * cloud.point_step);
   for (std::size_t i = 0; i < walls.points; ++i) {
@@ -78,11 +78,11 @@ icd::MapUpdate cloud_of(const Walls& walls) {
 
 }  // namespace
 
-std::vector<SizedMap> generated_clouds(bool is_short) {
+std::vector<SizedMap> generated_clouds(bool is_short, std::uint64_t seed) {
   std::vector<SizedMap> maps;
   for (const Walls& walls : kClouds) {
     if (is_short && walls.is_long) continue;
-    maps.push_back({walls.name + (", " + std::to_string(walls.points)) + " points", cloud_of(walls)});
+    maps.push_back({walls.name + (", " + std::to_string(walls.points)) + " points", cloud_of(walls, seed)});
   }
   return maps;
 }

@@ -85,23 +85,23 @@ std::expected<std::vector<SizedMap>, std::string> recorded_maps(const std::strin
   return maps;
 }
 
-std::vector<SizedMap> generated_grids(bool is_short) {
+std::vector<SizedMap> generated_grids(bool is_short, std::uint64_t seed) {
   using pack::cave;
   using pack::Grid;
-  std::vector<Grid> grids{cave(1500, 1500, 1),
-                          graded(cave(1000, 1000, 2)),
-                          speckled(cave(1500, 1500, 3)),
-                          measured(cave(1000, 1000, 4)),
+  std::vector<Grid> grids{cave(1500, 1500, seed + 1),
+                          graded(cave(1000, 1000, seed + 2)),
+                          speckled(cave(1500, 1500, seed + 3)),
+                          measured(cave(1000, 1000, seed + 4)),
                           pack::noise(600, 600, 101),
                           pack::noise(600, 600, 2),
-                          cave(200, 200, 5),
+                          cave(200, 200, seed + 5),
                           Grid("few cells", 20, 20)};
   if (!is_short) {
-    grids.push_back(cave(5000, 5000, 6));
-    grids.push_back(cave(40'000, 400, 7));
+    grids.push_back(cave(5000, 5000, seed + 6));
+    grids.push_back(cave(40'000, 400, seed + 7));
     grids.push_back(Grid("all unknown", 5000, 5000));
     for (const bool is_row : {true, false}) {
-      Grid line = cave(1000, 1000, 8);
+      Grid line = cave(1000, 1000, seed + 8);
       line.what = is_row ? "one row" : "one column";
       line.width = is_row ? line.cells.size() : 1;
       line.height = is_row ? 1 : line.cells.size();

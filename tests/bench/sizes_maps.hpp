@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <expected>
 #include <string>
 #include <vector>
@@ -18,9 +19,9 @@ struct SizedMap {
 /// whose greys are costs.
 std::expected<std::vector<SizedMap>, std::string> recorded_maps(const std::string& folder);
 
-/// Grids of all kinds. `is_short`: without the large ones.
-std::vector<SizedMap> generated_grids(bool is_short);
+/// Grids of all kinds. `is_short`: without the large ones. Another `seed` gives other maps of the same kinds.
+std::vector<SizedMap> generated_grids(bool is_short, std::uint64_t seed);
 /// Clouds of noise and of surveys, with and without padding (sizes_clouds.cpp).
-std::vector<SizedMap> generated_clouds(bool is_short);
+std::vector<SizedMap> generated_clouds(bool is_short, std::uint64_t seed);
 
 }  // namespace adit::bench

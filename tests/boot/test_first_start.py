@@ -44,6 +44,10 @@ class FirstStart(Story):
         megabytes = int(self.box.console.ask("df -m /var | tail -n 1").split()[1])
         self.assertGreater(megabytes, 450, "of 1024: the image takes 448")
 
+    def test_the_state_is_trimmed(self):
+        self.box.console.ask("systemctl start adit-trim.service")
+        self.assertRegex(self.box.console.ask("journalctl -q -o cat -u adit-trim.service"), r"/var: \d+ bytes .*trimmed")
+
     def test_without_the_button_nobody_sets_a_password_who_has_not_the_code(self):
         self.asked("POST /adit/password", {"role": "operator", "password": PASSWORD}, status=403)
         self.asked("POST /adit/password", {"role": "operator", "code": "00000000", "password": PASSWORD}, status=403)

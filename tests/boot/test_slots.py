@@ -18,7 +18,7 @@ MIB = 1 << 20
 PARTITIONS = {"adit-env": (16, 1), "adit-boot": (17, 40), "adit-boot-a": (57, 40), "adit-boot-b": (97, 40)}
 STARTED = re.compile(rb"this is slot ([abx])|(no slot has come up|cannot decide)")
 AGAIN = "again"
-# A decision that starts no slot, and what is not one at all.
+# A decision that starts no slot, and texts that are no script.
 HANGS = 'echo "this is slot x"\nwhile true; do true; done\n'
 BROKEN = "no_such_command\n", "if true; then\n", bytes(range(1, 256)) * 16
 

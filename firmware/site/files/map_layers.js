@@ -91,8 +91,8 @@ const intersection = (a, b) => ({
   top: Math.min(a.top, b.top),
 });
 
-/** Draws those tiles that lie in `piece`, metres, as far as that is seen; of `layers` the lowest first. Walls are seen through clouds: what
- *  is farther from the ground's colour wins, and free cells are nearest to it. */
+/** Draws the visible tiles in `piece` (metres), the lowest layer first. Then it blends the grids into the clouds: at each pixel the colour
+ *  that differs more from the ground's stays, so that walls show through clouds and free cells do not. */
 export function drawLayers(ctx, view, tiles, layers, at, density, piece = view.bounds()) {
   const seen = intersection(piece, view.bounds()); // a coarse tile is larger than that, and what lies in it is not to be asked for
   const visible = visibleTiles(tiles, layers, view, density, at, seen), isCloud = ({ layer }) => layer.kind === "cloud";

@@ -20,7 +20,7 @@ export class MapScene {
   shown = { grid: true, cloud: true, robots: true, tracks: true, markers: true, reports: true, pointless: true };
   hidden = new Set(); // robots whose maps are not shown
   lateRobots = new Set(); // robots whose map does not come
-  silentRobots = new Set(); // of these, robots that send nothing
+  silentRobots = new Set(); // those of lateRobots that are silent
   #steps = new Steps();
   #version = -1;
   #isAsking = false;

@@ -42,7 +42,7 @@ function showSayings(activities) {
 export function showRobots(view, now, lost) {
   const isAway = view.endpoints.find(({ name }) => name === "mapping").level === "bad";
   const state = robotsOf(view, now - view.now, lost);
-  for (const { name } of [...view.robots, ...view.standings]) placeInRun(name); // in this order, whoever is the worst
+  for (const { name } of [...view.robots, ...view.standings]) placeInRun(name); // in the order of the view; rows are sorted later
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));

@@ -112,6 +112,8 @@ bool Carried::read_poses(std::string_view said) {
     Robot& robot = robots_.try_emplace(posted.name, Robot{posted}).first->second;
     robot.posted = posted;
     robot.news = true;
+    if (posted.stamp && !posted.address.empty())
+      senders_.given({posted.address, icd::Uri::StateUpdate, posted.name.text()}, *posted.stamp);
   }
   return true;
 }

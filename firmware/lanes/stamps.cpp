@@ -23,8 +23,10 @@ StampShift::Named StampShift::name_in(const Address& address, const Stamper& sta
 }
 
 StampShift::Clock* StampShift::find(const Stamper& stamper) {
-  if (!addresses_.contains(stamper.address)) return nullptr;
-  Address& its = address_of(stamper.address);
+  const auto address = addresses_.find(stamper.address);
+  if (address == addresses_.end()) return nullptr;
+  Address& its = address->second;
+  its.used = ++uses_;
   const auto clock = its.clocks.find(name_in(its, stamper));
   return clock == its.clocks.end() ? nullptr : &clock->second;
 }
@@ -32,21 +34,24 @@ StampShift::Clock* StampShift::find(const Stamper& stamper) {
 icd::Stamp StampShift::shift(Clock*& clock, const Stamper& stamper, std::optional<icd::Stamp> stamp,
                              double now, Connection connection) {
   if (!is_set(stamp)) return clock == nullptr ? now : std::max(now, clock->latest_given());
-  if (clock == nullptr) {
+  const bool is_new = clock == nullptr;
+  if (is_new) {
     Address& its = address_of(stamper.address);
     clock = &its.clocks[name_in(its, stamper)];
     clock->ours = now;
     clock->theirs = clock->latest = *stamp;
   }
-  if (!std::exchange(clock->has_changed, true)) changed_.push_back(stamper);
   // The difference comes first, because the sum with a distant stamp would lose fractions of a second.
   icd::Stamp shifted = clock->ours + (*stamp - clock->theirs);
   const bool set_back = clock->step_back.shown_by(*stamp, connection);
-  if (set_back || *stamp < clock->latest - kJump || shifted > now + kJump) {
+  const bool steps = set_back || *stamp < clock->latest - kJump || shifted > now + kJump;
+  if (steps) {
     shifted = clock->ours = std::max(now, clock->latest_given());
     clock->theirs = clock->latest = *stamp;
   }
   clock->latest = std::max(clock->latest, *stamp);
+  const bool to_record = is_new || steps || stamper.uri != icd::Uri::StateUpdate;
+  if (to_record && !std::exchange(clock->has_changed, true)) changed_.push_back(stamper);
   return std::max(shifted, 0.0);  // ICD 6.2: a stamp is never negative
 }
 
@@ -101,8 +106,12 @@ std::optional<double> StampShift::told(double now, double from, double until) co
 }
 
 void StampShift::carry_on(const Stamper& stamper, const SenderClock& clock) {
-  Address& its = address_of(stamper.address);
-  its.clocks[name_in(its, stamper)] = Clock{clock};
+  address_of(stamper.address).clocks[{stamper.uri, stamper.robot}] = Clock{clock};
+}
+
+void StampShift::given(const Stamper& stamper, icd::Stamp stamp) {
+  if (Clock* const clock = find(stamper))
+    clock->latest = std::max(clock->latest, clock->theirs + (stamp - clock->ours));
 }
 
 icd::Stamp StampOrder::next(icd::Stamp stamp) {

@@ -68,7 +68,8 @@ class StampShift {
   void shift_each(const Stamper& stamper, std::span<icd::Marker> markers, double now);
 
   using Clocks = std::vector<std::pair<Stamper, SenderClock>>;
-  /// The clocks that had a stamp since the last call, with their present values.
+  /// The clocks to record since the last call, with their present values: those whose offset was set, and
+  /// those of maps and markers that had a stamp. Record a state's stamps with its poses, for given().
   Clocks changed();
   /// All clocks; the address that was silent longest comes first.
   Clocks clocks() const;
@@ -77,8 +78,10 @@ class StampShift {
   /// until), because a clock outside is not set. Nothing if there is none.
   static constexpr double kSpeaks = 10;  // seconds
   std::optional<double> told(double now, double from, double until) const;
-  /// Adds a clock of an earlier process.
+  /// Adds a clock of an earlier process, as clocks() or changed() returned it.
   void carry_on(const Stamper& stamper, const SenderClock& clock);
+  /// `stamp`: what an earlier process converted for the stamper.
+  void given(const Stamper& stamper, icd::Stamp stamp);
 
  private:
   struct Clock : SenderClock {

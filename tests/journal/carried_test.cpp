@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <map>
 #include <random>
 #include <string>
 #include <tuple>
@@ -194,6 +195,35 @@ TEST(Carried, HasClocksPacesAndStamps) {
   EXPECT_THAT(carried.paces(), IsEmpty()) << "instants of another start of the machine";
   EXPECT_THAT(carried.senders().clocks(), IsEmpty());
   EXPECT_THAT(carried.stamps(), SizeIs(1));
+}
+
+/// Clocks that are set are recorded; each other stamp of a state is in its poses.
+TEST(Carried, HasTheClocksThatStatesLeft) {
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> step{-7, 5};
+  lanes::StampShift live;
+  Carried carried;
+  std::map<std::string, double> theirs;  // by address
+  for (int i = 0; i < 2000; ++i) {
+    const std::string address = "10.0.0." + std::to_string(i % 3);
+    const std::string robot = "r" + std::to_string(random() % 70);  // more than an address may have clocks
+    const double stamp = theirs[address] = std::max(1.0, theirs[address] + step(random) + 1.5);
+    const icd::Stamp ours =
+        live.shift({address, icd::Uri::StateUpdate, robot}, stamp, 1.5e9 + i * 0.5, random() % 2);
+    if (const auto changed = live.changed(); !changed.empty())
+      tell(carried, Kind::Senders, store::bytes_of(changed));
+    const std::vector<lanes::PostedPose> poses{{*icd::RobotName::parse(robot), {}, ours, address}};
+    tell(carried, Kind::Poses, store::bytes_of(std::span(poses)));
+    if (i % 100 == 50) carried = again(carried);
+  }
+  const auto expected = live.clocks(), found = carried.senders().clocks();
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    ASSERT_EQ(found[i].first, expected[i].first);
+    EXPECT_EQ(found[i].second.ours, expected[i].second.ours);
+    EXPECT_EQ(found[i].second.theirs, expected[i].second.theirs);
+    EXPECT_NEAR(found[i].second.latest, expected[i].second.latest, 1e-5);
+  }
 }
 
 TEST(Carried, KnowsWhenRobotsWereHeardUntilTheMachineStartsAgain) {

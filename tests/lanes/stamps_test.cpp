@@ -142,7 +142,8 @@ TEST(StampShift, KeepsTheSpacingOfTheMarkersOfAMessage) {
   EXPECT_THAT(shifted, testing::Pointwise(DoubleNear(1e-6), {0.0, 0.0, -0.5, 1.0, 1.0, 1.5}));
 }
 
-TEST(StampShift, TellsEachClockOnceThatToldAStamp) {
+/// A state's stamps are recorded with its poses.
+TEST(StampShift, TellsEachClockOnceThatWasSetOrThatAMapOrMarkerStamped) {
   StampShift shift;
   shift.shift(of("R1"), {}, kNow);
   EXPECT_TRUE(shift.changed().empty());
@@ -153,6 +154,16 @@ TEST(StampShift, TellsEachClockOnceThatToldAStamp) {
   EXPECT_EQ(changed[0].first, of("R2"));
   EXPECT_EQ(changed[0].second.latest, 101.0);
   EXPECT_TRUE(shift.changed().empty());
+  shift.shift(of("R2"), 101.5, kNow + 1);
+  EXPECT_TRUE(shift.changed().empty()) << "as it was set";
+  shift.shift(of("R2"), 90.0, kNow + 1);
+  EXPECT_EQ(shift.changed().size(), 1) << "set again";
+  for (const icd::Uri uri : {icd::Uri::MapUpdate, icd::Uri::MarkersUpdate}) {
+    for (const double stamp : {50.0, 51.0}) {
+      shift.shift({"R1", uri, ""}, stamp, kNow);
+      EXPECT_EQ(shift.changed().size(), 1);
+    }
+  }
 }
 
 /// As one life hands over to the next, at any message: nobody can see that it did.

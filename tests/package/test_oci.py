@@ -25,8 +25,7 @@ class Image(unittest.TestCase):
         for program in "umoci", "runc":
             if not shutil.which(program):
                 raise unittest.SkipTest(f"no {program} here")
-        if not LAYOUT.is_dir():
-            raise unittest.SkipTest("toolchain/oci has made nothing here")
+        subprocess.run([pc.SOURCE / "toolchain" / "oci", pc.BUILT / "now"], check=True)
         cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="adit-oci-")))
         cls.network = cls.enterClassContext(hosts.Network())
         tag = json.loads((LAYOUT / "index.json").read_text())["manifests"][0]["annotations"]["org.opencontainers.image.ref.name"]

@@ -92,14 +92,10 @@ class Machine(programs.Page):
         """The cable of team0 or darpa0, in or out."""
         self.monitor.ask("set_link", name=port, up=plugged)
 
-    def plug_stick(self, image, name="stick", writable=False, bytes_a_second=None):
-        """A USB stick of an image of its bytes, which cannot be written on unless it is `writable`."""
-        file = {"driver": "file", "filename": str(image), "read-only": not writable, "locking": "off"}
-        node = {"driver": "raw", "read-only": not writable, "file": file}
-        if bytes_a_second:
-            self.monitor.ask("object-add", **{"qom-type": "throttle-group", "id": name, "limits": {"bps-write": bytes_a_second}})
-            node = {"driver": "throttle", "throttle-group": name, "file": node}
-        self.monitor.ask("blockdev-add", **{"node-name": name, **node})
+    def plug_stick(self, image, name="stick"):
+        """A USB stick of an image of its bytes, which cannot be written on."""
+        file = {"driver": "file", "filename": str(image), "read-only": True, "locking": "off"}
+        self.monitor.ask("blockdev-add", **{"node-name": name, "driver": "raw", "read-only": True, "file": file})
         self.monitor.ask("device_add", driver="usb-storage", bus="usb.0", id=name, drive=name)
 
     def pull_stick(self, name="stick"):

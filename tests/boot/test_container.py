@@ -276,7 +276,7 @@ class Everyday(Contained):
         return self.stick()
 
     def test_its_export_goes_to_a_stick_and_comes_from_it(self):
-        """By the units of the box; of FAT, and of a real stick that is pulled out: test_usb_stick.py. No udev runs in a container,
+        """By the units of the box; of FAT, and pulled out at any moment: applier/real_stick.py. No udev runs in a container,
         which would start the stick's unit, and end it."""
         if not sticks.can_mount("ext4"):
             self.skipTest("nothing can be mounted here")

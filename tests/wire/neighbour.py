@@ -10,7 +10,7 @@ import capture
 import hosts
 
 EVERYBODY, NOBODY = b"\xff" * 6, "0.0.0.0"
-ASKS, ANSWERS = 1, 2
+ASKS = 1
 
 
 def arp(mac, sender, about, operation=ASKS):
@@ -64,7 +64,3 @@ class Neighbour:
         with capture.inside(self.name), capture.open_packets(port or self.port) as packets:
             own = mac or packets.getsockname()[4]
             packets.send(arp(own, sender, about, operation))
-
-    def announces(self, address, port=None):
-        """As `arping -A` does, and whoever takes an address by RFC 5227."""
-        self.says(address, address, port=port)

@@ -4,7 +4,6 @@ import json
 import os
 import pathlib
 import secrets
-import signal
 import subprocess
 import unittest
 
@@ -76,15 +75,6 @@ class Networkd:
 
     def _answers(self):
         return self.reload().returncode == 0
-
-    def hang(self):
-        self.daemon.send_signal(signal.SIGSTOP)
-
-    def restart(self):
-        self.daemon.kill()
-        self.daemon.wait()
-        self._start()
-        programs.wait_until(self._answers, "networkd")
 
     def reload(self):
         """networkctl insists on networkd's own namespace."""
@@ -175,13 +165,6 @@ class AditNetwork:
     def pending(self):
         status = self.status()
         return status and status["pending"]
-
-    def probed(self):
-        path = self.folder / "status" / "probed.json"
-        return json.loads(path.read_text()) if path.exists() else None
-
-    def files(self, name):
-        return sorted(path.name for path in (self.folder / name).iterdir())
 
     def said(self):
         return (self.folder / "adit-network.log").read_text()

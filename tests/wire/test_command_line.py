@@ -7,10 +7,8 @@ import os
 import pty
 import select
 import signal
-import socket
 import subprocess
 import termios
-import threading
 import time
 import unittest
 
@@ -64,51 +62,6 @@ class Terminal:
         self.process.wait()
         os.close(self.ours)
         os.close(self.theirs)
-
-
-class Line:
-    """A line to the box that is slow, that can be cut, and that knows what was asked on it."""
-
-    def __init__(self, stage, bytes_at_once=65536, pause=0.0):
-        self.stage, self.bytes_at_once, self.pause = stage, bytes_at_once, pause
-        self.listens = socket.create_server(("127.0.0.1", 0))
-        self.asked, self.came, self.open = [], 0, set()
-        threading.Thread(target=self._serve, daemon=True).start()
-
-    @property
-    def at(self):
-        return f"127.0.0.1:{self.listens.getsockname()[1]}"
-
-    def cut(self):
-        """All connections; new ones can be made."""
-        for side in list(self.open):
-            with contextlib.suppress(OSError):
-                side.shutdown(socket.SHUT_RDWR)
-
-    def close(self):
-        self.listens.close()
-        self.cut()
-
-    def _serve(self):
-        with contextlib.suppress(OSError):
-            while True:
-                near, _ = self.listens.accept()
-                threading.Thread(target=self._carry, args=(near,), daemon=True).start()
-
-    def _carry(self, near):
-        with near, contextlib.suppress(OSError):
-            far = socket.create_connection((self.stage.network.box_address, programs.PORT))
-            with far:
-                self.open |= {near, far}
-                self.asked.append(near.recv(65536).decode())
-                far.sendall(self.asked[-1].encode())
-                while piece := far.recv(self.bytes_at_once):
-                    near.sendall(piece)
-                    self.came += len(piece)
-                    time.sleep(self.pause)  # it is what makes the line slow
-
-    def targets(self):
-        return [asked.split()[1] for asked in self.asked]
 
 
 class Case(unittest.TestCase):
@@ -166,17 +119,6 @@ class Watching(Case):
                 self.assertTrue(terminal.seen.endswith("\x1b[?25h\x1b[?1049l"), "what was there before is there again")
                 self.assertEqual(termios.tcgetattr(terminal.theirs), terminal.before)
 
-    def test_at_a_terminal_of_another_size(self):
-        with self.stage() as stage:
-            terminal = self.at_a_terminal(stage, "watch")
-            terminal.shows("Command Post")
-            before = len(terminal.look())
-            termios.tcsetwinsize(terminal.theirs, (3, 20))
-            os.killpg(terminal.process.pid, signal.SIGWINCH)
-            wait_until(lambda: "more lines" in terminal.look()[before:], "it to be drawn again")
-            terminal.process.terminate()
-            self.assertEqual(terminal.end(), 0)
-
     def test_in_a_pipe(self):
         with self.stage() as stage:
             said = stage.folder / "watched"
@@ -194,28 +136,6 @@ class Watching(Case):
             self.assertNotIn("\x1b", said.read_text())
             watch.send_signal(signal.SIGTERM)
             self.assertEqual(watch.wait(programs.patient(30)), 0)
-
-    def on_a_line(self, stage, line, *said):
-        """What `adit watch` prints there, in a file."""
-        self.addCleanup(line.close)
-        path = stage.folder / "followed"
-        command = [BIN / "adit", "watch", *said, "--at", line.at, "--token-file", stage.folder / "secrets" / "team.token"]
-        with open(path, "wb") as output:
-            watch = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=UTF8)
-        self.addCleanup(watch.wait)
-        self.addCleanup(watch.kill)
-        return path
-
-    def test_of_a_box_on_a_slow_line(self):
-        with self.stage() as stage:
-            line = Line(stage, bytes_at_once=128, pause=0.2)  # the view takes longer than an answer may
-            said = self.on_a_line(stage, line)
-            wait_until(lambda: "reports left" in said.read_text(), "all of it once")
-            is_taken(stage, REPORT)
-            wait_until(lambda: "  report 1 Backpack: answered" in said.read_text(), "a line of the report")
-            self.assertNotRegex(said.read_text(), "cannot reach Adit|lost the connection")
-            self.assertEqual(line.targets(), ["/adit/events"])
-
 
 class ForScripts(Case):
     def test_all_that_is_shown_is_json_too(self):

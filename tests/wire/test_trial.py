@@ -153,19 +153,6 @@ class Trial(Tried):
         in_use = self.box.ask("GET /adit/settings")[1]["settings"]["command_post"]
         self.assertEqual(in_use["scoring"], {"address": hosts.SCORING, "port": programs.PORT}, "nothing is applied")
 
-    def test_a_typed_token_is_kept_nowhere(self):
-        self.other_post()
-        wrong = {name: token + "-wrong" for name, token in TYPED.items()}
-        for tokens in (TYPED, wrong):
-            self.tried(**self.there(**tokens))
-        told = str(self.box.ask("GET /adit/test")) + str(self.box.ask("GET /adit/log")) + self.box.said()
-        for file in self.stage.folder.rglob("*"):
-            if file.is_file() and "elsewhere" not in file.parts:
-                told += file.read_bytes().decode(errors="replace")
-        for token in TYPED.values():
-            self.assertNotIn(token, told)
-
-
 class ThatWantsASlash(Tried):
     POST = ("--slash",)
 

@@ -31,8 +31,8 @@ def wait_until(condition, what, within=30.0):
 class Box:
     """aditd with folders of its own, which outlive a restart."""
 
-    def __init__(self, folder, label=None, require_token=True, more=()):
-        self.folder, self.more = pathlib.Path(folder), more
+    def __init__(self, folder, label=None, require_token=True):
+        self.folder = pathlib.Path(folder)
         self.state, self.log = self.folder / "state", self.folder / "log"
         secrets = self.folder / "secrets"
         secrets.mkdir(mode=0o700)
@@ -50,7 +50,7 @@ class Box:
         with open(self.log, "ab") as log:
             begun = log.tell()
             self.process = subprocess.Popen([aditd, "--settings", self.folder / "settings.json", "--secrets",
-                                             self.folder / "secrets", "--state", self.state, *self.more],
+                                             self.folder / "secrets", "--state", self.state],
                                             stdout=log, stderr=log)
         try:
             found = wait_until(lambda: re.search(r"listening .*port=(\d+)", self.said()[begun:]), "aditd to listen")

@@ -2,7 +2,6 @@
 
 import json
 import os
-import pathlib
 import re
 import tempfile
 import time
@@ -35,15 +34,6 @@ class Button(unittest.TestCase):
         finally:
             os.close(file)
 
-    def flashes(self):
-        """The run's view once a short press has made the lights flash: a busy box may take one for a bounce."""
-        self.write(b"press\n")
-        time.sleep(0.2)
-        self.write(b"release\n")
-        time.sleep(0.2)
-        now = self.run_view()
-        return now["identify_until"] and now
-
     def hold(self, pattern):
         """Until all lights have this pattern: "on" after 3 s, "rush" after 6."""
         self.write(b"press\n")
@@ -62,9 +52,6 @@ class Button(unittest.TestCase):
         self.assertEqual(status, 200)
         return view
 
-    def alarms(self):
-        return {alarm["id"] for alarm in self.run_view()["alarms"]}
-
     def patterns(self):
         return {light["name"]: light["pattern"] for light in self.run_view()["lights"]}
 
@@ -76,16 +63,6 @@ class Button(unittest.TestCase):
 
     def set_password(self, password=NEW):
         return self.box.ask("POST /adit/password", {"role": "operator", "password": password})[0]
-
-    def test_a_short_press_makes_the_lights_flash_and_opens_nothing(self):
-        self.start_box()
-        self.assertIsNone(self.run_view()["identify_until"])
-        view = wait_until(self.flashes, "the lights to flash")
-        self.assertTrue(1 < view["identify_until"] - view["now"] <= 10.1, view)
-        self.assertEqual({light["pattern"] for light in view["lights"]}, {"twice"})
-        self.assertIsNone(view["setup_open_until"])
-        self.assertFalse(self.is_open())
-        self.assertEqual(self.set_password(), 401)
 
     def test_three_seconds_open_set_up_for_whoever_forgot_the_password(self):
         box = self.start_box()
@@ -121,17 +98,6 @@ class Button(unittest.TestCase):
         self.assertIn("set-up opened at the box", box.said())
         self.assertNotIn(NEW, box.said())
 
-    def test_a_restart_closes_set_up(self):
-        box = self.start_box()
-        self.hold("on")
-        wait_until(self.is_open, "set-up to be open")
-        box.stop()
-        self.assertEqual(self.lit(), ["off"] * 4)
-        box.start()
-        self.assertFalse(self.is_open())
-        self.assertEqual(self.set_password(), 401)
-        box.log_in()
-
     def test_ten_seconds_reset_the_box_after_a_warning_and_keep_the_reports(self):
         box = self.start_box()
         self.assertEqual(box.ask("POST /adit/reports", REPORT, **self.me)[0], 202)
@@ -154,32 +120,3 @@ class Button(unittest.TestCase):
         self.assertEqual(box.set_first(password=NEW)[0], 200)
         report, = box.ask("GET /adit/reports", **box.log_in(NEW))[1]
         self.assertEqual(report["type"], "Drill")
-
-    def test_a_missing_link_shows_on_its_lights_and_asks_for_the_operator(self):
-        box = self.start_box()
-        box.stop()
-        settings = json.loads((box.folder / "settings.json").read_text())
-        settings["command_post"]["interface"] = "no-such-link"
-        (box.folder / "settings.json").write_text(json.dumps(settings))
-        box.start()
-        wait_until(lambda: self.patterns()["scoring"] == "flash", "its pattern")
-        self.assertEqual(self.patterns(), {"health": "on", "scoring": "flash", "mapping": "flash", "attention": "fast"})
-
-    def test_tells_which_board_it_is_and_takes_its_panel_before_that_of_the_settings(self):
-        folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory(prefix="adit-board-")))
-        file = folder / "board.json"
-        box = self.start_box(more=("--board", file))
-        about = lambda: box.ask("GET /adit/about", Authorization="Bearer " + real_aditd.TOKENS["team"])[1]
-        self.assertIsNone(about()["board"], "the file is not there")
-        self.assertEqual([alarm for alarm in self.run_view()["alarms"] if alarm["side"] == "box"], [])
-        file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"chip": "no-chip", "health": "H"}}))
-        box.stop()
-        box.start()
-        self.assertEqual(about()["board"], {"name": "my-board", "title": "My board"})
-        wait_until(lambda: "lights_not_set" in self.alarms(), "the alarm")
-        self.assertFalse((box.state / "panel.button").exists(), "no other takes a real one's place")
-        file.write_text(json.dumps({"name": "my-board", "title": "My board", "panel": {"helth": "H"}}))
-        box.stop()
-        box.start()
-        self.assertIsNone(about()["board"])
-        self.assertIn("board_not_used", self.alarms())

@@ -1,6 +1,5 @@
 """adit-panel, which holds lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is a simulated one."""
 
-import select
 import signal
 import socket
 import subprocess
@@ -17,12 +16,6 @@ class Watching(Running):
     def setUp(self):
         super().setUp()
         self.panel = self.begin_panel()
-
-    def test_what_is_told_is_lit(self):
-        client = self.connect("lit 1110")
-        self.shows("1110")
-        client.send(b"lit 0001")
-        self.shows("0001")
 
     def test_whoever_connected_last_is_heard(self):
         first = self.connect("lit 1000")
@@ -62,29 +55,6 @@ class Watching(Running):
             self.press(word)
             self.assertEqual(client.recv(64), told)
 
-    def test_a_button_that_was_held_before_is_none_until_it_is_let_go(self):
-        first = self.connect("lit 1110")
-        self.shows("1110")
-        self.press("press")
-        self.assertEqual(first.recv(64), b"button 1")
-        second = self.connect("lit 0111")
-        self.shows("0111")
-
-        def presses_again():
-            self.press("release")
-            self.press("press")
-            return select.select([second], [], [], 0.02)[0]  # as one they would be a bounce
-
-        self.wait_until(presses_again, "the second to be told")
-        self.assertEqual(second.recv(64), b"button 1", "and neither the press before nor its release")
-
-    def test_a_stop_leaves_the_lights_dark(self):
-        self.connect("lit 1110")
-        self.shows("1110")
-        self.panel.send_signal(signal.SIGTERM)
-        self.assertEqual(self.panel.wait(PATIENCE), 0)
-        self.assertEqual(self.lit(), DARK)
-
     def test_lines_that_cannot_be_had_are_told_and_simulated(self):
         client = self.connect("lit 1110")
         self.shows("1110")
@@ -108,11 +78,6 @@ class Starting(Running):
         client.send(b"lit 1000")
         self.shows("1000")
         self.assertNotIn("another-chip", self.said())
-
-    def test_a_board_that_cannot_be_read_is_told_and_read_again_at_the_next_start(self):
-        panel = self.begin_panel("--board", self.folder)
-        self.wait_until(lambda: f"{self.folder}: is not a regular file" in self.said(), "the board to be told")
-        self.assertEqual(panel.wait(PATIENCE), 1)
 
     def test_a_board_that_is_wrong_is_told(self):
         board = self.folder / "board.json"
@@ -157,21 +122,6 @@ class WithAditd(Running):
         self.is_at_work()
         print(f"\nadit-panel: from SIGSTOP of aditd to the fault: {', '.join(f'{each:.2f}' for each in figures)} s", file=sys.stderr)
 
-    def test_lights_that_do_not_change_are_no_hang(self):
-        listening = self.enterContext(socket.create_server(("127.0.0.1", 0)))  # connects, and never answers
-        (self.folder / "secrets").mkdir(mode=0o700)
-        for name in ("scoring", "mapping"):
-            token = self.folder / "secrets" / f"{name}.token"
-            token.touch(mode=0o600)
-            token.write_text("token-of-the-test")
-        self.begin_panel()
-        self.begin_aditd(post={"address": "127.0.0.1", "port": listening.getsockname()[1]})
-        self.shows("1110")
-        end = time.monotonic() + 4  # a fault would be seen in this time
-        while time.monotonic() < end:
-            self.assertEqual(self.lit(), "1110")
-            time.sleep(0.01)
-
     def test_a_kill_is_shown_until_the_next_start(self):
         self.begin_panel()
         self.begin_aditd().kill()
@@ -181,39 +131,6 @@ class WithAditd(Running):
         self.shows_fault()
         self.begin_aditd()
         self.is_at_work()
-
-    def test_a_first_start_that_comes_to_nothing_is_shown_at_once(self):
-        board = self.folder / "board.json"
-        board.write_text('{"name": "b", "title": "B", "panel": {}}')
-        self.begin_panel("--board", board)
-        failed = self.begin_aditd(port="none")
-        self.shows_fault()
-        self.assertEqual(failed.wait(PATIENCE), 1)
-
-    def test_so_is_one_after_a_stop_whatever_it_fails_of(self):
-        self.begin_panel()
-        taken = self.enterContext(socket.create_server(("127.0.0.1", 0)))
-        for port in ("none", taken.getsockname()[1]):
-            stopped = self.begin_aditd()
-            self.is_at_work()
-            stopped.send_signal(signal.SIGTERM)
-            self.assertEqual(stopped.wait(PATIENCE), 0)
-            self.shows(DARK)
-            failed = self.begin_aditd(port)
-            self.shows_fault()
-            self.assertEqual(failed.wait(PATIENCE), 1)
-
-    def test_a_stop_is_none(self):
-        self.begin_panel()
-        stopped = self.begin_aditd()
-        self.is_at_work()
-        stopped.send_signal(signal.SIGTERM)
-        self.assertEqual(stopped.wait(PATIENCE), 0)
-        self.shows(DARK)
-        end = time.monotonic() + 2.5  # a fault would be seen in this time
-        while time.monotonic() < end:
-            self.assertEqual(self.lit(), DARK)
-            time.sleep(0.01)
 
     def test_a_panel_that_dies_or_hangs_takes_nothing_with_it(self):
         panel = self.begin_panel()

@@ -3,7 +3,6 @@
 import base64
 import contextlib
 import json
-import random
 import re
 import signal
 import socket
@@ -14,19 +13,11 @@ import unittest
 import command_post
 import real_aditd
 from patience import patient
+from ports import free_port
 from real_aditd import wait_until
 
 TEAM = {"Authorization": f"Bearer {real_aditd.TOKENS['team']}"}
 REPORT = {"type": "Drill", "x": 1.0, "y": 2.0, "z": 3.0}
-
-
-def free_port():
-    """One that nobody listens at. Below those that the kernel gives to whoever asks for any, or it might give this one away
-    meanwhile."""
-    while True:
-        with contextlib.suppress(OSError), contextlib.closing(socket.socket()) as tried:
-            tried.bind(("127.0.0.1", random.randrange(11000, 32000)))
-            return tried.getsockname()[1]
 
 
 def grid(name):

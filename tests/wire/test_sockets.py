@@ -1,11 +1,9 @@
 """aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is restarted:
 the tests play systemd (activation.py). On loopback."""
 
-import contextlib
 import http.client
 import json
 import pathlib
-import random
 import signal
 import socket
 import tempfile
@@ -17,6 +15,7 @@ import activation
 import hosts
 import programs
 from activation import TOKEN, listening
+from ports import free_port
 
 CODE, PASSWORD = "31415926", "correct horse battery"
 NOBODY = {"address": "127.0.0.1", "port": 9}  # discard: nobody listens there
@@ -26,15 +25,6 @@ def settings(*listen):
     return {"version": 1, "command_post": {"scoring": NOBODY, "mapping": NOBODY},
             "team": {"connections": 256, "connections_per_address": 256,
                      "listen": [{"address": address, "port": port} for address, port in listen]}}
-
-
-def free_port():
-    """One that nobody listens at. Below those that the kernel gives to whoever asks for any, or it might give this one away
-    meanwhile."""
-    while True:
-        with contextlib.suppress(OSError), contextlib.closing(socket.socket()) as tried:
-            tried.bind(("127.0.0.1", random.randrange(11000, 32000)))
-            return tried.getsockname()[1]
 
 
 def ask(port, method="GET", path="/adit/run", body=None, address="127.0.0.1"):

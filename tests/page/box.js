@@ -1,17 +1,13 @@
 // The real thing: aditd with a rehearsal Command Post, on loopback, for the length of one test.
-import { spawn } from "node:child_process";
 import { once } from "node:events";
 import { createServer } from "node:net";
-import { chmodSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { inspect } from "node:util";
+import { begin, PASSWORD as OPERATOR, TOKENS } from "./box/box.js";
 import { patient } from "./patience.js";
-import { BIN } from "./stage.js";
 
-export const TOKENS = { scoring: "scoring-token-1", mapping: "mapping-token-1", team: "team-token-1" };
-export const OPERATOR = "correct horse battery", VIEWER = "look, do not touch";
+export { OPERATOR, TOKENS };
+export const VIEWER = "look, do not touch";
 
 /** A connection of its own for a request: a box that restarts, after a reset, closes those that are kept. */
 export const ONCE = { Connection: "close" };
@@ -22,21 +18,6 @@ export async function until(look, what, within = 60_000) {
     const found = await look();
     if (found) return found;
     if (Date.now() >= end) throw new Error(`waited ${patient(within) / 1000} s in vain for ${what}; seen last: ${inspect(found)}`);
-  }
-}
-
-class Program {
-  log = "";
-  constructor(name, ...args) {
-    this.process = spawn(join(BIN, name), args, { stdio: ["ignore", "pipe", "pipe"] });
-    for (const output of [this.process.stdout, this.process.stderr]) output.on("data", (bytes) => (this.log += bytes));
-  }
-  /** The first group of `pattern` in what it printed. */
-  said = (pattern) => until(() => pattern.exec(this.log)?.[1], `${pattern} in:\n${this.log}`);
-  async end() {
-    if (this.process.exitCode !== null || this.process.signalCode !== null) return;
-    this.process.kill("SIGTERM");
-    await once(this.process, "exit");
   }
 }
 
@@ -51,37 +32,11 @@ export async function freePort() {
   }
 }
 
-function secretsIn(folder) {
-  mkdirSync(folder, { mode: 0o700 });
-  for (const [name, token] of Object.entries(TOKENS)) {
-    writeFileSync(join(folder, `${name}.token`), `${token}\n`);
-    chmodSync(join(folder, `${name}.token`), 0o600);
-  }
-  return folder;
-}
-
 /** aditd at work, both passwords set; `ask(method, path, {role, body, headers})` asks as an operator's script by default. */
 export async function box(t, rates = {}) {
-  const folder = mkdtempSync(join(tmpdir(), "adit-page-"));
-  const programs = [];
-  const start = (...words) => programs[programs.push(new Program(...words)) - 1];
-  t.after(async () => {
-    for (const program of programs.reverse()) await program.end();
-    rmSync(folder, { recursive: true }); // only now: a box at work writes to it
-  });
-  const secrets = secretsIn(join(folder, "secrets"));
-  const post = start("adit-rehearsal", "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets", secrets, "--verbose");
-  const address = async (name) => ({ address: "127.0.0.1", port: Number(await post.said(new RegExp(`${name} 127\\.0\\.0\\.1:(\\d+)`))) });
-  const settings = {
-    version: 1,
-    command_post: { scoring: await address("scoring"), mapping: await address("mapping"), rates },
-    team: { listen: [{ address: "127.0.0.1", port: await freePort() }] },
-  };
-  writeFileSync(join(folder, "settings.json"), JSON.stringify(settings));
-  const state = join(folder, "state");
-  const aditd = start("aditd", "--settings", join(folder, "settings.json"), "--secrets", secrets, "--state", state);
-  const url = `http://127.0.0.1:${await aditd.said(/listening .*port=(\d+)/)}`;
-
+  const it = await begin({ settings: { command_post: { rates } } });
+  t.after(() => it.end());
+  const url = it.url.slice(0, -1);
   const who = { operator: { Authorization: `Bearer ${TOKENS.team}` }, nobody: {} };
   const ask = (method, path, { role = "operator", body, headers = {} } = {}) => {
     const bytes = Buffer.isBuffer(body);
@@ -97,14 +52,12 @@ export async function box(t, rates = {}) {
     const { csrf } = await answer.json();
     return { Cookie: answer.headers.get("Set-Cookie").split(";")[0], "Adit-CSRF": csrf };
   };
-  const code = readFileSync(join(state, "first-start.code"), "utf8").trim();
-  await ask("POST", "/adit/password", { role: "nobody", body: { role: "operator", code, password: OPERATOR } });
   await ask("POST", "/adit/password", { body: { role: "viewer", current: OPERATOR, password: VIEWER } });
   who.viewer = await logIn(VIEWER);
   let listened = 1;
   /** After a reset. */
-  const restarted = () => until(() => (aditd.log.match(/: listening /g) ?? []).length > listened && ++listened, "the box to restart");
-  return { url, ask, logIn, code, restarted };
+  const restarted = () => until(() => (it.log().match(/: listening /g) ?? []).length > listened && ++listened, "the box to restart");
+  return { url, ask, logIn, code: it.code, restarted };
 }
 
 /** A team at work: one of every kind of message, and one that is refused. */

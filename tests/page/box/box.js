@@ -54,8 +54,8 @@ class Box {
       version: 1, command_post: { scoring: at(scoring), mapping: at(mapping), ...command_post }, team: { listen: [at(this.port)], connections: 256, connections_per_address: 256 }, ...others,
     }));
     await this.startAditd();
-    const code = readFileSync(join(this.folder, "state/first-start.code"), "utf8").trim();
-    await this.ask("/adit/password", { role: "operator", code, password: PASSWORD });
+    this.code = readFileSync(join(this.folder, "state/first-start.code"), "utf8").trim();
+    await this.ask("/adit/password", { role: "operator", code: this.code, password: PASSWORD });
     if (robots) {
       this.#start("adit-robots", "--post", this.url.slice(0, -1), "--secrets", secrets, "--seed", "7", "--robots", String(robots), "--speed", "2", "--quiet");
     }
@@ -66,6 +66,7 @@ class Box {
     const aditd = this.#start("aditd", "--settings", join(this.folder, "settings.json"), "--secrets", join(this.folder, "secrets"), "--state", join(this.folder, "state"));
     await until(() => fetch(this.url).then(({ ok }) => ok, () => aditd.exitCode !== null && Promise.reject(new Error(aditd.log()))), "aditd");
   }
+  log = () => this.#programs.aditd.log();
   /** Lets the robots stand still, and their programs, too; or go on. */
   freezeRobots = () => this.#programs["adit-robots"].kill("SIGSTOP");
   thawRobots = () => this.#programs["adit-robots"].kill("SIGCONT");

@@ -201,19 +201,3 @@ class SetUp(unittest.TestCase):
         self.assertEqual(self.alarms(), {"robot_unknown:x"})
         self.assertEqual(self.box.said().count("unknown robot"), 1)
         self.assertEqual(self.box.ask("POST /state/update", state("husky-number-9"), **TEAM)[0], 422, "the ICD's rule")
-
-    def test_it_starts_without_tokens_and_says_what_is_missing(self):
-        self.box.stop()
-        for name in real_aditd.TOKENS:
-            (self.box.folder / "secrets" / f"{name}.token").unlink()
-        self.box.start()
-        missing = {f"no_token:{name}" for name in ("scoring", "mapping", "team")}
-        self.assertEqual(self.alarms(), missing)
-        endpoints = self.box.ask("GET /adit/run", **self.me)[1]["endpoints"]
-        self.assertEqual([row["trouble"] for row in endpoints], ["no scoring token is set", "no mapping token is set"])
-        self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), **TEAM)[0], 401)
-        for name in ("scoring", "mapping", "team"):
-            self.applied("POST /adit/tokens", {"name": name, "token": f"{name}-from-the-page"})
-        self.assertFalse(self.alarms() & missing)
-        self.assertEqual(self.box.ask("POST /state/update", state("ugv1"), Authorization="Bearer team-from-the-page")[0],
-                         200)

@@ -1,5 +1,6 @@
 """adit-panel, which holds lights and button and watches aditd: real_panel.py ADIT_PANEL ADITD. The panel is a simulated one."""
 
+import contextlib
 import signal
 import socket
 import subprocess
@@ -147,6 +148,29 @@ class WithAditd(Running):
                 panel.send_signal(signal.SIGCONT)
         self.is_at_work()
         self.assertIsNone(served.poll())
+
+    @contextlib.contextmanager
+    def broken(self):
+        """The simulated panel cannot be written: a directory is in the way of its file."""
+        obstacle = self.shown.with_name(self.shown.name + ".new")
+
+        def is_made():
+            with contextlib.suppress(FileExistsError):  # adit-panel is writing the file
+                obstacle.mkdir()
+            return obstacle.is_dir()
+
+        self.wait_until(is_made, "adit-panel to have written its file")
+        yield
+        obstacle.rmdir()
+
+    def test_lights_that_cannot_be_set_are_told_to_aditd_and_set_again(self):
+        self.begin_panel()
+        self.begin_aditd()
+        self.is_at_work()
+        with self.broken():
+            self.wait_until(lambda: "cannot set the panel lights" in self.said(), "aditd to say so")
+        self.is_at_work()
+        self.wait_until(lambda: "panel lights work again" in self.said(), "aditd to say so")
 
     def test_a_press_reaches_aditd_through_any_panel(self):
         self.begin_aditd()

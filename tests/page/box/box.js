@@ -8,7 +8,7 @@ import { freePort, until } from "../box.js";
 import { BIN } from "../stage.js";
 
 export const TOKENS = { scoring: "flux230{showroom", mapping: "rust871}backdoor", team: "team-own-token-1" };
-export const PASSWORD = "a long cave password";
+export const PASSWORD = "correct horse battery"; // as in the examples of openapi.json
 
 async function stop(program, signal = "SIGTERM") {
   if (!program || program.exitCode !== null || program.signalCode !== null) return;

@@ -91,15 +91,15 @@ const intersection = (a, b) => ({
   top: Math.min(a.top, b.top),
 });
 
-/** Draws the visible tiles in `piece` (metres), the lowest layer first. Then it blends the grids into the clouds: at each pixel the colour
- *  that differs more from the ground's stays, so that walls show through clouds and free cells do not. */
+/** Draws the visible tiles in `piece` (metres): the clouds, and blends the grids into them. At each pixel the colour that differs more
+ *  from the ground's stays, so that walls show through clouds and free cells do not. Without clouds the uppermost grid stays. */
 export function drawLayers(ctx, view, tiles, layers, at, density, piece = view.bounds()) {
   const seen = intersection(piece, view.bounds()); // a coarse tile is larger than that, and what lies in it is not to be asked for
   const visible = visibleTiles(tiles, layers, view, density, at, seen), isCloud = ({ layer }) => layer.kind === "cloud";
   const draw = ({ layer, places }) => places.forEach((place) => drawTile(ctx, view, tiles, place, imageOf(tiles, layer, place, at), density));
-  visible.forEach(draw);
-  if (!visible.some(isCloud)) return;
-  ctx.globalCompositeOperation = themeNow() === "light" ? "darken" : "lighten";
+  const clouds = visible.filter(isCloud);
+  clouds.forEach(draw);
+  if (clouds.length) ctx.globalCompositeOperation = themeNow() === "light" ? "darken" : "lighten";
   visible.filter((each) => !isCloud(each)).forEach(draw);
   ctx.globalCompositeOperation = "source-over";
 }

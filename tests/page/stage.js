@@ -103,10 +103,14 @@ export const settled = (page) =>
     return !globalThis.awaited && !globalThis.still;
   });
 
-/** Until a page that is watched was told so many events more: what it does of itself, or because of them, it has done. */
+/** Until a page was told so many events more and, if it is the run's, has drawn itself since, which it does each second: what it does of
+ *  itself, or because of them, it has done. */
 export async function hears(page, count) {
   const before = await page.evaluate(() => globalThis.heard);
   await page.waitForFunction((enough) => globalThis.heard >= enough, before + count);
+  if (!(await page.$("#about"))) return;
+  const told = await page.textContent("#about"); // the box's clock
+  await page.waitForFunction((told) => document.getElementById("about").textContent !== told, told);
 }
 
 /** Until all that appeared or moved takes presses again: presses.js. */

@@ -4,22 +4,24 @@ import { patched } from "./patched.js";
 import { checkSession } from "./session.js";
 import { follow as followStream } from "./stream.js";
 
+const URGENT = ["alarms", "reports"]; // of a view
 const SILENCE = 10; // s; the worker says something every 4.5 s, also while the box is silent
 
-/** Follows the run: `show({view, time, lost, trouble})` for each view that comes (null: none came yet), as the line goes and
- *  comes back, and each second, for ages grow. `time` is the box's clock; `trouble` the box's sentence, if it answers with an error.
- *  Gives what shows it once more. */
+/** Follows the run: `show({view, time, lost, trouble})` each second, and at once if reports or alarms changed or the line went or came
+ *  back. `view`: the last one (null: none came yet); `time`: the box's clock; `trouble`: the box's sentence, if it answers with an
+ *  error. Gives what shows it once more. */
 export function follow(url, show) {
   let view = null, heardAt = 0, lost = false, trouble = "";
   const again = () => show({ view, lost, trouble, time: view && view.now + (performance.now() - heardAt) / 1000 });
   const hear = (message) => {
+    const before = { view, lost };
     lost = Boolean(message.lost);
     trouble = message.trouble ?? "";
     if (!lost) {
       view = message.view ?? patched(view, message.patch);
       heardAt = performance.now() - (message.age ?? 0);
     }
-    again();
+    if (lost || before.lost || URGENT.some((name) => view[name] !== before.view?.[name])) again();
     if (message.status) checkSession(); // perhaps the session ended
   };
   if (globalThis.SharedWorker) share(url, hear);

@@ -75,7 +75,8 @@ export class TimeBar {
 
   #drawTicks(isNew = false) {
     const begin = this.#first && Math.floor(this.#first);
-    const key = JSON.stringify([begin, this.#slider.max, this.#ticks, document.documentElement.dataset.theme]);
+    const right = Math.round(this.#slider.clientWidth * Math.log(Number(this.#slider.max))); // another one moves a tick by a pixel
+    const key = JSON.stringify([begin, right, this.#ticks, document.documentElement.dataset.theme]);
     if (!isNew && key === this.#ticksDrawn) return;
     this.#ticksDrawn = key;
     const first = Math.floor(this.#first ?? 0);

@@ -117,6 +117,24 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
   await becomes(page, whole);
 });
 
+test("looks after a move as if it were drawn anew", async (t) => {
+  const { page } = await watch(t, "calm", { colorScheme: "dark" });
+  await settled(page);
+  await hide(page, "Robots", "Tracks"); // they move by themselves
+  const at = await page.locator(canvas).boundingBox(), whole = await picture(page);
+  await page.mouse.move(at.x + 200, at.y + 200);
+  await page.waitForSelector("[data-moving]", { state: "detached" });
+  await page.mouse.down();
+  await page.mouse.move(at.x + 251.4, at.y + 227.3, { steps: 5 }); // parts of pixels, as a pen's
+  await page.mouse.up();
+  await hears(page, 1); // it has come to rest meanwhile
+  const moved = await changed(page, whole, "the move");
+  await page.emulateMedia({ colorScheme: "light" });
+  await changed(page, moved, "the light map");
+  await page.emulateMedia({ colorScheme: "dark" });
+  await becomes(page, moved, "the same, drawn anew", 100);
+});
+
 test("shows the map as it was, by the slider, and now again", async (t) => {
   const { page } = await watch(t, "calm");
   const slider = await sliderOf(page);
@@ -155,6 +173,7 @@ test("is drawn again only when something on it changed", async (t) => {
   });
   const { page } = await watch(t, "empty", { prepare });
   await settled(page);
+  await hears(page, 1); // what came at first is drawn
   const before = await page.evaluate(() => globalThis.drawn);
   await hears(page, 2);
   assert.equal(await page.evaluate(() => globalThis.drawn), before);

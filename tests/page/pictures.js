@@ -28,4 +28,4 @@ const differences = (page, whole) =>
     const [one, two] = [node.getContext("2d"), other].map((paint) => new Uint32Array(paint.getImageData(0, 0, image.width, image.height).data.buffer));
     return one.reduce((count, pixel, i) => count + (pixel !== two[i]), 0);
   }, whole);
-export const becomes = (page, whole, what = "the picture before") => until(async () => (await differences(page, whole)) <= FEW, what);
+export const becomes = (page, whole, what = "the picture before", few = FEW) => until(async () => (await differences(page, whole)) <= few, what);

@@ -14,7 +14,7 @@ export class MapOfRun {
   #canvas;
   #view = new MapView();
   #ruler = new Ruler();
-  #scene = new MapScene({ changed: () => this.redraw(), fetched: () => this.#fetched() });
+  #scene = new MapScene({ changed: () => this.#drawing.picture.changed(), fetched: () => this.#fetched() });
   #marks = { followed: null, pair: null, cross: null, isTapped: false }; // isTapped: taps are the page's own
   #drawing;
   #tapped = null;
@@ -50,9 +50,9 @@ export class MapOfRun {
   }
 
   show(run) {
-    if (!this.#scene.show(run)) return;
-    if (this.#marks.followed) this.#drawing.picture.moved();
-    else this.redraw();
+    const { picture } = this.#drawing;
+    if (this.#scene.show(run)) picture.changed();
+    picture.update();
   }
 
   /** Shows a run that is kept: see MapScene.replay(). */

@@ -4,32 +4,33 @@ const MARGIN = 0.2, MAX_MARGIN = 200; // of the view's sides; pixels
 const MAX_RATIO = 1.6, MIN_RATIO = 0.7; // while somebody zooms, a layer is shown so much larger or smaller than it was drawn
 
 export class CachedLayer {
+  key = null; // of what is on it
   #canvas = document.createElement("canvas");
-  #ctx;
+  #ctx = this.#canvas.getContext("2d");
   #view = null; // that it was drawn for, with the margin
-  #key = null;
   #density = 1;
+  #isOfView;
 
-  /** `isOpaque`: it will be filled. */
-  constructor(isOpaque = false) {
-    this.#ctx = this.#canvas.getContext("2d", { alpha: !isOpaque });
+  /** `isOfView`: what is on it depends on where one looks. */
+  constructor({ isOfView = false }) {
+    this.#isOfView = isOfView;
   }
 
-  /** Whether it has to be drawn again: for what is on it (`key`), or for where one looks. While that moves: only if too little of it
-   *  is left. */
+  /** Whether it has to be drawn again: for what is on it (`key`), for the scale, or because too little of it is left. While the view
+   *  moves, it is scaled. */
   needsRedraw(view, key, density, isMoving) {
     const cached = this.#view;
-    if (!cached || key !== this.#key || density !== this.#density) return true;
+    if (!cached || key !== this.key || density !== this.#density) return true;
     const ratio = view.scale / cached.scale;
     if (isMoving && ratio !== 1) return ratio > MAX_RATIO || ratio < MIN_RATIO;
-    return isMoving ? !cached.covers(view) : ratio !== 1 || !cached.isAround(view);
+    return ratio !== 1 || !cached.covers(view) || (this.#isOfView && !isMoving && !cached.isAround(view));
   }
 
   /** `draw(ctx, view)`: `view` is larger than what is seen by a margin. */
   draw(view, key, density, draw) {
     const margin = (side) => Math.ceil(Math.min(MAX_MARGIN, side * MARGIN));
     this.#view = view.widened(margin(view.width), margin(view.height));
-    this.#key = key;
+    this.key = key;
     this.#density = density;
     const size = { width: Math.round(this.#view.width * density), height: Math.round(this.#view.height * density) };
     const ctx = this.#ctx;
@@ -57,7 +58,7 @@ export class CachedLayer {
     ctx.restore();
   }
 
-  /** Onto a canvas that shows `view`, at its place: to whole pixels, where it need not be scaled. */
+  /** Onto a canvas that shows `view`, at its place. */
   copyTo(ctx, view) {
     const cached = this.#view, density = this.#density;
     if (!cached) return;

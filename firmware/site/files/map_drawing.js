@@ -13,7 +13,7 @@ import { looksOf, themeColours } from "./map_theme.js";
 import { drawTracks } from "./map_tracks.js";
 import { whenThemeChanges } from "./theme_now.js";
 
-const FADE_SECONDS = 2; // so often are tracks drawn again
+const FADE_SECONDS = 20; // so often are tracks drawn again; what came since is drawn with the signs
 const BASE_SIZE = 14; // pixels: the size of the page's letters for which widths are given
 
 export class MapDrawing {
@@ -27,6 +27,7 @@ export class MapDrawing {
   #marks;
   #ruler;
   #covers;
+  #tracked = Infinity; // the time up to which tracks are drawn
 
   /** `marks`: {followed, pair, cross, isTapped}; `prepare()` is called before each frame. */
   constructor(canvas, { view, scene, marks, ruler, prepare }) {
@@ -42,7 +43,7 @@ export class MapDrawing {
         { key: this.#mapKey, draw: this.#drawMaps, pieces: () => this.#scene.tiles.pieces() },
         { key: this.#markersKey, draw: this.#drawMarkers },
         { key: this.#tracksKey, draw: this.#drawTracks },
-        { key: this.#signsKey, draw: this.#drawSigns },
+        { key: this.#signsKey, draw: this.#drawSigns, isOfView: true },
       ],
     });
     this.picture.before = prepare;
@@ -82,9 +83,13 @@ export class MapDrawing {
     return [base, shown.tracks, tracks.changes, time ?? Math.floor(this.#scene.now() / FADE_SECONDS), this.#themeKey()].join();
   };
   #drawTracks = (ctx, view) => {
-    const { shown, tracks } = this.#scene;
-    if (shown.tracks) drawTracks(ctx, this.colours, view, tracks.until(this.#scene.until()), this.#scene.now(), this.#unit());
+    this.#traceRobots(ctx, view);
+    this.#tracked = this.#scene.now();
   };
+  #traceRobots(ctx, view, since) {
+    const { shown, tracks } = this.#scene;
+    if (shown.tracks) drawTracks(ctx, this.colours, view, tracks.until(this.#scene.until()), this.#scene.now(), this.#unit(), since);
+  }
 
   #markersKey = () => {
     const { markers } = this.#scene.places;
@@ -103,6 +108,7 @@ export class MapDrawing {
     const { places: { reports, robots, markers }, run, lateRobots, silentRobots } = this.#scene, { followed, pair } = this.#marks;
     const { colours, picture: { fontSize, hasNames } } = this;
     const reportSize = fontSize / 2, robotSize = fontSize / 1.8;
+    this.#traceRobots(ctx, view, this.#tracked);
     const labels = this.#labels(ctx, view);
     keepOffRobots(labels, view, robots, robotSize);
     if (pair) drawPairRings(ctx, colours, labels, view, pair, fontSize);

@@ -5,6 +5,7 @@ import { fetchSoon } from "./session.js";
 import { themeNow } from "./theme_now.js";
 import { clip } from "./words.js";
 
+const INTERVAL = 5000; // ms: markers are asked for no more often
 const TEXT = 9, MESH = 10; // of visualization_msgs/Marker
 const MADE_OF_POINTS = [4, 5, 6, 7, 8, 11];
 const LONGEST = 40; // letters
@@ -28,6 +29,7 @@ export class Markers {
   #all = new Map(); // "ns id" to marker
   #version = 0;
   #asked = false;
+  #due = -Infinity;
   #serial = 0;
   #changed;
 
@@ -36,10 +38,11 @@ export class Markers {
     this.#changed = changed;
   }
 
-  /** Asks for what changed where the box says that something did. */
+  /** Asks for what changed if the box says that something did. */
   async follow(version) {
-    if (this.#asked || version === this.#version) return;
+    if (this.#asked || version === this.#version || performance.now() < this.#due) return;
     this.#asked = true;
+    this.#due = performance.now() + INTERVAL;
     try {
       const answer = await fetchSoon(`/adit/markers?since=${this.#version}`);
       if (answer.ok) this.#store(await answer.json());

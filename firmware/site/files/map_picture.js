@@ -1,36 +1,38 @@
-// How the map gets onto its canvas: cached layers one above the other, each drawn again only if its content changed. All but the
-// uppermost, which changes with every step of a robot, are put together on one; a frame is a copy of these two, and what is
-// written at the edges.
+// How the map gets onto its canvas: cached layers one above the other, each drawn again only if its content changed. A frame is a copy
+// of these, and what is written at the edges.
 import { CachedLayer } from "./map_cached_layer.js";
 
 const REST = 160; // ms without a move: then all is drawn exactly for what is seen
 const FRAME_BUDGET = 10; // ms: the rest waits for the next frame
-const PATCH_INTERVAL = 400; // ms: pieces of a cache are drawn again no more often
+const MIN_INTERVAL = 500, MAX_INTERVAL = 1500; // ms: between two pictures of what the box sends
+const ATTENDED = 3000, ATTENDED_INTERVAL = 400; // ms: so long after a hand's action it is drawn so often, for it may be waited for
 
 export class Picture {
   #canvas;
   #ctx;
   #view;
-  #layers; // from the lowest: {cache, key(), draw(ctx, view)}
+  #layers; // from the lowest: {cache, key(), draw(ctx, view), pieces()}
   #over;
   #ground;
-  #below = new CachedLayer(true);
-  #patched = -Infinity;
-  #composed = 0;
   #waiting = false;
   #isHeld = false; // by a finger
+  #isStale = true; // the next picture is of what changed
+  #isChanged = false; // by the box
+  #looked = -Infinity; // when it was last drawn
+  #later = 0; // a timer
   #moved = -Infinity;
+  #handled = performance.now();
   #rest = 0;
   fontSize = 14; // pixels, of what is written on the map
   hasNames = true; // or there is no room for any
   before = () => {};
 
   /** `layers`: from the lowest, {key(), draw(ctx, view)}; of a layer of which pieces change also `pieces()`, what changed since it was
-   *  last asked, [{left, right, bottom, top}] in metres; then draw() has the piece as its third. `over(ctx, view)` is drawn each time;
-   *  `ground()` is the colour below all. */
+   *  last asked, [{left, right, bottom, top}] in metres; then draw() has the piece as its third. `isOfView`: it depends on what is seen.
+   *  `over(ctx, view)` is drawn each time; `ground()` is the colour below all. */
   constructor(canvas, view, { layers, over, ground }) {
     [this.#canvas, this.#view, this.#over, this.#ground] = [canvas, view, over, ground];
-    this.#layers = layers.map((layer) => ({ ...layer, cache: new CachedLayer() }));
+    this.#layers = layers.map((layer) => ({ ...layer, cache: new CachedLayer(layer) }));
     this.#ctx = canvas.getContext("2d", { alpha: false });
     new ResizeObserver(() => this.resize()).observe(canvas);
   }
@@ -45,17 +47,19 @@ export class Picture {
     Object.assign(this.#view, { width, height });
     const size = { width: Math.round(width * density), height: Math.round(height * density) };
     if (this.#canvas.width !== size.width || this.#canvas.height !== size.height) Object.assign(this.#canvas, size);
+    this.#isStale = true;
     this.#draw(); // at once: a canvas of a new size is blank
   }
   density = () => devicePixelRatio || 1;
 
-  /** It was moved by hand, or follows what moves: until that has come to rest it is copied. */
+  /** It was moved by hand: until it has come to rest it is copied. */
   moved() {
     this.#moved = performance.now();
     clearTimeout(this.#rest);
     this.#rest = setTimeout(() => this.redraw(), REST + 1);
-    this.redraw();
+    this.#drawSoon();
   }
+  #isMoving = () => this.#isHeld || performance.now() - this.#moved < REST;
 
   /** While a finger is down no name gets another place. */
   hold(isHeld) {
@@ -63,7 +67,30 @@ export class Picture {
     if (!isHeld) this.redraw();
   }
 
+  /** Draws what a hand changed, with the next frame. */
   redraw() {
+    this.#handled = performance.now();
+    this.#drawChanged();
+  }
+
+  /** The box sent something: it is drawn with the page's next update, or soon if somebody waits for it. */
+  changed() {
+    this.#isChanged = true;
+    const now = performance.now(), isAttended = !this.#isMoving() && now - this.#handled < ATTENDED;
+    this.#later ||= setTimeout(() => this.#drawChanged(), this.#looked + (isAttended ? ATTENDED_INTERVAL : MAX_INTERVAL) - now);
+  }
+
+  /** The page draws itself: so does the map, with the same frame. */
+  update() {
+    if (this.#isChanged && performance.now() - this.#looked >= MIN_INTERVAL) this.#drawChanged();
+  }
+
+  #drawChanged() {
+    this.#isStale = true;
+    this.#drawSoon();
+  }
+
+  #drawSoon() {
     if (this.#waiting) return;
     this.#waiting = true;
     requestAnimationFrame(() => {
@@ -72,14 +99,14 @@ export class Picture {
     });
   }
 
-  /** Gives how many layers still wait. */
-  #refresh(isMoving, density) {
-    const began = performance.now(), top = this.#layers.at(-1);
+  /** Draws the layers again that do not cover `view`, and if it is stale those that changed. Gives how many still wait. */
+  #refresh(view, isMoving, density) {
+    const began = performance.now();
     let waiting = 0;
-    for (const layer of this.#layers) {
-      const { cache, key, draw, pieces } = layer, now = key();
-      if (!cache.needsRedraw(this.#view, now, density, isMoving)) {
-        if (pieces && this.#patch(layer)) ++this.#composed;
+    for (const { cache, key, draw, pieces } of this.#layers) {
+      const now = this.#isStale ? key() : cache.key;
+      if (!cache.needsRedraw(view, now, density, isMoving)) {
+        if (this.#isStale && pieces) for (const piece of pieces()) cache.patch(piece, draw);
         continue;
       }
       if (performance.now() - began > FRAME_BUDGET) {
@@ -87,48 +114,28 @@ export class Picture {
         continue;
       }
       pieces?.();
-      cache.draw(this.#view, now, density, draw);
-      if (layer !== top) ++this.#composed;
+      cache.draw(view, now, density, draw);
     }
     return waiting;
   }
 
-  /** Gives whether something was drawn again. */
-  #patch({ cache, pieces, draw }) {
-    const next = this.#patched + PATCH_INTERVAL - performance.now();
-    if (next > 0) {
-      clearTimeout(this.#later);
-      this.#later = setTimeout(() => this.redraw(), next);
-      return false;
-    }
-    const all = pieces();
-    if (!all.length) return false;
-    this.#patched = performance.now();
-    for (const piece of all) cache.patch(piece, draw);
-    return true;
-  }
-  #later = 0;
-
   #draw() {
-    this.before();
-    const ctx = this.#ctx, view = this.#view, density = this.density();
-    const isMoving = this.#isHeld || performance.now() - this.#moved < REST;
-    const waiting = this.#refresh(isMoving, density);
-    const key = `${this.#composed} ${this.#ground()}`;
-    if (this.#below.needsRedraw(view, key, density, isMoving)) this.#below.draw(view, key, density, this.#compose);
+    if (this.#isStale) {
+      clearTimeout(this.#later);
+      this.#later = 0;
+      this.#isChanged = false;
+      this.#looked = performance.now();
+      this.before();
+    }
+    const ctx = this.#ctx, density = this.density(), view = this.#view.snapped(density), isMoving = this.#isMoving();
+    const waiting = this.#refresh(view, isMoving, density);
+    this.#isStale &&= waiting > 0;
     ctx.resetTransform();
     ctx.fillStyle = this.#ground();
     ctx.fillRect(0, 0, this.#canvas.width, this.#canvas.height);
-    this.#below.copyTo(ctx, view);
-    this.#layers.at(-1).cache.copyTo(ctx, view);
+    for (const { cache } of this.#layers) cache.copyTo(ctx, view);
     ctx.setTransform(density, 0, 0, density, 0, 0);
     this.#over(ctx, view);
-    if (waiting) this.redraw();
+    if (waiting) this.#drawSoon();
   }
-
-  #compose = (ctx, view) => {
-    ctx.fillStyle = this.#ground();
-    ctx.fillRect(0, 0, view.width, view.height);
-    for (const { cache } of this.#layers.slice(0, -1)) cache.copyTo(ctx, view);
-  };
 }

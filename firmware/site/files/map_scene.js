@@ -5,6 +5,7 @@ import { Tiles } from "./map_tiles.js";
 import { Tracks } from "./map_tracks.js";
 import { Steps } from "./steps.js";
 
+const INTERVAL = 3000; // ms: maps are asked for no more often
 const MAX_METRES = 8192; // from the origin: what is farther away is not fitted into the view
 
 export class MapScene {
@@ -24,6 +25,7 @@ export class MapScene {
   #steps = new Steps();
   #version = -1;
   #isAsking = false;
+  #due = -Infinity;
   #changed;
   #fetched;
 
@@ -40,7 +42,7 @@ export class MapScene {
   show(run) {
     this.run = run;
     if (this.#steps.seen(run.now)) this.#forget();
-    if (run.map_version !== this.#version && !this.#isAsking) this.#refresh(run.map_version);
+    if (run.map_version !== this.#version && !this.#isAsking && performance.now() >= this.#due) this.#refresh(run.map_version);
     this.markers.follow(run.marker_version);
     this.tracks.follow(run);
     this.lateRobots = new Set(run.standings.filter(({ level }) => level === "bad").map(({ name }) => name));
@@ -73,6 +75,7 @@ export class MapScene {
 
   async #refresh(version) {
     this.#isAsking = true;
+    this.#due = performance.now() + INTERVAL;
     try {
       await this.tiles.refresh();
       this.#version = version;

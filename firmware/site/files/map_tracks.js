@@ -107,13 +107,14 @@ export class Tracks {
   }
 }
 
-/** In each robot's colour and pattern; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. */
-export function drawTracks(ctx, colours, view, tracks, now, unit) {
+/** In each robot's colour and pattern; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. `since`: only
+ *  what came later. */
+export function drawTracks(ctx, colours, view, tracks, now, unit, since = -Infinity) {
   ctx.lineJoin = "round";
   for (let age = AGES.length - 1; age >= 0; --age) {
     const [oldest, width, alpha] = AGES[age], newest = AGES[age - 1]?.[0] ?? -Infinity;
     for (const { name, poses } of tracks) {
-      if (!trace(ctx, view, poses, now - oldest, now - newest)) continue;
+      if (!trace(ctx, view, poses, Math.max(since, now - oldest), now - newest)) continue;
       if (age === 0) {
         Object.assign(ctx, { lineWidth: (width + 2) * unit, strokeStyle: colours.ground, globalAlpha: 0.5 });
         ctx.stroke();

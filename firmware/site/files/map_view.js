@@ -30,9 +30,15 @@ export class MapView {
     return Object.assign(new MapView(), { ...size, centre: this.centre, scale: this.scale });
   }
 
+  /** The same, moved to whole pixels of the screen: a picture of one such view, moved, is that of another. */
+  snapped(density) {
+    const step = this.scale * density, snap = (metres) => Math.round(metres * step) / step;
+    return Object.assign(this.widened(0, 0), { centre: { x: snap(this.centre.x), y: snap(this.centre.y) } });
+  }
+
   /** Whether all that `view` shows is in it. */
   covers(view) {
-    const own = this.bounds(), its = view.bounds(), slack = 1 / this.scale;
+    const own = this.bounds(), its = view.bounds(), slack = SAME / this.scale;
     return own.left <= its.left + slack && own.right >= its.right - slack && own.bottom <= its.bottom + slack && own.top >= its.top - slack;
   }
 

@@ -1,58 +1,48 @@
 #include "archive/record.hpp"
 
-#include <zlib.h>
-
 #include "icd/require.hpp"
 #include "store/frame.hpp"
 
 namespace adit::archive {
 namespace {
 
-using store::number_at, store::put_number;
-
-constexpr std::string_view kBegins =
-    "\xA7"
-    "adr";
-constexpr std::size_t kHead = 12;  // marker, length and checksum
+/// A frame may begin anywhere, and is valid at any place of any file.
+constexpr store::Layout kPacked{.align = 1, .copies = 1};
+constexpr std::uint64_t kSalt = 0;
+constexpr std::size_t kPlace = 0;
 /// Limits the checksums spent on bytes that only look like a record.
 constexpr int kMostDamaged = 4096;
 
-std::uint32_t checksum_of(std::string_view body) {
-  return static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(body.data()), body.size()));
+std::size_t size_of(std::string_view bytes) {
+  return store::room_of(store::number_at(bytes, 8, 4), kPacked);
 }
 
 /// The body of the first record in `bytes`; empty if damaged.
 std::string_view body_at_begin(std::string_view bytes) {
-  if (bytes.size() <= kHead) return {};
-  const std::uint64_t length = number_at(bytes, 4, 4);
-  if (length == 0 || length > kLargestRecord || length > bytes.size() - kHead) return {};
-  const std::string_view body = bytes.substr(kHead, length);
-  return checksum_of(body) == number_at(bytes, 8, 4) ? body : std::string_view();
+  if (size_of(bytes) > store::room_of(kLargestRecord, kPacked)) return {};
+  const auto parsed = store::parse(bytes, kPlace, kSalt);
+  return parsed ? parsed->frame.body : std::string_view();
 }
 
 /// Whether the first record has its full length. A torn record is shorter.
 bool is_whole(std::string_view bytes) {
-  if (bytes.size() <= kHead) return false;
-  const std::size_t size = kHead + number_at(bytes, 4, 4);
-  return size == bytes.size() || (size < bytes.size() && bytes.substr(size).starts_with(kBegins));
+  const std::size_t size = size_of(bytes), head = store::room_of(0, kPacked);
+  return size == bytes.size() ||
+         (size < bytes.size() && store::next_candidate(bytes.substr(size, head), 0, kPacked) == 0);
 }
 
 }  // namespace
 
 std::string framed(std::string_view said) {
   icd::require(!said.empty() && said.size() <= kLargestRecord);
-  std::string record(kBegins);
-  put_number(record, said.size(), 4);
-  put_number(record, checksum_of(said), 4);
-  return record.append(said);
+  return store::written({.body = said}, kPacked, kSalt, kPlace);
 }
 
 std::size_t for_each_record(std::string_view bytes, const std::function<void(std::string_view)>& told) {
   std::size_t damaged = 0;
   for (int passed_over = 0; passed_over < kMostDamaged;) {
-    const auto begin = bytes.find(kBegins);
-    if (begin == std::string_view::npos) break;
-    bytes.remove_prefix(begin);
+    bytes.remove_prefix(store::next_candidate(bytes, 0, kPacked));
+    if (bytes.empty()) break;
     const std::string_view body = body_at_begin(bytes);
     if (body.empty()) {
       ++passed_over;
@@ -61,7 +51,7 @@ std::size_t for_each_record(std::string_view bytes, const std::function<void(std
       continue;
     }
     told(body);
-    bytes.remove_prefix(kHead + body.size());
+    bytes.remove_prefix(size_of(bytes));
   }
   return damaged;
 }

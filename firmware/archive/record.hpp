@@ -10,8 +10,8 @@ namespace adit::archive {
 /// Largest record: a tile that cannot be compressed.
 inline constexpr std::size_t kLargestRecord = std::size_t{72} << 10;
 
-/// A record in a file: a marker, the length and the CRC-32 (RFC 1952 8) in 4 bytes each, little-endian, and
-/// the body (said.hpp), which must not be empty.
+/// A record in a file: a frame of store/, with a body (said.hpp) that must not be empty. It is valid at any
+/// place of any file.
 std::string framed(std::string_view said);
 
 /// Calls `told` with the body of each complete record in `bytes`, in order. Skips damaged bytes up to the

@@ -18,22 +18,22 @@ Value object_at(const std::string& prefix, const Settings& settings);
 
 Value list_value(const std::string& path, const Settings& settings) {
   const List& list = list_at(path);
-  Value::Array items;
-  for (std::size_t i = 0; i < list.size(settings); ++i) {
-    Settings up_to_it = settings;  // a key's kind refers to the last item
-    list.resize(up_to_it, i + 1);
-    items.push_back(object_at(path + "[].", up_to_it));
-  }
+  Value::Array items(list.size(settings));
+  Settings left = settings;  // a key's kind refers to the last item
+  for (std::size_t last = items.size(); last > 0; list.resize(left, --last))
+    items[last - 1] = object_at(path + "[].", left);
   return {std::move(items)};
+}
+
+Value value_of(const Child& child, const std::string& path, const Settings& settings) {
+  if (child.list) return list_value(path, settings);
+  return child.key != nullptr ? value_of(child.key->kind, settings) : object_at(path + ".", settings);
 }
 
 Value object_at(const std::string& prefix, const Settings& settings) {
   Value::Object members;
   for (const Child& child : children_of(prefix)) {
-    const std::string path = prefix + std::string(child.name);
-    members.emplace_back(child.name, child.list             ? list_value(path, settings)
-                                     : child.key != nullptr ? value_of(child.key->kind, settings)
-                                                            : object_at(path + ".", settings));
+    members.emplace_back(child.name, value_of(child, prefix + std::string(child.name), settings));
   }
   return {std::move(members)};
 }

@@ -15,10 +15,16 @@ enum class Severity : std::uint8_t {
   Wait,  // may pass by itself
 };
 inline constexpr std::string_view kSeverityWords[] = {"bad", "ask", "wait"};
+constexpr auto& words_of(Severity /*of*/) {
+  return kSeverityWords;
+}
 
 /// Location of the cause.
 enum class Side : std::uint8_t { Robot, Box, Network, CommandPost };
 inline constexpr std::string_view kSideWords[] = {"robot", "box", "network", "command_post"};
+constexpr auto& words_of(Side /*of*/) {
+  return kSideWords;
+}
 
 /// The one thing to do.
 struct Action {
@@ -53,19 +59,6 @@ struct Condition {
   std::uint64_t hides = 0;   // number of unlisted conditions that follow from this one
   friend bool operator==(const Condition&, const Condition&) = default;
 };
-
-}  // namespace adit::alarms
-
-namespace adit::codec {
-
-template <>
-struct KindOf<alarms::Severity> : KindOfWords<alarms::Severity, alarms::kSeverityWords> {};
-template <>
-struct KindOf<alarms::Side> : KindOfWords<alarms::Side, alarms::kSideWords> {};
-
-}  // namespace adit::codec
-
-namespace adit::alarms {
 
 /// A condition as all faces show it.
 struct Alarm {

@@ -12,6 +12,9 @@ namespace adit::alarms {
 /// A state for display, by shape and colour.
 enum class Level : std::uint8_t { Quiet, Good, Wait, Bad };
 inline constexpr std::string_view kLevelWords[] = {"quiet", "good", "wait", "bad"};
+constexpr auto& words_of(Level /*of*/) {
+  return kLevelWords;
+}
 
 /// Whether a robot's messages of one kind reach the Command Post.
 enum class Arrival : std::uint8_t {
@@ -29,6 +32,9 @@ enum class Arrival : std::uint8_t {
 inline constexpr std::string_view kArrivalWords[] = {"waiting",   "up to date", "arriving",     "late",
                                                      "throttled", "failing",    "not arriving", "refused",
                                                      "quiet",     "silent"};
+constexpr auto& words_of(Arrival /*of*/) {
+  return kArrivalWords;
+}
 constexpr std::string_view name_of(Arrival arrival) {
   return kArrivalWords[static_cast<std::size_t>(arrival)];
 }
@@ -58,12 +64,3 @@ Arrival arrival_of(const Stream& stream, double turn, bool silent);
 Level level_of(Arrival arrival);
 
 }  // namespace adit::alarms
-
-namespace adit::codec {
-
-template <>
-struct KindOf<alarms::Level> : KindOfWords<alarms::Level, alarms::kLevelWords> {};
-template <>
-struct KindOf<alarms::Arrival> : KindOfWords<alarms::Arrival, alarms::kArrivalWords> {};
-
-}  // namespace adit::codec

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <expected>
 #include <string>
 #include <string_view>
 
@@ -17,14 +16,9 @@ inline constexpr const char* kNtpFile = "ntp.json";
 /// In the order of Source.
 inline constexpr std::string_view kSourceWords[] = {"none", "last_known", "robots", "command_post",
                                                     "chip", "operator",   "ntp"};
-
-}  // namespace adit::clock
-
-template <>
-struct adit::codec::KindOf<adit::clock::Source>
-    : adit::codec::KindOfWords<adit::clock::Source, adit::clock::kSourceWords> {};
-
-namespace adit::clock {
+constexpr auto& words_of(Source /*of*/) {
+  return kSourceWords;
+}
 
 struct Request {
   std::string nonce = "";  // codec::is_nonce()

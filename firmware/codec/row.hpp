@@ -228,9 +228,11 @@ struct KindOf<T> : KindOfRow<T, T::kRow> {};
 /// "a, b or c", for a sentence.
 std::string in_turn(std::span<const std::string_view> words);
 
-/// The kind of an enum with these words, in order from 0.
-template <class Enum, const auto& kWords>
-struct KindOfWords : Equal {
+/// An enum whose namespace has words_of(Enum): an array of its words, in order from 0.
+template <class Enum>
+  requires requires(Enum value) { words_of(value); }
+struct KindOf<Enum> : Equal {
+  static constexpr auto& kWords = words_of(Enum{});
   static Value write(Enum value) { return {std::string(kWords[static_cast<std::size_t>(value)])}; }
   static void read(const Field& field, Enum& value) {
     const auto* const word = std::find(std::begin(kWords), std::end(kWords), field.text());

@@ -3,21 +3,7 @@
 #include "codec/checked_text.hpp"
 #include "codec/nonce.hpp"
 
-namespace adit::network {
-namespace {
-
-constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Word::What
-
-}  // namespace
-}  // namespace adit::network
-
 namespace adit::codec {
-
-template <>
-struct KindOf<network::Word::What> : KindOfWords<network::Word::What, network::kWordWords> {};
-
-template <>
-struct KindOf<network::Ended> : KindOfWords<network::Ended, network::kEndedWords> {};
 
 template <>
 struct KindOf<std::chrono::milliseconds> {
@@ -46,6 +32,12 @@ struct KindOf<network::Instant> {
 }  // namespace adit::codec
 
 namespace adit::network {
+
+static constexpr std::string_view kWordWords[] = {"confirm", "revert"};  // in the order of Word::What
+static constexpr auto& words_of(Word::What /*of*/) {
+  return kWordWords;
+}
+
 namespace {
 
 using codec::Field;

@@ -82,6 +82,9 @@ struct Pending {
 
 enum class Ended : std::uint8_t { NotYet, Confirmed, Reverted };
 inline constexpr std::string_view kEndedWords[] = {"", "confirmed", "reverted"};  // in the order of Ended
+constexpr auto& words_of(Ended /*of*/) {
+  return kEndedWords;
+}
 constexpr std::string_view name_of(Ended ended) {
   return kEndedWords[static_cast<std::size_t>(ended)];
 }

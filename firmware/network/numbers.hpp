@@ -17,6 +17,9 @@ namespace adit::network {
 enum class Mode : std::uint8_t { Static, Dhcp, LinkLocal };
 /// In the order of Mode.
 inline constexpr std::string_view kModeWords[] = {"static", "dhcp", "link-local"};
+constexpr auto& words_of(Mode /*of*/) {
+  return kModeWords;
+}
 constexpr std::string_view name_of(Mode mode) {
   return kModeWords[static_cast<std::size_t>(mode)];
 }
@@ -75,9 +78,6 @@ std::string host_text(const settings::Subnet& host);
 }  // namespace adit::network
 
 namespace adit::codec {
-
-template <>
-struct KindOf<network::Mode> : KindOfWords<network::Mode, network::kModeWords> {};
 
 template <>
 struct KindOf<settings::Subnet> : KindOfRow<settings::Subnet, network::kHost> {};

@@ -4,27 +4,18 @@
 #include "spare/file_name.hpp"
 
 namespace adit::spare {
-namespace {
 
-constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::What
+static constexpr std::string_view kWhatWords[] = {"write", "take"};  // in the order of StickRequest::What
+static constexpr auto& words_of(StickRequest::What /*of*/) {
+  return kWhatWords;
+}
 
-/// A name that cannot leave its directory.
-constexpr char kExpectedName[] = "expected the name of an export";
-
-}  // namespace
-}  // namespace adit::spare
-
-namespace adit::codec {
-
-template <>
-struct KindOf<spare::StickRequest::What> : KindOfWords<spare::StickRequest::What, spare::kWhatWords> {};
-
-}  // namespace adit::codec
-
-namespace adit::spare {
 namespace {
 
 using codec::member;
+
+/// A name that cannot leave its directory.
+constexpr char kExpectedName[] = "expected the name of an export";
 
 constexpr codec::Member kRequestMembers[] = {
     member<&StickRequest::nonce>("nonce").as(codec::kNonce),

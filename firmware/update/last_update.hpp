@@ -21,20 +21,12 @@ enum class Stage : std::uint8_t {
 /// In the order of Stage.
 inline constexpr std::string_view kStageWords[] = {"",          "installing", "interrupted", "failed",
                                                    "installed", "left",       "good"};
+constexpr auto& words_of(Stage /*of*/) {
+  return kStageWords;
+}
 constexpr std::string_view name_of(Stage stage) {
   return kStageWords[static_cast<std::size_t>(stage)];
 }
-
-}  // namespace adit::update
-
-namespace adit::codec {
-
-template <>
-struct KindOf<update::Stage> : KindOfWords<update::Stage, update::kStageWords> {};
-
-}  // namespace adit::codec
-
-namespace adit::update {
 
 /// The last update, stored across boots.
 struct LastUpdate {

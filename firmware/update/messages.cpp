@@ -3,22 +3,13 @@
 #include "codec/nonce.hpp"
 
 namespace adit::update {
-namespace {
 
-constexpr std::string_view kWhatWords[] = {"install", "stick", "restart", "back",
-                                           "stay"};  // in the order of Request::What
+static constexpr std::string_view kWhatWords[] = {"install", "stick", "restart", "back",
+                                                  "stay"};  // in the order of Request::What
+static constexpr auto& words_of(Request::What /*of*/) {
+  return kWhatWords;
+}
 
-}  // namespace
-}  // namespace adit::update
-
-namespace adit::codec {
-
-template <>
-struct KindOf<update::Request::What> : KindOfWords<update::Request::What, update::kWhatWords> {};
-
-}  // namespace adit::codec
-
-namespace adit::update {
 namespace {
 
 using codec::member;

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "applier/chronyd.hpp"
-#include "applier/clock_options.hpp"
+#include "applier/options.hpp"
 #include "clock/messages.hpp"
 #include "host/root_program.hpp"
 #include "host/untrusted_folder.hpp"

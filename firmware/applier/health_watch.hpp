@@ -3,7 +3,7 @@
 #include <expected>
 #include <string>
 
-#include "applier/update_options.hpp"
+#include "applier/options.hpp"
 
 namespace adit::applier {
 

@@ -4,22 +4,10 @@
 #include <string>
 
 #include "applier/card.hpp"
-#include "command_line/program.hpp"
+#include "applier/options.hpp"
 #include "host/untrusted_folder.hpp"
 
 namespace adit::applier {
-
-/// adit-import's command line.
-struct ImportOptions {
-  std::string card = "/boot/adit";                    // the user's files
-  std::string state = "/var/lib/private/adit";        // of aditd
-  std::string network = "/var/lib/adit-network";      // of adit-network
-  std::string given = "/etc/adit/settings.json";      // the settings of the image
-  std::string in_memory = "/run/adit-notices/state";  // exists if the state is lost at the next boot
-  bool help = false, version = false;
-};
-
-[[gnu::cold]] command_line::Program import_command_line_of(ImportOptions& options);
 
 /// Imports the files on the boot partition into the box's state, all or none, and writes the result to
 /// taken.txt.

@@ -5,13 +5,12 @@
 #include "host/log.hpp"
 
 int main(int argc, char** argv) {
+  using namespace adit;
   using namespace adit::applier;
-  const auto options = adit::command_line::read(import_command_line_of, {argv + 1, argv + argc});
-  if (const auto exit = adit::command_line::answer(import_command_line_of, ADIT_VERSION, options))
-    return *exit;
-  if (const auto done = Import(*options).run(); !done) {
-    adit::host::log(adit::host::Level::Error, "cannot accept the card's files", {{"why", done.error()}});
-    return 1;
-  }
-  return 0;
+  return command_line::run<ImportOptions>(
+      command_line_of, ADIT_VERSION, argc, argv, [](const ImportOptions& options) {
+        return host::log_failure(host::Level::Error, "cannot accept the card's files", Import(options).run())
+                   ? 0
+                   : 1;
+      });
 }

@@ -18,38 +18,28 @@ std::expected<Message, std::string> load(const std::string& path, std::string_vi
 }
 
 bool save(const std::string& path, const std::string& text, std::string_view what) {
-  const auto written = host::write_file(path, text, host::kForAll);
-  if (!written)
-    host::log(host::Level::Error, "cannot store " + std::string(what), {{"why", written.error()}});
-  return written.has_value();
+  return host::log_failure(host::Level::Error, "cannot store " + std::string(what),
+                           host::write_file(path, text, host::kForAll));
 }
 
 constexpr std::string_view kLast = "the outcome of the last update", kGood = "the slot that was good last";
 
-std::string last_update_in(const std::string& folder) {
-  return folder + '/' + update::kLastUpdateFile;
-}
-
-std::string proven_in(const std::string& folder) {
-  return folder + '/' + update::kProvenFile;
-}
-
 }  // namespace
 
 std::expected<update::LastUpdate, std::string> load_last_update(const std::string& folder) {
-  return load<update::LastUpdate>(last_update_in(folder), kLast);
+  return load<update::LastUpdate>(folder + '/' + update::kLastUpdateFile, kLast);
 }
 
 bool save(const std::string& folder, const update::LastUpdate& last_update) {
-  return save(last_update_in(folder), codec::write_file(last_update), kLast);
+  return save(folder + '/' + update::kLastUpdateFile, codec::write_file(last_update), kLast);
 }
 
 std::expected<update::Proven, std::string> load_proven(const std::string& folder) {
-  return load<update::Proven>(proven_in(folder), kGood);
+  return load<update::Proven>(folder + '/' + update::kProvenFile, kGood);
 }
 
 bool save(const std::string& folder, const update::Proven& proven) {
-  return save(proven_in(folder), codec::write_file(proven), kGood);
+  return save(folder + '/' + update::kProvenFile, codec::write_file(proven), kGood);
 }
 
 }  // namespace adit::applier

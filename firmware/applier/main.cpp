@@ -14,15 +14,8 @@
 
 namespace {
 
-int fail(const std::string& why) {
-  adit::host::log(adit::host::Level::Error, "cannot run", {{"why", why}});
-  return 1;
-}
-
-/// Runs once at boot, before networkd.
-int start(const adit::applier::Options& options) {
-  const auto written = adit::applier::NetworkdFiles(options).write_at_start();
-  return written ? 0 : fail(written.error());
+bool is_well(const std::expected<void, std::string>& done) {
+  return adit::host::log_failure(adit::host::Level::Error, "cannot run", done);
 }
 
 /// Runs until the box stops.
@@ -31,7 +24,7 @@ int watch(const adit::applier::Options& options) {
   adit::applier::AddressWatch watch(loop, options);
   const auto terminated = loop.signal(SIGTERM, [&loop] { loop.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&loop] { loop.stop(); });
-  if (const auto started = watch.start(); !started) return fail(started.error());
+  if (!is_well(watch.start())) return 1;
   std::optional<adit::loop::Watchdog> watchdog;
   if (const auto within = adit::host::watchdog_within())
     watchdog.emplace(loop, *within, &adit::host::notify_alive);
@@ -45,7 +38,7 @@ int run(const adit::applier::Options& options) {
   adit::applier::Applier applier(loop, options);
   const auto terminated = loop.signal(SIGTERM, [&applier] { applier.stop(); });
   const auto interrupted = loop.signal(SIGINT, [&applier] { applier.stop(); });
-  if (const auto started = applier.start(); !started) return fail(started.error());
+  if (!is_well(applier.start())) return 1;
   loop.run();
   return applier.is_done() ? 0 : 1;
 }
@@ -55,7 +48,11 @@ int run(const adit::applier::Options& options) {
 int main(int argc, char** argv) {
   using adit::applier::command_line_of;
   const auto options = adit::applier::parse_options({argv + 1, argv + argc});
-  if (const auto exit = adit::command_line::answer(command_line_of, ADIT_VERSION, options)) return *exit;
+  if (const auto exit =
+          adit::command_line::answer<adit::applier::Options>(command_line_of, ADIT_VERSION, options))
+    return *exit;
   if (options->watch) return watch(*options);
-  return options->start ? start(*options) : run(*options);
+  if (!options->start) return run(*options);
+  // Once at boot, before networkd.
+  return is_well(adit::applier::NetworkdFiles(*options).write_at_start()) ? 0 : 1;
 }

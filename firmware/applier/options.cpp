@@ -3,6 +3,8 @@
 #include <string_view>
 #include <utility>
 
+#include "command_line/number.hpp"
+
 namespace adit::applier {
 namespace {
 
@@ -47,7 +49,7 @@ command_line::Program command_line_of(Options& options) {
 }
 
 std::expected<Options, std::string> parse_options(std::span<const char* const> arguments) {
-  const auto options = command_line::read(command_line_of, arguments);
+  const auto options = command_line::read<Options>(command_line_of, arguments);
   if (!options) return options;
   for (const auto& [word, name] :
        {std::pair("--team", options->team), std::pair("--command-post", options->command_post)}) {
@@ -57,6 +59,96 @@ std::expected<Options, std::string> parse_options(std::span<const char* const> a
     return std::unexpected("--team and --command-post name the same interface");
   if (options->start && options->watch) return std::unexpected("--start and --watch exclude each other");
   return options;
+}
+
+command_line::Program command_line_of(UpdateOptions& options) {
+  return {
+      .name = "adit-update",
+      .usage = "[good]",
+      .about =
+          "Update the box by RAUC, on aditd's requests: check a bundle, install it into the slot that is not "
+          "running, and reboot. End when there are no more requests.",
+      .rows = {{"good", "",
+                "watch a boot instead: mark the slot good once aditd is healthy, or reboot if a slot on "
+                "trial does not become healthy",
+                &options.good},
+               {"--within", "SECONDS", "time that a slot on trial has for this (300)",
+                command_line::number<1, 3600>(options.within)},
+               {"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
+               {"--status", "DIR", "directory of the answers", &options.status},
+               {"--state", "DIR", "directory of the last update's outcome", &options.state},
+               {"--sticks", "DIR", "directory in which USB sticks are mounted", &options.sticks},
+               {"--os-release", "FILE", "file whose VERSION_ID is the running version", &options.os_release},
+               {"--hindrance", "FILE", "if this file exists, install no update: it has the reason",
+                &options.hindrance},
+               {"--rauc", "CMD", "RAUC", &options.rauc},
+               {"--systemctl", "CMD", "systemd", &options.systemctl},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
+  };
+}
+
+command_line::Program command_line_of(ClockOptions& options) {
+  return {
+      .name = "adit-clock",
+      .usage = "",
+      .about =
+          "Set the time of day on aditd's requests, and write which source set it last. If requested, run "
+          "chronyd for NTP on the team's "
+          "network. End when there are no more requests.",
+      .rows = {{"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
+               {"--status", "DIR", "directory of the answers", &options.status},
+               {"--chip", "DIR", "the kernel's directory of a battery-backed clock", &options.chip},
+               {"--chip-device", "FILE", "that clock's device, to set it", &options.chip_device},
+               {"--team", "NAME", "interface for NTP", &options.team},
+               {"--systemctl", "CMD", "systemctl, to start and stop chronyd", &options.systemctl},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
+  };
+}
+
+command_line::Program command_line_of(SpareOptions& options) {
+  return {
+      .name = "adit-spare",
+      .usage = "",
+      .about =
+          "Write the export for a spare box to the USB stick in the box, and read exports from it, on "
+          "aditd's requests. Write which exports are on the stick. End when there are no more requests.",
+      .rows = {{"--wanted", "DIR", "directory of aditd's requests", &options.wanted},
+               {"--status", "DIR", "directory of the answers", &options.status},
+               {"--sticks", "DIR", "directory in which USB sticks are mounted, read-only", &options.sticks},
+               {"--block", "DIR", "the kernel's directory of disks", &options.block},
+               {"--devices", "DIR", "directory of the disks' devices", &options.devices},
+               {"--mount", "CMD", "systemd-mount, to mount sticks", &options.mount},
+               {"--version", "", "print the version", &options.version},
+               {"--help", "", "print this help", &options.help}},
+      .ending = "Exit code: 0 on success; 1 if an error occurred; 2 for a wrong command line.",
+  };
+}
+
+command_line::Program command_line_of(ImportOptions& options) {
+  return {
+      .name = "adit-import",
+      .usage = "",
+      .about =
+          "Accept the settings, addresses and tokens on Adit's boot partition, if all of them are correct. "
+          "Write the outcome to taken.txt beside them. Run it before aditd.",
+      .rows =
+          {{"--card", "DIR", "directory with settings.json, network.json and secrets/*.token", &options.card},
+           {"--state", "DIR", "state directory of aditd", &options.state},
+           {"--network", "DIR", "state directory of adit-network", &options.network},
+           {"--given", "FILE", "settings in use until others are saved", &options.given},
+           {"--memory", "FILE",
+            "if this file exists, the state is lost at the next boot, and accepted files stay on the card",
+            &options.in_memory},
+           {"--version", "", "print the version", &options.version},
+           {"--help", "", "print this help", &options.help}},
+      .ending =
+          "Exit code: 0 if there are no files, or if they are wrong or accepted; 1 if correct files could "
+          "not be stored; 2 for a wrong command line.",
+  };
 }
 
 }  // namespace adit::applier

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "command_line/read.hpp"
+#include "update/health.hpp"
 
 namespace adit::applier {
 
@@ -19,10 +20,58 @@ struct Options {
   bool watch = false;  // only listens for address conflicts
   bool help = false, version = false;
 };
-
 [[gnu::cold]] command_line::Program command_line_of(Options& options);
-
 /// An error names the wrong word.
 [[gnu::cold]] std::expected<Options, std::string> parse_options(std::span<const char* const> arguments);
+
+/// adit-update's command line.
+struct UpdateOptions {
+  std::string wanted = "/var/lib/private/adit";       // directory of aditd's requests
+  std::string status = "/run/adit-update";            // directory of the status, readable by all
+  std::string state = "/var/lib/adit-update";         // result of the last update
+  std::string sticks = "/run/adit-stick";             // directory of the mount points
+  std::string os_release = "/etc/os-release";         // source of the running version
+  std::string hindrance = "/run/adit-notices/disks";  // if it exists, says why updates are blocked
+  std::string rauc = "rauc", systemctl = "systemctl";
+  std::chrono::seconds within = update::kGoodWithin;  // time limit of `good`
+  bool good = false;  // watches the start of the machine instead of answering requests
+  bool help = false, version = false;
+};
+[[gnu::cold]] command_line::Program command_line_of(UpdateOptions& options);
+
+/// adit-clock's command line.
+struct ClockOptions {
+  std::string wanted = "/var/lib/private/adit";  // directory of aditd's requests
+  std::string status = "/run/adit-clock";        // directory of the status, readable by all
+  std::string chip = "/sys/class/rtc/rtc0";      // the clock with a battery; may be absent
+  std::string chip_device = "/dev/rtc0";
+  std::string team = "team0";           // NTP interface
+  std::string systemctl = "systemctl";  // controls chronyd
+  bool help = false, version = false;
+};
+[[gnu::cold]] command_line::Program command_line_of(ClockOptions& options);
+
+/// adit-spare's command line.
+struct SpareOptions {
+  std::string wanted = "/var/lib/private/adit";  // directory of aditd's requests
+  std::string status = "/run/adit-spare";        // directory of the status, readable by all
+  std::string sticks = "/run/adit-stick";        // directory of the mount points
+  std::string block = "/sys/class/block";        // the kernel's list of disks
+  std::string devices = "/dev";                  // device files
+  std::string mount = "systemd-mount";           // mounts, and unmounts with --umount
+  bool help = false, version = false;
+};
+[[gnu::cold]] command_line::Program command_line_of(SpareOptions& options);
+
+/// adit-import's command line.
+struct ImportOptions {
+  std::string card = "/boot/adit";                    // the user's files
+  std::string state = "/var/lib/private/adit";        // of aditd
+  std::string network = "/var/lib/adit-network";      // of adit-network
+  std::string given = "/etc/adit/settings.json";      // the settings of the image
+  std::string in_memory = "/run/adit-notices/state";  // exists if the state is lost at the next boot
+  bool help = false, version = false;
+};
+[[gnu::cold]] command_line::Program command_line_of(ImportOptions& options);
 
 }  // namespace adit::applier

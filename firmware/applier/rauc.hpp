@@ -4,7 +4,7 @@
 #include <functional>
 #include <string>
 
-#include "applier/update_options.hpp"
+#include "applier/options.hpp"
 #include "update/bundle.hpp"
 
 namespace adit::applier {

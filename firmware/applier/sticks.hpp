@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "applier/spare_options.hpp"
+#include "applier/options.hpp"
 #include "spare/medium.hpp"
 
 namespace adit::applier {

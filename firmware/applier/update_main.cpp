@@ -1,19 +1,17 @@
 /// adit-update: installs updates of the box as root, for aditd, which has no privileges.
 
 #include "applier/health_watch.hpp"
-#include "applier/update_options.hpp"
+#include "applier/options.hpp"
 #include "applier/updater.hpp"
 #include "command_line/answer.hpp"
 #include "host/log.hpp"
 
 int main(int argc, char** argv) {
-  using adit::applier::update_command_line_of;
-  const auto options = adit::command_line::read(update_command_line_of, {argv + 1, argv + argc});
-  if (const auto exit = adit::command_line::answer(update_command_line_of, ADIT_VERSION, options))
-    return *exit;
-  const auto done =
-      options->good ? adit::applier::watch_health(*options) : adit::applier::Updater(*options).work();
-  if (done) return 0;
-  adit::host::log(adit::host::Level::Error, "cannot run", {{"why", done.error()}});
-  return 1;
+  using namespace adit;
+  using namespace adit::applier;
+  return command_line::run<UpdateOptions>(
+      command_line_of, ADIT_VERSION, argc, argv, [](const UpdateOptions& options) {
+        const auto done = options.good ? watch_health(options) : Updater(options).work();
+        return host::log_failure(host::Level::Error, "cannot run", done) ? 0 : 1;
+      });
 }

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "applier/bundle_file.hpp"
+#include "applier/options.hpp"
 #include "applier/rauc.hpp"
-#include "applier/update_options.hpp"
 #include "host/root_program.hpp"
 #include "update/messages.hpp"
 

@@ -24,4 +24,13 @@ std::optional<int> answer(Program (*program_of)(Options&), const char* version,
   return std::nullopt;
 }
 
+/// main() of a program. `work` returns the exit code.
+template <class Options>
+int run(Program (*program_of)(Options&), const char* version, int argc, char** argv,
+        int (*work)(const Options&)) {
+  const auto options = read(program_of, {argv + 1, argv + argc});
+  const auto exit = answer(program_of, version, options);
+  return exit ? *exit : work(*options);
+}
+
 }  // namespace adit::command_line

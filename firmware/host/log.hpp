@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
 #include <initializer_list>
 #include <string>
 #include <string_view>
@@ -33,6 +34,17 @@ struct Record {
 /// unescaped as ADIT_<NAME>. Elsewhere the line goes to stderr after time and level. The last records are
 /// stored for the page.
 void log(Level level, std::string_view message, std::initializer_list<Field> fields = {});
+
+/// Logs an error as "why". Returns whether `done` has none.
+template <class T, class Error>
+bool log_failure(Level level, std::string_view message, const std::expected<T, Error>& done) {
+  if constexpr (requires { done.error().sentence; }) {
+    if (!done) log(level, message, {{"why", done.error().sentence}});
+  } else {
+    if (!done) log(level, message, {{"why", done.error()}});
+  }
+  return done.has_value();
+}
 
 /// As log(), for a person at the console: secrets stay in the text, and the stored record has no fields.
 void tell_console(Level level, std::string_view message, std::initializer_list<Field> fields);

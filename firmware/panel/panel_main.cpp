@@ -82,8 +82,5 @@ int run(const panel::PanelOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto options = command_line::read(panel::panel_command_line_of, {argv + 1, argv + argc});
-  if (const auto exit = command_line::answer(panel::panel_command_line_of, ADIT_VERSION, options))
-    return *exit;
-  return run(*options);
+  return command_line::run<panel::PanelOptions>(panel::panel_command_line_of, ADIT_VERSION, argc, argv, run);
 }

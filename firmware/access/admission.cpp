@@ -4,6 +4,7 @@
 
 #include "access/whence.hpp"
 #include "icd/refuse.hpp"
+#include "icd/try.hpp"
 
 namespace adit::access {
 namespace {
@@ -39,7 +40,7 @@ std::optional<Visitor> who(const Request& request, std::span<const icd::BearerTo
 
 icd::Checked<Visitor> admit(const Request& request, Role role, std::span<const icd::BearerToken> tokens,
                             Sessions& sessions, Instant now) {
-  if (auto whence = check_whence(request); !whence) return std::unexpected(whence.error());
+  ADIT_TRY(check_whence(request));
   const auto visitor = who(request, tokens, sessions, now);
   if (!visitor) {
     return refuse(icd::Status::Unauthorized, "log in, or send the team's token as Authorization: Bearer");

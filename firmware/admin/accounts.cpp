@@ -94,10 +94,9 @@ std::optional<icd::BearerToken> Accounts::kept_code() {
     std::uint64_t random = 0;
     host::fill_random({reinterpret_cast<std::uint8_t*>(&random), sizeof random});
     code = access::code_from(random);
-    if (const auto written = host::write_file(code_file(), code + "\n", host::kOursAlone); !written) {
-      host::log(Level::Warning, "cannot store the first start's code: the code is valid until the next start",
-                {{"why", written.error()}});
-    }
+    host::log_failure(Level::Warning,
+                      "cannot store the first start's code: the code is valid until the next start",
+                      host::write_file(code_file(), code + "\n", host::kOursAlone));
   }
   return icd::BearerToken::parse(code);
 }
@@ -132,7 +131,7 @@ void Accounts::set(Role role, std::optional<std::string> password,
                    std::function<void(icd::Checked<void>)> done) {
   if (!unread_.empty()) return done(refuse(icd::Status::ServiceUnavailable, unread_));
   if (std::exchange(setting_, true)) {
-    return done(refuse(icd::Status::Conflict, "another password is being set: try again"));
+    return done(conflict("another password is being set: try again"));
   }
   access::Salt salt{};
   host::fill_random(salt);

@@ -32,10 +32,10 @@ std::optional<bool> ClockSetting::is_set() const {
 
 icd::Checked<void> ClockSetting::set_clock(double time) {
   const auto status = adit_clock_.status();
-  if (!status) return refuse(icd::Status::Conflict, adit_clock_.why());
+  if (!status) return conflict(adit_clock_.why());
   if (is_kept_by_ntp())
-    return refuse(icd::Status::Conflict, icd::sentence("the NTP server ", ntp_.server,
-                                                       " keeps the time: clock.ntp_server in the settings"));
+    return conflict(
+        icd::sentence("the NTP server ", ntp_.server, " keeps the time: clock.ntp_server in the settings"));
   if (!clock::to_be_set(status->source, {clock::Source::Operator, time}, loop_.wall_now()))
     return refuse(icd::Status::UnprocessableEntity, "time: expected seconds since 1970, from 2026 to 2099");
   if (const auto asked = ask(clock::Source::Operator, time); !asked)
@@ -84,8 +84,7 @@ void ClockSetting::ask_for_ntp() {
   const bool has_been = ntp_asked_at_ != loop::Instant{};
   if (has_been && loop_.now() < ntp_asked_at_ + kAskAgain) return;
   ntp_asked_at_ = loop_.now();
-  const auto written = adit_clock_.leave(clock::kNtpFile, ntp_);
-  if (!written) host::log(host::Level::Error, "cannot request NTP", {{"why", written.error()}});
+  host::log_failure(host::Level::Error, "cannot request NTP", adit_clock_.leave(clock::kNtpFile, ntp_));
 }
 
 /// Offers the time until adit-clock has set it. Then chronyd keeps the clock by itself.

@@ -9,6 +9,7 @@
 #include "host/log.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "network/messages.hpp"
 
 namespace adit::admin {
@@ -25,10 +26,9 @@ std::expected<bool, std::string> FactoryReset::finish() {
   const bool is_begun = std::filesystem::exists(begun(), unknown);
   if (unknown) return std::unexpected(unread_ = begun() + ": " + unknown.message());
   if (!is_begun) return false;
-  if (const auto done = store_.forget(); !done) return std::unexpected(done.error());
+  ADIT_TRY(store_.forget());
   const network::Forget forget{host::draw_nonce()};
-  if (auto asked = host::leave_request(state_, network::kForgetFile, forget); !asked)
-    return std::unexpected(std::move(asked.error()));
+  ADIT_TRY(host::leave_request(state_, network::kForgetFile, forget));
   for (const char* kept : {"journal", "waiting", "rejected"}) {
     std::error_code error;
     std::filesystem::remove_all(runtime_ + '/' + kept, error);
@@ -43,7 +43,7 @@ std::expected<bool, std::string> FactoryReset::finish() {
         state_ + '/' + Accounts::kDevicesFile, state_ + '/' + Accounts::kCodeFile,
         state_ + '/' + Accounts::kFile, state_ + '/' + Accounts::kFile + host::kDamaged,
         state_ + '/' + TakingOver::kFile, begun()}) {
-    if (const auto done = host::remove_file(file); !done) return std::unexpected(done.error());
+    ADIT_TRY(host::remove_file(file));
   }
   host::log(host::Level::Notice, "factory reset: settings, tokens, passwords and sessions deleted");
   return true;

@@ -12,4 +12,9 @@ inline std::unexpected<icd::Refusal> refuse(icd::Status status, std::string sent
   return std::unexpected(icd::Refusal{status, std::move(sentence)});
 }
 
+/// The box's state forbids it now.
+inline std::unexpected<icd::Refusal> conflict(std::string sentence) {
+  return refuse(icd::Status::Conflict, std::move(sentence));
+}
+
 }  // namespace adit::admin

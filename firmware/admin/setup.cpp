@@ -1,11 +1,10 @@
 #include "admin/setup.hpp"
 
-#include <algorithm>
-
 #include "admin/refuse.hpp"
 #include "forward/channel.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "settings/written.hpp"
 
 namespace adit::admin {
@@ -15,14 +14,6 @@ using settings::Settings;
 
 icd::Checked<void> being_applied() {
   return refuse(icd::Status::Conflict, "another change is being applied: try again");
-}
-
-/// "10.0.0.1:8000, [::]:8000"
-std::string listed(const std::vector<settings::Address>& addresses) {
-  std::string text;
-  for (const settings::Address& address : addresses)
-    text.append(text.empty() ? "" : ", ").append(forward::address_text(address));
-  return text;
 }
 
 }  // namespace
@@ -63,8 +54,9 @@ std::vector<std::string> Setup::warnings(const Settings& next) const {
   std::vector<std::string> sentences;
   const auto now = settings::in_use(settings_), then = settings::in_use(next);
   if (now.team.listen != then.team.listen || now.team.interface != then.team.interface) {
-    sentences.push_back(icd::sentence("Adit and this page move from ", listed(now.team.listen), " to ",
-                                      listed(then.team.listen),
+    sentences.push_back(icd::sentence("Adit and this page move from ",
+                                      icd::listed(now.team.listen, forward::address_text), " to ",
+                                      icd::listed(then.team.listen, forward::address_text),
                                       ": open the page there, and point robots and stations there"));
   }
   if (now.command_post.scoring != then.command_post.scoring) {

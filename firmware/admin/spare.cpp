@@ -46,9 +46,7 @@ void Spare::ends(const std::optional<icd::RunStatus>& expected) {
   if (!goes_on_standby_ || !expected) return;
   SpareFile next = file_;
   next.rest->expected = expected;
-  if (const auto kept = keep(next); !kept)
-    host::log(host::Level::Warning, "cannot store the run's status for the spare",
-              {{"why", kept.error().sentence}});
+  host::log_failure(host::Level::Warning, "cannot store the run's status for the spare", keep(next));
 }
 
 bool Spare::is_of_this_rest(const std::string& file) const {
@@ -89,7 +87,7 @@ api::SpareView Spare::spare() const {
 
 icd::Checked<void> Spare::stand_by() {
   if (!standby_.empty() || goes_on_standby_) return {};
-  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  if (takes_over_) return conflict("this box is taking over just now");
   SpareFile next = file_;
   if (next.box.empty()) next.box = host::random_digits<8>();
   const double now = loop_.wall_now();
@@ -106,7 +104,7 @@ icd::Checked<void> Spare::stand_by() {
 }
 
 icd::Checked<void> Spare::resume() {
-  if (standby_.empty()) return refuse(Status::Conflict, "this box is not on standby");
+  if (standby_.empty()) return conflict("this box is not on standby");
   if (!is_stuck()) {
     std::string unread;
     SpareFile next = SpareFile::read(state_, unread).value_or(SpareFile());  // a damaged file is replaced
@@ -160,18 +158,17 @@ void Spare::seal(const Named& done) {
 }
 
 icd::Checked<void> Spare::take_from_stick(const std::string& name) {
-  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  if (takes_over_) return conflict("this box is taking over just now");
   return stick_.take(name);
 }
 
 /// Runs the checks of an upload.
 void Spare::taken_from_stick(std::string file) {
-  if (const auto taken = take_in(std::move(file)); !taken)
-    host::log(host::Level::Warning, "export from the stick rejected", {{"why", taken.error().sentence}});
+  host::log_failure(host::Level::Warning, "export from the stick rejected", take_in(std::move(file)));
 }
 
 icd::Checked<void> Spare::take_in(std::string file) {
-  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  if (takes_over_) return conflict("this box is taking over just now");
   taken_in_.reset();
   sealed_ = std::make_shared<const std::string>(std::move(file));
   return {};
@@ -182,14 +179,14 @@ void Spare::open(const std::string& code, Done done) {
   if (!typed)
     return done(
         refuse(Status::UnprocessableEntity, icd::sentence("code: expected ", spare::kCodeDigits, " digits")));
-  if (!sealed_) return done(refuse(Status::Conflict, "there is no export to open: import one first"));
+  if (!sealed_) return done(conflict("there is no export to open: import one first"));
   auto text = std::make_shared<std::expected<std::string, std::string>>(
       std::unexpected("the export could not be opened"));
   workers_.submit(
       loop::Urgency::CanWait,
       [sealed = sealed_, text, code = *typed] { *text = spare::unseal(*sealed, code); },
       [this, sealed = sealed_, text, done = std::move(done)] {
-        if (sealed != sealed_) return done(refuse(Status::Conflict, "another export was imported meanwhile"));
+        if (sealed != sealed_) return done(conflict("another export was imported meanwhile"));
         auto checked = opened(std::move(*text));
         if (checked) sealed_.reset();
         done(std::move(checked));
@@ -201,8 +198,7 @@ icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
   if (!text) return refuse(Status::UnprocessableEntity, std::move(text.error()));
   auto content = spare::read(*text);
   if (!content) return refuse(Status::UnprocessableEntity, std::move(content.error()));
-  if (std::string why = file_.hindrance(content->about); !why.empty())
-    return refuse(Status::Conflict, std::move(why));
+  if (std::string why = file_.hindrance(content->about); !why.empty()) return conflict(std::move(why));
   auto settings = taking_over_.check(*content);
   if (!settings) return refuse(Status::UnprocessableEntity, std::move(settings.error()));
   taken_settings_ = *std::move(settings);
@@ -212,7 +208,7 @@ icd::Checked<void> Spare::opened(std::expected<std::string, std::string> text) {
 
 /// Also abandons a takeover that cannot be finished.
 icd::Checked<void> Spare::forget() {
-  if (takes_over_) return refuse(Status::Conflict, "this box is taking over just now");
+  if (takes_over_) return conflict("this box is taking over just now");
   if (is_stuck()) {
     if (auto done = taking_over_.abandon(); !done)
       return refuse(Status::ServiceUnavailable, std::move(done.error()));
@@ -225,7 +221,7 @@ icd::Checked<void> Spare::forget() {
 
 icd::Checked<void> Spare::take_over() {
   if (takes_over_) return {};
-  if (!taken_in_) return refuse(Status::Conflict, "no export is open: import and open one first");
+  if (!taken_in_) return conflict("no export is open: import and open one first");
   spare::Content content = *taken_in_;
   if (!asked_.is_time_set()) content.about.told_at.reset();  // an unset time of day cannot be compared
   if (auto begun = taking_over_.begin(spare::write(content)); !begun)

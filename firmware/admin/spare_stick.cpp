@@ -9,6 +9,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "spare/file_name.hpp"
 #include "spare/sealed.hpp"
 
@@ -18,10 +19,6 @@ namespace {
 using icd::Status;
 
 constexpr const char* kNotHere = "USB sticks are not available: adit-spare does not run";
-
-icd::Refusal conflict(std::string sentence) {
-  return {Status::Conflict, std::move(sentence)};
-}
 
 /// The action to show until adit-spare reports its own.
 const char* doing_of(spare::StickRequest::What what) {
@@ -62,22 +59,17 @@ std::optional<api::StickRow> SpareStick::view() const {
   return row;
 }
 
-std::optional<icd::Refusal> SpareStick::hindrance() const {
+icd::Checked<void> SpareStick::check_free() const {
   const auto now = view();
   if (!now) return conflict(kNotHere);
   if (!adit_spare_.status()) return conflict(adit_spare_.why());
-  if (now->doing.empty()) return std::nullopt;
+  if (now->doing.empty()) return {};
   return conflict(icd::sentence("the box is already ", now->doing, " an export: wait"));
 }
 
-std::optional<icd::Refusal> SpareStick::hindrance_to_write() const {
-  if (auto why = hindrance()) return why;
-  const auto now = view();
-  return !now || now->hindrance.empty() ? std::nullopt : std::optional(conflict(now->hindrance));
-}
-
 icd::Checked<void> SpareStick::write(const std::string& name, const std::string& file) {
-  if (auto why = hindrance_to_write()) return std::unexpected(std::move(*why));
+  ADIT_TRY(check_free());
+  if (const auto now = view(); now && !now->hindrance.empty()) return conflict(now->hindrance);
   const auto left = host::write_file(for_stick(), file, host::kOursAlone);
   if (!left) return refuse(Status::ServiceUnavailable, left.error());
   return ask(What::Write, name);
@@ -86,7 +78,7 @@ icd::Checked<void> SpareStick::write(const std::string& name, const std::string&
 icd::Checked<void> SpareStick::take(const std::string& name) {
   if (!spare::is_file_name(name))
     return refuse(Status::UnprocessableEntity, "name: expected the name of an export on the stick");
-  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  ADIT_TRY(check_free());
   return ask(What::Take, name);
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <expected>
 #include <functional>
 #include <optional>
 #include <string>
@@ -29,16 +28,14 @@ class SpareStick {
 
   /// std::nullopt: adit-spare does not run here.
   std::optional<api::StickRow> view() const;
-  /// Why requests are impossible now, or std::nullopt.
-  std::optional<icd::Refusal> hindrance() const;
+  /// Refuses if requests are impossible now.
+  icd::Checked<void> check_free() const;
   /// Writes the whole file under that name.
   icd::Checked<void> write(const std::string& name, const std::string& file);
   icd::Checked<void> take(const std::string& name);
 
  private:
   using What = spare::StickRequest::What;
-  /// Why no export can be written now, or std::nullopt.
-  std::optional<icd::Refusal> hindrance_to_write() const;
   icd::Checked<void> ask(What what, const std::string& name);
   void look();
   void finish(const spare::StickStatus& status);

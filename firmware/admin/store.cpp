@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "icd/try.hpp"
 #include "settings/written.hpp"
 
 namespace adit::admin {
@@ -72,16 +73,14 @@ std::expected<Store::Loaded, std::string> Store::read(std::string& unread) const
   }
   if (!loaded.saved) {
     const auto parse = [](std::string_view json) { return settings::parse(json); };
-    auto given = read_settings(given_settings_, parse, unread);
-    if (!given) return std::unexpected(given.error());
-    loaded.settings = std::move(*given);
+    auto given = ADIT_TRY(read_settings(given_settings_, parse, unread));
+    loaded.settings = std::move(given);
   }
-  auto secrets = host::read_secrets(given_secrets_, secrets_folder(), token_names(loaded.settings));
-  if (!secrets) return std::unexpected(secrets.error());
-  if (unread.empty()) unread = secrets->unread;
-  for (const auto& [name, why] : secrets->damaged)
+  auto secrets = ADIT_TRY(host::read_secrets(given_secrets_, secrets_folder(), token_names(loaded.settings)));
+  if (unread.empty()) unread = secrets.unread;
+  for (const auto& [name, why] : secrets.damaged)
     loaded.trouble += (loaded.trouble.empty() ? "" : "; ") + why;
-  loaded.secrets = std::move(*secrets);
+  loaded.secrets = std::move(secrets);
   return loaded;
 }
 
@@ -119,23 +118,23 @@ void Store::settle(const settings::Settings& settings) {
   for (const fs::path file : files.value_or(std::vector<std::string>())) {
     const bool known = std::ranges::find(names, file.stem().string()) != names.end();
     if (known || file.extension() != ".token") continue;
-    if (const auto removed = host::remove_file(secrets_folder() / file); !removed)
-      host::log(host::Level::Warning, "unused tokens may remain", {{"why", removed.error()}});
+    host::log_failure(host::Level::Warning, "unused tokens may remain",
+                      host::remove_file(secrets_folder() / file));
   }
   if (!host::remove_file(file_before())) {
     host::log(host::Level::Warning, "cannot remove a file", {{"file", file_before()}});
   }
 }
 
+std::expected<void, std::string> Store::put_back() {
+  const auto before = ADIT_TRY(host::read_file(file_before()));
+  return before == settings::kNoneBefore ? host::remove_file(file()) : host::write_kept(file(), before);
+}
+
 bool Store::revert() {
   if (!unread_.empty() || !host::may_exist(file_before())) return false;
-  const auto before = host::read_file(file_before());
-  const auto reverted = !before                            ? std::unexpected(before.error())
-                        : *before == settings::kNoneBefore ? host::remove_file(file())
-                                                           : host::write_kept(file(), *before);
-  if (!reverted)
-    host::log(host::Level::Error, "cannot restore the previous settings", {{"why", reverted.error()}});
-  return reverted && host::remove_file(file_before());
+  return host::log_failure(host::Level::Error, "cannot restore the previous settings", put_back()) &&
+         host::remove_file(file_before());
 }
 
 std::expected<void, std::string> Store::forget() {

@@ -3,7 +3,6 @@
 #include <expected>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "host/service.hpp"
 #include "icd/bearer_token.hpp"
@@ -59,6 +58,7 @@ class Store {
     return secrets_folder() + "/" + name + settings::kTokenEnding;
   }
   std::expected<void, std::string> make_secrets_folder();
+  std::expected<void, std::string> put_back();
   /// As load(), without changes on disk.
   std::expected<Loaded, std::string> read(std::string& unread) const;
 

@@ -10,6 +10,7 @@
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "ledger/ledger.hpp"
 #include "settings/settings.hpp"
 #include "settings/written.hpp"
@@ -62,8 +63,8 @@ std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
   if (!file) return std::unexpected(unread_ = host::trouble(begun(), file.error()));
   const auto content = spare::read(file->text);
   if (!content) return std::unexpected(begun() + ": " + content.error());
-  if (auto done = take(*content, loop); !done) return std::unexpected(std::move(done.error()));
-  if (auto removed = host::remove_file(begun()); !removed) return std::unexpected(std::move(removed.error()));
+  ADIT_TRY(take(*content, loop));
+  ADIT_TRY(host::remove_file(begun()));
   host::log(host::Level::Notice, "this box took over from another",
             {{"from", content->about.name}, {"reports", std::to_string(content->about.reports)}});
   return true;
@@ -72,16 +73,15 @@ std::expected<bool, std::string> TakingOver::finish(const loop::Loop& loop) {
 /// Every step can be repeated. The last step records the first box, which finishes the takeover.
 std::expected<void, std::string> TakingOver::take(const spare::Content& content, const loop::Loop& loop) {
   forward::StampFloor stamps(state_);
-  const auto kept = stamps.read();
-  if (!kept) return std::unexpected(kept.error());
-  const double least = std::ceil(std::max(content.about.stamps, kept->least));  // the stored form
+  const auto kept = ADIT_TRY(stamps.read());
+  const double least = std::ceil(std::max(content.about.stamps, kept.least));  // the stored form
   const dispatch::Handover handover{
       .expected = content.about.expected,
       .stamp = std::max(loop.stamp_now(), least),
       .ahead = ahead(content.about, std::max(loop.stamp_now(), least), loop.wall_now())};
-  if (auto taken = take_ledger(content, handover, kept->ledger); !taken) return taken;
+  if (auto taken = take_ledger(content, handover, kept.ledger); !taken) return taken;
   stamps.write(
-      {.floor = std::max(kept->floor, least), .wall = kept->wall, .least = least, .ledger = kept->ledger});
+      {.floor = std::max(kept.floor, least), .wall = kept.wall, .least = least, .ledger = kept.ledger});
   const auto written = stamps.read();
   if (!written || written->least < least) return std::unexpected("cannot store the first box's time stamps");
   if (auto taken = take_settings(content); !taken) return taken;
@@ -129,12 +129,11 @@ std::expected<void, std::string> TakingOver::take_settings(const spare::Content&
 }
 
 std::expected<void, std::string> TakingOver::note(const spare::About& about) {
-  auto file = SpareFile::read(state_);
-  if (!file) return std::unexpected(std::move(file.error()));
-  file->rest.reset();
-  std::erase_if(file->taken, [&about](const TakenFrom& each) { return each.box == about.box; });
-  file->taken.push_back({.box = about.box, .at = about.at, .rest_count = about.rest_count});
-  return file->write(state_);
+  auto file = ADIT_TRY(SpareFile::read(state_));
+  file.rest.reset();
+  std::erase_if(file.taken, [&about](const TakenFrom& each) { return each.box == about.box; });
+  file.taken.push_back({.box = about.box, .at = about.at, .rest_count = about.rest_count});
+  return file.write(state_);
 }
 
 }  // namespace adit::admin

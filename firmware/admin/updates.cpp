@@ -8,14 +8,11 @@
 #include "host/disk.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "update/health.hpp"
 
 namespace adit::admin {
 namespace {
-
-icd::Refusal conflicting(std::string sentence) {
-  return {icd::Status::Conflict, std::move(sentence)};
-}
 
 /// The action to show until adit-update reports its own.
 const char* doing_of(update::Request::What what) {
@@ -23,18 +20,17 @@ const char* doing_of(update::Request::What what) {
   return what == What::Restart || what == What::Back ? "restarting" : "checking";
 }
 
-/// Why a bundle of that size does not fit into the directory.
-std::optional<icd::Refusal> no_room(const std::string& folder, std::uint64_t size) {
+/// Refuses a bundle of that size if it does not fit into the directory.
+icd::Checked<void> check_room(const std::string& folder, std::uint64_t size) {
   const auto disk = host::disk_of(folder);
-  if (!disk) {
-    return icd::Refusal{icd::Status::ServiceUnavailable,
-                        "cannot read the free space of the disk: " + std::string(std::strerror(errno))};
-  }
+  if (!disk)
+    return refuse(icd::Status::ServiceUnavailable,
+                  "cannot read the free space of the disk: " + std::string(std::strerror(errno)));
   const std::uint64_t free = disk->free;
-  if (free >= size + Updates::kSpared) return std::nullopt;
-  return icd::Refusal{icd::Status::ServiceUnavailable,
-                      icd::sentence("the bundle has ", size, " bytes, but the disk has room for ",
-                                    free > Updates::kSpared ? free - Updates::kSpared : 0)};
+  if (free >= size + Updates::kSpared) return {};
+  return refuse(icd::Status::ServiceUnavailable,
+                icd::sentence("the bundle has ", size, " bytes, but the disk has room for ",
+                              free > Updates::kSpared ? free - Updates::kSpared : 0));
 }
 
 }  // namespace
@@ -79,46 +75,45 @@ api::UpdateView Updates::update() const {
   return view;
 }
 
-std::optional<icd::Refusal> Updates::hindrance() const {
+icd::Checked<void> Updates::check_free() const {
   const api::UpdateView view = update();
-  if (!view.managed) return conflicting(view.why);
-  if (!view.doing.empty()) return conflicting(icd::sentence("the box is already ", view.doing, ": wait"));
-  return std::nullopt;
+  if (!view.managed) return conflict(view.why);
+  if (!view.doing.empty()) return conflict(icd::sentence("the box is already ", view.doing, ": wait"));
+  return {};
 }
 
-std::optional<icd::Refusal> Updates::nothing_installed_now() const {
-  if (auto why = hindrance()) return why;
+icd::Checked<void> Updates::check_installable() const {
+  ADIT_TRY(check_free());
   const api::UpdateView view = update();
-  if (view.trial) return conflicting(update::wait_for_trial(view.running.version));
-  return std::nullopt;
+  if (view.trial) return conflict(update::wait_for_trial(view.running.version));
+  return {};
 }
 
-std::optional<icd::Refusal> Updates::no_stray() const {
+icd::Checked<void> Updates::check_stray() const {
   const api::UpdateView view = update();
-  if (!view.managed || !view.stray.empty()) return std::nullopt;
-  return conflicting(std::string(update::kNoStray));
+  if (!view.managed || !view.stray.empty()) return {};
+  return conflict(std::string(update::kNoStray));
 }
 
 icd::Checked<std::unique_ptr<api::Upload>> Updates::receive(std::uint64_t size, bool again,
                                                             std::function<void()> resume) {
-  if (auto why = nothing_installed_now()) return std::unexpected(std::move(*why));
-  if (auto why = no_room(adit_update_.requests(), size)) return std::unexpected(std::move(*why));
-  auto upload = UpdateUpload::begin(
+  ADIT_TRY(check_installable());
+  ADIT_TRY(check_room(adit_update_.requests(), size));
+  auto upload = ADIT_TRY(UpdateUpload::begin(
       writer_, {.part = part_file(),
                 .whole = bundle_file(),
                 .size = size,
                 .resume = std::move(resume),
                 .asked = [this, again] { return ask(update::Request::What::Install, again); },
-                .over = [this] { receiving_ = nullptr; }});
-  if (!upload) return std::unexpected(std::move(upload.error()));
+                .over = [this] { receiving_ = nullptr; }}));
   host::log(host::Level::Notice, "receiving an update", {{"bytes", std::to_string(size)}});
-  receiving_ = upload->get();
+  receiving_ = upload.get();
   expected_ = size;
-  return std::unique_ptr<api::Upload>(std::move(*upload));
+  return std::unique_ptr<api::Upload>(std::move(upload));
 }
 
 icd::Checked<void> Updates::install_from_stick(bool again) {
-  if (auto why = nothing_installed_now()) return std::unexpected(std::move(*why));
+  ADIT_TRY(check_installable());
   return ask(update::Request::What::Stick, again);
 }
 
@@ -127,20 +122,20 @@ icd::Checked<void> Updates::restart(bool anyway) {
 }
 
 icd::Checked<void> Updates::go_back(bool anyway) {
-  if (auto why = no_stray()) return std::unexpected(std::move(*why));
+  ADIT_TRY(check_stray());
   return ask_for_restart(update::Request::What::Back, anyway);
 }
 
 icd::Checked<void> Updates::stay() {
-  if (auto why = no_stray()) return std::unexpected(std::move(*why));
-  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  ADIT_TRY(check_stray());
+  ADIT_TRY(check_free());
   return ask(update::Request::What::Stay, false);
 }
 
 icd::Checked<void> Updates::ask_for_restart(update::Request::What what, bool anyway) {
-  if (auto why = hindrance()) return std::unexpected(std::move(*why));
+  ADIT_TRY(check_free());
   const std::string report = anyway ? "" : under_way_();
-  if (!report.empty()) return std::unexpected(conflicting(report));
+  if (!report.empty()) return conflict(report);
   return ask(what, false);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 #include <string>
 
 #include "admin/update_upload.hpp"
@@ -44,12 +43,12 @@ class Updates final : public api::Updates {
   /// Path of a bundle, and during its upload.
   std::string bundle_file() const { return adit_update_.requests() + '/' + update::kBundleFile; }
   std::string part_file() const { return bundle_file() + ".part"; }
-  /// Why requests are impossible now, or std::nullopt.
-  std::optional<icd::Refusal> hindrance() const;
-  /// Why no update can be installed now, or std::nullopt.
-  std::optional<icd::Refusal> nothing_installed_now() const;
-  /// The refusal if no unexpected slot runs.
-  std::optional<icd::Refusal> no_stray() const;
+  /// Refuses if requests are impossible now.
+  icd::Checked<void> check_free() const;
+  /// Refuses if no update can be installed now.
+  icd::Checked<void> check_installable() const;
+  /// Refuses if no unexpected slot runs.
+  icd::Checked<void> check_stray() const;
   /// Requests a restart. Rejected while a report is in flight, unless `anyway`.
   icd::Checked<void> ask_for_restart(update::Request::What what, bool anyway);
   icd::Checked<void> ask(update::Request::What what, bool again);

@@ -1,9 +1,8 @@
 #include "alarms/acknowledged.hpp"
 
-#include <cmath>
-
 #include "codec/field.hpp"
 #include "codec/json.hpp"
+#include "icd/try.hpp"
 
 namespace adit::alarms {
 namespace {
@@ -29,10 +28,9 @@ std::string write_acknowledged(const std::vector<Acknowledged>& all) {
 }
 
 std::expected<std::vector<Acknowledged>, std::string> read_acknowledged(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected(root.error());
+  const auto root = ADIT_TRY(codec::parse_json(json));
   codec::Reading reading;
-  const codec::Field file(*root, reading);
+  const codec::Field file(root, reading);
   const codec::Field version = file.member("version");
   if (version.whole<std::int64_t>() != kVersion) version.refuse("expected ", kVersion);
   std::vector<Acknowledged> all;

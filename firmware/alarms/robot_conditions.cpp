@@ -6,6 +6,7 @@
 #include "alarms/standing.hpp"
 #include "alarms/words.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::alarms {
 namespace {
@@ -130,8 +131,7 @@ void find_full_queue(const Facts& facts, Found& found) {
 }
 
 void find_unknown(const Facts& facts, Found& found) {
-  std::string known;
-  for (const std::string& each : facts.known_robots) known.append(known.empty() ? "" : ", ").append(each);
+  const std::string known = icd::listed(facts.known_robots);
   for (const std::string& name : facts.unknown_robots) {
     found.push_back({.id = "robot_unknown:" + name,
                      .severity = Severity::Ask,

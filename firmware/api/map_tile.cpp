@@ -27,11 +27,9 @@ struct AskedColour {
 AskedColour asked_colour(const intake::RequestHead& head, std::string_view name) {
   const std::string_view text = head.query(name);
   if (text.empty()) return {};
-  std::uint32_t value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value, 16);
-  if (error != std::errc() || end != text.data() + text.size() || text.size() != 6)
-    return {.colour = {}, .wrong = true};
-  const auto part = [value](int shift) { return static_cast<std::uint8_t>(value >> shift); };
+  const auto value = number_in<std::uint32_t>(text, 16);
+  if (!value || text.size() != 6) return {.colour = {}, .wrong = true};
+  const auto part = [value](int shift) { return static_cast<std::uint8_t>(*value >> shift); };
   return {.colour = picture::Colour{part(16), part(8), part(0)}};
 }
 

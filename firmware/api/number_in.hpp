@@ -1,21 +1,15 @@
 #pragma once
 
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <string_view>
 
+#include "icd/text.hpp"
 #include "intake/server.hpp"
 
 namespace adit::api {
 
-/// The number that `text`, a part of a path or query, consists of; or std::nullopt.
-template <class Number>
-std::optional<Number> number_in(std::string_view text) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(number) : std::nullopt;
-}
+using icd::number_in;
 
 /// A number in the query. `wrong`: present but not a finite number.
 struct AskedNumber {

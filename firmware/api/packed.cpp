@@ -6,7 +6,8 @@
 #include <string>
 
 #include "codec/gzip_whole.hpp"
-#include "intake/field_text.hpp"
+#include "icd/letter_case.hpp"
+#include "icd/text.hpp"
 
 namespace adit::api {
 namespace {
@@ -14,12 +15,9 @@ namespace {
 constexpr std::size_t kFewest = 1400;  // a smaller body fits one packet anyway
 constexpr std::size_t kMost = 1u << 20;
 
-/// Removes and returns the text before the next `mark`; `text` becomes the rest.
+/// Removes and returns the trimmed text before the next `mark`; `text` becomes the rest.
 std::string_view take(std::string_view& text, char mark) {
-  const auto end = std::min(text.find(mark), text.size());
-  const auto taken = intake::without_blanks(text.substr(0, end));
-  text.remove_prefix(std::min(end + 1, text.size()));
-  return taken;
+  return icd::trimmed(icd::cut(text, mark), " \t");
 }
 
 /// "q=0", "q=0.0": not acceptable.
@@ -46,8 +44,8 @@ bool takes_gzip(std::string_view accept_encoding) {
   while (!accept_encoding.empty()) {
     auto coding = take(accept_encoding, ',');
     const auto name = take(coding, ';');
-    const bool taken = !is_forbidden(intake::without_blanks(coding));
-    if (intake::same_word(name, "gzip") || intake::same_word(name, "x-gzip")) return taken;
+    const bool taken = !is_forbidden(icd::trimmed(coding, " \t"));
+    if (icd::same_but_for_case(name, "gzip") || icd::same_but_for_case(name, "x-gzip")) return taken;
     if (name == "*") any = taken;
   }
   return any;

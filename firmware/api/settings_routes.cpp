@@ -11,6 +11,7 @@
 #include "codec/json.hpp"
 #include "icd/refuse.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::api {
 namespace {
@@ -136,12 +137,10 @@ intake::Answer SettingsRoutes::set_token(const std::string& body) {
   const auto posted = read_token(body);
   if (!posted) return refused(posted.error());
   const auto rows = setup_.tokens();
-  if (std::ranges::find(rows, posted->name, &TokenRow::name) == rows.end()) {
-    std::string known;
-    for (const TokenRow& row : rows) known.append(known.empty() ? "" : ", ").append(row.name);
+  if (std::ranges::find(rows, posted->name, &TokenRow::name) == rows.end())
     return refusal(icd::Status::UnprocessableEntity,
-                   icd::sentence("name: expected one of ", known, ", got ", icd::in_quotes(posted->name)));
-  }
+                   icd::sentence("name: expected one of ", icd::listed(rows, &TokenRow::name), ", got ",
+                                 icd::in_quotes(posted->name)));
   if (const auto kept = setup_.set_token(posted->name, posted->token); !kept)
     return refused_change(kept.error());
   return object({{"name", {posted->name}}, {"set", {posted->token.has_value()}}});

@@ -7,6 +7,7 @@
 #include "applier/arp_socket.hpp"
 #include "host/files.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 
 namespace adit::applier {
 namespace {
@@ -48,14 +49,13 @@ std::optional<Claim> hear(const ArpSocket& arp, const Addresses& addresses, Cloc
 
 std::expected<std::optional<Claim>, std::string> probe(const std::string& interface,
                                                        const Addresses& addresses) {
-  const auto arp = ArpSocket::open(interface);
-  if (!arp) return std::unexpected(arp.error());
+  const auto arp = ADIT_TRY(ArpSocket::open(interface));
   for (int i = 0; i < kProbes; ++i) {
     for (const std::uint32_t address : addresses) {
-      if (auto asked = arp->ask(address); !asked) return std::unexpected(asked.error());
+      ADIT_TRY(arp.ask(address));
     }
     const auto wait = i + 1 < kProbes ? kBetweenProbes : kAfterProbes;
-    if (auto claim = hear(*arp, addresses, Clock::now() + wait)) return claim;
+    if (auto claim = hear(arp, addresses, Clock::now() + wait)) return claim;
   }
   return std::nullopt;
 }

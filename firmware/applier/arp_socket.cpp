@@ -7,10 +7,11 @@
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 
-#include <algorithm>
 #include <cassert>
 #include <cerrno>
 #include <cstring>
+
+#include "icd/try.hpp"
 
 namespace adit::applier {
 namespace {
@@ -84,9 +85,8 @@ std::expected<ArpSocket, std::string> ArpSocket::open(const std::string& interfa
   arp.interface_ = interface;
   arp.socket_ = loop::FileDescriptor(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
   if (!arp.socket_) return failed(interface, "opening a socket for ARP");
-  auto mac = mac_of(interface);
-  if (!mac) return std::unexpected(std::move(mac.error()));
-  arp.own_ = *mac;
+  auto mac = ADIT_TRY(mac_of(interface));
+  arp.own_ = mac;
   sockaddr_ll place{};
   place.sll_family = AF_PACKET;
   place.sll_protocol = kArpInNetworkOrder;

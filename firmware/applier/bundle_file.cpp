@@ -9,6 +9,7 @@
 
 #include "host/files.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "loop/regular_file.hpp"
 #include "update/messages.hpp"
 
@@ -50,14 +51,13 @@ std::expected<BundleFile, std::string> BundleFile::take(host::UntrustedFolder& f
   const auto gone = folder.remove(name);
   if (!file) return std::unexpected(file.error());
   if (!gone) return std::unexpected(gone.error());
-  if (auto ours = make_ours(*file, name); !ours) return std::unexpected(ours.error());
+  ADIT_TRY(make_ours(*file, name));
   return BundleFile(std::move(*file));
 }
 
 std::expected<BundleFile, std::string> BundleFile::open(const std::string& path) {
-  auto file = open_plain(path, path.substr(path.rfind('/') + 1));
-  if (!file) return std::unexpected(file.error());
-  return BundleFile(std::move(*file));
+  auto file = ADIT_TRY(open_plain(path, path.substr(path.rfind('/') + 1)));
+  return BundleFile(std::move(file));
 }
 
 std::string BundleFile::path() const {

@@ -7,6 +7,7 @@
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "network/check.hpp"
 #include "network/messages.hpp"
 #include "settings/saved.hpp"
@@ -127,14 +128,14 @@ class Reader {
   void read_token(const UntrustedFolder& folder, const std::string& file) {
     const std::string name = icd::sentence(kCardSecrets, "/", file);
     if (file == kCardCode) return read_code(folder, name);
-    const auto known = settings::token_names(counting());
-    const bool is_known = std::ranges::any_of(
-        known, [&file](const std::string& token) { return token + settings::kTokenEnding == file; });
-    if (!is_known)
-      return refuse(name, icd::sentence("unknown name; expected one of ", listed(known), ", ", kCardCode));
+    auto known = settings::token_names(counting());
+    for (std::string& each : known) each += settings::kTokenEnding;
+    if (std::ranges::find(known, file) == known.end())
+      return refuse(name,
+                    icd::sentence("unknown name; expected one of ", icd::listed(known), ", ", kCardCode));
     const auto text = text_of(folder, file, name);
     if (!text) return;
-    auto token = icd::BearerToken::parse(trimmed(*text));
+    auto token = icd::BearerToken::parse(icd::trimmed(*text));
     if (!token) return refuse(name, "expected one token of 1 to 256 visible ASCII characters");
     found_.brought.tokens.emplace(file, std::move(*token));
   }
@@ -142,24 +143,9 @@ class Reader {
   void read_code(const UntrustedFolder& folder, const std::string& name) {
     const auto text = text_of(folder, kCardCode, name);
     if (!text) return;
-    auto code = icd::BearerToken::parse(trimmed(*text));
+    auto code = icd::BearerToken::parse(icd::trimmed(*text));
     if (!code || !access::is_code(code->reveal())) return refuse(name, "expected 8 digits");
     found_.brought.tokens.emplace(kCardCode, std::move(*code));
-  }
-
-  static std::string listed(const std::vector<std::string>& tokens) {
-    std::string list;
-    for (const std::string& token : tokens) {
-      list.append(list.empty() ? "" : ", ").append(token).append(settings::kTokenEnding);
-    }
-    return list;
-  }
-
-  static std::string_view trimmed(std::string_view text) {
-    static constexpr std::string_view kSpace = " \t\r\n";
-    const auto first = text.find_first_not_of(kSpace);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
   }
 
   const UntrustedFolder& card_;

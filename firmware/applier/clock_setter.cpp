@@ -6,6 +6,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::applier {
 namespace {
@@ -32,17 +33,14 @@ std::expected<void, std::string> ClockSetter::work() {
     status_.source = clock::Source::Chip;
   }
   status_.boot = clocks_.boot;
-  if (const auto told = file_.tell(status_); !told) return std::unexpected(told.error());
-  auto folder = host::open_requests(options_.wanted);
-  if (!folder) return std::unexpected(std::move(folder.error()));
-  while (*folder) {
-    const auto ntp = host::take_request<clock::Ntp>(**folder, clock::kNtpFile);
-    if (!ntp) return std::unexpected(ntp.error());
-    if (*ntp) status_.ntp = **ntp;
-    const auto time = host::take_request<clock::Request>(**folder, clock::kRequestFile);
-    if (!time) return std::unexpected(time.error());
-    if (*time) answer(**time);
-    if (!*ntp && !*time) break;
+  (void)ADIT_TRY(file_.tell(status_));
+  auto folder = ADIT_TRY(host::open_requests(options_.wanted));
+  while (folder) {
+    const auto ntp = ADIT_TRY(host::take_request<clock::Ntp>(*folder, clock::kNtpFile));
+    if (ntp) status_.ntp = *ntp;
+    const auto time = ADIT_TRY(host::take_request<clock::Request>(*folder, clock::kRequestFile));
+    if (time) answer(*time);
+    if (!ntp && !time) break;
     status_.trouble = chronyd_.run_with(status_.ntp, status_.trusted());
     (void)file_.tell(status_);
   }

@@ -9,6 +9,7 @@
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "update/health.hpp"
 
 namespace adit::applier {
@@ -66,12 +67,11 @@ void start_adit_update(const std::string& systemctl) {
 
 std::expected<void, std::string> watch_health(const UpdateOptions& options) {
   const Rauc rauc(options.rauc);
-  auto running = rauc.status();
-  if (!running) return std::unexpected(running.error());
-  running->version = version_in(options.os_release);
+  auto running = ADIT_TRY(rauc.status());
+  running.version = version_in(options.os_release);
   const auto last_update = load_last_update(options.state);
   if (!last_update) host::log(Level::Error, "a trial would not be noticed", {{"why", last_update.error()}});
-  const bool trial = last_update && update::on_trial(*last_update, *running, host::boot());
+  const bool trial = last_update && update::on_trial(*last_update, running, host::boot());
   const auto late_at = now() + options.within;
   while (true) {
     const auto health = update::judge(trial, ready(options.systemctl), now() >= late_at);
@@ -79,8 +79,8 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
     if (health == update::Health::Good) break;
     std::this_thread::sleep_for(trial ? kOnTrial : kElse);
   }
-  if (auto marked = rauc.mark_good(); !marked) return marked;
-  keep_proven(options, *running, trial);
+  ADIT_TRY(rauc.mark_good());
+  keep_proven(options, running, trial);
   auto passed = trial ? pass_trial(options, *last_update) : std::expected<void, std::string>{};
   if (passed) start_adit_update(options.systemctl);
   return passed;

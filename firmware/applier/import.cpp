@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
@@ -16,6 +15,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "network/messages.hpp"
 #include "settings/saved.hpp"
 #include "settings/written.hpp"
@@ -43,7 +43,7 @@ Done give_to_owner(UntrustedFolder& folder, const std::string& path) {
 /// Writes a file of aditd. aditd owns the directory, so its path is not trusted.
 Done put(UntrustedFolder& folder, const std::string& name, const std::string& text) {
   const std::string path = folder.path_by_descriptor() + '/' + name;
-  if (auto written = host::write_file(path, text, host::kOursAlone); !written) return written;
+  ADIT_TRY(host::write_file(path, text, host::kOursAlone));
   return give_to_owner(folder, path);
 }
 
@@ -177,17 +177,15 @@ settings::Settings Import::in_force() const {
 }
 
 Done Import::save(const Brought& brought) {
-  auto state = open_state(options_.state);
-  if (!state) return std::unexpected(state.error());
-  if (auto saved = save_tokens(*state, brought); !saved) return saved;
+  auto state = ADIT_TRY(open_state(options_.state));
+  ADIT_TRY(save_tokens(state, brought));
   if (brought.numbers) {
     std::error_code error;
     std::filesystem::create_directories(options_.network, error);
     const std::string file = options_.network + '/' + network::kConfirmedFile;
-    if (auto saved = host::write_file(file, network::write_kept(*brought.numbers), host::kForAll); !saved)
-      return saved;
+    ADIT_TRY(host::write_file(file, network::write_kept(*brought.numbers), host::kForAll));
   }
-  return brought.settings ? save_settings(*state, *brought.settings) : Done{};
+  return brought.settings ? save_settings(state, *brought.settings) : Done{};
 }
 
 Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
@@ -196,12 +194,11 @@ Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
   if (mkdir(path.c_str(), kFolderOfOurs) != 0 && errno != EEXIST) {
     return std::unexpected(host::trouble(settings::kSecretsFolder, errno));
   }
-  if (auto given = give_to_owner(state, path); !given) return given;
-  auto secrets = state.folder(settings::kSecretsFolder);
-  if (!secrets) return std::unexpected(secrets.error());
+  ADIT_TRY(give_to_owner(state, path));
+  auto secrets = ADIT_TRY(state.folder(settings::kSecretsFolder));
   for (const auto& [file, token] : brought.tokens) {
     const std::string text = token.reveal() + "\n";
-    auto saved = file == kCardCode ? put(state, access::kCodeFile, text) : put(**secrets, file, text);
+    auto saved = file == kCardCode ? put(state, access::kCodeFile, text) : put(*secrets, file, text);
     if (!saved) return saved;
   }
   return {};
@@ -209,13 +206,10 @@ Done Import::save_tokens(UntrustedFolder& state, const Brought& brought) {
 
 /// Saves the settings on trial, as the page does. If aditd cannot start with them, it reverts them.
 Done Import::save_settings(UntrustedFolder& state, const settings::Settings& settings) {
-  const auto before = state.read(settings::kFileBefore);
-  if (!before) return std::unexpected(before.error());
-  if (!*before) {
-    const auto now = state.read(settings::kSavedFile);
-    if (!now) return std::unexpected(now.error());
-    if (auto kept = put(state, settings::kFileBefore, now->value_or(settings::kNoneBefore)); !kept)
-      return kept;
+  const auto before = ADIT_TRY(state.read(settings::kFileBefore));
+  if (!before) {
+    const auto now = ADIT_TRY(state.read(settings::kSavedFile));
+    ADIT_TRY(put(state, settings::kFileBefore, now.value_or(settings::kNoneBefore)));
   }
   return put(state, settings::kSavedFile, settings::file_of(settings));
 }

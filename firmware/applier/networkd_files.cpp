@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
@@ -12,6 +11,7 @@
 #include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "network/networkd.hpp"
 
 namespace adit::applier {
@@ -19,9 +19,8 @@ namespace {
 
 /// "" if the file is absent.
 std::expected<std::string, std::string> text_of(const std::string& path) {
-  auto text = host::read_if_there(path);
-  if (!text) return std::unexpected(std::move(text).error());
-  return std::move(*text).value_or("");
+  auto text = ADIT_TRY(host::read_if_there(path));
+  return std::move(text).value_or("");
 }
 
 }  // namespace
@@ -64,18 +63,16 @@ std::expected<void, std::string> NetworkdFiles::write_at_start() {
 }
 
 std::expected<void, std::string> NetworkdFiles::read() {
-  const auto confirmed = read_confirmed();
-  if (!confirmed) return std::unexpected(confirmed.error());
-  if (!*confirmed) use_factory();
+  const auto confirmed = ADIT_TRY(read_confirmed());
+  if (!confirmed) use_factory();
   read_endpoints();
   return {};
 }
 
 std::expected<bool, std::string> NetworkdFiles::read_confirmed() {
-  const auto text = host::read_if_there(confirmed_file());
-  if (!text) return std::unexpected(text.error());
-  if (!*text) return false;
-  const auto confirmed = network::read_kept(**text);
+  const auto text = ADIT_TRY(host::read_if_there(confirmed_file()));
+  if (!text) return false;
+  const auto confirmed = network::read_kept(*text);
   if (confirmed) {
     kept_ = *confirmed;
     return true;
@@ -112,9 +109,8 @@ std::expected<void, std::string> NetworkdFiles::write(Then then) {
   if (kept_) {
     if (auto written = write_kept(*kept_, then); !written) return written;
   }
-  const auto removed = remove_tried(then);
-  if (!removed) return std::unexpected(removed.error());
-  found_a_change_ = *removed;
+  const auto removed = ADIT_TRY(remove_tried(then));
+  found_a_change_ = removed;
   return {};
 }
 
@@ -130,9 +126,8 @@ std::expected<void, std::string> NetworkdFiles::set_aside(const std::string& why
 std::expected<void, std::string> NetworkdFiles::apply(const network::Numbers& numbers) {
   std::vector<Place> changes;
   for (Place& place : places(numbers)) {
-    const auto in_use = in_use_of(place);
-    if (!in_use) return std::unexpected(in_use.error());
-    if (*in_use != place.text) changes.push_back(std::move(place));
+    const auto in_use = ADIT_TRY(in_use_of(place));
+    if (in_use != place.text) changes.push_back(std::move(place));
   }
   for (const Place& place : changes) {
     if (auto unused = check_unused(place); !unused) return unused;
@@ -172,15 +167,14 @@ std::expected<void, std::string> NetworkdFiles::keep(const network::Numbers& num
     return written;
   kept_ = numbers;
   tried_.reset();
-  if (const auto written = write_kept(numbers, Then::Nothing); !written) {
-    host::log(host::Level::Error, "addresses stored, but not written for networkd: retry at the next start",
-              {{"why", written.error()}});
-  }
+  host::log_failure(host::Level::Error,
+                    "addresses stored, but not written for networkd: retry at the next start",
+                    write_kept(numbers, Then::Nothing));
   return {};
 }
 
 std::expected<void, std::string> NetworkdFiles::revert() {
-  if (const auto removed = remove_tried(Then::Reload); !removed) return std::unexpected(removed.error());
+  (void)ADIT_TRY(remove_tried(Then::Reload));
   tried_.reset();
   return reload_.run();
 }
@@ -188,7 +182,7 @@ std::expected<void, std::string> NetworkdFiles::revert() {
 /// Without factory addresses, also removes networkd's files.
 std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forget() {
   for (const std::string& file : {confirmed_file(), endpoints_file()}) {
-    if (auto removed = host::remove_file(file); !removed) return std::unexpected(removed.error());
+    ADIT_TRY(host::remove_file(file));
   }
   endpoints_ = {};
   tried_.reset();
@@ -199,8 +193,8 @@ std::expected<std::optional<network::Numbers>, std::string> NetworkdFiles::forge
       return std::unexpected(host::trouble(place.kept, errno));
     }
   }
-  if (const auto written = write(Then::Reload); !written) return std::unexpected(written.error());
-  if (const auto reloaded = reload_.run(); !reloaded) return std::unexpected(reloaded.error());
+  ADIT_TRY(write(Then::Reload));
+  ADIT_TRY(reload_.run());
   return kept_;
 }
 
@@ -214,9 +208,8 @@ std::expected<void, std::string> NetworkdFiles::lead_to(const network::Endpoints
   }
   const auto& in_use = tried_ ? tried_ : kept_;
   for (const Place& place : in_use ? places(*in_use) : std::array<Place, 2>{}) {
-    const auto used = in_use_of(place);
-    if (!used) return std::unexpected(used.error());
-    if (*used == place.text) continue;
+    const auto used = ADIT_TRY(in_use_of(place));
+    if (used == place.text) continue;
     if (auto written = put(place.tried, place.text, Then::Reload); !written) return written;
   }
   return reload_.run();

@@ -13,9 +13,8 @@ bool Reload::is_due() const {
 void Reload::set_due() {
   if (is_due()) return;
   is_due_ = true;
-  if (const auto noted = host::write_file(file(), "", host::kForAll); !noted)
-    host::log(host::Level::Error, "cannot note that networkd has to read its files",
-              {{"why", noted.error()}});
+  host::log_failure(host::Level::Error, "cannot note that networkd has to read its files",
+                    host::write_file(file(), "", host::kForAll));
 }
 
 std::expected<void, std::string> Reload::run() {

@@ -3,6 +3,7 @@
 #include "applier/export_file.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "spare/sealed.hpp"
 
 namespace adit::applier {
@@ -15,7 +16,7 @@ using Mode = Sticks::Mode;
 std::expected<std::string, std::string> take_export(host::UntrustedFolder& folder) {
   // path_by_descriptor() is a symbolic link, which read_export() does not follow. "/." makes it a directory.
   auto bytes = read_export(folder.path_by_descriptor() + "/.", spare::kForStickFile);
-  if (const auto gone = folder.remove(spare::kForStickFile); !gone) return std::unexpected(gone.error());
+  ADIT_TRY(folder.remove(spare::kForStickFile));
   if (!bytes) return bytes;
   if (std::string why = spare::not_an_export(std::string_view(*bytes).substr(0, spare::kExportHead));
       !why.empty())

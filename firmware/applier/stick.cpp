@@ -7,6 +7,7 @@
 #include "applier/sticks.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "update/bundle_name.hpp"
 
 namespace adit::applier {
@@ -46,13 +47,11 @@ std::expected<update::Offer, std::string> judge(const Candidate& candidate, cons
                                                 const update::Running& running) {
   if (!update::is_plain(candidate.name))
     return std::unexpected("rename the file: only ASCII characters are allowed");
-  const auto file = BundleFile::open(candidate.folder + '/' + candidate.name);
-  if (!file) return std::unexpected(file.error());
-  const auto bundle = rauc.info(file->path());
-  if (!bundle) return std::unexpected(bundle.error());
-  if (std::string why = update::hindrance(*bundle, running, true); !why.empty())
+  const auto file = ADIT_TRY(BundleFile::open(candidate.folder + '/' + candidate.name));
+  const auto bundle = ADIT_TRY(rauc.info(file.path()));
+  if (std::string why = update::hindrance(bundle, running, true); !why.empty())
     return std::unexpected(std::move(why));
-  return update::Offer{candidate.name, bundle->version};
+  return update::Offer{candidate.name, bundle.version};
 }
 
 }  // namespace

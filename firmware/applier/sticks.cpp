@@ -13,6 +13,7 @@
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "spare/file_name.hpp"
 
 namespace adit::applier {
@@ -82,10 +83,9 @@ std::vector<std::string> Sticks::exports(std::span<const spare::Medium> media) c
 }
 
 std::expected<std::string, std::string> Sticks::folder_with(const std::string& name) const {
-  const auto all = media();
-  if (!all) return std::unexpected(all.error());
+  const auto all = ADIT_TRY(media());
   std::string why = "no stick has this export";
-  for (const spare::Medium& medium : *all) {
+  for (const spare::Medium& medium : all) {
     if (!medium.is_mounted) continue;
     const std::string file = folder(medium.name) + '/' + name;
     struct stat status{};
@@ -131,8 +131,8 @@ void Sticks::settle() const {
     if (!medium.is_mounted || statvfs(folder(medium.name).c_str(), &now) != 0 ||
         (now.f_flag & ST_RDONLY) != 0)
       continue;
-    if (const auto done = remount(medium.name, Mode::ReadOnly); !done)
-      host::log(host::Level::Error, "cannot mount a stick read-only again", {{"why", done.error()}});
+    host::log_failure(host::Level::Error, "cannot mount a stick read-only again",
+                      remount(medium.name, Mode::ReadOnly));
   }
 }
 

@@ -51,9 +51,8 @@ void Updater::find_out() {
       read ? *read : update::LastUpdate{.stage = Stage::Failed, .why = read.error()};
   update::LastUpdate last_update = running ? update::settled(kept, status_.running, boot_) : kept;
   if (last_update.stage == Stage::Left && kept.stage != Stage::Left) {
-    if (const auto left = rauc_.leave_other(); !left)
-      host::log(Level::Error, "cannot stop the boot loader from starting the failed update again",
-                {{"why", left.error()}});
+    host::log_failure(Level::Error, "cannot stop the boot loader from starting the failed update again",
+                      rauc_.leave_other());
   }
   if (last_update == kept) {
     status_.last = std::move(last_update);

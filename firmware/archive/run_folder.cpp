@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <filesystem>
-#include <optional>
 #include <utility>
 
 #include "host/disk.hpp"
@@ -14,6 +13,7 @@
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/require.hpp"
+#include "icd/try.hpp"
 #include "loop/regular_file.hpp"
 
 namespace adit::archive {
@@ -39,10 +39,9 @@ GrowingFile::GrowingFile(std::string folder, std::string prefix, std::string hea
 
 std::expected<void, std::string> GrowingFile::look() {
   if (has_looked_) return {};
-  auto numbers = host::numbers_in(folder_, prefix_);
-  if (!numbers) return std::unexpected(std::move(numbers.error()));
+  auto numbers = ADIT_TRY(host::numbers_in(folder_, prefix_));
   has_looked_ = true;
-  for (const std::uint64_t number : *numbers) {
+  for (const std::uint64_t number : numbers) {
     std::error_code error;
     const std::uintmax_t size = fs::file_size(path(number), error);
     files_.push_back({number, error ? kLargest : size});  // unknown: nothing is added to it
@@ -61,7 +60,7 @@ std::uint64_t GrowingFile::bytes() const {
 }
 
 std::expected<std::uint64_t, std::string> GrowingFile::append(std::string_view bytes, std::size_t largest) {
-  if (auto looked = look(); !looked) return std::unexpected(std::move(looked.error()));
+  ADIT_TRY(look());
   const bool fits = !files_.empty() && files_.back().size + bytes.size() <= largest;
   if (fits && !fd_) fd_ = loop::open_regular(path(files_.back().number), O_WRONLY | O_APPEND);
   if (!fits || !fd_) {
@@ -109,23 +108,21 @@ std::expected<RunFolder::Written, std::string> RunFolder::write(const Batch& bat
     if (disk->free < std::min(kLeave, disk->all / 4)) return std::unexpected("the disk is nearly full");
     most = std::min(most, (disk->free + bytes()) / 2);
   }
-  if (const auto shrunk = tiles_.shrink(most); !shrunk) return std::unexpected(shrunk.error());
-  if (const auto shrunk = lines_.shrink(most / 8); !shrunk) return std::unexpected(shrunk.error());
+  ADIT_TRY(tiles_.shrink(most));
+  ADIT_TRY(lines_.shrink(most / 8));
   const std::size_t largest = largest_file(most);
   Written written;
   if (!batch.tiles.empty() || !batch.beside.empty()) {
     std::string records = batch.beside;
     for (const TileState& state : batch.tiles) records += record_of(state);
-    const auto file = tiles_.append(records, largest);
-    if (!file) return std::unexpected(file.error());
-    written.file = *file;
+    const auto file = ADIT_TRY(tiles_.append(records, largest));
+    written.file = file;
   }
   if (!batch.facts.empty()) {
-    const auto done = host::write_file(path_ + '/' + kFacts, batch.facts, host::kOursAlone);
-    if (!done) return std::unexpected(done.error());
+    ADIT_TRY(host::write_file(path_ + '/' + kFacts, batch.facts, host::kOursAlone));
   }
   if (!batch.lines.empty()) {
-    if (const auto done = lines_.append(batch.lines, largest); !done) return std::unexpected(done.error());
+    (void)ADIT_TRY(lines_.append(batch.lines, largest));
   }
   written.first_file = tiles_.first();
   written.bytes = bytes();
@@ -140,9 +137,8 @@ std::expected<void, std::string> read_run(const std::string& folder, Told& told,
                                           const std::function<bool()>& enough) {
   std::expected<void, std::string> all_read;
   for (const char* prefix : {kLines, kTiles}) {
-    const auto numbers = host::numbers_in(folder, prefix);
-    if (!numbers) return std::unexpected(numbers.error());
-    for (const std::uint64_t number : *numbers) {
+    const auto numbers = ADIT_TRY(host::numbers_in(folder, prefix));
+    for (const std::uint64_t number : numbers) {
       if (enough()) return all_read;
       if (const auto bytes = host::read_file(folder + '/' + host::numbered_name(prefix, number))) {
         told.tell(*bytes, prefix == kTiles ? number : 0);
@@ -157,9 +153,8 @@ std::expected<void, std::string> read_run(const std::string& folder, Told& told,
 std::expected<bool, std::string> is_blank(const std::string& folder) {
   bool is_blank = !host::may_exist(folder + '/' + RunFolder::kFacts);
   for (const char* prefix : {kLines, kTiles}) {
-    const auto numbers = host::numbers_in(folder, prefix);
-    if (!numbers) return std::unexpected(numbers.error());
-    is_blank = is_blank && numbers->empty();
+    const auto numbers = ADIT_TRY(host::numbers_in(folder, prefix));
+    is_blank = is_blank && numbers.empty();
   }
   return is_blank;
 }

@@ -10,6 +10,8 @@
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/letter_case.hpp"
+#include "icd/try.hpp"
 
 namespace adit::archive {
 namespace {
@@ -41,12 +43,11 @@ bool is_same(const Head& a, const Head& b) {
 
 bool RunsFolder::is_key(std::string_view name) {
   constexpr std::size_t kLongest = 30;
-  const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
   const auto dash = name.find('-');
   const auto number = name.substr(0, dash);
   const auto more = dash == std::string_view::npos ? "2" : name.substr(dash + 1);
   return name.size() <= kLongest && !number.empty() && !more.empty() &&
-         std::ranges::all_of(number, is_digit) && std::ranges::all_of(more, is_digit);
+         std::ranges::all_of(number, icd::is_digit) && std::ranges::all_of(more, icd::is_digit);
 }
 
 bool RunsFolder::has(const std::string& key) const {
@@ -77,9 +78,8 @@ std::expected<std::optional<api::RunRow>, std::string> RunsFolder::facts_of(cons
         .run = told.head()->run, .post = told.head()->post, .began = told.head()->began, .last = told.last()};
   }
   row->key = key;
-  const auto bytes = bytes_in(folder);
-  if (!bytes) return std::unexpected(bytes.error());
-  row->bytes = *bytes;
+  const auto bytes = ADIT_TRY(bytes_in(folder));
+  row->bytes = bytes;
   row->is_present = false;
   return row;
 }
@@ -114,16 +114,14 @@ std::expected<std::string, std::string> RunsFolder::begin(const Head& head) {
       fs::permissions(folder_of(key), fs::perms::owner_all, error);
       return key;
     }
-    const auto facts = facts_of(key);
-    if (!facts) return std::unexpected(facts.error());
-    if (*facts) {
-      const api::RunRow& row = **facts;
+    const auto facts = ADIT_TRY(facts_of(key));
+    if (facts) {
+      const api::RunRow& row = *facts;
       if (is_same(head, {.run = row.run, .began = row.began, .post = row.post})) return key;
       continue;
     }
-    const auto is_new = is_blank(folder_of(key));
-    if (!is_new) return std::unexpected(is_new.error());
-    if (*is_new) return key;
+    const auto is_new = ADIT_TRY(is_blank(folder_of(key)));
+    if (is_new) return key;
   }
   return std::unexpected(path_ + ": " + (error ? error.message() : "cannot create a directory"));
 }

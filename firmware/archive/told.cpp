@@ -1,7 +1,6 @@
 #include "archive/told.hpp"
 
 #include <algorithm>
-#include <utility>
 
 namespace adit::archive {
 

@@ -1,8 +1,6 @@
 #include "box/candidate.hpp"
 
-#include <string>
 #include <string_view>
-#include <utility>
 
 #include "admin/setup.hpp"
 #include "settings/written.hpp"

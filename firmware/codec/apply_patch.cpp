@@ -1,9 +1,10 @@
 #include "codec/apply_patch.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string_view>
 #include <utility>
+
+#include "icd/text.hpp"
 
 namespace adit::codec {
 namespace {
@@ -22,13 +23,6 @@ std::optional<std::size_t> count_of(const Value& value) {
   }
   if (const auto* const whole = std::get_if<std::uint64_t>(&value.is)) count = *whole;
   return count > kMostRows ? std::nullopt : std::optional(static_cast<std::size_t>(count));
-}
-
-std::optional<std::size_t> place_of(std::string_view name) {
-  std::size_t place = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), place);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return place;
 }
 
 /// Copies a run of rows that stay from `before` to their places in `now`.
@@ -63,7 +57,7 @@ std::optional<Value> patched_list(Value::Array before, const Value::Object& patc
   const auto* const changes = std::get_if<Value::Object>(&rows->is);
   if (changes == nullptr) return std::nullopt;
   for (const auto& [name, change] : *changes) {
-    const auto place = place_of(name);
+    const auto place = icd::number_in<std::size_t>(name);
     if (!place || *place >= now.size()) return std::nullopt;
     auto row = apply_patch(std::move(now[*place]), change);
     if (!row) return std::nullopt;

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "codec/byte_name.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -117,7 +118,7 @@ std::expected<std::size_t, std::string> Base64Decoder::decode(std::string_view& 
       written += decode_groups(run, out.subspan(written));
       if (run.empty() || written + 3 > out.size()) break;
     }
-    if (const auto taken = take(run.front()); !taken) return std::unexpected(taken.error());
+    ADIT_TRY(take(run.front()));
     run.remove_prefix(1);
     if (pending_ == 4) {
       for (const int shift : {16, 8, 0}) out[written++] = static_cast<std::uint8_t>(bits_ >> shift);

@@ -7,6 +7,7 @@
 #include "codec/cbor_splitter.hpp"
 #include "codec/content_decoder.hpp"
 #include "codec/json_splitter.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -68,12 +69,10 @@ class BodyDecoder::Impl {
 
   icd::Checked<Document> finish() {
     if (!spent_) return std::unexpected(spent_.error());
-    if (auto whole = content_.finish(); !whole) return std::unexpected(whole.error());
-    auto root = named(splitter_->finish());
-    if (!root) return std::unexpected(root.error());
-    auto data = data_.take();
-    if (!data) return std::unexpected(data.error());
-    return Document{std::move(*root), std::move(*data), data_.form(), data_.pressed()};
+    ADIT_TRY(content_.finish());
+    auto root = ADIT_TRY(named(splitter_->finish()));
+    auto data = ADIT_TRY(data_.take());
+    return Document{std::move(root), std::move(data), data_.form(), data_.pressed()};
   }
 
  private:
@@ -120,7 +119,7 @@ icd::Checked<Document> BodyDecoder::finish() {
 icd::Checked<Document> decode(BodyKind kind, Split split, std::string_view body, const Limits& limits) {
   BodyDecoder decoder(kind, split, limits);
   const auto* const bytes = reinterpret_cast<const std::uint8_t*>(body.data());
-  if (auto fed = decoder.feed({bytes, body.size()}); !fed) return std::unexpected(fed.error());
+  ADIT_TRY(decoder.feed({bytes, body.size()}));
   return decoder.finish();
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 
@@ -79,7 +80,7 @@ icd::ChunkedBytes BulkData::take_some() {
 }
 
 icd::Checked<icd::ChunkedBytes> BulkData::take() {
-  if (auto flushed = flush(); !flushed) return std::unexpected(flushed.error());
+  ADIT_TRY(flush());
   return press_ ? press_->finish() : std::move(bytes_);
 }
 

@@ -5,6 +5,7 @@
 #include "codec/cbor_tag.hpp"
 #include "codec/cbor_value.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 
@@ -15,10 +16,9 @@ CborSplitter::CborSplitter(Split split, Most most, BulkData& data)
 
 icd::Checked<void> CborSplitter::feed(std::string_view bytes) {
   while (!bytes.empty()) {
-    const auto taken = piece_left_ > 0 ? string(bytes) : head(bytes);
-    if (!taken) return std::unexpected(taken.error());
-    bytes.remove_prefix(*taken);
-    at_ += *taken;
+    const auto taken = ADIT_TRY(piece_left_ > 0 ? string(bytes) : head(bytes));
+    bytes.remove_prefix(taken);
+    at_ += taken;
     if (rest_.size() > most_.text) return std::unexpected(text_too_large(most_.text));
   }
   return {};

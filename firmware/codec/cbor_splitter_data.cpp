@@ -6,6 +6,7 @@
 #include "codec/cbor_tag.hpp"
 #include "codec/plain_elements.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -83,9 +84,7 @@ icd::Checked<std::size_t> CborSplitter::plain_elements(std::string_view in) {
     constexpr auto kAny = std::numeric_limits<std::uint64_t>::max();
     const auto elements = take_plain_cbor_elements(left, list.indefinite ? kAny : list.left - 1);
     if (!elements) break;
-    if (auto taken = data_.append_elements(elements->value, elements->count); !taken) {
-      return std::unexpected(taken.error());
-    }
+    ADIT_TRY(data_.append_elements(elements->value, elements->count));
     if (!list.indefinite) list.left -= elements->count;
   }
   return in.size() - left.size();
@@ -129,7 +128,7 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
     }
   }
   if (into_ == Into::Data) {
-    if (auto taken = data_.append(bytes_of(run)); !taken) return std::unexpected(taken.error());
+    ADIT_TRY(data_.append(bytes_of(run)));
   } else {
     keep(run);
   }
@@ -139,7 +138,7 @@ icd::Checked<std::size_t> CborSplitter::string(std::string_view in) {
   }
   piece_left_ -= run.size();
   if (piece_left_ == 0) {
-    if (auto ended = end_of_piece(); !ended) return std::unexpected(ended.error());
+    ADIT_TRY(end_of_piece());
   }
   return run.size();
 }

@@ -9,6 +9,7 @@
 #include <ranges>
 
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -171,7 +172,7 @@ icd::Checked<Gunzipped> gunzip(icd::ChunkedBytes bytes, std::size_t most, std::s
       all.size += made;
       if (all.size > most) return std::unexpected(too_large(path, most));
       if (made == 0) continue;
-      if (auto taken = sink({piece.data(), made}); !taken) return std::unexpected(taken.error());
+      ADIT_TRY(sink({piece.data(), made}));
     }
   }
   if (!ended) return std::unexpected(damaged(path, "one that is cut short", after));

@@ -8,6 +8,7 @@
 #include "codec/json_value.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -41,10 +42,9 @@ icd::Checked<void> JsonSplitter::feed(std::string_view bytes) {
 icd::Checked<void> JsonSplitter::read(std::string_view bytes) {
   if (at_ == 0) rest_.reserve(std::min(bytes.size(), kSmallText));
   while (!bytes.empty()) {
-    const auto taken = step(bytes);
-    if (!taken) return std::unexpected(taken.error());
-    bytes.remove_prefix(*taken);
-    at_ += *taken;
+    const auto taken = ADIT_TRY(step(bytes));
+    bytes.remove_prefix(taken);
+    at_ += taken;
     if (rest_.size() + number_.size() > most_.text) return std::unexpected(text_too_large(most_.text));
   }
   return {};
@@ -63,7 +63,7 @@ icd::Checked<void> JsonSplitter::end() {
 
 icd::Checked<Value> JsonSplitter::finish() {
   if (root_) return *std::move(root_);
-  if (auto whole = end(); !whole) return std::unexpected(whole.error());
+  ADIT_TRY(end());
   if (split_ == Split::Lists) {
     const auto text = std::make_shared<const std::string>(std::move(rest_));
     if (auto root = json_value_with_lists(text, values_)) return *std::move(root);
@@ -142,7 +142,7 @@ icd::Checked<std::size_t> JsonSplitter::separator(char c) {
 
 icd::Checked<std::size_t> JsonSplitter::value(char first) {
   if (path_.at_data() || diverted_ == Diverted::Elements) {
-    if (auto diverted = divert(first); !diverted) return std::unexpected(diverted.error());
+    ADIT_TRY(divert(first));
   }
   if (diverted_ == Diverted::No && ++values_ > most_.values) {
     return std::unexpected(too_many_values(most_.values));
@@ -215,7 +215,7 @@ icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
   const auto piece = string_.next(in);
   if (!piece) return std::unexpected(fault_at(at_ + piece.error().at, piece.error().what));
   if (diverted_ == Diverted::Base64) {
-    if (auto decoded = decode(piece->text); !decoded) return std::unexpected(decoded.error());
+    ADIT_TRY(decode(piece->text));
   } else {
     keep(piece->raw);
     if (token_ == Token::String) path_.text(piece->text);
@@ -224,7 +224,7 @@ icd::Checked<std::size_t> JsonSplitter::string(std::string_view in) {
     key_ += piece->text.substr(0, DataPath::kLongestKey);
   }
   if (piece->ended) {
-    if (auto ended = string_ended(); !ended) return std::unexpected(ended.error());
+    ADIT_TRY(string_ended());
   }
   return piece->taken;
 }

@@ -5,6 +5,7 @@
 
 #include "codec/json_splitter.hpp"
 #include "codec/plain_elements.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 
@@ -43,8 +44,7 @@ icd::Checked<std::size_t> JsonSplitter::base64_groups(std::string_view in) {
   std::array<std::uint8_t, 6144> bytes;  // not cleared, for speed
   std::string_view left = in;
   while (const std::size_t size = base64_.decode_groups(left, bytes)) {
-    if (auto taken = data_.append(std::span(bytes).first(size)); !taken)
-      return std::unexpected(taken.error());
+    ADIT_TRY(data_.append(std::span(bytes).first(size)));
   }
   return in.size() - left.size();
 }
@@ -53,9 +53,7 @@ icd::Checked<std::size_t> JsonSplitter::base64_groups(std::string_view in) {
 icd::Checked<std::size_t> JsonSplitter::plain_elements(std::string_view in) {
   std::string_view left = in;
   while (const auto elements = take_plain_elements(left)) {
-    if (auto taken = data_.append_elements(elements->value, elements->count); !taken) {
-      return std::unexpected(taken.error());
-    }
+    ADIT_TRY(data_.append_elements(elements->value, elements->count));
     expect_ = Expect::Value;
   }
   return in.size() - left.size();
@@ -65,7 +63,7 @@ icd::Checked<std::size_t> JsonSplitter::number(std::string_view in) {
   const std::size_t taken = number_grammar_.next(in);
   number_ += in.substr(0, taken);
   if (taken < in.size()) {
-    if (auto ended = number_ended(in[taken]); !ended) return std::unexpected(ended.error());
+    ADIT_TRY(number_ended(in[taken]));
   }
   return taken;
 }

@@ -1,10 +1,9 @@
 #include "codec/json_string.hpp"
 
-#include <charconv>
-
 #include "codec/byte_name.hpp"
 #include "codec/json_characters.hpp"
 #include "icd/require.hpp"
+#include "icd/text.hpp"
 
 namespace adit::codec {
 namespace {
@@ -15,10 +14,9 @@ bool is_hex(char c) {
 
 /// Requires four hex digits.
 char32_t unit(std::string_view digits) {
-  unsigned value = 0;
-  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
-  icd::require(digits.size() == 4 && end == digits.data() + digits.size());
-  return value;
+  const auto value = icd::number_in<unsigned>(digits, 16);
+  icd::require(digits.size() == 4 && value);
+  return *value;
 }
 
 constexpr const char* kLone = "a surrogate without its partner in a string";

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "icd/try.hpp"
+
 namespace adit::codec {
 namespace {
 
@@ -24,8 +26,7 @@ icd::Checked<void> for_each_piece(const icd::MapData& data, const Sink& sink) {
     }
     return {};
   }
-  auto inflated = gunzip(data.bytes, data.raw_size, "msg.data", sink);
-  if (!inflated) return std::unexpected(std::move(inflated.error()));
+  ADIT_TRY(gunzip(data.bytes, data.raw_size, "msg.data", sink));
   return {};
 }
 

@@ -11,6 +11,7 @@
 #include "codec/write.hpp"
 #include "icd/letter_case.hpp"
 #include "icd/require.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -139,7 +140,7 @@ icd::Checked<icd::MapUpdate> read_data_first(std::string_view before, icd::Chunk
   const auto* const grid = std::get_if<icd::OccupancyGrid>(&map->msg);
   const std::size_t raw_size = grid == nullptr ? data.size() : icd::cells_of(*grid);
   map->data = {.bytes = std::move(data), .compression = compression, .raw_size = raw_size};
-  if (auto checked = check_form(*map); !checked) return std::unexpected(std::move(checked.error()));
+  ADIT_TRY(check_form(*map));
   return map;
 }
 

@@ -6,6 +6,7 @@
 #include "codec/map_pieces.hpp"
 #include "codec/read.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -60,12 +61,11 @@ icd::Checked<icd::MapData> read_gzipped_cells(const icd::OccupancyGrid& grid, ic
       if (checked && is_kept) gzipper.feed(cells);
       return checked;
     };
-    const auto inflated = gunzip(data, rules.map_bytes, kPath, sink);
-    if (!inflated) return std::unexpected(inflated.error());
-    if (auto checked = check.finish(); !checked) return std::unexpected(checked.error());
+    const auto inflated = ADIT_TRY(gunzip(data, rules.map_bytes, kPath, sink));
+    ADIT_TRY(check.finish());
     if (!is_kept) continue;
     icd::MapData ours = pressed(gzipper, grid);
-    const bool is_one = inflated->members == 1;  // a Command Post hangs at a second member
+    const bool is_one = inflated.members == 1;  // a Command Post hangs at a second member
     if (is_one && data.size() < ours.bytes.size() && has_plain_head(data)) ours.bytes = std::move(data);
     return ours;
   }
@@ -105,12 +105,10 @@ icd::Checked<icd::ChunkedBytes> inflated_points(const icd::PointCloud2& cloud, c
       if (is_kept && piece.size() <= size - points.size()) points.append(piece);
       return {};
     };
-    const auto inflated = gunzip(data, rules.map_bytes, kPath, sink);
-    if (!inflated) return std::unexpected(inflated.error());
-    if (auto checked = check_points(cloud, rows, inflated->size); !checked)
-      return std::unexpected(checked.error());
-    if (points.size() == inflated->size) return points;
-    size = inflated->size;
+    const auto inflated = ADIT_TRY(gunzip(data, rules.map_bytes, kPath, sink));
+    ADIT_TRY(check_points(cloud, rows, inflated.size));
+    if (points.size() == inflated.size) return points;
+    size = inflated.size;
   }
 }
 
@@ -128,10 +126,10 @@ icd::Checked<void> check_data(const icd::MapUpdate& map) {
 icd::Checked<icd::MapData> read_cells(const icd::OccupancyGrid& grid, icd::ChunkedBytes data,
                                       icd::Compression compression, const icd::Rules& rules) {
   if (compression == icd::Compression::Gzip) return read_gzipped_cells(grid, std::move(data), rules);
-  if (auto checked = icd::check_size(grid, data.size()); !checked) return std::unexpected(checked.error());
+  ADIT_TRY(icd::check_size(grid, data.size()));
   std::size_t at = 0;
   for (const auto& chunk : data.chunks()) {
-    if (auto checked = icd::check_cells(*chunk, at); !checked) return std::unexpected(checked.error());
+    ADIT_TRY(icd::check_cells(*chunk, at));
     at += chunk->size();
   }
   Gzipper gzipper(GzipStrategy::Runs);
@@ -146,7 +144,7 @@ icd::Checked<icd::MapData> read_pressed_cells(const icd::OccupancyGrid& grid, ic
     return icd::unprocessable(kPath, ": expected a gzip member, got ",
                               pressed.count < 2 ? "one that is cut short" : "incorrect header check");
   }
-  if (auto checked = icd::check_size(grid, pressed.count); !checked) return std::unexpected(checked.error());
+  ADIT_TRY(icd::check_size(grid, pressed.count));
   if (!pressed.checked) return std::unexpected(pressed.checked.error());
   return icd::MapData{
       .bytes = std::move(data), .compression = icd::Compression::Gzip, .raw_size = pressed.count};
@@ -157,9 +155,8 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const Clou
                                        const icd::Rules& rules) {
   icd::ChunkedBytes points = std::move(data);
   if (compression == icd::Compression::Gzip) {
-    auto inflated = inflated_points(cloud, rows, points, rules);
-    if (!inflated) return std::unexpected(inflated.error());
-    points = *std::move(inflated);
+    auto inflated = ADIT_TRY(inflated_points(cloud, rows, points, rules));
+    points = std::move(inflated);
   }
   if (points.size() > rules.map_bytes) {
     return std::unexpected(
@@ -168,8 +165,7 @@ icd::Checked<icd::MapData> read_points(const icd::PointCloud2& cloud, const Clou
                                                " bytes (the setting rules.map_bytes), got ", points.size()),
                      .setting = "rules.map_bytes"});
   }
-  if (auto checked = check_points(cloud, rows, points.size()); !checked)
-    return std::unexpected(checked.error());
+  ADIT_TRY(check_points(cloud, rows, points.size()));
   if (are_padded(rows, cloud, points.size()))
     points = without_row_padding(std::move(points), rows.width * cloud.point_step, rows.row_step);
   const std::size_t size = points.size();

@@ -5,6 +5,7 @@
 #include "codec/icd_members.hpp"
 #include "codec/json.hpp"
 #include "codec/read.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 namespace {
@@ -38,10 +39,9 @@ std::string_view read_type(const Field& field, const icd::Rules& rules, TypeHint
 /// Applies `read` to a reply's fields. The error is a sentence.
 template <class Message>
 std::expected<Message, std::string> read_reply(std::string_view json, Message (*read)(const Field&)) {
-  const auto root = parse_json(json);
-  if (!root) return std::unexpected(root.error());
+  const auto root = ADIT_TRY(parse_json(json));
   Reading reading;
-  auto message = reading.outcome(read(Field(*root, reading)));
+  auto message = reading.outcome(read(Field(root, reading)));
   if (!message) return std::unexpected(std::move(message.error().sentence));
   return *std::move(message);
 }

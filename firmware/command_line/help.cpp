@@ -2,26 +2,19 @@
 #include <string_view>
 
 #include "command_line/program.hpp"
+#include "icd/text.hpp"
 
 namespace adit::command_line {
 namespace {
 
 constexpr std::size_t kWidth = 100;
 
-/// Removes the text before the next `end`, and the `end`, from `text` and returns it. All of it if there is
-/// no `end`.
-std::string_view cut(std::string_view& text, char end) {
-  const std::string_view piece = text.substr(0, text.find(end));
-  text.remove_prefix(std::min(text.size(), piece.size() + 1));
-  return piece;
-}
-
 /// Wraps a line at kWidth. All lines but the first are indented by `indent` blanks.
 std::string wrapped(std::string_view line, std::size_t indent) {
-  std::string all(cut(line, ' '));
+  std::string all(icd::cut(line, ' '));
   std::size_t column = indent + all.size();
   while (!line.empty()) {
-    const std::string_view word = cut(line, ' ');
+    const std::string_view word = icd::cut(line, ' ');
     const bool fits = column + 1 + word.size() <= kWidth;
     all.append(fits ? "" : "\n").append(fits ? 1 : indent, ' ').append(word);
     column = (fits ? column + 1 : indent) + word.size();
@@ -33,7 +26,7 @@ std::string wrapped(std::string_view line, std::size_t indent) {
 std::string paragraphs(std::string_view text) {
   std::string all;
   while (!text.empty()) {
-    const std::string_view line = cut(text, '\n');
+    const std::string_view line = icd::cut(text, '\n');
     all.append(line.starts_with(' ') ? std::string(line) : wrapped(line, 0)).append("\n");
   }
   return all;

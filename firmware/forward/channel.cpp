@@ -1,6 +1,5 @@
 #include "forward/channel.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "codec/read.hpp"

@@ -6,6 +6,7 @@
 
 #include "host/log.hpp"
 #include "icd/refuse.hpp"
+#include "icd/try.hpp"
 #include "intake/icd_routes.hpp"
 
 namespace adit::forward {
@@ -29,7 +30,7 @@ void Flow::take(icd::MapUpdate update, const intake::Sender& sender, std::shared
 icd::Checked<void> Flow::take(icd::StateUpdate update, const intake::Sender& sender) {
   if (!standby_.empty()) return icd::refuse(icd::Status::ServiceUnavailable, standby_);
   for (const icd::NamedPose& pose : update.poses) told_.posted(pose.name.text());
-  if (auto room = telemetry_.has_room_for(update); !room) return room;
+  ADIT_TRY(telemetry_.has_room_for(update));
   return telemetry_.take(clocks_.stamped(update, sender), sender.bytes);
 }
 
@@ -82,13 +83,12 @@ std::expected<void, std::string> Flow::rejected(std::uint64_t number, api::Rejec
   if (is_ending()) return std::unexpected("aditd is stopping and sends no more messages");
   if (!standby_.empty()) return std::unexpected(standby_);
   if (action == api::RejectedAction::Discard) return rejected_.discard(number);
-  auto message = rejected_.to_be_sent(number);
-  if (!message) return std::unexpected(message.error());
-  if (auto* const map = std::get_if<icd::MapUpdate>(&*message)) {
+  auto message = ADIT_TRY(rejected_.to_be_sent(number));
+  if (auto* const map = std::get_if<icd::MapUpdate>(&message)) {
     maps_.send_again(std::move(*map),
                      [this, number](bool kept) { return rejected_.sent_again(number, kept); });
   } else {
-    rejected_.sent_again(number, telemetry_.send_again(*message));
+    rejected_.sent_again(number, telemetry_.send_again(message));
   }
   return {};
 }

@@ -8,17 +8,8 @@ namespace adit::forward {
 namespace {
 
 const char* name_of(Kind kind) {
-  switch (kind) {
-    case Kind::Grid:
-      return "grid";
-    case Kind::Cloud:
-      return "cloud";
-    case Kind::State:
-      return "state";
-    case Kind::Markers:
-      return "markers";
-  }
-  return "";
+  static constexpr const char* kNames[] = {"grid", "cloud", "state", "markers"};
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
-#include <optional>
 
 #include "codec/field.hpp"
 #include "codec/json.hpp"
@@ -14,6 +13,7 @@
 #include "host/numbered_name.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "spool/kept_message.hpp"
 #include "spool/map_file.hpp"
 
@@ -143,13 +143,11 @@ void RejectedStore::restore() {
 }
 
 icd::Checked<void> RejectedStore::restore_one(std::uint64_t number) {
-  auto reason = read_reason(path(number, kReason));
-  if (!reason) return std::unexpected(std::move(reason.error()));
-  auto message = read_message(path(number, kMessage), reason->first);
-  if (!message) return std::unexpected(std::move(message.error()));
-  lanes::RejectedMessage& item = reason->second;
+  auto reason = ADIT_TRY(read_reason(path(number, kReason)));
+  auto message = ADIT_TRY(read_message(path(number, kMessage), reason.first));
+  lanes::RejectedMessage& item = reason.second;
   item.number = number;
-  item.message = std::move(*message);
+  item.message = std::move(message);
   items_.restore(std::move(item));
   return {};
 }

@@ -7,6 +7,8 @@
 
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
 
 namespace adit::forward {
 namespace {
@@ -18,9 +20,8 @@ constexpr double kLatest = 7.26e9;
 template <class Number>
 Number take(std::string_view& rest) {
   Number number = -1;
-  const std::string_view line = rest.substr(0, rest.find('\n'));
+  const std::string_view line = icd::cut(rest, '\n');
   std::from_chars(line.data(), line.data() + line.size(), number);
-  rest.remove_prefix(std::min(line.size() + 1, rest.size()));
   return number;
 }
 
@@ -33,9 +34,8 @@ double take_time(std::string_view& rest) {
 
 std::expected<StampFloor::Kept, std::string> StampFloor::read() const {
   if (!host::may_exist(file_)) return Kept{};
-  const auto text = host::read_file(file_);
-  if (!text) return std::unexpected(text.error());
-  std::string_view rest = *text;
+  const auto text = ADIT_TRY(host::read_file(file_));
+  std::string_view rest = text;
   const double floor = take_time(rest);
   if (floor >= 0) {
     Kept kept{.floor = floor};

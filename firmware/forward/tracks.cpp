@@ -1,7 +1,6 @@
 #include "forward/tracks.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace adit::forward {

@@ -5,6 +5,7 @@
 #include "gateway/gateway.hpp"
 #include "host/log.hpp"
 #include "icd/refuse.hpp"
+#include "icd/try.hpp"
 #include "settings/written.hpp"
 
 namespace adit::gateway {
@@ -30,7 +31,7 @@ std::expected<void, std::string> Gateway::take_over(admin::Store::Loaded next) {
   settings::Settings in_use = settings::in_use(next.settings);
   settings::Restarts restarts = settings::restarts_by(settings_, in_use);
   if (restarts.listeners) {
-    if (auto listening = listen(in_use.team); !listening) return listening;
+    ADIT_TRY(listen(in_use.team));
   }
   const forward::Tokens before = tokens();
   settings_ = std::move(in_use);

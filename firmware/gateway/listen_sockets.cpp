@@ -11,6 +11,7 @@
 
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::gateway {
 namespace {
@@ -69,14 +70,12 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
   }
   for (const intake::Listen& listen : missing) make_way(listen.port);
   for (const intake::Listen& listen : missing) {
-    auto socket = intake::open_listen_socket(listen);
-    if (!socket) return std::unexpected(std::move(socket.error()));
-    auto at = intake::bound_at(socket->get());
-    if (!at) return std::unexpected(std::move(at.error()));
+    auto socket = ADIT_TRY(intake::open_listen_socket(listen));
+    auto at = ADIT_TRY(intake::bound_at(socket.get()));
     held_.push_back({.number = ++last_,
                      .name = name_of(listen),
-                     .socket = std::move(*socket),
-                     .at = std::move(*at),
+                     .socket = std::move(socket),
+                     .at = std::move(at),
                      .wanted = true});
   }
   std::vector<Open> open;
@@ -84,9 +83,7 @@ std::expected<std::vector<ListenSockets::Open>, std::string> ListenSockets::open
     if (!held.wanted || intake::is_deaf(held.socket.get())) continue;
     loop::FileDescriptor copy(fcntl(held.socket.get(), F_DUPFD_CLOEXEC, 0));
     if (!copy) return std::unexpected(icd::sentence("copying a socket: ", std::strerror(errno)));
-    if (auto adopted = intake::adopt_listen_socket(copy.get(), {}); !adopted) {
-      return std::unexpected(std::move(adopted.error()));
-    }
+    ADIT_TRY(intake::adopt_listen_socket(copy.get(), {}));
     open.push_back({held.number, std::move(copy), held.at});
   }
   return open;

@@ -4,24 +4,23 @@
 #include <utility>
 
 #include "host/log.hpp"
+#include "icd/try.hpp"
 
 namespace adit::gateway {
 
 std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
   const Bounds bounds{team.connections, team.connections_per_address};
-  auto open = sockets_.open(team);
-  if (!open) return std::unexpected(std::move(open.error()));
+  auto open = ADIT_TRY(sockets_.open(team));
   std::vector<Serving> begun;
   std::vector<std::uint64_t> stay;
-  for (ListenSockets::Open& each : *open) {
+  for (ListenSockets::Open& each : open) {
     const auto same = [&](const Serving& it) { return it.socket == each.number && it.bounds == bounds; };
     if (std::ranges::any_of(serving_, same)) {
       stay.push_back(each.number);
       continue;
     }
-    auto started = start(std::move(each), bounds);
-    if (!started) return std::unexpected(std::move(started.error()));
-    begun.push_back(std::move(*started));
+    auto started = ADIT_TRY(start(std::move(each), bounds));
+    begun.push_back(std::move(started));
   }
   std::vector<Serving> before = std::exchange(serving_, std::move(begun));
   for (Serving& each : before) {
@@ -39,21 +38,20 @@ std::expected<void, std::string> Listeners::serve(const settings::Team& team) {
 
 std::expected<Listeners::Serving, std::string> Listeners::start(ListenSockets::Open open,
                                                                 const Bounds& bounds) {
-  auto server = intake::Server::start(loop_,
-                                      {.address = open.at.address,
-                                       .port = open.at.port,
-                                       .interface = open.at.interface,
-                                       .connections = bounds.connections,
-                                       .connections_per_address = bounds.per_address,
-                                       .guesses = &guesses_,
-                                       .ended = ended_},
-                                      handler_, std::move(open.socket));
-  if (!server) return std::unexpected(std::move(server.error()));
+  auto server = ADIT_TRY(intake::Server::start(loop_,
+                                               {.address = open.at.address,
+                                                .port = open.at.port,
+                                                .interface = open.at.interface,
+                                                .connections = bounds.connections,
+                                                .connections_per_address = bounds.per_address,
+                                                .guesses = &guesses_,
+                                                .ended = ended_},
+                                               handler_, std::move(open.socket)));
   host::log(host::Level::Notice, "listening",
             {{"address", open.at.address},
              {"port", std::to_string(open.at.port)},
              {"interface", open.at.interface}});
-  return Serving{open.number, bounds, std::move(*server)};
+  return Serving{open.number, bounds, std::move(server)};
 }
 
 bool Listeners::has(std::uint64_t socket) const {

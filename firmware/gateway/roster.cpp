@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::gateway {
 
@@ -36,9 +37,7 @@ std::vector<std::string> Roster::unknown(loop::Instant now) const {
 }
 
 std::string Roster::sentence(const std::string& name) const {
-  std::string known;
-  for (const std::string& each : names_) known.append(known.empty() ? "" : ", ").append(each);
-  return icd::sentence("unknown robot '", name, "' sends messages; the settings list ", known);
+  return icd::sentence("unknown robot '", name, "' sends messages; the settings list ", icd::listed(names_));
 }
 
 }  // namespace adit::gateway

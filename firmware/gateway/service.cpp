@@ -14,6 +14,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "loop/watchdog.hpp"
 #include "panel/remote.hpp"
 #include "settings/saved.hpp"
@@ -94,9 +95,7 @@ int Service::run(int (*count_faults)(const char* file) noexcept) {
   // First: the lights show a failed start.
   if (!options_.panel.empty()) announced_ = panel::announce(options_.panel);
   if (auto taken = take_over_sockets(); !taken) return fail(taken.error());
-  if (auto made = make_folder(options_.state); !made) {
-    host::log(host::Level::Error, "cannot create the state directory", {{"why", made.error()}});
-  }
+  host::log_failure(host::Level::Error, "cannot create the state directory", make_folder(options_.state));
   if (const int error = count_faults(faults_file().c_str()); error != 0)
     host::log(host::Level::Error, "faults are not counted, and no queue is put aside after them",
               {{"why", host::trouble(faults_file(), error)}});
@@ -159,23 +158,22 @@ std::expected<bool, std::string> Service::run_gateway() {
   std::string put_aside = put_queue_aside();
   std::string stuck = finish_taking_over();
   host::keep_out_of_log(store_.redaction());
-  auto loaded = store_.load();
-  if (!loaded) return std::unexpected(loaded.error());
+  auto loaded = ADIT_TRY(store_.load());
   auto ledger = open_ledger(options_);
   if (!ledger) return std::unexpected(ledger.error().what);
   auto wear = host::wear_of(options_.state, options_.block);
   if (!wear) host::log(host::Level::Warning, "the disk's health is unknown", {{"why", wear.error()}});
   auto known = box::read_board(options_.board);
   const std::string runtime = runtime_folder(options_);
-  auto panel = box::open_panel(known.board.panel.value_or(loaded->settings.panel),
+  auto panel = box::open_panel(known.board.panel.value_or(loaded.settings.panel),
                                {.socket = options_.panel, .folder = runtime}, std::exchange(announced_, {}));
-  const settings::Settings settings = loaded->settings;
+  const settings::Settings settings = loaded.settings;
   Gateway gateway(loop_, {.options = options_,
                           .store = store_,
                           .reset = reset_,
                           .taking_over = taking_over_,
                           .sockets = sockets_,
-                          .loaded = std::move(*loaded),
+                          .loaded = std::move(loaded),
                           .trouble = trouble_,
                           .put_aside = std::move(put_aside),
                           .stuck = std::move(stuck),
@@ -199,7 +197,7 @@ std::string Service::finish_taking_over() {
 }
 
 std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::Settings& settings) {
-  if (const auto started = gateway.start(); !started) return std::unexpected(started.error());
+  ADIT_TRY(gateway.start());
   store_.settle(settings);
   sockets_.settle();
   host::notify_ready(gateway.status_line());
@@ -219,11 +217,9 @@ std::expected<bool, std::string> Service::run(Gateway& gateway, const settings::
 }
 
 std::expected<void, std::string> Service::take_over_sockets() {
-  auto given = host::inherited();
-  if (!given) return std::unexpected(std::move(given.error()));
-  auto sockets = ListenSockets::take_over(std::move(*given));
-  if (!sockets) return std::unexpected(std::move(sockets.error()));
-  sockets_ = std::move(*sockets);
+  auto given = ADIT_TRY(host::inherited());
+  auto sockets = ADIT_TRY(ListenSockets::take_over(std::move(given)));
+  sockets_ = std::move(sockets);
   return {};
 }
 

@@ -11,6 +11,7 @@
 #include "host/files.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::host {
 namespace {
@@ -43,11 +44,9 @@ std::expected<Wear, std::string> wear_of(const std::string& folder, const std::s
   if (stat(folder.c_str(), &status) != 0) return std::unexpected(trouble(folder, errno));
   std::string disk = icd::sentence(block, "/", major(status.st_dev), ":", minor(status.st_dev));
   if (may_exist(disk + "/partition")) disk += "/..";
-  const auto life = highest_in(disk + "/device/life_time", 2, 0x0b);
-  if (!life) return std::unexpected(life.error());
-  const auto spares = highest_in(disk + "/device/pre_eol_info", 1, 0x03);
-  if (!spares) return std::unexpected(spares.error());
-  return Wear{*life, *spares};
+  const auto life = ADIT_TRY(highest_in(disk + "/device/life_time", 2, 0x0b));
+  const auto spares = ADIT_TRY(highest_in(disk + "/device/pre_eol_info", 1, 0x03));
+  return Wear{life, spares};
 }
 
 }  // namespace adit::host

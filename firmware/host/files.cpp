@@ -17,6 +17,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "loop/regular_file.hpp"
 
 namespace adit::host {
@@ -69,9 +70,8 @@ std::expected<File, int> slurp(const std::string& path, std::size_t most) {
   const FileDescriptor fd = loop::open_regular(path, O_RDONLY);
   File file{};
   if (!fd || fstat(fd.get(), &file.status) != 0) return std::unexpected(errno);
-  auto text = loop::read_all(fd, most);
-  if (!text) return std::unexpected(text.error());
-  file.text = std::move(*text);
+  auto text = ADIT_TRY(loop::read_all(fd, most));
+  file.text = std::move(text);
   return file;
 }
 

@@ -4,8 +4,6 @@
 #include <deque>
 #include <mutex>
 #include <span>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "host/log.hpp"

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 
 #include "host/files.hpp"
 #include "host/service.hpp"
+#include "icd/text.hpp"
 
 namespace adit::host {
 
@@ -24,10 +24,7 @@ std::optional<std::uint64_t> number_in_name(std::string_view name, std::string_v
   name.remove_prefix(prefix.size());
   if (!name.ends_with(ending)) return std::nullopt;
   name.remove_suffix(ending.size());
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error != std::errc() || end != name.data() + name.size()) return std::nullopt;
-  return number;
+  return icd::number_in<std::uint64_t>(name);
 }
 
 std::expected<std::vector<std::uint64_t>, std::string> numbers_in(const std::string& folder,

@@ -31,19 +31,8 @@ std::string journal_name(std::string_view name) {
 }  // namespace
 
 std::string_view name_of(Level level) {
-  switch (level) {
-    case Level::Error:
-      return "error";
-    case Level::Warning:
-      return "warning";
-    case Level::Notice:
-      return "notice";
-    case Level::Info:
-      return "info";
-    case Level::Debug:
-      return "debug";
-  }
-  return "unknown";
+  static constexpr std::string_view kNames[] = {"error", "warning", "notice", "info", "debug"};
+  return kNames[static_cast<std::size_t>(level) - static_cast<std::size_t>(Level::Error)];
 }
 
 std::string time_text(double at) {

@@ -23,8 +23,7 @@ std::expected<std::optional<std::string>, std::string> read_if_there(const std::
 
 void withdraw_request(const std::string& path, const std::string& program) {
   log(Level::Error, program + " did not read a request", {{"file", path}});
-  if (const auto removed = remove_file(path); !removed)
-    log(Level::Error, "cannot withdraw a request", {{"why", removed.error()}});
+  log_failure(Level::Error, "cannot withdraw a request", remove_file(path));
 }
 
 void StatusFile::log_unreadable(const std::string& why) {

@@ -11,6 +11,7 @@
 #include "codec/row_file.hpp"
 #include "host/service.hpp"
 #include "host/untrusted_folder.hpp"
+#include "icd/try.hpp"
 #include "loop/loop.hpp"
 
 /// Requests of aditd, which has no privileges, to a program that runs as root, and its answers. A request is
@@ -29,10 +30,9 @@ std::expected<std::optional<std::string>, std::string> read_if_there(const std::
 /// The same for a row.
 template <class Row>
 std::expected<std::optional<Row>, std::string> read_row(const std::string& path) {
-  const auto text = read_if_there(path);
-  if (!text) return std::unexpected(text.error());
-  if (!*text) return std::nullopt;
-  auto row = codec::read_file<Row>(**text);
+  const auto text = ADIT_TRY(read_if_there(path));
+  if (!text) return std::nullopt;
+  auto row = codec::read_file<Row>(*text);
   if (!row) return std::unexpected(path + ": " + row.error());
   return *std::move(row);
 }
@@ -218,18 +218,16 @@ template <class Request>
 std::expected<void, std::string> answer_requests(
     const RequestPlace& place, bool drop,
     const std::function<void(const Request&, UntrustedFolder&)>& answer) {
-  auto folder = open_requests(place.directory);
-  if (!folder) return std::unexpected(std::move(folder.error()));
-  if (!*folder) return {};
+  auto folder = ADIT_TRY(open_requests(place.directory));
+  if (!folder) return {};
   for (const char* dropped : {place.file, place.beside}) {
     if (!drop) break;
-    if (auto gone = (*folder)->remove(dropped); !gone) return gone;
+    if (auto gone = folder->remove(dropped); !gone) return gone;
   }
   while (true) {
-    const auto request = take_request<Request>(**folder, place.file);
-    if (!request) return std::unexpected(request.error());
-    if (!*request) return {};
-    answer(**request, **folder);
+    const auto request = ADIT_TRY(take_request<Request>(*folder, place.file));
+    if (!request) return {};
+    answer(*request, *folder);
   }
 }
 

@@ -6,6 +6,7 @@
 #include "host/files.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::host {
 namespace {
@@ -17,13 +18,6 @@ bool holds_credentials(const std::string& folder) {
   if (credentials == nullptr) return false;
   std::error_code unknown;
   return std::filesystem::equivalent(folder, credentials, unknown);
-}
-
-std::string_view trimmed(std::string_view text) {
-  static constexpr std::string_view kSpace = " \t\r\n";
-  const auto first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
 }
 
 using Token = std::optional<icd::BearerToken>;
@@ -44,7 +38,7 @@ std::expected<Token, Fault> read_token(const std::string& path, Place place) {
     return std::unexpected(Fault{path + ": other users may read or write it; run: chmod 600 " + path});
   }
   const std::string checked = without_checksum(file->text);
-  const std::string_view text = trimmed(checked);
+  const std::string_view text = icd::trimmed(checked);
   if (text.empty() && place != Place::Saved) return Token();
   auto token = icd::BearerToken::parse(text);
   if (!token)

@@ -7,6 +7,7 @@
 
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::icd {
 namespace {
@@ -41,21 +42,20 @@ Checked<void> check_coordinates(const std::vector<FieldSchema>& fields) {
   static constexpr std::array<std::string_view, 3> kCoordinates = {"x", "y", "z"};
   Datatype datatype{};
   for (const std::string_view name : kCoordinates) {
-    const auto index = find_once(fields, name);
-    if (!index) return std::unexpected(index.error());
-    const FieldSchema& field = fields[*index];
+    const auto index = ADIT_TRY(find_once(fields, name));
+    const FieldSchema& field = fields[index];
     const auto given = static_cast<int>(field.datatype);
     if (field.datatype != Datatype::Float32 && field.datatype != Datatype::Float64) {
-      return unprocessable("msg.fields[", *index, "].datatype: expected 7 or 8 for ", in_quotes(name),
+      return unprocessable("msg.fields[", index, "].datatype: expected 7 or 8 for ", in_quotes(name),
                            ", got ", given);
     }
     if (name == "x") datatype = field.datatype;
     if (field.datatype != datatype) {
-      return unprocessable("msg.fields[", *index, "].datatype: expected ", static_cast<int>(datatype),
+      return unprocessable("msg.fields[", index, "].datatype: expected ", static_cast<int>(datatype),
                            " as for \"x\", got ", given);
     }
     if (field.count != 1) {
-      return unprocessable("msg.fields[", *index, "].count: expected 1 for ", in_quotes(name), ", got ",
+      return unprocessable("msg.fields[", index, "].count: expected 1 for ", in_quotes(name), ", got ",
                            field.count);
     }
   }

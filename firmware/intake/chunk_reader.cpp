@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 
+#include "icd/text.hpp"
 #include "intake/field_text.hpp"
 
 namespace adit::intake {
@@ -55,7 +56,7 @@ void ChunkReader::whole_line() {
 void ChunkReader::size_line() {
   const std::string_view line = line_;
   const std::string_view digits = line.substr(0, line.find_first_not_of("0123456789abcdefABCDEF"));
-  const std::string_view rest = without_blanks(line.substr(digits.size()));
+  const std::string_view rest = icd::trimmed(line.substr(digits.size()), kBlanks);
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), left_, 16);
   const bool is_extended = rest.starts_with(';') && has_no_controls(rest);
   if (digits.empty() || digits.size() > 16 || error != std::errc() ||

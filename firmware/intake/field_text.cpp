@@ -2,24 +2,16 @@
 
 #include <algorithm>
 
+#include "icd/letter_case.hpp"
+#include "icd/text.hpp"
+
 namespace adit::intake {
 namespace {
 
-bool is_digit(char letter) {
-  return letter >= '0' && letter <= '9';
-}
-
-bool is_letter_or_digit(char letter) {
-  const char small = static_cast<char>(letter | 0x20);
-  return is_digit(letter) || (small >= 'a' && small <= 'z');
-}
+using icd::is_digit, icd::is_letter_or_digit;
 
 bool is_token_letter(char letter) {
   return is_letter_or_digit(letter) || std::string_view("!#$%&'*+-.^_`|~").contains(letter);
-}
-
-char small(char letter) {
-  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter | 0x20) : letter;
 }
 
 bool is_ip_literal(std::string_view text) {
@@ -47,17 +39,6 @@ bool has_no_controls(std::string_view text) {
   });
 }
 
-bool same_word(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, {}, small, small);
-}
-
-std::string_view without_blanks(std::string_view text) {
-  constexpr std::string_view kBlanks = " \t";
-  const auto first = text.find_first_not_of(kBlanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kBlanks) + 1 - first);
-}
-
 std::expected<FieldLine, std::string_view> parse_field_line(std::string_view line) {
   if (line.starts_with(' ') || line.starts_with('\t')) {
     return std::unexpected("a header field: must not be folded over lines");  // RFC 9112 5.2
@@ -75,7 +56,7 @@ std::expected<FieldLine, std::string_view> parse_field_line(std::string_view lin
   if (!is_token(name)) return std::unexpected("a header field: its name has a character that is not allowed");
   if (!has_no_controls(value))
     return std::unexpected("a header field: must have no control characters");  // RFC 9110 5.5
-  return FieldLine{.name = name, .value = without_blanks(value)};
+  return FieldLine{.name = name, .value = icd::trimmed(value, kBlanks)};
 }
 
 bool is_authority(std::string_view text) {

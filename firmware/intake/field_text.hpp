@@ -11,11 +11,7 @@ bool is_token(std::string_view text);
 /// True if the only control character is the tab. Bytes above 0x7f are allowed (RFC 9110 5.5).
 bool has_no_controls(std::string_view text);
 
-/// Compares without regard to the case of ASCII letters.
-bool same_word(std::string_view a, std::string_view b);
-
-/// The text without leading and trailing blanks and tabs (RFC 9110 5.6.3).
-std::string_view without_blanks(std::string_view text);
+inline constexpr std::string_view kBlanks = " \t";  // RFC 9110 5.6.3
 
 /// A field of a head.
 struct FieldLine {

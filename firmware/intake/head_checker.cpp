@@ -1,11 +1,12 @@
 #include "intake/head_checker.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <string>
 #include <utility>
 
+#include "icd/letter_case.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "intake/field_text.hpp"
 
 namespace adit::intake {
@@ -23,9 +24,8 @@ bool is_target_text(std::string_view text) {
 }
 
 bool is_version(std::string_view text) {
-  const auto is_digit = [](char letter) { return letter >= '0' && letter <= '9'; };
-  return text.size() == 8 && text.starts_with("HTTP/") && is_digit(text[5]) && text[6] == '.' &&
-         is_digit(text[7]);
+  return text.size() == 8 && text.starts_with("HTTP/") && icd::is_digit(text[5]) && text[6] == '.' &&
+         icd::is_digit(text[7]);
 }
 
 std::size_t count_of(std::string_view text, char letter) {
@@ -98,7 +98,7 @@ void HeadChecker::target(std::string_view so_far, std::string_view method, std::
   count(count_of(target, '&'));
   if (!is_target_text(target)) {
     refuse("request target: must have no control characters");
-  } else if (same_word(target.substr(0, kScheme.size()), kScheme)) {
+  } else if (icd::same_but_for_case(target.substr(0, kScheme.size()), kScheme)) {
     const std::string_view after = target.substr(kScheme.size());
     const std::string_view authority = after.substr(0, after.find_first_of("/?#"));
     authority_ = place_of(so_far, authority);
@@ -114,13 +114,13 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
     return;
   }
   count(1);
-  if (same_word(field->name, "Host")) {
+  if (icd::same_but_for_case(field->name, "Host")) {
     host(so_far, field->value);
-  } else if (same_word(field->name, "Content-Length")) {
+  } else if (icd::same_but_for_case(field->name, "Content-Length")) {
     content_length(field->value);
-  } else if (same_word(field->name, "Transfer-Encoding")) {
+  } else if (icd::same_but_for_case(field->name, "Transfer-Encoding")) {
     transfer_encoding(field->value);
-  } else if (same_word(field->name, "Cookie")) {
+  } else if (icd::same_but_for_case(field->name, "Cookie")) {
     cookie(field->value);
   } else {
     single(so_far, *field);
@@ -133,8 +133,8 @@ void HeadChecker::field(std::string_view so_far, std::string_view line) {
 void HeadChecker::single(std::string_view so_far, const FieldLine& field) {
   static constexpr std::array<std::string_view, 4> kNames = {"Content-Type", "Authorization", "Origin",
                                                              "Content-Encoding"};
-  const auto* const name =
-      std::ranges::find_if(kNames, [&](std::string_view each) { return same_word(each, field.name); });
+  const auto* const name = std::ranges::find_if(
+      kNames, [&](std::string_view each) { return icd::same_but_for_case(each, field.name); });
   if (name == kNames.end()) return;
   auto& before = single_[static_cast<std::size_t>(name - kNames.begin())];
   if (!before) {
@@ -161,19 +161,15 @@ void HeadChecker::content_length(std::string_view value) {
     refuse("Content-Length: given twice");
     return;
   }
-  std::uint64_t length = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), length);
-  if (value.empty() || error != std::errc() || end != value.data() + value.size() ||
-      length > static_cast<std::uint64_t>(INT64_MAX)) {
-    refuse("Content-Length: expected a whole number");
-    return;
-  }
-  framing_ = {.has_body = length > 0, .length = length};
+  const auto length = icd::number_in<std::uint64_t>(value);
+  if (!length || *length > static_cast<std::uint64_t>(INT64_MAX))
+    return refuse("Content-Length: expected a whole number");
+  framing_ = {.has_body = *length > 0, .length = *length};
 }
 
 /// RFC 9112 6.1, 7
 void HeadChecker::transfer_encoding(std::string_view value) {
-  if (std::exchange(has_coding_, true) || !same_word(value, "chunked")) {
+  if (std::exchange(has_coding_, true) || !icd::same_but_for_case(value, "chunked")) {
     refuse("Transfer-Encoding: expected only chunked");
   }
 }
@@ -191,7 +187,7 @@ void HeadChecker::end(std::string_view so_far) {
   const auto text = [&](const Place& place) { return so_far.substr(place.at, place.size); };
   if (!host_ && !is_version_1_0_) {
     refuse("Host: missing");  // RFC 9112 3.2
-  } else if (authority_ && (!host_ || !same_word(text(*authority_), text(*host_)))) {
+  } else if (authority_ && (!host_ || !icd::same_but_for_case(text(*authority_), text(*host_)))) {
     refuse("request target: its address differs from Host");  // RFC 9112 3.2.2
   } else if (has_coding_ && has_length_) {
     refuse("Content-Length: not allowed with Transfer-Encoding");  // RFC 9112 6.3

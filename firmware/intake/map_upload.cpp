@@ -11,6 +11,7 @@
 #include "codec/read.hpp"
 #include "icd/map_update.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -58,16 +59,14 @@ class Decoding {
 
  private:
   icd::Checked<icd::MapUpdate> finish(Before before) {
-    auto document = decoder_.finish();
-    if (!document) return std::unexpected(std::move(document.error()));
+    auto document = ADIT_TRY(decoder_.finish());
     if (before.stored) {
-      auto data = before.stored->stored();
-      if (!data) return std::unexpected(std::move(data.error()));
-      data->append(before.left);
-      data->append(document->data);
-      document->data = std::move(*data);
+      auto data = ADIT_TRY(before.stored->stored());
+      data.append(before.left);
+      data.append(document.data);
+      document.data = std::move(data);
     }
-    return codec::read_map_update(std::move(*document), rules_);
+    return codec::read_map_update(std::move(document), rules_);
   }
 
   icd::Checked<void> feed_some() {

@@ -7,6 +7,7 @@
 
 #include "codec/read.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "loop/guard.hpp"
 
 namespace adit::intake {
@@ -21,9 +22,8 @@ constexpr codec::Limits kAtOnce = {.text_bytes = 32u << 10, .values = kSmallValu
                         kLarge = {.text_bytes = MarkersUpload::kMost, .values = MarkersUpload::kMostValues};
 
 Parts read_parts(codec::BodyDecoder& decoder, const icd::Rules& rules) {
-  const auto document = decoder.finish();
-  if (!document) return std::unexpected(document.error());
-  return codec::read_markers_parts(*document, rules);
+  const auto document = ADIT_TRY(decoder.finish());
+  return codec::read_markers_parts(document, rules);
 }
 
 bool is_too_large(const icd::Refusal& refusal) {
@@ -33,13 +33,13 @@ bool is_too_large(const icd::Refusal& refusal) {
 /// The worker's part. read_large() frees the body after it was decoded.
 Parts read_small(codec::BodyKind kind, const icd::Rules& rules, const Body& body) {
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kSmall);
-  if (auto fed = decoder.feed(body); !fed) return std::unexpected(std::move(fed.error()));
+  ADIT_TRY(decoder.feed(body));
   return read_parts(decoder, rules);
 }
 
 Parts read_large(codec::BodyKind kind, const icd::Rules& rules, Body& body) {
   codec::BodyDecoder decoder(kind, codec::Split::Lists, kLarge);
-  if (auto fed = decoder.feed(body); !fed) return std::unexpected(std::move(fed.error()));
+  ADIT_TRY(decoder.feed(body));
   Body().swap(body);
   return read_parts(decoder, rules);
 }

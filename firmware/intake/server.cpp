@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "icd/try.hpp"
 #include "intake/accept.hpp"
 #include "intake/client.hpp"
 #include "intake/head.hpp"
@@ -103,24 +104,23 @@ class Server::Impl final : public Engine {
 };
 
 std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given) {
-  auto socket = given ? std::expected<loop::FileDescriptor, std::string>(std::move(given))
-                      : open_listen_socket(listen_);
-  if (!socket) return std::unexpected(std::move(socket.error()));
-  port_ = port_of(socket->get());
+  auto socket = ADIT_TRY(given ? std::expected<loop::FileDescriptor, std::string>(std::move(given))
+                               : open_listen_socket(listen_));
+  port_ = port_of(socket.get());
   daemon_ = MHD_start_daemon(
       MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr, &Impl::request_came,
-      this, MHD_OPTION_EXTERNAL_LOGGER, &Impl::say_nothing, nullptr, MHD_OPTION_LISTEN_SOCKET, socket->get(),
+      this, MHD_OPTION_EXTERNAL_LOGGER, &Impl::say_nothing, nullptr, MHD_OPTION_LISTEN_SOCKET, socket.get(),
       MHD_OPTION_CONNECTION_LIMIT, shares_.strangers + shares_.known + kOnTheirWayOut,
       MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
       MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED,
       &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK, &Impl::head_begun, this,
       MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
-  accepts_ = accept_instead(socket->get(), [this](int fd, const sockaddr* peer, unsigned size) {
+  accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
     MHD_add_connection(daemon_, fd, peer, size);
     hold_back();
   });
-  socket->release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
+  socket.release();  // NOLINT(bugprone-unused-return-value): libmicrohttpd's, until stop_listening()
   listening_ = true;
 
   const MHD_DaemonInfo* info = MHD_get_daemon_info(daemon_, MHD_DAEMON_INFO_EPOLL_FD);
@@ -330,8 +330,7 @@ std::expected<std::unique_ptr<Server>, std::string> Server::start(loop::Loop& lo
                                                                   Handler& handler,
                                                                   loop::FileDescriptor socket) {
   auto impl = std::make_unique<Impl>(loop, listen, handler);
-  if (auto started = impl->start(std::move(socket)); !started)
-    return std::unexpected(std::move(started.error()));
+  ADIT_TRY(impl->start(std::move(socket)));
   return std::unique_ptr<Server>(new Server(std::move(impl)));
 }
 

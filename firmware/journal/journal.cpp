@@ -7,6 +7,7 @@
 
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "store/snapshot.hpp"
 
 namespace adit::journal {
@@ -15,10 +16,9 @@ namespace {
 /// Writes a snapshot of all records before log `before`. Returns its size in bytes.
 store::Result<std::size_t> write_snapshot(const store::Directory& directory, store::Snapshot& snapshot,
                                           std::uint64_t before, const std::atomic<bool>& enough) {
-  const auto contents = store::Contents::read(directory, Journal::kKeeping, before);
-  if (!contents) return std::unexpected(contents.error());
+  const auto contents = ADIT_TRY(store::Contents::read(directory, Journal::kKeeping, before));
   store::Result<void> written;
-  read_records(*contents).first.write([&](Kind kind, std::string_view said) {
+  read_records(contents).first.write([&](Kind kind, std::string_view said) {
     if (written && !enough) written = snapshot.add(static_cast<std::uint8_t>(kind), said);
   });
   if (enough) return std::unexpected(store::Error{.what = "aditd is stopping"});

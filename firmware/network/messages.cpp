@@ -2,6 +2,7 @@
 
 #include "codec/checked_text.hpp"
 #include "codec/nonce.hpp"
+#include "icd/try.hpp"
 
 namespace adit::codec {
 
@@ -187,9 +188,8 @@ std::string write_kept(const Numbers& numbers) {
 }
 
 std::expected<Numbers, std::string> read_kept(std::string_view json) {
-  auto kept = codec::read_file<Kept>(json);
-  if (!kept) return std::unexpected(std::move(kept.error()));
-  return std::move(kept->numbers);
+  auto kept = ADIT_TRY(codec::read_file<Kept>(json));
+  return std::move(kept.numbers);
 }
 
 }  // namespace adit::network

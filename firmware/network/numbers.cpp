@@ -5,6 +5,7 @@
 
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "settings/keys.hpp"
 
 namespace adit::network {
@@ -270,10 +271,7 @@ std::string team_text(const Numbers& numbers) {
 }
 
 std::string command_post_text(const Numbers& numbers) {
-  std::string text;
-  for (const Subnet& each : numbers.command_post)
-    text.append(text.empty() ? "" : ", ").append(host_text(each));
-  return text.empty() ? "none" : text;
+  return numbers.command_post.empty() ? "none" : icd::listed(numbers.command_post, host_text);
 }
 
 }  // namespace adit::network

@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "icd/try.hpp"
 #include "panel/lines.hpp"
 
 namespace adit::panel {
@@ -82,13 +83,12 @@ struct Output {
 /// `about` describes the line in an error.
 std::expected<Output, std::string> request_output(const settings::Panel& settings, const std::string& line,
                                                   const std::string& about, const std::string& consumer) {
-  auto found = find(settings, line, about);
-  if (!found) return std::unexpected(found.error());
+  auto found = ADIT_TRY(find(settings, line, about));
   const int flags = settings.active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
-  if (gpiod_line_request_output_flags(found->line, consumer.c_str(), flags, 0) != 0) {
+  if (gpiod_line_request_output_flags(found.line, consumer.c_str(), flags, 0) != 0) {
     return gpio_trouble(about, errno);
   }
-  return Output{std::move(found->chip), std::unique_ptr<gpiod_line, LetGoDark>(found->line)};
+  return Output{std::move(found.chip), std::unique_ptr<gpiod_line, LetGoDark>(found.line)};
 }
 
 class GpioLines final : public Lines {
@@ -150,9 +150,8 @@ std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Pan
   for (const Light light : kLights) {
     const std::string& line = line_of(settings, light);
     if (line.empty()) continue;
-    auto output = request_output(settings, line, about(settings, line, name_of(light)), consumer);
-    if (!output) return std::unexpected(output.error());
-    outputs[index_of(light)] = std::move(*output);
+    auto output = ADIT_TRY(request_output(settings, line, about(settings, line, name_of(light)), consumer));
+    outputs[index_of(light)] = std::move(output);
   }
   return std::make_unique<GpioLines>(settings, std::move(outputs));
 }
@@ -160,16 +159,15 @@ std::expected<std::unique_ptr<Lines>, std::string> open_gpio(const settings::Pan
 std::expected<std::unique_ptr<ButtonLine>, std::string> open_gpio_button(const settings::Panel& settings,
                                                                          const std::string& consumer) {
   const std::string what = about(settings, settings.button, "button");
-  auto found = find(settings, settings.button, what);
-  if (!found) return std::unexpected(found.error());
+  auto found = ADIT_TRY(find(settings, settings.button, what));
   const int flags = settings.button_active_low ? GPIOD_LINE_REQUEST_FLAG_ACTIVE_LOW : 0;
   const int pull = settings.button_active_low ? GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_UP
                                               : GPIOD_LINE_REQUEST_FLAG_BIAS_PULL_DOWN;
   const auto request = [&](int with) {
-    return gpiod_line_request_both_edges_events_flags(found->line, consumer.c_str(), flags | with) == 0;
+    return gpiod_line_request_both_edges_events_flags(found.line, consumer.c_str(), flags | with) == 0;
   };
   if (!request(pull) && !request(0)) return gpio_trouble(what, errno);  // some chips have no pull
-  return std::make_unique<GpioButton>(std::move(*found), what);
+  return std::make_unique<GpioButton>(std::move(found), what);
 }
 
 std::string gpiod_version() {

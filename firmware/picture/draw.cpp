@@ -1,6 +1,7 @@
 #include "picture/draw.hpp"
 
 #include "codec/map_pieces.hpp"
+#include "icd/try.hpp"
 #include "picture/aligned_grid.hpp"
 #include "picture/draw_parts.hpp"
 #include "picture/grid_cells.hpp"
@@ -15,14 +16,13 @@ icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const icd::Pla
                                   const icd::MapData& data, Sheet& sheet, const Between& between) {
   RowCutter cutter{grid.width, grid.height};
   Drawer drawer{grid, placement, sheet};
-  auto drawn = codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+  ADIT_TRY(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
     cutter.feed(piece, [&](std::size_t row, std::size_t column, std::span<const std::uint8_t> cells) {
       drawer.draw(row, column, cells);
     });
     between();
     return {};
-  });
-  if (!drawn) return std::unexpected(std::move(drawn.error()));
+  }));
   return drawer.left_out();
 }
 
@@ -38,13 +38,13 @@ icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::M
 icd::Checked<Drawing> draw(const icd::MapUpdate& map, const Canvas& before, const Between& between) {
   Sheet sheet;
   const auto* grid = std::get_if<icd::OccupancyGrid>(&map.msg);
-  auto left_out = grid != nullptr ? draw_grid(*grid, map.data, sheet, between)
-                                  : draw_cloud(std::get<icd::PointCloud2>(map.msg), map.data, sheet, between);
-  if (!left_out) return std::unexpected(std::move(left_out.error()));
+  auto left_out =
+      ADIT_TRY(grid != nullptr ? draw_grid(*grid, map.data, sheet, between)
+                               : draw_cloud(std::get<icd::PointCloud2>(map.msg), map.data, sheet, between));
   Drawing drawing;
   drawing.layer = layer_of(map);
   drawing.run = before.run;
-  drawing.left_out = *left_out;
+  drawing.left_out = left_out;
   lay(sheet, before, drawing);
   return drawing;
 }

@@ -3,6 +3,7 @@
 
 #include "codec/map_pieces.hpp"
 #include "icd/placement.hpp"
+#include "icd/try.hpp"
 #include "picture/cloud_points.hpp"
 #include "picture/draw.hpp"
 #include "picture/draw_parts.hpp"
@@ -50,15 +51,14 @@ icd::Checked<std::size_t> draw_points(const icd::PointCloud2& cloud, const icd::
   const std::size_t points = data.raw_size / cloud.point_step;
   PointCutter cutter{cloud.point_step, std::max<std::size_t>(1, (points + kMostPoints - 1) / kMostPoints)};
   Dabber dabber{cloud, sheet};
-  auto drawn = codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
+  ADIT_TRY(codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
     cutter.feed(piece, [&](const std::uint8_t* point) {
       dabber.dab({coordinate<Float, Bigendian>(point + at[0]), coordinate<Float, Bigendian>(point + at[1]),
                   coordinate<Float, Bigendian>(point + at[2])});
     });
     between();
     return {};
-  });
-  if (!drawn) return std::unexpected(std::move(drawn.error()));
+  }));
   return dabber.left_out;
 }
 

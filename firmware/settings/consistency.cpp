@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "settings/subnet.hpp"
 
 namespace adit::settings {
@@ -142,8 +143,7 @@ void check_courses(const Settings& settings, std::vector<Error>& errors) {
   }
   const std::string& course = settings.command_post.course;
   if (course.empty() || std::ranges::find(courses, course, &Course::name) != courses.end()) return;
-  std::string known;
-  for (const Course& each : courses) known.append(known.empty() ? "" : ", ").append(each.name);
+  const std::string known = icd::listed(courses, &Course::name);
   errors.push_back({"command_post.course",
                     icd::sentence("no course is called ", course,
                                   known.empty() ? "; no courses are set up" : "; the courses are ", known)});

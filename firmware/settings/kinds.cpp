@@ -10,6 +10,7 @@
 #include "codec/json.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "settings/subnet.hpp"
 
 namespace adit::settings {
@@ -42,9 +43,7 @@ bool are(std::string_view text, std::string_view others) {
 }
 
 bool is_port(std::string_view text) {
-  std::uint32_t port = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-  return error == std::errc() && end == text.data() + text.size() && text.front() != '0' && port <= 65535;
+  return icd::number_in<std::uint16_t>(text) && text.front() != '0';
 }
 
 /// "http://10.0.0.20:3000", as a browser writes it (RFC 6454 6.2): in lower case, without a default port.

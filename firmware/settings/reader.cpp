@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "spelling/nearest.hpp"
 
 namespace adit::settings {
@@ -83,14 +84,10 @@ void Reader::tell_unknown(const std::string& name, const std::vector<Child>& chi
                           const std::string& path) {
   if (passes_unknown) return passed_over.push_back(joined(path, shown_name(name)));
   std::vector<std::string_view> known;
-  std::string list;
-  for (const Child& child : children) {
-    known.push_back(child.name);
-    list.append(list.empty() ? "" : ", ").append(child.name);
-  }
+  for (const Child& child : children) known.push_back(child.name);
   errors.push_back(
-      {joined(path, shown_name(name)),
-       icd::sentence("no such key", spelling::did_you_mean(name, known), " (keys here: ", list, ")")});
+      {joined(path, shown_name(name)), icd::sentence("no such key", spelling::did_you_mean(name, known),
+                                                     " (keys here: ", icd::listed(known), ")")});
 }
 
 /// Names each required key at once, so that the user can write all of them.

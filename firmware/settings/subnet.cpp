@@ -2,7 +2,7 @@
 
 #include <arpa/inet.h>
 
-#include <charconv>
+#include "icd/text.hpp"
 
 namespace adit::settings {
 namespace {
@@ -11,11 +11,9 @@ constexpr Subnet kCommandPost[] = {{0x0a010100, 24}, {0x0a020100, 24}, {0x0a6400
 
 /// 0 to 32, without leading zeros.
 std::optional<std::uint8_t> prefix_in(std::string_view text) {
-  std::uint8_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || number > 32) return std::nullopt;
-  if (text.size() > 1 && text.front() == '0') return std::nullopt;
-  return number;
+  const auto number = icd::number_in<std::uint8_t>(text);
+  const bool has_zeros = text.size() > 1 && text.front() == '0';
+  return number && *number <= 32 && !has_zeros ? number : std::nullopt;
 }
 
 }  // namespace

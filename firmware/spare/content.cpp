@@ -1,10 +1,8 @@
 #include "spare/content.hpp"
 
-#include <charconv>
-#include <vector>
-
 #include "codec/row_file.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::spare {
 namespace {
@@ -44,14 +42,11 @@ std::optional<Part> take_part(std::string_view& rest) {
   const std::string_view head = rest.substr(0, end);
   const std::size_t blank = head.rfind(' ');
   if (blank == std::string_view::npos) return std::nullopt;
-  const std::string_view digits = head.substr(blank + 1);
-  std::size_t size = 0;
-  const auto [last, error] = std::from_chars(digits.data(), digits.data() + digits.size(), size);
-  if (error != std::errc() || last != digits.data() + digits.size()) return std::nullopt;
+  const auto size = icd::number_in<std::size_t>(head.substr(blank + 1));
   rest.remove_prefix(end + 1);
-  if (size > rest.size()) return std::nullopt;
-  const Part part{head.substr(0, blank), rest.substr(0, size)};
-  rest.remove_prefix(size);
+  if (!size || *size > rest.size()) return std::nullopt;
+  const Part part{head.substr(0, blank), rest.substr(0, *size)};
+  rest.remove_prefix(*size);
   return part;
 }
 

@@ -2,9 +2,8 @@
 
 #include <sodium.h>
 
-#include <algorithm>
-
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::spare {
 namespace {
@@ -40,8 +39,7 @@ std::expected<Key, std::string> key_of(std::string_view code, const std::uint8_t
 
 std::expected<std::string, std::string> seal(std::string_view content, std::string_view code,
                                              const Seed& seed) {
-  auto key = key_of(code, seed.salt.data());
-  if (!key) return std::unexpected(std::move(key.error()));
+  auto key = ADIT_TRY(key_of(code, seed.salt.data()));
   std::string file(kMagic);
   file += static_cast<char>(kVersion);
   file += '\0';
@@ -50,8 +48,8 @@ std::expected<std::string, std::string> seal(std::string_view content, std::stri
   file.resize(kBefore + content.size() + kTag);
   auto* const data = reinterpret_cast<std::uint8_t*>(file.data());
   crypto_aead_xchacha20poly1305_ietf_encrypt(data + kBefore, nullptr, bytes(content), content.size(), data,
-                                             kBefore, nullptr, seed.nonce.data(), key->data());
-  sodium_memzero(key->data(), key->size());
+                                             kBefore, nullptr, seed.nonce.data(), key.data());
+  sodium_memzero(key.data(), key.size());
   return file;
 }
 
@@ -71,13 +69,12 @@ std::expected<std::string, std::string> unseal(std::string_view file, std::strin
   if (file.size() > kLargestExport) return std::unexpected("the file is larger than an export may be");
   if (file.size() < kBefore + kTag) return std::unexpected("the export is incomplete");
   const auto* const data = bytes(file);
-  auto key = key_of(code, data + kExportHead);
-  if (!key) return std::unexpected(std::move(key.error()));
+  auto key = ADIT_TRY(key_of(code, data + kExportHead));
   std::string content(file.size() - kBefore - kTag, '\0');
   const int opened = crypto_aead_xchacha20poly1305_ietf_decrypt(
       reinterpret_cast<std::uint8_t*>(content.data()), nullptr, nullptr, data + kBefore,
-      file.size() - kBefore, data, kBefore, data + kExportHead + kSalt, key->data());
-  sodium_memzero(key->data(), key->size());
+      file.size() - kBefore, data, kBefore, data + kExportHead + kSalt, key.data());
+  sodium_memzero(key.data(), key.size());
   if (opened != 0) return std::unexpected("the code is not that of this export, or the export is damaged");
   return content;
 }

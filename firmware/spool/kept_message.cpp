@@ -12,6 +12,7 @@
 #include "host/files.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "spool/map_file.hpp"
 #include "spool/part_file.hpp"
 
@@ -75,15 +76,13 @@ icd::Checked<icd::MapUpdate> read_map(const std::string& path) {
 }
 
 icd::Checked<icd::StateUpdate> read_state(const std::string& path) {
-  const auto document = decode(path, codec::Split::Nothing);
-  if (!document) return std::unexpected(document.error());
-  return codec::read_state_update(*document, as_kept());
+  const auto document = ADIT_TRY(decode(path, codec::Split::Nothing));
+  return codec::read_state_update(document, as_kept());
 }
 
 icd::Checked<icd::MarkersUpdate> read_markers(const std::string& path) {
-  const auto document = decode(path, codec::Split::Lists);
-  if (!document) return std::unexpected(document.error());
-  return codec::read_markers_update(*document, as_kept());
+  const auto document = ADIT_TRY(decode(path, codec::Split::Lists));
+  return codec::read_markers_update(document, as_kept());
 }
 
 }  // namespace adit::spool

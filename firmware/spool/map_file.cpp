@@ -1,7 +1,6 @@
 #include "spool/map_file.hpp"
 
 #include <algorithm>
-#include <cerrno>
 #include <string_view>
 
 #include "codec/read.hpp"

@@ -7,7 +7,6 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <cstdlib>
 
 #include "icd/sentence.hpp"
 #include "loop/regular_file.hpp"

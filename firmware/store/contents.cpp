@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "icd/try.hpp"
 #include "store/scan.hpp"
 
 namespace adit::store {
@@ -14,14 +15,13 @@ class Assembly {
       : directory_(directory), keeping_(keeping), before_(before) {}
 
   Result<Contents> run() {
-    const auto files = directory_.files();
-    if (!files) return std::unexpected(files.error());
-    for (const FileName& file : *files) {
+    const auto files = ADIT_TRY(directory_.files());
+    for (const FileName& file : files) {
       if (file.kind != FileName::Kind::Spare && file.number < before_) names_.push_back(file);
       contents_.number = std::max(contents_.number, file.number);
     }
     contents_.is_new = names_.empty();
-    if (auto scanned = scan_all(); !scanned) return std::unexpected(scanned.error());
+    ADIT_TRY(scan_all());
     drop_void();
     for (const Scan& log : logs_) find_durable(log);
     for (const Scan& log : logs_) {
@@ -33,9 +33,8 @@ class Assembly {
 
  private:
   Result<Scan> scan_file(const FileName& name, const Layout& layout) {
-    auto bytes = directory_.read(name.text());
-    if (!bytes) return std::unexpected(bytes.error());
-    Scan found = scan(name, contents_.bytes_.emplace_back(std::move(*bytes)), layout);
+    auto bytes = ADIT_TRY(directory_.read(name.text()));
+    Scan found = scan(name, contents_.bytes_.emplace_back(std::move(bytes)), layout);
     if (found.header && found.header->version > FileHeader::kVersion)
       return std::unexpected(Error{Error::Cause::Newer, name.text() + ": a later version wrote it"});
     contents_.process = std::max(contents_.process, found.process);
@@ -48,18 +47,16 @@ class Assembly {
     std::optional<Scan> snapshot;  // the newest whole one, else the newest
     bool is_whole = false;
     for (auto name = names_.end(); name != logs_end;) {
-      auto found = scan_file(*--name, snapshot_layout(layout_));
-      if (!found) return std::unexpected(found.error());
-      is_whole = is_whole_snapshot(*found);
-      if (!is_whole) contents_.notes.push_back(found->name.text() + ": a damaged snapshot");
-      if (is_whole || !snapshot) snapshot = std::move(*found);
+      auto found = ADIT_TRY(scan_file(*--name, snapshot_layout(layout_)));
+      is_whole = is_whole_snapshot(found);
+      if (!is_whole) contents_.notes.push_back(found.name.text() + ": a damaged snapshot");
+      if (is_whole || !snapshot) snapshot = std::move(found);
       if (is_whole) break;
     }
     for (auto name = names_.begin(); name != logs_end; ++name) {
       if (is_whole && name->number < snapshot->name.number) continue;
-      auto found = scan_file(*name, layout_);
-      if (!found) return std::unexpected(found.error());
-      logs_.push_back(std::move(*found));
+      auto found = ADIT_TRY(scan_file(*name, layout_));
+      logs_.push_back(std::move(found));
     }
     if (snapshot) take_snapshot(*snapshot, is_whole);
     for (const Scan& log : logs_) contents_.logs.push_back(log.name.number);

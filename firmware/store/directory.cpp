@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <cinttypes>
 #include <cstdio>
 #include <limits>
@@ -18,6 +17,8 @@
 #include <optional>
 #include <tuple>
 
+#include "icd/text.hpp"
+#include "icd/try.hpp"
 #include "loop/regular_file.hpp"
 
 namespace adit::store {
@@ -26,19 +27,12 @@ namespace {
 constexpr std::array<std::string_view, 3> kBeginnings{"log-", "snapshot-", "spare-"};  // by FileName::Kind
 constexpr std::size_t kSaltDigits = 16;
 
-std::optional<std::uint64_t> number_in(std::string_view text, int base) {
-  std::uint64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number, base);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return number;
-}
-
 std::optional<FileName> parse_name(std::string_view name) {
   for (std::size_t kind = 0; kind < kBeginnings.size(); ++kind) {
     const std::size_t begin = kBeginnings[kind].size(), point = name.find('.');
     if (!name.starts_with(kBeginnings[kind]) || point == name.npos) continue;
-    const auto number = number_in(name.substr(begin, point - begin), 10);
-    const auto salt = number_in(name.substr(point + 1), 16);
+    const auto number = icd::number_in<std::uint64_t>(name.substr(begin, point - begin));
+    const auto salt = icd::number_in<std::uint64_t>(name.substr(point + 1), 16);
     if (number && salt && name.size() == point + 1 + kSaltDigits)
       return FileName{static_cast<FileName::Kind>(kind), *number, *salt};
   }
@@ -90,10 +84,9 @@ Result<std::vector<std::string>> Directory::names() const {
 }
 
 Result<std::vector<FileName>> Directory::files() const {
-  const auto all = names();
-  if (!all) return std::unexpected(all.error());
+  const auto all = ADIT_TRY(names());
   std::vector<FileName> files;
-  for (const std::string& name : *all) {
+  for (const std::string& name : all) {
     if (const auto file = parse_name(name)) files.push_back(*file);
   }
   std::ranges::sort(files, {},
@@ -139,9 +132,8 @@ Result<void> Directory::remove(const std::string& name) const {
 }
 
 Result<void> Directory::remove_parts() const {
-  const auto all = names();
-  if (!all) return std::unexpected(all.error());
-  for (const std::string& name : *all) {
+  const auto all = ADIT_TRY(names());
+  for (const std::string& name : all) {
     if (!name.ends_with(kPart)) continue;
     if (auto removed = remove(name); !removed) return removed;
   }
@@ -149,23 +141,20 @@ Result<void> Directory::remove_parts() const {
 }
 
 Result<std::string> Directory::first_free(const std::string& beginning) const {
-  const auto all = names();
-  if (!all) return std::unexpected(all.error());
+  const auto all = ADIT_TRY(names());
   for (int number = 1;; ++number) {
     std::string name = beginning + std::to_string(number);
-    if (std::ranges::find(*all, name) == all->end()) return name;
+    if (std::ranges::find(all, name) == all.end()) return name;
   }
 }
 
 Result<void> Directory::put_aside() const {
-  const auto all = files();
-  if (!all) return std::unexpected(all.error());
-  if (all->empty()) return {};
-  const auto aside = first_free("damaged-");
-  if (!aside) return std::unexpected(aside.error());
-  if (::mkdirat(fd_.get(), aside->c_str(), 0700) != 0) return trouble(*aside, errno);
-  for (const FileName& file : *all) {
-    const std::string name = file.text(), link = *aside + '/' + name;
+  const auto all = ADIT_TRY(files());
+  if (all.empty()) return {};
+  const auto aside = ADIT_TRY(first_free("damaged-"));
+  if (::mkdirat(fd_.get(), aside.c_str(), 0700) != 0) return trouble(aside, errno);
+  for (const FileName& file : all) {
+    const std::string name = file.text(), link = aside + '/' + name;
     if (file.kind == FileName::Kind::Spare) continue;
     if (::linkat(fd_.get(), name.c_str(), fd_.get(), link.c_str(), 0) != 0) return trouble(link, errno);
   }
@@ -175,8 +164,8 @@ Result<void> Directory::put_aside() const {
 Result<std::string> Directory::rename_aside(const std::string& name) const {
   auto aside = first_free(name + ".damaged-");
   if (!aside) return aside;
-  if (auto renamed = rename(name, *aside); !renamed) return std::unexpected(renamed.error());
-  if (auto synced = sync(); !synced) return std::unexpected(synced.error());
+  ADIT_TRY(rename(name, *aside));
+  ADIT_TRY(sync());
   return aside;
 }
 
@@ -187,9 +176,8 @@ Result<void> Directory::sync() const {
 
 Result<void> Directory::sync_name() const {
   const auto slash = path_.rfind('/');
-  const auto above = open(slash == path_.npos ? "." : path_.substr(0, slash));
-  if (!above) return std::unexpected(above.error());
-  return above->sync();
+  const auto above = ADIT_TRY(open(slash == path_.npos ? "." : path_.substr(0, slash)));
+  return above.sync();
 }
 
 Result<std::uint64_t> random_salt() {

@@ -9,6 +9,8 @@
 #include <map>
 #include <utility>
 
+#include "icd/try.hpp"
+
 namespace adit::store {
 namespace {
 
@@ -34,9 +36,8 @@ int write_zeros(int fd, std::size_t size, const std::atomic<bool>& enough) {
 Result<void> make_zeros(const Directory& directory, const FileName& name, std::size_t size,
                         const std::atomic<bool>& enough) {
   const std::string part = name.text() + std::string(Directory::kPart);
-  const auto file = directory.make(part);
-  if (!file) return std::unexpected(file.error());
-  const int error = write_zeros(file->get(), size, enough);
+  const auto file = ADIT_TRY(directory.make(part));
+  const int error = write_zeros(file.get(), size, enough);
   Result<void> made = error == 0 ? directory.rename(part, name.text()) : directory.trouble(error);
   if (!made) (void)directory.remove(part);
   return made;
@@ -57,10 +58,9 @@ Result<void> Log::start(const Contents& contents) {
     if (auto synced = directory_.sync_name(); !synced) return synced;
   }
   if (!contents.log) return {};
-  auto fd = directory_.open_to_write(contents.log->text());
-  if (!fd) return std::unexpected(fd.error());
+  auto fd = ADIT_TRY(directory_.open_to_write(contents.log->text()));
   const std::size_t size = keeping_.syncs ? contents.size : std::numeric_limits<std::size_t>::max();
-  file_ = {*contents.log, std::move(*fd), contents.end, std::max(size, contents.end)};
+  file_ = {*contents.log, std::move(fd), contents.end, std::max(size, contents.end)};
   if (auto rewritten = rewrite(contents); !rewritten) return rewritten;
   is_dead_ = false;
   durable_ = last_;
@@ -76,9 +76,8 @@ Result<void> Log::rewrite(const Contents& contents) {
     const std::string name = each.file.text();
     auto& fd = files[name];
     if (!fd) {
-      auto opened = directory_.open_to_write(name);
-      if (!opened) return std::unexpected(opened.error());
-      fd = std::move(*opened);
+      auto opened = ADIT_TRY(directory_.open_to_write(name));
+      fd = std::move(opened);
     }
     const std::string frame = written(each.frame, keeping_.layout, each.file.salt, each.offset);
     if (const int error = write_all(fd.get(), frame, each.offset); error != 0)
@@ -136,13 +135,12 @@ Result<void> Log::turn_for(std::size_t body) {
   std::size_t size = bytes_of(FileHeader().written().size()) + bytes_of(body);
   for (const Unsynced& each : unsynced_) size += bytes_of(each.body.size());
   ++highest_;
-  auto next = make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0);
-  if (!next) return std::unexpected(next.error());
-  if (auto filled = fill(*next); !filled) {
-    (void)directory_.remove(next->name.text());  // if that fails, a later file's header says the same
+  auto next = ADIT_TRY(make_file(keeping_.syncs ? std::max(size, keeping_.file_bytes) : 0));
+  if (auto filled = fill(next); !filled) {
+    (void)directory_.remove(next.name.text());  // if that fails, a later file's header says the same
     return filled;
   }
-  file_ = std::move(*next);
+  file_ = std::move(next);
   is_dead_ = false;
   durable_ = last_;
   unsynced_.clear();
@@ -151,21 +149,18 @@ Result<void> Log::turn_for(std::size_t body) {
 
 /// A file with synced zeros and name.
 Result<Log::File> Log::make_file(std::size_t size) const {
-  const auto salt = random_salt();
-  if (!salt) return std::unexpected(salt.error());
-  File file{.name = {FileName::Kind::Log, highest_, *salt}, .size = size};
+  const auto salt = ADIT_TRY(random_salt());
+  File file{.name = {FileName::Kind::Log, highest_, salt}, .size = size};
   if (!keeping_.syncs) {
-    auto made = directory_.make(file.name.text());
-    if (!made) return std::unexpected(made.error());
-    file.fd = std::move(*made);
+    auto made = ADIT_TRY(directory_.make(file.name.text()));
+    file.fd = std::move(made);
     file.size = std::numeric_limits<std::size_t>::max();
     return file;
   }
-  const auto files = directory_.files();
-  if (!files) return std::unexpected(files.error());
-  const auto spare = std::ranges::find(*files, FileName::Kind::Spare, &FileName::kind);
+  const auto files = ADIT_TRY(directory_.files());
+  const auto spare = std::ranges::find(files, FileName::Kind::Spare, &FileName::kind);
   Result<void> made;
-  if (spare != files->end() && directory_.size(spare->text()) == size) {
+  if (spare != files.end() && directory_.size(spare->text()) == size) {
     file.name.salt = spare->salt;
     made = directory_.rename(spare->text(), file.name.text());
   } else {
@@ -211,12 +206,10 @@ Result<void> Log::sync() {
 }
 
 Result<void> make_spare(const Directory& directory, const Keeping& keeping, const std::atomic<bool>& enough) {
-  const auto files = directory.files();
-  if (!files) return std::unexpected(files.error());
-  const auto salt = random_salt();
-  if (!salt) return std::unexpected(salt.error());
-  if (std::ranges::find(*files, FileName::Kind::Spare, &FileName::kind) != files->end()) return {};
-  return make_zeros(directory, {FileName::Kind::Spare, 0, *salt}, keeping.file_bytes, enough);
+  const auto files = ADIT_TRY(directory.files());
+  const auto salt = ADIT_TRY(random_salt());
+  if (std::ranges::find(files, FileName::Kind::Spare, &FileName::kind) != files.end()) return {};
+  return make_zeros(directory, {FileName::Kind::Spare, 0, salt}, keeping.file_bytes, enough);
 }
 
 }  // namespace adit::store

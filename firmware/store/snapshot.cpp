@@ -6,25 +6,23 @@
 #include <cerrno>
 #include <vector>
 
+#include "icd/try.hpp"
 #include "store/scan.hpp"
 
 namespace adit::store {
 
 Result<Snapshot> Snapshot::begin(const Directory& directory, const Keeping& keeping, const Log& log) {
-  const auto salt = random_salt();
-  if (!salt) return std::unexpected(salt.error());
+  const auto salt = ADIT_TRY(random_salt());
   Snapshot snapshot(directory, keeping);
-  snapshot.name_ = {FileName::Kind::Snapshot, log.number(), *salt};
+  snapshot.name_ = {FileName::Kind::Snapshot, log.number(), salt};
   snapshot.process_ = log.process();
   snapshot.base_ = log.last();
   const std::string part = snapshot.name_.text() + std::string(Directory::kPart);
-  auto made = directory.make(part);
-  if (!made) return std::unexpected(made.error());
-  snapshot.file_ = std::move(*made);
+  auto made = ADIT_TRY(directory.make(part));
+  snapshot.file_ = std::move(made);
   snapshot.part_ = part;
-  const FileHeader header{.number = log.number(), .salt = *salt, .base = log.last()};
-  if (auto wrote = snapshot.write(kFileBegins, 0, header.written()); !wrote)
-    return std::unexpected(wrote.error());
+  const FileHeader header{.number = log.number(), .salt = salt, .base = log.last()};
+  ADIT_TRY(snapshot.write(kFileBegins, 0, header.written()));
   return snapshot;
 }
 
@@ -51,9 +49,8 @@ Result<void> Snapshot::write(std::uint8_t kind, std::uint64_t sequence, std::str
 Result<void> Snapshot::finish() {
   if (auto wrote = write(kSnapshotEnds, ++count_, {}); !wrote) return wrote;
   if (keeping_.syncs && ::fsync(file_.get()) != 0) return directory_->trouble(part_, errno);
-  const auto bytes = directory_->read(part_);
-  if (!bytes) return std::unexpected(bytes.error());
-  const Scan read = scan(name_, *bytes, snapshot_layout(keeping_.layout));
+  const auto bytes = ADIT_TRY(directory_->read(part_));
+  const Scan read = scan(name_, bytes, snapshot_layout(keeping_.layout));
   if (!is_whole_snapshot(read) || read.frames.size() != count_) return directory_->trouble(part_, EIO);
   if (auto named = directory_->rename(part_, name_.text()); !named) return named;
   file_ = {};
@@ -64,16 +61,15 @@ Result<void> Snapshot::finish() {
 }
 
 Result<void> Snapshot::remove_old() const {
-  const auto files = directory_->files();
-  if (!files) return std::unexpected(files.error());
+  const auto files = ADIT_TRY(directory_->files());
   std::vector<std::uint64_t> snapshots;
-  for (const FileName& file : *files) {
+  for (const FileName& file : files) {
     if (file.kind == FileName::Kind::Snapshot) snapshots.push_back(file.number);
   }
   const std::size_t kept = keeping_.syncs ? 2 : 1;
   if (snapshots.size() < kept) return {};
   const std::uint64_t oldest = snapshots[snapshots.size() - kept];
-  for (const FileName& file : *files) {
+  for (const FileName& file : files) {
     if (file.kind == FileName::Kind::Spare || file.number >= oldest) continue;
     if (auto removed = directory_->remove(file.text()); !removed) return removed;
   }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <charconv>
-#include <functional>
 #include <utility>
 
 #include "codec/field.hpp"
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "update/version.hpp"
 
 namespace adit::update {
@@ -52,15 +52,6 @@ std::string explained(std::string_view fault) {
       kMeanings, [fault](std::string_view words) { return fault.contains(words); },
       &std::pair<std::string_view, std::string_view>::first);
   return meaning == std::end(kMeanings) ? said : icd::sentence(meaning->second, " (RAUC: ", said, ")");
-}
-
-void for_each_line(std::string_view text, const std::function<void(std::string_view)>& tell) {
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    tell(text.substr(0, end));
-    if (end == std::string_view::npos) return;
-    text.remove_prefix(end + 1);
-  }
 }
 
 }  // namespace
@@ -117,12 +108,14 @@ std::optional<int> percent_in(std::string_view line) {
 
 Fault fault_in(std::string_view out, std::string_view err) {
   std::string_view fault;
-  for_each_line(err, [&fault](std::string_view line) {
+  while (!err.empty()) {
+    const std::string_view line = icd::cut(err, '\n');
     if (!line.empty() && !line.starts_with("rauc-Message")) fault = line;
-  });
-  for_each_line(out, [&fault](std::string_view line) {
+  }
+  while (!out.empty()) {
+    const std::string_view line = icd::cut(out, '\n');
     if (line.starts_with(kLastError)) fault = line.substr(kLastError.size());
-  });
+  }
   const bool busy = fault.find(kBusy) != std::string_view::npos;
   return {busy ? Fault::Kind::Busy : Fault::Kind::Other, explained(fault)};
 }

@@ -1,7 +1,8 @@
 #include "update/version.hpp"
 
 #include <algorithm>
-#include <charconv>
+
+#include "icd/text.hpp"
 
 namespace adit::update {
 namespace {
@@ -16,11 +17,7 @@ bool is_number(std::string_view text) {
 }
 
 std::optional<std::uint64_t> number_in(std::string_view text) {
-  std::uint64_t number = 0;
-  if (!is_number(text)) return std::nullopt;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc{}) return std::nullopt;  // too large
-  return number;
+  return is_number(text) ? icd::number_in<std::uint64_t>(text) : std::nullopt;
 }
 
 std::vector<std::string_view> pieces_of(std::string_view text) {

@@ -5,11 +5,11 @@
 
 #include "uplink/answer_parser.hpp"
 
-#include <charconv>
 #include <optional>
 #include <utility>
 
 #include "icd/require.hpp"
+#include "icd/text.hpp"
 #include "loop/guard.hpp"
 #include "uplink/http_date.hpp"
 
@@ -77,10 +77,8 @@ constexpr unsigned kFirstFinal = 200, kLast = 599, kSwitchingProtocols = 101;
 
 /// Seconds, or nullopt if the field is absent or a date (RFC 9110 10.2.3).
 std::optional<std::chrono::seconds> retry_after(std::string_view value) {
-  std::int32_t seconds = 0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), seconds);
-  if (error != std::errc() || end != value.data() + value.size() || seconds < 0) return std::nullopt;
-  return std::chrono::seconds(seconds);
+  const auto seconds = icd::number_in<std::int32_t>(value);
+  return seconds && *seconds >= 0 ? std::optional(std::chrono::seconds(*seconds)) : std::nullopt;
 }
 
 std::string to_string(boost::beast::string_view text) {

@@ -4,6 +4,7 @@
 #include "cli/handlers.hpp"
 #include "dispatch/report_life.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -34,9 +35,7 @@ constexpr Decision kDecisions[] = {{"send", " is queued"},
 
 /// Asks the operator for confirmation if the report is in doubt.
 Result<void> confirm_sending(const Call& call, const std::string& target, std::int64_t number) {
-  const auto told = fetch<api::ReportDetail>(call.adit, target);
-  if (!told) return std::unexpected(told.error());
-  const api::ReportRow& report = told->row.row;
+  const api::ReportRow report = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target)).row.row;
   if (dispatch::state_named(report.state) != dispatch::ReportState::InDoubt) return {};
   return confirm(call.options, call.console,
                  icd::sentence("report ", number, " (", report.type,
@@ -49,7 +48,7 @@ Result<void> confirm_sending(const Call& call, const std::string& target, std::i
 Result<Outcome> decide_on(const Call& call, std::int64_t number) {
   const std::string verb = call.options.word(), target = icd::sentence("/adit/reports/", number);
   if (verb == "send" && !call.options.yes) {
-    if (auto meant = confirm_sending(call, target, number); !meant) return std::unexpected(meant.error());
+    ADIT_TRY(confirm_sending(call, target, number));
   }
   const bool is_new = verb == "resubmit";
   const std::string check = is_new ? "adit reports" : icd::sentence("adit reports show ", number);

@@ -7,6 +7,7 @@
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -127,9 +128,8 @@ Outcome said(const Call& call, const std::string& json, const std::string& text,
 }
 
 Result<Outcome> act(const Call& call, Post action, const std::string& done) {
-  const auto answer = post(call.adit, std::move(action));
-  if (!answer) return std::unexpected(answer.error());
-  return said(call, *answer, done);
+  const auto answer = ADIT_TRY(post(call.adit, std::move(action)));
+  return said(call, answer, done);
 }
 
 Outcome act_on_each(const Call& call, const std::function<Result<Outcome>(std::int64_t number)>& act_on) {

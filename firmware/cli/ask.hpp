@@ -11,6 +11,7 @@
 #include "cli/options.hpp"
 #include "cli/outcome.hpp"
 #include "codec/row.hpp"
+#include "icd/try.hpp"
 #include "settings/settings.hpp"
 
 namespace adit::cli {
@@ -78,8 +79,7 @@ template <class Row>
 Result<Told<Row>> told(const Adit& adit, Result<std::string> json) {
   if (!json) return std::unexpected(std::move(json.error()));
   Told<Row> told{*std::move(json)};
-  const auto is_read = read_into(adit, json_in(adit, told.json), codec::kind_of<Row>, &told.row);
-  if (!is_read) return std::unexpected(is_read.error());
+  ADIT_TRY(read_into(adit, json_in(adit, told.json), codec::kind_of<Row>, &told.row));
   return told;
 }
 template <class Row>
@@ -115,10 +115,9 @@ template <class Row>
 Result<Outcome> show(
     const Call& call, const std::string& target, std::string (*text_of)(const Row& row, bool colour),
     bool (*is_fine)(const Row& row) = [](const Row& /*row*/) { return true; }) {
-  const auto answer = fetch<Row>(call.adit, target);
-  if (!answer) return std::unexpected(answer.error());
-  return said(call, answer->json, text_of(answer->row, call.console.colour),
-              is_fine(answer->row) ? Exit::Fine : Exit::Attention);
+  const auto answer = ADIT_TRY(fetch<Row>(call.adit, target));
+  return said(call, answer.json, text_of(answer.row, call.console.colour),
+              is_fine(answer.row) ? Exit::Fine : Exit::Attention);
 }
 
 /// Executes an action, and prints Adit's JSON or `done`.

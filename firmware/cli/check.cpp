@@ -1,6 +1,7 @@
 #include "network/check.hpp"
 
 #include <algorithm>
+#include <array>
 
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
@@ -11,6 +12,7 @@
 #include "host/log.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "settings/saved.hpp"
 #include "settings/settings.hpp"
 #include "settings/subnet.hpp"
@@ -31,12 +33,7 @@ std::string asked_of(const settings::Team& team) {
 }
 
 std::string lines_of(const settings::Panel& panel) {
-  std::string lines;
-  for (const std::string& line :
-       {panel.health, panel.scoring, panel.mapping, panel.attention, panel.button}) {
-    if (!line.empty()) lines.append(lines.empty() ? "" : ", ").append(line);
-  }
-  return lines;
+  return icd::listed(std::array{panel.health, panel.scoring, panel.mapping, panel.attention, panel.button});
 }
 
 /// The team's subnets, as far as settings and interfaces show.

@@ -4,6 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/help.hpp"
 #include "host/log.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -11,9 +12,8 @@ namespace {
 Result<Outcome> outcome_of(const Options& options, const Console& console) {
   const Run& run = options.form->run;
   if (run.alone != nullptr) return run.alone(options, console);
-  const auto adit = adit_of(options);
-  if (!adit) return std::unexpected(adit.error());
-  return run.asks({*adit, options, console});
+  const auto adit = ADIT_TRY(adit_of(options));
+  return run.asks({adit, options, console});
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "cli/settings_key.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -45,9 +46,8 @@ std::string json_of(const std::vector<Candidate>& all) {
 template <class Row>
 Result<Outcome> listed(const Call& call, const char* target,
                        const std::function<std::vector<Candidate>(const Row&)>& candidates_of) {
-  const auto told = fetch<Row>(call.adit, target);
-  if (!told) return std::unexpected(told.error());
-  const auto all = candidates_of(told->row);
+  const auto told = ADIT_TRY(fetch<Row>(call.adit, target));
+  const auto all = candidates_of(told.row);
   return said(call, json_of(all), lines(all));
 }
 
@@ -77,9 +77,8 @@ Result<Outcome> complete_rejected(const Call& call) {
 }
 
 Result<Outcome> complete_courses(const Call& call) {
-  const auto setup = fetch<api::SetupView>(call.adit, "/adit/settings");
-  if (!setup) return std::unexpected(setup.error());
-  const auto settings = settings_in(setup->row);
+  const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, "/adit/settings"));
+  const auto settings = settings_in(setup.row);
   if (!settings) return std::unexpected(settings.error());
   std::vector<Candidate> all;
   for (const settings::Course& course : settings->courses)

@@ -1,7 +1,6 @@
 #include "cli/event_reader.hpp"
 
-#include <algorithm>
-#include <utility>
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {
@@ -9,8 +8,7 @@ namespace {
 Event event_of(std::string_view lines) {
   Event event;
   while (!lines.empty()) {
-    const std::string_view line = lines.substr(0, lines.find('\n'));
-    lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+    const std::string_view line = icd::cut(lines, '\n');
     constexpr std::string_view kType = "event: ", kData = "data: ";
     if (line.starts_with(kType)) event.type = line.substr(kType.size());
     if (line.starts_with(kData)) event.data = line.substr(kData.size());

@@ -1,5 +1,6 @@
 #include "cli/handlers.hpp"
 #include "host/log.hpp"
+#include "icd/try.hpp"
 #include "ledger/dump.hpp"
 
 namespace adit::cli {
@@ -15,11 +16,10 @@ Result<Outcome> dump_ledger(const Options& options, const Console& console) {
 }
 
 Result<Outcome> begin_ledger(const Call& call) {
-  const auto meant = confirm(call.options, call.console,
-                             "The files of the ledger that cannot be read will be kept, but Adit will not "
-                             "know their reports: a report may be sent twice.",
-                             "Begin another ledger?");
-  if (!meant) return std::unexpected(meant.error());
+  ADIT_TRY(confirm(call.options, call.console,
+                   "The files of the ledger that cannot be read will be kept, but Adit will not "
+                   "know their reports: a report may be sent twice.",
+                   "Begin another ledger?"));
   return act(call, {.target = "/adit/ledger/new", .check = "adit status"},
              "aditd restarts with another ledger: see adit status\n");
 }

@@ -1,7 +1,6 @@
 #include "cli/options.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <utility>
 
 #include "cli/commands.hpp"
@@ -9,6 +8,7 @@
 #include "codec/row.hpp"
 #include "command_line/read.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "spelling/nearest.hpp"
 
 namespace adit::cli {
@@ -17,10 +17,8 @@ namespace {
 using command_line::Wrong;
 
 std::optional<std::int64_t> number_in(std::string_view text, std::int64_t largest) {
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool whole = error == std::errc() && end == text.data() + text.size() && number > 0;
-  return whole && number <= largest ? std::optional(number) : std::nullopt;
+  const auto number = icd::number_in<std::int64_t>(text);
+  return number && *number > 0 && *number <= largest ? number : std::nullopt;
 }
 
 std::vector<std::string_view> words_of(const CommandRow& command) {

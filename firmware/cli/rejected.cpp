@@ -4,6 +4,7 @@
 #include "cli/handlers.hpp"
 #include "cli/table.hpp"
 #include "cli/words.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -34,9 +35,7 @@ std::string table_of(const api::RunView& view, bool colour) {
 }  // namespace
 
 Result<Outcome> list_rejected(const Call& call) {
-  const auto told = fetch<api::RunView>(call.adit, "/adit/run");
-  if (!told) return std::unexpected(told.error());
-  const api::RunView& view = told->row;
+  const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
   const bool waits =
       std::ranges::any_of(view.rejected, [](const api::RejectedRow& row) { return !row.replaced; });
   return said(call, codec::to_json(view.rejected), table_of(view, call.console.colour),

@@ -3,15 +3,10 @@
 #include "cli/reports_text.hpp"
 #include "cli/table.hpp"
 #include "dispatch/report_life.hpp"
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {
-
-std::string actions_for(const api::ReportRow& report) {
-  std::string text;
-  for (const std::string_view verb : verbs_for(report)) text.append(text.empty() ? "" : ", ").append(verb);
-  return text;
-}
 
 std::string place_of(const icd::Point& point) {
   return decimal(point.x, 3) + ", " + decimal(point.y, 3) + ", " + decimal(point.z, 3) + " m";
@@ -32,7 +27,7 @@ std::string facts_of(const api::ReportDetail& detail, bool colour) {
   facts.add("robot", report.robot);
   facts.add("received", api::iso_time(report.received));
   facts.add("message", sentence_in(detail.answer));
-  facts.add("actions", actions_for(report));
+  facts.add("actions", icd::listed(verbs_for(report)));
   return facts.written(colour);
 }
 

@@ -2,20 +2,13 @@
 
 #include "cli/table.hpp"
 #include "dispatch/report_life.hpp"
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {
 
 using dispatch::ReportState;
 using Align = Table::Align;
-
-std::string joined(std::initializer_list<std::string> parts) {
-  std::string text;
-  for (const std::string& part : parts) {
-    if (!part.empty()) text.append(text.empty() ? "" : ", ").append(part);
-  }
-  return text;
-}
 
 std::string counted(std::size_t count, const char* one, const char* several) {
   return count == 0 ? "" : std::to_string(count) + (count == 1 ? one : several);
@@ -87,9 +80,10 @@ Tone tone_of(const api::ReportRow& report) {
 }
 
 std::string said_of(const api::ReportRow& report) {
-  return joined({report.reconciled ? "found out" : "",
-                 report.status < 300 || report.reconciled ? "" : "error " + std::to_string(report.status),
-                 report.report_status});
+  const bool is_error = report.status >= 300 && !report.reconciled;
+  return icd::listed(std::array{std::string(report.reconciled ? "found out" : ""),
+                                is_error ? "error " + std::to_string(report.status) : "",
+                                report.report_status});
 }
 
 std::string gained_by(const api::ReportRow& report) {
@@ -124,7 +118,7 @@ std::string reports_text(const std::vector<api::ReportRow>& reports, const NotLi
                {coordinate(report, &icd::Point::z)},
                {life_of(report), tone_of(report)},
                {gained_by(report)},
-               {joined({said_of(report), report.note})},
+               {icd::listed(std::array{said_of(report), report.note})},
                {report.sender},
                {report.robot},
                {duration(now - report.received) + " ago"}});

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <fstream>
 
 #include "api/kept_runs.hpp"
@@ -9,6 +8,8 @@
 #include "cli/words.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -58,8 +59,6 @@ std::string text_of(const api::RunList& list, bool colour) {
 }
 
 std::string text_of(const RunRow& run, bool colour) {
-  std::string robots;
-  for (const std::string& name : run.robots) robots.append(robots.empty() ? "" : ", ").append(name);
   Facts facts;
   facts.add("run", run.key + (run.is_present ? " (now)" : ""), Tone::Strong);
   facts.add("name", run.id);
@@ -70,7 +69,7 @@ std::string text_of(const RunRow& run, bool colour) {
   facts.add("last", api::iso_time(run.last));
   facts.add("score", number_or_none(run.score), Tone::Strong);
   facts.add("reports left", number_or_none(run.remaining_reports));
-  facts.add("robots", robots);
+  facts.add("robots", icd::listed(run.robots));
   facts.add("size", size(run.bytes));
   return facts.written(colour);
 }
@@ -105,9 +104,7 @@ Result<std::string> path_of(const std::string& key) {
 }
 
 Result<void> confirm_deletion(const Call& call, const std::string& path) {
-  const auto told = fetch<RunRow>(call.adit, path);
-  if (!told) return std::unexpected(told.error());
-  const RunRow& run = told->row;
+  const RunRow run = ADIT_TRY(fetch<RunRow>(call.adit, path)).row;
   const std::string began = run.began > 0 ? icd::sentence("began ", begin_of(run), ", ") : "";
   const std::string score = run.score ? icd::sentence("score ", *run.score, ", ") : "";
   return confirm(
@@ -120,9 +117,8 @@ Result<void> confirm_deletion(const Call& call, const std::string& path) {
 }  // namespace
 
 Result<Outcome> show_present_run(const Call& call) {
-  const auto told = fetch<api::RunView>(call.adit, "/adit/run");
-  if (!told) return std::unexpected(told.error());
-  return said(call, json_of(told->row), text_of(told->row, call.console.colour));
+  const api::RunView view = ADIT_TRY(fetch<api::RunView>(call.adit, "/adit/run")).row;
+  return said(call, json_of(view), text_of(view, call.console.colour));
 }
 
 Result<Outcome> list_runs(const Call& call) {
@@ -130,33 +126,29 @@ Result<Outcome> list_runs(const Call& call) {
 }
 
 Result<Outcome> show_run(const Call& call) {
-  const auto path = path_of(call.options.argument());
-  if (!path) return std::unexpected(path.error());
-  return show<RunRow>(call, *path, text_of);
+  const auto path = ADIT_TRY(path_of(call.options.argument()));
+  return show<RunRow>(call, path, text_of);
 }
 
 Result<Outcome> print_run(const Call& call) {
   const std::string key = call.options.argument(), to = call.options.to;
-  const auto path = path_of(key);
-  if (!path) return std::unexpected(path.error());
-  const auto html = get(call.adit, *path + "/report.html", kPrinted);
-  if (!html) return std::unexpected(html.error());
-  if (to.empty()) return Outcome{Exit::Fine, *html, ""};
+  const auto path = ADIT_TRY(path_of(key));
+  const auto html = ADIT_TRY(get(call.adit, path + "/report.html", kPrinted));
+  if (to.empty()) return Outcome{Exit::Fine, html, ""};
   std::ofstream file(to, std::ios::binary);
-  if (!file || !(file << *html).flush()) return failed(to + ": cannot be written");
+  if (!file || !(file << html).flush()) return failed(to + ": cannot be written");
   const codec::Value json{
-      codec::Value::Object{{"key", {key}}, {"file", {to}}, {"bytes", {std::uint64_t{html->size()}}}}};
+      codec::Value::Object{{"key", {key}}, {"file", {to}}, {"bytes", {std::uint64_t{html.size()}}}}};
   return said(call, codec::write_json(json), line("wrote the report of run ", key, " to ", to));
 }
 
 Result<Outcome> delete_run(const Call& call) {
   const std::string key = call.options.argument();
-  const auto path = path_of(key);
-  if (!path) return std::unexpected(path.error());
+  const auto path = ADIT_TRY(path_of(key));
   if (!call.options.yes) {
-    if (auto meant = confirm_deletion(call, *path); !meant) return std::unexpected(meant.error());
+    ADIT_TRY(confirm_deletion(call, path));
   }
-  return act(call, {.target = *path + "/delete", .check = "adit runs"}, "run " + key + " was deleted\n");
+  return act(call, {.target = path + "/delete", .check = "adit runs"}, "run " + key + " was deleted\n");
 }
 
 }  // namespace adit::cli

@@ -8,6 +8,7 @@
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -95,13 +96,12 @@ Value value_in(const std::string& text, const Value& before) {
 
 /// Checks the settings and applies them to a box with the settings of `now`.
 Result<Outcome> apply(const Call& call, const api::SetupView& now, const Value& settings) {
-  const auto checked = ask_check(call.adit, settings);
-  if (!checked) return std::unexpected(checked.error());
-  if (const auto& errors = checked->row.errors; !errors.empty())
+  const auto checked = ADIT_TRY(ask_check(call.adit, settings));
+  if (const auto& errors = checked.row.errors; !errors.empty())
     return Outcome{Exit::Attention, "", errors_text(errors)};
-  const auto done = change(call.adit, kSettings, {{"settings", settings}, {"base", {now.tag}}}, kSee);
-  if (!done) return std::unexpected(done.error());
-  return said(call, done->json, text_of(checked->row.changes, call.console.colour));
+  const auto done =
+      ADIT_TRY(change(call.adit, kSettings, {{"settings", settings}, {"base", {now.tag}}}, kSee));
+  return said(call, done.json, text_of(checked.row.changes, call.console.colour));
 }
 
 /// "" stands for the endpoints of command_post.
@@ -120,15 +120,13 @@ std::string courses_text(const settings::Settings& settings, bool colour) {
 }
 
 Result<Outcome> list_courses(const Call& call) {
-  const auto setup = fetch<api::SetupView>(call.adit, kSettings);
-  if (!setup) return std::unexpected(setup.error());
-  const auto settings = settings_in(setup->row);
-  if (!settings) return std::unexpected(settings.error());
-  Value all = setup->row.settings;
+  const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
+  const auto settings = ADIT_TRY(settings_in(setup.row));
+  Value all = setup.row.settings;
   const Value* const courses = value_at(all, "courses");
-  const Value::Object listed{{"course", {settings->command_post.course}},
+  const Value::Object listed{{"course", {settings.command_post.course}},
                              {"courses", courses == nullptr ? Value{} : *courses}};
-  return said(call, codec::write_json({listed}), courses_text(*settings, call.console.colour));
+  return said(call, codec::write_json({listed}), courses_text(settings, call.console.colour));
 }
 
 }  // namespace
@@ -141,65 +139,55 @@ Result<settings::Settings> settings_in(const api::SetupView& setup) {
 
 Result<Outcome> show_settings(const Call& call) {
   const bool colour = call.console.colour;
-  const auto setup = fetch<api::SetupView>(call.adit, kSettings);
-  if (!setup) return std::unexpected(setup.error());
+  const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
   if (const std::string key = call.options.argument(); !key.empty()) {
-    const auto keys = keys_named(setup->row, key);
-    if (!keys) return std::unexpected(keys.error());
-    return said(call, codec::write_json(json_of(*keys)), text_of(*keys, colour));
+    const auto keys = ADIT_TRY(keys_named(setup.row, key));
+    return said(call, codec::write_json(json_of(keys)), text_of(keys, colour));
   }
-  const auto settings = settings_in(setup->row);
-  if (!settings) return std::unexpected(settings.error());
-  return said(call, setup->json, text_of(setup->row, *settings, colour));
+  const auto settings = ADIT_TRY(settings_in(setup.row));
+  return said(call, setup.json, text_of(setup.row, settings, colour));
 }
 
 Result<Outcome> check_settings(const Call& call) {
-  const auto settings = read_file(call.options.argument());
-  if (!settings) return std::unexpected(settings.error());
-  const auto checked = ask_check(call.adit, *settings);
-  if (!checked) return std::unexpected(checked.error());
-  const auto& [errors, changes] = checked->row;
+  const auto settings = ADIT_TRY(read_file(call.options.argument()));
+  const auto checked = ADIT_TRY(ask_check(call.adit, settings));
+  const auto& [errors, changes] = checked.row;
   if (!errors.empty() && !call.options.json) return Outcome{Exit::Attention, "", errors_text(errors)};
-  return said(call, checked->json, text_of(changes, call.console.colour),
+  return said(call, checked.json, text_of(changes, call.console.colour),
               errors.empty() ? Exit::Fine : Exit::Attention);
 }
 
 Result<Outcome> apply_settings(const Call& call) {
-  const auto now = fetch<api::SetupView>(call.adit, kSettings);
-  if (!now) return std::unexpected(now.error());
-  const auto settings = read_file(call.options.argument());
-  if (!settings) return std::unexpected(settings.error());
-  return apply(call, now->row, *settings);
+  const auto now = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
+  const auto settings = ADIT_TRY(read_file(call.options.argument()));
+  return apply(call, now.row, settings);
 }
 
 Result<Outcome> set_setting(const Call& call) {
   const std::string key = call.options.argument(0), text = call.options.argument(1);
-  const auto now = fetch<api::SetupView>(call.adit, kSettings);
-  if (!now) return std::unexpected(now.error());
-  Value settings = now->row.settings;
+  const auto now = ADIT_TRY(fetch<api::SetupView>(call.adit, kSettings));
+  Value settings = now.row.settings;
   Value* const value = value_at(settings, key);
   if (value == nullptr) {
-    const auto keys = keys_named(now->row, key);
+    const auto keys = keys_named(now.row, key);
     return keys ? failed("no such item of a list: " + key) : std::unexpected(keys.error());
   }
   *value = value_in(text, *value);
-  return apply(call, now->row, settings);
+  return apply(call, now.row, settings);
 }
 
 Result<Outcome> export_settings(const Call& call) {
-  const auto file = get(call.adit, "/adit/settings/export");
-  if (!file) return std::unexpected(file.error());
-  return Outcome{Exit::Fine, *file, ""};
+  const auto file = ADIT_TRY(get(call.adit, "/adit/settings/export"));
+  return Outcome{Exit::Fine, file, ""};
 }
 
 Result<Outcome> course(const Call& call) {
   if (call.options.arguments.empty()) return list_courses(call);
   const std::string name = call.options.argument();
-  const auto done = change(call.adit, "/adit/course", {{"name", {name}}}, "adit course");
-  if (!done) return std::unexpected(done.error());
+  const auto done = ADIT_TRY(change(call.adit, "/adit/course", {{"name", {name}}}, "adit course"));
   const std::string used = name.empty() ? "no course is in use: the endpoints are those of command_post"
                                         : "course " + name + " is in use";
-  return said(call, done->json, line(used) + warnings_text(done->row.warnings, call.console.colour));
+  return said(call, done.json, line(used) + warnings_text(done.row.warnings, call.console.colour));
 }
 
 }  // namespace adit::cli

@@ -1,12 +1,12 @@
 #include "cli/settings_key.hpp"
 
 #include <algorithm>
-#include <charconv>
 
 #include "cli/table.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 #include "spelling/nearest.hpp"
 
 namespace adit::cli {
@@ -32,11 +32,9 @@ std::string text_at(const Value& object, std::string_view name) {
 Value* item_of(Value& list, std::string_view which) {
   auto* const items = std::get_if<Value::Array>(&list.is);
   if (items == nullptr) return nullptr;
-  std::size_t index = 0;
-  const auto [end, error] = std::from_chars(which.data(), which.data() + which.size(), index);
-  const bool is_index = error == std::errc() && end == which.data() + which.size();
+  const auto index = icd::number_in<std::size_t>(which);
   const auto found = std::ranges::find_if(*items, [&](const Value& item) {
-    return is_index ? &item == items->data() + index : text_at(item, "name") == which;
+    return index ? &item == items->data() + *index : text_at(item, "name") == which;
   });
   return found == items->end() ? nullptr : &*found;
 }

@@ -8,6 +8,7 @@
 #include "cli/words.hpp"
 #include "codec/json.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "spare/sealed.hpp"
 
 namespace adit::cli {
@@ -63,13 +64,11 @@ std::string text_of(const SpareView& view, bool /*colour*/) {
 }
 
 Result<SpareView> put_on_standby(const Call& call) {
-  const auto meant = confirm(call.options, call.console,
-                             "On standby, this box accepts and sends no messages. Queued reports are part "
-                             "of the export; queued maps, states and markers stay here.",
-                             "Put it on standby?");
-  if (!meant) return std::unexpected(meant.error());
-  const auto accepted = post(call.adit, {.target = "/adit/spare/standby", .check = kSeeSpare});
-  if (!accepted) return std::unexpected(accepted.error());
+  ADIT_TRY(confirm(call.options, call.console,
+                   "On standby, this box accepts and sends no messages. Queued reports are part "
+                   "of the export; queued maps, states and markers stay here.",
+                   "Put it on standby?"));
+  ADIT_TRY(post(call.adit, {.target = "/adit/spare/standby", .check = kSeeSpare}));
   auto told =
       fetch_until<SpareView>(call.adit, kSpare, for_box(std::chrono::seconds(60)),
                              [](const SpareView& seen) { return seen.standby && !seen.code.empty(); });
@@ -79,8 +78,7 @@ Result<SpareView> put_on_standby(const Call& call) {
 
 /// Requests an action on the stick and waits for its end.
 Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::string& body) {
-  const auto accepted = post(adit, {.target = target, .check = kSeeSpare, .body = body});
-  if (!accepted) return std::unexpected(accepted.error());
+  ADIT_TRY(post(adit, {.target = target, .check = kSeeSpare, .body = body}));
   auto told =
       fetch_until<SpareView>(adit, kSpare, for_box(std::chrono::seconds(330)),
                              [](const SpareView& seen) { return !seen.stick || seen.stick->doing.empty(); });
@@ -93,9 +91,8 @@ Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::str
 
 /// The stick's state before a request.
 Result<api::StickRow> stick_of(const Adit& adit) {
-  auto told = fetch<SpareView>(adit, kSpare);
-  if (!told) return std::unexpected(told.error());
-  if (told->row.stick) return *std::move(told->row.stick);
+  auto told = ADIT_TRY(fetch<SpareView>(adit, kSpare));
+  if (told.row.stick) return *std::move(told.row.stick);
   return failed("this box cannot use a stick: name a file");
 }
 
@@ -108,12 +105,10 @@ Outcome on_standby(const Call& call, const SpareView& view, const std::string& w
 }
 
 Result<Outcome> write_to_stick(const Call& call) {
-  const auto stick = stick_of(call.adit);
-  if (!stick) return std::unexpected(stick.error());
-  if (!stick->hindrance.empty())
-    return failed("the box was not put on standby: " + stick->hindrance, Exit::Attention);
-  const auto is_done = put_on_standby(call);
-  if (!is_done) return std::unexpected(is_done.error());
+  const auto stick = ADIT_TRY(stick_of(call.adit));
+  if (!stick.hindrance.empty())
+    return failed("the box was not put on standby: " + stick.hindrance, Exit::Attention);
+  ADIT_TRY(put_on_standby(call));
   const auto view = ask_stick(call.adit, "/adit/spare/to-stick", "");
   if (!view)
     return failed("the box is on standby, but its export is not on the stick: " + view.error().sentence,
@@ -137,33 +132,28 @@ Result<std::string> read_export(const std::string& path) {
 /// The name of the stick's export to use.
 Result<std::string> name_on_stick(const Call& call) {
   if (!call.options.argument().empty()) return call.options.argument();
-  const auto stick = stick_of(call.adit);
-  if (!stick) return std::unexpected(stick.error());
-  if (stick->exports.size() == 1) return stick->exports.front().name;
-  std::string why = stick->exports.empty() ? "the box has no stick with an export"
-                                           : "the stick has several exports: name one of";
-  for (const api::StickExportRow& each : stick->exports) why += ' ' + each.name;
+  const auto stick = ADIT_TRY(stick_of(call.adit));
+  if (stick.exports.size() == 1) return stick.exports.front().name;
+  std::string why = stick.exports.empty() ? "the box has no stick with an export"
+                                          : "the stick has several exports: name one of";
+  for (const api::StickExportRow& each : stick.exports) why += ' ' + each.name;
   return failed(why, Exit::Attention);
 }
 
 Result<void> take_from_stick(const Call& call) {
-  const auto name = name_on_stick(call);
-  if (!name) return std::unexpected(name.error());
-  const codec::Value wanted{codec::Value::Object{{"name", {*name}}}};
-  const auto view = ask_stick(call.adit, "/adit/spare/from-stick", codec::write_json(wanted));
-  if (!view) return std::unexpected(view.error());
+  const auto name = ADIT_TRY(name_on_stick(call));
+  const codec::Value wanted{codec::Value::Object{{"name", {name}}}};
+  ADIT_TRY(ask_stick(call.adit, "/adit/spare/from-stick", codec::write_json(wanted)));
   return {};
 }
 
 Result<void> take_from_file(const Call& call) {
-  auto file = read_export(call.options.argument());
-  if (!file) return std::unexpected(file.error());
-  const auto accepted = post(call.adit, {.target = "/adit/spare/take",
-                                         .check = kSeeSpare,
-                                         .body = *std::move(file),
-                                         .within = kFile,
-                                         .content_type = "application/octet-stream"});
-  if (!accepted) return std::unexpected(accepted.error());
+  auto file = ADIT_TRY(read_export(call.options.argument()));
+  ADIT_TRY(post(call.adit, {.target = "/adit/spare/take",
+                            .check = kSeeSpare,
+                            .body = std::move(file),
+                            .within = kFile,
+                            .content_type = "application/octet-stream"}));
   return {};
 }
 
@@ -177,28 +167,24 @@ Result<Outcome> show_spare(const Call& call) {
 
 Result<Outcome> export_spare(const Call& call) {
   if (call.options.stick) return write_to_stick(call);
-  const auto view = put_on_standby(call);
-  if (!view) return std::unexpected(view.error());
-  const auto file = get(call.adit, "/adit/spare/export", kFile);
-  if (!file) return std::unexpected(file.error());
-  if (const auto kept = host::write_file(call.options.argument(), *file, host::kOursAlone); !kept)
+  const auto view = ADIT_TRY(put_on_standby(call));
+  const auto file = ADIT_TRY(get(call.adit, "/adit/spare/export", kFile));
+  if (const auto kept = host::write_file(call.options.argument(), file, host::kOursAlone); !kept)
     return failed("the box is on standby, but its export could not be written: " + kept.error());
-  return on_standby(call, *view, "in " + call.options.argument());
+  return on_standby(call, view, "in " + call.options.argument());
 }
 
 Result<Outcome> take_spare(const Call& call) {
   const auto& [adit, options, console] = call;
   if (options.code.empty()) return failed("the code of the export is missing: give --code");
-  const auto taken = options.stick ? take_from_stick(call) : take_from_file(call);
-  if (!taken) return std::unexpected(taken.error());
+  ADIT_TRY(options.stick ? take_from_stick(call) : take_from_file(call));
   const codec::Value code{codec::Value::Object{{"code", {options.code}}}};
   const auto opened =
       post(adit, {.target = "/adit/spare/open", .check = kSeeSpare, .body = codec::write_json(code)});
   if (!opened) return std::unexpected(opened.error());
-  const auto told = fetch<SpareView>(adit, kSpare);
-  if (!told) return std::unexpected(told.error());
-  if (!told->row.taken_in) return failed("the box no longer has the export: see adit spare");
-  if (!options.json) console.print(text_of(*told->row.taken_in));
+  const auto told = ADIT_TRY(fetch<SpareView>(adit, kSpare));
+  if (!told.row.taken_in) return failed("the box no longer has the export: see adit spare");
+  if (!options.json) console.print(text_of(*told.row.taken_in));
   const auto meant =
       confirm(options, console,
               "If that box is still plugged in, or no longer on standby, reports may be sent twice.",

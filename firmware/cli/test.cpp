@@ -1,11 +1,11 @@
 #include <algorithm>
-#include <vector>
 
 #include "api/self_test.hpp"
 #include "cli/handlers.hpp"
 #include "cli/words.hpp"
 #include "codec/json.hpp"
 #include "host/log.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -86,11 +86,9 @@ Result<Value> endpoint_to_try(const std::optional<settings::Address>& at, const 
 /// The body of POST /adit/test; "": test the settings in use.
 Result<std::string> body_for(const Trial& trial) {
   if (trial.is_of_what_is_in_use()) return "";
-  const auto scoring = endpoint_to_try(trial.scoring, trial.scoring_token);
-  if (!scoring) return std::unexpected(scoring.error());
-  const auto mapping = endpoint_to_try(trial.mapping, trial.mapping_token);
-  if (!mapping) return std::unexpected(mapping.error());
-  Value::Object body = {{"scoring", *scoring}, {"mapping", *mapping}};
+  const auto scoring = ADIT_TRY(endpoint_to_try(trial.scoring, trial.scoring_token));
+  const auto mapping = ADIT_TRY(endpoint_to_try(trial.mapping, trial.mapping_token));
+  Value::Object body = {{"scoring", scoring}, {"mapping", mapping}};
   if (!trial.course.empty()) body.emplace_back("course", Value{trial.course});
   return codec::write_json({std::move(body)});
 }
@@ -100,23 +98,22 @@ Result<std::string> body_for(const Trial& trial) {
 Result<Outcome> test(const Call& call) {
   const auto& [adit, options, console] = call;
   const bool is_of_use = options.trial.is_of_what_is_in_use();
-  auto body = body_for(options.trial);
-  if (!body) return std::unexpected(body.error());
-  const auto begun = post(adit, {.target = "/adit/test", .check = "adit test", .body = *std::move(body)});
+  auto body = ADIT_TRY(body_for(options.trial));
+  const auto begun = post(adit, {.target = "/adit/test", .check = "adit test", .body = std::move(body)});
   const bool is_joined = !begun && begun.error().status == 409 && is_of_use;
   if (!begun && !is_joined) return std::unexpected(begun.error());
   Progress progress(console.colour, console.print);
   const auto is_other = [&](const api::TestView& view) { return view.applied != is_of_use || view.outdated; };
-  const auto told = fetch_until<api::TestView>(adit, "/adit/test", kTesting, [&](const api::TestView& view) {
-    if (!is_other(view) && !options.json) progress.show(view);
-    return is_other(view) || !view.running;
-  });
-  if (!told) return std::unexpected(told.error());
-  const api::TestView& view = told->row;
+  const auto told =
+      ADIT_TRY(fetch_until<api::TestView>(adit, "/adit/test", kTesting, [&](const api::TestView& view) {
+        if (!is_other(view) && !options.json) progress.show(view);
+        return is_other(view) || !view.running;
+      }));
+  const api::TestView& view = told.row;
   if (view.applied != is_of_use)
     return failed("a test of other values is running: try again when it has ended");
   if (view.outdated) return failed("the settings changed during the test: start it again");
-  if (options.json) console.print(told->json + '\n');
+  if (options.json) console.print(told.json + '\n');
   if (!is_whole(view))
     return failed("the test was interrupted, perhaps by a restart of Adit: start it again");
   return Outcome{is_bad(view) ? Exit::Attention : Exit::Fine, "", ""};

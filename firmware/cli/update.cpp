@@ -4,6 +4,7 @@
 #include "api/updates.hpp"
 #include "cli/handlers.hpp"
 #include "cli/words.hpp"
+#include "icd/try.hpp"
 #include "update/messages.hpp"
 
 namespace adit::cli {
@@ -72,31 +73,29 @@ Result<std::string> read_bundle(const std::string& path) {
 /// Prints the progress until the box has finished.
 Result<Outcome> follow(const Call& call) {
   std::string printed;
-  const auto told = fetch_until<UpdateView>(call.adit, kUpdate, kInstalling, [&](const UpdateView& view) {
-    if (view.doing.empty()) return true;
-    const std::string progress = view.progress ? icd::sentence(" ", *view.progress, " %") : "";
-    const std::string now = line(view.doing, progress);
-    if (!call.options.json && now != printed) call.console.print(now);
-    printed = now;
-    return false;
-  });
-  if (!told) return std::unexpected(told.error());
-  const UpdateView& view = told->row;
-  return said(call, told->json,
+  const auto told =
+      ADIT_TRY(fetch_until<UpdateView>(call.adit, kUpdate, kInstalling, [&](const UpdateView& view) {
+        if (view.doing.empty()) return true;
+        const std::string progress = view.progress ? icd::sentence(" ", *view.progress, " %") : "";
+        const std::string now = line(view.doing, progress);
+        if (!call.options.json && now != printed) call.console.print(now);
+        printed = now;
+        return false;
+      }));
+  const UpdateView& view = told.row;
+  return said(call, told.json,
               view.refusal.empty() ? last_line(view) : line("the update was rejected: ", view.refusal),
               is_fine(view) ? Exit::Fine : Exit::Attention);
 }
 
 Result<Outcome> upload(const Call& call) {
-  auto bundle = read_bundle(call.options.argument());
-  if (!bundle) return std::unexpected(bundle.error());
-  if (!call.options.json) call.console.print("sending " + size(bundle->size()) + '\n');
-  const auto accepted = post(call.adit, {.target = call.options.again ? "/adit/update?again=1" : kUpdate,
-                                         .check = kSeeUpdate,
-                                         .body = *std::move(bundle),
-                                         .within = kUpload,
-                                         .content_type = "application/octet-stream"});
-  if (!accepted) return std::unexpected(accepted.error());
+  auto bundle = ADIT_TRY(read_bundle(call.options.argument()));
+  if (!call.options.json) call.console.print("sending " + size(bundle.size()) + '\n');
+  ADIT_TRY(post(call.adit, {.target = call.options.again ? "/adit/update?again=1" : kUpdate,
+                            .check = kSeeUpdate,
+                            .body = std::move(bundle),
+                            .within = kUpload,
+                            .content_type = "application/octet-stream"}));
   return follow(call);
 }
 

@@ -11,6 +11,7 @@
 #include "cli/words.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {
@@ -149,11 +150,7 @@ std::string changes_text(const api::RunView& before, const api::RunView& now, bo
 
 std::string fitted(std::string_view text, std::size_t rows, std::size_t columns) {
   std::vector<std::string_view> lines;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find('\n', at), text.size());
-    lines.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
+  while (!text.empty()) lines.push_back(icd::cut(text, '\n'));
   const bool all = lines.size() <= rows;
   const std::size_t whole = all ? lines.size() : rows - std::min<std::size_t>(rows, 1);
   std::string shown;

@@ -1,13 +1,14 @@
 #include "cli/where.hpp"
 
 #include <arpa/inet.h>
-#include <ifaddrs.h>
-#include <net/if.h>
 #include <netinet/in.h>
 
-#include <charconv>
-#include <memory>
 #include <optional>
+
+#include "host/interfaces.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
+#include "uplink/socket.hpp"
 
 namespace adit::cli {
 namespace {
@@ -31,37 +32,21 @@ bool is_numeric(const std::string& address) {
   return inet_pton(is_ipv6(address) ? AF_INET6 : AF_INET, address.c_str(), &parsed) == 1;
 }
 
-std::optional<std::uint16_t> parse_port(std::string_view text) {
-  std::uint16_t port = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
-  if (error != std::errc() || end != text.data() + text.size() || port == 0) return std::nullopt;
-  return port;
-}
-
-/// Skips link-local addresses, because a connection to one needs its interface.
-std::optional<std::string> text_of(const sockaddr& address) {
-  char text[INET6_ADDRSTRLEN];
-  if (address.sa_family == AF_INET) {
-    const auto& ipv4 = reinterpret_cast<const sockaddr_in&>(address);
-    return inet_ntop(AF_INET, &ipv4.sin_addr, text, sizeof text);
-  }
-  if (address.sa_family != AF_INET6) return std::nullopt;
-  const auto& ipv6 = reinterpret_cast<const sockaddr_in6&>(address);
-  if (IN6_IS_ADDR_LINKLOCAL(&ipv6.sin6_addr)) return std::nullopt;
-  return inet_ntop(AF_INET6, &ipv6.sin6_addr, text, sizeof text);
+/// fe80::/10. A connection to such an address needs its interface.
+bool is_link_local(std::string_view address) {
+  return address.starts_with("fe") && address.find(':') == 4 && std::string_view("89ab").contains(address[2]);
 }
 
 /// The interface's first address that a listener at `any` accepts.
-std::optional<std::string> address_of(const std::string& interface, const std::string& any) {
-  ifaddrs* first = nullptr;
-  if (getifaddrs(&first) != 0) return std::nullopt;
-  const std::unique_ptr<ifaddrs, void (*)(ifaddrs*)> all(first, freeifaddrs);
-  for (const ifaddrs* each = first; each != nullptr; each = each->ifa_next) {
-    if (each->ifa_addr == nullptr || interface != each->ifa_name) continue;
-    auto text = text_of(*each->ifa_addr);
-    if (text && is_ipv6(*text) == is_ipv6(any)) return text;
+std::expected<std::string, std::string> address_of(const std::string& interface, const std::string& any) {
+  const auto all = ADIT_TRY(host::interfaces());
+  for (const host::Interface& each : all) {
+    for (std::string_view address : each.addresses) {
+      const std::string text(icd::cut(address, '/'));
+      if (each.name == interface && is_ipv6(text) == is_ipv6(any) && !is_link_local(text)) return text;
+    }
   }
-  return std::nullopt;
+  return std::unexpected("interface " + interface + " (team.interface) has no address");
 }
 
 }  // namespace
@@ -73,20 +58,15 @@ std::expected<Address, std::string> parse_address(std::string_view text) {
   const bool bracketed = host.starts_with('[') && host.ends_with(']');
   if (bracketed) host = host.substr(1, host.size() - 2);
   const std::string address(host);
-  const auto port = has_port ? parse_port(text.substr(colon + 1)) : kUsualPort;
-  if (port && is_numeric(address) && is_ipv6(address) == bracketed) return Address{address, *port};
+  const auto port = has_port ? icd::number_in<std::uint16_t>(text.substr(colon + 1)) : kUsualPort;
+  if (port.value_or(0) != 0 && is_numeric(address) && is_ipv6(address) == bracketed)
+    return Address{address, *port};
   return std::unexpected("expected an address, as 10.0.0.1, 10.0.0.1:8000 or [fd00::1]:8000, got '" +
                          std::string(text) + "'");
 }
 
 std::string written(const Address& address) {
-  std::string text;
-  if (is_ipv6(address.address)) {
-    text.append("[").append(address.address).append("]");
-  } else {
-    text = address.address;
-  }
-  return text.append(":").append(std::to_string(address.port));
+  return uplink::authority_of({.address = address.address, .port = address.port, .interface = ""});
 }
 
 std::expected<Address, std::string> reach(const settings::Team& team) {
@@ -98,9 +78,7 @@ std::expected<Address, std::string> reach(const settings::Team& team) {
     address.address = is_ipv6(address.address) ? "::1" : "127.0.0.1";
     return address;
   }
-  const auto found = address_of(team.interface, address.address);
-  if (!found) return std::unexpected("interface " + team.interface + " (team.interface) has no address");
-  address.address = *found;
+  address.address = ADIT_TRY(address_of(team.interface, address.address));
   return address;
 }
 

@@ -1,29 +1,13 @@
 #include "cli/words.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 namespace adit::cli {
 namespace {
 
-const char* code_of(Tone tone) {  // ECMA-48 8.3.117, SGR
-  switch (tone) {
-    case Tone::Plain:
-      return "";
-    case Tone::Faint:
-      return "\033[2m";
-    case Tone::Strong:
-      return "\033[1m";
-    case Tone::Good:
-      return "\033[32m";
-    case Tone::Warning:
-      return "\033[33m";
-    case Tone::Bad:
-      return "\033[1;31m";
-  }
-  return "";
-}
+/// ECMA-48 8.3.117 (SGR), in the order of Tone.
+constexpr const char* kCodes[] = {"", "\033[2m", "\033[1m", "\033[32m", "\033[33m", "\033[1;31m"};
 
 constexpr double kLongestTime = 1e9;  // seconds; a larger value is an error of the peer
 
@@ -31,7 +15,7 @@ constexpr double kLongestTime = 1e9;  // seconds; a larger value is an error of 
 
 std::string painted(const std::string& text, Tone tone, bool colour) {
   if (!colour || tone == Tone::Plain || text.empty()) return text;
-  return code_of(tone) + text + "\033[0m";
+  return kCodes[static_cast<std::size_t>(tone)] + text + "\033[0m";
 }
 
 std::size_t width_of(std::string_view text) {

@@ -6,13 +6,10 @@
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::admin {
 namespace {
-
-std::unexpected<icd::Refusal> refuse_now(std::string sentence) {
-  return refuse(icd::Status::Conflict, std::move(sentence));
-}
 
 /// Resolves names on the team's side alone, because mDNS listens only there.
 api::PortRow port_of(const char* side, const std::string& interface) {
@@ -81,23 +78,27 @@ std::optional<network::Numbers> NetworkChange::kept() const {
   return status ? status->kept : std::nullopt;
 }
 
-std::optional<network::Numbers> NetworkChange::present() const {
+std::expected<std::optional<network::Numbers>, std::string> NetworkChange::present() const {
   if (auto kept = this->kept()) return kept;
-  const auto team = host::own_address(settings_.team.interface);
+  const auto team = ADIT_TRY(host::own_address(settings_.team.interface));
   if (!team) return std::nullopt;
-  return network::Numbers{.team = *team,
-                          .command_post = host::own_addresses(settings_.command_post.interface)};
+  auto post = ADIT_TRY(host::own_addresses(settings_.command_post.interface));
+  return network::Numbers{.team = *team, .command_post = std::move(post)};
 }
 
 api::NetworkView NetworkChange::network() const {
   api::NetworkView view;
   view.now = loop_.wall_now();
   view.why = hindrance();
-  view.managed = view.why.empty();
   view.team_interface = settings_.team.interface;
   view.command_post_interface = settings_.command_post.interface;
-  view.team = host::own_address(view.team_interface);
-  view.command_post = host::own_addresses(view.command_post_interface);
+  const auto team = host::own_address(view.team_interface);
+  auto post = host::own_addresses(view.command_post_interface);
+  if (!team) view.why = team.error();
+  if (!post) view.why = post.error();
+  view.managed = view.why.empty();
+  view.team = team.value_or(std::nullopt);
+  view.command_post = std::move(post).value_or(std::vector<settings::Subnet>());
   if (!view.team_interface.empty()) view.ports.push_back(port_of("team", view.team_interface));
   if (!view.command_post_interface.empty())
     view.ports.push_back(port_of("command_post", view.command_post_interface));
@@ -124,7 +125,9 @@ api::NetworkView NetworkChange::network() const {
 }
 
 network::Findings NetworkChange::check(const network::Numbers& wanted, const std::string& asker) const {
-  return network::check(wanted, present(),
+  const auto present = this->present();
+  if (!present) return {.errors = {{"", present.error()}}, .warnings = {}};
+  return network::check(wanted, *present,
                         {.allow_overlap = settings_.network.allow_overlap,
                          .confirm_within = settings_.network.confirm_within,
                          .command_post = settings_.command_post,
@@ -135,12 +138,12 @@ network::Findings NetworkChange::check(const network::Numbers& wanted, const std
 }
 
 icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
-  if (pending()) return refuse_now("another change is not yet confirmed or reverted");
-  if (const std::string why = hindrance(); !why.empty()) return refuse_now(why);
+  if (pending()) return conflict("another change is not yet confirmed or reverted");
+  if (const std::string why = hindrance(); !why.empty()) return conflict(why);
   wanted_ = {host::draw_nonce(), settings_.network.confirm_within, wanted};
   wanted_at_ = loop_.now();
   if (const auto asked = adit_network_.ask(network::kWantedFile, wanted_); !asked)
-    return refuse_now("cannot request the change: " + asked.error());
+    return conflict("cannot request the change: " + asked.error());
   host::log(host::Level::Notice, "change of the addresses requested",
             {{"team", network::team_text(wanted)}, {"command_post", network::command_post_text(wanted)}});
   return {};
@@ -148,7 +151,7 @@ icd::Checked<void> NetworkChange::change(const network::Numbers& wanted) {
 
 icd::Checked<void> NetworkChange::confirm(const std::string& local) {
   const auto waits = pending();
-  if (!waits) return refuse_now("there is no change to confirm");
+  if (!waits) return conflict("there is no change to confirm");
   if (auto may = check_confirmable(waits->wanted, local); !may) return may;
   return say(network::Word::What::Confirm, *waits);
 }
@@ -161,12 +164,12 @@ icd::Checked<void> NetworkChange::check_confirmable(const network::Numbers& want
   const auto kept = this->kept();
   const bool stays = kept && kept->mode == wanted.mode && kept->team.address == wanted.team.address;
   if ((stays || !fixed) && adit_network_.waits())
-    return refuse_now("the change is not applied yet: try again in a few seconds");
+    return conflict("the change is not applied yet: try again in a few seconds");
   const bool new_one = fixed ? local == settings::ipv4_text(wanted.team.address)
                              : !kept || local != settings::ipv4_text(kept->team.address);
   if (stays || new_one) return {};
-  return refuse_now(icd::sentence("confirm it at ", page_at(wanted), ": this request came to ", local,
-                                  " and does not show that the new address works"));
+  return conflict(icd::sentence("confirm it at ", page_at(wanted), ": this request came to ", local,
+                                " and does not show that the new address works"));
 }
 
 void NetworkChange::lead_to_endpoints() {
@@ -187,14 +190,13 @@ void NetworkChange::lead_to_endpoints() {
   const auto status = adit_network_.status();
   if (!status || status->endpoints == all || (told_at_ && loop_.now() < *told_at_ + kTellAgain)) return;
   told_at_ = loop_.now();
-  if (const auto asked = adit_network_.leave(network::kEndpointsFile, all); !asked) {
-    host::log(host::Level::Error, "cannot tell adit-network the endpoints", {{"why", asked.error()}});
-  }
+  host::log_failure(host::Level::Error, "cannot tell adit-network the endpoints",
+                    adit_network_.leave(network::kEndpointsFile, all));
 }
 
 std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
   const auto number = settings::ipv4_of(endpoint.address);
-  const auto numbers = present();
+  const auto numbers = present().value_or(std::nullopt);  // network() shows an error
   if (!number || !numbers) return "";
   const auto hop = network::next_hop(*numbers, *number);
   return hop ? settings::ipv4_text(*hop) : "";
@@ -202,14 +204,14 @@ std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
 
 icd::Checked<void> NetworkChange::revert() {
   const auto waits = pending();
-  if (!waits) return refuse_now("there is no change to revert");
+  if (!waits) return conflict("there is no change to revert");
   return say(network::Word::What::Revert, *waits);
 }
 
 icd::Checked<void> NetworkChange::say(network::Word::What what, const network::Pending& pending) const {
   if (const auto asked = adit_network_.leave(network::kWordFile, network::Word{pending.nonce, what});
       !asked) {
-    return refuse_now("cannot tell adit-network: " + asked.error());
+    return conflict("cannot tell adit-network: " + asked.error());
   }
   return {};
 }

@@ -55,7 +55,8 @@ class NetworkChange final : public api::Network {
   std::string page_at(const network::Numbers& numbers) const;
   std::optional<network::Pending> pending() const;
   std::optional<network::Numbers> kept() const;
-  std::optional<network::Numbers> present() const;
+  /// Error: no numbers are confirmed, and the box's addresses cannot be read.
+  std::expected<std::optional<network::Numbers>, std::string> present() const;
   /// Accepts `local` if a change to `wanted` may be confirmed from that address.
   icd::Checked<void> check_confirmable(const network::Numbers& wanted, const std::string& local) const;
   icd::Checked<void> say(network::Word::What what, const network::Pending& pending) const;

@@ -10,6 +10,7 @@
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 
 namespace adit::applier {
 namespace {
@@ -19,9 +20,9 @@ using host::Level;
 static_assert(2 * Takers::kMost <= network::kMostTaken);
 
 /// The addresses to watch.
-std::vector<std::uint32_t> addresses_of(const std::string& interface) {
+std::vector<std::uint32_t> addresses_of(const std::vector<settings::Subnet>& own) {
   std::vector<std::uint32_t> all;
-  for (const settings::Subnet& each : host::own_addresses(interface)) all.push_back(each.address);
+  for (const settings::Subnet& each : own) all.push_back(each.address);
   all.resize(std::min(all.size(), Takers::kMost));
   return all;
 }
@@ -41,7 +42,8 @@ AddressWatch::AddressWatch(loop::Loop& loop, const Options& options)
       told_(loop, options.told, [this] { look(); }),
       file_(options.status + '/' + network::kTakenFile),
       kernel_(host::link_and_address_changes()),
-      due_(loop.timer([this] { work(); })) {}
+      due_(loop.timer([this] { work(); })),
+      again_(loop.timer([this] { look(); })) {}
 
 std::expected<void, std::string> AddressWatch::start() {
   if (!kernel_) return std::unexpected("cannot watch the interfaces for changes");
@@ -49,35 +51,43 @@ std::expected<void, std::string> AddressWatch::start() {
     if (!host::take_link_changes(kernel_)) changed_.wait_for(0);
     look();
   });
-  if (auto told = file_.tell(network::Taken{}); !told) return std::unexpected(told.error());
+  (void)ADIT_TRY(file_.tell(network::Taken{}));
   look();
   return {};
 }
 
 void AddressWatch::look() {
+  if (!host::log_failure(Level::Error, "cannot look for address conflicts", try_to_look()))
+    again_.call_at(loop_.now() + kLookAgain);
+  work();
+}
+
+std::expected<void, std::string> AddressWatch::try_to_look() {
+  const auto at_team = ADIT_TRY(host::own_addresses(team().interface));
+  const auto at_post = ADIT_TRY(host::own_addresses(post().interface));
   std::vector<Mac> macs;
   for (const Side& side : sides_) {
     if (const auto mac = mac_of(side.interface)) macs.push_back(*mac);
   }
-  const auto sought =
-      sought_in(told_.read(), host::own_addresses(post().interface), host::own_addresses(team().interface));
+  const auto sought = sought_in(told_.read(), at_post, at_team);
   exchanged_.set_sought(sought, macs, loop_.now());
-  for (Side& side : sides_) look(side, macs, sought);
-  work();
+  look(team(), at_team, macs, sought);
+  look(post(), at_post, macs, sought);
+  return {};
 }
 
-void AddressWatch::look(Side& side, const std::vector<Mac>& macs, const std::vector<std::uint32_t>& sought) {
+void AddressWatch::look(Side& side, const std::vector<settings::Subnet>& own, const std::vector<Mac>& macs,
+                        const std::vector<std::uint32_t>& sought) {
   const Instant now = loop_.now();
   const unsigned index = if_nametoindex(side.interface.c_str());
   const bool is_ours = side.arp && std::ranges::find(macs, side.arp->own()) != macs.end();
   if (index != side.index || !is_ours) open(side, index);
-  auto addresses = addresses_of(side.interface);
+  auto addresses = addresses_of(own);
   side.takers.set_own(addresses, macs, now);
   addresses.insert(addresses.end(), sought.begin(), sought.end());
   if (side.arp) {
     // hear() checks each packet anyway, so a missing filter only costs time.
-    if (const auto set = side.arp->hear_only(addresses); !set)
-      host::log(Level::Warning, "cannot filter ARP: reading all of it", {{"why", set.error()}});
+    host::log_failure(Level::Warning, "cannot filter ARP: reading all of it", side.arp->hear_only(addresses));
   }
   const bool had_carrier = std::exchange(side.carrier, host::carrier(side.interface).value_or(false));
   if (!side.carrier || had_carrier) return;
@@ -152,8 +162,7 @@ void AddressWatch::work() {
 void AddressWatch::ask(const Side& side, const std::vector<std::uint32_t>& addresses) {
   for (const std::uint32_t address : addresses) {
     if (!side.arp || !side.carrier) continue;  // look() asks again after the carrier returns
-    if (const auto asked = side.arp->ask(address); !asked)
-      host::log(Level::Debug, "cannot send an ARP request", {{"why", asked.error()}});
+    host::log_failure(Level::Debug, "cannot send an ARP request", side.arp->ask(address));
   }
 }
 

@@ -28,6 +28,7 @@ class AddressWatch {
   static constexpr std::chrono::milliseconds kRest{100};
   /// Least time between two writes of the file, and between two log lines about an interface.
   static constexpr std::chrono::seconds kBetweenTellings{1}, kBetweenLines{60};
+  static constexpr std::chrono::seconds kLookAgain{10};  // after an error
 
   /// Both must outlive this object.
   AddressWatch(loop::Loop& loop, const Options& options);
@@ -53,8 +54,11 @@ class AddressWatch {
 
   Side& team() { return sides_.front(); }
   Side& post() { return sides_.back(); }
+  /// Reads addresses and interfaces. After an error, watches the last known addresses and tries again.
   void look();
-  void look(Side& side, const std::vector<Mac>& macs, const std::vector<std::uint32_t>& sought);
+  std::expected<void, std::string> try_to_look();
+  void look(Side& side, const std::vector<settings::Subnet>& own, const std::vector<Mac>& macs,
+            const std::vector<std::uint32_t>& sought);
   void open(Side& side, unsigned index);
   void hear(Side& side);
   void work();
@@ -70,7 +74,7 @@ class AddressWatch {
   host::StatusFile file_;
   std::optional<Instant> written_at_;
   const loop::FileDescriptor kernel_;
-  loop::Source changed_, due_;
+  loop::Source changed_, due_, again_;
 };
 
 }  // namespace adit::applier

@@ -12,6 +12,7 @@
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "network/messages.hpp"
 
 namespace adit::applier {
@@ -27,7 +28,7 @@ Applier::Applier(loop::Loop& loop, const Options& options)
 
 std::expected<void, std::string> Applier::start() {
   const auto before = file_.told<network::Status>();
-  if (auto settled = files_.settle(); !settled) return settled;
+  ADIT_TRY(files_.settle());
   change_.emplace(files_, files_.kept());
   change_->set_endpoints(files_.endpoints());
   change_->set_interfaces(options_.team, options_.command_post);
@@ -38,9 +39,8 @@ std::expected<void, std::string> Applier::start() {
     change_->interrupted();
   }
   if (!tell()) return std::unexpected("cannot write the status");
-  auto folder = host::open_requests(options_.wanted);
-  if (!folder) return std::unexpected(std::move(folder.error()));
-  folder_ = std::move(*folder);
+  auto folder = ADIT_TRY(host::open_requests(options_.wanted));
+  folder_ = std::move(folder);
   if (folder_) watch_folder();
   if (folder_ && !before) drop_requests();
   look();
@@ -163,7 +163,11 @@ void Applier::take_endpoints() {
 void Applier::answer_probe(const network::Probe& probe) {
   network::Probed probed{.nonce = probe.nonce};
   std::vector<std::uint32_t> own;
-  for (const settings::Subnet& each : host::own_addresses(options_.command_post)) own.push_back(each.address);
+  if (const auto all = host::own_addresses(options_.command_post); !all) {
+    probed.trouble = all.error();
+  } else {
+    for (const settings::Subnet& each : *all) own.push_back(each.address);
+  }
   if (!own.empty()) {
     probed.address = settings::ipv4_text(own.front());
     const auto claim = applier::probe(options_.command_post, own);
@@ -176,9 +180,9 @@ void Applier::answer_probe(const network::Probe& probe) {
     }
   }
   if (const auto sought = settings::ipv4_of(probe.sought)) seek(*sought, probed);
-  const auto written = host::write_file(options_.status + '/' + network::kProbedFile,
-                                        codec::write_file(probed), host::kForAll);
-  if (!written) host::log(Level::Error, "cannot write an answer", {{"why", written.error()}});
+  host::log_failure(Level::Error, "cannot write an answer",
+                    host::write_file(options_.status + '/' + network::kProbedFile, codec::write_file(probed),
+                                     host::kForAll));
 }
 
 /// Finds the interface on which a machine answers for an address.

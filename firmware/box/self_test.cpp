@@ -11,6 +11,7 @@
 #include "forward/channel.hpp"
 #include "host/interfaces.hpp"
 #include "host/service.hpp"
+#include "icd/try.hpp"
 #include "icd/uri.hpp"
 #include "uplink/socket.hpp"
 
@@ -50,9 +51,8 @@ SelfTest::SelfTest(loop::Loop& loop, const settings::Settings& settings,
 icd::Checked<void> SelfTest::begin_test(const api::Candidate& candidate) {
   if (view_.running)
     return std::unexpected(icd::Refusal{icd::Status::Conflict, "a test is running: see GET /adit/test"});
-  auto tried = tried_of_(candidate);
-  if (!tried) return std::unexpected(std::move(tried.error()));
-  tried_ = *std::move(tried);
+  auto tried = ADIT_TRY(tried_of_(candidate));
+  tried_ = std::move(tried);
   view_ = {.number = view_.number + 1,
            .running = true,
            .applied = candidate.is_applied(),
@@ -143,12 +143,13 @@ void SelfTest::ask_address() {
   const std::string& interface = tried_.post.interface;
   const auto own = host::own_address(interface);
   const auto status = adit_network_.status();
-  std::string why = !status                                       ? adit_network_.why()
-                    : status->command_post_interface != interface ? "adit-network has " +
-                                                                        status->command_post_interface +
-                                                                        " instead"
-                                                                  : "";
-  if (own && why.empty()) {
+  std::string why;
+  if (!status) {
+    why = adit_network_.why();
+  } else if (status->command_post_interface != interface) {
+    why = "adit-network has " + status->command_post_interface + " instead";
+  }
+  if (own && *own && why.empty()) {
     probe_ = {host::draw_nonce(), network_.next_hop(address())};
     const auto asked = adit_network_.leave(network::kProbeFile, probe_);
     until_ = loop_.now() + kProbeWithin;

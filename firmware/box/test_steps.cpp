@@ -62,17 +62,19 @@ TestStep link(const std::string& interface, std::optional<bool> carrier) {
       "Plug the Command Post's cable into the box, check the lights of both plugs, and try another cable.");
 }
 
-TestStep address(const std::string& interface, const std::optional<settings::Subnet>& own,
+TestStep address(const std::string& interface,
+                 const std::expected<std::optional<settings::Subnet>, std::string>& own,
                  const std::optional<network::Probed>& probed, const std::string& not_asked) {
   if (interface.empty()) return skipped("address", "the settings name no command_post.interface");
-  if (!own) {
+  if (!own) return skipped("address", own.error());
+  if (!*own) {
     return bad(
         "address", icd::sentence(interface, " has no IPv4 address"),
         "Set an address in the Command Post's subnet, on the page or in the box's network configuration.");
   }
   const std::string conflict = probed && !probed->claimant.empty() ? probed->address : "";
   const std::string has =
-      icd::sentence(interface, " has ", conflict.empty() ? network::host_text(*own) : conflict);
+      icd::sentence(interface, " has ", conflict.empty() ? network::host_text(**own) : conflict);
   if (!probed)
     return skipped("address", icd::sentence(has, "; not checked for an address conflict: ", not_asked));
   if (!probed->trouble.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <expected>
 #include <optional>
 #include <string>
 
@@ -22,8 +23,9 @@ const settings::Address& address_in(const settings::CommandPost& post, Asked ask
 /// `carrier`: host::carrier(). `interface` "": not set.
 TestStep link(const std::string& interface, std::optional<bool> carrier);
 
-/// `own`: the interface's address; `probed`: adit-network's finding; `not_asked`: why it has none.
-TestStep address(const std::string& interface, const std::optional<settings::Subnet>& own,
+/// `own`: host::own_address(); `probed`: adit-network's finding; `not_asked`: why it has none.
+TestStep address(const std::string& interface,
+                 const std::expected<std::optional<settings::Subnet>, std::string>& own,
                  const std::optional<network::Probed>& probed, const std::string& not_asked);
 
 /// Whether the Command Post is at its own port or at the team's, by the port that finds `sought`, its

@@ -12,6 +12,7 @@
 #include "host/link_changes.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "settings/subnet.hpp"
 #include "settings/written.hpp"
 #include "spare/sealed.hpp"
@@ -174,7 +175,7 @@ std::expected<void, std::string> Gateway::start() {
   flow_.start();
   await_files();
   overview_.carry_on();
-  if (auto listening = listen(settings_.team); !listening) return listening;
+  ADIT_TRY(listen(settings_.team));
   every_second();
   return {};
 }
@@ -232,7 +233,7 @@ void Gateway::every_second() {
 
 /// Anybody may set the time of day, in both directions. Offers better sources too.
 void Gateway::look_at_clock() {
-  clock_.every_second(wanted_ntp());
+  if (const auto ntp = wanted_ntp()) clock_.every_second(*ntp);
   const forward::KnownTimes known = flow_.known_times();
   clock_.offered({clock::Source::LastKnown, loop_.wall_now()});
   clock_.offered({clock::Source::CommandPost, known.command_post.value_or(0)});
@@ -245,10 +246,12 @@ void Gateway::look_at_clock() {
   api_.changed();
 }
 
-clock::Ntp Gateway::wanted_ntp() const {
+std::optional<clock::Ntp> Gateway::wanted_ntp() const {
   clock::Ntp ntp{.server = settings_.clock.ntp_server, .clients = ""};
   if (!settings_.clock.serve_ntp) return ntp;
-  if (const auto own = host::own_address(settings_.team.interface)) ntp.clients = settings::written(*own);
+  const auto own = host::own_address(settings_.team.interface);
+  if (!own) return std::nullopt;
+  if (*own) ntp.clients = settings::written(**own);
   return ntp;
 }
 

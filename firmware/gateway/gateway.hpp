@@ -1,7 +1,6 @@
 #pragma once
 
 #include <expected>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -69,7 +68,8 @@ class Gateway final : public api::Operator {
   std::expected<void, std::string> take_over(admin::Store::Loaded next);
   void tell_of_settings(const settings::Restarts& restarts, const forward::Tokens& tokens);
   void reopen_panel();
-  clock::Ntp wanted_ntp() const;
+  /// std::nullopt: the box's addresses cannot be read, so the last request stays.
+  std::optional<clock::Ntp> wanted_ntp() const;
   void revert(const std::string& why);
   intake::IcdOptions icd_options() const;
   forward::Tokens tokens() const;

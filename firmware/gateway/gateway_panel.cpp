@@ -1,6 +1,5 @@
 // Lights and button.
 #include <algorithm>
-#include <vector>
 
 #include "gateway/gateway.hpp"
 #include "host/interfaces.hpp"
@@ -94,7 +93,8 @@ std::string Gateway::team_address() const {
   const settings::Team& team = settings_.team;
   if (!team.interface.empty()) {
     const auto own = host::own_address(team.interface);
-    return own ? settings::ipv4_text(own->address) : "";
+    host::log_failure(host::Level::Warning, "the team's address is unknown", own);
+    return own && *own ? settings::ipv4_text((*own)->address) : "";
   }
   const auto given = std::ranges::find_if(team.listen, [](const settings::Address& each) {
     return settings::ipv4_of(each.address).value_or(0) != 0;

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <bit>
 #include <cerrno>
-#include <charconv>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -19,6 +18,8 @@
 #include "host/files.hpp"
 #include "host/interface_name.hpp"
 #include "host/service.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
 
 namespace adit::host {
 namespace {
@@ -65,7 +66,8 @@ std::string address_text(std::uint32_t address) {
 
 std::expected<std::vector<Interface>, std::string> interfaces() {
   ifaddrs* first = nullptr;
-  if (getifaddrs(&first) != 0) return std::unexpected(std::system_category().message(errno));
+  if (getifaddrs(&first) != 0)
+    return std::unexpected("cannot read this machine's addresses: " + std::system_category().message(errno));
   const std::unique_ptr<ifaddrs, decltype(&freeifaddrs)> all(first, &freeifaddrs);
   std::vector<Interface> interfaces;
   for (const ifaddrs* each = all.get(); each != nullptr; each = each->ifa_next) {
@@ -91,9 +93,8 @@ std::optional<Port> port_in(const std::string& sys_class_net, const std::string&
   Port port{.mac = line_in(folder + "/address"), .mbit = {}, .duplex = line_in(folder + "/duplex")};
   if (port.duplex == "unknown") port.duplex.clear();
   const std::string speed = line_in(folder + "/speed");  // -1 or unreadable: not known
-  unsigned mbit = 0;
-  const auto [end, error] = std::from_chars(speed.data(), speed.data() + speed.size(), mbit);
-  if (error == std::errc() && end == speed.data() + speed.size() && mbit > 0) port.mbit = mbit;
+  const auto mbit = icd::number_in<unsigned>(speed);
+  if (mbit.value_or(0) > 0) port.mbit = mbit;
   return port;
 }
 
@@ -107,9 +108,10 @@ std::string local_name() {
   return name.substr(0, name.find('.')) + ".local";
 }
 
-std::vector<settings::Subnet> own_addresses(const std::string& interface) {
+std::expected<std::vector<settings::Subnet>, std::string> own_addresses(const std::string& interface) {
+  const auto interfaces = ADIT_TRY(host::interfaces());
   std::vector<settings::Subnet> all;
-  for (const Interface& each : interfaces().value_or(std::vector<Interface>{})) {
+  for (const Interface& each : interfaces) {
     if (each.name != interface) continue;
     for (const std::string& address : each.addresses) {
       if (const auto subnet = settings::parse_subnet(address)) all.push_back(*subnet);
@@ -120,8 +122,8 @@ std::vector<settings::Subnet> own_addresses(const std::string& interface) {
   return all;
 }
 
-std::optional<settings::Subnet> own_address(const std::string& interface) {
-  const auto all = own_addresses(interface);
+std::expected<std::optional<settings::Subnet>, std::string> own_address(const std::string& interface) {
+  const auto all = ADIT_TRY(own_addresses(interface));
   return all.empty() ? std::nullopt : std::optional(all.front());
 }
 

@@ -31,15 +31,15 @@ std::optional<Port> port(const std::string& interface);
 /// This machine's mDNS name: "adit.local" (RFC 6762 3).
 std::string local_name();
 
-/// All interfaces in the kernel's order, or the error of getifaddrs(3).
+/// All interfaces in the kernel's order. Error: "cannot read this machine's addresses: ...".
 std::expected<std::vector<Interface>, std::string> interfaces();
 
 /// All IPv4 addresses of an interface, link-local ones last (the kernel lists them first). Empty if the
-/// interface does not exist.
-std::vector<settings::Subnet> own_addresses(const std::string& interface);
+/// interface does not exist. Error: as interfaces().
+std::expected<std::vector<settings::Subnet>, std::string> own_addresses(const std::string& interface);
 
-/// The first of own_addresses().
-std::optional<settings::Subnet> own_address(const std::string& interface);
+/// The first of own_addresses(), or std::nullopt.
+std::expected<std::optional<settings::Subnet>, std::string> own_address(const std::string& interface);
 
 /// An IPv4 route.
 struct Route {

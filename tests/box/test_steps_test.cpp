@@ -40,6 +40,7 @@ TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
   expect(address("darpa0", kOwn, std::nullopt, "adit-network does not run here"), "skipped",
          "adit-network does not run");
   expect(address("darpa0", std::nullopt, std::nullopt, ""), "bad", "darpa0 has no IPv4 address");
+  expect(address("darpa0", std::unexpected("cannot read it"), std::nullopt, ""), "skipped", "cannot read it");
   expect(address("", kOwn, std::nullopt, ""), "skipped", "command_post.interface");
 }
 

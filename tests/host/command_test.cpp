@@ -1,4 +1,5 @@
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include "host/interfaces.hpp"
 #include "host/output.hpp"
@@ -38,12 +39,23 @@ TEST(ACommand, ThatTalksWithoutEndIsHeardOutAndNotKept) {
 
 TEST(AnOwnAddress, IsTheInterfacesFirst) {
   const auto own = own_address("lo");
-  ASSERT_TRUE(own);
-  EXPECT_EQ(own->address, 0x7f000001u);
-  EXPECT_EQ(own->prefix, 8);
-  EXPECT_FALSE(own_address("no-such0"));
-  EXPECT_FALSE(own_address(""));
-  EXPECT_FALSE(own_address("longer-than-any-interface"));
+  ASSERT_TRUE(own.value());
+  EXPECT_EQ((*own)->address, 0x7f000001u);
+  EXPECT_EQ((*own)->prefix, 8);
+  EXPECT_FALSE(own_address("no-such0").value());
+  EXPECT_FALSE(own_address("").value());
+  EXPECT_FALSE(own_address("longer-than-any-interface").value());
+}
+
+TEST(AnOwnAddress, ThatCannotBeReadIsAnError) {
+  rlimit before{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &before), 0);
+  const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &none), 0);
+  const auto own = own_address("lo");
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &before), 0);
+  ASSERT_FALSE(own);
+  EXPECT_EQ(own.error(), "cannot read this machine's addresses: Too many open files");
 }
 
 }  // namespace

@@ -79,6 +79,7 @@ struct KeptRun {
   std::vector<Track> tracks;
   History history;
   std::vector<std::pair<Time, double>> coverage = {};  // known area of all layers in m2 over time
+  std::vector<ColourRow> colours = {};                 // of the settings, not of the run's time
 };
 
 /// Stored runs: room archive.
@@ -92,7 +93,7 @@ class KeptRuns {
   virtual void read(const std::string& key, std::function<void(std::shared_ptr<const KeptRun>)> done) = 0;
   /// The run's report for printing as HTML; "": no run has that key.
   virtual void report(const std::string& key, std::vector<ReportDetail> reports,
-                      std::function<void(std::string html)> done) = 0;
+                      std::vector<ColourRow> colours, std::function<void(std::string html)> done) = 0;
   /// Deletes a run, except the present one. Its reports stay in the ledger. Error: a sentence.
   virtual void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) = 0;
 };

@@ -131,7 +131,7 @@ void KeptRunsRoutes::gather(const std::shared_ptr<Gathering>& gathering) {
   if (rows.size() == kDetailsInATurn) {
     return loop_.post([this, gathering] { gather(gathering); });
   }
-  runs_.report(gathering->key, std::move(gathering->reports),
+  runs_.report(gathering->key, std::move(gathering->reports), source_.view().colours,
                [responder = gathering->responder](std::string html) {
                  responder->answer(html.empty() ? no_such_run() : printed(std::move(html)));
                });

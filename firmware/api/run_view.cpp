@@ -160,6 +160,12 @@ constexpr Member kRobot[] = {
     member<&RobotRow::age>("age", "seconds since at; null if at is"),
 };
 
+constexpr Member kColour[] = {
+    member<&ColourRow::name>("name"),
+    member<&ColourRow::colour>("colour", "number of the colour among those of robots[].colour, from 1")
+        .from(1),
+};
+
 constexpr Member kLight[] = {
     member<&LightRow::name>("name"),
     member<&LightRow::pattern>("pattern").one_of(kPatterns),
@@ -187,6 +193,7 @@ constexpr Member kView[] = {
                                   "two reports of one type that are this near may be of one artifact"),
     member<&RunView::activities>("activities", "by kind, then by robot"),
     member<&RunView::standings>("standings", "how each robot's data arrive, by name"),
+    member<&RunView::colours>("colours", "the colours that the settings give robots"),
     member<&RunView::refusals>("refusals", "the last 50, newest first"),
     member<&RunView::rejected>("rejected", "rejected messages, oldest first, at most 100"),
     member<&RunView::lights>("lights"),
@@ -221,6 +228,7 @@ constexpr codec::Row RefusalRow::kRow = {"Refusal", kRefusal, "A rejected messag
 constexpr codec::Row EndpointRow::kRow = {"Endpoint", kEndpoint, "", kByName};
 constexpr codec::Row RejectedRow::kRow = {"Rejected", kRejected, "", kByNumber};
 constexpr codec::Row RobotRow::kRow = {"Robot", kRobot, "", kByName};
+constexpr codec::Row ColourRow::kRow = {"Colour", kColour, "", kByName};
 constexpr codec::Row LightRow::kRow = {"Light", kLight, "", kByName};
 constexpr codec::Row LinkRow::kRow = {"Link", kLink, "", kBySide};
 constexpr codec::Row RunView::kRow = {"RunView", kView, "The present state of the run."};

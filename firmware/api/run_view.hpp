@@ -145,6 +145,14 @@ struct RobotRow {
   static const codec::Row kRow;
 };
 
+/// A colour that the settings give a robot.
+struct ColourRow {
+  std::string name;
+  int colour = 0;
+
+  static const codec::Row kRow;
+};
+
 struct LightRow {
   std::string name, pattern;
 
@@ -174,6 +182,7 @@ struct RunView {
   double near_metres = 0;
   std::vector<ActivityRow> activities;
   std::vector<StandingRow> standings;
+  std::vector<ColourRow> colours = {};
   std::vector<RefusalRow> refusals;
   std::vector<RejectedRow> rejected;
   std::vector<LightRow> lights;

@@ -198,9 +198,8 @@ api::RunList Archive::list() const {
 namespace {
 
 /// Blocks on the disk. Null if there is no such run.
-std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
-                                             const api::RunRow& present,
-                                             const std::function<bool()>& enough) {
+std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string& key,
+                                       const api::RunRow& present, const std::function<bool()>& enough) {
   const auto known = runs.facts_of(key);
   if (!known) host::log(host::Level::Warning, "cannot read a stored run", {{"why", known.error()}});
   if (!known || !*known) return nullptr;
@@ -210,9 +209,9 @@ std::shared_ptr<const api::KeptRun> kept_run(const RunsFolder& runs, const std::
   std::vector<std::pair<api::Time, double>> coverage;
   for (const auto& [at, pixels] : told.known())
     coverage.emplace_back(at, static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
-  return std::make_shared<const api::KeptRun>(api::KeptRun{as_told(facts, present), std::move(told.picture()),
-                                                           told.tracks(), told.samples().since(0),
-                                                           std::move(coverage)});
+  return std::make_shared<api::KeptRun>(api::KeptRun{as_told(facts, present), std::move(told.picture()),
+                                                     told.tracks(), told.samples().since(0),
+                                                     std::move(coverage)});
 }
 
 }  // namespace
@@ -225,11 +224,15 @@ void Archive::read(const std::string& key, std::function<void(std::shared_ptr<co
 }
 
 void Archive::report(const std::string& key, std::vector<api::ReportDetail> reports,
-                     std::function<void(std::string html)> done) {
+                     std::vector<api::ColourRow> colours, std::function<void(std::string html)> done) {
   const auto html = std::make_shared<std::string>();
   writer_.submit(
-      [html, key, present = row_, runs = runs_, enough = enough(), reports = std::move(reports)] {
-        if (const auto run = kept_run(runs, key, present, enough)) *html = run_report(*run, reports);
+      [html, key, present = row_, runs = runs_, enough = enough(), reports = std::move(reports),
+       colours = std::move(colours)] {
+        const auto run = kept_run(runs, key, present, enough);
+        if (!run) return;
+        run->colours = colours;
+        *html = run_report(*run, reports);
       },
       [html, done] { done(std::move(*html)); }, [done] { done(""); });
 }

@@ -76,7 +76,7 @@ class Archive final : public api::KeptRuns {
   api::History history(api::Time since) const override { return samples_.since(since); }
   void read(const std::string& key, std::function<void(std::shared_ptr<const api::KeptRun>)> done) override;
   void report(const std::string& key, std::vector<api::ReportDetail> reports,
-              std::function<void(std::string html)> done) override;
+              std::vector<api::ColourRow> colours, std::function<void(std::string html)> done) override;
   void remove(const std::string& key, std::function<void(std::expected<void, std::string>)> done) override;
 
  private:

@@ -1,6 +1,7 @@
 // The drawings of a run's report.
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <span>
 #include <utility>
 
@@ -21,7 +22,7 @@ using picture::kSide;
 /// Most bytes of images in a report. Further tiles are left out, and the report says so.
 constexpr std::size_t kMostBytes = std::size_t{4} << 20;
 constexpr std::size_t kMostTiles = 120;
-/// Of robots in the order of their first poses: the page's in its light theme (site/files/robot_colour.js).
+/// The page's in its light theme (site/files/robot_colour.js).
 constexpr const char* kColours[] = {"#9e4930", "#025447", "#6b56a3", "#733200", "#007672",
                                     "#593279", "#7e620d", "#005259", "#844d90", "#524801",
                                     "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674",
@@ -114,6 +115,31 @@ std::vector<api::Track> by_first_pose(std::vector<api::Track> tracks) {
   return tracks;
 }
 
+/// Indices of kColours and kDashes.
+struct Look {
+  std::size_t colour = 0, dashes = 0;
+};
+
+/// As the page's robotLooks(): robots of one chosen colour have different dashes. Other robots have the
+/// colours that no robot chose, in the order of `tracks`.
+std::vector<Look> looks_of(const std::vector<api::Track>& tracks, const std::vector<api::ColourRow>& chosen) {
+  std::vector<Look> looks;
+  std::map<std::size_t, std::size_t> robots;  // by chosen colour
+  std::size_t next = 0;
+  for (const api::Track& track : tracks) {
+    const auto own = std::ranges::find(chosen, track.robot, &api::ColourRow::name);
+    if (own != chosen.end()) {
+      const auto colour = static_cast<std::size_t>(own->colour - 1);
+      looks.push_back({colour, colour + robots[colour]++});
+    } else {
+      while (std::ranges::count(chosen, static_cast<int>(next + 1), &api::ColourRow::colour) > 0) ++next;
+      looks.push_back({next, next});
+      ++next;
+    }
+  }
+  return looks;
+}
+
 /// With a label, so that colour alone does not identify a robot.
 std::string marked(double x, double y, const std::string& label, const char* colour, double size) {
   return icd::sentence("<circle cx=\"", fixed(x, 2), "\" cy=\"", fixed(-y, 2), "\" r=\"", fixed(size / 3, 3),
@@ -133,10 +159,12 @@ std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDeta
   const double size = std::max(width, height) / 50, margin = 2 * size;
   std::size_t left_out = 0;
   std::string drawn = tiles_of(run.picture, layers, left_out);
-  std::size_t place = 0;
-  for (const api::Track& track : by_first_pose(run.tracks)) {
-    const char* its = kColours[place % std::size(kColours)];
-    drawn += polyline(track, its, kDashes[place++ % std::size(kDashes)], size / 5);
+  const auto tracks = by_first_pose(run.tracks);
+  const auto looks = looks_of(tracks, run.colours);
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    const api::Track& track = tracks[i];
+    const char* its = kColours[looks[i].colour % std::size(kColours)];
+    drawn += polyline(track, its, kDashes[looks[i].dashes % std::size(kDashes)], size / 5);
     const icd::Point& last = track.poses.back().position;
     drawn += marked(last.x, last.y, track.robot, its, size);
   }

@@ -13,6 +13,14 @@ namespace {
 
 constexpr std::size_t kMostReportRows = 200;
 
+std::vector<api::ColourRow> chosen_colours(const std::vector<settings::Robot>& robots) {
+  std::vector<api::ColourRow> rows;
+  for (const settings::Robot& robot : robots) {
+    if (robot.colour != 0) rows.push_back({robot.name, robot.colour});
+  }
+  return rows;
+}
+
 }  // namespace
 
 Overview::Overview(const Rooms& rooms, loop::Writer& writer)
@@ -114,6 +122,7 @@ api::RunView Overview::view() const {
                     .near_metres = rooms_.settings.reports.near_metres,
                     .activities = rooms_.flow.activities(),
                     .standings = {},
+                    .colours = chosen_colours(rooms_.settings.robots),
                     .refusals = rooms_.flow.record().refusals(),
                     .rejected = rooms_.flow.rejected().rows(),
                     .lights = {},

@@ -104,6 +104,10 @@ constexpr Key kKeys[] = {
      "The edge of a voxel in metres (at least 0.01); 0: every point is sent. Adit sends one point of each "
      "voxel. Only for a Command Post that adds each cloud to the earlier ones, and not for whole clouds.",
      real<MEMBER(robots.back().voxel_metres)>(0, 10)},
+    {"robots[].colour",
+     "The robot's colour on the pages and in the run's report. auto: by the order of the first poses. Robots "
+     "of one colour have different lines.",
+     choice<MEMBER(robots.back().colour)>(kColourWords)},
 
     {"network.confirm_within_ms",
      "How long you have to confirm new addresses of the box. Then it returns to the old ones.",

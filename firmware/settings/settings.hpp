@@ -100,6 +100,12 @@ struct Panel {
   bool is_simulated() const { return !has_lights() && button.empty(); }
 };
 
+/// A robot's colours on the pages and in the run's report. Word n is the colour of the robot whose first pose
+/// in the run is number n, if no robot has chosen that colour (site/files/robot_colour.js).
+inline constexpr std::string_view kColourWords[] = {
+    "auto", "coral", "jade", "lavender", "copper", "aqua", "purple", "sand", "teal", "orchid", "olive",
+    "cyan", "plum",  "lime", "azure",    "pink",   "moss", "sky",    "rose", "leaf", "blue"};
+
 /// A registered robot (ICD 2).
 struct Robot {
   std::string name;   // icd::RobotName
@@ -107,6 +113,7 @@ struct Robot {
   lanes::Clouds clouds = lanes::Clouds::Auto;
   lanes::Precision precision = lanes::Precision::Exact;  // for its clouds
   double voxel_metres = 0;  // edge of a voxel, of which one point is sent; 0: all points are sent
+  std::uint8_t colour = 0;  // index of kColourWords; 0: by the order of the first poses
 };
 
 /// One of an event's Command Posts, selected by name.

@@ -20,7 +20,7 @@ struct FakeKeptRuns final : KeptRuns {
   void read(const std::string& key, std::function<void(std::shared_ptr<const KeptRun>)> done) override {
     done(kept != nullptr && kept->facts.key == key ? kept : nullptr);
   }
-  void report(const std::string& key, std::vector<ReportDetail> reports,
+  void report(const std::string& key, std::vector<ReportDetail> reports, std::vector<ColourRow> /*colours*/,
               std::function<void(std::string)> done) override {
     reported = std::move(reports);
     done(kept != nullptr && kept->facts.key == key ? "<!doctype html>" : "");

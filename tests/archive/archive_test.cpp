@@ -206,7 +206,7 @@ TEST_F(ArchiveTest, HasThePresentRunAsItIsNowNotAsItWasWrittenLast) {
   std::optional<api::RunRow> read;
   archive->read("3", [&](auto its) { read = its->facts; });
   std::string html;
-  archive->report("3", {}, [&](std::string its) { html = std::move(its); });
+  archive->report("3", {}, {}, [&](std::string its) { html = std::move(its); });
   ASSERT_TRUE(loop::turn_until(loop, [&] { return !html.empty(); }));
   EXPECT_EQ(read->score, 7);
   EXPECT_THAT(html, testing::HasSubstr("<dt>Score</dt><dd>7</dd>"));

@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <regex>
+
 #include "archive/a_run.hpp"
 #include "archive/html.hpp"
 
@@ -50,6 +52,21 @@ TEST(RunReport, IsNothingButWhatItSaysWhateverNamesAndNotesHold) {
   EXPECT_THAT(html, HasSubstr("&lt;script&gt;alert(&#39;1&#39;)&lt;/script&gt;&quot;&amp;\uFFFD"));
   EXPECT_THAT(html, Not(HasSubstr("href=\"http")));
   EXPECT_THAT(html, Not(HasSubstr("src=")));
+}
+
+TEST(RunReport, DrawsChosenColoursAndTellsRobotsOfOneColourApartByTheirLines) {
+  api::KeptRun kept{{}, picture::Mosaic(), {}, {}, {}};
+  for (const char* robot : {"r1", "r2", "r3", "r4"})
+    kept.tracks.push_back({robot, {{1000.0 + static_cast<double>(kept.tracks.size()), {}, 0}}});
+  kept.colours = {{"r2", 3}, {"r4", 3}, {"r3", 1}};
+  std::string drawn = drawn_map(kept, {});
+  const std::regex line(R"re(stroke="(#\w+)" stroke-width="[^"]+" stroke-dasharray="([\d.]+))re");
+  std::vector<std::string> lines;
+  for (std::sregex_iterator at(drawn.begin(), drawn.end(), line), end; at != end; ++at)
+    lines.push_back((*at)[1].str() + " " + (*at)[2].str());
+  // the second colour, because the first one is r3's
+  EXPECT_THAT(lines,
+              testing::ElementsAre("#025447 0.016", "#6b56a3 0.004", "#9e4930 4000.000", "#6b56a3 0.018"));
 }
 
 TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { linesOf } from "../../firmware/site/files/artifact_icons.js";
-import { dashesOf, kindOf, orderRobots, placeInRun, rgbOf, robotRgb, toneOf } from "../../firmware/site/files/robot_colour.js";
+import { chooseColours, dashesOf, kindOf, lookOf, robotLooks, orderRobots, rgbOf, robotRgb, toneOf } from "../../firmware/site/files/robot_colour.js";
 
 const TWENTY = [...Array(20).keys()];
 const GROUNDS = { dark: "0b0e10", light: "eceae4", red: "080000" };
@@ -34,10 +34,25 @@ test("twenty robots have twenty colours by day, those of neighbouring hues anoth
 });
 
 test("a robot keeps its colour as others come, and has the same on each page: by the first poses", () => {
-  for (const name of ["r1", "r2", "r10"]) placeInRun(name); // as a page hears of them
-  assert.deepEqual(["r10", "r1", "r2", "r9", "r10"].map(placeInRun), [2, 0, 1, 3, 2]);
+  const colours = (...names) => names.map((name) => lookOf(name).colour);
+  colours("r1", "r2", "r10"); // as a page hears of them
+  assert.deepEqual(colours("r10", "r1", "r2", "r9", "r10"), [2, 0, 1, 3, 2]);
   orderRobots(["r10", "r9"]); // as the tracks say
-  assert.deepEqual(["r10", "r9", "r1", "r2"].map(placeInRun), [0, 1, 2, 3]);
+  assert.deepEqual(colours("r10", "r9", "r1", "r2"), [0, 1, 2, 3]);
+  assert.ok(chooseColours([{ name: "r9", colour: 1 }]));
+  assert.deepEqual(colours("r10", "r9", "r1", "r2"), [1, 0, 2, 3]);
+  assert.ok(!chooseColours([{ name: "r9", colour: 1 }]), "the same again changes nothing");
+});
+
+test("robots of one chosen colour have different patterns, and the others have the colours that no robot chose", () => {
+  const chosen = new Map([["r2", 2], ["r4", 2], ["r3", 0]]); // as in tests/archive/run_report_test.cpp
+  assert.deepEqual([...robotLooks(["r1", "r2", "r3", "r4"], chosen).values()].map(({ colour, pattern }) => [colour, pattern]), [[1, 1], [2, 2], [0, 0], [2, 3]]);
+});
+
+test("the settings name as many colours as there are", () => {
+  const source = `${readFileSync(new URL("../../firmware/settings/settings.hpp", import.meta.url))}`;
+  const [words] = /kColourWords\[\] = \{[^}]+\}/.exec(source);
+  assert.equal(words.match(/"\w+"/g).length, 1 + TWENTY.length);
 });
 
 test("a robot's colour is read on the ground of each theme", () => {

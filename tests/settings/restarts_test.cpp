@@ -61,6 +61,7 @@ const RestartsCase kRestartsCases[] = {
     {"robots[].precision", [](Settings& s) { s.robots.front().precision = lanes::Precision::Auto; },
      kNothing},
     {"robots[].voxel_metres", [](Settings& s) { s.robots.front().voxel_metres = 0.1; }, kNothing},
+    {"robots[].colour", [](Settings& s) { s.robots.front().colour = 2; }, kNothing},
     {"network.confirm_within_ms", [](Settings& s) { s.network.confirm_within = 9s; }, kNothing},
     {"network.allow_overlap", [](Settings& s) { s.network.allow_overlap = true; }, kNothing},
     {"clock.ntp_server", [](Settings& s) { s.clock.ntp_server = "10.0.0.5"; }, kNothing},

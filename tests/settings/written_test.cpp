@@ -67,7 +67,7 @@ TEST(WrittenSettings, StandOnLinesThatPeopleCanRead) {
   EXPECT_THAT(file, HasSubstr("{\n  \"version\": 1,\n  \"command_post\": {\n    \"scoring\": "
                               "{\"address\":\"10.100.1.200\",\"port\":8000},\n"));
   EXPECT_THAT(file, HasSubstr("\n    {\n      \"name\": \"ugv2\",\n      \"alias\": \"husky-2\",\n"));
-  EXPECT_THAT(file, HasSubstr("\n      \"voxel_metres\": 0.0\n    }\n  ],\n"));
+  EXPECT_THAT(file, HasSubstr("\n      \"voxel_metres\": 0.0,\n      \"colour\": \"auto\"\n    }\n  ],\n"));
   EXPECT_TRUE(file.ends_with("\n}\n"));
 }
 
@@ -100,10 +100,11 @@ TEST(SettingsChanges, KnowAnItemByItsNameAndNotByItsPlace) {
       sentences(changes(before, after)),
       ElementsAre(R"(robots[ugv1].name: "ugv1" -> null)", R"(robots[ugv1].alias: "" -> null)",
                   R"(robots[ugv1].clouds: "auto" -> null)", R"(robots[ugv1].precision: "exact" -> null)",
-                  "robots[ugv1].voxel_metres: 0.0 -> null", R"(robots[ugv2].alias: "husky-2" -> "")",
-                  R"(robots[uav1].name: null -> "uav1")", R"(robots[uav1].alias: null -> "")",
-                  R"(robots[uav1].clouds: null -> "whole")", R"(robots[uav1].precision: null -> "exact")",
-                  "robots[uav1].voxel_metres: null -> 0.0"));
+                  "robots[ugv1].voxel_metres: 0.0 -> null", R"(robots[ugv1].colour: "auto" -> null)",
+                  R"(robots[ugv2].alias: "husky-2" -> "")", R"(robots[uav1].name: null -> "uav1")",
+                  R"(robots[uav1].alias: null -> "")", R"(robots[uav1].clouds: null -> "whole")",
+                  R"(robots[uav1].precision: null -> "exact")", "robots[uav1].voxel_metres: null -> 0.0",
+                  R"(robots[uav1].colour: null -> "auto")"));
 }
 
 }  // namespace

@@ -49,7 +49,7 @@ export class MapScene {
     this.silentRobots = new Set(run.standings.filter(({ silent }) => silent).map(({ name }) => name));
     const reports = run.reports.map(({ number, state, asking }) => [number, state, asking]);
     const robots = run.robots.map((robot) => [lastSeen(robot, this.silentRobots), robot.position, robot.heading, isStale(robot)]);
-    const key = JSON.stringify([reports, run.near_metres, robots, this.markers.at(run.now).length, [...this.lateRobots]]);
+    const key = JSON.stringify([reports, run.near_metres, robots, run.colours, this.markers.at(run.now).length, [...this.lateRobots]]);
     if (key === this.key) return false;
     this.key = key;
     return true;

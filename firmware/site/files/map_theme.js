@@ -1,5 +1,5 @@
 // The map's colours in each theme: of what is drawn upon it, and of the tiles, which the box colours as it is asked to.
-import { placeInRun, robotRgb } from "./robot_colour.js";
+import { lookOf, robotRgb } from "./robot_colour.js";
 import { themeNow } from "./theme_now.js";
 
 const NAMES = ["ground", "panel", "edge", "ink", "soft", "good", "wait", "bad", "quiet", "ask", "lamp", "free", "wall"];
@@ -22,7 +22,7 @@ export function looksOf({ free, wall }) {
   const theme = themeNow();
   const red = theme === "red" ? ["46100a", "ff8a78"] : null;
   const robot = (name) => {
-    const colour = robotRgb(placeInRun(name), theme), dim = theme === "light" ? 1.75 : 0.4; // the lowest is nearer to the ground's colour
+    const colour = robotRgb(lookOf(name).colour, theme), dim = theme === "light" ? 1.75 : 0.4; // the lowest is nearer to the ground's colour
     const low = colour.map((part) => (theme === "light" ? 255 - (255 - part) / dim : part * dim));
     return [hex(low), hex(colour)];
   };

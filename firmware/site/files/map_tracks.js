@@ -1,6 +1,6 @@
 // Where each robot was. The box keeps about a pose a second (README.md: GET /adit/tracks); they are fetched once,
 // and what comes after is taken from the run's own events.
-import { dashesOf, orderRobots, placeInRun, robotColour } from "./robot_colour.js";
+import { chooseColours, dashesOf, lookOf, orderRobots, robotColour } from "./robot_colour.js";
 import { fetchSoon } from "./session.js";
 
 const SPACING = 1, SAME_SPACING = 10; // s; the second while a robot stands
@@ -39,7 +39,8 @@ export class Tracks {
     this.#base = base;
   }
 
-  follow({ now, run_number, robots }) {
+  follow({ now, run_number, robots, colours }) {
+    if (chooseColours(colours)) ++this.changes;
     if (now - this.#heard > SILENCE) this.isLoaded = false; // poses may be missing
     this.#heard = now;
     if (run_number !== this.#run) {
@@ -120,7 +121,7 @@ export function drawTracks(ctx, colours, view, tracks, now, unit, since = -Infin
         ctx.stroke();
       }
       Object.assign(ctx, { lineWidth: width * unit, strokeStyle: robotColour(name), globalAlpha: alpha });
-      if (age < PATTERNED) ctx.setLineDash(dashesOf(placeInRun(name)).map((length) => length * unit));
+      if (age < PATTERNED) ctx.setLineDash(dashesOf(lookOf(name).pattern).map((length) => length * unit));
       ctx.stroke();
       ctx.setLineDash([]);
     }

@@ -1,6 +1,5 @@
-// A colour and a pattern for each robot by its place in the run: the robot whose first pose is the oldest has the first place. Every page
-// and the run's report thus show the same (archive/run_report_drawn.cpp). Robots of neighbouring hues differ in lightness and pattern. At
-// night there is one hue.
+// A colour and a pattern for each robot: those that the settings choose, else by the order of first poses. Every page and the run's report
+// thus show the same (archive/run_report_drawn.cpp). Robots of neighbouring hues differ in lightness and pattern. At night there is one hue.
 import { themeNow, whenThemeChanges } from "./theme_now.js";
 
 const HUES = [[37, 63], [87, 146], [170, 265], [289, 373]]; // degrees of OKLCH, away from those of the levels
@@ -17,31 +16,54 @@ const KINDS = [
 /** "ground", "legged" or "flying", by how teams call their robots; what says neither drives. */
 export const kindOf = (name) => KINDS.find(([, pattern]) => pattern.test(name))?.[0] ?? "ground";
 
-let order = []; // names
+/** {colour, pattern} of each name, both from 0. `chosen`: name to colour. Robots of one chosen colour have different patterns; the others
+ *  have the colours that no robot chose, in the order of `names`. */
+export function robotLooks(names, chosen) {
+  const isChosen = new Set(chosen.values()), robots = new Map(); // of each chosen colour
+  let next = 0;
+  return new Map(names.map((name) => {
+    const own = chosen.get(name);
+    if (own === undefined) {
+      while (isChosen.has(next)) ++next;
+      return [name, { colour: next, pattern: next++ }];
+    }
+    robots.set(own, (robots.get(own) ?? -1) + 1);
+    return [name, { colour: own, pattern: own + robots.get(own) }];
+  }));
+}
 
-/** The place of a robot, from 0; a new one has the next. */
-export function placeInRun(name) {
-  if (!order.includes(name)) order.push(name);
-  return order.indexOf(name);
+let order = [], chosen = new Map(), looks = new Map();
+
+function look(names, colours) {
+  const before = JSON.stringify([...looks]);
+  [order, chosen, looks] = [names, colours, robotLooks(names, colours)];
+  const isNew = JSON.stringify([...looks]) !== before;
+  if (isNew) repaint();
+  return isNew;
+}
+
+/** {colour, pattern} of a robot; a new one is the next in the order. */
+export function lookOf(name) {
+  if (!looks.has(name)) look([...order, name], chosen);
+  return looks.get(name);
 }
 
 /** Sets the order to `names`; robots that are not among them follow by name. */
-export function orderRobots(names) {
-  const before = order.join();
-  order = [...names, ...order.filter((name) => !names.includes(name)).sort()];
-  if (order.join() !== before) repaint();
-}
+export const orderRobots = (names) => look([...names, ...order.filter((name) => !names.includes(name)).sort()], chosen);
+
+/** Sets the colours of the settings, `colours` of /adit/run. Gives whether a robot now looks different. */
+export const chooseColours = (rows) => look(order, new Map(rows.map(({ name, colour }) => [name, colour - 1])));
 
 /** {hue, lightness} of OKLCH on a dark ground. */
-export function toneOf(place) {
-  let left = (((place * STEP) % ROBOTS + Math.floor(place / ROBOTS) / 2) / ROBOTS) % 1 * HUES.reduce((sum, [from, to]) => sum + to - from, 0);
+export function toneOf(colour) {
+  let left = (((colour * STEP) % ROBOTS + Math.floor(colour / ROBOTS) / 2) / ROBOTS) % 1 * HUES.reduce((sum, [from, to]) => sum + to - from, 0);
   const [from] = HUES.find(([from, to]) => left < to - from || ((left -= to - from), false));
-  return { hue: (from + left) % 360, lightness: LIGHTNESS[place % LIGHTNESS.length] };
+  return { hue: (from + left) % 360, lightness: LIGHTNESS[colour % LIGHTNESS.length] };
 }
 
-const patternOf = (place) => PATTERNS[place % PATTERNS.length];
-/** The same as lengths of lines and gaps. */
-export const dashesOf = (place) => DASHES[patternOf(place)];
+const nameOfPattern = (pattern) => PATTERNS[pattern % PATTERNS.length];
+/** A pattern as lengths of lines and gaps. */
+export const dashesOf = (pattern) => DASHES[nameOfPattern(pattern)];
 
 /** OKLCH to red, green and blue (0 to 255), after Björn Ottosson's "A perceptual color space for image processing"; what no
  *  screen shows is made greyer until one does. */
@@ -70,11 +92,12 @@ const THEMES = {
   red: ({ lightness }) => rgbOf(1.25 * lightness - 0.3, 0.17, 28),
 };
 
-/** [red, green, blue] of a robot's place in that theme. */
-export const robotRgb = (place, theme) => THEMES[theme](toneOf(place));
+/** [red, green, blue] of a colour in that theme. */
+export const robotRgb = (colour, theme) => THEMES[theme](toneOf(colour));
 
-/** The same of a robot for a style: "rgb(…)". */
-export const robotColour = (name, theme = themeNow()) => `rgb(${robotRgb(placeInRun(name), theme).join(" ")})`;
+/** The same for a style: "rgb(…)". */
+export const styleOf = (colour, theme = themeNow()) => `rgb(${robotRgb(colour, theme).join(" ")})`;
+export const robotColour = (name) => styleOf(lookOf(name).colour);
 
 /** Gives `node` the robot's colour as `--robot` and its pattern as data-pattern, now and after each change of theme or order. */
 export function tint(node, name) {
@@ -86,7 +109,7 @@ export function tint(node, name) {
 }
 function paint(node) {
   node.style.setProperty("--robot", robotColour(node.dataset.tint));
-  node.dataset.pattern = patternOf(placeInRun(node.dataset.tint));
+  node.dataset.pattern = nameOfPattern(lookOf(node.dataset.tint).pattern);
 }
 const repaint = () => watched && document.querySelectorAll("[data-tint]").forEach(paint);
 let watched = false;

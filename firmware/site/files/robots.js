@@ -2,7 +2,7 @@
 import { badge, list, make, mark, say } from "./dom.js";
 import { kindOf } from "./arriving.js";
 import { sampleAges } from "./robot_ages.js";
-import { placeInRun } from "./robot_colour.js";
+import { lookOf } from "./robot_colour.js";
 import { RobotRows } from "./robot_rows.js";
 import { mapAge, robotsOf } from "./robot_state.js";
 import { showVerdict } from "./verdict.js";
@@ -42,7 +42,7 @@ function showSayings(activities) {
 export function showRobots(view, now, lost) {
   const isAway = view.endpoints.find(({ name }) => name === "mapping").level === "bad";
   const state = robotsOf(view, now - view.now, lost);
-  for (const { name } of [...view.robots, ...view.standings]) placeInRun(name); // in the order of the view; rows are sorted later
+  for (const { name } of [...view.robots, ...view.standings]) lookOf(name); // in the order of the view; rows are sorted later
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));

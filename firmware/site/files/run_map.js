@@ -22,8 +22,8 @@ export async function lookAgain(base, title, run) {
   say(head, `Opening ${title} …`); // a long run takes seconds
   section.hidden = false;
   head.focus();
-  const paths = [`${base}/map`, `${base}/tracks`, `${base}/history`, `/adit/reports?run=${run}`];
-  const [{ layers }, { tracks }, { attention }, reports] = await Promise.all(paths.map((path) => get(path)));
+  const paths = [`${base}/map`, `${base}/tracks`, `${base}/history`, `/adit/reports?run=${run}`, "/adit/run"];
+  const [{ layers }, { tracks }, { attention }, reports, { colours }] = await Promise.all(paths.map((path) => get(path)));
   const times = [
     ...layers.flatMap(({ first, last }) => [first, last]),
     ...tracks.flatMap(({ poses }) => [poses[0][0], poses.at(-1)[0]]),
@@ -33,7 +33,7 @@ export async function lookAgain(base, title, run) {
   end = times.reduce((a, b) => Math.max(a, b), 0);
   say(head, title);
   if (!map) offer();
-  map.lookAgain(base, { reports: [...reports].reverse(), run_number: run, now: end });
+  map.lookAgain(base, { reports: [...reports].reverse(), run_number: run, now: end, colours });
   showTools({ robots: tracks.map(({ robot }) => ({ name: robot })) });
   time.stretch(first, end);
   time.setTicks({

@@ -90,6 +90,7 @@ api::NetworkView NetworkChange::network() const {
   api::NetworkView view;
   view.now = loop_.wall_now();
   view.why = hindrance();
+  view.runs_here = adit_network_.runs_here();
   view.team_interface = settings_.team.interface;
   view.command_post_interface = settings_.command_post.interface;
   const auto team = host::own_address(view.team_interface);

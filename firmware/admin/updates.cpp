@@ -52,6 +52,7 @@ api::UpdateView Updates::update() const {
   api::UpdateView view;
   view.why = status ? status->trouble : adit_update_.why();
   view.managed = view.why.empty();
+  view.runs_here = adit_update_.runs_here();
   if (status) {
     view.running = status->running;
     view.doing = status->doing;

@@ -34,9 +34,10 @@ struct PortRow {
 
 /// The box's addresses, and an unconfirmed change.
 struct NetworkView {
-  double now = 0;        // the box's time of day; seconds since 1970
-  bool managed = false;  // whether they can be changed here
-  std::string why;       // why not, or ""
+  double now = 0;          // the box's time of day; seconds since 1970
+  bool managed = false;    // whether they can be changed here
+  std::string why;         // why not, or ""
+  bool runs_here = false;  // whether adit-network runs, is starting, or has an unreadable status
   std::string team_interface, command_post_interface;
   /// The interfaces' present addresses, from any source.
   std::optional<settings::Subnet> team;  // the first

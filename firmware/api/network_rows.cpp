@@ -80,6 +80,8 @@ constexpr Member kNetworkMembers[] = {
     member<&NetworkView::now>("now", "the box's time of day in seconds since 1970"),
     member<&NetworkView::managed>("managed"),
     member<&NetworkView::why>("why", "why the addresses cannot be changed here"),
+    member<&NetworkView::runs_here>(
+        "runs_here", "false: this machine has no adit-network, as a PC that sets its own addresses"),
     group<NetworkView, kTeamSide>("team"),
     group<NetworkView, kCommandPostSide>("command_post"),
     member<&NetworkView::pending>("pending"),

@@ -33,6 +33,8 @@ struct LastOrNull {
 constexpr Member kUpdate[] = {
     member<&UpdateView::managed>("managed"),
     member<&UpdateView::why>("why", "why the box cannot be updated here"),
+    member<&UpdateView::runs_here>("runs_here",
+                                   "false: this machine has no adit-update, as a PC with its own updates"),
     member<&UpdateView::running, &update::Running::compatible>("board"),
     member<&UpdateView::running, &update::Running::version>("version"),
     member<&UpdateView::running, &update::Running::slot>("slot", "running slot"),

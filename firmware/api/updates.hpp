@@ -15,8 +15,9 @@ namespace adit::api {
 
 /// The box's version and the state of its update.
 struct UpdateView {
-  bool managed = false;  // whether it can be updated here
-  std::string why;       // why not, or ""
+  bool managed = false;    // whether it can be updated here
+  std::string why;         // why not, or ""
+  bool runs_here = false;  // whether adit-update runs, is starting, or has an unreadable status
   update::Running running;
   std::string doing;            // "": idle
   std::optional<int> progress;  // per cent of receiving and installing

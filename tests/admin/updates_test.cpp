@@ -85,7 +85,7 @@ TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
 
 TEST_F(UpdatesTest, SayWhereThereAreNone) {
   fs::remove(run_ / host::kStatusFile);
-  EXPECT_FALSE(updates_.update().managed);
+  EXPECT_FALSE(updates_.update().managed || updates_.update().runs_here);
   EXPECT_THAT(updates_.update().why, HasSubstr("adit-update does not run here"));
   for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false), updates_.restart(true)}) {
     ASSERT_FALSE(refused);
@@ -94,6 +94,7 @@ TEST_F(UpdatesTest, SayWhereThereAreNone) {
   wait();
   say({.trouble = "RAUC does not run here: no"});
   EXPECT_EQ(updates_.restart(true).error().sentence, "RAUC does not run here: no");
+  EXPECT_TRUE(updates_.update().runs_here) << "a fault to show";
   EXPECT_FALSE(asked());
 }
 

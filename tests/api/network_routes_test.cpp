@@ -41,7 +41,7 @@ TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
       .last = "",
       .last_why = ""};
   EXPECT_EQ(json::parse(get("/adit/network").body), json::parse(R"({
-    "now": 1000, "managed": true, "why": "", "team": {"interface": "team0", "mode": "dhcp", "address": "192.168.7.11", "prefix": 24},
+    "now": 1000, "managed": true, "why": "", "runs_here": false, "team": {"interface": "team0", "mode": "dhcp", "address": "192.168.7.11", "prefix": 24},
     "command_post": {"interface": "darpa0", "addresses": [], "gateway": ""},
     "pending": null,
     "ports": [{"side": "team", "interface": "team0", "mac": "02:00:00:00:00:01", "addresses": ["192.168.7.11/24"],

@@ -9,7 +9,7 @@ namespace adit::api {
 /// A box that takes any update whose last byte is not 'x', and has a report that waits.
 struct PlayedUpdates final : Updates {
   PlayedUpdates() {
-    view.managed = true;
+    view.managed = view.runs_here = true;
     view.running = {"adit-a-board", "0.1.0", "A", "B"};
     view.last = {update::Stage::Left, "0.0.9", "B", "", "the update did not become healthy in three starts"};
     view.stick = update::Offer{"adit-a-board-0.3.0.raucb", "0.3.0"};

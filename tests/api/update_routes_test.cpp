@@ -28,7 +28,7 @@ TEST_F(UpdateRoutesTest, TellWhatRuns) {
   updates.view.managed = true;
   updates.view.running = {"adit-qemu-virt", "0.1.0", "A", "B"};
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body), json::parse(R"({
-    "managed": true, "why": "", "board": "adit-qemu-virt", "version": "0.1.0", "slot": "A", "other_slot": "B", "trial": false,
+    "managed": true, "why": "", "runs_here": false, "board": "adit-qemu-virt", "version": "0.1.0", "slot": "A", "other_slot": "B", "trial": false,
     "doing": null, "stray": null, "progress": null, "refusal": null, "last": null, "stick": null, "stick_why": null})"));
 }
 

@@ -50,7 +50,7 @@ test("keeps tokens to itself, and says which are there", async (t) => {
     await input.fill(wrong);
     await token.getByText("expected 1 to 256 visible ASCII characters").waitFor();
     await token.getByRole("button", { name: "Set" }).click();
-    await token.getByText("token: expected null or 1 to 256 visible ASCII characters").waitFor();
+    await token.getByText("Team’s token: expected null or 1 to 256 visible ASCII characters").waitFor();
     assert.equal(await input.inputValue(), wrong, "what was typed is kept");
   }
   await token.getByRole("button", { name: "Show" }).click();
@@ -87,8 +87,8 @@ test("switches to another course by one press, once it was said what that change
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
-  const own = page.locator("form.token", { hasText: "Course B: own scoring token" });
-  await own.getByLabel("Course B: own scoring", { exact: false }).first().fill(TOKENS.scoring);
+  const own = page.locator("[data-list=courses] .item").nth(1).locator("form.token", { hasText: "Own scoring token" });
+  await own.getByLabel("Own scoring token").fill(TOKENS.scoring);
   await own.getByRole("button", { name: "Set" }).click();
   await own.getByText("Set.", { exact: true }).waitFor();
   await page.getByRole("button", { name: "Switch to Course B" }).click();
@@ -122,7 +122,7 @@ test("follows the other operator's switch, and takes no yes to a question that h
     assert.equal((await ask("/adit/course", { name })).status, 200);
     await until(async () => (await ask("/adit/settings").catch(() => ({}))).said?.settings.command_post.course === name, "the switch");
   };
-  const inUse = (name) => page.locator("#switch li[data-level=good]", { hasText: name }).waitFor();
+  const inUse = (name) => page.locator(".course[data-level=good]", { hasText: name }).waitFor();
   await other("A");
   await inUse("Course A");
   await page.getByRole("button", { name: "Switch to Course B" }).click();
@@ -176,7 +176,7 @@ test("gives all settings as a file, and takes one that is checked and shown firs
   assert.match(JSON.stringify(await review(page)), /Robot ugv1/);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await page.locator("#step-file").getByText(/Applied\./).waitFor();
-  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0 }]);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0, colour: "auto" }]);
   await step(page, "Robots").getByText("1 named").waitFor();
 });
 
@@ -185,13 +185,13 @@ test("finds a setting by its name or its meaning, and changes it", async (t) => 
   const search = page.getByLabel("Search");
   await search.fill("held until the operator");
   await page.getByText("1 found.").waitFor();
-  await page.getByLabel("reports.review").selectOption("all");
+  await field(page, "reports.review").locator("select").selectOption("all");
   await search.fill("no such thing at all");
   await page.getByText("No setting matches").waitFor();
   await search.fill("map_hz");
-  await page.getByLabel("command_post.rates.map_hz").fill("0.5");
+  await type(page, "command_post.rates.map_hz", "0.5");
   await search.fill("require_token");
-  await page.getByLabel("team.require_token").uncheck();
+  await field(page, "team.require_token").locator("input").uncheck();
   await page.getByRole("button", { name: "Apply changes" }).click();
   assert.deepEqual(await review(page), [["Command Post: rates, map (a second)", "1", "0.5"], ["Team: require token", "true", "false"], ["Reports: review", "off", "all"]]);
   await page.locator("#review .warnings").getByText("without a token").waitFor();

@@ -64,6 +64,7 @@ test("says what is wrong with the addresses as they are typed, and what a change
     const was = await input.inputValue();
     for (const text of texts) {
       await input.fill(text);
+      await input.blur();
       await page.locator("#addresses [aria-invalid=true]").first().waitFor().catch(() => assert.fail(`${text} is taken`));
       assert.equal(await input.inputValue(), text);
       await page.getByRole("button", { name: "Change the addresses" }).click();
@@ -75,7 +76,7 @@ test("says what is wrong with the addresses as they are typed, and what a change
   await team(page, "Address").fill("10.100.1.77/24");
   await page.locator("#addresses .wrong", { hasText: "10.100.1.0/24 overlaps 10.100.0.0/16" }).waitFor();
   const said = await page.locator("#addresses .wrong").filter({ hasText: "overlaps" }).innerText();
-  assert.equal(said, "10.100.1.0/24 overlaps 10.100.0.0/16 on the Command Post's side: choose another subnet, or allow it by “Allow the team’s subnet to overlap the Command Post’s”");
+  assert.equal(said, "Address: 10.100.1.0/24 overlaps 10.100.0.0/16 on the Command Post's side: choose another subnet, or allow it by “Allow the team’s subnet to overlap the Command Post’s”");
   await page.getByLabel("Allow the team’s subnet to overlap").check();
   await page.getByRole("button", { name: "Apply changes" }).click();
   await review(page);

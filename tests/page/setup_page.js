@@ -22,11 +22,12 @@ export async function ready(t, path = "setup", settings = {}) {
 /** What the browser complained of; that a box was away while it restarted is none. */
 export const complaints = (page, ...known) => page.complaints.filter((each) => !["ERR_CONNECTION", "ERR_EMPTY", ...known].some((part) => each.includes(part)));
 
-/** Types into the field of a setting. */
+/** Types into the field of a setting, and leaves it. */
 export async function type(page, path, text) {
   const input = field(page, path).locator("input");
   await input.fill(text);
   await input.dispatchEvent("input"); // fill() says nothing where the text was the same
+  await input.evaluate((node) => node.blur());
 }
 
 export async function fill(page, fields) {

@@ -137,8 +137,8 @@ test("tries a course before it is switched to, and tells it from the Test of wha
   settings.courses[1] = { name: "B", scoring: { address: "127.0.0.1", port: box.scoring }, mapping: { address: "127.0.0.1", port: box.mapping } };
   await ask("/adit/settings", { settings, base: tag });
   await page.reload();
-  const course = page.locator("#switch li", { hasText: "Course B" });
-  await course.getByText(`127.0.0.1:${box.scoring}`).waitFor();
+  const course = page.locator("[data-list=courses] .item", { hasText: "Course B" });
+  await page.waitForFunction((port) => document.querySelector("[data-path='courses[1].scoring.port'] input")?.value === port, String(box.scoring));
   await course.getByRole("button", { name: "Try Course B" }).click();
   await tried(page, "course", "All is well. These values are not applied yet");
   assert.equal((await ask("/adit/settings")).said.settings.command_post.course, "");

@@ -2,18 +2,24 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { merged } from "../../firmware/site/files/draft.js";
+import { inShort, spoken } from "../../firmware/site/files/names.js";
 import { come, PASSWORD, until } from "./fresh_box.js";
 import { complaints, COURSES, field, hears, ready, review, step, type } from "./setup_page.js";
 
 const focusIsAt = (page, path) =>
   page.waitForFunction((path) => document.activeElement.closest("[data-path]")?.dataset.path === path, path);
 
-test("checks the names of robots as they are typed", async (t) => {
+test("checks the names of robots as they are typed, and says what is wrong once the field is left", async (t) => {
   const { ask, page } = await ready(t, "setup#robots");
   const add = page.getByRole("button", { name: "Add a robot" });
   for (const name of ["", "two words", "elevenchars", "ugv-1", "böse"]) {
+    const checked = page.waitForResponse("**/adit/settings/check");
     await add.click();
     await page.keyboard.type(name);
+    await (await checked).finished();
+    await hears(page, /^1 change/);
+    assert.equal(await page.locator("[data-path='robots[0].name'] .wrong").textContent(), "", "nobody has finished typing");
+    await page.keyboard.press("Tab");
     await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {
       throw new Error(`${name}: ${error.message}`);
     });
@@ -23,6 +29,7 @@ test("checks the names of robots as they are typed", async (t) => {
     await add.click();
     await page.keyboard.type(name);
   }
+  await page.keyboard.press("Tab");
   await page.locator("[data-path='robots[1].name'] .wrong", { hasText: "the same as “Robot 1: name”" }).waitFor();
   await page.getByRole("button", { name: "Apply changes" }).click();
   await focusIsAt(page, "robots[1].name"); // the error
@@ -37,7 +44,7 @@ test("checks the names of robots as they are typed", async (t) => {
   await review(page);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
-  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0 }, { name: "uav1", alias: "drone-1", clouds: "auto", precision: "exact", voxel_metres: 0 }]);
+  assert.deepEqual((await ask("/adit/settings")).said.settings.robots, [{ name: "ugv1", alias: "", clouds: "auto", precision: "exact", voxel_metres: 0, colour: "auto" }, { name: "uav1", alias: "drone-1", clouds: "auto", precision: "exact", voxel_metres: 0, colour: "auto" }]);
   await step(page, "Robots").getByText("2 named").waitFor();
   assert.deepEqual(complaints(page), []);
 });
@@ -46,6 +53,21 @@ test("keeps every row that was added, named or not, when another operator saved 
   const row = (name) => ({ name, alias: "" });
   const both = merged([row("ugv1")], [row("ugv1"), row(""), row("")], [row("ugv1"), row("uav1")]);
   assert.deepEqual(both.map(({ name }) => name), ["ugv1", "uav1", "", ""]);
+});
+
+test("shows a new or a removed item of a list in one row, with what differs from the usual", () => {
+  const usual = (path) => ({ alias: "", voxel_metres: 0 })[path.split(".").at(-1)];
+  const robot = (name, from, to) => [[`robots[${name}].name`, from && name, to && name], [`robots[${name}].alias`, from, to], [`robots[${name}].voxel_metres`, from && 0, to && 0.1]];
+  assert.deepEqual(inShort([["runs.length_seconds", 60, 90], ...robot("uav1", null, "x"), ["robots[ugv1].alias", "", "y"], ...robot("ugv2", "z", null)], usual), [
+    ["runs.length_seconds", 60, 90],
+    ["robots[uav1]", null, "in the list, alias x, voxel (m) 0.1"],
+    ["robots[ugv1].alias", "", "y"],
+    ["robots[ugv2]", "in the list, alias z", null],
+  ]);
+});
+
+test("calls a setting by its name in every sentence", () => {
+  assert.equal(spoken("Needs command_post.arrange_clouds, under robots[].name or robots[2].name."), "Needs “Command Post: arrange clouds”, under “Robot: name” or “Robot 3: name”.");
 });
 
 /** What no setting of its kind can be. */
@@ -60,6 +82,7 @@ test("says at every field what is wrong with it, and keeps what was typed", asyn
     await page.evaluate((at) => (location.hash = at), at);
     const here = page.locator(`#step-${at}`);
     await here.waitFor();
+    for (const button of await here.locator(".opens").all()) await button.click();
     const paths = await here.locator(".field[data-path]:not(form .field)").evaluateAll((all) => all.map((each) => each.dataset.path));
     const ofKind = (path) => WRONG[kinds.get(path.replace(/\[\d\]/g, "[]"))] ?? []; // a choice and a flag cannot be wrong
     for (let i = 0; i < WRONG.whole.length; ++i) {
@@ -138,7 +161,7 @@ test("shows two operators what each has done, and lets one go on from the newer"
   await page.getByRole("heading", { name: "Another operator has saved settings" }).waitFor();
   await page.getByRole("button", { name: "Keep mine on top of theirs" }).click();
   await page.getByRole("button", { name: "Apply changes" }).click();
-  assert.deepEqual((await review(page)).map(([path]) => path.replace(/:.*/, "")), Array(5).fill("Robot ugv2"));
+  assert.deepEqual((await review(page)).map(([path]) => path.replace(/:.*/, "")), ["Robot ugv2"]);
   await page.getByRole("button", { name: "Apply", exact: true }).click();
   await hears(page, /Applied\./);
   assert.deepEqual((await ask("/adit/settings")).said.settings.robots.map(({ name }) => name), ["ugv1", "uav1"]);

@@ -1,9 +1,9 @@
 // Applying what was typed, or a file: shown first, and never over what somebody else saved meanwhile.
 import { answered } from "./dialog.js";
-import { beginFrom, check, differs, draft, drop, flat, goOnFrom, merged, onDraft, onFindings, refresh, same, findings } from "./draft.js";
+import { beginFrom, check, differs, draft, drop, flat, goOnFrom, merged, onDraft, onFindings, refresh, same, findings, keyOf } from "./draft.js";
 import { make, say } from "./dom.js";
-import { blameAll, fieldOf } from "./field.js";
-import { nameOf, spoken } from "./names.js";
+import { blameAll, fieldOf, revealAll } from "./field.js";
+import { inShort, nameOf, spoken } from "./names.js";
 import { get, post } from "./session.js";
 import { clip } from "./words.js";
 
@@ -45,7 +45,7 @@ export function reviewed({ title, text = "", columns = ["From", "To"], changes =
   dialog.querySelector(".text").textContent = text;
   heads.replaceChildren(...["Setting", ...columns].map((name) => head(name, "col")));
   const row = ([path, ...values]) => make("tr", head(nameOf(path), "row"), ...values.map((value) => make("td", shown(value))));
-  rows.replaceChildren(...changes.map(row));
+  rows.replaceChildren(...inShort(changes, (path) => keyOf(path)?.default).map(row));
   dialog.querySelector(".scroll").hidden = !changes.length;
   dialog.querySelector(".warnings").replaceChildren(...warnings.map((warning) => make("li", spoken(warning))));
   yes.textContent = word;
@@ -178,6 +178,7 @@ export async function apply() {
   if (draft.newer) await settle();
   const { errors, changes, warnings, trouble } = await check();
   if (trouble) return report(`${trouble} Your changes are kept.`), false;
+  revealAll();
   if (errors.length) return goTo(errors[0]), false;
   const settings = structuredClone(draft.settings);
   const yes = await reviewed({ title: "Apply these changes?", changes: fromTo(changes), warnings, word: "Apply" });
@@ -190,6 +191,7 @@ export function goTo({ path }) {
   if (!field) return;
   const step = field.closest("section").id.replace("step-", "#");
   if (location.hash !== step) location.hash = step;
+  field.closest(".rare")?.isOpen(true);
   requestAnimationFrame(() => requestAnimationFrame(() => field.control.focus()));
 }
 
@@ -200,8 +202,8 @@ function errorLink(error) {
   return make("li", error.field ? item : item.textContent);
 }
 
-function described() {
-  const { errors, changes, trouble } = findings;
+function described(errors) {
+  const { changes, trouble } = findings;
   if (trouble) return `${trouble} Your changes are kept, and checked when it answers.`;
   if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to correct before you can apply.`;
   return `${changes.length === 1 ? "1 change" : `${changes.length} changes`} not yet applied.`;
@@ -210,11 +212,12 @@ function described() {
 function show() {
   const typed = differs();
   place.hidden = !typed && !outcome;
-  say(state, isBusy || !typed ? outcome : [outcome, described()].filter(Boolean).join(" "));
+  const errors = blameAll(findings.errors);
+  say(state, isBusy || !typed ? outcome : [outcome, described(errors)].filter(Boolean).join(" "));
   if (link) state.append(" ", Object.assign(make("a", link), { href: link }));
   for (const button of buttons) button.hidden = !typed || isBusy;
   const here = document.querySelector("#sheets > section:not([hidden])");
-  const others = blameAll(findings.errors).filter(({ field }) => !field || !here?.contains(field));
+  const others = errors.filter(({ field }) => !field || !here?.contains(field));
   elsewhere.replaceChildren(...others.map(errorLink));
   document.body.dataset.typed = typed;
 }
@@ -231,6 +234,7 @@ export function offerApply() {
     show();
   });
   onFindings(show);
+  document.addEventListener("revealed", show);
   addEventListener("hashchange", () => requestAnimationFrame(show));
   if (draft.newer) settle();
 }

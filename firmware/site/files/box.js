@@ -1,5 +1,4 @@
 // The support bundle, the factory reset, and what the box is made of.
-import { clockSaid } from "./clock.js";
 import { open } from "./dialog.js";
 import { make } from "./dom.js";
 import { get, getFile, post, sitOutReset } from "./session.js";
@@ -72,7 +71,6 @@ export async function showAbout() {
       ["Build", build],
       ["Licence", licence],
       ["Running for", age(uptime)],
-      ["Clock", await clockSaid()],
       ["Kernel", kernel],
       ["Machine", model],
       ["Board", board?.title],

@@ -1,9 +1,11 @@
 // The box's time of day: where this browser's is another, the operator is asked once whether it counts.
 import { confirmed } from "./dialog.js";
+import { say } from "./dom.js";
 import { get, post, session } from "./session.js";
 import { age } from "./words.js";
 
 const MOST = 2; // seconds by which they may differ
+const EVERY = 5000; // ms
 const SAID_NO = "adit-clock-no";
 
 const utc = (seconds) => new Date(seconds * 1000).toISOString().replace("T", " ").slice(0, 19);
@@ -26,27 +28,43 @@ const SOURCES = {
   machine: "kept by the machine itself",
 };
 
-/** What the box says of its time, in words; "" where it does not. */
-export async function clockSaid() {
-  const { source, is_set: isSet, ntp } = await get("/adit/clock");
-  return [SOURCES[source ?? (isSet ? "machine" : "none")], ntp].filter(Boolean).join("; ");
+/** Asks, and sets the box's clock to this device's time on a yes; gives the answer. */
+async function setClock({ box, ahead }) {
+  const sure = await confirmed({
+    title: "Set the box’s clock?",
+    text: `The box’s time is ${utc(box.now)} UTC, ${difference(ahead)} this device. Reports, time stamps and logins do not change.`,
+    word: "Set the clock",
+  });
+  if (sure) await post("/adit/clock", { time: Date.now() / 1000 });
+  return sure;
 }
+
+const difference = (ahead) => (Math.abs(ahead) <= MOST ? "the same as on" : `${age(Math.abs(ahead))} ${ahead > 0 ? "ahead of" : "behind"}`);
+const canSet = ({ managed, is_kept: isKept }) => managed && !isKept;
 
 /** To be asked as a page begins. Gives whether the box was asked to set its clock. */
 export async function offerClock() {
   const { role } = await session();
   if (role !== "operator" || sessionStorage.getItem(SAID_NO)) return false;
-  const { box, ahead } = await compare();
-  if (!box.managed || box.is_kept || Math.abs(ahead) <= MOST) return false;
-  const sure = await confirmed({
-    title: "Set the box’s clock?",
-    text: `The box’s time is ${utc(box.now)} UTC, ${age(Math.abs(ahead))} ${ahead > 0 ? "ahead of" : "behind"} this device. Reports, time stamps and logins do not change.`,
-    word: "Set the clock",
-  });
-  if (!sure) {
-    sessionStorage.setItem(SAID_NO, "1");
-    return false;
-  }
-  await post("/adit/clock", { time: Date.now() / 1000 });
-  return true;
+  const both = await compare();
+  if (!canSet(both.box) || Math.abs(both.ahead) <= MOST) return false;
+  const sure = await setClock(both);
+  if (!sure) sessionStorage.setItem(SAID_NO, "1");
+  return sure;
+}
+
+/** On the page of the box: who set its time, and a button that sets it. */
+export function showClock(isOperator) {
+  const section = document.getElementById("clock"), note = section.querySelector("p"), button = section.querySelector("button");
+  let both = null;
+  const show = async () => {
+    both = await compare();
+    const { source, is_set: isSet, ntp, refusal } = both.box;
+    const words = [SOURCES[source ?? (isSet ? "machine" : "none")], ntp, refusal, `the time is ${difference(both.ahead)} this device`];
+    say(note, words.filter(Boolean).map((each) => `${each[0].toUpperCase()}${each.slice(1)}.`).join(" "));
+    button.parentElement.hidden = !isOperator || !canSet(both.box);
+  };
+  const follow = () => show().catch(({ message }) => say(note, message)).then(() => setTimeout(follow, EVERY));
+  button.addEventListener("click", () => setClock(both).then(show).catch(({ message }) => say(note, message)));
+  follow();
 }

@@ -2,7 +2,7 @@
 import { applied, insist, reviewed, save } from "./apply.js";
 import { badge, giveFocus, list, make, say } from "./dom.js";
 import { differs, draft, ENDPOINTS, onDraft, refresh, same } from "./draft.js";
-import { blame, labelled } from "./field.js";
+import { blame, labelled, reveal } from "./field.js";
 import { post } from "./session.js";
 import { tryCourse } from "./trial.js";
 
@@ -14,8 +14,8 @@ const HINTS = {
 };
 const WRONG = "expected 1 to 256 visible ASCII characters";
 const ofCourse = (name) => name.startsWith("course.");
-const labelOf = (name) => COMMON[name] ?? name.replace(/^course\.(.+)\.(\w+)$/, "Course $1: own $2 token");
-const hintOf = (name) => HINTS[name] ?? "Without it, the box uses the common token.";
+const labelOf = (name) => COMMON[name] ?? name.replace(/^course\.(.+)\.(\w+)$/, "Own $2 token");
+const titleOf = (name) => (ofCourse(name) ? name.replace(/^course\.(.+)\.(\w+)$/, "Course $1: own $2 token") : labelOf(name));
 
 let readOnly = false;
 
@@ -31,7 +31,7 @@ async function send(node, name, token) {
     say(outcome, token === null ? "Removed." : "Set.");
     return true;
   } catch (error) {
-    blame(field, error.message);
+    blame(field, error.message.replace(/^token: /, ""));
     field.control.focus();
     return false;
   }
@@ -40,18 +40,18 @@ async function send(node, name, token) {
 async function removeIt(node, name) {
   const rejects = ENDPOINTS.includes(name) ? " Without a token the Command Post rejects its messages." : "";
   const text = `The box then uses the token that it came with${ofCourse(name) ? " or the common token" : ", if any"}.${rejects}`;
-  if (await reviewed({ title: `Remove “${labelOf(name)}”?`, text, word: "Remove" })) await send(node, name, null);
+  if (await reviewed({ title: `Remove “${titleOf(name)}”?`, text, word: "Remove" })) await send(node, name, null);
 }
 
 function create(name) {
   const input = Object.assign(make("input"), { type: "password", autocomplete: "off", maxLength: 300, disabled: readOnly });
-  const field = labelled(labelOf(name), input, hintOf(name));
+  const field = labelled(labelOf(name), input, HINTS[name] ?? "");
   const state = make("p.state"), outcome = make("p.outcome");
   outcome.setAttribute("role", "status");
   const [show, remove, set] = ["Show", "Remove", "Set"].map((word) => Object.assign(make("button", word), { type: "button" }));
   set.className = "set main";
   set.type = "submit";
-  for (const button of [show, remove, set]) button.setAttribute("aria-label", `${button.textContent}: ${labelOf(name)}`);
+  for (const button of [show, remove, set]) button.setAttribute("aria-label", `${button.textContent}: ${titleOf(name)}`);
   const node = make("form.token", field, state, make("div.answers", show, remove, set), outcome);
   node.noValidate = true;
   Object.assign(node, { field, outcome, state, buttons: [show, remove, set] });
@@ -59,11 +59,12 @@ function create(name) {
     input.type = input.type === "password" ? "text" : "password";
     const word = input.type === "password" ? "Show" : "Hide";
     say(show, word);
-    show.setAttribute("aria-label", `${word}: ${labelOf(name)}`);
+    show.setAttribute("aria-label", `${word}: ${titleOf(name)}`);
   };
   remove.onclick = () => removeIt(node, name);
   node.onsubmit = (event) => {
     event.preventDefault();
+    reveal(field);
     const token = input.value.trim();
     if (token) send(node, name, token);
     else blame(field, "type a token first");
@@ -94,14 +95,11 @@ export async function setTyped() {
   return true;
 }
 
+const putTokens = (place, names) => list(place, names, (name) => name, create, update);
+
 export function showTokens(isReadOnly) {
   readOnly = isReadOnly;
-  const show = () => {
-    const names = Object.keys(draft.tokens);
-    const put = (step, which) => list(document.querySelector(`#${step} .tokens`), names.filter(which), (name) => name, create, update);
-    put("step-tokens", (name) => !ofCourse(name));
-    put("step-courses", ofCourse);
-  };
+  const show = () => putTokens(document.querySelector("#step-tokens .tokens"), Object.keys(draft.tokens).filter((name) => !ofCourse(name)));
   onDraft(show);
   show();
 }
@@ -140,22 +138,22 @@ async function switchTo(name) {
   say(outcome, `${nameOf(name)} is ${isDone ? "in use" : "not in use"}.`);
 }
 
-function createCourse() {
+/** What a card begins with: whether the course is in use, and the ways to test it and to switch to it. */
+function createHead() {
   const [tries, button] = ["Try", "Switch"].map((word) => Object.assign(make("button", word), { type: "button" }));
   tries.dataset.tries = "";
-  return make("li", make("span.name"), make("span.badge"), make("span.note"), make("div.acts", tries, button));
+  return make("div.course", make("span.name"), make("span.badge"), make("div.acts", tries, button));
 }
 
-function updateCourse(node, name) {
-  const [title, state, note, acts] = node.children, [tries, button] = acts.children;
-  const inUse = draft.base.command_post.course === name, { scoring, mapping } = postOf(draft.base, name);
+function updateHead(node, name) {
+  const [title, state, acts] = node.children, [tries, button] = acts.children;
+  const inUse = draft.base.command_post.course === name, isApplied = postOf(draft.base, name) !== undefined;
   node.dataset.level = inUse ? "good" : "quiet";
   say(title, nameOf(name));
-  badge(state, inUse ? "good" : "quiet", inUse ? "in use" : "not in use");
-  say(note, `${at(scoring)}, ${at(mapping)}`);
+  badge(state, node.dataset.level, inUse ? "in use" : isApplied ? "not in use" : "not applied yet");
   button.setAttribute("aria-label", `Switch to ${nameOf(name)}`);
   if (inUse && button === document.activeElement) giveFocus(document.getElementById("courses-title"));
-  button.hidden = inUse || document.body.dataset.role !== "operator";
+  button.hidden = inUse || !isApplied || readOnly;
   button.disabled = differs();
   button.onclick = () => switchTo(name);
   tries.setAttribute("aria-label", `Try ${nameOf(name)} before you switch to it`);
@@ -163,11 +161,25 @@ function updateCourse(node, name) {
   tries.onclick = () => tryCourse(name);
 }
 
+/** The card of a course has its fields already (field.js). */
+function showCard(card, name) {
+  if (!card.head) {
+    card.head = createHead();
+    card.querySelector("legend").after(card.head);
+    card.tokens = make("div.tokens");
+    card.querySelector(".fields").after(card.tokens);
+  }
+  updateHead(card.head, name);
+  putTokens(card.tokens, ENDPOINTS.map((endpoint) => `course.${name}.${endpoint}`).filter((token) => token in draft.tokens));
+}
+
 export function showCourses() {
-  const overruled = document.getElementById("overruled");
+  const overruled = document.getElementById("overruled"), none = createHead();
+  document.getElementById("no-course").append(none);
   const show = () => {
-    const { courses, command_post: { course } } = draft.base;
-    list(document.getElementById("switch"), ["", ...courses.map(({ name }) => name)], (name) => name, createCourse, updateCourse);
+    const { course } = draft.base.command_post;
+    updateHead(none, "");
+    document.querySelectorAll("[data-list=courses] .item").forEach((card, i) => showCard(card, draft.settings.courses[i].name));
     overruled.hidden = !course;
     overruled.dataset.level = "wait";
     badge(overruled.firstElementChild, "wait", `Course ${course} is in use and overrides these addresses.`);

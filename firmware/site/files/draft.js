@@ -22,7 +22,7 @@ export const same = (a, b) => JSON.stringify(a) === JSON.stringify(b);
 export const differs = () => !same(draft.settings, draft.base);
 
 const parts = (path) => path.split(/[.[\]]+/).filter(Boolean);
-export const keyOf = (path) => draft.keys.get(path.replace(/\[\d+\]/g, "[]"));
+export const keyOf = (path) => draft.keys.get(path.replace(/\[[^\]]+\]/g, "[]"));
 export const read = (path, from = draft.settings) => parts(path).reduce((value, name) => value?.[name], from);
 
 export function write(path, value) {

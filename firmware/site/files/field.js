@@ -2,7 +2,9 @@
 import { make, say } from "./dom.js";
 import { draft, keyOf, onDraft, read, same, write } from "./draft.js";
 import { grouped } from "./grouped.js";
-import { label as call, nameOf, spoken } from "./names.js";
+import { label as call, nameOf, partsOf, spoken } from "./names.js";
+import { styleOf } from "./robot_colour.js";
+import { whenThemeChanges } from "./theme_now.js";
 import { numberIn } from "./words.js";
 
 const known = new Set();
@@ -19,15 +21,30 @@ export function labelled(label, control, hint) {
   name.htmlFor = id;
   control.setAttribute("aria-describedby", `${wrong.id} ${note.id}`);
   const field = make(control.type === "checkbox" ? "div.field.flag" : "div.field", name, control, wrong, note);
-  return Object.assign(field, { control, wrong, note });
+  control.addEventListener("blur", () => {
+    if (!field.isRevealed) reveal(field);
+  });
+  return Object.assign(field, { label, control, wrong, what: "", isRevealed: false });
 }
 
-/** Says at a field what is wrong; "": nothing is. */
+/** Says at a field what is wrong; "": nothing is. An error first shows when the field loses the focus: nobody has finished typing before. */
 export function blame(field, what) {
-  say(field.wrong, spoken(what));
-  if (what) field.control.setAttribute("aria-invalid", "true");
+  field.what = what;
+  const isWrong = what !== "" && field.isRevealed;
+  if (isWrong) field.closest(".rare")?.isOpen(true);
+  say(field.wrong, isWrong ? `${field.label}: ${spoken(what)}` : "");
+  if (isWrong) field.control.setAttribute("aria-invalid", "true");
   else field.control.removeAttribute("aria-invalid");
 }
+
+/** Shows the field's errors from now on; the document hears "revealed". */
+export function reveal(field) {
+  field.isRevealed = true;
+  blame(field, field.what);
+  document.dispatchEvent(new Event("revealed"));
+}
+
+export const revealAll = () => known.forEach(reveal);
 
 function controlOf({ kind, words }) {
   if (kind === "choice") {
@@ -54,19 +71,23 @@ const written = (value) => (value === "" ? "empty" : String(value));
 const hintOf = ({ meaning, kind, range, required, default: usual }) =>
   `${meaning} ${kind === "flag" ? "" : `Allowed: ${range}. `}${required ? "" : `By default ${written(usual)}.`}`;
 
-/** The field of the setting at `path`, which has a key: shown, too, where `written` says so. */
-function setting(path, label, written = "") {
+/** The field of the setting at `path`. */
+function setting(path, label) {
   const key = keyOf(path), control = controlOf(key);
-  const field = labelled(label, control, hintOf(key));
-  if (written) field.firstChild.append(" ", make("code", written));
+  const field = labelled(label, control, spoken(hintOf(key)));
   field.dataset.path = path;
   field.show = () => {
     const value = read(path);
-    if (value === undefined || document.activeElement === control || same(valueOf(control, key), value)) return; // as it is typed
+    if (value === undefined) return;
+    if (path.endsWith(".colour")) control.style.setProperty("--robot", value === "auto" ? "" : styleOf(key.words.indexOf(value) - 1));
+    if (document.activeElement === control || same(valueOf(control, key), value)) return; // as it is typed
     if (key.kind === "flag") control.checked = value;
     else control.value = value;
   };
-  control.addEventListener("input", () => write(path, valueOf(control, key)));
+  control.addEventListener("input", () => {
+    write(path, valueOf(control, key));
+    field.show();
+  });
   control.addEventListener("blur", field.show);
   control.disabled = readOnly;
   field.show();
@@ -83,43 +104,68 @@ export function fillIn() {
   }
 }
 
+const PORT = 8000; // of the Command Post (ICD 3), and of a new address of the box
 const capital = (text) => text[0].toUpperCase() + text.slice(1);
 const blank = (keys) => {
   const item = {};
   for (const [name, { default: usual }] of keys) {
     const names = name.split("."), last = names.pop();
-    names.reduce((object, each) => (object[each] ??= {}), item)[last] = usual ?? "";
+    names.reduce((object, each) => (object[each] ??= {}), item)[last] = usual ?? (last === "port" ? PORT : "");
   }
   return item;
 };
 
-/** A list of settings at `place`: an item can be added and removed. */
+/** Opens and closes the rare fields of an item. */
+function rareFields(fields) {
+  const rare = make("div.fields.rare", ...fields), button = make("button.opens");
+  button.type = "button";
+  rare.isOpen = (isOpen) => {
+    rare.hidden = !isOpen;
+    button.setAttribute("aria-expanded", String(isOpen));
+  };
+  rare.isOpen(false);
+  const show = () => {
+    const set = fields.filter(({ dataset: { path } }) => !same(read(path), keyOf(path).default)).length;
+    say(button, set ? `Advanced (${set})` : "Advanced");
+  };
+  button.addEventListener("click", () => rare.isOpen(rare.hidden));
+  rare.addEventListener("input", show);
+  show();
+  return [button, rare];
+}
+
+/** A list of settings at `place`: an item can be added and removed. Fields that `data-rare` names are closed at first. */
 export function listOf(place) {
-  const { list: path, item, add } = place.dataset;
+  const { list: path, item, add, rare = "" } = place.dataset;
   const start = `${path}[].`;
   const keys = [...draft.keys].filter(([key]) => key.startsWith(start)).map(([key, row]) => [key.slice(start.length), row]);
+  const labelOf = (name) => capital(partsOf(name));
+  const [rareKeys, usualKeys] = [true, false].map((is) => keys.filter(([name]) => rare.split(" ").includes(name) === is));
+  const titles = make("div.titles", ...usualKeys.map(([name]) => make("span", labelOf(name))));
+  titles.setAttribute("aria-hidden", "true"); // each field has its label
   const rows = make("div.items"), more = make("button", add);
   more.type = "button";
-  place.append(rows, make("div.answers", more));
-  let shown = 0;
+  place.append(titles, rows, make("div.answers", more));
 
   const row = (i) => {
-    const remove = make("button", "Remove");
+    const remove = make("button.remove", "Remove");
     remove.type = "button";
     remove.setAttribute("aria-label", `Remove: ${item} ${i + 1}`);
     remove.addEventListener("click", () => {
+      rows.replaceChildren(); // the paths of the rows after it are others now
       write(path, read(path).filter((_, each) => each !== i));
       (rows.children[i]?.querySelector("input") ?? more).focus();
     });
-    const fields = keys.map(([name]) => setting(`${path}[${i}].${name}`, capital(name.replace(".", " "))));
-    return make("fieldset.item", make("legend", `${item} ${i + 1}`), make("div.fields", ...fields), ...(readOnly ? [] : [remove]));
+    const fields = (of) => of.map(([name]) => setting(`${path}[${i}].${name}`, labelOf(name)));
+    const usual = make("div.fields", ...fields(usualKeys)), others = rareKeys.length ? rareFields(fields(rareKeys)) : [];
+    return make("fieldset.item", make("legend", `${item} ${i + 1}`), usual, ...others, ...(readOnly ? [] : [remove]));
   };
   const show = () => {
     const count = read(path).length;
-    if (count === shown) return;
-    shown = count;
-    for (const field of rows.querySelectorAll(".field")) known.delete(field);
-    rows.replaceChildren(...Array.from({ length: count }, (_, i) => row(i)));
+    if (count < rows.children.length) rows.replaceChildren();
+    while (rows.children.length < count) rows.append(row(rows.children.length));
+    titles.hidden = count === 0;
+    for (const field of known) if (!field.isConnected) known.delete(field);
   };
   more.hidden = readOnly;
   more.addEventListener("click", () => {
@@ -130,11 +176,11 @@ export function listOf(place) {
   show();
 }
 
-/** Says at each field what is wrong with it; gives the errors with their fields, where there is one. */
+/** Says at each field what is wrong with it; gives the errors that are shown, with their fields if they have one. */
 export function blameAll(errors) {
   const placed = errors.map((error) => ({ ...error, field: fieldOf(error.path) }));
   for (const field of known) blame(field, placed.filter((each) => each.field === field).map(({ what }) => what).join(". "));
-  return placed;
+  return placed.filter(({ field }) => !field || field.isRevealed);
 }
 
 /** The field of a path, or the first one under it ("team.listen[1]"). */
@@ -143,8 +189,10 @@ export function fieldOf(path) {
   return all.find((field) => field.dataset.path === path) ?? all.find((field) => field.dataset.path.startsWith(path));
 }
 
+const showAllFields = () => known.forEach((field) => field.show());
+whenThemeChanges(showAllFields);
 onDraft((what) => {
-  if (what === "begun") for (const field of known) field.show();
+  if (what === "begun") showAllFields();
 });
 
 // What has a place of its own, or none: the layout's version.
@@ -156,13 +204,13 @@ export function showAll() {
   const place = section.querySelector(".all"), search = section.querySelector("input"), empty = section.querySelector(".empty");
   const groups = grouped([...draft.keys.keys()].filter((path) => !ELSEWHERE.test(path)), (path) => path.split(".")[0]);
   for (const [name, paths] of groups) {
-    const fields = paths.map((path) => setting(path, nameOf(path), path));
-    place.append(make("fieldset", make("legend", name.replace("_", " ")), make("div.fields", ...fields)));
+    const fields = paths.map((path) => setting(path, nameOf(path)));
+    place.append(make("fieldset", make("legend", nameOf(name)), make("div.fields", ...fields)));
   }
   search.addEventListener("input", () => {
     const words = search.value.toLowerCase().split(/\s+/);
     const isFound = (text) => words.every((word) => text.includes(word));
-    for (const field of place.querySelectorAll(".field")) field.hidden = !isFound(field.textContent.toLowerCase());
+    for (const field of place.querySelectorAll(".field")) field.hidden = !isFound(`${field.textContent} ${field.dataset.path}`.toLowerCase());
     for (const group of place.children) group.hidden = !group.querySelector(".field:not([hidden])");
     const found = place.querySelectorAll(".field:not([hidden])").length;
     say(empty, !search.value ? "" : found ? `${found} found.` : "No setting matches.");

@@ -1,7 +1,7 @@
 // The box's own addresses: changed for now, and for good only once that is confirmed from the new one.
 import { fromTo, insist, reviewed } from "./apply.js";
 import { make, say } from "./dom.js";
-import { blame, labelled } from "./field.js";
+import { blame, labelled, reveal } from "./field.js";
 import { label, nameOf, spoken } from "./names.js";
 import { left, told } from "./pending.js";
 import { post } from "./session.js";
@@ -67,6 +67,7 @@ async function tryIt() {
   clearTimeout(timer);
   const findings = await check();
   if (!findings) return;
+  for (const field of fields.values()) reveal(field);
   if (findings.errors.length) {
     return fieldAt(findings.errors[0].path)?.control.focus();
   }
@@ -116,7 +117,9 @@ function lastOf({ last, last_why: why }) {
 /** Shows what the box says of its network. */
 export function showNetwork(network) {
   const isOperator = document.body.dataset.role === "operator";
-  say(state, network.managed ? lastOf(network) : `This page cannot change the addresses: ${spoken(network.why)}`);
+  const why = network.runs_here ? `This page cannot change the addresses: ${spoken(network.why)}` : "This machine’s own settings have its addresses.";
+  say(state, network.managed ? lastOf(network) : why);
+  for (const part of document.querySelectorAll("#addresses fieldset, #step-network [data-fields]")) part.hidden = !network.runs_here;
   showPending(network);
   const barred = !network.managed || !isOperator || network.pending !== null;
   change.hidden = !network.managed || !isOperator;

@@ -89,7 +89,7 @@ async function goOn() {
 
 function leadThrough() {
   addEventListener("hashchange", () => turnTo(true));
-  document.addEventListener("tested", show);
+  for (const each of ["tested", "revealed"]) document.addEventListener(each, show);
   back.addEventListener("click", () => go(sections[here() - 1]));
   next.addEventListener("click", async () => {
     next.disabled = true;

@@ -1,6 +1,6 @@
 // The box itself: its log, who is logged in, passwords, what to send to whoever is to help, and what it is made of.
 import "./presses.js";
-import { offerClock } from "./clock.js";
+import { offerClock, showClock } from "./clock.js";
 import { badge } from "./dom.js";
 import { followLog } from "./log.js";
 import { offerBundle, offerReset, showAbout } from "./box.js";
@@ -29,6 +29,7 @@ async function begin() {
   followLog(linkIs);
   followNetwork((network) => network && showPorts(document.querySelector("#network .ports"), network));
   showAbout();
+  showClock(operator);
   offerUpdate(operator);
   if (!operator) return;
   offerClock().catch(() => {}); // the alarm says that the time is not set

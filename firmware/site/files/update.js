@@ -7,7 +7,8 @@ const [restartNote, restarted] = restartPlace.querySelectorAll("p"), restart = r
 const MEANING = "The restart takes about a minute. Robots must post again what they post meanwhile. Reports stay; queued maps, states and markers are lost.";
 
 /** If the box cannot restart itself, it says why, and what to do. */
-function showRestart({ managed, why, doing }, operator) {
+function showRestart({ managed, why, doing, runs_here: runsHere }, operator) {
+  restartPlace.hidden = !runsHere;
   restartNote.textContent = managed ? MEANING : `This page cannot restart the box: ${why}. To restart it now, switch the box off and on.`;
   restart.hidden = !operator || !managed;
   restart.disabled = Boolean(doing);
@@ -72,6 +73,7 @@ export async function offerUpdate(operator) {
   }
   function show(view) {
     const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit } = view;
+    section.hidden = !view.runs_here;
     const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
     told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : why;
     sayOutcome(doing, refusal);

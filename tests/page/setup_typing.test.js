@@ -17,7 +17,7 @@ test("checks the names of robots as they are typed, and says what is wrong once 
     await add.click();
     await page.keyboard.type(name);
     await (await checked).finished();
-    await hears(page, /^1 change/);
+    await hears(page, "Your changes are not yet applied.");
     assert.equal(await page.locator("[data-path='robots[0].name'] .wrong").textContent(), "", "nobody has finished typing");
     await page.keyboard.press("Tab");
     await page.locator("[data-path='robots[0].name'] .wrong").filter({ hasText: "1 to 10 letters, digits and underscores" }).waitFor().catch((error) => {

@@ -206,6 +206,7 @@ function described(errors) {
   const { changes, trouble } = findings;
   if (trouble) return `${trouble} Your changes are kept, and checked when it answers.`;
   if (errors.length) return `${errors.length === 1 ? "1 error" : `${errors.length} errors`} to correct before you can apply.`;
+  if (findings.errors.length) return "Your changes are not yet applied."; // its errors show once the field is left
   return `${changes.length === 1 ? "1 change" : `${changes.length} changes`} not yet applied.`;
 }
 

@@ -69,6 +69,7 @@ RunView view() {
   activity.word = "17 s behind";
   view.activities = {activity};
   view.standings = {{.name = "r", .level = alarms::Level::Wait, .word = "w", .has_map = true, .age = 22}};
+  view.colours = {{"r", 2}};
   view.refusals = {
       {.at = 1, .uri = "/u", .sender = "s", .status = 422, .sentence = "no", .parts = 2, .setting = "r.m"}};
   view.rejected = {{.number = 1,
@@ -129,7 +130,7 @@ TEST(Bytes, OfARun) {
       R"("last_sentence":"said","clouds":"parts","precision":"1mm","points_left_out":16,"no_valid_point":20,)"
       R"("invisible":21,)"
       R"("arrival":"late","level":"wait","word":"17 s behind"}],"standings":[{"name":"r","level":"wait",)"
-      R"("word":"w","silent":false,"has_map":true,"age":22.0}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
+      R"("word":"w","silent":false,"has_map":true,"age":22.0}],"colours":[{"name":"r","colour":2}],"refusals":[{"at":1.0,"uri":"/u","sender":"s","status":422,)"
       R"("sentence":"no","parts":2,"setting":"r.m"}],"rejected":[{"number":1,"kind":"grid","robot":"r","at":2.0,)"
       R"("status":400,"why":"w","bytes":3,"replaced":true}],"lights":[{"name":"health",)"
       R"("pattern":"on"}],"links":[{"side":"team","interface":"team0","carrier":true},)"

@@ -39,6 +39,10 @@ constexpr Member kReport[] = {
     member<&ReportRow::same_as>(
         "same_as", "number of the earlier report that this report repeats (if held: may repeat), or 0")
         .csv(11, Cell::NotZero),
+    member<&ReportRow::sends_at>("sends_at",
+                                 "when this held report is sent, in seconds since 1970, unless the operator "
+                                 "withdraws it before; null if "
+                                 "the operator decides"),
 };
 
 constexpr Member kStep[] = {

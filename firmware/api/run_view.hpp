@@ -38,6 +38,7 @@ struct ReportRow {
   std::string note;
   std::int64_t run = 1;
   bool asking = false;
+  std::optional<Time> sends_at = {};
   bool reconciled = false;
   std::int64_t same_as = 0;
 

@@ -142,6 +142,7 @@ constexpr CommandRow kCommands[] = {
      "\n"
      "States (JSON and CSV write in_doubt):\n"
      "  held              Adit sends it only after `adit reports send`; the row gives the reason\n"
+     "  held, to be sent  Adit sends it within `reports.undo_s`; withdraw it to undo it\n"
      "  queued            on disk, to be sent in its turn\n"
      "  sending           sent, not yet answered\n"
      "  answered          the Command Post recorded it\n"

@@ -33,7 +33,8 @@ ReportState state_of(const api::ReportRow& report) {
 
 bool needs_the_operator(const api::ReportRow& report) {
   const ReportState state = state_of(report);
-  return state == ReportState::Held || (state == ReportState::InDoubt && !report.asking);
+  return (state == ReportState::Held && !report.sends_at) ||
+         (state == ReportState::InDoubt && !report.asking);
 }
 
 bool is_finished(const api::ReportRow& report) {
@@ -49,7 +50,7 @@ std::vector<std::string_view> verbs_for(const api::ReportRow& report) {
     if (possible) verbs.push_back(verb);
   };
   offer(dispatch::transition(*state, ReportEvent::Released) != nullptr, "send");
-  offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr, "hold");
+  offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr || report.sends_at, "hold");
   offer(dispatch::transition(*state, ReportEvent::Withdrawn) != nullptr, "withdraw");
   offer(dispatch::transition(*state, ReportEvent::Settled) != nullptr, "settle");
   offer(dispatch::is_final(*state), "resubmit");
@@ -60,6 +61,7 @@ std::string life_of(const api::ReportRow& report) {
   const auto state = dispatch::state_named(report.state);
   if (!state) return report.state;
   std::string life(dispatch::shown_name_of(*state));
+  if (report.sends_at) life += ", to be sent";
   return report.asking && *state == ReportState::InDoubt ? life + ", asking" : life;
 }
 

@@ -14,7 +14,7 @@ bool needs_the_operator(const api::ReportRow& report);
 /// Whether the report is in a final state.
 bool is_finished(const api::ReportRow& report);
 
-/// The report's state for people: "held", "in doubt", "in doubt, asking".
+/// The report's state for people: "held", "in doubt", "in doubt, asking", "held, to be sent".
 std::string life_of(const api::ReportRow& report);
 Tone tone_of(const api::ReportRow& report);
 /// The Command Post's answer in words: "scored", "found out, scored", "error 422", or "".

@@ -24,6 +24,7 @@ constexpr std::array kLife = {
     ReportTransition{Held, Event::Withdrawn, Withdrawn, Action::TellClients},
     ReportTransition{Held, Event::Joined, Withdrawn, Action::Nothing},
     ReportTransition{Held, Event::Cleared, Queued, Action::Nothing},
+    ReportTransition{Held, Event::UndoOver, Queued, Action::Nothing},
     ReportTransition{Held, Event::Held, Held, Action::Nothing},
     ReportTransition{Held, Event::Restarted, Held, Action::Nothing},
 

@@ -46,6 +46,7 @@ enum class ReportEvent : std::uint8_t {
   Withdrawn,  // by the operator
   Joined,     // it repeats an earlier report and gets that report's answer
   Cleared,    // held as a possible repeat, and is not one
+  UndoOver,   // the time for an undo is over
   Restarted,
 };
 

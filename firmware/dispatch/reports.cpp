@@ -12,6 +12,11 @@
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
+namespace {
+
+constexpr std::chrono::seconds kRetryWrite{1};  // after a failed write
+
+}  // namespace
 
 Reports::Reports(const ReportRules& rules, Output& output)
     : rules_(rules), book_(output), account_(book_), output_(output) {}
@@ -243,6 +248,22 @@ void Reports::tick(Time time) {
     tell_how_it_stands(client, book_.at(number));
   }
   std::erase_if(taken_at_, [&](const auto& item) { return time.now - item.second > kYoung; });
+  if (stopping_) return;  // a restart leaves them held
+  std::vector<std::int64_t> over;
+  for (auto& [number, undo] : undo_) {
+    if (undo.until > time.now) continue;
+    over.push_back(number);
+    undo.until = time.now + kRetryWrite;
+  }
+  for (const std::int64_t number : over) end_undo(number, "", time);
+}
+
+std::optional<Reports::Instant> Reports::next_deadline() const {
+  std::optional<Instant> first = clients_.next_deadline();
+  for (const auto& [number, undo] : undo_) {
+    if (!stopping_) first = std::min(first.value_or(undo.until), undo.until);
+  }
+  return first;
 }
 
 }  // namespace adit::dispatch

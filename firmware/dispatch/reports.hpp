@@ -28,12 +28,14 @@ struct ReportRules {
   double near_metres = 5;  // same type and so near: a near duplicate
   Patience patience;
   std::size_t most_waiting = 1000;
+  std::chrono::seconds undo{0};  // how long a report waits for an undo, if Posted::can_be_undone
 };
 
 struct Posted {
   icd::ArtifactReport report;
   std::string sender;     // client's address
   bool resubmit = false;  // a new report, even if it repeats a finished one
+  bool can_be_undone = false;
 };
 
 struct HttpAnswer {
@@ -103,7 +105,7 @@ class Reports {
 
   /// Answers clients whose time is up, repeats failed writes. Call at next_deadline() at the latest.
   void tick(Time time);
-  std::optional<Instant> next_deadline() const { return clients_.next_deadline(); }
+  std::optional<Instant> next_deadline() const;
   /// aditd stops: answers all clients. Without `all`, clients of the report in flight wait on.
   void dismiss(bool all);
 
@@ -131,6 +133,9 @@ class Reports {
   const Report* sending() const { return sending_ ? &book_.at(*sending_) : nullptr; }
   /// The status expected now. nullopt: uncertain, or the counts prove no report.
   std::optional<icd::RunStatus> expected(Instant now) const { return account_.expected(now); }
+  /// When a held report is sent unless the operator withdraws it, in seconds since 1970. nullopt: the
+  /// operator decides, or it is not held.
+  std::optional<double> sends_at(const Report& report) const;
   /// True if the report is in doubt and Adit still asks about it.
   bool is_asking(const Report& report) const;
 
@@ -139,6 +144,12 @@ class Reports {
   void tell_how_it_stands(ClientId client, const Report& report);
   void join(ClientId client, const Report& earlier, Time time);
   void hand_clients_over(std::int64_t number, const Report& earlier);
+
+  /// The time for an undo of a held report. It is in no file, so that a restart leaves the report held.
+  struct Undo {
+    Instant until;
+    double stamp;  // the same, in seconds since 1970
+  };
 
   // Accepting and choosing.
   bool is_of_run(const Report& report) const;
@@ -151,6 +162,7 @@ class Reports {
   struct Hold {
     std::string why;
     std::int64_t same_as = 0;  // the report that it may repeat: held until the run is certain
+    bool for_undo = false;     // held for ReportRules::undo only
   };
   Hold reason_to_hold(const Report& report) const;
   Hold maybe_repeat(const Report& report) const;
@@ -160,6 +172,8 @@ class Reports {
   std::optional<std::int64_t> next(Instant now) const;
   void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
   const Report* told_of_another(const icd::ReportReply& reply) const;
+  Hold hold_for_undo() const;
+  bool end_undo(std::int64_t number, const std::string& note, Time time);
   bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   void prepare(Report& report, Time time);
   void enter_run(Report& report) const;
@@ -205,6 +219,7 @@ class Reports {
   WaitingClients clients_;
   std::map<std::int64_t, Instant> taken_at_;  // last POST of each report, for kYoung
   std::set<std::int64_t> unchecked_;          // not compared yet, because the run was unknown
+  std::map<std::int64_t, Undo> undo_;         // held reports that are sent unless the operator undoes them
   std::optional<std::int64_t> sending_;
   std::int64_t will_be_ = 0;       // the run of will_move(), or 0
   std::int64_t last_sending_ = 0;  // Report::sending of the last sending

@@ -48,13 +48,36 @@ bool Reports::take(const Posted& posted, ClientId client, bool may_send, Time ti
                  report);
     return false;
   }
-  const Hold hold = fresh ? reason_to_hold(report) : Hold{};
+  Hold hold = fresh ? reason_to_hold(report) : Hold{};
+  if (posted.can_be_undone && hold.why.empty()) hold = hold_for_undo();
   if (const Report* const other = sent_to_another_post(report); other != nullptr) {
     report.note = icd::sentence("the same as report ", other->number,
                                 ", which was sent to another Command Post; queued until the Command Post at ",
                                 run().post, " answers");
   }
   return take_new(std::move(report), hold, client, may_send, time);
+}
+
+/// The note stays true if a restart or a new run leaves the report held.
+Reports::Hold Reports::hold_for_undo() const {
+  if (rules_.undo.count() == 0) return {};
+  return {.why = icd::sentence("you can undo it for ", rules_.undo.count(),
+                               " s; then it is sent, unless aditd restarts or a new run begins before"),
+          .for_undo = true};
+}
+
+/// Queues the report, as if it was posted now. False: the write failed.
+bool Reports::end_undo(std::int64_t number, const std::string& note, Time time) {
+  if (!step(number, ReportEvent::UndoOver, note, time)) return false;
+  undo_.erase(number);
+  unchecked_.insert(number);
+  taken_at_[number] = time.now;
+  return true;
+}
+
+std::optional<double> Reports::sends_at(const Report& report) const {
+  const auto undo = undo_.find(report.number);
+  return undo == undo_.end() ? std::nullopt : std::optional(undo->second.stamp);
 }
 
 bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time) {
@@ -77,6 +100,8 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
   taken_at_[number] = time.now;
   clients_.add(client, number, time.now + rules_.answer_within);
   if (now) sending_ = number;
+  if (hold.for_undo)
+    undo_[number] = {time.now + rules_.undo, time.stamp + static_cast<double>(rules_.undo.count())};
   if (!fresh) unchecked_.insert(number);
   return now;
 }
@@ -112,8 +137,8 @@ const Report* Reports::twin(const Report& report) const {
   for (const Report* const other : same_in_run(report.report)) {
     const bool is_compared_later = other->state == ReportState::Queued && !other->asked &&
                                    other->number > report.number && unchecked_.contains(other->number);
-    const bool held_back =
-        other->state == ReportState::Held || other->state == ReportState::Withdrawn || is_compared_later;
+    const bool waits = other->state == ReportState::Held && !undo_.contains(other->number);
+    const bool held_back = waits || other->state == ReportState::Withdrawn || is_compared_later;
     if (other->number != report.number && !held_back && stands_for_others(*other)) return other;
   }
   return nullptr;

@@ -6,6 +6,7 @@ namespace adit::dispatch {
 namespace {
 
 constexpr const char* kLost = "its content is lost from the ledger; post it again, or settle it";
+constexpr const char* kSent = "the operator sent it";
 constexpr const char* kDisk = "the change could not be stored and was not made; try again";
 
 std::unexpected<std::string> no_such(std::int64_t number) {
@@ -26,6 +27,9 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     return cannot(*report, "to send it again, resubmit it");
   }
   if (report->is_lost()) return cannot(*report, kLost);
+  if (undo_.contains(number)) {
+    return end_undo(number, kSent, time) ? Outcome(number) : std::unexpected(kDisk);
+  }
   const bool judged = report->state == ReportState::InDoubt;
   if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
     return cannot(*report,
@@ -33,7 +37,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
                                 " in this run; to send it again, resubmit that report"));
   }
   if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
-  const bool moved = step(number, ReportEvent::Released, "the operator sent it", time, [&](Report& sent) {
+  const bool moved = step(number, ReportEvent::Released, kSent, time, [&](Report& sent) {
     sent.asked = true;
     sent.same_as = 0;
     sent.tries = 0;
@@ -47,14 +51,15 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
 Reports::Outcome Reports::hold(std::int64_t number, Time time) {
   const Report* const report = book_.find(number);
   if (report == nullptr) return no_such(number);
-  if (transition(report->state, ReportEvent::HeldBack) == nullptr) {
+  const bool waits = undo_.contains(number);
+  const ReportEvent event = waits ? ReportEvent::Held : ReportEvent::HeldBack;
+  if (transition(report->state, event) == nullptr || (report->state == ReportState::Held && !waits)) {
     return cannot(*report, report->state == ReportState::Held ? "it is held already"
                            : is_final(report->state)          ? "only a queued report can be held"
                                                               : "it may have been sent already");
   }
-  if (!step(number, ReportEvent::HeldBack, "the operator held it", time)) {
-    return std::unexpected(kDisk);
-  }
+  if (!step(number, event, "the operator held it", time)) return std::unexpected(kDisk);
+  undo_.erase(number);
   unchecked_.erase(number);  // the operator decides
   return number;
 }
@@ -64,9 +69,13 @@ Reports::Outcome Reports::withdraw(std::int64_t number, Time time) {
   if (report == nullptr) return no_such(number);
   if (transition(report->state, ReportEvent::Withdrawn) == nullptr) {
     return cannot(*report, is_final(report->state) ? "it is finished and cannot be withdrawn"
-                                                   : "it may have been recorded; send it, or settle it");
+                           : report->state == ReportState::Sending
+                               ? "its sending has begun, so it cannot be undone"
+                               : "it may have been recorded; send it, or settle it");
   }
-  if (!step(number, ReportEvent::Withdrawn, "", time)) return std::unexpected(kDisk);
+  const char* const why = undo_.contains(number) ? "the operator undid it" : "";
+  if (!step(number, ReportEvent::Withdrawn, why, time)) return std::unexpected(kDisk);
+  undo_.erase(number);
   unchecked_.erase(number);
   return number;
 }

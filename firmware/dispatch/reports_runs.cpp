@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <iterator>
 #include <set>
+#include <utility>
 
 #include "codec/read.hpp"
 #include "dispatch/report_verdict.hpp"
@@ -157,6 +158,7 @@ std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& wh
     step_of(report, enters);
     if (enters) unchecked_.insert(number);
   }
+  for (const auto& [number, undo] : std::exchange(undo_, {})) step_of(book_.at(number), false);
   return steps;
 }
 

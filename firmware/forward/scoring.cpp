@@ -19,7 +19,8 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
   return {.answer_within = reports.answer_within,
           .review = reports.review,
           .near_metres = reports.near_metres,
-          .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks}};
+          .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks},
+          .undo = reports.undo};
 }
 
 /// If the Command Post answered without a status.
@@ -273,7 +274,8 @@ void Scoring::tell_askers(loop::Instant now) {
 
 void Scoring::deadline_came() {
   tell_askers(loop_.now());
-  reports_->tick(time());
+  tick();
+  record_.changed();
   watch_deadlines();
 }
 
@@ -355,7 +357,7 @@ dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action actio
 dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bool resubmit) {
   if (stopping_) return std::unexpected("aditd is stopping; the report was not accepted");
   const dispatch::ClientId nobody = output_.add_nobody();
-  take({.report = report, .sender = "operator", .resubmit = resubmit}, nobody);
+  take({.report = report, .sender = "operator", .resubmit = resubmit, .can_be_undone = true}, nobody);
   if (const auto number = reports_->awaited_by(nobody)) return *number;
   const dispatch::ClientAnswer told = output_.last_told();
   if (told.number == 0) return std::unexpected(told.sentence);

@@ -42,6 +42,7 @@ void Overview::add_reports(alarms::Facts& facts) const {
   for (const std::int64_t number : reports.book().open()) {
     const dispatch::Report& report = reports.book().at(number);
     if (report.state != Held && report.state != InDoubt) continue;  // not the operator's business
+    if (reports.sends_at(report)) continue;
     facts.reports.push_back({.number = report.number,
                              .is = report.state == Held ? Is::Held
                                    : report.is_lost()   ? Is::Lost

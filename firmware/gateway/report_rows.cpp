@@ -37,6 +37,7 @@ api::ReportRow row_of(const dispatch::Reports& reports, const dispatch::Report& 
                      .note = report.note,
                      .run = report.run,
                      .asking = reports.is_asking(report),
+                     .sends_at = reports.sends_at(report),
                      .reconciled = report.reconciled,
                      .same_as = report.same_as};
   if (const auto& reply = answers.of(report)) {
@@ -99,6 +100,7 @@ double time_of_day(double at, const loop::Loop& loop) {
 void tell_time_of_day(api::ReportRow& row, const loop::Loop& loop) {
   row.received = time_of_day(row.received, loop);
   row.changed = time_of_day(row.changed, loop);
+  if (row.sends_at) row.sends_at = time_of_day(*row.sends_at, loop);
 }
 
 std::optional<api::ReportDetail> detail_of(const dispatch::Reports& reports, const ledger::Ledger& ledger,

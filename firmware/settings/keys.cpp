@@ -138,6 +138,10 @@ constexpr Key kKeys[] = {
      choice<MEMBER(reports.review)>(kReviews)},
     {"reports.near_metres", "Two reports of one run and type are near duplicates within this distance.",
      real<MEMBER(reports.near_metres)>(0, 1000)},
+    {"reports.undo_s",
+     "How many seconds a report that the operator posts on the page waits before it is sent, so that the "
+     "operator can undo it. 0: it is sent at once.",
+     whole<MEMBER(reports.undo)>(0, 60)},
 
     {"queues.map_bytes", "Bytes of queued maps, at most. Beyond that, Adit rejects a map with 429.",
      whole<MEMBER(queues.map_bytes)>(kMiB, 16384 * kMiB)},

@@ -63,6 +63,7 @@ struct Reports {
   std::int64_t doubt_asks = 3;
   dispatch::Review review = dispatch::Review::Off;
   double near_metres = 5;
+  std::chrono::seconds undo{0};  // dispatch::ReportRules
 };
 
 struct Queues {

@@ -30,6 +30,7 @@ ReportRow report() {
   row.asking = true;
   row.reconciled = true;
   row.same_as = 3;
+  row.sends_at = 950;
   return row;
 }
 
@@ -105,7 +106,7 @@ constexpr const char* kReport =
     R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
     R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in_doubt","status":500,)"
     R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
-    R"("reconciled":true,"same_as":3})";
+    R"("reconciled":true,"same_as":3,"sends_at":950.0})";
 
 TEST(Bytes, OfARun) {
   EXPECT_EQ(
@@ -120,10 +121,10 @@ TEST(Bytes, OfARun) {
       R"("heading":0.5,"at":990.0,"age":19.0}],"reports":[{"number":7,"type":"Rope","position":{"x":1.0,)"
       R"("y":-2.5,"z":0.0},"sender":"10.0.0.7","robot":"spot1","received":940.0,"changed":941.25,)"
       R"("state":"in_doubt","status":500,"report_status":"scored","score_change":-1,)"
-      R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3},{"number":0,)"
+      R"("note":"no \"answer\"","run":2,"asking":true,"reconciled":true,"same_as":3,"sends_at":950.0},{"number":0,)"
       R"("type":"","position":{"x":0.0,"y":0.0,"z":0.0},"sender":"","robot":"","received":0.0,"changed":0.0,)"
       R"("state":"","status":0,"report_status":"","score_change":null,"note":"","run":1,)"
-      R"("asking":false,"reconciled":false,"same_as":0}],"near_metres":5.0,)"
+      R"("asking":false,"reconciled":false,"same_as":0,"sends_at":null}],"near_metres":5.0,)"
       R"("activities":[{"kind":"grid","robot":"r","accepted":1,"forwarded":2,"replaced":3,)"
       R"("merged":4,"throttled":5,"failed":6,"refused_upstream":7,"no_room":13,"queued":8,)"
       R"("behind_since":14.0,"behind":17.0,"last_accepted":9.0,"last_forwarded":null,"age":18.0,"last_no_room":15.0,"bytes_received":10,"bytes_sent":11,"last_status":12,)"
@@ -147,13 +148,14 @@ TEST(Bytes, OfARun) {
 TEST(Bytes, OfReports) {
   EXPECT_EQ(codec::to_json(std::vector{report()}), std::string("[") + kReport + "]");
   EXPECT_EQ(codec::to_json(std::vector<ReportRow>()), "[]");
-  EXPECT_EQ(codec::to_json(ReportDetail{
-                .row = report(), .history = {{.at = 1, .state = "queued", .note = "n"}}, .answer = "{}"}),
-            R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
-            R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in_doubt","status":500,)"
-            R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
-            R"("reconciled":true,"same_as":3,"history":[{"at":1.0,"state":"queued","note":"n"}],)"
-            R"("answer":"{}"})");
+  EXPECT_EQ(
+      codec::to_json(ReportDetail{
+          .row = report(), .history = {{.at = 1, .state = "queued", .note = "n"}}, .answer = "{}"}),
+      R"({"number":7,"type":"Rope","position":{"x":1.0,"y":-2.5,"z":0.0},"sender":"10.0.0.7",)"
+      R"("robot":"spot1","received":940.0,"changed":941.25,"state":"in_doubt","status":500,)"
+      R"("report_status":"scored","score_change":-1,"note":"no \"answer\"","run":2,"asking":true,)"
+      R"("reconciled":true,"same_as":3,"sends_at":950.0,"history":[{"at":1.0,"state":"queued","note":"n"}],)"
+      R"("answer":"{}"})");
 }
 
 TEST(Bytes, OfTheBox) {

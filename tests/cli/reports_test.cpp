@@ -85,6 +85,10 @@ TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
   asking.asking = true;
   EXPECT_EQ(asked({asking}, {"reports"}).exit, Exit::Fine);
   EXPECT_EQ(asked({report(4, 2, "answered")}, {"reports"}).exit, Exit::Fine);
+  api::ReportRow undoable = report(4, 2, "held");
+  EXPECT_EQ(asked({undoable}, {"reports"}).exit, Exit::Attention);
+  undoable.sends_at = 1010;
+  EXPECT_EQ(asked({undoable}, {"reports"}).exit, Exit::Fine);
 }
 
 TEST(Reports, ShowOneOrSayThatThereIsNone) {

@@ -75,6 +75,10 @@ TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
   EXPECT_FALSE(needs_the_operator(doubt));
   EXPECT_EQ(life_of(in_state("held")), "held");
   EXPECT_TRUE(needs_the_operator(in_state("held")));
+  api::ReportRow undoable = in_state("held");
+  undoable.sends_at = 1010;
+  EXPECT_EQ(life_of(undoable), "held, to be sent");
+  EXPECT_FALSE(needs_the_operator(undoable));
 }
 
 TEST(LifeOf, IsTheStatesWord) {

@@ -108,6 +108,8 @@ std::string_view words(ReportEvent event) {
       return "same as an earlier one";
     case Event::Cleared:
       return "another run";
+    case Event::UndoOver:
+      return "its time for an undo is over";
     case Event::Restarted:
       return "restart";
   }

@@ -122,6 +122,14 @@ class Scene {
   ClientId post_to_wait(double x = 1, const std::string& type = "Drill") {
     return post(x, type, false, false);
   }
+  /// The operator posts; it waits for an undo, if the rules say so.
+  ClientId compose(double x = 1, bool resubmit = false) {
+    return post({.report = {.type = "Drill", .position = {x, 0, 0}},
+                 .sender = "operator",
+                 .resubmit = resubmit,
+                 .can_be_undone = true},
+                reports_->sending() == nullptr);
+  }
   /// Sends the next one. Its number; 0: none may go.
   std::int64_t send_next() {
     if (!reports_->wish(time()).report) return 0;
@@ -193,11 +201,10 @@ class Scene {
   }
 
   ClientId post(double x, const std::string& type, bool resubmit, bool may_send) {
-    Posted posted;
-    posted.report.type = type;
-    posted.report.position.x = x;
-    posted.sender = "10.0.0.7";
-    posted.resubmit = resubmit;
+    return post({.report = {.type = type, .position = {x, 0, 0}}, .sender = "10.0.0.7", .resubmit = resubmit},
+                may_send);
+  }
+  ClientId post(const Posted& posted, bool may_send) {
     reports_->take(posted, ++last_client_, may_send, time());
     return last_client_;
   }

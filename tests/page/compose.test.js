@@ -38,7 +38,7 @@ test("composes a report: what, where, a look at what is near, and away", async (
   assert.ok(await page.locator("#compose .again").isHidden());
   await send(page);
   await becomes(page, 29, "queued");
-  await becomes(page, 29, "Accepted and queued.");
+  await becomes(page, 29, "Accepted.");
   await page.waitForFunction(() => document.activeElement.closest("li")?.dataset.key === "29");
   assert.deepEqual(page.complaints, []);
 });
@@ -90,7 +90,7 @@ test("says that the very same was reported, and sends it again only when told to
   await fill(page, "Helmet", "281,75", "−4.5", ".25");
   assert.match(await text(page, "#compose .notes"), /Already reported at the same place: #23 Helmet, scored \+1/);
   await send(page);
-  await becomes(page, 23, "The same report was sent before. This is it.");
+  await becomes(page, 23, "The box has the same report already: this one.");
   assert.equal(await page.locator("#reports li[data-key='29']").count(), 0);
 
   await page.locator("#reports .compose").click();

@@ -71,6 +71,7 @@ const RestartsCase kRestartsCases[] = {
     {"reports.doubt_asks", [](Settings& s) { s.reports.doubt_asks = 9; }, kNothing},
     {"reports.review", [](Settings& s) { s.reports.review = dispatch::Review::All; }, kNothing},
     {"reports.near_metres", [](Settings& s) { s.reports.near_metres = 9; }, kNothing},
+    {"reports.undo_s", [](Settings& s) { s.reports.undo = 9s; }, kNothing},
     {"queues.map_bytes", [](Settings& s) { s.queues.map_bytes = 9; }, kNothing},
     {"queues.merge_bytes", [](Settings& s) { s.queues.merge_bytes = 9; }, kNothing},
     {"queues.marker_bytes", [](Settings& s) { s.queues.marker_bytes = 9; }, kNothing},

@@ -76,7 +76,7 @@ TEST(Settings, SetEveryMemberByItsKey) {
       "interface": "team0", "require_token": false,
       "origins": " http://10.0.0.20:3000  app://station ", "connections": 40, "connections_per_address": 4},
     "reports": {"answer_within_ms": 5000, "doubt_for_ms": 100, "doubt_asks": 100, "review": "duplicates",
-                "near_metres": 0.5},
+                "near_metres": 0.5, "undo_s": 60},
     "queues": {"map_bytes": 2000000, "merge_bytes": 0, "marker_bytes": 3000000,
                "markers_per_message": 7, "marker_bytes_per_message": 8000},
     "rules": {"rewrite_frame_id": true, "forward_unknown_types": true, "map_bytes": 4096},
@@ -111,6 +111,7 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_EQ(settings.reports.doubt_asks, 100);
   EXPECT_EQ(settings.reports.review, dispatch::Review::Duplicates);
   EXPECT_EQ(settings.reports.near_metres, 0.5);
+  EXPECT_EQ(settings.reports.undo, std::chrono::seconds(60));
   EXPECT_EQ(settings.queues.map_bytes, 2000000u);
   EXPECT_EQ(settings.queues.merge_bytes, 0u);
   EXPECT_EQ(settings.queues.marker_bytes, 3000000u);
@@ -166,6 +167,7 @@ TEST(Settings, AreAsPatientWithReportsAsTheRulesOfReportsByThemselves) {
   EXPECT_EQ(reports.doubt_asks, rules.patience.asks);
   EXPECT_EQ(reports.review, rules.review);
   EXPECT_EQ(reports.near_metres, rules.near_metres);
+  EXPECT_EQ(reports.undo, rules.undo);
 }
 
 TEST(Settings, TakeEachWordOfAChoice) {

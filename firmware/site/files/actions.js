@@ -7,6 +7,8 @@ const AGAIN = { name: "send", label: "Send again" };
 const COSTLY_SEND = { name: "send", label: "Send again", costs: "If the report is recorded already, it is recorded twice" };
 const NEAR_SEND = { name: "send", label: "Send", costs: "Another report of this type is close by and may be the same artifact" };
 const LATE_SEND = { name: "send", label: "Send", costs: "The report was withdrawn" };
+const SEND_NOW = { name: "send", label: "Send now" };
+const UNDO = { name: "withdraw", label: "Undo" };
 const HOLD = { name: "hold", label: "Hold" };
 const WITHDRAW = { name: "withdraw", label: "Withdraw" };
 const SETTLE = { name: "settle", label: "Settle" };
@@ -27,6 +29,7 @@ const DEEDS = {
 /** `isNear`: another of its type was reported close by. */
 export function actionsOf(report, isNear = false) {
   if (!report.position) return report.state === "in_doubt" ? [SETTLE] : []; // it is lost
+  if (report.sends_at) return [UNDO, SEND_NOW];
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
   if (report.state === "held" && report.same_as) return [COSTLY_SEND, WITHDRAW];
   if (report.state === "held" && isNear) return [NEAR_SEND, WITHDRAW];

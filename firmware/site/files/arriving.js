@@ -14,7 +14,7 @@ function gained({ score_change, report_status }) {
 /** Where a report is in its life. */
 export function life(report) {
   switch (report.state) {
-    case "held": return { level: "ask", word: "held" };
+    case "held": return report.sends_at ? { level: "wait", word: "held, to be sent" } : { level: "ask", word: "held" };
     case "queued": return { level: "wait", word: "queued" };
     case "sending": return { level: "wait", word: "sending" };
     case "in_doubt": return report.asking ? { level: "wait", word: "in doubt, asking" } : { level: "ask", word: "in doubt" };

@@ -156,7 +156,7 @@ async function send() {
   busy = at("send").disabled = true;
   try {
     const answer = await post("/adit/reports", { type, x, y, z, resubmit });
-    tell(answer.report, before.has(answer.report) ? "The same report was sent before. This is it." : "Accepted and queued.");
+    tell(answer.report, before.has(answer.report) ? "The box has the same report already: this one." : "Accepted.");
     drop();
     revealSoon(answer.report);
   } catch (error) {

@@ -87,11 +87,12 @@ export function reveal(number) {
 const nearestOf = (report, view) => (isCounted(report, view) ? nearTo(view, report)[0] : undefined);
 
 /** What else there is to know: the Command Post's words, or why it is where it is. */
-function more(report, nearest) {
+function more(report, nearest, now) {
+  const left = report.sends_at ? `sent in ${Math.max(0, Math.ceil(report.sends_at - now))} s` : "";
   const said = report.report_status && report.report_status !== "scored" ? report.report_status : "";
   const found = report.reconciled ? "found in the run’s status" : "";
   const near = nearest ? `${nearest.metres.toFixed(1)} m from #${nearest.other.number}, of the same type` : "";
-  return [said, found, report.note, near, report.status >= 400 ? `status ${report.status}` : ""].filter(Boolean).join(" · ");
+  return [left, said, found, report.note, near, report.status >= 400 ? `status ${report.status}` : ""].filter(Boolean).join(" · ");
 }
 
 function showNear(node, report, nearest) {
@@ -144,12 +145,12 @@ function update(node, report, view, now) {
   say(where.lastChild, ` · ${ago(now - report.received)}`);
   const isTold = isMore || isOpen(report) || level === "bad" || level === "ask";
   const nearest = isTold ? nearestOf(report, view) : undefined;
-  if (!still.isHeld || own.has(report.number) || !node.dataset.told) say(rest, isTold ? clip(more(report, nearest)) : "");
+  if (!still.isHeld || own.has(report.number) || !node.dataset.told || report.sends_at) say(rest, isTold ? clip(more(report, nearest, now)) : "");
   node.dataset.told = "true";
   if (!still.isHeld || own.has(report.number) || !near.firstChild) showNear(near, report, isMore || level === "ask" ? nearest : undefined);
   open.setAttribute("aria-expanded", String(isMore));
   say(open.lastChild, `Details of report ${report.number}`);
-  showActions(actions, report, view, isMore || level === "ask");
+  showActions(actions, report, view, isMore || level === "ask" || Boolean(report.sends_at));
   acts.hidden = !acts.querySelector("button");
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");

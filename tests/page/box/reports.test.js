@@ -71,6 +71,33 @@ test("shows near duplicates side by side, on the map and in words", async (t) =>
   assert.ok(await pair.isHidden());
 });
 
+/** Posts a Drill by the page's form. */
+async function composed(page, x) {
+  await page.getByRole("button", { name: "New report" }).click();
+  await page.locator("#compose .types").getByRole("button", { name: "Drill" }).click();
+  for (const [axis, value] of Object.entries({ x: String(x), y: "0", z: "0" })) await page.fill(`#compose input[name=${axis}]`, value);
+  await page.getByRole("button", { name: "Check" }).click();
+  await page.locator("#compose .send").click();
+}
+
+test("undoes a report of the page before it is sent, or sends it now", async (t) => {
+  const made = await box(t, { settings: { reports: { undo_s: 60 } } });
+  const page = await look(t, made);
+  await composed(page, 50);
+  await says(page, 1, "held, to be sent");
+  await says(page, 1, "sent in ");
+  assert.ok(await page.locator("#attention").getByText("held").isHidden(), "no alarm");
+  await action(page, "Undo", 1).click();
+  await says(page, 1, "withdrawn");
+  await composed(page, 60);
+  await action(page, "Send now", 2).click();
+  await made.becomes(2, "answered");
+  assert.equal(await recorded(made, 50), 0);
+  assert.equal(await recorded(made, 60), 1);
+  assert.equal((await made.ask("/adit/reports/2/withdraw", {})).status, 409);
+  assert.deepEqual(page.complaints, []);
+});
+
 test("begins a new run on the operator's word, and says before what becomes of what was not sent", async (t) => {
   const made = await box(t, slow(300));
   const number = await waiting(made);

@@ -24,6 +24,25 @@ intake::Answer no_such(std::int64_t number) {
   return refusal(icd::Status::NotFound, icd::sentence("there is no report ", number));
 }
 
+/// Reads the operator's report and gives it to `take`, which returns its number or why it was not accepted.
+template <class Take>
+intake::Answer accept(const std::string& body, Take take) {
+  const auto document = codec::decode({}, codec::Split::Nothing, body);
+  if (!document) return refused(document.error());
+  const auto read = codec::read_artifact_report(*document, {}, intake::type_hint);
+  if (!read) return refused(read.error());
+  codec::Reading reading;
+  const codec::Field root(document->root, reading);
+  const codec::Field resubmit = root.member("resubmit");
+  const auto again = reading.outcome(!resubmit.is_absent() && resubmit.truth());
+  if (!again) return refused(again.error());
+  const auto number = take(read->report, *again);
+  if (!number) return refusal(icd::Status::Conflict, number.error());
+  codec::Value::Object told{{"report", json(*number)}};
+  if (!read->left_out.empty()) told.emplace_back("left_out", json(read->left_out));
+  return object(std::move(told));
+}
+
 }  // namespace
 
 void ReportRoutes::listed(const Call& call, ListForm form, intake::Answer begun) const {
@@ -64,22 +83,20 @@ intake::Answer ReportRoutes::judge(std::int64_t number, Action action) {
 }
 
 intake::Answer ReportRoutes::compose(const std::string& body) {
-  const auto document = codec::decode({}, codec::Split::Nothing, body);
-  if (!document) return refused(document.error());
-  const auto read = codec::read_artifact_report(*document, {}, intake::type_hint);
-  if (!read) return refused(read.error());
-  codec::Reading reading;
-  const codec::Field root(document->root, reading);
-  const codec::Field resubmit = root.member("resubmit");
-  const auto again = reading.outcome(!resubmit.is_absent() && resubmit.truth());
-  if (!again) return refused(again.error());
-  const auto number = operator_.report(read->report, *again);
-  if (!number) return refusal(icd::Status::Conflict, number.error());
-  codec::Value::Object told{{"report", json(*number)}};
-  if (!read->left_out.empty()) told.emplace_back("left_out", json(read->left_out));
-  auto answer = object(std::move(told));
-  answer.status = kAccepted;
+  auto answer = accept(body, [this](const icd::ArtifactReport& report, bool resubmit) {
+    return operator_.report(report, resubmit);
+  });
+  if (answer.status == icd::Status::Ok) answer.status = kAccepted;
   return answer;
+}
+
+intake::Answer ReportRoutes::correct(const Call& call) {
+  const auto number = number_in<std::int64_t>(call.parameters.front());
+  if (!number) return nothing_at(call.head.path());
+  if (!source_.report(*number)) return no_such(*number);
+  return accept(call.body, [this, number](const icd::ArtifactReport& report, bool /*resubmit*/) {
+    return operator_.correct(*number, report);
+  });
 }
 
 }  // namespace adit::api

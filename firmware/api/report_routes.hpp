@@ -24,6 +24,7 @@ class ReportRoutes {
     return judge(number, action);
   }
   intake::Answer compose(const std::string& body);
+  intake::Answer correct(const Call& call);
 
  private:
   /// Completes `begun` with the list of the run in the request (its number, "present" or "all").

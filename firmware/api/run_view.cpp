@@ -36,8 +36,10 @@ constexpr Member kReport[] = {
         .csv(9),
     member<&ReportRow::reconciled>("reconciled", "whether the answer was derived from the run's status")
         .csv(10),
-    member<&ReportRow::same_as>(
-        "same_as", "number of the earlier report that this report repeats (if held: may repeat), or 0")
+    member<&ReportRow::same_as>("same_as",
+                                "number of the earlier report that this report repeats (if held: may "
+                                "repeat), of the later report that "
+                                "corrects it, or 0")
         .csv(11, Cell::NotZero),
     member<&ReportRow::sends_at>("sends_at",
                                  "when this held report is sent, in seconds since 1970, unless the operator "

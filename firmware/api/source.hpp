@@ -49,6 +49,9 @@ class Operator {
   /// is a sentence.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,
                                                           bool resubmit) = 0;
+  /// Sends `to` instead of a held report. Returns the number of the new report. An error is a sentence.
+  virtual std::expected<std::int64_t, std::string> correct(std::int64_t number,
+                                                           const icd::ArtifactReport& to) = 0;
   /// An error is a sentence.
   virtual std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) = 0;
   /// Silences an alarm until it gets worse or ends. An error is a sentence.

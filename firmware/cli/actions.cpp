@@ -1,7 +1,11 @@
 #include <algorithm>
+#include <map>
+#include <ranges>
 
 #include "api/run_view.hpp"
 #include "cli/handlers.hpp"
+#include "codec/json.hpp"
+#include "command_line/number.hpp"
 #include "dispatch/report_life.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
@@ -32,6 +36,15 @@ constexpr Decision kDecisions[] = {{"send", " is queued"},
                                    {"withdraw", " is withdrawn"},
                                    {"settle", " is settled"},
                                    {"resubmit", " is sent again as report "}};
+
+struct Axis {
+  const char* name;
+  double icd::Point::* axis;
+};
+constexpr Axis kAxes[] = {{"x", &icd::Point::x}, {"y", &icd::Point::y}, {"z", &icd::Point::z}};
+
+constexpr double kFar = 1e9;  // metres
+constexpr std::uint64_t kMostNumber = INT64_MAX;
 
 /// Asks the operator for confirmation if the report is in doubt.
 Result<void> confirm_sending(const Call& call, const std::string& target, std::int64_t number) {
@@ -67,6 +80,41 @@ constexpr codec::Row BegunRun::kRow = {"", kBegun};
 
 Result<Outcome> decide_on_reports(const Call& call) {
   return act_on_each(call, [&call](std::int64_t number) { return decide_on(call, number); });
+}
+
+Result<Outcome> correct_report(const Call& call) {
+  const std::vector<std::string>& words = call.options.arguments;
+  std::uint64_t number = 0;
+  if (const auto wrong = command_line::read_number(words.front(), std::uint64_t{1}, kMostNumber, number))
+    return failed("the report's number: " + *wrong);
+  const std::string target = icd::sentence("/adit/reports/", number);
+  const auto now = fetch<api::ReportDetail>(call.adit, target);
+  if (!now) return std::unexpected(now.error());
+  const api::ReportRow& report = now->row.row;
+  std::map<std::string, codec::Value> body{{"type", {report.type}}};
+  for (const auto& [name, axis] : kAxes) {
+    if (report.position) body[name] = {(*report.position).*axis};
+  }
+  for (const std::string& word : words | std::views::drop(1)) {
+    const std::size_t end = word.find('=');
+    const std::string name = word.substr(0, end),
+                      value = end == std::string::npos ? "" : word.substr(end + 1);
+    const bool is_axis = std::ranges::find(kAxes, name, &Axis::name) != std::end(kAxes);
+    if (end == std::string::npos || (name != "type" && !is_axis))
+      return failed("'" + word + "': expected type=, x=, y= or z=");
+    double metres = 0;
+    if (const auto wrong = is_axis ? command_line::read_number(value, -kFar, kFar, metres) : std::nullopt)
+      return failed(name + ": " + *wrong);
+    body[name] = is_axis ? codec::Value{metres} : codec::Value{value};
+  }
+  const auto answer = told<DecidedReport>(
+      call.adit,
+      post(call.adit, {.target = target + "/correct",
+                       .check = icd::sentence("adit reports show ", number),
+                       .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})}));
+  if (!answer) return std::unexpected(answer.error());
+  return said(call, answer->json,
+              icd::sentence("report ", number, " is corrected as report ", answer->row.report, "\n"));
 }
 
 Result<Outcome> begin_run(const Call& call) {

@@ -9,6 +9,7 @@ constexpr std::size_t kMany = 1000;
 constexpr Argument kNothing{"", "", 0, 0, 0};
 constexpr Argument kReport{"NUMBER", "a report's number", 1, 1, INT64_MAX};
 constexpr Argument kReports{"NUMBER...", "a report's number", 1, kMany, INT64_MAX};
+constexpr Argument kCorrection{"NUMBER FIELD=VALUE...", "a report's number or a value", 2, 5, 0};
 constexpr Argument kRejectedNumber{"NUMBER...", "a rejected message's number", 1, kMany, INT64_MAX};
 constexpr Argument kSeconds{"[SECONDS]", "seconds, a whole number from 1 to 60", 0, 1, 60};
 constexpr Argument kName{"[NAME]", "a course's name", 0, 1, 0};
@@ -33,6 +34,9 @@ constexpr Form kReportForms[] = {
     {"hold", decide_on_reports, kReports, "hold a queued report until you send it"},
     {"withdraw", decide_on_reports, kReports,
      "withdraw a held or queued report. You can still send it later"},
+    {"correct", correct_report, kCorrection,
+     "send a held report with another type or place, as a new report: type=TYPE, x=X, y=Y, z=Z. It keeps the "
+     "other values. The held report is withdrawn"},
     {"settle", decide_on_reports, kReports, "settle a report in doubt without sending it again"},
     {"resubmit", decide_on_reports, kReport,
      "send a finished report again, as a new report with its own number"},
@@ -136,7 +140,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit watch\n"
      "  sudo adit watch | tee run.log\n"
      "  sudo adit watch --json | jq --unbuffered '.run.score'"},
-    {"reports", "list artifact reports; send, hold, withdraw or settle them", kReportForms,
+    {"reports", "list artifact reports; send, hold, withdraw, correct or settle them", kReportForms,
      "Without a subcommand: list the reports of the present run and the unfinished ones of other runs, the "
      "newest first. A report in doubt delays no other report.\n"
      "\n"
@@ -157,6 +161,7 @@ constexpr CommandRow kCommands[] = {
      "  sudo adit reports --last 5\n"
      "  sudo adit reports show 14\n"
      "  sudo adit reports send 15 16\n"
+     "  sudo adit reports correct 17 type=Backpack y=-3.5\n"
      "  sudo adit reports export > reports.csv\n"
      "  sudo adit reports --run all --json | jq -r '.[] | [.number, .type, .state] | @tsv'"},
     {"rejected", "list maps, states and markers that the Command Post rejected", kRejectedForms,

@@ -13,6 +13,7 @@ Result<Outcome> list_reports(const Call& call);
 Result<Outcome> show_report(const Call& call);
 /// send, hold, withdraw, settle and resubmit. Asks for confirmation to send a report in doubt.
 Result<Outcome> decide_on_reports(const Call& call);
+Result<Outcome> correct_report(const Call& call);
 Result<Outcome> export_reports(const Call& call);
 
 Result<Outcome> list_rejected(const Call& call);

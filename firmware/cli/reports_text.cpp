@@ -52,6 +52,7 @@ std::vector<std::string_view> verbs_for(const api::ReportRow& report) {
   offer(dispatch::transition(*state, ReportEvent::Released) != nullptr, "send");
   offer(dispatch::transition(*state, ReportEvent::HeldBack) != nullptr || report.sends_at, "hold");
   offer(dispatch::transition(*state, ReportEvent::Withdrawn) != nullptr, "withdraw");
+  offer(dispatch::transition(*state, ReportEvent::Corrected) != nullptr, "correct");
   offer(dispatch::transition(*state, ReportEvent::Settled) != nullptr, "settle");
   offer(dispatch::is_final(*state), "resubmit");
   return verbs;

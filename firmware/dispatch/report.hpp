@@ -42,7 +42,7 @@ struct Report {
 
   std::int64_t run = 0;      // Run::number of its run
   bool asked = false;        // sent on purpose: no comparison holds it
-  std::int64_t same_as = 0;  // earlier report that it repeats, or 0
+  std::int64_t same_as = 0;  // earlier report that it repeats, later one that corrects it, or 0
   std::int64_t tries = 0;    // sendings without an answer
   std::int64_t sending = 0;  // place of the last sending among all; 0: never sent
   double sent = 0;           // last sending; seconds since 1970
@@ -57,6 +57,8 @@ struct Report {
   /// A stand-in for reports that damage removed from the ledger, listed in its note. They may have been sent.
   bool is_lost() const { return sender == kLost; }
   static constexpr std::string_view kLost = "lost";
+  /// Repeats get the answer of the report `same_as`.
+  bool is_corrected() const { return state == ReportState::Withdrawn && same_as > number; }
   friend bool operator==(const Report&, const Report&) = default;
 };
 

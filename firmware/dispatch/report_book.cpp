@@ -38,10 +38,11 @@ void ReportBook::open(std::vector<Report> all) {
 }
 
 std::int64_t ReportBook::add(Report report, std::span<const ReportEvent> events, const std::string& note,
-                             const Edit& edit) {
-  report.number = reports_.empty() ? 1 : reports_.rbegin()->first + 1;
+                             const Edit& edit, std::span<const Report> before) {
+  report.number = next_number();
   report.state = ReportState::Queued;
-  std::vector<Report> steps{report};
+  std::vector<Report> steps(before.begin(), before.end());
+  steps.push_back(report);
   for (const ReportEvent event : events) {
     report.state = transition(report.state, event)->to;
     report.note = note;

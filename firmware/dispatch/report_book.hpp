@@ -33,10 +33,12 @@ class ReportBook {
 
   void open(std::vector<Report> all);
 
-  /// Adds a queued report and applies `events`, in one write. `edit` runs after each event. Returns the
-  /// number; 0: the write failed and there is no report.
+  /// Of the next report.
+  std::int64_t next_number() const { return reports_.empty() ? 1 : reports_.rbegin()->first + 1; }
+  /// Adds a queued report and applies `events`, in one write, after the steps `before`. `edit` runs after
+  /// each event. Returns the number; 0: the write failed, and no report was added or changed.
   std::int64_t add(Report report, std::span<const ReportEvent> events, const std::string& note,
-                   const Edit& edit = nullptr);
+                   const Edit& edit = nullptr, std::span<const Report> before = {});
 
   /// Applies steps of different reports in one write. False: no step was applied, because the table lacks one
   /// or the write failed. If a step is an act of the Command Post or the network, all are applied even if the

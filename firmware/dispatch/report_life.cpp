@@ -23,6 +23,7 @@ constexpr std::array kLife = {
     ReportTransition{Held, Event::Released, Queued, Action::Nothing},
     ReportTransition{Held, Event::Withdrawn, Withdrawn, Action::TellClients},
     ReportTransition{Held, Event::Joined, Withdrawn, Action::Nothing},
+    ReportTransition{Held, Event::Corrected, Withdrawn, Action::Nothing},
     ReportTransition{Held, Event::Cleared, Queued, Action::Nothing},
     ReportTransition{Held, Event::UndoOver, Queued, Action::Nothing},
     ReportTransition{Held, Event::Held, Held, Action::Nothing},

@@ -44,6 +44,7 @@ enum class ReportEvent : std::uint8_t {
   Missing,    // not recorded, by the run's status
   Settled,    // declared done by the operator
   Withdrawn,  // by the operator
+  Corrected,  // the operator sends another report in its place
   Joined,     // it repeats an earlier report and gets that report's answer
   Cleared,    // held as a possible repeat, and is not one
   UndoOver,   // the time for an undo is over

@@ -223,9 +223,7 @@ void Reports::recorded(const ReportBook::Edit& keep, const icd::ReportReply& rep
   if (effect.again) {
     note = "not scored (" + reply.report_status + "); post it again when the run continues";
   } else if (reply.report && !is_same(*reply.report, sending()->report)) {
-    const icd::Point& at = reply.report->position;
-    note = icd::sentence("the answer is for ", icd::in_quotes(reply.report->type), " at ", at.x, ", ", at.y,
-                         ", ", at.z);
+    note = "the answer is for " + described(*reply.report);
   }
   ended(ReportEvent::Recorded, note, time, [&](Report& report) {
     keep(report);

@@ -114,6 +114,9 @@ class Reports {
   Outcome hold(std::int64_t number, Time time);
   Outcome withdraw(std::int64_t number, Time time);
   Outcome settle(std::int64_t number, Time time);
+  /// Withdraws a held report and sends `to` in its place, as a new report. Its clients, and repeats of it,
+  /// get the new report's answer. Returns the new report's number.
+  Outcome correct(std::int64_t number, const icd::ArtifactReport& to, Time time);
   /// Sends a copy as a new report. Returns its number, or that of an unfinished copy.
   Outcome resubmit(std::int64_t number, Time time);
   /// Returns the new run's number.
@@ -172,8 +175,10 @@ class Reports {
   std::optional<std::int64_t> next(Instant now) const;
   void recorded(const ReportBook::Edit& keep, const icd::ReportReply& reply, Time time);
   const Report* told_of_another(const icd::ReportReply& reply) const;
+  const Report& original_of(const Report& report) const;
   Hold hold_for_undo() const;
   bool end_undo(std::int64_t number, const std::string& note, Time time);
+  std::int64_t add(Report report, const Hold& hold, bool now, Time time, std::span<const Report> before = {});
   bool take_new(Report report, const Hold& hold, ClientId client, bool may_send, Time time);
   void prepare(Report& report, Time time);
   void enter_run(Report& report) const;

@@ -85,25 +85,34 @@ bool Reports::take_new(Report report, const Hold& hold, ClientId client, bool ma
   // Accepting and choosing in one write flush the disk once.
   const bool now = may_send && hold.why.empty() && fresh && !sending_ && waiting_here().empty() &&
                    may_go(report, time.now);
-  std::vector<ReportEvent> events;
-  if (!hold.why.empty()) events.push_back(ReportEvent::Held);
-  if (now) events.push_back(ReportEvent::Chosen);
-  const std::int64_t number = book_.add(report, events, hold.why, [&](Report& chosen) {
-    if (chosen.state == ReportState::Sending) prepare(chosen, time);
-    if (chosen.state == ReportState::Held) chosen.same_as = hold.same_as;
-  });
+  const std::int64_t number = add(report, hold, now, time);
   if (number == 0) {
     output_.tell(client, {.sentence = "the report could not be stored and was not accepted; post it again"},
                  report);
     return false;
   }
-  taken_at_[number] = time.now;
   clients_.add(client, number, time.now + rules_.answer_within);
   if (now) sending_ = number;
-  if (hold.for_undo)
-    undo_[number] = {time.now + rules_.undo, time.stamp + static_cast<double>(rules_.undo.count())};
   if (!fresh) unchecked_.insert(number);
   return now;
+}
+
+/// In one write after `before`. `now`: chosen at once. Returns the number; 0: the write failed.
+std::int64_t Reports::add(Report report, const Hold& hold, bool now, Time time,
+                          std::span<const Report> before) {
+  std::vector<ReportEvent> events;
+  if (!hold.why.empty()) events.push_back(ReportEvent::Held);
+  if (now) events.push_back(ReportEvent::Chosen);
+  const auto edit = [&](Report& chosen) {
+    if (chosen.state == ReportState::Sending) prepare(chosen, time);
+    if (chosen.state == ReportState::Held) chosen.same_as = hold.same_as;
+  };
+  const std::int64_t number = book_.add(std::move(report), events, hold.why, edit, before);
+  if (number == 0) return 0;
+  taken_at_[number] = time.now;
+  if (hold.for_undo)
+    undo_[number] = {time.now + rules_.undo, time.stamp + static_cast<double>(rules_.undo.count())};
+  return number;
 }
 
 /// Also the report in flight, which a later run may record.
@@ -120,14 +129,23 @@ std::vector<const Report*> Reports::same_in_run(const icd::ArtifactReport& repor
   return same;
 }
 
+/// The report whose answer repeats of `report` get: itself, or the one that it joined or that corrects it.
+const Report& Reports::original_of(const Report& report) const {
+  const Report* original = &report;
+  for (std::size_t i = 0; i < book_.all().size() && original->state == ReportState::Withdrawn; ++i) {
+    const Report* const next = book_.find(original->same_as);
+    if (next == nullptr) break;
+    original = next;
+  }
+  return *original;
+}
+
 /// The report that this one would repeat in the present run, or null.
 const Report* Reports::earlier(const Report& report) const {
   for (const Report* const other : std::views::reverse(same_in_run(report.report))) {
     if (report.number != 0 && other->number >= report.number) continue;
-    const bool joined = other->state == ReportState::Withdrawn;
-    const Report* const original = joined ? book_.find(other->same_as) : nullptr;
-    const Report& stands = original != nullptr ? *original : *other;
-    if (stands_for_others(stands)) return &stands;
+    const Report& original = original_of(*other);
+    if (original.number != report.number && stands_for_others(original)) return &original;
   }
   return nullptr;
 }
@@ -167,6 +185,11 @@ Reports::Hold Reports::reason_to_hold(const Report& report) const {
     if (doubt->is_lost()) return {icd::sentence("", doubt->note, "; this may be the same report")};
   }
   if (Hold hold = maybe_repeat(report); hold.same_as != 0) return hold;
+  for (const Report* const other : same_in_run(report.report)) {
+    if (!other->is_corrected()) continue;
+    return {icd::sentence("the same as report ", other->number, ", which the operator corrected as report ",
+                          other->same_as)};
+  }
   if (rules_.review == Review::Off) return {};
   for (const auto& [number, other] : book_.all()) {
     // Of two queued reports the later one is held.

@@ -1,5 +1,6 @@
 // The operator's actions on a report.
 #include "dispatch/reports.hpp"
+#include "dispatch/same_report.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::dispatch {
@@ -91,6 +92,40 @@ Reports::Outcome Reports::settle(std::int64_t number, Time time) {
   if (!done) return std::unexpected(kDisk);
   ask_for_others(time);
   return number;
+}
+
+Reports::Outcome Reports::correct(std::int64_t number, const icd::ArtifactReport& to, Time time) {
+  const Report* const report = book_.find(number);
+  if (report == nullptr) return no_such(number);
+  const ReportTransition* const row = transition(report->state, ReportEvent::Corrected);
+  if (row == nullptr) return cannot(*report, "only a held report can be corrected");
+  if (is_same(report->report, to))
+    return cannot(*report, "the correction is the same report; send it instead");
+  Report next{.number = book_.next_number(),
+              .report = to,
+              .sender = "operator",
+              .received = time.stamp,
+              .changed = time.stamp,
+              .note = icd::sentence("corrects report ", number, ", ", described(report->report)),
+              .run = meant_run().number,
+              .asked = true};
+  if (!next.report.robot) next.report.robot = report->report.robot;
+  if (const Report* const other = twin(next); other != nullptr) {
+    return cannot(*report, icd::sentence("report ", other->number, " is the same as the correction and is ",
+                                         shown_name_of(other->state), " in this run"));
+  }
+  Report corrected = *report;
+  corrected.state = row->to;
+  corrected.changed = time.stamp;
+  corrected.note = icd::sentence("the operator corrected it: report ", next.number, ", ", described(to));
+  corrected.run = next.run;
+  corrected.same_as = next.number;
+  const std::int64_t made = add(std::move(next), hold_for_undo(), false, time, {&corrected, 1});
+  if (made == 0) return std::unexpected(kDisk);
+  hand_clients_over(number, book_.at(made));
+  undo_.erase(number);
+  unchecked_.erase(number);
+  return made;
 }
 
 Reports::Outcome Reports::resubmit(std::int64_t number, Time time) {

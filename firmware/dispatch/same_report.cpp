@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "icd/sentence.hpp"
+
 namespace adit::dispatch {
 namespace {
 
@@ -29,6 +31,11 @@ double distance(const icd::ArtifactReport& one, const icd::ArtifactReport& other
 
 bool is_near(const icd::ArtifactReport& one, const icd::ArtifactReport& other, double metres) {
   return is_one_type(one.type, other.type) && distance(one, other) <= metres;
+}
+
+std::string described(const icd::ArtifactReport& report) {
+  const icd::Point& at = report.position;
+  return icd::sentence(icd::in_quotes(report.type), " at ", at.x, ", ", at.y, ", ", at.z);
 }
 
 }  // namespace adit::dispatch

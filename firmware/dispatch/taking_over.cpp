@@ -280,7 +280,8 @@ class TakingOver {
 
   const TakenOver* taken_like(const Report& own) const {
     const auto is_like = [&](const TakenOver& taken) {
-      return taken.there != 0 && taken.report.run == present_ && stands(taken.report) &&
+      return taken.there != 0 && taken.report.run == present_ &&
+             (stands(taken.report) || taken.report.is_corrected()) &&
              is_same(taken.report.report, own.report);
     };
     const auto found = std::ranges::find_if(result_.reports, is_like);

@@ -117,6 +117,10 @@ class Flow final : public intake::Desk {
     if (!standby_.empty()) return std::unexpected(standby_);
     return scoring_.report(report, resubmit);
   }
+  std::expected<std::int64_t, std::string> correct(std::int64_t number, const icd::ArtifactReport& to) {
+    if (!standby_.empty()) return std::unexpected(standby_);
+    return scoring_.correct(number, to);
+  }
   std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action);
   std::int64_t begin_run() { return scoring_.begin_run(); }
 

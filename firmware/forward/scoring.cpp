@@ -364,6 +364,14 @@ dispatch::Reports::Outcome Scoring::report(const icd::ArtifactReport& report, bo
   return told.number;
 }
 
+dispatch::Reports::Outcome Scoring::correct(std::int64_t number, const icd::ArtifactReport& to) noexcept {
+  const dispatch::Reports::Outcome outcome = reports_->correct(number, to, time());
+  watch_deadlines();
+  record_.changed();
+  pump();
+  return outcome;
+}
+
 std::int64_t Scoring::begin_run() noexcept {
   const std::int64_t number = reports_->declare_new_run(time());
   record_.changed();

@@ -69,6 +69,8 @@ class Scoring {
   dispatch::Reports::Outcome judge(std::int64_t number, api::Action action) noexcept;
   /// Accepts the operator's report. Returns its number when it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
+  /// Returns the number of the report that is sent instead.
+  dispatch::Reports::Outcome correct(std::int64_t number, const icd::ArtifactReport& to) noexcept;
   std::int64_t begin_run() noexcept;
 
   /// Stops accepting and sending, and answers the clients of queued reports. False while an answer is

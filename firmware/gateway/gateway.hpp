@@ -42,6 +42,10 @@ class Gateway final : public api::Operator {
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return flow_.report(report, resubmit);
   }
+  std::expected<std::int64_t, std::string> correct(std::int64_t number,
+                                                   const icd::ArtifactReport& to) override {
+    return flow_.correct(number, to);
+  }
   std::expected<void, std::string> rejected(std::uint64_t number, api::RejectedAction action) override {
     return flow_.rejected(number, action);
   }

@@ -68,6 +68,11 @@ struct FakeOperator final : Operator {
     reported.emplace_back(report, resubmit);
     return outcome ? *outcome : 41;
   }
+  std::expected<std::int64_t, std::string> correct(std::int64_t number,
+                                                   const icd::ArtifactReport& to) override {
+    corrected.emplace_back(number, to);
+    return outcome ? *outcome : 42;
+  }
   std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) override {
     judged_messages.emplace_back(number, action);
     if (!rejected_trouble.empty()) return std::unexpected(rejected_trouble);
@@ -87,8 +92,9 @@ struct FakeOperator final : Operator {
 
   std::vector<std::pair<std::int64_t, Action>> judged;
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
+  std::vector<std::pair<std::int64_t, icd::ArtifactReport>> corrected;
   std::optional<std::expected<std::int64_t, std::string>>
-      outcome;  // of judge() and report(), where it is not the same number or 41
+      outcome;  // of judge(), report() and correct(), where it is not the same number, 41 or 42
   std::vector<std::pair<std::uint64_t, RejectedAction>> judged_messages;
   std::string rejected_trouble;  // of rejected(), where there is any
   std::vector<std::string> acknowledged;

@@ -53,6 +53,12 @@ class Played {
     return add(view, report.type, report.position);
   }
 
+  std::expected<std::int64_t, std::string> correct(const RunView& view, std::int64_t number,
+                                                   const icd::ArtifactReport& to) {
+    states_[number] = "withdrawn";
+    return add(view, to.type, to.position);
+  }
+
   std::expected<void, std::string> rejected(const RunView& view, std::uint64_t number) {
     const auto found = std::ranges::find(view.rejected, number, &RejectedRow::number);
     if (found == view.rejected.end()) return std::unexpected("nothing of that number is rejected");

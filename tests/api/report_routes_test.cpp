@@ -127,6 +127,23 @@ TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
   EXPECT_EQ(judge.reported[1], std::pair(icd::ArtifactReport{"rope", {0, 0, 0}}, true));
 }
 
+TEST_F(ReportRoutesTest, CorrectAReportByTheRulesOfANewOne) {
+  const auto correct = [&](const char* body) { return post("/adit/reports/7/correct", body); };
+  const auto answer = correct(R"({"type":"Drill","x":1.5,"y":-2,"z":0})");
+  EXPECT_EQ(answer.status, icd::Status::Ok);
+  EXPECT_EQ(answer.body, "{\"report\":42}");
+  EXPECT_THAT(judge.corrected, ElementsAre(Pair(7, icd::ArtifactReport{"Drill", {1.5, -2, 0}})));
+  EXPECT_THAT(correct(R"({"type":"Lamp","x":0,"y":0,"z":0})").body,
+              testing::HasSubstr("type: expected one of"));
+  EXPECT_THAT(correct(R"({"type":"Rope","x":0,"y":"1","z":0})").body, testing::HasSubstr("y: expected"));
+  EXPECT_EQ(correct("{").status, icd::Status::BadRequest);
+  EXPECT_EQ(judge.corrected.size(), 1u);
+  judge.outcome = std::unexpected("report 7 is in doubt: only a held report can be corrected");
+  EXPECT_EQ(correct(R"({"type":"Drill","x":1.5,"y":-2,"z":0})").status, icd::Status::Conflict);
+  EXPECT_EQ(post("/adit/reports/8/correct", R"({"type":"Drill","x":1.5,"y":-2,"z":0})").status,
+            icd::Status::NotFound);
+}
+
 TEST_F(ReportRoutesTest, LeaveOutANameThatIsNoRobotsAndSayWhy) {
   EXPECT_EQ(compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0,"name":"spot1"})").body, "{\"report\":41}");
   EXPECT_EQ(compose(R"({"type":"Drill","x":9,"y":-2,"z":0,"name":7})").body,

@@ -39,6 +39,20 @@ TEST(Actions, AreAskedForByTheirNames) {
   EXPECT_EQ(outcome.exit, Exit::Fine);
 }
 
+TEST(Actions, CorrectTheNamedFieldsOfAReport) {
+  const Server server({{"GET /adit/reports/7", report("held")},
+                       {"POST /adit/reports/7/correct", Server::ok("{\"report\":8}")}});
+  EXPECT_EQ(say(server, {"reports", "correct", "7", "type=Rope", "y=-3.5"}).out,
+            "report 7 is corrected as report 8\n");
+  EXPECT_THAT(server.posted(), HasSubstr(R"("type":"Rope")"));
+  EXPECT_THAT(server.posted(), HasSubstr(R"("x":12.125)"));
+  EXPECT_THAT(server.posted(), HasSubstr(R"("y":-3.5)"));
+  EXPECT_THAT(say(server, {"reports", "correct", "7", "x=far"}).err, HasSubstr("x: expected"));
+  EXPECT_THAT(say(server, {"reports", "correct", "7", "w=1"}).err, HasSubstr("'w=1': expected type="));
+  EXPECT_THAT(say(server, {"reports", "correct", "seven", "x=1"}).err,
+              HasSubstr("the report's number: expected"));
+}
+
 TEST(Actions, AreAskedForOfWhatIsRejectedMessages) {
   api::RunView view = sample_view();
   view.rejected = {{.number = 3,

@@ -148,7 +148,7 @@ TEST(ReportText, OffersTheActionsThatCanBe) {
     const auto begin = text.find("actions   ");
     return begin == std::string::npos ? "" : text.substr(begin + 10, text.find('\n', begin) - begin - 10);
   };
-  EXPECT_EQ(actions("held"), "send, withdraw");
+  EXPECT_EQ(actions("held"), "send, withdraw, correct");
   EXPECT_EQ(actions("queued"), "send, hold, withdraw");
   EXPECT_EQ(actions("sending"), "");
   EXPECT_EQ(actions("in_doubt"), "send, settle");

@@ -104,6 +104,8 @@ std::string_view words(ReportEvent event) {
       return "operator: done";
     case Event::Withdrawn:
       return "operator: withdraw";
+    case Event::Corrected:
+      return "operator: correct";
     case Event::Joined:
       return "same as an earlier one";
     case Event::Cleared:

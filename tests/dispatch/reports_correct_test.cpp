@@ -135,7 +135,7 @@ TEST_F(Correcting, IsForHeldReportsAlone) {
 }
 
 TEST_F(Correcting, IsRefusedIfItChangesNothing) {
-  EXPECT_THAT(correct(1, 1.0005).error(), HasSubstr("the correction changes nothing"));
+  EXPECT_THAT(correct(1, 1.0005).error(), HasSubstr("the correction is the same report"));
   EXPECT_EQ(scene_.state(1), Held);
 }
 

@@ -130,6 +130,10 @@ class Scene {
                  .can_be_undone = true},
                 reports_->sending() == nullptr);
   }
+  ClientId post(const Posted& posted, bool may_send) {
+    reports_->take(posted, ++last_client_, may_send, time());
+    return last_client_;
+  }
   /// Sends the next one. Its number; 0: none may go.
   std::int64_t send_next() {
     if (!reports_->wish(time()).report) return 0;
@@ -203,10 +207,6 @@ class Scene {
   ClientId post(double x, const std::string& type, bool resubmit, bool may_send) {
     return post({.report = {.type = type, .position = {x, 0, 0}}, .sender = "10.0.0.7", .resubmit = resubmit},
                 may_send);
-  }
-  ClientId post(const Posted& posted, bool may_send) {
-    reports_->take(posted, ++last_client_, may_send, time());
-    return last_client_;
   }
 
   const ReportRules rules_;

@@ -62,6 +62,21 @@ TEST_F(TakingOverTest, AReportThatIsKnownThereIsKnownHere) {
   EXPECT_EQ(spare.count(), 1U);
 }
 
+TEST_F(TakingOverTest, AReportThatWasCorrectedThereIsNotSentHere) {
+  spare.wait(1);
+  spare.post_to_wait(1);
+  first.post_to_wait(1);
+  ASSERT_TRUE(first.reports().hold(1, first.time()));
+  ASSERT_TRUE(first.reports().correct(1, {.type = "Drill", .position = {5, 0, 0}}, first.time()));
+  ASSERT_EQ(first.send_next(), 2);
+  first.answer(recorded(1));
+  take_over();
+  spare.hear(19, 1);
+  EXPECT_EQ(spare.state(1), Held);
+  EXPECT_EQ(spare.send_next(), 0);
+  EXPECT_EQ(spare.report(2).same_as, 3) << "with the numbers of this box";
+}
+
 TEST_F(TakingOverTest, WhatWaitedGoesOnceTheStatusShowsThatNobodySentIt) {
   first.post_to_wait(1);
   take_over();

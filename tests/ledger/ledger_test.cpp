@@ -2,6 +2,7 @@
 
 #include <sys/stat.h>
 
+#include "dispatch/reports.hpp"
 #include "ledger/state.hpp"
 
 namespace adit::ledger {
@@ -52,6 +53,42 @@ TEST(Ledger, GivesBackReportsRunsAndHistoriesAfterAStart) {
   check(ledger);
   ASSERT_TRUE(keep_up(ledger));
   EXPECT_EQ(ledger.known().reports, 11);
+}
+
+/// What Reports needs.
+struct ToLedger final : dispatch::Output {
+  explicit ToLedger(Ledger& on) : ledger(on) {}
+  bool write(std::span<const Report> steps, const dispatch::Run* run, Flush flush) override {
+    return ledger.write(steps, run, flush).has_value();
+  }
+  void tell(dispatch::ClientId, const dispatch::ClientAnswer&, const Report&) override {}
+  Ledger& ledger;
+};
+
+TEST(Ledger, HasACorrectionWithWhatWasPostedAfterAStart) {
+  const State state;
+  {
+    auto ledger = open_or_fail(state.path());
+    ToLedger output(ledger);
+    dispatch::Reports reports({.review = dispatch::Review::All, .patience = {}}, output);
+    reports.open({}, {}, {});
+    reports.status_heard({.score = 0, .run_clock = 1, .remaining_reports = 20, .current_team = "t"}, {}, {});
+    reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, {});
+    ASSERT_TRUE(reports.correct(1, {.type = "Rope", .position = {4, 5, 6}}, {}));
+  }
+  auto ledger = open_or_fail(state.path());
+  ASSERT_EQ(ledger.reports().size(), 2);
+  EXPECT_EQ(ledger.reports()[0].report, (icd::ArtifactReport{.type = "Drill", .position = {1, 2, 3}}));
+  EXPECT_EQ(ledger.reports()[1].report, (icd::ArtifactReport{.type = "Rope", .position = {4, 5, 6}}));
+  EXPECT_TRUE(ledger.reports()[0].is_corrected());
+  EXPECT_THAT(ledger.history(1),
+              ElementsAre(Step{0, "queued", ""}, Step{0, "held", "every report is reviewed"},
+                          Step{0, "withdrawn", "the operator corrected it: report 2, \"Rope\" at 4, 5, 6"}));
+  EXPECT_THAT(ledger.history(2), ElementsAre(Step{0, "queued", "corrects report 1, \"Drill\" at 1, 2, 3"}));
+  ToLedger output(ledger);
+  dispatch::Reports reports({}, output);
+  reports.open(ledger.reports(), ledger.runs(), {});
+  EXPECT_EQ(reports.waiting_here(), std::vector<std::int64_t>{2});
 }
 
 TEST(Ledger, WritesAllStepsOrNone) {

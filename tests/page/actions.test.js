@@ -17,7 +17,7 @@ test("offers at each report what its state allows, and nothing else", async (t) 
   const { page } = await watch(t, "reports");
   await page.getByRole("button", { name: "All runs" }).click();
   const expected = {
-    28: ["Hold", "Withdraw"], 27: [], 26: ["Send again", "Settle"], 25: ["Send again", "Settle"], 24: ["Send", "Withdraw"],
+    28: ["Hold", "Withdraw"], 27: [], 26: ["Send again", "Settle"], 25: ["Send again", "Settle"], 24: ["Send", "Correct", "Withdraw"],
     23: ["Resubmit"], 22: ["Resubmit"], 21: ["Send again"], 20: ["Send"], 19: ["Send again"], 18: ["Resubmit"],
   };
   for (const [number, actions] of Object.entries(expected)) {

@@ -163,7 +163,7 @@ test("tells where each report is in its life, and what waits for the operator's 
   const rows = await page.$$eval("#reports .rows li", (items) => items.map((item) => [item.dataset.level, item.innerText.replace(/Details of report \d+/, "").replace(/\s+/g, " ").trim()]));
   const expected = [
     ["ask", /^Gas.*in doubt.*another client reports, too · 2\.0 m from #24.* Send again Settle$/],
-    ["ask", /^Gas.*held.*2 m from it.* Send Withdraw$/],
+    ["ask", /^Gas.*held.*2 m from it.* Send Correct Withdraw$/],
     ["wait", /^Drill.*queued/],
     ["wait", /^Cube.*sending/],
     ["wait", /^Vent.*in doubt, asking.*is being asked$/],

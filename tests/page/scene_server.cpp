@@ -62,6 +62,10 @@ class Stage final : public Source, public Operator {
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return played_.report(view(), report, resubmit);
   }
+  std::expected<std::int64_t, std::string> correct(std::int64_t number,
+                                                   const icd::ArtifactReport& to) override {
+    return played_.correct(view(), number, to);
+  }
   std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction) override {
     return played_.rejected(view(), number);
   }

@@ -6,6 +6,8 @@ const SEND = { name: "send", label: "Send" };
 const AGAIN = { name: "send", label: "Send again" };
 const COSTLY_SEND = { name: "send", label: "Send again", costs: "If the report is recorded already, it is recorded twice" };
 const NEAR_SEND = { name: "send", label: "Send", costs: "Another report of this type is close by and may be the same artifact" };
+export const CORRECT = { name: "correct", label: "Correct" }; // compose.js
+const UNCORRECTED_SEND = { name: "send", label: "Send", costs: "The report was corrected" };
 const LATE_SEND = { name: "send", label: "Send", costs: "The report was withdrawn" };
 const SEND_NOW = { name: "send", label: "Send now" };
 const UNDO = { name: "withdraw", label: "Undo" };
@@ -16,7 +18,7 @@ const RESUBMIT = { name: "resubmit", label: "Resubmit", costs: "The report is se
 
 /** By the state that a report is in: the actions that the box takes (README.md). */
 const DEEDS = {
-  held: [SEND, WITHDRAW],
+  held: [SEND, CORRECT, WITHDRAW],
   queued: [HOLD, WITHDRAW],
   sending: [],
   in_doubt: [COSTLY_SEND, SETTLE],
@@ -30,9 +32,10 @@ const DEEDS = {
 export function actionsOf(report, isNear = false) {
   if (!report.position) return report.state === "in_doubt" ? [SETTLE] : []; // it is lost
   if (report.sends_at) return [UNDO, SEND_NOW];
+  if (report.state === "withdrawn" && report.same_as > report.number) return [UNCORRECTED_SEND];
   if (report.state === "withdrawn" && report.same_as) return [COSTLY_SEND];
-  if (report.state === "held" && report.same_as) return [COSTLY_SEND, WITHDRAW];
-  if (report.state === "held" && isNear) return [NEAR_SEND, WITHDRAW];
+  if (report.state === "held" && report.same_as) return [COSTLY_SEND, CORRECT, WITHDRAW];
+  if (report.state === "held" && isNear) return [NEAR_SEND, CORRECT, WITHDRAW];
   return DEEDS[report.state] ?? [];
 }
 

@@ -11,6 +11,8 @@ function gained({ score_change, report_status }) {
   return { level: "quiet", word: score_change === 0 ? "no points" : `scored ${signed(score_change)}` };
 }
 
+const withdrawn = ({ number, same_as }) => (same_as > number ? `corrected as #${same_as}` : same_as ? `same as #${same_as}` : "withdrawn");
+
 /** Where a report is in its life. */
 export function life(report) {
   switch (report.state) {
@@ -21,7 +23,7 @@ export function life(report) {
     case "rejected": return { level: "bad", word: "rejected" };
     case "answered": return gained(report);
     case "settled": return report.reconciled ? gained(report) : { level: "quiet", word: "settled" };
-    case "withdrawn": return { level: "quiet", word: report.same_as ? `same as #${report.same_as}` : "withdrawn" };
+    case "withdrawn": return { level: "quiet", word: withdrawn(report) };
     default: return { level: "quiet", word: report.state };
   }
 }

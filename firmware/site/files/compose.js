@@ -21,6 +21,7 @@ const at = (name) => panel.querySelector(`.${name}`);
 const field = (axis) => panel.querySelector(`input[name=${axis}]`);
 const again = panel.querySelector(".again input");
 let view = null, type = "", step = "what", busy = false;
+let old = null; // the held report that is corrected; null: the report is new
 let height = null; // where z is from, as of heightsAt(); null: typed
 
 const types = TYPES.map((name) => {
@@ -36,6 +37,7 @@ function go(next) {
   at("types").hidden = step !== "what";
   at("place").hidden = step !== "where";
   at("check").hidden = step !== "check";
+  say(panel.querySelector(".name"), old ? `Correct report ${old.number}` : "New report");
   say(panel.querySelector(".count"), { what: "choose a type", where: type, check: "check, then send" }[step]);
   for (const { name, button } of types) button.setAttribute("aria-pressed", String(name === type));
   complain(null);
@@ -140,12 +142,12 @@ function showCheck() {
   say(panel.querySelector(".summary .where"), `at ${metres(x)}, ${metres(y)}, ${metres(z)} m`);
   say(at("send"), `Send ${type}`);
   const create = () => make("li", make("span.glyph"), make("span"));
-  const notes = [heightNote(height, view.now), ...notesOn(view, { type, position })];
+  const notes = [heightNote(height, view.now), ...notesOn(view, { number: old?.number, type, position })];
   list(at("notes"), notes, ({ key }) => key, create, (node, { level, text }) => {
     mark(node.firstChild, "level", level);
     say(node.lastChild, text);
   });
-  at("again").hidden = !sameAs(view, { type, position });
+  at("again").hidden = old !== null || !sameAs(view, { type, position });
   at("send").disabled = busy || Boolean(barred());
   say(panel.querySelector(".check .barred"), barred());
 }
@@ -155,8 +157,8 @@ async function send() {
   const before = new Set(view.reports.map(({ number }) => number)); // the list may have it before the answer comes
   busy = at("send").disabled = true;
   try {
-    const answer = await post("/adit/reports", { type, x, y, z, resubmit });
-    tell(answer.report, before.has(answer.report) ? "The box has the same report already: this one." : "Accepted.");
+    const answer = old ? await post(`/adit/reports/${old.number}/correct`, { type, x, y, z }) : await post("/adit/reports", { type, x, y, z, resubmit });
+    tell(answer.report, old ? `Corrects report ${old.number}.` : before.has(answer.report) ? "The box has the same report already: this one." : "Accepted.");
     drop();
     revealSoon(answer.report);
   } catch (error) {
@@ -174,16 +176,29 @@ function revealSoon(number, tries = 20) {
 
 /** It is sent, or given up. */
 function drop() {
-  for (const axis of AXES) field(axis).value = "";
-  typedHeight();
-  type = "";
-  step = "what";
+  begin(null);
   closeSide();
+}
+
+/** With the values of a held report, or with none. */
+function begin(report) {
+  old = report;
+  for (const axis of AXES) field(axis).value = report ? String(report.position[axis]) : "";
+  typedHeight();
+  type = report?.type ?? "";
+  step = report ? "where" : "what";
+}
+
+/** Sends another report in the place of a held one. */
+export function correct(report) {
+  begin(report);
+  openSide("compose");
 }
 
 /** Where it was left: what was chosen is kept until it is sent or cancelled. */
 export function compose() {
   if (!view || barred()) return;
+  if (old) begin(null);
   openSide("compose");
 }
 

@@ -11,7 +11,8 @@ export const isCounted = (report, { run_number }) => report.position && report.r
 const counted = (view) => view.reports.filter((report) => isCounted(report, view));
 
 /** The one at the same place and of the same type, or undefined. */
-export const sameAs = (view, report) => counted(view).find((other) => sameType(other, report) && distance(other, report) === 0);
+export const sameAs = (view, report) => counted(view)
+  .find((other) => other.number !== report.number && sameType(other, report) && distance(other, report) === 0);
 
 const ofType = (view, report) => counted(view)
   .filter((other) => other.number !== report.number && sameType(other, report))

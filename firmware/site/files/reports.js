@@ -1,6 +1,7 @@
 // Artifact reports, newest first: where each is in its life, what the Command Post said, and what can be done.
-import { barred, actionsOf, isBusy, outcomeOf, perform } from "./actions.js";
+import { barred, actionsOf, CORRECT, isBusy, outcomeOf, perform } from "./actions.js";
 import { icon } from "./artifact_icons.js";
+import { correct } from "./compose.js";
 import { badge, list, make, mark, say } from "./dom.js";
 import { isCounted, nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
@@ -125,7 +126,8 @@ function showActions(node, report, view, isShown) {
     button.disabled = Boolean(reason);
     button.onclick = () => {
       own.add(report.number);
-      perform(action, report, last.view.run?.remaining_reports, again);
+      if (action === CORRECT) correct(report);
+      else perform(action, report, last.view.run?.remaining_reports, again);
     };
   });
 }

@@ -98,6 +98,25 @@ test("undoes a report of the page before it is sent, or sends it now", async (t)
   assert.deepEqual(page.complaints, []);
 });
 
+test("corrects a held report, which is sent as a new one", async (t) => {
+  const made = await box(t, { settings: { reports: { review: "all" } } });
+  await made.becomes(await made.compose("Drill", 50, 1, 2), "held");
+  const page = await look(t, made);
+  await action(page, "Correct", 1).click();
+  assert.equal(await page.locator("#compose .name").textContent(), "Correct report 1");
+  assert.equal(await page.inputValue("#compose input[name=x]"), "50");
+  await page.fill("#compose input[name=x]", "55");
+  await page.getByRole("button", { name: "Check" }).click();
+  await page.locator("#compose .send").click();
+  await made.becomes(2, "answered");
+  await says(page, 1, "corrected as #2");
+  await says(page, 2, "Corrects report 1.");
+  const { said: { history } } = await made.ask("/adit/reports/2");
+  assert.match(history[0].note, /^corrects report 1, "Drill" at 50, 1, 2$/);
+  assert.deepEqual((await made.record()).reports.map(({ x, y, z }) => [x, y, z]), [[55, 1, 2]]);
+  assert.deepEqual(page.complaints, []);
+});
+
 test("begins a new run on the operator's word, and says before what becomes of what was not sent", async (t) => {
   const made = await box(t, slow(300));
   const number = await waiting(made);

@@ -40,7 +40,7 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
       live_(loop, served.source),
       sessions_(loop, entrance_, served.keys, served.setup),
       run_(served.source, served.judge, live_, entrance_),
-      maps_(served.source, served.finer),
+      maps_(served.source, served.finer, served.covered),
       lists_(loop, served.source),
       reports_(lists_, served.source, served.judge),
       settings_(served.setup),

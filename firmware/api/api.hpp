@@ -41,6 +41,7 @@ struct Served {
   KeptRuns& runs;
   Clock& clock;
   FinerMap& finer;
+  CoveredMap& covered;
   Spare& spare;
 };
 

@@ -132,8 +132,24 @@ constexpr Member kMap[] = {
     member<&MapView::layers>("layers"),
 };
 
+constexpr Member kCoveredRow[] = {
+    member<&CoveredRow::robot>("robot", "empty for the merged map"),
+    member<&CoveredRow::square_metres>("square_metres"),
+};
+
+constexpr Member kCovered[] = {
+    member<&CoveredView::version>("version", "the map's version"),
+    member<&CoveredView::square_metres>("square_metres",
+                                        "area that several robots cover counts once; 0 without a grid"),
+    member<&CoveredView::whole>("whole", "false if the picture lacks parts of grids: the area is larger"),
+    member<&CoveredView::robots>("robots", "robots whose grids have known cells"),
+};
+
 }  // namespace
 
+constexpr Row CoveredRow::kRow = {"", kCoveredRow};
+constexpr Row CoveredView::kRow = {"Covered", kCovered,
+                                   "The area that delivered grids show as known, in squares of 0.25 m."};
 constexpr Row MapColours::kRow = {"", kColours};
 constexpr Row MapView::kRow = {"Map", kMap, "The layers of the picture of the maps."};
 
@@ -151,6 +167,18 @@ MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
       .wiped = map.wiped(),
       .missed = map.missed(),
       .layers = map.layers(since)};
+}
+
+CoveredView covered_view(const picture::Covered& covered) {
+  const auto square_metres = [](std::uint64_t pixels) {
+    return static_cast<double>(pixels) * picture::kPixel * picture::kPixel;
+  };
+  CoveredView view{.version = covered.version,
+                   .square_metres = square_metres(covered.all),
+                   .whole = covered.is_whole,
+                   .robots = {}};
+  for (const auto& [robot, pixels] : covered.of) view.robots.push_back({robot, square_metres(pixels)});
+  return view;
 }
 
 }  // namespace adit::api

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "codec/row.hpp"
+#include "picture/covered.hpp"
 #include "picture/mosaic.hpp"
 #include "picture/palette.hpp"
 
@@ -30,6 +32,25 @@ struct MapView {
 
   static const codec::Row kRow;
 };
+
+struct CoveredRow {
+  std::string robot;
+  double square_metres = 0;
+
+  static const codec::Row kRow;
+};
+
+/// /adit/covered
+struct CoveredView {
+  std::uint64_t version = 0;
+  double square_metres = 0;
+  bool whole = true;
+  std::vector<CoveredRow> robots;
+
+  static const codec::Row kRow;
+};
+
+CoveredView covered_view(const picture::Covered& covered);
 
 /// Includes only tiles that changed after version `since`.
 MapView map_view(const picture::Mosaic& map, std::uint64_t since);

@@ -39,4 +39,11 @@ void MapRoutes::tile(const Call& call) const {
               });
 }
 
+void MapRoutes::covered(const Call& call) const {
+  covered_.covered([responder = call.responder](const icd::Checked<picture::Covered>& covered) {
+    responder->answer(covered ? fresh("application/json", codec::to_json(covered_view(*covered)))
+                              : refused(covered.error()));
+  });
+}
+
 }  // namespace adit::api

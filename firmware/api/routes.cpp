@@ -90,6 +90,8 @@ constexpr Route kRoutes[] = {
         "The samples, oldest first.", "History", "400", "since_sample"),
     get("/adit/map", Viewer, by<&MapRoutes::layers>(), "map", "The layers of the picture of the maps.",
         "The layers.", "Map", "400", "since_map_version"),
+    get("/adit/covered", Viewer, by<&MapRoutes::covered>(), "map",
+        "The area that the grids of this run cover.", "The area.", "Covered", "503"),
     get("/adit/map/{kind}/{robot}/{level}/{x}/{y}.png", Viewer, by<&MapRoutes::tile>(), "map",
         "One tile; unknown areas are transparent.", "The tile.", "204 image/png", "400 404 503",
         "kind robot level x y at low high from to"),

@@ -137,6 +137,7 @@ class Flow final : public intake::Desk {
   const AsForwarded& as_forwarded() const { return as_forwarded_; }
   const picture::Mosaic& picture() const { return picture_.mosaic(); }
   api::FinerMap& finer() { return picture_.finer(); }
+  api::CoveredMap& covered() { return picture_.covered(); }
   archive::Archive& archive() { return archive_; }
   const archive::Archive& archive() const { return archive_; }
   /// The record's rows with the queued messages.

@@ -31,7 +31,8 @@ MapPicture::MapPicture(loop::Loop& loop, loop::Workers& workers, std::function<v
       workers_(workers),
       changed_(std::move(changed)),
       wake_(loop.timer([this] { pump(); })),
-      fine_(workers, mosaic_) {}
+      fine_(workers, mosaic_),
+      covered_(workers, mosaic_) {}
 
 void MapPicture::forwarded(icd::MapUpdate map) {
   std::erase_if(waiting_, [&](const Waiting& older) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 
+#include "forward/covered_count.hpp"
 #include "forward/fine_tiles.hpp"
 #include "icd/map_update.hpp"
 #include "loop/loop.hpp"
@@ -36,6 +37,7 @@ class MapPicture {
 
   const picture::Mosaic& mosaic() const { return mosaic_; }
   api::FinerMap& finer() { return fine_; }
+  api::CoveredMap& covered() { return covered_; }
   std::size_t finer_bytes() const { return fine_.bytes(); }
 
  private:
@@ -55,6 +57,7 @@ class MapPicture {
   loop::Source wake_;
   picture::Mosaic mosaic_;
   FineTiles fine_;
+  CoveredCount covered_;
   std::deque<Waiting> waiting_;  // oldest first
   std::size_t waiting_bytes_ = 0;
   std::optional<double> drawing_;  // time of the map that is being drawn

@@ -95,6 +95,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
             .runs = flow_.archive(),
             .clock = clock_,
             .finer = flow_.finer(),
+            .covered = flow_.covered(),
             .spare = spare_},
            tokens().all, redaction()),
       routes_(icd_options(), flow_, flow_.workers(), api_),

@@ -42,6 +42,7 @@ class History {
   std::optional<double> end_of(const Version& version) const;
   const Version& first() const { return versions_.front(); }
   const Version& newest() const { return versions_.back(); }
+  const std::vector<Version>& versions() const { return versions_; }  // oldest first
   bool empty() const { return versions_.empty(); }
   std::size_t cost() const { return cost_; }
 

@@ -140,6 +140,35 @@ Mosaic::Shown Mosaic::tile(const Layer& layer, const TileAt& at, std::optional<d
   return {version->tile, version == &history.newest(), version->stamp, history.end_of(*version)};
 }
 
+std::map<TileAt, std::vector<std::pair<std::string, const History*>>> Mosaic::grid_places(
+    std::uint64_t since) const {
+  std::map<TileAt, std::vector<std::pair<std::string, const History*>>> places;
+  const auto for_each = [&](auto visit) {
+    for (const auto& [layer, state] : layers_) {
+      if (layer.kind != Kind::Grid) continue;
+      for (const auto& [at, history] : state.tiles) {
+        if (at.level > 0) break;  // they are sorted by level
+        visit(layer.robot, at, history);
+      }
+    }
+  };
+  for_each([&](const std::string&, const TileAt& at, const History& history) {
+    if (history.newest().number > since) places[at];
+  });
+  for_each([&](const std::string& robot, const TileAt& at, const History& history) {
+    if (const auto place = places.find(at); place != places.end())
+      place->second.emplace_back(robot, &history);
+  });
+  return places;
+}
+
+bool Mosaic::has_all_grids() const {
+  return missed_ == 0 && std::ranges::all_of(layers_, [](const auto& each) {
+           const LayerView& view = each.second.view;
+           return view.layer.kind != Kind::Grid || (view.missed == 0 && view.left_out == 0);
+         });
+}
+
 std::vector<LayerView> Mosaic::layers(std::uint64_t since) const {
   std::vector<LayerView> views;
   views.reserve(layers_.size());

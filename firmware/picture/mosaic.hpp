@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "picture/draw.hpp"
@@ -92,6 +94,13 @@ class Mosaic {
     std::optional<double> until;  // when the next state followed; nullopt: it is the newest
   };
   Shown tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const;
+
+  /// The base's tiles of grids, by place and robot, at places where one of them changed after version
+  /// `since`. Valid until the next change.
+  std::map<TileAt, std::vector<std::pair<std::string, const History*>>> grid_places(
+      std::uint64_t since) const;
+  /// False if a grid of this run, or a part of a robot's last one, is not in the picture.
+  bool has_all_grids() const;
 
   /// All layers, with the tiles that changed after version `since` (0: all tiles).
   std::vector<LayerView> layers(std::uint64_t since = 0) const;

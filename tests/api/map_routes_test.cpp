@@ -43,6 +43,19 @@ TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
   EXPECT_TRUE(map["wiped"].is_null());
 }
 
+TEST_F(MapRoutesTest, TellsTheAreaThatGridsCover) {
+  const json covered = json::parse(get_file("/adit/covered").body);
+  picture::CoveredArea area;
+  area.update(area.changes(source.mosaic));
+  EXPECT_EQ(covered["version"], source.mosaic.version());
+  EXPECT_EQ(covered["square_metres"], static_cast<double>(area.now().all) / 16);
+  EXPECT_GT(covered["square_metres"], 100.0);
+  EXPECT_EQ(covered["whole"], true);
+  ASSERT_EQ(covered["robots"].size(), 1) << "ugv1 has a cloud only";
+  EXPECT_EQ(covered["robots"][0]["robot"], "");
+  EXPECT_EQ(covered["robots"][0]["square_metres"], covered["square_metres"]);
+}
+
 TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
   const json layers = json::parse(get_file("/adit/map").body)["layers"];
   ASSERT_EQ(layers.size(), 2);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "api/api.hpp"
+#include "api/counted_map.hpp"
 #include "api/doubles.hpp"
 #include "api/fake_box.hpp"
 #include "api/fake_clock.hpp"
@@ -41,6 +42,7 @@ struct Doubles {
             .runs = runs,
             .clock = clock,
             .finer = finer,
+            .covered = covered,
             .spare = spare};
   }
 
@@ -55,6 +57,7 @@ struct Doubles {
   FakeKeptRuns runs;
   FakeClock clock;
   NoFinerMap finer;
+  CountedMap covered{source};
   FakeSpare spare;
 };
 

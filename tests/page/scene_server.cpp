@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "api/api.hpp"
+#include "api/counted_map.hpp"
 #include "api/fake_box.hpp"
 #include "api/fake_clock.hpp"
 #include "api/fake_kept_runs.hpp"
@@ -137,6 +138,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   FakeKeptRuns runs;
   FakeClock clock;
   NoFinerMap finer;
+  CountedMap covered{stage};
   PlayedSpare spare;
   clock.view = {.now = loop.wall_now() - 7200, .managed = more == "clock-behind", .why = {}, .refusal = {}};
   Api page{loop,
@@ -151,6 +153,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
             .runs = runs,
             .clock = clock,
             .finer = finer,
+            .covered = covered,
             .spare = spare},
            {token()}};
   furnish(box, loop.wall_now());

@@ -2,6 +2,7 @@
 
 import copy
 import itertools
+import random
 import struct
 
 import cbor2
@@ -12,6 +13,7 @@ import messages
 import programs
 from delivered import Delivered
 from messages import Style
+from programs import wait_until
 
 POSITION = {"x": 1.25, "y": -2.0, "z": 11.0}
 TURNED = {"x": 0.0, "y": -0.0, "z": 0.6, "w": 0.8}
@@ -269,3 +271,28 @@ class Fidelity(Delivered):
     def test_the_status(self):
         answer = requests.get(self.stage.box.url + "/api/status", headers=messages.headers(JSON), timeout=30)
         self.assertIn(answer.text, [request["answer"] for request in self.stage.post.requests("/api/status")])
+
+
+class Covered(Delivered):
+    def test_the_covered_area_is_the_union_of_all_grids(self):
+        """Cells of 0.1 m, none with its centre on the border of a square of 0.25 m."""
+        cell, unknown = 0.1, 255
+        squares = {}
+        for number, (name, x, y) in enumerate((("ugv1", -3.08, 60.02), ("uav1", 1.92, 62.02), ("ugv1", -1.08, 61.02))):
+            dice = random.Random(number)
+            cells = bytes(dice.choice((0, 100, *[unknown] * 8)) for _ in range(80 * 60))
+            grid = maps.Grid(name, 80, 60, cell, (x, y, 0.0), cells)
+            self.deliver("/map/update", messages.map_update(grid, name, self.seconds, CBOR), CBOR)
+            squares.setdefault(name, set()).update(
+                (int((x + (at % 80 + 0.5) * cell) // 0.25), int((y + (at // 80 + 0.5) * cell) // 0.25))
+                for at, value in enumerate(cells) if value != unknown)
+        union = set().union(*squares.values())
+        self.assertLess(len(union), sum(map(len, squares.values())))
+        expected = {"square_metres": len(union) / 16, "whole": True,
+                    "robots": [{"robot": name, "square_metres": len(squares[name]) / 16} for name in sorted(squares)]}
+
+        def covered():
+            answer = self.stage.box.ask("GET /adit/covered")[1]
+            return {name: answer[name] for name in expected}
+
+        wait_until(lambda: covered() == expected, f"{expected} in place of {covered()}", 30)

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "picture/draw.hpp"
+#include "picture/mosaic.hpp"
+
+namespace adit::picture {
+
+/// The area that grids show as known, in pixels of the base: squares of kPixel metres.
+struct Covered {
+  std::uint64_t version = 0;                // Mosaic::version() of this count
+  std::map<std::string, std::uint64_t> of;  // by robot with known cells; "": the merged map
+  std::uint64_t all = 0;                    // a pixel that several robots know counts once
+  bool is_whole = true;                     // false: the picture lacks parts of grids, so the area is larger
+};
+
+/// Counts the covered area on request. Only places whose tiles changed are counted again. Keeps at most about
+/// 100 bytes for each place and 40 for each tile.
+class CoveredArea {
+ public:
+  /// Tiles of places that changed, and facts for the result.
+  struct Changes {
+    std::map<TileAt, std::vector<std::pair<std::string, Tile>>> places;
+    std::uint64_t version = 0;
+    bool is_whole = true;
+  };
+  /// The changes since the last update().
+  Changes changes(const Mosaic& mosaic) const;
+  /// Inflates the changed tiles: 64 KB each, one place at a time. Call it on a worker.
+  void update(const Changes& changes, const Between& between = [] {});
+  /// Requires no update() in progress.
+  Covered now() const;
+  std::uint64_t version() const { return version_; }
+
+ private:
+  struct Counts {
+    std::uint32_t all = 0;
+    std::vector<std::pair<std::string, std::uint32_t>> of;
+  };
+  std::map<TileAt, Counts> places_;
+  std::uint64_t version_ = 0;
+  bool is_whole_ = true;
+};
+
+/// Covered::all over time, oldest first, as far back and as fine as the picture keeps earlier states. A pixel
+/// that was known once stays covered. Inflates every state.
+std::vector<std::pair<double, std::uint64_t>> covered_over_time(const Mosaic& mosaic);
+
+}  // namespace adit::picture

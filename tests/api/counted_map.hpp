@@ -1,0 +1,19 @@
+#pragma once
+
+#include "api/covered_map.hpp"
+#include "api/source.hpp"
+
+namespace adit::api {
+
+/// Counts the source's picture at once.
+struct CountedMap final : CoveredMap {
+  explicit CountedMap(const Source& shown) : source(shown) {}
+  void covered(Done done) override {
+    picture::CoveredArea area;
+    area.update(area.changes(source.map()));
+    done(area.now());
+  }
+  const Source& source;
+};
+
+}  // namespace adit::api

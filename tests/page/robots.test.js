@@ -158,6 +158,29 @@ test("has on a phone the worst below the map, and all in their tab", async (t) =
   await toTab(page, "Run");
 });
 
+test("says what area the grids cover, of all robots and of each, and which robot has no grid", async (t) => {
+  const covered = { version: 1, square_metres: 4213.06, whole: true, robots: [{ robot: "carter", square_metres: 812.5 }] };
+  const prepare = async (page) => {
+    await retell(page, () => (view) => {
+      const row = { ...view.activities[0], age: 0 }, robot = { level: "good", word: "up to date", silent: false, has_map: true, age: 0 };
+      const activities = [["carter", "grid"], ["scout", "cloud"], ["rover", "grid"]].map(([robot, kind]) => ({ ...row, robot, kind }));
+      return { ...view, activities, standings: activities.map(({ robot: name }) => ({ ...robot, name })) };
+    });
+    await page.route("**/adit/covered", (route) => route.fulfill({ json: covered }));
+  };
+  const { page } = await watch(t, "calm", { prepare });
+  const shared = page.locator("#shared [data-key=covered]");
+  await shared.waitFor();
+  assert.match(await shared.innerText(), /^Covered\s+4,213 m²$/);
+  await page.locator("#maps-title").click();
+  const words = (name) => page.locator(`#all-robots li[data-key="${name}"] .kinds`).innerText();
+  await page.locator("#all-robots li").first().waitFor();
+  assert.match(await words("carter"), /^grid .* · covers 813 m²$/);
+  assert.match(await words("scout"), /^cloud .* · no grid$/);
+  assert.doesNotMatch(await words("rover"), /covers|no grid/); // its grid is not drawn yet
+  assert.deepEqual(page.complaints, []);
+});
+
 test("draws each map's age as it was, now at the right", async (t) => {
   const { page } = await watchTwenty(t);
   await page.clock.install();

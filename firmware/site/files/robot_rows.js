@@ -25,12 +25,12 @@ function createRow({ name }) {
 /** "grid 6 s", or what is wrong with it. */
 const kindWords = ({ kind, level, word, age }) => `${kind} ${level === "good" || level === "quiet" ? mapAge(age) : word}`;
 
-function words({ silent, kinds }, isFull) {
+function words({ silent, kinds, covered }, isFull) {
   const shown = isFull ? kinds : kinds.filter(({ kind, level }) => kind !== "pose" || level === "bad" || level === "wait");
   const isAllOne = !isFull && !silent && shown.length > 1 && shown.every(({ level, word }) => level === "bad" && word === shown[0].word);
   if (isAllOne) return shown[0].word; // "not arriving", of grid and cloud: there may be room for no more
   const texts = shown.map((kind) => (isFull && kind.details ? `${kindWords(kind)}, ${kind.details}` : kindWords(kind)));
-  return [...(silent ? ["silent"] : []), ...texts].join(" · ");
+  return [...(silent ? ["silent"] : []), ...texts, ...(isFull && covered ? [covered] : [])].join(" · ");
 }
 
 /** Of its map, or if it is silent of its data; a silent robot that was not heard since a start of the box has none that is known. */

@@ -1,6 +1,7 @@
 // Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
 import { badge, list, make, mark, say } from "./dom.js";
 import { kindOf } from "./arriving.js";
+import { area, coveredIn } from "./covered.js";
 import { sampleAges } from "./robot_ages.js";
 import { lookOf } from "./robot_colour.js";
 import { RobotRows } from "./robot_rows.js";
@@ -12,7 +13,8 @@ const panel = document.getElementById("maps");
 const rows = new RobotRows(panel, document.getElementById("robots"));
 const shared = document.getElementById("shared");
 
-const SHARED = { grid: "Merged", cloud: "Merged cloud", markers: "Markers" };
+const SHARED = { grid: "Merged", cloud: "Merged cloud", markers: "Markers", covered: "Covered" };
+const COVERED = "The area of the known cells of grids at the Command Post. What several robots cover counts once.";
 
 /** What is all robots': how old it is, and a word where it is not as it should be. */
 function showShared(all) {
@@ -20,7 +22,7 @@ function showShared(all) {
     mark(node, "level", state.level);
     say(node.firstChild, SHARED[state.kind] ?? state.kind);
     const isWell = state.level === "good" || state.level === "quiet";
-    badge(node.lastChild, state.level, isWell ? mapAge(state.age) : state.word);
+    badge(node.lastChild, state.level, isWell ? state.text ?? mapAge(state.age) : state.word);
     node.title = state.title;
   });
 }
@@ -38,17 +40,24 @@ function showSayings(activities) {
     });
 }
 
+/** Nothing of a grid that the box is drawing. */
+function coveredWords({ name, kinds }, { of, whole }) {
+  if (of.has(name)) return `covers ${area(of.get(name), whole)}`;
+  return kinds.some(({ kind }) => kind === "grid") ? "" : "no grid";
+}
+
 /** Gives how the robots stand, as robotsOf(). */
 export function showRobots(view, now, lost) {
   const isAway = view.endpoints.find(({ name }) => name === "mapping").level === "bad";
-  const state = robotsOf(view, now - view.now, lost);
+  const covered = lost ? null : coveredIn(view), state = robotsOf(view, now - view.now, lost);
+  if (covered) for (const robot of state.robots) robot.covered = coveredWords(robot, covered);
   for (const { name } of [...view.robots, ...view.standings]) lookOf(name); // in the order of the view; rows are sorted later
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));
   panel.querySelector(".empty").hidden = state.robots.length > 0;
   rows.show(state.robots, now);
-  showShared(state.shared);
+  showShared(covered?.robots.length ? [...state.shared, { kind: "covered", level: "quiet", text: area(covered.square_metres, covered.whole), title: COVERED }] : state.shared);
   showSayings(view.activities);
   return state;
 }

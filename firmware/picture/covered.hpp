@@ -33,7 +33,7 @@ class CoveredArea {
   Changes changes(const Mosaic& mosaic) const;
   /// Inflates the changed tiles: 64 KB each, one place at a time. Call it on a worker.
   void update(const Changes& changes, const Between& between = [] {});
-  /// Requires no update() in progress.
+  /// The state after the last update(), which must have returned.
   Covered now() const;
   std::uint64_t version() const { return version_; }
 

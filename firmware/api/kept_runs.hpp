@@ -78,8 +78,7 @@ struct KeptRun {
   picture::Mosaic picture;
   std::vector<Track> tracks;
   History history;
-  std::vector<std::pair<Time, double>> coverage = {};  // known area of all layers in m2 over time
-  std::vector<ColourRow> colours = {};                 // of the settings, not of the run's time
+  std::vector<ColourRow> colours = {};  // of the settings, not of the run's time
 };
 
 /// Stored runs: room archive.

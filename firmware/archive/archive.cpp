@@ -206,12 +206,8 @@ std::shared_ptr<api::KeptRun> kept_run(const RunsFolder& runs, const std::string
   const api::RunRow& facts = **known;
   Told told(Archive::kLookedAt);
   tell_all(runs, key, told, enough);
-  std::vector<std::pair<api::Time, double>> coverage;
-  for (const auto& [at, pixels] : told.known())
-    coverage.emplace_back(at, static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
   return std::make_shared<api::KeptRun>(api::KeptRun{as_told(facts, present), std::move(told.picture()),
-                                                     told.tracks(), told.samples().since(0),
-                                                     std::move(coverage)});
+                                                     told.tracks(), told.samples().since(0)});
 }
 
 }  // namespace

@@ -11,9 +11,7 @@ namespace adit::archive {
 /// All quoted text is escaped. At most some megabytes.
 std::string run_report(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports);
 
-/// The run's map from above, with tracks and places of reports: an svg element.
+/// The run's map from above, with tracks, signs for reports, axes and legend: a figure.
 std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports);
-/// The known area over time: an svg element, or "" without data.
-std::string drawn_coverage(const api::KeptRun& run);
 
 }  // namespace adit::archive

@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 #include <utility>
 
 #include "archive/html.hpp"
+#include "archive/labels.hpp"
 #include "archive/run_report.hpp"
 #include "codec/base64.hpp"
 #include "icd/in_html.hpp"
@@ -27,8 +27,12 @@ constexpr const char* kColours[] = {"#9e4930", "#025447", "#6b56a3", "#733200", 
                                     "#593279", "#7e620d", "#005259", "#844d90", "#524801",
                                     "#0d7287", "#6c2962", "#666c05", "#054f69", "#954674",
                                     "#395105", "#0d6ca5", "#782445", "#3c7630", "#144687"};
-/// Lengths of lines and gaps, by the line's width.
-constexpr double kDashes[][4] = {{1e6, 0, 1e6, 0}, {4, 2, 4, 2}, {1, 1.5, 1, 1.5}, {4.5, 1.5, 1, 1.5}};
+/// Lengths of lines and gaps in millimetres, as patterns of these colours.
+constexpr const char* kDashes[] = {"1 0", "2.4 1.2", "0.7 0.9", "2.7 0.9 0.7 0.9"};
+/// In millimetres: of the map's frame and around it, of text, and of signs.
+constexpr double kWidth = 180, kLeft = 12, kTop = 2, kRight = 3, kBottom = 10;
+constexpr double kLeastHeight = 50, kMostHeight = 150, kFont = 2.8, kRobot = 1.3, kReport = 1.2, kGroup = 2.4;
+constexpr std::size_t kMostCharacters = 24;  // of a label
 
 /// The finest level without too many tiles.
 int level_of(const std::vector<picture::LayerView>& layers) {
@@ -42,20 +46,46 @@ int level_of(const std::vector<picture::LayerView>& layers) {
   return picture::kLevels - 1;
 }
 
-std::string image(const picture::Packed& tile, picture::Kind kind, const picture::TileAt& at) {
-  const double side = kSide * picture::kMetresPerPixel[static_cast<std::size_t>(at.level)];
+/// The drawn part of the frame "darpa", and its place on paper.
+struct Sheet {
+  picture::Area area;
+  Box frame;
+  double scale = 1;  // millimetres for a metre
+
+  double x(double metres) const { return frame.left + (metres - area.left) * scale; }
+  double y(double metres) const { return frame.bottom - (metres - area.bottom) * scale; }
+};
+
+/// `shown` with a margin, extended to fill the width of the paper and the least height.
+Sheet sheet_of(const picture::Area& shown) {
+  constexpr double kAcross = kWidth - kLeft - kRight, kMargin = 1.08, kLeast = 4;
+  const double width = std::max((shown.right - shown.left) * kMargin, kLeast),
+               height = std::max((shown.top - shown.bottom) * kMargin, kLeast);
+  Sheet sheet{.area = {}, .frame = {}, .scale = std::min(kAcross / width, kMostHeight / height)};
+  const double tall = std::max(height * sheet.scale, kLeastHeight);
+  sheet.frame = {kLeft, kTop, kLeft + kAcross, kTop + tall};
+  const double x = (shown.left + shown.right) / 2, y = (shown.bottom + shown.top) / 2;
+  const double across = kAcross / sheet.scale / 2, up = tall / sheet.scale / 2;
+  sheet.area = {x - across, y - up, x + across, y + up};
+  return sheet;
+}
+
+std::string image(const picture::Packed& tile, picture::Kind kind, const picture::TileAt& at,
+                  const Sheet& sheet) {
+  const picture::Area area = picture::area_of(at);
   const std::string png = kind == picture::Kind::Grid ? picture::write_png(tile, picture::grid_palette())
                                                       : picture::write_png(tile, picture::cloud_palette());
   const auto* bytes = reinterpret_cast<const std::uint8_t*>(png.data());
-  return icd::sentence("<image x=\"", fixed(at.x * side, 2), "\" y=\"", fixed(-(at.y + 1) * side, 2),
-                       "\" width=\"", fixed(side, 2), "\" height=\"", fixed(side, 2),
+  const std::string side = fixed((area.right - area.left) * sheet.scale, 3);
+  return icd::sentence("<image x=\"", fixed(sheet.x(area.left), 3), "\" y=\"", fixed(sheet.y(area.top), 3),
+                       "\" width=\"", side, "\" height=\"", side,
                        "\" image-rendering=\"pixelated\" href=\"data:image/png;base64,",
                        codec::base64_of({bytes, png.size()}), "\"/>\n");
 }
 
 /// All layers' tiles of one level, clouds below grids.
 std::string tiles_of(const picture::Mosaic& picture, const std::vector<picture::LayerView>& layers,
-                     std::size_t& left_out) {
+                     const Sheet& sheet, std::size_t& left_out) {
   const int level = level_of(layers);
   std::string all;
   for (const picture::Kind kind : {picture::Kind::Cloud, picture::Kind::Grid}) {
@@ -64,7 +94,7 @@ std::string tiles_of(const picture::Mosaic& picture, const std::vector<picture::
       for (const picture::TileView& tile : layer.tiles) {
         const auto shown = picture.tile(layer.layer, tile.at, {}).tile;
         if (tile.at.level != level || !shown) continue;
-        std::string drawn = image(*shown, kind, tile.at);
+        std::string drawn = image(*shown, kind, tile.at, sheet);
         if (all.size() + drawn.size() > kMostBytes) {
           ++left_out;
           continue;
@@ -96,15 +126,49 @@ std::optional<picture::Area> area_of(const api::KeptRun& run, const std::vector<
   return area;
 }
 
-std::string polyline(const api::Track& track, const char* colour, std::span<const double, 4> dashes,
-                     double width) {
+/// Figures and lines in metres at the frame's lower and left edge.
+std::string axes(const Sheet& sheet) {
+  constexpr double kBetween = 18;  // about, in millimetres
+  const auto& [left, top, right, bottom] = sheet.frame;
+  std::string lines, figures;
+  const auto columns = ticks(sheet.area.left, sheet.area.right, static_cast<int>((right - left) / kBetween));
+  const auto rows = ticks(sheet.area.bottom, sheet.area.top, static_cast<int>((bottom - top) / kBetween));
+  for (const double x : columns) {
+    const std::string at = fixed(sheet.x(x), 2);
+    lines += icd::sentence("M", at, " ", fixed(top, 2), "V", fixed(bottom, 2));
+    figures += icd::sentence("<text x=\"", at, "\" y=\"", fixed(bottom + 4, 2), "\" text-anchor=\"middle\">",
+                             fixed(x, decimals_of(columns)), "</text>");
+  }
+  for (const double y : rows) {
+    lines += icd::sentence("M", fixed(left, 2), " ", fixed(sheet.y(y), 2), "H", fixed(right, 2));
+    figures += icd::sentence("<text x=\"", fixed(left - 1, 2), "\" y=\"", fixed(sheet.y(y) + 1, 2),
+                             "\" text-anchor=\"end\">", fixed(y, decimals_of(rows)), "</text>");
+  }
+  return icd::sentence("<path class=\"grid\" d=\"", lines, "\"/>", figures, "<text x=\"", fixed(right, 2),
+                       "\" y=\"", fixed(bottom + 8, 2),
+                       "\" text-anchor=\"end\">x and y in metres, frame darpa</text>\n");
+}
+
+/// Indices of kColours and kDashes.
+struct Look {
+  std::size_t colour = 0, dashes = 0;
+};
+
+const char* colour_of(const Look& look) {
+  return kColours[look.colour % std::size(kColours)];
+}
+
+/// A robot's line: along a track, and in the legend.
+std::string stroke_of(const Look& look) {
+  return icd::sentence("class=\"track\" stroke=\"", colour_of(look), "\" stroke-dasharray=\"",
+                       kDashes[look.dashes % std::size(kDashes)], "\"");
+}
+
+std::string polyline(const api::Track& track, const Look& look, const Sheet& sheet) {
   std::string points;
   for (const api::TrackPose& pose : track.poses)
-    points += fixed(pose.position.x, 2) + ',' + fixed(-pose.position.y, 2) + ' ';
-  std::string lengths;
-  for (const double length : dashes) lengths += fixed(length * width, 3) + ' ';
-  return icd::sentence("<polyline fill=\"none\" stroke=\"", colour, "\" stroke-width=\"", fixed(width, 3),
-                       "\" stroke-dasharray=\"", lengths, "\" points=\"", points, "\"><title>",
+    points += fixed(sheet.x(pose.position.x), 2) + ',' + fixed(sheet.y(pose.position.y), 2) + ' ';
+  return icd::sentence("<polyline ", stroke_of(look), " points=\"", points, "\"><title>",
                        icd::in_html(track.robot), "</title></polyline>\n");
 }
 
@@ -114,11 +178,6 @@ std::vector<api::Track> by_first_pose(std::vector<api::Track> tracks) {
   std::ranges::stable_sort(tracks, {}, [](const api::Track& track) { return track.poses.front().at; });
   return tracks;
 }
-
-/// Indices of kColours and kDashes.
-struct Look {
-  std::size_t colour = 0, dashes = 0;
-};
 
 /// As the page's robotLooks(): robots of one chosen colour have different dashes. Other robots have the
 /// colours that no robot chose, in the order of `tracks`.
@@ -140,12 +199,124 @@ std::vector<Look> looks_of(const std::vector<api::Track>& tracks, const std::vec
   return looks;
 }
 
-/// With a label, so that colour alone does not identify a robot.
-std::string marked(double x, double y, const std::string& label, const char* colour, double size) {
-  return icd::sentence("<circle cx=\"", fixed(x, 2), "\" cy=\"", fixed(-y, 2), "\" r=\"", fixed(size / 3, 3),
-                       "\" fill=\"", colour, "\" stroke=\"#fff\" stroke-width=\"", fixed(size / 15, 3),
-                       "\"/><text x=\"", fixed(x + size / 2, 2), "\" y=\"", fixed(-y - size / 2, 2),
-                       "\" font-size=\"", fixed(size, 3), "\">", icd::in_html(label), "</text>\n");
+/// Reports that would cover each other, as one sign at the first one's place.
+struct Sign {
+  double x = 0, y = 0;
+  std::vector<const api::ReportDetail*> reports;
+
+  bool has_scored() const {
+    return std::ranges::any_of(reports,
+                               [](const auto* each) { return each->row.score_change.value_or(0) > 0; });
+  }
+  double radius() const { return reports.size() > 1 ? kGroup : kReport; }
+  Box box() const { return {x - radius(), y - radius(), x + radius(), y + radius()}; }
+};
+
+std::vector<Sign> signs_of(const std::vector<api::ReportDetail>& reports, const Sheet& sheet) {
+  std::vector<Sign> signs;
+  for (const api::ReportDetail& report : reports) {
+    if (!report.row.position) continue;
+    const double x = sheet.x(report.row.position->x), y = sheet.y(report.row.position->y);
+    if (!sheet.frame.contains({x, y, x, y})) continue;  // outside the world
+    const auto near = std::ranges::find_if(signs, [&](const Sign& sign) {
+      return std::max(std::abs(sign.x - x), std::abs(sign.y - y)) < 2 * kGroup;
+    });
+    (near == signs.end() ? signs.emplace_back(x, y) : *near).reports.push_back(&report);
+  }
+  return signs;
+}
+
+/// A disk for a group with its number, a square for one report: filled if one of them scored.
+std::string drawn(const Sign& sign) {
+  std::string title, shape;
+  for (const api::ReportDetail* each : sign.reports)
+    title += icd::sentence(title.empty() ? "" : ", ", each->row.number, " ", each->row.type);
+  const char* kind = sign.has_scored() ? "scored" : "report";
+  if (sign.reports.size() == 1) {
+    shape = icd::sentence("<rect class=\"", kind, "\" x=\"", fixed(sign.x - kReport, 2), "\" y=\"",
+                          fixed(sign.y - kReport, 2), "\" width=\"", fixed(2 * kReport, 1), "\" height=\"",
+                          fixed(2 * kReport, 1), "\"/>");
+  } else {
+    shape =
+        icd::sentence("<circle class=\"", kind, "\" cx=\"", fixed(sign.x, 2), "\" cy=\"", fixed(sign.y, 2),
+                      "\" r=\"", fixed(kGroup, 1), "\"/><text class=\"", kind, "\" x=\"", fixed(sign.x, 2),
+                      "\" y=\"", fixed(sign.y + 0.8, 2), "\">", sign.reports.size(), "</text>");
+  }
+  return icd::sentence("<g><title>", icd::in_html(title), "</title>", shape, "</g>\n");
+}
+
+/// The first of `texts` that has room beside the sign; "" if none has. A line leads to a label farther away.
+std::string label(Labels& labels, double x, double y, double radius, const std::vector<std::string>& texts) {
+  for (const std::string& each : texts) {
+    const std::string text = shortened(each, kMostCharacters);
+    const auto box = labels.place(x, y, radius, width_of(text, kFont), kFont * 1.2);
+    if (!box) continue;
+    const double to_x = std::clamp(x, box->left, box->right), to_y = std::clamp(y, box->top, box->bottom);
+    const bool is_far = std::hypot(to_x - x, to_y - y) > radius + 1;
+    const bool is_right = box->left > x, is_left = box->right < x;
+    return icd::sentence(is_far ? icd::sentence("<path class=\"leader\" d=\"M", fixed(x, 2), " ", fixed(y, 2),
+                                                "L", fixed(to_x, 2), " ", fixed(to_y, 2), "\"/>")
+                                : "",
+                         "<text class=\"label\" text-anchor=\"",
+                         is_right  ? "start"
+                         : is_left ? "end"
+                                   : "middle",
+                         "\" x=\"",
+                         fixed(is_right  ? box->left
+                               : is_left ? box->right
+                                         : (box->left + box->right) / 2,
+                               2),
+                         "\" y=\"", fixed(box->bottom - kFont * 0.32, 2), "\">", icd::in_html(text),
+                         "</text>\n");
+  }
+  return "";
+}
+
+std::string swatch(const std::string& drawn, const std::string& meaning) {
+  return icd::sentence("<li><svg viewBox=\"0 0 8 4\" aria-hidden=\"true\">", drawn, "</svg> ",
+                       icd::in_html(meaning), "</li>");
+}
+
+std::string colour_swatch(const picture::Colour& colour, const std::string& meaning) {
+  return swatch(icd::sentence("<rect width=\"8\" height=\"4\" fill=\"rgb(", colour.red, " ", colour.green,
+                              " ", colour.blue, ")\"/>"),
+                meaning);
+}
+
+std::string legend(const std::vector<api::Track>& tracks, const std::vector<Look>& looks,
+                   const std::vector<picture::LayerView>& layers, const std::vector<Sign>& signs) {
+  std::string all;
+  for (std::size_t i = 0; i < tracks.size(); ++i) {
+    all += swatch(icd::sentence("<path ", stroke_of(looks[i]),
+                                " d=\"M0 2H8\"/><circle class=\"robot\" cx=\"6\" cy=\"2\" r=\"",
+                                fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>"),
+                  shortened(tracks[i].robot, kMostCharacters));
+  }
+  const auto has = [&](picture::Kind kind) {
+    return std::ranges::any_of(layers,
+                               [&](const auto& each) { return each.layer.kind == kind && each.bounds; });
+  };
+  if (has(picture::Kind::Grid)) {
+    all += colour_swatch(picture::grid_palette()[1], "grid: free");
+    all += colour_swatch(picture::grid_palette()[picture::kMostOccupiedIndex], "grid: occupied");
+  }
+  if (has(picture::Kind::Cloud)) {
+    all += colour_swatch(picture::height_ramp().front(),
+                         icd::sentence("cloud: at or below ", picture::kLowest, " m"));
+    all += colour_swatch(picture::height_ramp().back(),
+                         icd::sentence("cloud: at or above ", picture::kHighest, " m"));
+  }
+  if (!signs.empty()) {
+    all += swatch("<rect class=\"scored\" x=\"2.8\" y=\"0.8\" width=\"2.4\" height=\"2.4\"/>",
+                  "report that scored");
+    all +=
+        swatch("<rect class=\"report\" x=\"2.8\" y=\"0.8\" width=\"2.4\" height=\"2.4\"/>", "another report");
+    all += swatch(
+        "<circle class=\"report\" cx=\"4\" cy=\"2\" r=\"1.8\"/><text class=\"report\" x=\"4\" "
+        "y=\"2.8\">9</text>",
+        "reports at one place; filled: one of them scored");
+  }
+  return all.empty() ? "" : "<ul class=\"legend\">" + all + "</ul>\n";
 }
 
 }  // namespace
@@ -153,55 +324,45 @@ std::string marked(double x, double y, const std::string& label, const char* col
 std::string drawn_map(const api::KeptRun& run, const std::vector<api::ReportDetail>& reports) {
   const auto layers = run.picture.layers();
   const auto area = area_of(run, layers, reports);
-  if (!area) return "<p>No map is stored.</p>\n";
-  const double width = std::max(area->right - area->left, 1.0),
-               height = std::max(area->top - area->bottom, 1.0);
-  const double size = std::max(width, height) / 50, margin = 2 * size;
-  std::size_t left_out = 0;
-  std::string drawn = tiles_of(run.picture, layers, left_out);
+  if (!area) return "<p>No map, track or place of a report is stored.</p>\n";
+  const Sheet sheet = sheet_of(*area);
   const auto tracks = by_first_pose(run.tracks);
   const auto looks = looks_of(tracks, run.colours);
+  const auto signs = signs_of(reports, sheet);
+  std::size_t left_out = 0;
+  std::string drawn_there = tiles_of(run.picture, layers, sheet, left_out), lines, robots, names, marks;
+  Labels labels{sheet.frame};
+  for (const Sign& sign : signs) labels.keep_free(sign.box());
   for (std::size_t i = 0; i < tracks.size(); ++i) {
-    const api::Track& track = tracks[i];
-    const char* its = kColours[looks[i].colour % std::size(kColours)];
-    drawn += polyline(track, its, kDashes[looks[i].dashes % std::size(kDashes)], size / 5);
+    const icd::Point& last = tracks[i].poses.back().position;
+    const double x = sheet.x(last.x), y = sheet.y(last.y);
+    labels.keep_free({x - kRobot, y - kRobot, x + kRobot, y + kRobot});
+    lines += polyline(tracks[i], looks[i], sheet);
+    robots += icd::sentence("<circle class=\"robot\" cx=\"", fixed(x, 2), "\" cy=\"", fixed(y, 2), "\" r=\"",
+                            fixed(kRobot, 1), "\" fill=\"", colour_of(looks[i]), "\"/>\n");
+  }
+  for (const api::Track& track : tracks) {
     const icd::Point& last = track.poses.back().position;
-    drawn += marked(last.x, last.y, track.robot, its, size);
+    names += label(labels, sheet.x(last.x), sheet.y(last.y), kRobot, {track.robot});
   }
-  for (const api::ReportDetail& report : reports) {
-    if (const auto& at = report.row.position)
-      drawn += marked(at->x, at->y, icd::sentence(report.row.number, " ", report.row.type), "#000", size);
+  for (const Sign& sign : signs) {
+    marks += drawn(sign);
+    const api::ReportRow& row = sign.reports.front()->row;
+    const std::string number = std::to_string(row.number);
+    if (sign.reports.size() == 1)
+      names += label(labels, sign.x, sign.y, kReport, {number + " " + row.type, number});
   }
+  const std::string inside = icd::sentence("x=\"", fixed(kLeft, 1), "\" y=\"", fixed(kTop, 1), "\" width=\"",
+                                           fixed(sheet.frame.right - kLeft, 2), "\" height=\"",
+                                           fixed(sheet.frame.bottom - kTop, 2), "\"");
   return icd::sentence(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"The map\" viewBox=\"",
-      fixed(area->left - margin, 2), " ", fixed(-area->top - margin, 2), " ", fixed(width + 2 * margin, 2),
-      " ", fixed(height + 2 * margin, 2), "\">\n", drawn, "</svg>\n<p>", fixed(width, 0), " m by ",
-      fixed(height, 0), " m of the frame darpa",
-      left_out == 0 ? "" : ", without parts that exceed the size of this report", ".</p>\n");
-}
-
-std::string drawn_coverage(const api::KeptRun& run) {
-  if (run.coverage.empty()) return "";
-  constexpr double kWidth = 600, kHeight = 160;
-  const double first = std::min(run.coverage.front().first, run.facts.began > 0 ? run.facts.began : 1e12);
-  const double last = std::max(run.coverage.back().first, first + 1);
-  double most = 1;
-  for (const auto& [at, area] : run.coverage) most = std::max(most, area);
-  std::string points = "0," + fixed(kHeight, 0);
-  double before = kHeight;
-  const std::size_t step = 1 + run.coverage.size() / 2000;
-  for (std::size_t i = 0; i < run.coverage.size(); i += step) {
-    const auto& [at, area] = run.coverage[i];
-    const double x = (at - first) / (last - first) * kWidth, y = kHeight - area / most * kHeight;
-    points += icd::sentence(" ", fixed(x, 1), ",", fixed(before, 1), " ", fixed(x, 1), ",", fixed(y, 1));
-    before = y;
-  }
-  return icd::sentence(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" aria-label=\"Coverage over time\" "
-      "viewBox=\"-4 -4 608 168\"><polyline fill=\"none\" stroke=\"#000\" stroke-width=\"1.5\" points=\"",
-      points, "\"/></svg>\n<p>From 0 to ", fixed(most, 0),
-      " m\u00b2, the sum over each robot's grids and clouds; from ", icd::utc(first), " to ", icd::utc(last),
-      " (UTC).</p>\n");
+      "<figure><svg role=\"img\" aria-label=\"The map\" viewBox=\"0 0 ", fixed(kWidth, 0), " ",
+      fixed(sheet.frame.bottom + kBottom, 2), "\"><clipPath id=\"frame\"><rect ", inside,
+      "/></clipPath>\n<g clip-path=\"url(#frame)\">", drawn_there, "</g>\n", axes(sheet),
+      "<g clip-path=\"url(#frame)\">", lines, "</g>\n", names, robots, marks, "<rect class=\"frame\" ",
+      inside, "/></svg>\n", legend(tracks, looks, layers, signs),
+      left_out == 0 ? "" : "<p>The map lacks parts that exceed the size of this report.</p>\n",
+      "</figure>\n");
 }
 
 }  // namespace adit::archive

@@ -53,7 +53,6 @@ void Told::move_lines(double seconds) {
 
 void Told::move_tiles(double seconds) {
   picture_.move(seconds);
-  for (auto& [at, pixels] : known_) at += seconds;
   last_tile_ += seconds;
 }
 
@@ -66,17 +65,11 @@ void Told::add(const Head& head, std::uint64_t /*file*/) {
 }
 
 void Told::add(const TileState& state, std::uint64_t file) {
-  const auto known = state.tile ? packer_.known_in(*state.tile) : 0;
-  if (!tiles_fit_ || !known || !picture_.take_up(state.layer, state.at, state.tile, state.stamp)) return;
+  const bool is_readable = !state.tile || packer_.is_whole(*state.tile);
+  if (!tiles_fit_ || !is_readable || !picture_.take_up(state.layer, state.at, state.tile, state.stamp))
+    return;
   last_tile_ = std::max(last_tile_, state.stamp);
-  const TileKey key{state.layer, state.at};
-  files_[key] = file;
-  if (state.at.level > 0) return;
-  std::size_t& before = known_of_[key];
-  known_now_ += *known - before;
-  before = *known;
-  if (known_.empty() || known_.back().first < state.stamp) known_.emplace_back(state.stamp, 0);
-  known_.back().second = known_now_;
+  files_[{state.layer, state.at}] = file;
 }
 
 void Told::add(const api::Track& track, std::uint64_t /*file*/) {

@@ -37,8 +37,6 @@ class Told {
   Samples& samples() { return samples_; }
   /// The file of each tile's newest state.
   std::map<TileKey, std::uint64_t>& files() { return files_; }
-  /// Known pixels of the finest tiles over time, in all layers.
-  const std::vector<std::pair<double, std::uint64_t>>& known() const { return known_; }
   std::size_t damaged() const { return damaged_; }                  // records
   double last() const { return std::max(last_line_, last_tile_); }  // latest time in the records
 
@@ -65,9 +63,6 @@ class Told {
   std::map<std::string, std::vector<api::TrackPose>> tracks_;
   std::size_t poses_ = 0;
   std::map<TileKey, std::uint64_t> files_;
-  std::map<TileKey, std::size_t> known_of_;
-  std::uint64_t known_now_ = 0;
-  std::vector<std::pair<double, std::uint64_t>> known_;
   double last_line_ = 0, last_tile_ = 0;
   std::vector<Step> line_steps_, tile_steps_;  // already applied
 };

@@ -45,7 +45,7 @@ Packer::Packer() : streams_(std::make_unique<Streams>()), rows_(kRow * kSide) {
 }
 Packer::~Packer() = default;
 
-std::optional<std::size_t> Packer::known_in(const Packed& packed) {
+bool Packer::is_whole(const Packed& packed) {
   z_stream& zlib = streams_->in;
   inflateReset(&zlib);
   zlib.next_in = const_cast<Bytef*>(packed.deflated.data());
@@ -53,14 +53,11 @@ std::optional<std::size_t> Packer::known_in(const Packed& packed) {
   zlib.next_out = rows_.data();
   zlib.avail_out = static_cast<uInt>(rows_.size());
   const bool whole = inflate(&zlib, Z_FINISH) == Z_STREAM_END && zlib.avail_out == 0 && zlib.avail_in == 0;
-  if (!whole || crc_of(packed.deflated) != packed.crc) return std::nullopt;
-  std::size_t known = 0;
+  if (!whole || crc_of(packed.deflated) != packed.crc) return false;
   for (std::size_t row = 0; row < kSide; ++row) {
-    const std::uint8_t* const filtered = rows_.data() + row * kRow;
-    if (*filtered != 0) return std::nullopt;
-    known += kSide - static_cast<std::size_t>(std::count(filtered + 1, filtered + kRow, 0));
+    if (rows_[row * kRow] != 0) return false;  // a filter
   }
-  return known;
+  return true;
 }
 
 Tile Packer::pack(const Pixels& pixels) {

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "picture/world.hpp"
@@ -36,8 +35,8 @@ class Packer {
 
   Tile pack(const Pixels& pixels);
   void unpack(const Packed& packed, Pixels& pixels);
-  /// The number of known pixels of a tile read from disk; nullopt if it is damaged.
-  std::optional<std::size_t> known_in(const Packed& packed);
+  /// False if a tile read from disk is damaged.
+  bool is_whole(const Packed& packed);
 
  private:
   struct Streams;

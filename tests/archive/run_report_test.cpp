@@ -18,7 +18,7 @@ constexpr const char* kHostile = "<script>alert('1')</script>\"&\x01";
 api::KeptRun hostile_run() {
   ARun run;
   run.draw(2);
-  api::KeptRun kept{run.facts, std::move(run.easel.mosaic), run.tracks, {}, {{1000, 5}, {1010, 64}}};
+  api::KeptRun kept{run.facts, std::move(run.easel.mosaic), run.tracks, {}};
   kept.facts.course = kept.facts.team = kept.facts.id = kept.facts.post = kHostile;
   kept.facts.robots = {kHostile};
   kept.tracks[0].robot = kHostile;
@@ -39,9 +39,10 @@ std::vector<api::ReportDetail> hostile_reports() {
 
 TEST(RunReport, SaysScoreReportsMapCoverageRobotsAndWhatNeededTheOperator) {
   const std::string html = run_report(hostile_run(), hostile_reports());
-  for (const char* part : {"<dt>Score</dt><dd>5</dd>", "Reports", "<td>robot1</td>", "answered", "+1",
-                           "data:image/png;base64,iVBOR", "Coverage over time", "64 m", "Robots",
-                           "Alarms that needed the operator", "1970-01-01 00:16:40"})
+  for (const char* part :
+       {"<dt>Score</dt><dd>5</dd>", "Reports", "<td>robot1</td>", "answered", "+1",
+        "data:image/png;base64,iVBOR", ">Covered area (m\u00b2)</text>", "<dd>512 m\u00b2</dd>", "Robots",
+        "Alarms that needed the operator", "1970-01-01 00:16:40"})
     EXPECT_THAT(html, HasSubstr(part));
 }
 
@@ -70,16 +71,54 @@ TEST(RunReport, DrawsChosenColoursAndTellsRobotsOfOneColourApartByTheirLines) {
 }
 
 TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {
-  const std::string html = run_report({{}, picture::Mosaic(), {}, {}, {}}, {});
+  const std::string html = run_report({{}, picture::Mosaic(), {}, {}}, {});
   EXPECT_THAT(html, HasSubstr("No reports."));
-  EXPECT_THAT(html, HasSubstr("No map is stored."));
+  EXPECT_THAT(html, HasSubstr("No map, track or place of a report is stored."));
   EXPECT_THAT(html, testing::EndsWith("</html>\n"));
+}
+
+api::ReportDetail report_at(std::int64_t number, double x, double y, std::int64_t score = 0) {
+  api::ReportDetail report;
+  report.row.number = number;
+  report.row.type = "Drill";
+  report.row.state = "answered";
+  report.row.position = icd::Point{x, y, 0};
+  report.row.score_change = score;
+  return report;
+}
+
+TEST(RunReport, ShowsReportsAtOnePlaceAsOneSignWithTheirNumber) {
+  const api::KeptRun run{{}, picture::Mosaic(), {}, {}};
+  const std::string map = drawn_map(
+      run, {report_at(1, 0, 0), report_at(2, 0.1, 0, 1), report_at(3, 0, 0.1), report_at(4, 100, 50)});
+  EXPECT_THAT(map, HasSubstr("<title>1 Drill, 2 Drill, 3 Drill</title><circle class=\"scored\""));
+  EXPECT_THAT(map, HasSubstr(">3</text></g>"));
+  EXPECT_THAT(map, HasSubstr("<title>4 Drill</title><rect class=\"report\""));
+  EXPECT_THAT(map, HasSubstr(">4 Drill</text>"));
+}
+
+TEST(RunReport, SaysOfARobotWithoutAGridThatItHasNone) {
+  ARun run;
+  run.easel.draw(picture::cloud_of({{1, 1, 0}, {2, 2, 0}}));
+  const std::string html = run_report({run.facts, std::move(run.easel.mosaic), run.tracks, {}}, {});
+  EXPECT_THAT(html, HasSubstr("<td>cloud</td><td class=\"n\">no grid</td>"));
+  EXPECT_THAT(html, HasSubstr("<dt>Covered area</dt><dd>no grid</dd>"));
+}
+
+TEST(RunReport, SaysThatARobotsMapNeverArrivedRatherThanAnAge) {
+  ARun run;
+  api::KeptRun kept{run.facts, picture::Mosaic(), run.tracks, {.at = {1000, 1002}}};
+  kept.history.robots = {{"ugv1", {std::nullopt, std::nullopt}}};
+  kept.history.sent_mbit = {0, 0};
+  kept.history.queued_bytes = {0, 0};
+  kept.history.scoring_ms = kept.history.mapping_ms = {{}, {}};
+  EXPECT_THAT(run_report(kept, {}), HasSubstr("<td class=\"n\">never there</td>"));
 }
 
 TEST(RunReport, StaysSmallHoweverMuchWasMapped) {
   ARun run;
   run.draw(100);
-  const api::KeptRun kept{run.facts, std::move(run.easel.mosaic), {}, {}, {}};
+  const api::KeptRun kept{run.facts, std::move(run.easel.mosaic), {}, {}};
   EXPECT_LT(run_report(kept, {}).size(), std::size_t{5} << 20);
 }
 

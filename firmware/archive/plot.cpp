@@ -1,0 +1,102 @@
+#include "archive/plot.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "archive/html.hpp"
+#include "archive/labels.hpp"
+#include "icd/in_html.hpp"
+#include "icd/require.hpp"
+#include "icd/sentence.hpp"
+
+namespace adit::archive {
+namespace {
+
+constexpr Box kAround{14, 6, 4, 9};  // the axes, in millimetres
+constexpr double kFinest = 0.1;      // millimetres between two points
+
+std::string line(double x1, double y1, double x2, double y2, const char* kind) {
+  return icd::sentence("<path class=\"", kind, "\" d=\"M", fixed(x1, 2), " ", fixed(y1, 2), "L", fixed(x2, 2),
+                       " ", fixed(y2, 2), "\"/>");
+}
+
+std::string text(double x, double y, const char* anchor, const std::string& said) {
+  return icd::sentence("<text x=\"", fixed(x, 2), "\" y=\"", fixed(y, 2), "\" text-anchor=\"", anchor, "\">",
+                       icd::in_html(said), "</text>");
+}
+
+/// The axes' scales: to millimetres.
+struct Scales {
+  double first = 0, minutes = 1, most = 1;  // at the left; to the right end; at the top
+  double right = 0, bottom = 0;
+
+  double x(double at) const { return kAround.left + (at - first) / minutes * (right - kAround.left); }
+  double y(double value) const { return bottom - std::min(value / most, 1.0) * (bottom - kAround.top); }
+};
+
+std::string path_of(const Plot& plot, const Scales& scales) {
+  std::string path;
+  bool is_in_gap = true;
+  double last_x = 0, last_y = 0;
+  const auto go_to = [&](double x, double y) {
+    path += is_in_gap ? 'M' : 'L';
+    path += fixed(x, 2) + ' ' + fixed(y, 2);
+    is_in_gap = false;
+    last_x = x, last_y = y;
+  };
+  for (std::size_t i = 0; i < plot.minutes.size();) {
+    const double x = scales.x(plot.minutes[i]);
+    std::optional<double> highest;
+    for (; i < plot.minutes.size() && scales.x(plot.minutes[i]) < x + kFinest; ++i) {
+      if (plot.values[i]) highest = std::max(highest.value_or(0), *plot.values[i]);
+    }
+    if (!highest) {
+      is_in_gap = true;
+      continue;
+    }
+    const double y = scales.y(*highest);
+    if (plot.is_held && !is_in_gap) go_to(x, last_y);
+    go_to(x, y);
+  }
+  if (plot.is_held && !is_in_gap && last_x < scales.right) go_to(scales.right, last_y);
+  return path;
+}
+
+}  // namespace
+
+std::string drawn(const Plot& plot) {
+  icd::require(plot.minutes.size() == plot.values.size());
+  double most = 0;
+  bool any = false;
+  for (const auto& value : plot.values) {
+    any = any || value;
+    most = std::max(most, value.value_or(0));
+  }
+  if (!any) return "";
+  Scales scales{.first = std::min(0.0, plot.minutes.front()),
+                .right = plot.width - kAround.right,
+                .bottom = plot.height - kAround.bottom};
+  scales.minutes = std::max(plot.minutes.back() - scales.first, 1.0);
+  const auto rows = ticks(0, most > 0 ? most * 1.05 : 1, static_cast<int>(plot.height / 9));
+  scales.most = std::max(most > 0 ? most * 1.05 : 1, rows.empty() ? 0 : rows.back());
+  const auto columns = ticks(scales.first, scales.first + scales.minutes, static_cast<int>(plot.width / 18));
+  std::string all;
+  for (const double value : rows) {
+    all += line(kAround.left, scales.y(value), scales.right, scales.y(value), "grid");
+    all += text(kAround.left - 1.5, scales.y(value) + 1, "end", fixed(value, decimals_of(rows)));
+  }
+  for (const double minute : columns) {
+    all += line(scales.x(minute), scales.bottom, scales.x(minute), scales.bottom + 1.2, "axis");
+    all += text(scales.x(minute), scales.bottom + 4.4, "middle", fixed(minute, decimals_of(columns)));
+  }
+  all += line(kAround.left, scales.bottom, scales.right, scales.bottom, "axis") +
+         line(kAround.left, kAround.top, kAround.left, scales.bottom, "axis") +
+         text(0, 3, "start", plot.name) + text(scales.right, scales.bottom + 8, "end", "minutes of the run");
+  return icd::sentence("<figure style=\"width:", fixed(plot.width, 0), "mm\"><svg role=\"img\" aria-label=\"",
+                       icd::in_html(plot.name), "\" viewBox=\"0 0 ", fixed(plot.width, 0), " ",
+                       fixed(plot.height, 0), "\">", all, "<path class=\"curve\" d=\"", path_of(plot, scales),
+                       "\"/></svg></figure>\n");
+}
+
+}  // namespace adit::archive

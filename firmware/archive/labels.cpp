@@ -19,7 +19,7 @@ bool Labels::is_free(const Box& box) const {
 }
 
 std::optional<Box> Labels::place(double x, double y, double radius, double width, double height) {
-  constexpr double kDistances[] = {0.5, 3, 6, 9};  // from the sign
+  constexpr double kDistances[] = {0.9, 3, 6, 9};  // from the sign
   constexpr double kSides[][2] = {{1, 0}, {-1, 0}, {0, -1}, {0, 1}, {1, -1}, {-1, -1}, {1, 1}, {-1, 1}};
   for (const double distance : kDistances) {
     for (const auto& [across, down] : kSides) {

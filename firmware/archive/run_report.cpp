@@ -23,7 +23,7 @@ constexpr const char* kStyle = R"(
 body { font: 10pt/1.35 Helvetica, Arial, "Liberation Sans", sans-serif; color: #000; background: #fff; max-width: 180mm; margin: 0 auto; print-color-adjust: exact; -webkit-print-color-adjust: exact }
 h1 { font-size: 18pt; margin: 0 0 3mm } h2 { font-size: 13pt; margin: 7mm 0 2mm; break-after: avoid }
 table { border-collapse: collapse; width: 100%; font-size: 9pt } thead { display: table-header-group; break-inside: avoid }
-th, td { text-align: left; vertical-align: top; padding: 1mm 2mm; border-bottom: .3pt solid #777; overflow-wrap: anywhere } th { border-bottom-width: 1pt; overflow-wrap: normal }
+th, td { text-align: left; vertical-align: top; padding: .7mm 2mm; border-bottom: .3pt solid #777; overflow-wrap: anywhere } th { border-bottom-width: 1pt; overflow-wrap: normal }
 td.n, th.n { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap } tr { break-inside: avoid }
 .reports { table-layout: fixed } .reports td:last-child { font-size: 8pt } .reports span { white-space: nowrap; font-variant-numeric: tabular-nums }
 .reports th:nth-child(1) { width: 9mm } .reports th:nth-child(2) { width: 21mm } .reports th:nth-child(3) { width: 18mm } .reports th:nth-child(4) { width: 34mm } .reports th:nth-child(5) { width: 17mm } .reports th:nth-child(6) { width: 9mm }

@@ -252,7 +252,7 @@ std::string label(Labels& labels, double x, double y, double radius, const std::
     const auto box = labels.place(x, y, radius, width_of(text, kFont), kFont * 1.2);
     if (!box) continue;
     const double to_x = std::clamp(x, box->left, box->right), to_y = std::clamp(y, box->top, box->bottom);
-    const bool is_far = std::hypot(to_x - x, to_y - y) > radius + 1;
+    const bool is_far = std::hypot(to_x - x, to_y - y) > radius + 1.5;
     const bool is_right = box->left > x, is_left = box->right < x;
     return icd::sentence(is_far ? icd::sentence("<path class=\"leader\" d=\"M", fixed(x, 2), " ", fixed(y, 2),
                                                 "L", fixed(to_x, 2), " ", fixed(to_y, 2), "\"/>")

@@ -127,7 +127,7 @@ api::NetworkView NetworkChange::network() const {
 
 network::Findings NetworkChange::check(const network::Numbers& wanted, const std::string& asker) const {
   const auto present = this->present();
-  if (!present) return {.errors = {{"", present.error()}}, .warnings = {}};
+  if (!present) return {.errors = {{"", present.error()}}, .changes = {}, .warnings = {}};
   return network::check(wanted, *present,
                         {.allow_overlap = settings_.network.allow_overlap,
                          .confirm_within = settings_.network.confirm_within,

@@ -117,7 +117,7 @@ test("pans by dragging and by the arrow keys, and comes back by All", async (t) 
   await becomes(page, whole);
 });
 
-test("looks after a move as if it were drawn anew", async (t) => {
+test("looks after a move as if it were drawn again", async (t) => {
   const { page } = await watch(t, "calm", { colorScheme: "dark" });
   await settled(page);
   await hide(page, "Robots", "Tracks"); // they move by themselves
@@ -132,7 +132,7 @@ test("looks after a move as if it were drawn anew", async (t) => {
   await page.emulateMedia({ colorScheme: "light" });
   await changed(page, moved, "the light map");
   await page.emulateMedia({ colorScheme: "dark" });
-  await becomes(page, moved, "the same, drawn anew", 100);
+  await becomes(page, moved, "the same, drawn again", 100);
 });
 
 test("shows the map as it was, by the slider, and now again", async (t) => {

@@ -86,7 +86,7 @@ export class MapDrawing {
     this.#traceRobots(ctx, view);
     this.#tracked = this.#scene.now();
   };
-  #traceRobots(ctx, view, since) {
+  #traceRobots(ctx, view, since = -Infinity) {
     const { shown, tracks } = this.#scene;
     if (shown.tracks) drawTracks(ctx, this.colours, view, tracks.until(this.#scene.until()), this.#scene.now(), this.#unit(), since);
   }

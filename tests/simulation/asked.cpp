@@ -6,6 +6,7 @@
 #include "simulation/courses.hpp"
 #include "simulation/faults.hpp"
 #include "simulation/judge.hpp"
+#include "simulation/messages.hpp"
 
 namespace adit::simulation {
 namespace {
@@ -37,7 +38,7 @@ std::vector<Asked> asked_in(const std::vector<Event>& events, const std::string&
 }
 
 void OpenReports::add(const Event& event) {
-  const bool is_posted = event.what == kReports || event.what == kCompose;
+  const bool is_posted = event.what == kReports || event.what == kCompose || event.what == kCorrect;
   if (event.actor == Actor::Team && is_posted && event.serial < kBadSerials) {
     if (event.kind == Kind::Invoke) posted_[event.request] = event.serial;
     const auto posted = posted_.find(event.request);
@@ -46,7 +47,9 @@ void OpenReports::add(const Event& event) {
   }
   // If one report is in doubt and the same report waits, the one that waits is withdrawn.
   const bool is_over = event.what == kSettle || (event.what == kWithdraw && !in_doubt());
-  if (is_over && event.kind == Kind::Answered && event.status / 100 == 2) open_.erase(event.serial);
+  const bool is_done = event.kind == Kind::Answered && event.status / 100 == 2;
+  if (is_over && is_done) open_.erase(event.serial);
+  if (event.what == kCorrect && is_done) open_.erase(event.serial - kCorrections);
   if (event.kind == Kind::Dies) {
     for (const auto& [serial, at] : told_) {
       if (event.at - at > kWritesDown) continue;

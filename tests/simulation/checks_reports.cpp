@@ -1,5 +1,6 @@
 // Once, NotLost and Live: of reports.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
@@ -82,8 +83,12 @@ void not_lost(const Evidence& evidence, Broken& broken) {
   }
   for (const Event& event : evidence.events) {
     if (!is_report(event, Kind::Answered) || event.status >= 300) continue;
-    const auto record = records.find(event.serial);
-    const bool is_recorded = record != records.end() && record->second <= event.at;
+    // Clients of a corrected report are told of the correction.
+    const bool is_recorded =
+        std::ranges::any_of(std::array{event.serial, event.serial + kCorrections}, [&](std::int64_t serial) {
+          const auto record = records.find(serial);
+          return record != records.end() && record->second <= event.at;
+        });
     if (!is_recorded && !blurred.contains(event.serial)) {
       broken.push_back(icd::sentence("NotLost: a client was told that report ", event.serial,
                                      " is recorded, and it was not, at ", event.at));

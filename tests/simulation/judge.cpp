@@ -23,6 +23,11 @@ std::string number(std::int64_t value) {
   return std::to_string(value);
 }
 
+std::string drill(std::int64_t serial) {
+  return nlohmann::json{{"type", "Drill"}, {"x", static_cast<double>(serial) * 100}, {"y", 2.5}, {"z", -1.0}}
+      .dump();
+}
+
 }  // namespace
 
 Judge::Judge(World& world, double trouble_for)
@@ -80,6 +85,7 @@ void Judge::judge_report(const nlohmann::json& row) {
 
 /// It is worth sending where the present run has no record of it.
 void Judge::judge_held(std::int64_t id, std::int64_t serial) {
+  if (serial < kCorrections && !is_recorded(serial) && random_.chance(0.2)) return correct(id, serial);
   const bool sends = !is_recorded(serial) && random_.chance(0.6);
   say(id, sends ? kSend : kWithdraw, serial);
 }
@@ -95,11 +101,12 @@ void Judge::judge_aside(const nlohmann::json& row) {
 /// A report of his own.
 void Judge::compose() {
   const std::int64_t serial = kOwnReports + ++composed_;
-  words_.push_back(
-      {"/adit/reports", kCompose,
-       nlohmann::json{{"type", "Drill"}, {"x", static_cast<double>(serial) * 100}, {"y", 2.5}, {"z", -1.0}}
-           .dump(),
-       serial});
+  words_.push_back({"/adit/reports", kCompose, drill(serial), serial});
+}
+
+void Judge::correct(std::int64_t id, std::int64_t serial) {
+  const std::int64_t next = serial + kCorrections;
+  words_.push_back({"/adit/reports/" + number(id) + "/correct", kCorrect, drill(next), next});
 }
 
 void Judge::say(std::int64_t id, const char* what, std::int64_t serial) {

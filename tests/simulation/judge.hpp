@@ -14,7 +14,7 @@ class World;
 
 /// The operator's words, as the history calls them by Event::what.
 inline constexpr const char *kSend = "send", *kHold = "hold", *kWithdraw = "withdraw", *kSettle = "settle",
-                            *kCompose = "compose", *kSendRejected = "send rejected";
+                            *kCompose = "compose", *kCorrect = "correct", *kSendRejected = "send rejected";
 /// As Event::who.
 inline constexpr const char* kOperator = "operator";
 
@@ -34,6 +34,7 @@ class Judge {
   void viewed(const nlohmann::json& view);
   void judge_report(const nlohmann::json& row);
   void judge_held(std::int64_t number, std::int64_t serial);
+  void correct(std::int64_t number, std::int64_t serial);
   void judge_aside(const nlohmann::json& row);
   void compose();
   void say(std::int64_t number, const char* what, std::int64_t serial);

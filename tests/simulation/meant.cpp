@@ -82,7 +82,8 @@ void Meant::add(const Event& event) {
     switched(event);
     reach(event.at);
   }
-  if (event.what == kReports || event.what == kSend || event.what == kCompose) posted(event);
+  const bool is_word = event.what == kSend || event.what == kCompose || event.what == kCorrect;
+  if (event.what == kReports || is_word) posted(event);
 }
 
 bool Meant::is_meant(std::int64_t serial, int place, double now) const {

@@ -34,7 +34,8 @@ int type_of(const Item& item) {
 
 /// The robot that a report names; "": the report has no name, as all of the operator's.
 std::string reporter_of(std::int64_t serial) {
-  return serial < kOwnReports && serial % 3 == 0 ? "R1" : "";
+  const std::int64_t posted = serial % kCorrections;  // a correction keeps the robot
+  return posted < kOwnReports && posted % 3 == 0 ? "R1" : "";
 }
 
 Json report_of(std::int64_t serial, const Style& style) {

@@ -41,6 +41,8 @@ inline bool is_cloud(const Says& says) {
 }
 inline constexpr int kStrange = -1;                // points, a marker or a report: none that anybody posted
 inline constexpr std::int64_t kOwnReports = 9000;  // serials from there on: of the operator's own
+/// The serial of a correction, above that of the report that it corrects.
+inline constexpr std::int64_t kCorrections = 10'000;
 
 /// How the namespaces of markers end: of lines, and of long texts.
 inline constexpr const char *kPath = " path", *kWriting = " writing";

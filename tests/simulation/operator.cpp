@@ -51,6 +51,7 @@ Operator::Operator(World& world, const Box& box, double until)
 void Operator::change(settings::Settings& next) {
   next.reports.near_metres = next.reports.near_metres > 5 ? 5 : 6;
   if (random_.chance(0.5)) next.reports.review = static_cast<dispatch::Review>(random_.below(3));
+  if (random_.chance(0.5)) next.reports.undo = std::chrono::seconds(random_.below(30));
   if (random_.chance(0.3))
     next.reports.answer_within = std::chrono::milliseconds(8000 + random_.below(12000));
   if (random_.chance(0.3))
@@ -73,8 +74,9 @@ void Operator::save() {
       "Host: 10.0.0.1\r\nContent-Type: application/json\r\nCookie: " + std::string(access::kCookie) + "=" +
       id_ + "\r\n" + std::string(access::kCsrfHeader) + ": " + csrf_ + "\r\n";
   client_.ask(http_request("POST", kSettings, headers, body), {.what = kSettings, .who = kOperator},
-              [this, name](int status) {
-                if (status == 200) world_.note({.kind = Kind::Saved, .what = name, .who = ""});
+              [this, name, undo = next.reports.undo.count()](int status) {
+                if (status == 200)
+                  world_.note({.kind = Kind::Saved, .what = name, .who = "", .serial = undo});
               });
 }
 

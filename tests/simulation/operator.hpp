@@ -12,7 +12,7 @@ namespace adit::simulation {
 class World;
 
 inline constexpr const char* kSettings = "/adit/settings";
-/// Event::what of Kind::Saved: with review as "all", or as anything else.
+/// Event::what of Kind::Saved: with review as "all", or as anything else. Event::serial: reports.undo_s.
 inline constexpr const char *kReviewAll = "review all", *kReviewElse = "settings";
 
 /// Saves settings by the page's API, which the gateway takes over in place.

@@ -61,13 +61,13 @@ TEST(RunReport, DrawsChosenColoursAndTellsRobotsOfOneColourApartByTheirLines) {
     kept.tracks.push_back({robot, {{1000.0 + static_cast<double>(kept.tracks.size()), {}, 0}}});
   kept.colours = {{"r2", 3}, {"r4", 3}, {"r3", 1}};
   std::string drawn = drawn_map(kept, {});
-  const std::regex line(R"re(stroke="(#\w+)" stroke-width="[^"]+" stroke-dasharray="([\d.]+))re");
+  const std::regex line(R"re(<polyline class="track" stroke="(#\w+)" stroke-dasharray="([^"]+)")re");
   std::vector<std::string> lines;
   for (std::sregex_iterator at(drawn.begin(), drawn.end(), line), end; at != end; ++at)
     lines.push_back((*at)[1].str() + " " + (*at)[2].str());
   // the second colour, because the first one is r3's
-  EXPECT_THAT(lines,
-              testing::ElementsAre("#025447 0.016", "#6b56a3 0.004", "#9e4930 4000.000", "#6b56a3 0.018"));
+  EXPECT_THAT(lines, testing::ElementsAre("#025447 2.4 1.2", "#6b56a3 0.7 0.9", "#9e4930 1 0",
+                                          "#6b56a3 2.7 0.9 0.7 0.9"));
 }
 
 TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {

@@ -15,7 +15,7 @@ const std::string kSides =
 
 std::string view(const std::string& pending, const std::string& last, bool managed = true) {
   return Server::ok(std::string(R"({"now":1000,"managed":)") + (managed ? "true" : "false") +
-                    R"(,"why":"it is set elsewhere",)" + kSides + R"(,"pending":)" + pending +
+                    R"(,"why":"it is set elsewhere","runs_here":true,)" + kSides + R"(,"pending":)" + pending +
                     R"(,"ports":[],"last":)" + last + R"(,"last_why":"nobody confirmed it"})");
 }
 
@@ -35,7 +35,7 @@ TEST(NetworkCommand, ShowsBothSides) {
 TEST(NetworkCommand, ShowsHowTheTeamsSideComesByItsAddress) {
   const auto with = [](const char* team) {
     return Server::ok(
-        std::string(R"({"now":1000,"managed":true,"why":"","team":)") + team +
+        std::string(R"({"now":1000,"managed":true,"why":"","runs_here":true,"team":)") + team +
         R"(,"command_post":{"interface":"darpa0","addresses":[],"gateway":""},"pending":null,"ports":[],)"
         R"("last":null,"last_why":""})");
   };

@@ -15,8 +15,8 @@ const std::string kSides =
 
 std::string view(const std::string& pending, const std::string& last, bool managed = true) {
   return Server::ok(std::string(R"({"now":1000,"managed":)") + (managed ? "true" : "false") +
-                    R"(,"why":"it is set elsewhere","runs_here":true,)" + kSides + R"(,"pending":)" + pending +
-                    R"(,"ports":[],"last":)" + last + R"(,"last_why":"nobody confirmed it"})");
+                    R"(,"why":"it is set elsewhere","runs_here":true,)" + kSides + R"(,"pending":)" +
+                    pending + R"(,"ports":[],"last":)" + last + R"(,"last_why":"nobody confirmed it"})");
 }
 
 const std::string kPending =

@@ -105,7 +105,8 @@ TEST(Options, NameTheWordThatIsWrong) {
       {{"check", "--at", "10.0.0.1:80"}, "check does not take --at"},
       {{"status", "--csv"}, "status does not take --csv"},
       {{"reports", "snd"},
-       "expected show, send, hold, withdraw, correct, settle, resubmit or export, got snd; did you mean send?"},
+       "expected show, send, hold, withdraw, correct, settle, resubmit or export, got snd; did you mean "
+       "send?"},
       {{"reports", "--yes"}, "reports does not take --yes"},
       {{"reports", "settle", "7", "--yes"}, "reports settle does not take --yes"},
       {{"watch", "7"}, "one word too many: 7"},

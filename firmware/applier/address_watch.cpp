@@ -22,6 +22,7 @@ static_assert(2 * Takers::kMost <= network::kMostTaken);
 /// The addresses to watch.
 std::vector<std::uint32_t> addresses_of(const std::vector<settings::Subnet>& own) {
   std::vector<std::uint32_t> all;
+  all.reserve(own.size());
   for (const settings::Subnet& each : own) all.push_back(each.address);
   all.resize(std::min(all.size(), Takers::kMost));
   return all;

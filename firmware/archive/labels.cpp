@@ -64,10 +64,10 @@ std::vector<double> ticks(double low, double high, int most) {
   for (const double each : {5 * power, 2 * power, power}) {
     if (each >= least * (1 - 1e-9)) step = each;
   }
-  std::vector<double> all;
   const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
-  for (double i = first; i <= last && static_cast<int>(all.size()) <= most; ++i)
-    all.push_back(i * step + 0.0);
+  const int more = static_cast<int>(std::clamp(last - first, -1.0, static_cast<double>(most)));
+  std::vector<double> all;
+  for (int i = 0; i <= more; ++i) all.push_back((first + i) * step + 0.0);
   return all;
 }
 

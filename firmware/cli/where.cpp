@@ -42,7 +42,7 @@ std::expected<std::string, std::string> address_of(const std::string& interface,
   const auto all = ADIT_TRY(host::interfaces());
   for (const host::Interface& each : all) {
     for (std::string_view address : each.addresses) {
-      const std::string text(icd::cut(address, '/'));
+      std::string text(icd::cut(address, '/'));
       if (each.name == interface && is_ipv6(text) == is_ipv6(any) && !is_link_local(text)) return text;
     }
   }

@@ -164,7 +164,7 @@ void HeadChecker::content_length(std::string_view value) {
   const auto length = icd::number_in<std::uint64_t>(value);
   if (!length || *length > static_cast<std::uint64_t>(INT64_MAX))
     return refuse("Content-Length: expected a whole number");
-  framing_ = {.has_body = *length > 0, .length = *length};
+  framing_ = {.has_body = *length > 0, .length = length};
 }
 
 /// RFC 9112 6.1, 7

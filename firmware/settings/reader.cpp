@@ -84,6 +84,7 @@ void Reader::tell_unknown(const std::string& name, const std::vector<Child>& chi
                           const std::string& path) {
   if (passes_unknown) return passed_over.push_back(joined(path, shown_name(name)));
   std::vector<std::string_view> known;
+  known.reserve(children.size());
   for (const Child& child : children) known.push_back(child.name);
   errors.push_back(
       {joined(path, shown_name(name)), icd::sentence("no such key", spelling::did_you_mean(name, known),

@@ -128,6 +128,11 @@ test("every path and method does as it is described to an operator", async (t) =
     "POST /adit/reports/{number}/withdraw": () => ({ number: withdrawn }),
     "POST /adit/reports/{number}/hold": async () => ({ number: await report("Cube") }),
     "POST /adit/reports/{number}/send": () => ({ number: withdrawn }),
+    "POST /adit/reports/{number}/correct": async () => {
+      const number = await report("Rope");
+      await ask("POST", `/adit/reports/${number}/hold`, { body: {} });
+      return { number };
+    },
     "POST /adit/reports/{number}/resubmit": () => ({ number: first }),
   };
   const current = async () => (await ask("GET", "/adit/settings")).json();

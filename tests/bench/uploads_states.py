@@ -17,7 +17,7 @@ def cpu_of_states(way, first):
     client, before = http.client.HTTPConnection("127.0.0.1", way.port, timeout=30), way.cpu()
     for number in range(first, first + COUNT):
         poses = [{"name": f"r{i}", **POSE, "position": {"x": i + 0.001 * number, "y": 2.5, "z": 0.125}} for i in range(10)]
-        client.request("POST", "/state/update", json.dumps({"header": header(number), "poses": poses}), HEADERS)
+        client.request("POST", "/state/update", json.dumps({"header": header(number * STEP), "poses": poses}), HEADERS)
         answer = client.getresponse()
         text = answer.read()
         if answer.status != 200:

@@ -35,7 +35,7 @@ auto call_of(const Handlers& handlers, const Call& call) {
   if constexpr (std::is_void_v<Argument>) {
     return (handler.*function)();
   } else if constexpr (std::integral<Argument>) {
-    const auto number = number_in<Argument>(call.parameters.front());
+    const auto number = icd::number_in<Argument>(call.parameters.front());
     return number ? (handler.*function)(*number) : nothing_at(call.head.path());
   } else if constexpr (std::same_as<Argument, std::string>) {
     return (handler.*function)(call.body);

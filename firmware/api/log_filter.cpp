@@ -31,7 +31,7 @@ icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head) {
     filter.severity = known->second;
   }
   if (const auto since = head.query("since"); !since.empty()) {
-    const auto number = number_in<std::uint64_t>(since);
+    const auto number = icd::number_in<std::uint64_t>(since);
     if (!number) return icd::refuse(icd::Status::BadRequest, "since: expected the number of a record");
     filter.after = *number;
   }

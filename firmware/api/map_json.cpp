@@ -170,14 +170,12 @@ MapView map_view(const picture::Mosaic& map, std::uint64_t since) {
 }
 
 CoveredView covered_view(const picture::Covered& covered) {
-  const auto square_metres = [](std::uint64_t pixels) {
-    return static_cast<double>(pixels) * picture::kPixel * picture::kPixel;
-  };
   CoveredView view{.version = covered.version,
-                   .square_metres = square_metres(covered.all),
+                   .square_metres = picture::square_metres(covered.all),
                    .whole = covered.is_whole,
                    .robots = {}};
-  for (const auto& [robot, pixels] : covered.of) view.robots.push_back({robot, square_metres(pixels)});
+  for (const auto& [robot, pixels] : covered.of)
+    view.robots.push_back({robot, picture::square_metres(pixels)});
   return view;
 }
 

@@ -27,7 +27,7 @@ struct AskedColour {
 AskedColour asked_colour(const intake::RequestHead& head, std::string_view name) {
   const std::string_view text = head.query(name);
   if (text.empty()) return {};
-  const auto value = number_in<std::uint32_t>(text, 16);
+  const auto value = icd::number_in<std::uint32_t>(text, 16);
   if (!value || text.size() != 6) return {.colour = {}, .wrong = true};
   const auto part = [value](int shift) { return static_cast<std::uint8_t>(*value >> shift); };
   return {.colour = picture::Colour{part(16), part(8), part(0)}};
@@ -69,7 +69,7 @@ intake::Answer image_of(const picture::Packed& tile, const TileAsked& asked, std
 
 std::expected<std::uint64_t, intake::Answer> version_asked(const intake::RequestHead& head) {
   const std::string_view text = head.query("since");
-  const auto version = text.empty() ? 0 : number_in<std::uint64_t>(text);
+  const auto version = text.empty() ? 0 : icd::number_in<std::uint64_t>(text);
   if (!version) return std::unexpected(bad_tile("since: expected a version, a whole number"));
   return *version;
 }
@@ -77,7 +77,8 @@ std::expected<std::uint64_t, intake::Answer> version_asked(const intake::Request
 std::expected<TileAsked, intake::Answer> tile_asked(const intake::RequestHead& head,
                                                     std::span<const std::string> parts) {
   if (parts[0] != "grid" && parts[0] != "cloud") return std::unexpected(nothing_at(head.path()));
-  const auto level = number_in<int>(parts[2]), x = number_in<int>(parts[3]), y = number_in<int>(parts[4]);
+  const auto level = icd::number_in<int>(parts[2]), x = icd::number_in<int>(parts[3]),
+             y = icd::number_in<int>(parts[4]);
   if (!level || !x || !y) return std::unexpected(nothing_at(head.path()));
   const AskedNumber at = asked_number(head, "at"), low = asked_number(head, "low"),
                     high = asked_number(head, "high");

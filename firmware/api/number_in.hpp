@@ -9,8 +9,6 @@
 
 namespace adit::api {
 
-using icd::number_in;
-
 /// A number in the query. `wrong`: present but not a finite number.
 struct AskedNumber {
   std::optional<double> number;
@@ -20,7 +18,7 @@ struct AskedNumber {
 inline AskedNumber asked_number(const intake::RequestHead& head, std::string_view name) {
   const std::string_view text = head.query(name);
   if (text.empty()) return {};
-  const auto number = number_in<double>(text);
+  const auto number = icd::number_in<double>(text);
   if (!number || !std::isfinite(*number)) return {.number = {}, .wrong = true};
   return {.number = number};
 }

@@ -48,7 +48,7 @@ intake::Answer accept(const std::string& body, Take take) {
 void ReportRoutes::listed(const Call& call, ListForm form, intake::Answer begun) const {
   std::optional<std::int64_t> run;
   if (const auto named = call.head.query("run"); !named.empty() && named != kAll) {
-    run = named == kPresent ? source_.view().run_number : number_in<std::int64_t>(named);
+    run = named == kPresent ? source_.view().run_number : icd::number_in<std::int64_t>(named);
     if (!run)
       return call.responder->answer(
           refusal(icd::Status::BadRequest, "run: expected a run's number, present or all"));
@@ -91,7 +91,7 @@ intake::Answer ReportRoutes::compose(const std::string& body) {
 }
 
 intake::Answer ReportRoutes::correct(const Call& call) {
-  const auto number = number_in<std::int64_t>(call.parameters.front());
+  const auto number = icd::number_in<std::int64_t>(call.parameters.front());
   if (!number) return nothing_at(call.head.path());
   if (!source_.report(*number)) return no_such(*number);
   return accept(call.body, [this, number](const icd::ArtifactReport& report, bool /*resubmit*/) {

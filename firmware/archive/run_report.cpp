@@ -75,7 +75,7 @@ std::string counts_of(const std::vector<api::ReportDetail>& reports) {
 
 /// "1234.5 m²"; "at least" if the picture lacks parts of grids.
 std::string area_of(std::uint64_t pixels, bool is_whole) {
-  const double metres = static_cast<double>(pixels) * picture::kPixel * picture::kPixel;
+  const double metres = picture::square_metres(pixels);
   return (is_whole ? "" : "at least ") + fixed(metres, metres < 100 ? 1 : 0) + " m\u00b2";
 }
 
@@ -190,7 +190,7 @@ std::string plots(const api::KeptRun& run, const Curve& curve, api::Time began) 
   Plot area{.name = "Covered area (m\u00b2)", .is_held = true};
   for (const auto& [at, pixels] : curve) {
     area.minutes.push_back(minutes(at));
-    area.values.emplace_back(static_cast<double>(pixels) * picture::kPixel * picture::kPixel);
+    area.values.emplace_back(picture::square_metres(pixels));
   }
   const api::History& history = run.history;
   constexpr double kHalf = 88, kTall = 45;

@@ -19,6 +19,11 @@ struct Covered {
   bool is_whole = true;                     // false: the picture lacks parts of grids, so the area is larger
 };
 
+/// The area of so many pixels of the base.
+constexpr double square_metres(std::uint64_t pixels) {
+  return static_cast<double>(pixels) * kPixel * kPixel;
+}
+
 /// Counts the covered area on request. Only places whose tiles changed are counted again. Keeps at most about
 /// 100 bytes for each place and 40 for each tile.
 class CoveredArea {

@@ -95,7 +95,7 @@ class Mosaic {
   };
   Shown tile(const Layer& layer, const TileAt& at, std::optional<double> stamp) const;
 
-  /// The base's tiles of grids, by place and robot, at places where one of them changed after version
+  /// Tiles of grids in the base, by place and robot. Only places with a tile that changed after version
   /// `since`. Valid until the next change.
   std::map<TileAt, std::vector<std::pair<std::string, const History*>>> grid_places(
       std::uint64_t since) const;

@@ -34,7 +34,7 @@ TEST(Labels, StayWithinTheFrameOrAreLeftOut) {
   EXPECT_FALSE(labels.place(50, 50, 1, 101, 3));
 }
 
-/// Whatever is placed: a thousand signs at random, or all at one place.
+/// A thousand signs at random places, or all at one place.
 TEST(Labels, NeverOverlapAndNeverCoverASign) {
   for (const double spread : {100.0, 12.0, 0.0}) {
     std::mt19937 random{11};

@@ -173,7 +173,7 @@ test("is drawn again only when something on it changed", async (t) => {
   });
   const { page } = await watch(t, "empty", { prepare });
   await settled(page);
-  await hears(page, 1); // what came at first is drawn
+  await hears(page, 1); // the first news are drawn
   const before = await page.evaluate(() => globalThis.drawn);
   await hears(page, 2);
   assert.equal(await page.evaluate(() => globalThis.drawn), before);

@@ -4,7 +4,7 @@ const MARGIN = 0.2, MAX_MARGIN = 200; // of the view's sides; pixels
 const MAX_RATIO = 1.6, MIN_RATIO = 0.7; // while somebody zooms, a layer is shown so much larger or smaller than it was drawn
 
 export class CachedLayer {
-  key = null; // of what is on it
+  key = null; // identifies the drawn content
   #canvas = document.createElement("canvas");
   #ctx = this.#canvas.getContext("2d");
   #view = null; // that it was drawn for, with the margin

@@ -13,7 +13,7 @@ import { looksOf, themeColours } from "./map_theme.js";
 import { drawTracks } from "./map_tracks.js";
 import { whenThemeChanges } from "./theme_now.js";
 
-const FADE_SECONDS = 20; // so often are tracks drawn again; what came since is drawn with the signs
+const FADE_SECONDS = 20; // the time between two drawings of all tracks; the signs' layer has the newer poses
 const BASE_SIZE = 14; // pixels: the size of the page's letters for which widths are given
 
 export class MapDrawing {

@@ -1,5 +1,5 @@
 // How the map gets onto its canvas: cached layers one above the other, each drawn again only if its content changed. A frame is a copy
-// of these, and what is written at the edges.
+// of these layers, with the text at the edges.
 import { CachedLayer } from "./map_cached_layer.js";
 
 const REST = 160; // ms without a move: then all is drawn exactly for what is seen
@@ -27,8 +27,8 @@ export class Picture {
   hasNames = true; // or there is no room for any
   before = () => {};
 
-  /** `layers`: from the lowest, {key(), draw(ctx, view)}; of a layer of which pieces change also `pieces()`, what changed since it was
-   *  last asked, [{left, right, bottom, top}] in metres; then draw() has the piece as its third. `isOfView`: it depends on what is seen.
+  /** `layers`: from the lowest, {key(), draw(ctx, view)}; a layer whose pieces change has pieces(), too: the areas that changed since the
+   *  last call, [{left, right, bottom, top}] in metres; draw() gets each area as its third argument. `isOfView`: the view decides its content.
    *  `over(ctx, view)` is drawn each time; `ground()` is the colour below all. */
   constructor(canvas, view, { layers, over, ground }) {
     [this.#canvas, this.#view, this.#over, this.#ground] = [canvas, view, over, ground];

@@ -108,8 +108,8 @@ export class Tracks {
   }
 }
 
-/** In each robot's colour and pattern; what is longer ago is fainter. `unit`: pixels, by the size of the page's letters. `since`: only
- *  what came later. */
+/** In each robot's colour and pattern; older poses are fainter. `unit`: pixels, by the size of the page's letters. `since`: draws only
+ *  later poses. */
 export function drawTracks(ctx, colours, view, tracks, now, unit, since = -Infinity) {
   ctx.lineJoin = "round";
   for (let age = AGES.length - 1; age >= 0; --age) {

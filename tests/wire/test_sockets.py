@@ -1,9 +1,13 @@
 """aditd takes its sockets from systemd, has it keep the others, and so loses nobody who connects while it is restarted:
 the tests play systemd (activation.py). On loopback."""
 
+import collections
+import contextlib
 import http.client
 import json
+import os
 import pathlib
+import re
 import signal
 import socket
 import tempfile
@@ -216,7 +220,12 @@ class Sockets(unittest.TestCase):
         process = pathlib.Path(f"/proc/{manager.process.pid}")
 
         def descriptors():
-            return len(list((process / "fd").iterdir()))
+            """Sockets and other objects of the kernel, and files that were removed: a file of the state may open late."""
+            found = []
+            for each in (process / "fd").iterdir():
+                with contextlib.suppress(FileNotFoundError):  # closed since
+                    found.append(re.sub(r"\d+", "", os.readlink(each)))
+            return collections.Counter(each for each in found if ":[" in each or "(deleted)" in each)
         before, command = descriptors(), (process / "cmdline").read_bytes()
         clients = [Clients(port), Clients(own)]
         for each in clients:
@@ -234,7 +243,7 @@ class Sockets(unittest.TestCase):
             self.assertEqual((each.refused, each.cut, each.troubles), (0, 0, []))
         self.assertIsNone(manager.process.poll())
         self.assertEqual(((process / "comm").read_text(), (process / "cmdline").read_bytes()), ("aditd\n", command))
-        programs.wait_until(lambda: descriptors() == before, "as many descriptors as before")
+        programs.wait_until(lambda: descriptors() <= before, f"no descriptor besides {before}")
         self.assertFalse(manager.heard("STOPPING=1"))
         self.assertEqual([name for name, _ in manager.store], [f"listen--127.0.0.1-{own}"], "systemd keeps the same one")
 

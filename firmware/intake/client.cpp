@@ -4,6 +4,7 @@
 #include <microhttpd.h>
 #include <netinet/in.h>
 #include <poll.h>
+#include <strings.h>
 #include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -155,12 +156,24 @@ void Client::request_begun(std::shared_ptr<Request> request) {
   expect_nothing();
 }
 
-void Client::request_over() {
+void Client::request_over(bool is_answered) {
+  const bool stays = is_answered && request_->keeps_connection() && client_keeps_connection();
   request_ = nullptr;
   enter(Phase::Idle);
   expect_bytes(engine_.listen().idle);
   gate_.request_over();
-  if (gate_.is_waiting()) engine_.hold_back_soon(number_);
+  if (!gate_.is_waiting()) return;
+  if (stays) {
+    hold_back();  // now, because later libmicrohttpd has added the socket to its epoll set
+  } else {
+    engine_.hold_back_soon(number_);  // libmicrohttpd is perhaps about to close it
+  }
+}
+
+bool Client::client_keeps_connection() const {
+  const char* const said =
+      MHD_lookup_connection_value(connection_, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONNECTION);
+  return !gate_.framing().is_version_1_0 && (said == nullptr || ::strcasecmp(said, "keep-alive") == 0);
 }
 
 void Client::expect_head() {

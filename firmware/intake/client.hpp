@@ -64,15 +64,16 @@ class Client {
   /// may still read.
   bool hung_up() const { return hung_up_; }
 
-  /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Must not be called
-  /// from its callbacks.
+  /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Not to be called
+  /// from its callbacks, except at the end of a request whose connection stays.
   void hold_back();
   Gate& gate() { return gate_; }
   /// libmicrohttpd has read the request line.
   void head_begun(std::string_view target);
   const std::string& target() const { return target_; }
   void request_begun(std::shared_ptr<Request> request);
-  void request_over();
+  /// `is_answered`: the answer was sent completely.
+  void request_over(bool is_answered);
   const std::shared_ptr<Request>& request() const { return request_; }
 
   /// The client must send bytes, or must read its answer, within that time.
@@ -113,6 +114,8 @@ class Client {
   Held::Doing doing() const;
   void enter(Phase phase);
   void expect_head();
+  /// RFC 9112 9.3. False if it is not sure: another Connection field than keep-alive, or HTTP/1.0.
+  bool client_keeps_connection() const;
   bool keeps_up();
   void happened(std::uint32_t events);
   void set_deadline(loop::Instant when);

@@ -195,6 +195,7 @@ void HeadChecker::end(std::string_view so_far) {
     refuse("Transfer-Encoding: not allowed in HTTP/1.0");  // RFC 9112 6.1
   } else if (verdict_ == Verdict::More) {
     if (has_coding_) framing_ = {.has_body = true, .length = std::nullopt};
+    framing_.is_version_1_0 = is_version_1_0_;
     verdict_ = Verdict::Whole;
   }
 }

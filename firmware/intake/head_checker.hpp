@@ -15,6 +15,7 @@ namespace adit::intake {
 struct Framing {
   bool has_body = false;
   std::optional<std::uint64_t> length = 0;  // absent if chunked
+  bool is_version_1_0 = false;              // the connection then ends with the answer (RFC 9112 9.3)
 };
 
 /// Checks the head of one request before libmicrohttpd reads it, because libmicrohttpd accepts more than RFC

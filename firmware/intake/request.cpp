@@ -176,7 +176,8 @@ Next Request::hand_over() {
   MHD_Response* response = stream_ ? ReplyStream::make_response(stream_) : make_response(*answer_);
   if (response == nullptr) return Next::Close;
   const unsigned status = stream_ ? MHD_HTTP_OK : static_cast<unsigned>(answer_->status);
-  if (client_->is_last_answer()) MHD_add_response_header(response, MHD_HTTP_HEADER_CONNECTION, "close");
+  is_last_ = client_->is_last_answer();
+  if (is_last_) MHD_add_response_header(response, MHD_HTTP_HEADER_CONNECTION, "close");
   const MHD_Result queued = MHD_queue_response(client_->connection(), status, response);
   MHD_destroy_response(response);
   if (queued != MHD_YES) return Next::Close;

@@ -42,6 +42,8 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
     return stage_ == Stage::Head || stage_ == Stage::Body || stage_ == Stage::Refusing;
   }
   /// True if libmicrohttpd has no part of an answer yet.
+  /// An answer without `Connection: close` was given to libmicrohttpd.
+  bool keeps_connection() const { return stage_ == Stage::Answering && !stream_ && !is_last_; }
   bool is_unanswered() const { return !answered() && (stage_ == Stage::Body || stage_ == Stage::Whole); }
   /// A callback of the handler threw. Answers 500, unless an answer was being sent, and closes the
   /// connection.
@@ -82,7 +84,8 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   std::optional<Answer> answer_;
   std::shared_ptr<ReplyStream> stream_;
   Stage stage_ = Stage::Head;
-  bool is_head_;  // the method is HEAD
+  bool is_last_ = false;  // on its connection, as far as Adit decides it
+  bool is_head_;          // the method is HEAD
   bool has_body_ = false;
   bool in_call_ = false;               // a call of the handler is running
   bool resumed_ = false;               // since the last piece

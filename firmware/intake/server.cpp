@@ -291,12 +291,13 @@ Next Server::Impl::hear(Client& client, std::string_view method, std::string_vie
 }
 
 void Server::Impl::request_completed(void*, MHD_Connection* connection, void** request_cls,
-                                     MHD_RequestTerminationCode) {
+                                     MHD_RequestTerminationCode why) {
   Client* client = client_of(connection);
   if (*request_cls == nullptr || client == nullptr || !client->request()) return;
   *request_cls = nullptr;
   const std::shared_ptr<Request> request = client->request();
-  loop::guarded("the end of a request", [&] { client->request_over(); });
+  loop::guarded("the end of a request",
+                [&] { client->request_over(why == MHD_REQUEST_TERMINATED_COMPLETED_OK); });
   loop::guarded("the end of a request", [&] { request->completed(); });
 }
 

@@ -103,17 +103,22 @@ bool Carried::read_poses(std::string_view said) {
   std::vector<std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>> read;
   if (!store::read(said, read)) return false;
   std::vector<lanes::PostedPose> poses;
-  for (const auto& [text, address, stamp, pose] : read) {
-    const auto name = icd::RobotName::parse(text);
+  poses.reserve(read.size());
+  for (auto& [text, address, stamp, pose] : read) {
+    auto name = icd::RobotName::parse(text);
     if (!name) return false;
-    poses.push_back({*name, pose, stamp, address});
+    poses.push_back({*std::move(name), pose, stamp, std::move(address)});
   }
-  for (const lanes::PostedPose& posted : poses) {
-    Robot& robot = robots_.try_emplace(posted.name, Robot{posted}).first->second;
-    robot.posted = posted;
-    robot.news = true;
+  for (lanes::PostedPose& posted : poses) {
     if (posted.stamp && !posted.address.empty())
       senders_.given({posted.address, icd::Uri::StateUpdate, posted.name.text()}, *posted.stamp);
+    const auto known = robots_.find(posted.name);
+    if (known == robots_.end()) {
+      robots_.emplace(posted.name, Robot{posted});
+    } else {
+      known->second.posted = std::move(posted);
+      known->second.news = true;
+    }
   }
   return true;
 }

@@ -36,6 +36,17 @@ TEST_F(ServerLives, ClientResetsWhileItsAnswerIsAwaited) {
   });
 }
 
+TEST_F(ServerLives, AConnectionEndsWithItsAnswerIfTheRequestSaysSo) {
+  client.close();
+  for (const std::string_view head :
+       {"GET /echo HTTP/1.1\r\nHost: adit\r\nConnection: Close\r\n\r\n", "GET /echo HTTP/1.0\r\n\r\n"}) {
+    RawClient asks(served.port());
+    asks.send(head);
+    EXPECT_EQ(asks.reply()->status, 200) << head;
+    EXPECT_TRUE(no_connections()) << head;
+  }
+}
+
 TEST_F(ServerLives, ClientResetsInTheMiddleOfItsHead) {
   client.send("GET /echo HT");
   ASSERT_TRUE(served.eventually([&] { return served.server().connections() == 1; }));

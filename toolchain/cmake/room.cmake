@@ -1,6 +1,6 @@
 # A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
 #   adit_room(codec SOURCES json.cpp cbor.cpp FAST base64.cpp ROOMS icd LIBRARIES PkgConfig::cjson)
-# SOURCES are compiled to be small (WAY: or as it says, headers.cmake), FAST ones to be fast: what works on each byte of a map.
+# SOURCES are compiled to be small (WAY: or as it says, headers.cmake), FAST ones to be fast: what works on each byte of a map or each number of a state.
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
 # DOOR are the headers that other rooms may include: tests/house/rooms sees to it.
 # SEAM are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,

@@ -1,17 +1,30 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "api/box.hpp"
 #include "api/entrance.hpp"
-#include "api/log_filter.hpp"
 #include "api/redacted.hpp"
 #include "api/report_list.hpp"
 #include "api/source.hpp"
 #include "intake/server.hpp"
 
 namespace adit::api {
+
+/// A selection of log records.
+struct LogFilter {
+  int severity = 7;         // this severity and worse ones
+  std::string text;         // part of the line, ignoring case; "": any
+  std::uint64_t after = 0;  // only larger numbers
+
+  bool lets(const LogRecord& record) const;
+};
+
+/// Reads `?level=warning&text=...&since=17`. Error 400: an invalid value.
+icd::Checked<LogFilter> read_log_filter(const intake::RequestHead& head);
 
 /// The box: metrics, log, about and support bundle. Routes: README.md.
 class BoxRoutes {

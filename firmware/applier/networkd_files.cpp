@@ -4,10 +4,10 @@
 
 #include <cerrno>
 #include <utility>
-#include <vector>
 
 #include "host/files.hpp"
 #include "host/log.hpp"
+#include "host/output.hpp"
 #include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "icd/sentence.hpp"
@@ -24,6 +24,24 @@ std::expected<std::string, std::string> text_of(const std::string& path) {
 }
 
 }  // namespace
+
+bool Reload::is_due() const {
+  return is_due_ || host::may_exist(file());
+}
+
+void Reload::set_due() {
+  if (is_due()) return;
+  is_due_ = true;
+  host::log_failure(host::Level::Error, "cannot note that networkd has to read its files",
+                    host::write_file(file(), "", host::kForAll));
+}
+
+std::expected<void, std::string> Reload::run() {
+  if (!is_due()) return {};
+  if (auto read = host::run_command({options_.networkctl, "reload"}, kWithin); !read) return read;
+  is_due_ = false;
+  return host::remove_file(file());
+}
 
 std::array<NetworkdFiles::Place, 2> NetworkdFiles::places() const {
   return {{{.interface = options_.team,

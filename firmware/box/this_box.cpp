@@ -1,15 +1,57 @@
 #include "box/this_box.hpp"
 
-#include <utility>
+#include <cJSON.h>
+#include <crypt.h>
+#include <gnu/libc-version.h>
+#include <libdeflate.h>
+#include <microhttpd.h>
+#include <sodium.h>
+#include <zlib.h>
 
-#include "box/parts.hpp"
+#include <boost/version.hpp>
+#include <utility>
+#include <vector>
+
+#include "box/build.hpp"
 #include "box/version.hpp"
 #include "host/interfaces.hpp"
 #include "host/log.hpp"
 #include "host/process.hpp"
+#include "icd/sentence.hpp"
+#include "panel/lines.hpp"
 
 namespace adit::box {
 namespace {
+
+constexpr const char* kLesserGpl = "LGPL-2.1-or-later";
+
+std::string dotted(int major, int minor, int patch) {
+  return icd::sentence(major, ".", minor, ".", patch);
+}
+
+std::string boost_version() {
+  return dotted(BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000, BOOST_VERSION % 100);
+}
+
+/// Libraries of the program, with versions at run time if known, else of the build.
+std::vector<api::PartRow> parts() {
+  return {{.name = "libmicrohttpd", .version = MHD_get_version(), .licence = kLesserGpl},
+          {.name = "cJSON", .version = cJSON_Version(), .licence = "MIT"},
+          {.name = "zlib", .version = zlibVersion(), .licence = "Zlib"},
+          {.name = "libdeflate", .version = LIBDEFLATE_VERSION_STRING, .licence = "MIT"},
+          {.name = "Boost.Beast", .version = boost_version(), .licence = "BSL-1.0"},
+          {.name = "libsystemd", .version = kSystemdVersion, .licence = kLesserGpl},
+          {.name = "libgpiod", .version = panel::gpiod_version(), .licence = kLesserGpl},
+          {.name = "libcrypt", .version = XCRYPT_VERSION_STR, .licence = kLesserGpl},
+          {.name = "libsodium", .version = sodium_version_string(), .licence = "ISC"},
+          {.name = "glibc", .version = gnu_get_libc_version(), .licence = kLesserGpl}};
+}
+
+/// "9f1c2ab0d3e4, GNU 12.2.0, Release"
+std::string build_text() {
+  const std::string_view commit = kCommit;
+  return icd::sentence(commit, commit.empty() ? "" : ", ", kCompiler, ", ", kBuildType);
+}
 
 api::LogRecord row_of(const host::Record& record) {
   api::LogRecord row{.seq = record.seq,

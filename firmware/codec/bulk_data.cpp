@@ -4,10 +4,18 @@
 #include <cmath>
 #include <utility>
 
+#include "icd/rules.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"
 
 namespace adit::codec {
+
+void CellPress::feed(std::span<const std::uint8_t> cells) {
+  if (!checked_) return;
+  checked_ = icd::check_cells(cells, fed_);
+  fed_ += cells.size();
+  gzipper_.feed(checked_ ? cells : cells.first(icd::sound_cells(cells)));
+}
 
 icd::Checked<void> BulkData::appear() {
   if (std::exchange(appeared_, true)) {

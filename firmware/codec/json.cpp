@@ -1,15 +1,97 @@
 #include "codec/json.hpp"
 
-#include <cmath>
+#include <cjson/cJSON.h>
 
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "codec/body_decoder.hpp"
+#include "codec/json_number.hpp"
 #include "codec/json_splitter.hpp"
+#include "codec/json_value.hpp"
 #include "codec/list.hpp"
-#include "codec/plain_json.hpp"
 #include "codec/write.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::codec {
 namespace {
+
+/// Length of a short number without exponent at the start of `text`, which fits a double. 0: not such a
+/// number.
+std::size_t plain_number(std::string_view text) {
+  constexpr std::size_t kShort = 15;
+  JsonNumber grammar;
+  const std::size_t length = grammar.next(text);
+  const bool whole = grammar.complete() && text.substr(0, length).find_first_of("eE") == text.npos;
+  const bool ended = length == text.size() || text[length] < '0' || text[length] > '9';
+  return whole && ended && length <= kShort ? length : 0;
+}
+
+bool is_plain(std::string_view text) {
+  const auto printable = [text](std::size_t at) {
+    return at < text.size() && text[at] >= ' ' && text[at] <= '~';
+  };
+  std::size_t depth = 0;
+  for (std::size_t at = 0; at < text.size(); ++at) {
+    const char c = text[at];
+    if (c == '"') {
+      do {
+        if (!printable(++at) || text[at] == '\\') return false;
+      } while (text[at] != '"');
+    } else if (c == '-' || (c >= '0' && c <= '9')) {
+      const std::size_t length = plain_number(text.substr(at));
+      if (length == 0) return false;
+      at += length - 1;
+    } else if (c == '{' || c == '[') {
+      if (++depth > BodyDecoder::kDeepest) return false;
+    } else if (!printable(at) && c != '\n' && c != '\r' && c != '\t') {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::size_t children_of(const cJSON& item) {
+  return static_cast<std::size_t>(cJSON_GetArraySize(&item));
+}
+
+/// BodyDecoder::kDeepest limits the recursion.
+Value value_of(const cJSON& item) {
+  if (cJSON_IsBool(&item)) return {static_cast<bool>(cJSON_IsTrue(&item))};
+  if (cJSON_IsNumber(&item)) return json_number_value(item.valuedouble);
+  if (cJSON_IsString(&item)) return {std::string(item.valuestring)};
+  if (cJSON_IsArray(&item)) {
+    Value::Array array;
+    array.reserve(children_of(item));
+    for (const cJSON* element = item.child; element != nullptr; element = element->next) {
+      array.push_back(value_of(*element));
+    }
+    return {std::move(array)};
+  }
+  if (cJSON_IsObject(&item)) {
+    Value::Object object;
+    object.reserve(children_of(item));
+    for (const cJSON* member = item.child; member != nullptr; member = member->next) {
+      object.emplace_back(member->string, value_of(*member));
+    }
+    return {std::move(object)};
+  }
+  return {};
+}
+
+/// Reads a document with cJSON if it has only features that cJSON reads like RFC 8259: ASCII without escapes,
+/// little nesting, short numbers. Most documents in one piece are so. std::nullopt: another document, or not
+/// well-formed.
+std::optional<Value> plain_json(std::string_view text) {
+  if (!is_plain(text)) return std::nullopt;
+  constexpr bool kNothingAfter = true;
+  const std::string copy(text);
+  const std::unique_ptr<cJSON, decltype(&cJSON_Delete)> root(
+      cJSON_ParseWithLengthOpts(copy.c_str(), copy.size() + 1, nullptr, kNothingAfter), &cJSON_Delete);
+  if (root == nullptr) return std::nullopt;
+  return value_of(*root);
+}
 
 /// Appends one value to `text`. The value's nesting limits the recursion.
 struct Writer {

@@ -1,7 +1,6 @@
 #include "journal/carried.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "host/log.hpp"
 

@@ -1,15 +1,159 @@
 #include "picture/draw.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
 #include "codec/map_pieces.hpp"
+#include "icd/require.hpp"
 #include "icd/try.hpp"
 #include "picture/aligned_grid.hpp"
 #include "picture/draw_parts.hpp"
 #include "picture/grid_cells.hpp"
-#include "picture/lay.hpp"
+#include "picture/palette.hpp"
+#include "picture/sheet.hpp"
 #include "picture/turned_grid.hpp"
 
 namespace adit::picture {
 namespace {
+
+constexpr int kSmall = kSide / kStep;
+using Small = std::array<std::uint8_t, kSmall * kSmall>;  // a tile at the scale of the next coarser level
+
+/// Changed tiles by the coarser tile that contains them.
+using Changed = std::map<TileAt, std::vector<std::pair<TileAt, Small>>>;
+
+Small reduced(const Pixels& pixels) {
+  Small small{};
+  for (std::size_t row = 0; row < kSide; ++row) {
+    const std::uint8_t* from = pixels.data() + row * kSide;
+    std::uint8_t* to = small.data() + row / kStep * kSmall;
+    for (std::size_t i = 0; i < kSmall; ++i) {
+      const std::uint8_t* four = from + i * kStep;
+      to[i] = std::max({to[i], four[0], four[1], four[2], four[3]});
+    }
+  }
+  return small;
+}
+
+/// Copies a part to its place in the coarser tile.
+void paste(const TileAt& part, const Small& small, Pixels& pixels) {
+  const int x = (part.x & (kStep - 1)) * kSmall, y = (part.y & (kStep - 1)) * kSmall;
+  for (int row = 0; row < kSmall; ++row) {  // the part's top row is its last one in y
+    std::copy_n(small.data() + static_cast<std::size_t>(row) * kSmall, kSmall,
+                pixels.data() + index_of(x, y + kSmall - 1 - row));
+  }
+}
+
+/// Lays tiles over the canvas, from the base up.
+class Layers {
+ public:
+  Layers(const Canvas& before, Drawing& drawing) : before_(before), drawing_(drawing) {}
+
+  template <class Change>
+  void change(const TileAt& at, Changed& changed, Change change) {
+    const auto found = before_.tiles.find(at);
+    if (found == before_.tiles.end()) {
+      was_.fill(0);
+    } else {
+      packer_.unpack(*found->second, was_);
+    }
+    is_ = was_;
+    change(is_);
+    if (is_ == was_) return;
+    drawing_.tiles.emplace_back(at, packer_.pack(is_));
+    if (at.level + 1 < kLevels) changed[coarser(at)].emplace_back(at, reduced(is_));
+  }
+
+ private:
+  const Canvas& before_;
+  Drawing& drawing_;
+  Packer packer_;
+  Pixels was_{}, is_{};
+};
+
+/// Unknown cells leave the earlier ones.
+void lay_cells(const Pixels& cells, Pixels& over) {
+  for (std::size_t i = 0; i < over.size(); ++i) over[i] = cells[i] != 0 ? cells[i] : over[i];
+}
+
+void lay_heights(const Pixels& heights, Pixels& over) {
+  for (std::size_t i = 0; i < over.size(); ++i) over[i] = std::max(over[i], heights[i]);
+}
+
+/// The known part of a tile, in metres. Requires a known pixel.
+Area area_of(const Sheet::Part& part) {
+  std::array<std::uint8_t, kSide> columns{};
+  int top = -1, bottom = 0;  // rows from the top
+  for (int row = 0; row < kSide; ++row) {
+    const std::uint8_t* from = part.pixels->data() + static_cast<std::size_t>(row) * kSide;
+    std::uint8_t any = 0;
+    for (std::size_t i = 0; i < kSide; ++i) {
+      columns[i] |= from[i];
+      any |= from[i];
+    }
+    if (any == 0) continue;
+    if (top < 0) top = row;
+    bottom = row + 1;
+  }
+  icd::require(top >= 0);
+  const auto is_known = [](std::uint8_t index) { return index != 0; };
+  const auto left = std::ranges::find_if(columns, is_known) - columns.begin();
+  const auto right = std::find_if(columns.rbegin(), columns.rend(), is_known).base() - columns.begin();
+  const double x = part.at.x * double{kSide}, y = (part.at.y + 1) * double{kSide};
+  return {(x + static_cast<double>(left)) * kPixel, (y - bottom) * kPixel,
+          (x + static_cast<double>(right)) * kPixel, (y - top) * kPixel};
+}
+
+/// Leaves out a hundredth of the pixels at either end, because they may be errors and would compress the
+/// colours of the others.
+std::optional<Heights> heights_of(const Sheet& sheet) {
+  std::array<std::size_t, 256> count{};
+  for (const auto& part : sheet.parts()) {
+    for (const std::uint8_t index : *part.pixels) {
+      if (index != 0) ++count[index];  // most are unknown: counting them takes five times as long
+    }
+  }
+  std::size_t known = 0;
+  for (std::size_t index = 1; index < count.size(); ++index) known += count[index];
+  if (known == 0) return {};
+  const auto beyond = [&](std::size_t pixels) {  // the first index up to which there are more pixels
+    std::size_t index = 0;
+    for (std::size_t below = 0; below <= pixels;) below += count[++index];
+    return static_cast<std::uint8_t>(index);
+  };
+  const std::size_t few = known / 100;
+  const auto rounded = [](double metres) {
+    return std::round(metres * 10) / 10;  // for the reader
+  };
+  return Heights{rounded(height_of(beyond(few)) - kHeightStep / 2),
+                 rounded(height_of(beyond(known - 1 - few)) + kHeightStep / 2)};
+}
+
+/// Lays a map's sheet over `before`, at all levels. Fills in the drawing's tiles, area and heights. Its layer
+/// must be set.
+void lay(const Sheet& sheet, const Canvas& before, Drawing& drawing) {
+  const bool is_grid = drawing.layer.kind == Kind::Grid;
+  Layers layers{before, drawing};
+  Changed changed;
+  for (const Sheet::Part& part : sheet.parts()) {
+    extend(drawing.area, area_of(part));
+    layers.change(part.at, changed, [&](Pixels& pixels) {
+      if (is_grid) return lay_cells(*part.pixels, pixels);
+      lay_heights(*part.pixels, pixels);
+    });
+  }
+  while (!changed.empty()) {
+    Changed coarser_ones;
+    for (const auto& [at, parts] : changed) {
+      layers.change(at, coarser_ones, [&parts](Pixels& pixels) {
+        for (const auto& [part, small] : parts) paste(part, small, pixels);
+      });
+    }
+    changed = std::move(coarser_ones);
+  }
+  if (!is_grid) drawing.heights = heights_of(sheet);
+}
 
 template <class Drawer>
 icd::Checked<std::size_t> draw_by(const icd::OccupancyGrid& grid, const icd::Placement& placement,

@@ -3,15 +3,22 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
-#include "picture/canvas.hpp"
+#include "picture/tile.hpp"
 
 namespace adit::picture {
+
+/// The present tiles of a layer, to draw on. Tiles never change, so a worker may read them.
+struct Canvas {
+  std::uint64_t run = 0;         // the mosaic's run to which it belongs
+  std::map<TileAt, Tile> tiles;  // never null
+};
 
 /// Heights above z = 0 of "darpa", in metres.
 struct Heights {

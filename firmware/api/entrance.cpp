@@ -2,6 +2,7 @@
 
 #include "access/whence.hpp"
 #include "api/answers.hpp"
+#include "icd/try.hpp"
 
 namespace adit::api {
 namespace {
@@ -30,7 +31,7 @@ icd::Checked<Asker> Entrance::admit(const intake::RequestHead& head, Who who) {
   const bool for_anybody =
       who == Who::OwnPage || (who == Who::OperatorOrSetUp && (keys_.first_start() || keys_.set_up_open()));
   if (!for_anybody) return std::unexpected(visitor.error());
-  if (const auto whence = access::check_whence(request); !whence) return std::unexpected(whence.error());
+  ADIT_TRY(access::check_whence(request));
   const auto known = this->who(head);
   return Asker{.admitted = false, .session = known ? session_of(*known) : 0};
 }

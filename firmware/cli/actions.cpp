@@ -65,12 +65,11 @@ Result<Outcome> decide_on(const Call& call, std::int64_t number) {
   }
   const bool is_new = verb == "resubmit";
   const std::string check = is_new ? "adit reports" : icd::sentence("adit reports show ", number);
-  const auto answer =
-      told<DecidedReport>(call.adit, post(call.adit, {.target = target + "/" + verb, .check = check}));
-  if (!answer) return std::unexpected(answer.error());
+  const auto answer = ADIT_TRY(
+      told<DecidedReport>(call.adit, post(call.adit, {.target = target + "/" + verb, .check = check})));
   const char* const done = std::ranges::find(kDecisions, verb, &Decision::verb)->done;
-  const std::string moved = is_new ? std::to_string(answer->row.report) : "";
-  return said(call, answer->json, icd::sentence("report ", number, done, moved, "\n"));
+  const std::string moved = is_new ? std::to_string(answer.row.report) : "";
+  return said(call, answer.json, icd::sentence("report ", number, done, moved, "\n"));
 }
 
 }  // namespace
@@ -88,9 +87,8 @@ Result<Outcome> correct_report(const Call& call) {
   if (const auto wrong = command_line::read_number(words.front(), std::uint64_t{1}, kMostNumber, number))
     return failed("the report's number: " + *wrong);
   const std::string target = icd::sentence("/adit/reports/", number);
-  const auto now = fetch<api::ReportDetail>(call.adit, target);
-  if (!now) return std::unexpected(now.error());
-  const api::ReportRow& report = now->row.row;
+  const auto now = ADIT_TRY(fetch<api::ReportDetail>(call.adit, target));
+  const api::ReportRow& report = now.row.row;
   std::map<std::string, codec::Value> body{{"type", {report.type}}};
   for (const auto& [name, axis] : kAxes) {
     if (report.position) body[name] = {(*report.position).*axis};
@@ -107,22 +105,20 @@ Result<Outcome> correct_report(const Call& call) {
       return failed(name + ": " + *wrong);
     body[name] = is_axis ? codec::Value{metres} : codec::Value{value};
   }
-  const auto answer = told<DecidedReport>(
+  const auto answer = ADIT_TRY(told<DecidedReport>(
       call.adit,
       post(call.adit, {.target = target + "/correct",
                        .check = icd::sentence("adit reports show ", number),
-                       .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})}));
-  if (!answer) return std::unexpected(answer.error());
-  return said(call, answer->json,
-              icd::sentence("report ", number, " is corrected as report ", answer->row.report, "\n"));
+                       .body = codec::write_json({codec::Value::Object(body.begin(), body.end())})})));
+  return said(call, answer.json,
+              icd::sentence("report ", number, " is corrected as report ", answer.row.report, "\n"));
 }
 
 Result<Outcome> begin_run(const Call& call) {
   const auto answer =
-      told<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"}));
-  if (!answer) return std::unexpected(answer.error());
-  return said(call, answer->json,
-              icd::sentence("run ", answer->row.run,
+      ADIT_TRY(told<BegunRun>(call.adit, post(call.adit, {.target = "/adit/runs", .check = "adit reports"})));
+  return said(call, answer.json,
+              icd::sentence("run ", answer.row.run,
                             " begins; unsent reports of earlier runs are held: see adit reports\n"));
 }
 

@@ -78,10 +78,9 @@ Result<Outcome> complete_rejected(const Call& call) {
 
 Result<Outcome> complete_courses(const Call& call) {
   const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, "/adit/settings"));
-  const auto settings = settings_in(setup.row);
-  if (!settings) return std::unexpected(settings.error());
+  const auto settings = ADIT_TRY(settings_in(setup.row));
   std::vector<Candidate> all;
-  for (const settings::Course& course : settings->courses)
+  for (const settings::Course& course : settings.courses)
     all.push_back({course.name, course.scoring.address});
   return said(call, json_of(all), lines(all));
 }

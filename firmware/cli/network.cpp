@@ -5,6 +5,7 @@
 #include "cli/handlers.hpp"
 #include "cli/words.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
@@ -57,9 +58,7 @@ Result<Outcome> show_network(const Call& call) {
 
 Result<Outcome> decide_on_network(const Call& call) {
   const bool confirms = call.options.word() == "confirm";
-  const auto accepted =
-      post(call.adit, {.target = "/adit/network/" + call.options.word(), .check = "adit network"});
-  if (!accepted) return std::unexpected(accepted.error());
+  ADIT_TRY(post(call.adit, {.target = "/adit/network/" + call.options.word(), .check = "adit network"}));
   const auto told = fetch_until<api::NetworkView>(call.adit, "/adit/network", kConfirming,
                                                   [](const api::NetworkView& view) { return !view.pending; });
   // After a revert, the box may no longer have the address that was asked.

@@ -69,24 +69,22 @@ Result<SpareView> put_on_standby(const Call& call) {
                    "of the export; queued maps, states and markers stay here.",
                    "Put it on standby?"));
   ADIT_TRY(post(call.adit, {.target = "/adit/spare/standby", .check = kSeeSpare}));
-  auto told =
+  auto told = ADIT_TRY(
       fetch_until<SpareView>(call.adit, kSpare, for_box(std::chrono::seconds(60)),
-                             [](const SpareView& seen) { return seen.standby && !seen.code.empty(); });
-  if (!told) return std::unexpected(told.error());
-  return std::move(told->row);
+                             [](const SpareView& seen) { return seen.standby && !seen.code.empty(); }));
+  return std::move(told.row);
 }
 
 /// Requests an action on the stick and waits for its end.
 Result<SpareView> ask_stick(const Adit& adit, const char* target, const std::string& body) {
   ADIT_TRY(post(adit, {.target = target, .check = kSeeSpare, .body = body}));
-  auto told =
+  auto told = ADIT_TRY(
       fetch_until<SpareView>(adit, kSpare, for_box(std::chrono::seconds(330)),
-                             [](const SpareView& seen) { return !seen.stick || seen.stick->doing.empty(); });
-  if (!told) return std::unexpected(told.error());
-  const auto& stick = told->row.stick;
+                             [](const SpareView& seen) { return !seen.stick || seen.stick->doing.empty(); }));
+  const auto& stick = told.row.stick;
   if (!stick) return failed("adit-spare is not running");
   if (!stick->refusal.empty()) return failed(stick->refusal, Exit::Attention);
-  return std::move(told->row);
+  return std::move(told.row);
 }
 
 /// The stick's state before a request.
@@ -179,28 +177,23 @@ Result<Outcome> take_spare(const Call& call) {
   if (options.code.empty()) return failed("the code of the export is missing: give --code");
   ADIT_TRY(options.stick ? take_from_stick(call) : take_from_file(call));
   const codec::Value code{codec::Value::Object{{"code", {options.code}}}};
-  const auto opened =
-      post(adit, {.target = "/adit/spare/open", .check = kSeeSpare, .body = codec::write_json(code)});
-  if (!opened) return std::unexpected(opened.error());
+  const auto opened = ADIT_TRY(
+      post(adit, {.target = "/adit/spare/open", .check = kSeeSpare, .body = codec::write_json(code)}));
   const auto told = ADIT_TRY(fetch<SpareView>(adit, kSpare));
   if (!told.row.taken_in) return failed("the box no longer has the export: see adit spare");
   if (!options.json) console.print(text_of(*told.row.taken_in));
-  const auto meant =
-      confirm(options, console,
-              "If that box is still plugged in, or no longer on standby, reports may be sent twice.",
-              "Is that box unplugged, and should this box take over?");
-  if (!meant) return std::unexpected(meant.error());
-  const auto done =
-      post(adit, {.target = "/adit/spare/take-over", .check = kSeeSpare, .body = R"({"unplugged": true})"});
-  if (!done) return std::unexpected(done.error());
-  return said(call, *opened, "this box is taking over\n");
+  ADIT_TRY(confirm(options, console,
+                   "If that box is still plugged in, or no longer on standby, reports may be sent twice.",
+                   "Is that box unplugged, and should this box take over?"));
+  ADIT_TRY(
+      post(adit, {.target = "/adit/spare/take-over", .check = kSeeSpare, .body = R"({"unplugged": true})"}));
+  return said(call, opened, "this box is taking over\n");
 }
 
 Result<Outcome> resume_service(const Call& call) {
-  const auto meant =
-      confirm(call.options, call.console,
-              "If a spare has taken over from this box, reports may be sent twice.", "End the standby?");
-  if (!meant) return std::unexpected(meant.error());
+  ADIT_TRY(confirm(call.options, call.console,
+                   "If a spare has taken over from this box, reports may be sent twice.",
+                   "End the standby?"));
   return act(call, {.target = "/adit/spare/resume", .check = kSeeSpare}, "this box is in service\n");
 }
 

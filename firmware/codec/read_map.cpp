@@ -148,13 +148,12 @@ icd::Checked<icd::MapUpdate> read_map_update(Document document, const icd::Rules
   auto compression = icd::Compression::None;
   auto update = read_structure(document, rules, compression);
   if (!update) return update;
-  auto data = read_data(*update, std::move(document), compression, rules);
-  if (!data) return std::unexpected(std::move(data.error()));
+  auto data = ADIT_TRY(read_data(*update, std::move(document), compression, rules));
   if (auto* cloud = std::get_if<icd::PointCloud2>(&update->msg); cloud != nullptr && cloud->is_bigendian) {
-    data = turned(*cloud, *std::move(data));
-    if (!data) return std::unexpected(std::move(data.error()));
+    auto turned_data = ADIT_TRY(turned(*cloud, std::move(data)));
+    data = std::move(turned_data);
   }
-  update->data = *std::move(data);
+  update->data = std::move(data);
   return update;
 }
 

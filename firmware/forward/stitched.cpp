@@ -8,6 +8,7 @@
 #include "codec/read.hpp"
 #include "codec/write.hpp"
 #include "icd/refuse.hpp"
+#include "icd/try.hpp"
 #include "lanes/lattice.hpp"
 #include "pack/pack.hpp"
 #include "pack/pack_cells.hpp"
@@ -95,11 +96,10 @@ icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting) {
     tiles.push_back({part.map.data, static_cast<std::size_t>(cells->x), static_cast<std::size_t>(cells->y),
                      static_cast<std::size_t>(cells->width), static_cast<std::size_t>(cells->height)});
   }
-  auto data =
+  auto data = ADIT_TRY(
       pack::stitch(grid.width, grid.height, tiles,
-                   waiting.has_gaps ? lanes::cells_under(*waiting.ground) : std::vector<std::uint8_t>{});
-  if (!data) return std::unexpected(std::move(data.error()));
-  whole.data = std::move(*data);
+                   waiting.has_gaps ? lanes::cells_under(*waiting.ground) : std::vector<std::uint8_t>{}));
+  whole.data = std::move(data);
   return whole;
 }
 

@@ -5,6 +5,7 @@
 #include "codec/json.hpp"
 #include "codec/row.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "ledger/ledger.hpp"
 #include "ledger/record.hpp"
 #include "store/contents.hpp"
@@ -68,13 +69,11 @@ Value::Object dumped(const store::Record& record, std::vector<std::string>& dama
 
 store::Result<std::vector<std::string>> dump(const std::string& directory,
                                              const std::function<void(const std::string&)>& print) {
-  const auto there = store::Directory::look(directory);
-  if (!there) return std::unexpected(there.error());
-  auto contents = store::Contents::read(*there, Ledger::kKeeping);
-  if (!contents) return std::unexpected(contents.error());
-  if (contents->is_new) return std::unexpected(store::Error{.what = directory + ": there is no ledger"});
-  std::vector<std::string> damage = std::move(contents->notes);
-  for (const store::Item& item : contents->items) {
+  const auto there = ADIT_TRY(store::Directory::look(directory));
+  auto contents = ADIT_TRY(store::Contents::read(there, Ledger::kKeeping));
+  if (contents.is_new) return std::unexpected(store::Error{.what = directory + ": there is no ledger"});
+  std::vector<std::string> damage = std::move(contents.notes);
+  for (const store::Item& item : contents.items) {
     const auto* const gap = std::get_if<store::Gap>(&item);
     if (gap != nullptr) damage.push_back("records are missing in " + gap->file);
     print(codec::write_json({gap != nullptr ? dumped(*gap) : dumped(std::get<store::Record>(item), damage)}) +

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "ledger/book.hpp"
 #include "store/directory.hpp"
 #include "store/log.hpp"
@@ -48,11 +49,10 @@ class Ledger::Impl {
   Result<void> write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
                      dispatch::Flush flush) {
     if (steps.empty() && run == nullptr) return {};
-    const auto record = book_.record(steps, run);
-    if (!record) return std::unexpected(record.error());
+    const auto record = ADIT_TRY(book_.record(steps, run));
     const bool has_new = std::ranges::any_of(
         steps, [this](const dispatch::Report& step) { return !book_.knows(step.number); });
-    return append(*record, flush, has_new);
+    return append(record, flush, has_new);
   }
 
   Result<void> append(const std::string& record, dispatch::Flush flush, bool has_new) {
@@ -147,9 +147,8 @@ class Ledger::Impl {
       if (auto turned = log_->turn(); !turned) return turned;
       has_turned_ = true;
     }
-    auto snapshot = store::Snapshot::begin(*directory_, kKeeping, *log_);
-    if (!snapshot) return std::unexpected(snapshot.error());
-    if (auto written = ledger::write(*snapshot, book_, *enough_); !written) return written;
+    auto snapshot = ADIT_TRY(store::Snapshot::begin(*directory_, kKeeping, *log_));
+    if (auto written = ledger::write(snapshot, book_, *enough_); !written) return written;
     snapshot_ = next_snapshot_ = log_->number();
     is_damaged_ = false;
     return {};
@@ -162,32 +161,29 @@ Ledger& Ledger::operator=(Ledger&&) noexcept = default;
 Ledger::~Ledger() = default;
 
 Result<Ledger> Ledger::open(const std::string& state, const Known& known) {
-  auto directory = store::Directory::lock(state + '/' + kDirectory);
-  if (!directory) return std::unexpected(directory.error());
-  auto contents = store::Contents::read(*directory, kKeeping);
-  if (!contents) return std::unexpected(contents.error());
-  auto reading = read(*contents);
-  if (!reading) return std::unexpected(reading.error());
-  Book& book = reading->book;
-  if ((known.log != 0 && !contents->has(known.log)) || book.highest() < known.reports) {
-    reading->gap += icd::sentence(reading->gap.empty() ? "" : ", ", "its last records are not there");
-    reading->end_is_lost = true;
+  auto directory = ADIT_TRY(store::Directory::lock(state + '/' + kDirectory));
+  auto contents = ADIT_TRY(store::Contents::read(directory, kKeeping));
+  auto reading = ADIT_TRY(read(contents));
+  Book& book = reading.book;
+  if ((known.log != 0 && !contents.has(known.log)) || book.highest() < known.reports) {
+    reading.gap += icd::sentence(reading.gap.empty() ? "" : ", ", "its last records are not there");
+    reading.end_is_lost = true;
   }
   // File names are never reused, even of removed logs.
-  contents->number = std::max(contents->number, known.log);
+  contents.number = std::max(contents.number, known.log);
   std::string damage;
-  const bool is_damaged = !reading->gap.empty();
+  const bool is_damaged = !reading.gap.empty();
   if (is_damaged) {
-    const std::string found = book.salvage(now(), known.reports, reading->end_is_lost);
-    damage = icd::sentence("The ledger was damaged (", reading->gap, "). Its files are kept in ", state, "/",
+    const std::string found = book.salvage(now(), known.reports, reading.end_is_lost);
+    damage = icd::sentence("The ledger was damaged (", reading.gap, "). Its files are kept in ", state, "/",
                            kDirectory, "/damaged-*; ", found, ".");
-  } else if (!contents->notes.empty()) {
+  } else if (!contents.notes.empty()) {
     damage = "The ledger's files were damaged and were repaired: ";
-    for (const std::string& note : contents->notes)
-      damage += (note == contents->notes.front() ? "" : "; ") + note;
+    for (const std::string& note : contents.notes)
+      damage += (note == contents.notes.front() ? "" : "; ") + note;
     damage += ". No report is missing.";
   }
-  auto impl = std::make_unique<Impl>(std::move(*directory), std::move(*contents), std::move(book),
+  auto impl = std::make_unique<Impl>(std::move(directory), std::move(contents), std::move(book),
                                      std::move(damage), is_damaged, known);
   (void)impl->make_ready();  // refusal() has the reason
   return Ledger(std::move(impl));
@@ -203,9 +199,8 @@ bool Ledger::can_be_read(const std::string& state) {
 }
 
 Result<std::string> Ledger::set_aside(const std::string& state) {
-  const auto folder = store::Directory::look(state);
-  if (!folder) return std::unexpected(folder.error());
-  return folder->rename_aside(kDirectory);
+  const auto folder = ADIT_TRY(store::Directory::look(state));
+  return folder.rename_aside(kDirectory);
 }
 
 Result<void> Ledger::write(std::span<const dispatch::Report> steps, const dispatch::Run* run,
@@ -247,9 +242,8 @@ Result<void> Ledger::take_over(const std::string& copy, const dispatch::Handover
   const Book& here = impl_->book_;
   const dispatch::TakeOver taken =
       dispatch::take_over({here.reports(), here.runs()}, {there.reports(), there.runs()}, handover);
-  const auto record = here.record(taken, there);
-  if (!record) return std::unexpected(record.error());
-  return impl_->append(*record, dispatch::Flush::Now, true);
+  const auto record = ADIT_TRY(here.record(taken, there));
+  return impl_->append(record, dispatch::Flush::Now, true);
 }
 
 const std::string& Ledger::damage() const {

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "codec/json.hpp"
 #include "icd/sentence.hpp"
+#include "icd/try.hpp"
 #include "settings/consistency.hpp"
 #include "settings/reader.hpp"
 
@@ -80,11 +80,10 @@ class BoardReader {
 }  // namespace
 
 std::expected<Board, std::vector<Error>> parse_board(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
-  const auto* const members = std::get_if<Value::Object>(&root->is);
+  const auto root = ADIT_TRY(read_json(json));
+  const auto* const members = std::get_if<Value::Object>(&root.is);
   if (members == nullptr) {
-    return std::unexpected(std::vector<Error>{{"", "expected an object, got " + shown(*root)}});
+    return std::unexpected(std::vector<Error>{{"", "expected an object, got " + shown(root)}});
   }
   BoardReader board;
   board.read(*members);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 #include "spelling/nearest.hpp"
@@ -24,6 +25,12 @@ std::string range_of(const List& list) {
 }
 
 }  // namespace
+
+std::expected<Value, std::vector<Error>> read_json(std::string_view json) {
+  auto root = codec::parse_json(json);
+  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
+  return *std::move(root);
+}
 
 std::string joined(const std::string& path, std::string_view name) {
   return path.empty() ? std::string(name) : path + "." + std::string(name);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <expected>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,6 +31,9 @@ class Reader {
   void read_list(const codec::Value& value, const std::string& pattern, const std::string& path);
   void tell_missing(const Child& child, const std::string& pattern, const std::string& path);
 };
+
+/// The value of a JSON text. An error has no path.
+std::expected<codec::Value, std::vector<Error>> read_json(std::string_view json);
 
 /// "team.listen"
 std::string joined(const std::string& path, std::string_view name);

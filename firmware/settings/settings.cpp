@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "codec/json.hpp"
 #include "icd/require.hpp"
+#include "icd/try.hpp"
 #include "settings/consistency.hpp"
 #include "settings/reader.hpp"
 #include "settings/saved.hpp"
@@ -40,9 +40,8 @@ icd::RobotName name_of(const Robot& robot) {
 }
 
 std::expected<Settings, std::vector<Error>> parse(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
-  return parse(*root);
+  const auto root = ADIT_TRY(read_json(json));
+  return parse(root);
 }
 
 std::expected<Settings, std::vector<Error>> parse(const Value& root) {
@@ -51,13 +50,11 @@ std::expected<Settings, std::vector<Error>> parse(const Value& root) {
 }
 
 std::expected<Saved, std::vector<Error>> parse_saved(std::string_view json) {
-  const auto root = codec::parse_json(json);
-  if (!root) return std::unexpected(std::vector<Error>{{"", "not JSON: " + root.error()}});
+  const auto root = ADIT_TRY(read_json(json));
   Reader reader;
   reader.passes_unknown = true;
-  auto settings = read(reader, *root);
-  if (!settings) return std::unexpected(std::move(settings.error()));
-  return Saved{std::move(*settings), std::move(reader.passed_over)};
+  auto settings = ADIT_TRY(read(reader, root));
+  return Saved{std::move(settings), std::move(reader.passed_over)};
 }
 
 std::vector<std::string_view> words(std::string_view text) {

@@ -11,11 +11,12 @@
 namespace adit::admin {
 namespace {
 
-/// Resolves names on the team's side alone, because mDNS listens only there.
-api::PortRow port_of(const char* side, const std::string& interface) {
-  const auto all = host::interfaces().value_or(std::vector<host::Interface>{});
+/// Resolves names on the team's side alone, because mDNS listens only there. Error: the interfaces cannot be
+/// read.
+std::expected<api::PortRow, std::string> port_of(const char* side, const std::string& interface) {
+  const auto all = ADIT_TRY(host::interfaces());
   const auto found = std::ranges::find(all, interface, &host::Interface::name);
-  const host::Port port = host::port(interface).value_or(host::Port{});
+  const host::Port port = ADIT_TRY(host::port(interface)).value_or(host::Port{});
   const bool is_team = std::string_view(side) == "team";
   api::PortRow row{.side = side,
                    .interface = interface,
@@ -97,12 +98,18 @@ api::NetworkView NetworkChange::network() const {
   auto post = host::own_addresses(view.command_post_interface);
   if (!team) view.why = team.error();
   if (!post) view.why = post.error();
+  for (const auto& [side, interface] :
+       {std::pair("team", view.team_interface), std::pair("command_post", view.command_post_interface)}) {
+    if (interface.empty()) continue;
+    if (auto port = port_of(side, interface)) {
+      view.ports.push_back(*std::move(port));
+    } else {
+      view.why = port.error();
+    }
+  }
   view.managed = view.why.empty();
   view.team = team.value_or(std::nullopt);
   view.command_post = std::move(post).value_or(std::vector<settings::Subnet>());
-  if (!view.team_interface.empty()) view.ports.push_back(port_of("team", view.team_interface));
-  if (!view.command_post_interface.empty())
-    view.ports.push_back(port_of("command_post", view.command_post_interface));
   const auto kept = this->kept();
   if (kept) {
     view.mode = kept->mode;
@@ -195,9 +202,9 @@ void NetworkChange::lead_to_endpoints() {
                     adit_network_.leave(network::kEndpointsFile, all));
 }
 
-std::string NetworkChange::next_hop(const settings::Address& endpoint) const {
+std::expected<std::string, std::string> NetworkChange::next_hop(const settings::Address& endpoint) const {
   const auto number = settings::ipv4_of(endpoint.address);
-  const auto numbers = present().value_or(std::nullopt);  // network() shows an error
+  const auto numbers = ADIT_TRY(present());
   if (!number || !numbers) return "";
   const auto hop = network::next_hop(*numbers, *number);
   return hop ? settings::ipv4_text(*hop) : "";
@@ -229,8 +236,13 @@ std::optional<alarms::TakenAddress> NetworkChange::taken(const std::string& inte
 
 /// The first one that is an endpoint of the settings or its gateway.
 std::optional<alarms::ExchangedAddress> NetworkChange::exchanged() const {
-  const std::string scoring = next_hop(settings_.command_post.scoring),
-                    mapping = next_hop(settings_.command_post.mapping);
+  const auto scoring = next_hop(settings_.command_post.scoring),
+             mapping = next_hop(settings_.command_post.mapping);
+  std::string trouble;
+  if (!scoring) trouble = scoring.error();
+  if (!mapping) trouble = mapping.error();
+  if (std::exchange(hop_trouble_, trouble) != trouble && !trouble.empty())
+    host::log(host::Level::Error, "cannot check at which port the Command Post is", {{"why", trouble}});
   for (const network::TakenAddress& each : taken_.exchanged) {
     if (loop_.now() >= each.seen + network::kTakenFor) continue;
     if (each.interface != settings_.team.interface || (each.address != scoring && each.address != mapping))

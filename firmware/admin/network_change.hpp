@@ -38,7 +38,8 @@ class NetworkChange final : public api::Network {
   /// settings and of all courses.
   void every_second();
   /// The host to ask for an endpoint on the Command Post's side: the endpoint or its gateway. "": no route.
-  std::string next_hop(const settings::Address& endpoint) const;
+  /// Error: the box's addresses are not known.
+  std::expected<std::string, std::string> next_hop(const settings::Address& endpoint) const;
 
   /// Input of the alarm rules.
   alarms::NetworkFact fact() const;
@@ -66,7 +67,7 @@ class NetworkChange final : public api::Network {
   host::RootProgram<network::Status>& adit_network_;
   const std::string taken_file_;
   mutable network::Taken taken_;
-  mutable std::string taken_trouble_;  // the last read error, logged once
+  mutable std::string taken_trouble_, hop_trouble_;  // the last read errors, logged once
   mutable std::optional<loop::Instant> taken_read_at_;
   network::Wanted wanted_;  // last request
   loop::Instant wanted_at_{};

@@ -47,7 +47,7 @@ struct NetworkView {
   std::optional<std::uint32_t> gateway;
 
   std::optional<PendingNetwork> pending;
-  std::vector<PortRow> ports;  // those in the settings
+  std::vector<PortRow> ports;  // those in the settings that can be read; else `why` has the reason
   std::string last;            // "confirmed", "reverted", or "" before a change since the start
   std::string last_why;        // its reason
   static const codec::Row kRow;

@@ -149,8 +149,10 @@ void SelfTest::ask_address() {
   } else if (status->command_post_interface != interface) {
     why = "adit-network has " + status->command_post_interface + " instead";
   }
+  const auto next_hop = network_.next_hop(address());
+  if (!next_hop && why.empty()) why = next_hop.error();
   if (own && *own && why.empty()) {
-    probe_ = {host::draw_nonce(), network_.next_hop(address())};
+    probe_ = {host::draw_nonce(), *next_hop};
     const auto asked = adit_network_.leave(network::kProbeFile, probe_);
     until_ = loop_.now() + kProbeWithin;
     if (asked) return wait_for_probe();

@@ -17,6 +17,7 @@
 
 #include "host/files.hpp"
 #include "host/interface_name.hpp"
+#include "host/root_program.hpp"
 #include "host/service.hpp"
 #include "icd/text.hpp"
 #include "icd/try.hpp"
@@ -86,11 +87,13 @@ std::expected<std::vector<Interface>, std::string> interfaces() {
   return interfaces;
 }
 
-std::optional<Port> port_in(const std::string& sys_class_net, const std::string& interface) {
+std::expected<std::optional<Port>, std::string> port_in(const std::string& sys_class_net,
+                                                        const std::string& interface) {
   if (!is_interface_name(interface)) return std::nullopt;
   const std::string folder = sys_class_net + "/" + interface;
-  if (!slurp(folder + "/address")) return std::nullopt;
-  Port port{.mac = line_in(folder + "/address"), .mbit = {}, .duplex = line_in(folder + "/duplex")};
+  const auto mac = ADIT_TRY(read_if_there(folder + "/address"));
+  if (!mac) return std::nullopt;
+  Port port{.mac = mac->substr(0, mac->find('\n')), .mbit = {}, .duplex = line_in(folder + "/duplex")};
   if (port.duplex == "unknown") port.duplex.clear();
   const std::string speed = line_in(folder + "/speed");  // -1 or unreadable: not known
   const auto mbit = icd::number_in<unsigned>(speed);
@@ -98,7 +101,7 @@ std::optional<Port> port_in(const std::string& sys_class_net, const std::string&
   return port;
 }
 
-std::optional<Port> port(const std::string& interface) {
+std::expected<std::optional<Port>, std::string> port(const std::string& interface) {
   return port_in("/sys/class/net", interface);
 }
 

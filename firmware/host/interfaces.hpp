@@ -24,9 +24,11 @@ struct Port {
   std::string duplex;            // "full", "half"; "": not known
 };
 
-/// `sys_class_net`: the kernel's list of interfaces. std::nullopt: no such interface.
-std::optional<Port> port_in(const std::string& sys_class_net, const std::string& interface);
-std::optional<Port> port(const std::string& interface);
+/// `sys_class_net`: the kernel's list of interfaces. std::nullopt: no such interface. Error: it cannot be
+/// read.
+std::expected<std::optional<Port>, std::string> port_in(const std::string& sys_class_net,
+                                                        const std::string& interface);
+std::expected<std::optional<Port>, std::string> port(const std::string& interface);
 
 /// This machine's mDNS name: "adit.local" (RFC 6762 3).
 std::string local_name();

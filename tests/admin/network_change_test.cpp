@@ -1,6 +1,7 @@
 #include "admin/network_change.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/resource.h>
 
 #include <filesystem>
 #include <fstream>
@@ -112,6 +113,23 @@ TEST_F(NetworkChangeTest, KnowsWhoAnswersForTheCommandPost) {
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24");
   tell();
   EXPECT_EQ(change.next_hop(endpoint), "") << "there is no route to it";
+}
+
+TEST_F(NetworkChangeTest, ShowsThatTheInterfacesCannotBeRead) {
+  status.kept.reset();
+  tell();
+  change.network();  // reads the status, which stays fresh
+  rlimit before{};
+  getrlimit(RLIMIT_NOFILE, &before);
+  const rlimit none{.rlim_cur = 0, .rlim_max = before.rlim_max};
+  setrlimit(RLIMIT_NOFILE, &none);
+  const api::NetworkView view = change.network();
+  const auto hop = change.next_hop(settings.command_post.scoring);
+  setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_THAT(view.why, HasSubstr("cannot read this machine's addresses"));
+  EXPECT_TRUE(view.ports.empty()) << "no interface is shown as missing";
+  ASSERT_FALSE(hop);
+  EXPECT_THAT(hop.error(), HasSubstr("cannot read this machine's addresses"));
 }
 
 TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet) {

@@ -35,7 +35,7 @@ class Ports : public testing::Test {
     write("address", mac);
     write("speed", speed);
     write("duplex", duplex);
-    return port_in(folder_.path(), "eth0");
+    return port_in(folder_.path(), "eth0").value();
   }
   Folder folder_;
 };
@@ -53,9 +53,14 @@ TEST_F(Ports, TellNothingThatIsNotKnown) {
     EXPECT_FALSE(with("02", speed, "unknown")->mbit);
   EXPECT_EQ(with("02", "-1", "unknown")->duplex, "");
   for (const char* name : {"eth1", "", "..", "eth0/..", "a name"})
-    EXPECT_FALSE(port_in(folder_.path(), name)) << name;
-  EXPECT_TRUE(port("lo"));
+    EXPECT_FALSE(port_in(folder_.path(), name).value()) << name;
+  EXPECT_TRUE(port("lo").value());
   EXPECT_THAT(local_name(), testing::MatchesRegex("[^.]+\\.local"));
+}
+
+TEST_F(Ports, ThatCannotBeReadAreNotMissing) {
+  std::filesystem::create_directories(folder_.path() + "/eth0/address");  // a directory cannot be read
+  EXPECT_THAT(port_in(folder_.path(), "eth0").error(), testing::HasSubstr("eth0/address"));
 }
 
 TEST(Routes, AreReadFromTheKernelsTable) {

@@ -113,7 +113,8 @@ std::vector<Alarm> Board::shown(const std::vector<Condition>& conditions, double
   for (const Condition& condition : conditions) {
     const auto found = known_.find(condition.id);
     const bool known = found != known_.end();
-    const double since = known ? found->second.since : condition.since > 0 ? condition.since : now;
+    double since = condition.since > 0 ? condition.since : now;
+    if (known) since = found->second.since;
     alarms.push_back(
         {.id = condition.id,
          .severity = condition.severity,

@@ -34,7 +34,11 @@ std::string plain(std::string_view text) {
   while (!text.empty()) {
     const std::size_t size = first_character(text);
     const std::string_view character = text.substr(0, std::max<std::size_t>(size, 1));
-    all.append(size == 0 ? "\xef\xbf\xbd" : is_control(character) ? " " : character);
+    if (size == 0) {
+      all += "\xef\xbf\xbd";
+    } else {
+      all += is_control(character) ? " " : character;
+    }
     text.remove_prefix(character.size());
   }
   return all;

@@ -93,9 +93,9 @@ void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t 
 
 void Record::not_taken(const Traffic& traffic, NotTaken how, int status, const std::string& sentence) {
   api::ActivityRow& activity = row(traffic);
-  ++(how == NotTaken::Throttled ? activity.throttled
-     : how == NotTaken::Failed  ? activity.failed
-                                : activity.refused_upstream);
+  if (how == NotTaken::Throttled) ++activity.throttled;
+  if (how == NotTaken::Failed) ++activity.failed;
+  if (how == NotTaken::Refused) ++activity.refused_upstream;
   activity.last_status = status;
   activity.last_sentence = sentence;
   changed_();

@@ -3,6 +3,7 @@
 #include <string>
 #include <string_view>
 
+#include "codec/row.hpp"
 #include "codec/value.hpp"
 #include "intake/server.hpp"
 
@@ -13,6 +14,12 @@ intake::Answer guarded(intake::Answer answer);
 
 /// 200, not cached.
 intake::Answer fresh(std::string content_type, std::string body);
+
+/// The same for a row or rows, as JSON.
+template <class Rows>
+intake::Answer fresh(const Rows& rows) {
+  return fresh("application/json", codec::to_json(rows));
+}
 
 /// The same for a JSON object.
 intake::Answer object(codec::Value::Object members);

@@ -44,14 +44,14 @@ Api::Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> t
       lists_(loop, served.source),
       reports_(lists_, served.source, served.judge),
       settings_(served.setup),
-      network_(served.network, served.test),
+      network_(served.network),
       updates_(served.updates),
       box_(served.source, lists_, served.box, entrance_, *redaction_, loop),
       kept_(loop, served.runs, served.source),
-      clock_(served.clock),
       spare_(served.spare),
       handlers_(&pages_, &sessions_, &run_, &maps_, &reports_, &settings_, &network_, &updates_, &box_,
-                &kept_, &clock_, &spare_) {}
+                &kept_, &spare_, &served.clock, &served.network, &served.test, &served.spare,
+                &served.updates) {}
 
 std::unique_ptr<intake::BodySink> Api::open(const intake::RequestHead& head,
                                             std::shared_ptr<intake::Responder> asked_by,

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "api/box_routes.hpp"
-#include "api/clock_routes.hpp"
 #include "api/entrance.hpp"
 #include "api/kept_runs_routes.hpp"
 #include "api/live.hpp"
@@ -85,7 +84,6 @@ class Api final : public intake::Handler {
   UpdateRoutes updates_;
   BoxRoutes box_;
   KeptRunsRoutes kept_;
-  ClockRoutes clock_;
   SpareRoutes spare_;
   const Handlers handlers_;
 };

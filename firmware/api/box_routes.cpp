@@ -77,7 +77,7 @@ intake::Answer BoxRoutes::log(const intake::RequestHead& head) const {
   if (!filter) return refused(filter.error());
   auto records = box_.log(filter->after);
   std::erase_if(records, [&](const LogRecord& record) { return !filter->lets(record); });
-  return fresh("application/json", codec::to_json(LogPage{box_.logged(), std::move(records)}));
+  return fresh(LogPage{box_.logged(), std::move(records)});
 }
 
 std::string BoxRoutes::log_lines(const LogFilter& filter) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <type_traits>
 
+#include "api/after.hpp"
 #include "api/answers.hpp"
 #include "api/number_in.hpp"
 #include "api/route.hpp"
@@ -28,12 +29,27 @@ struct Signature<Gives (Class::*)() const> : Signature<Gives (Class::*)()> {};
 template <class Class, class Gives, class Parameter>
 struct Signature<Gives (Class::*)(Parameter) const> : Signature<Gives (Class::*)(Parameter)> {};
 
-template <auto function>
+/// The result of a handler's function, as the Answer if it is a row or the success of an action.
+template <class Handler, class Result>
+auto answered(const Handler& handler, Result result) {
+  if constexpr (std::same_as<Result, icd::Checked<void>>) {
+    return after(handler, result);
+  } else if constexpr (requires { Result::kRow; }) {
+    return fresh(result);
+  } else {
+    return result;
+  }
+}
+
+template <auto function, auto reader>
 auto call_of(const Handlers& handlers, const Call& call) {
   using Argument = Signature<decltype(function)>::Argument;
   auto& handler = *std::get<typename Signature<decltype(function)>::Handler*>(handlers);
-  if constexpr (std::is_void_v<Argument>) {
-    return (handler.*function)();
+  if constexpr (!std::is_null_pointer_v<decltype(reader)>) {
+    const auto read = reader(call.body);
+    return read ? answered(handler, (handler.*function)(*read)) : refused(read.error());
+  } else if constexpr (std::is_void_v<Argument>) {
+    return answered(handler, (handler.*function)());
   } else if constexpr (std::integral<Argument>) {
     const auto number = icd::number_in<Argument>(call.parameters.front());
     return number ? (handler.*function)(*number) : nothing_at(call.head.path());
@@ -46,18 +62,20 @@ auto call_of(const Handlers& handlers, const Call& call) {
   }
 }
 
-/// Wraps a member function of one of the Handlers. Its parameter is the number in the path (404 if it is not
-/// a number), the body (std::string), the RequestHead or the Call. It returns the Answer, or void and answers
-/// by Call::responder, or the object that receives the body.
-template <auto function>
+/// Wraps a member function of one of the Handlers. Its parameter is what `reader` reads from the body;
+/// without a reader the number in the path (404 if it is not a number), the body (std::string), the
+/// RequestHead or the Call. It returns the Answer, a row, or the success of an action (api/after.hpp), or
+/// void and answers by Call::responder, or the object that receives the body.
+template <auto function, auto reader = nullptr>
 consteval Handle by() {
-  using Gives = std::invoke_result_t<decltype(call_of<function>), const Handlers&, const Call&>;
+  constexpr auto kCall = call_of<function, reader>;
+  using Gives = std::invoke_result_t<decltype(kCall), const Handlers&, const Call&>;
   if constexpr (std::same_as<Gives, intake::Answer>) {
-    return {.answer = call_of<function>};
+    return {.answer = kCall};
   } else if constexpr (std::is_void_v<Gives>) {
-    return {.answer_later = call_of<function>};
+    return {.answer_later = kCall};
   } else {
-    return {.begin = call_of<function>};
+    return {.begin = kCall};
   }
 }
 

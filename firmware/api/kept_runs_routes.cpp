@@ -44,17 +44,17 @@ const RunRow* KeptRunsRoutes::row_of(const RunList& list, const std::string& key
 intake::Answer KeptRunsRoutes::history(const intake::RequestHead& head) const {
   const AskedNumber since = asked_number(head, "since");
   if (since.wrong) return refusal(icd::Status::BadRequest, "since: expected seconds since 1970");
-  return fresh("application/json", codec::to_json(runs_.history(since.number.value_or(0))));
+  return fresh(runs_.history(since.number.value_or(0)));
 }
 
 intake::Answer KeptRunsRoutes::list() const {
-  return fresh("application/json", codec::to_json(runs_.list()));
+  return fresh(runs_.list());
 }
 
 intake::Answer KeptRunsRoutes::one(const Call& call) const {
   const RunList all = runs_.list();
   const RunRow* row = row_of(all, call.parameters.front());
-  return row != nullptr ? fresh("application/json", codec::to_json(*row)) : no_such_run();
+  return row != nullptr ? fresh(*row) : no_such_run();
 }
 
 void KeptRunsRoutes::with_run(const Call& call, Answering answer) {
@@ -86,9 +86,7 @@ void KeptRunsRoutes::came(const std::string& key, const std::shared_ptr<const Ke
 void KeptRunsRoutes::layers(const Call& call) {
   const auto since = version_asked(call.head);
   if (!since) return call.responder->answer(since.error());
-  with_run(call, [since = *since](const KeptRun& run) {
-    return fresh("application/json", codec::to_json(map_view(run.picture, since)));
-  });
+  with_run(call, [since = *since](const KeptRun& run) { return fresh(map_view(run.picture, since)); });
 }
 
 void KeptRunsRoutes::tile(const Call& call) {
@@ -98,12 +96,11 @@ void KeptRunsRoutes::tile(const Call& call) {
 }
 
 void KeptRunsRoutes::tracks(const Call& call) {
-  with_run(call,
-           [](const KeptRun& run) { return fresh("application/json", codec::to_json(thinned(run.tracks))); });
+  with_run(call, [](const KeptRun& run) { return fresh(thinned(run.tracks)); });
 }
 
 void KeptRunsRoutes::plots(const Call& call) {
-  with_run(call, [](const KeptRun& run) { return fresh("application/json", codec::to_json(run.history)); });
+  with_run(call, [](const KeptRun& run) { return fresh(run.history); });
 }
 
 /// Collects the reports of a run, some in each turn of the loop.

@@ -13,19 +13,19 @@ intake::Answer MapRoutes::layers(const intake::RequestHead& head) const {
   if (!since) return since.error();
   MapView view = map_view(source_.map(), *since);
   for (picture::LayerView& layer : view.layers) layer.finer = finer_.finer(layer.layer, *since);
-  return fresh("application/json", codec::to_json(view));
+  return fresh(view);
 }
 
 intake::Answer MapRoutes::markers(const intake::RequestHead& head) const {
   const auto since = version_asked(head);
   if (!since) return since.error();
-  return fresh("application/json", codec::to_json(source_.markers(*since)));
+  return fresh(source_.markers(*since));
 }
 
 intake::Answer MapRoutes::tracks(const intake::RequestHead& head) const {
   const AskedNumber since = asked_number(head, "since");
   if (since.wrong) return refusal(icd::Status::BadRequest, "since: expected seconds since 1970");
-  return fresh("application/json", codec::to_json(thinned(source_.tracks(since.number.value_or(0)))));
+  return fresh(thinned(source_.tracks(since.number.value_or(0))));
 }
 
 void MapRoutes::tile(const Call& call) const {
@@ -41,8 +41,7 @@ void MapRoutes::tile(const Call& call) const {
 
 void MapRoutes::covered(const Call& call) const {
   covered_.covered([responder = call.responder](const icd::Checked<picture::Covered>& covered) {
-    responder->answer(covered ? fresh("application/json", codec::to_json(covered_view(*covered)))
-                              : refused(covered.error()));
+    responder->answer(covered ? fresh(covered_view(*covered)) : refused(covered.error()));
   });
 }
 

@@ -1,5 +1,6 @@
 #include "api/network_routes.hpp"
 
+#include "api/after.hpp"
 #include "api/answers.hpp"
 #include "api/settings_rows.hpp"
 #include "codec/json.hpp"
@@ -23,10 +24,6 @@ intake::Answer unfit(const std::vector<settings::Error>& errors) {
 
 }  // namespace
 
-intake::Answer NetworkRoutes::shown() const {
-  return fresh("application/json", codec::to_json(network_.network()));
-}
-
 intake::Answer NetworkRoutes::check(const Call& call) const {
   const auto wanted = numbers_in(call.body);
   const auto findings =
@@ -34,7 +31,7 @@ intake::Answer NetworkRoutes::check(const Call& call) const {
   CheckView checked{.errors = findings.errors, .changes = {.changes = {}, .warnings = findings.warnings}};
   for (const network::Difference& each : findings.changes)
     checked.changes.changes.push_back({each.path, {each.from}, {each.to}});
-  return fresh("application/json", codec::to_json(checked));
+  return fresh(checked);
 }
 
 intake::Answer NetworkRoutes::change(const Call& call) {
@@ -42,30 +39,11 @@ intake::Answer NetworkRoutes::change(const Call& call) {
   if (!wanted) return unfit(wanted.error());
   const auto findings = network_.check(*wanted, call.head.peer());
   if (!findings.errors.empty()) return unfit(findings.errors);
-  return after(network_.change(*wanted));
+  return after(network_, network_.change(*wanted));
 }
 
 intake::Answer NetworkRoutes::confirm(const Call& call) {
-  return after(network_.confirm(call.head.local()));
-}
-
-intake::Answer NetworkRoutes::revert() {
-  return after(network_.revert());
-}
-
-intake::Answer NetworkRoutes::after(const icd::Checked<void>& done) const {
-  return done ? shown() : refused(done.error());
-}
-
-intake::Answer NetworkRoutes::begin_test(const std::string& body) {
-  const auto candidate = read_candidate(body);
-  if (!candidate) return refused(candidate.error());
-  const auto begun = test_.begin_test(*candidate);
-  return begun ? tested() : refused(begun.error());
-}
-
-intake::Answer NetworkRoutes::tested() const {
-  return fresh("application/json", codec::to_json(test_.test()));
+  return after(network_, network_.confirm(call.head.local()));
 }
 
 }  // namespace adit::api

@@ -72,7 +72,7 @@ void ReportRoutes::csv(const Call& call) const {
 
 intake::Answer ReportRoutes::one(std::int64_t number) const {
   const auto report = source_.report(number);
-  return report ? fresh("application/json", codec::to_json(*report)) : no_such(number);
+  return report ? fresh(*report) : no_such(number);
 }
 
 intake::Answer ReportRoutes::judge(std::int64_t number, Action action) {

@@ -13,22 +13,26 @@
 namespace adit::api {
 
 class BoxRoutes;
-class ClockRoutes;
+class Clock;
 class KeptRunsRoutes;
 class MapRoutes;
+class Network;
 class NetworkRoutes;
 class PageRoutes;
 class ReportRoutes;
 class RunRoutes;
+class SelfTest;
 class SessionRoutes;
 class SettingsRoutes;
+class Spare;
 class SpareRoutes;
 class UpdateRoutes;
+class Updates;
 
 /// All handlers.
-using Handlers =
-    std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*, SettingsRoutes*,
-               NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*, ClockRoutes*, SpareRoutes*>;
+using Handlers = std::tuple<PageRoutes*, SessionRoutes*, RunRoutes*, MapRoutes*, ReportRoutes*,
+                            SettingsRoutes*, NetworkRoutes*, UpdateRoutes*, BoxRoutes*, KeptRunsRoutes*,
+                            SpareRoutes*, Clock*, Network*, SelfTest*, Spare*, Updates*>;
 
 /// Clients that may use a route. A script with a token is an operator.
 enum class Who : std::uint8_t {

@@ -3,12 +3,12 @@
 #include <optional>
 
 #include "api/box_routes.hpp"
-#include "api/clock_routes.hpp"
 #include "api/handle.hpp"
 #include "api/kept_runs_routes.hpp"
 #include "api/map_routes.hpp"
 #include "api/network_routes.hpp"
 #include "api/page_routes.hpp"
+#include "api/read_body.hpp"
 #include "api/report_routes.hpp"
 #include "api/run_routes.hpp"
 #include "api/session_routes.hpp"
@@ -27,6 +27,27 @@ constexpr Body kJson{"application/json", most};
 /// Like JSON, this type cannot be sent by another site's form without a CORS preflight.
 constexpr Body kBundle{"application/octet-stream", update::kLargestBundle, true};
 constexpr Body kExport{"application/octet-stream", spare::kLargestExport, true};
+
+/// The only possible flag of a body.
+icd::Checked<bool> flag_in(const std::string& body, std::string_view name) {
+  if (body.empty()) return false;
+  return read_body<bool>(body, [name](const codec::Field& root) {
+    const codec::Field field = root.member(name);
+    return field.is_absent() && root.is<codec::Value::Object>() ? false : field.truth();
+  });
+}
+icd::Checked<bool> again_in(const std::string& body) {
+  return flag_in(body, "again");
+}
+icd::Checked<bool> anyway_in(const std::string& body) {
+  return flag_in(body, "anyway");
+}
+icd::Checked<std::string> name_in(const std::string& body) {
+  return read_text(body, "name");
+}
+icd::Checked<double> time_in(const std::string& body) {
+  return read_body<double>(body, [](const codec::Field& root) { return root.member("time").number(); });
+}
 
 /// The arguments after the handle are for describe.jq, which reads this file; the program does not contain
 /// them. For the body: its name in openapi.json's `bodies`. Then tag and summary. For the answer: its
@@ -183,7 +204,7 @@ constexpr Route kRoutes[] = {
          "The findings.", "Checked", "400"),
     get("/adit/settings/export", Viewer, by<&SettingsRoutes::exported>(), "settings",
         "The settings file, for a download.", "The file, without tokens.", "Settings"),
-    get("/adit/network", Viewer, by<&NetworkRoutes::shown>(), "network",
+    get("/adit/network", Viewer, by<&Network::network>(), "network",
         "The box's own addresses, and a change of them that is not yet confirmed.", "The addresses.",
         "Network"),
     post("/adit/network", Operator, kJson<4096>, by<&NetworkRoutes::change>(), "Numbers", "network",
@@ -195,36 +216,36 @@ constexpr Route kRoutes[] = {
     post("/adit/network/confirm", Operator, kJson<4096>, by<&NetworkRoutes::confirm>(), "Nothing", "network",
          "Confirm the change, by a request to the new address.", "The change is confirmed.", "Network",
          "409"),
-    post("/adit/network/revert", Operator, kJson<4096>, by<&NetworkRoutes::revert>(), "Nothing", "network",
+    post("/adit/network/revert", Operator, kJson<4096>, by<&Network::revert>(), "Nothing", "network",
          "Revert the change now.", "The change is being reverted.", "Network", "409"),
-    get("/adit/update", Viewer, by<&UpdateRoutes::shown>(), "box",
+    get("/adit/update", Viewer, by<&Updates::update>(), "box",
         "The running version, and the state of an update.", "The state.", "Update"),
     post("/adit/update", Operator, kBundle, by<&UpdateRoutes::receive>(), "Bundle", "box",
          "Upload an update. The box checks it and installs it into the slot that is not running.",
          "The update is received, and is being checked.", "Update", "409 503", "again"),
-    post("/adit/update/stick", Operator, kJson<1024>, by<&UpdateRoutes::install_from_stick>(), "FromStick",
-         "box", "Install the update from the box's USB stick.", "The update is being checked.", "Update",
-         "400 409 503"),
-    post("/adit/update/restart", Operator, kJson<1024>, by<&UpdateRoutes::restart>(), "Restart", "box",
+    post("/adit/update/stick", Operator, kJson<1024>, by<&Updates::install_from_stick, &again_in>(),
+         "FromStick", "box", "Install the update from the box's USB stick.", "The update is being checked.",
+         "Update", "400 409 503"),
+    post("/adit/update/restart", Operator, kJson<1024>, by<&Updates::restart, &anyway_in>(), "Restart", "box",
          "Restart the box, to run the installed update.", "The box restarts.", "Update", "400 409 503"),
-    post("/adit/update/back", Operator, kJson<1024>, by<&UpdateRoutes::go_back>(), "Restart", "box",
+    post("/adit/update/back", Operator, kJson<1024>, by<&Updates::go_back, &anyway_in>(), "Restart", "box",
          "Restart the box into the expected slot, if an unexpected slot is running (`stray`).",
          "The box restarts.", "Update", "400 409 503"),
-    post("/adit/update/stay", Operator, kJson<1024>, by<&UpdateRoutes::stay>(), "Nothing", "box",
+    post("/adit/update/stay", Operator, kJson<1024>, by<&Updates::stay>(), "Nothing", "box",
          "Keep the running slot, if it is not the expected one (`stray`).",
          "The slot is being recorded as the expected one.", "Update", "409 503"),
-    get("/adit/clock", Viewer, by<&ClockRoutes::shown>(), "box",
-        "The time of day, and the source that set it.", "The clock.", "Clock"),
-    post("/adit/clock", Operator, kJson<1024>, by<&ClockRoutes::set>(), "ClockToSet", "box",
+    get("/adit/clock", Viewer, by<&Clock::clock>(), "box", "The time of day, and the source that set it.",
+        "The clock.", "Clock"),
+    post("/adit/clock", Operator, kJson<1024>, by<&Clock::set_clock, &time_in>(), "ClockToSet", "box",
          "Set the time of day to the client's time.", "The time is about to be set.", "Clock", "400 409"),
-    get("/adit/spare", Operator, by<&SpareRoutes::shown>(), "box",
+    get("/adit/spare", Operator, by<&Spare::spare>(), "box",
         "Whether the box is on standby, the code of its export, and the export of another box.", "The state.",
         "Spare"),
-    post("/adit/spare/standby", Operator, kJson<1024>, by<&SpareRoutes::stand_by>(), "Nothing", "box",
+    post("/adit/spare/standby", Operator, kJson<1024>, by<&Spare::stand_by>(), "Nothing", "box",
          "Put the box on standby, so that a spare can take over: it accepts and sends no messages, also "
          "after a power cut.",
          "Standby is about to begin.", "Spare", "409 503"),
-    post("/adit/spare/resume", Operator, kJson<1024>, by<&SpareRoutes::resume>(), "Nothing", "box",
+    post("/adit/spare/resume", Operator, kJson<1024>, by<&Spare::resume>(), "Nothing", "box",
          "End standby. Do this only if no spare took over.", "Standby is about to end.", "Spare", "409 503"),
     get("/adit/spare/export", Operator, by<&SpareRoutes::exported>(), "box",
         "The export for the spare: ledger, settings and tokens, sealed by a code. Only while the box is on "
@@ -233,8 +254,9 @@ constexpr Route kRoutes[] = {
     post("/adit/spare/to-stick", Operator, kJson<1024>, by<&SpareRoutes::to_stick>(), "Nothing", "box",
          "Write the export to the stick in the box. Only while the box is on standby.",
          "The export is about to be written.", "Spare", "409 503"),
-    post("/adit/spare/from-stick", Operator, kJson<1024>, by<&SpareRoutes::from_stick>(), "ExportOnStick",
-         "box", "Import another box's export from the stick in the box. The box does not change yet.",
+    post("/adit/spare/from-stick", Operator, kJson<1024>, by<&Spare::take_from_stick, &name_in>(),
+         "ExportOnStick", "box",
+         "Import another box's export from the stick in the box. The box does not change yet.",
          "The export is about to be read.", "Spare", "400 409 503"),
     post("/adit/spare/take", Operator, kExport, by<&SpareRoutes::take_in>(), "Export", "box",
          "Import another box's export. The box does not change yet.", "The export needs its code.", "Spare",
@@ -242,21 +264,22 @@ constexpr Route kRoutes[] = {
     post("/adit/spare/open", Operator, kJson<1024>, by<&SpareRoutes::open>(), "ExportCode", "box",
          "Open the imported export, and show its content. The box does not change yet.",
          "The export is open.", "Spare", "400 409"),
-    post("/adit/spare/forget", Operator, kJson<1024>, by<&SpareRoutes::forget>(), "Nothing", "box",
+    post("/adit/spare/forget", Operator, kJson<1024>, by<&Spare::forget>(), "Nothing", "box",
          "Delete the imported export.", "The export is deleted.", "Spare", "409"),
     post("/adit/spare/take-over", Operator, kJson<1024>, by<&SpareRoutes::take_over>(), "TakeOver", "box",
          "Take over from the box that made the export, with its reports, settings and tokens.",
          "The take-over is about to begin.", "Spare", "400 409 503"),
-    get("/adit/test", Viewer, by<&NetworkRoutes::tested>(), "network", "The Test, step by step.",
-        "The steps.", "Test"),
-    post("/adit/test", Operator, kJson<4096>, by<&NetworkRoutes::begin_test>(), "Candidate", "network",
+    get("/adit/test", Viewer, by<&SelfTest::test>(), "network", "The Test, step by step.", "The steps.",
+        "Test"),
+    post("/adit/test", Operator, kJson<4096>, by<&SelfTest::begin_test, &read_candidate>(), "Candidate",
+         "network",
          "Start the Test of the endpoints in use or of named ones. It uses no report, and the run goes on.",
          "The Test has started.", "Test", "400 409"),
     post("/adit/tokens", Operator, kJson<262144>, by<&SettingsRoutes::set_token>(), "Token", "settings",
          "Save and apply a token, or remove it.",
          "The token is saved or removed, and the change is about to be applied.", "TokenSet", "400 409 503"),
-    post("/adit/course", Operator, kJson<262144>, by<&SettingsRoutes::switch_course>(), "Course", "settings",
-         "Switch to a course's Command Post.", "The course is about to be applied.", "Changes",
+    post("/adit/course", Operator, kJson<262144>, by<&SettingsRoutes::switch_course, &name_in>(), "Course",
+         "settings", "Switch to a course's Command Post.", "The course is about to be applied.", "Changes",
          "400 409 503"),
     post("/adit/logout", Viewer, kJson<4096>, by<&SessionRoutes::log_out>(), "Nothing", "login",
          "End the client's own session.", "The session is ended.", "LoggedOut"),

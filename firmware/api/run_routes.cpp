@@ -7,7 +7,7 @@ namespace adit::api {
 using codec::json;
 
 intake::Answer RunRoutes::run() const {
-  return fresh("application/json", codec::to_json(source_.view()));
+  return fresh(source_.view());
 }
 
 std::unique_ptr<intake::BodySink> RunRoutes::events(const Call& call) {

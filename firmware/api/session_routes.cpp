@@ -57,12 +57,10 @@ std::string text_in(const codec::Field& object, std::string_view name) {
 intake::Answer SessionRoutes::session(const intake::RequestHead& head) {
   const auto visitor = entrance_.who(head);
   const auto* const session = visitor ? visitor->session : nullptr;
-  return fresh(
-      "application/json",
-      codec::to_json(WhoAsks{.role = visitor ? std::optional(visitor->role) : std::nullopt,
-                             .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
-                             .first_start = keys_.first_start(),
-                             .set_up_open = keys_.set_up_open()}));
+  return fresh(WhoAsks{.role = visitor ? std::optional(visitor->role) : std::nullopt,
+                       .csrf = session != nullptr ? std::string(session->csrf.reveal()) : std::string(),
+                       .first_start = keys_.first_start(),
+                       .set_up_open = keys_.set_up_open()});
 }
 
 intake::Answer SessionRoutes::sessions(const Call& call) {
@@ -80,7 +78,7 @@ intake::Answer SessionRoutes::sessions(const Call& call) {
                     .seen = time(each.seen),
                     .own = each.number == call.asker.session});
   }
-  return fresh("application/json", codec::to_json(rows));
+  return fresh(rows);
 }
 
 SessionRoutes::Poster SessionRoutes::poster_of(const Call& call) {
@@ -105,6 +103,18 @@ bool SessionRoutes::may_try(const Poster& poster) {
 }
 
 template <class Done>
+void SessionRoutes::check_posted(const Call& call, Done done) {
+  const Poster poster = poster_of(call);
+  const auto password = read_text(call.body, "password");
+  if (!password) return poster.responder->answer(refused(password.error()));
+  if (keys_.first_start()) {
+    return poster.responder->answer(
+        refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));
+  }
+  check(*password, poster, [poster, done](std::optional<Role> role) { done(role, poster); });
+}
+
+template <class Done>
 void SessionRoutes::check(const std::string& password, const Poster& poster, Done done) {
   if (!may_try(poster)) return;
   ++checking_;
@@ -117,14 +127,7 @@ void SessionRoutes::check(const std::string& password, const Poster& poster, Don
 }
 
 void SessionRoutes::log_in(const Call& call) {
-  const Poster poster = poster_of(call);
-  const auto password = read_text(call.body, "password");
-  if (!password) return poster.responder->answer(refused(password.error()));
-  if (keys_.first_start()) {
-    return poster.responder->answer(
-        refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));
-  }
-  check(*password, poster, [this, poster](std::optional<Role> role) {
+  check_posted(call, [this](std::optional<Role> role, const Poster& poster) {
     poster.responder->answer(role ? logged_in(*role, poster) : wrong("the password"));
   });
 }
@@ -209,14 +212,7 @@ void SessionRoutes::change_password(const Call& call) {
 }
 
 void SessionRoutes::reset(const Call& call) {
-  const Poster poster = poster_of(call);
-  const auto password = read_text(call.body, "password");
-  if (!password) return poster.responder->answer(refused(password.error()));
-  if (keys_.first_start()) {
-    return poster.responder->answer(
-        refusal(icd::Status::Conflict, "no password is set yet: set one with the code"));
-  }
-  check(*password, poster, [this, poster](std::optional<Role> role) {
+  check_posted(call, [this](std::optional<Role> role, const Poster& poster) {
     if (role != Role::Operator) return poster.responder->answer(wrong("the operator's present password"));
     if (const auto done = setup_.reset(); !done)
       return poster.responder->answer(refused_change(done.error()));

@@ -53,6 +53,9 @@ class SessionRoutes {
   bool is_by_button(const Change& change) const;
   void set(const Change& change, const Poster& poster);
 
+  /// Checks the posted "password", and passes its role and the poster to `done`.
+  template <class Done>
+  void check_posted(const Call& call, Done done);
   /// Passes the role of the password to `done`, or answers 429 if it may not be checked now.
   template <class Done>
   void check(const std::string& password, const Poster& poster, Done done);

@@ -79,7 +79,7 @@ icd::Checked<PostedToken> read_token(const std::string& body) {
 }  // namespace
 
 intake::Answer SettingsRoutes::shown() const {
-  return fresh("application/json", codec::to_json(setup_view(setup_)));
+  return fresh(setup_view(setup_));
 }
 
 intake::Answer SettingsRoutes::exported() const {
@@ -92,15 +92,11 @@ intake::Answer SettingsRoutes::check(const std::string& body) const {
   const auto posted = read_posted(body, false);
   if (!posted) return refused(posted.error());
   const auto next = settings::parse(posted->settings);
-  if (!next)
-    return fresh("application/json", codec::to_json(CheckView{.errors = next.error(), .changes = {}}));
+  if (!next) return fresh(CheckView{.errors = next.error(), .changes = {}});
   const auto unfit = unfit_to_save(setup_.settings(), *next);
-  if (!unfit.empty())
-    return fresh("application/json", codec::to_json(CheckView{.errors = unfit, .changes = {}}));
-  return fresh(
-      "application/json",
-      codec::to_json(CheckView{
-          .errors = {}, .changes = {settings::changes(setup_.settings(), *next), setup_.warnings(*next)}}));
+  if (!unfit.empty()) return fresh(CheckView{.errors = unfit, .changes = {}});
+  return fresh(CheckView{.errors = {},
+                         .changes = {settings::changes(setup_.settings(), *next), setup_.warnings(*next)}});
 }
 
 intake::Answer SettingsRoutes::save(const std::string& body) {
@@ -116,11 +112,9 @@ intake::Answer SettingsRoutes::save(const std::string& body) {
   return apply(*next);
 }
 
-intake::Answer SettingsRoutes::switch_course(const std::string& body) {
-  const auto name = read_text(body, "name");
-  if (!name) return refused(name.error());
+intake::Answer SettingsRoutes::switch_course(const std::string& name) {
   settings::Settings next = setup_.settings();
-  next.command_post.course = *name;
+  next.command_post.course = name;
   const auto checked = settings::parse(settings::value_of(next));
   if (!checked) return refusal(icd::Status::UnprocessableEntity, settings::sentence_of(checked.error()));
   return apply(*checked);
@@ -130,7 +124,7 @@ intake::Answer SettingsRoutes::apply(const settings::Settings& next) {
   const auto changes = settings::changes(setup_.settings(), next);
   const auto warnings = setup_.warnings(next);
   if (const auto saved = setup_.save(next); !saved) return refused_change(saved.error());
-  return fresh("application/json", codec::to_json(ChangesView{changes, warnings}));
+  return fresh(ChangesView{changes, warnings});
 }
 
 intake::Answer SettingsRoutes::set_token(const std::string& body) {

@@ -18,7 +18,7 @@ class SettingsRoutes {
   intake::Answer check(const std::string& body) const;
   intake::Answer save(const std::string& body);
   intake::Answer set_token(const std::string& body);
-  intake::Answer switch_course(const std::string& body);
+  intake::Answer switch_course(const std::string& name);
 
  private:
   /// Answers with the changes.

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "api/after.hpp"
 #include "api/answers.hpp"
 #include "api/read_body.hpp"
 #include "api/small_body.hpp"
@@ -43,22 +44,6 @@ class ReceivingExport final : public intake::BodySink {
 
 }  // namespace
 
-intake::Answer SpareRoutes::shown() const {
-  return fresh("application/json", codec::to_json(spare_.spare()));
-}
-
-intake::Answer SpareRoutes::after(const icd::Checked<void>& done) const {
-  return done ? shown() : refused(done.error());
-}
-
-intake::Answer SpareRoutes::stand_by() {
-  return after(spare_.stand_by());
-}
-
-intake::Answer SpareRoutes::resume() {
-  return after(spare_.resume());
-}
-
 void SpareRoutes::exported(const Call& call) {
   spare_.export_to([responder = call.responder](icd::Checked<std::string> file) {
     if (!file) return responder->answer(refused(file.error()));
@@ -70,14 +55,9 @@ void SpareRoutes::exported(const Call& call) {
 }
 
 void SpareRoutes::to_stick(const Call& call) {
-  spare_.export_to_stick(
-      [this, responder = call.responder](const icd::Checked<void>& done) { responder->answer(after(done)); });
-}
-
-intake::Answer SpareRoutes::from_stick(const std::string& body) {
-  const auto name = read_text(body, "name");
-  if (!name) return refused(name.error());
-  return after(spare_.take_from_stick(*name));
+  spare_.export_to_stick([this, responder = call.responder](const icd::Checked<void>& done) {
+    responder->answer(after(spare_, done));
+  });
 }
 
 std::unique_ptr<intake::BodySink> SpareRoutes::take_in(const Call& call) {
@@ -87,7 +67,7 @@ std::unique_ptr<intake::BodySink> SpareRoutes::take_in(const Call& call) {
   }
   return std::make_unique<ReceivingExport>(
       [this, responder = call.responder](icd::Checked<std::string> file) {
-        responder->answer(file ? after(spare_.take_in(*std::move(file))) : refused(file.error()));
+        responder->answer(file ? after(spare_, spare_.take_in(*std::move(file))) : refused(file.error()));
       });
 }
 
@@ -95,12 +75,8 @@ void SpareRoutes::open(const Call& call) {
   const auto code = read_text(call.body, "code");
   if (!code) return call.responder->answer(refused(code.error()));
   spare_.open(*code, [this, responder = call.responder](const icd::Checked<void>& done) {
-    responder->answer(after(done));
+    responder->answer(after(spare_, done));
   });
-}
-
-intake::Answer SpareRoutes::forget() {
-  return after(spare_.forget());
 }
 
 intake::Answer SpareRoutes::take_over(const std::string& body) {
@@ -110,7 +86,7 @@ intake::Answer SpareRoutes::take_over(const std::string& body) {
   if (!*unplugged)
     return refusal(icd::Status::UnprocessableEntity,
                    "unplugged: expected true, because the box that made the export must be off");
-  return after(spare_.take_over());
+  return after(spare_, spare_.take_over());
 }
 
 }  // namespace adit::api

@@ -4,10 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include "api/after.hpp"
 #include "api/answers.hpp"
-#include "api/read_body.hpp"
-#include "codec/row.hpp"
-#include "icd/sentence.hpp"
 
 namespace adit::api {
 namespace {
@@ -49,15 +47,6 @@ class Receiving final : public intake::BodySink {
   std::function<void(icd::Checked<void>)> done_;
 };
 
-/// The only possible flag of a body.
-icd::Checked<bool> flag_in(const std::string& body, std::string_view name) {
-  if (body.empty()) return false;
-  return read_body<bool>(body, [name](const codec::Field& root) {
-    const codec::Field field = root.member(name);
-    return field.is_absent() && root.is<codec::Value::Object>() ? false : field.truth();
-  });
-}
-
 }  // namespace
 
 std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const Call& call) {
@@ -74,36 +63,10 @@ std::unique_ptr<intake::BodySink> UpdateRoutes::receive(const Call& call) {
   if (!again.empty() && again != "0" && again != "1") return refuse(unprocessable("again: expected 0 or 1"));
   auto upload = updates_.receive(*size, again == "1", [flow = call.flow] { flow->resume(); });
   if (!upload) return refuse(refused(upload.error()));
-  return std::make_unique<Receiving>(
-      std::move(*upload), *size,
-      [this, responder = call.responder](const icd::Checked<void>& done) { responder->answer(after(done)); });
-}
-
-intake::Answer UpdateRoutes::install_from_stick(const std::string& body) {
-  const auto again = flag_in(body, "again");
-  return again ? after(updates_.install_from_stick(*again)) : refused(again.error());
-}
-
-intake::Answer UpdateRoutes::restart(const std::string& body) {
-  const auto anyway = flag_in(body, "anyway");
-  return anyway ? after(updates_.restart(*anyway)) : refused(anyway.error());
-}
-
-intake::Answer UpdateRoutes::go_back(const std::string& body) {
-  const auto anyway = flag_in(body, "anyway");
-  return anyway ? after(updates_.go_back(*anyway)) : refused(anyway.error());
-}
-
-intake::Answer UpdateRoutes::stay() {
-  return after(updates_.stay());
-}
-
-intake::Answer UpdateRoutes::shown() const {
-  return fresh("application/json", codec::to_json(updates_.update()));
-}
-
-intake::Answer UpdateRoutes::after(const icd::Checked<void>& done) const {
-  return done ? shown() : refused(done.error());
+  return std::make_unique<Receiving>(std::move(*upload), *size,
+                                     [this, responder = call.responder](const icd::Checked<void>& done) {
+                                       responder->answer(after(updates_, done));
+                                     });
 }
 
 }  // namespace adit::api

@@ -14,18 +14,10 @@ class UpdateRoutes {
   /// `updates` must outlive this object.
   explicit UpdateRoutes(Updates& updates) : updates_(updates) {}
 
-  intake::Answer shown() const;
   /// Receives a bundle as a stream.
   std::unique_ptr<intake::BodySink> receive(const Call& call);
-  intake::Answer install_from_stick(const std::string& body);
-  intake::Answer restart(const std::string& body);
-  intake::Answer go_back(const std::string& body);
-  intake::Answer stay();
 
  private:
-  /// The present state, or the refusal.
-  intake::Answer after(const icd::Checked<void>& done) const;
-
   Updates& updates_;
 };
 

@@ -1,4 +1,4 @@
-#include "api/clock_routes.hpp"
+#include "api/clock.hpp"
 
 #include <gmock/gmock.h>
 

@@ -5,19 +5,123 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <ctime>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "command_line/answer.hpp"
+#include "simulation/omissions.hpp"
 #include "simulation/options.hpp"
 #include "simulation/run.hpp"
-#include "simulation/shrink.hpp"
-#include "simulation/tally.hpp"
 
 namespace adit::simulation {
 namespace {
+
+/// What came of many runs. Of plain numbers, to be handed from one process to another.
+struct Tally {
+  std::uint64_t runs = 0, events = 0, faults = 0, failed = 0;
+  double hours = 0;  // simulated
+  double cpu = 0;    // seconds
+
+  void add(const Outcome& outcome);
+  void add(const Tally& other);
+  std::string sentence(std::uint64_t first_seed) const;
+};
+
+void Tally::add(const Outcome& outcome) {
+  ++runs;
+  events += outcome.steps;
+  faults += outcome.faults;
+  hours += outcome.seconds / 3600;
+}
+
+void Tally::add(const Tally& other) {
+  runs += other.runs;
+  events += other.events;
+  faults += other.faults;
+  failed += other.failed;
+  hours += other.hours;
+  cpu += other.cpu;
+}
+
+std::string Tally::sentence(std::uint64_t first_seed) const {
+  char text[256];
+  std::snprintf(
+      text, sizeof text,
+      "%llu runs from seed %llu: %.2f simulated hours, %llu events, %llu faults, %.1f s of CPU, %llu failed",
+      static_cast<unsigned long long>(runs), static_cast<unsigned long long>(first_seed), hours,
+      static_cast<unsigned long long>(events), static_cast<unsigned long long>(faults), cpu,
+      static_cast<unsigned long long>(failed));
+  return text;
+}
+
+class Shrinking {
+ public:
+  Shrinking(std::uint64_t seed, Omissions from, std::string broken, int most_plays)
+      : seed_(seed), without_(std::move(from)), broken_(std::move(broken)), plays_left_(most_plays) {}
+
+  Omissions result() {
+    for (const auto& [actor, actions] : actions()) try_without_all(actor);
+    for (bool smaller = true; smaller && plays_left_ > 0;) {
+      smaller = false;
+      for (const auto& [actor, actions] : actions()) smaller = try_ranges(actor, actions) || smaller;
+    }
+    return without_;
+  }
+
+ private:
+  Actions actions() const { return play({.seed = seed_, .without = without_}).actions; }
+
+  /// Keeps `next` where the same is broken in it.
+  bool still_breaks(Omissions next) {
+    if (plays_left_-- <= 0) return false;
+    const auto broken = play({.seed = seed_, .without = next}).broken;
+    const bool breaks = std::ranges::find(broken, broken_) != broken.end();
+    if (breaks) without_ = std::move(next);
+    return breaks;
+  }
+
+  void try_without_all(const std::string& actor) {
+    Omissions next = without_;
+    next.add_all(actor);
+    still_breaks(std::move(next));
+  }
+
+  /// Halves, quarters and so on, down to single ones.
+  bool try_ranges(const std::string& actor, std::uint64_t actions) {
+    bool smaller = false;
+    for (std::uint64_t size = (actions + 1) / 2; size > 0 && plays_left_ > 0;
+         size = size == 1 ? 0 : (size + 1) / 2) {
+      for (std::uint64_t first = 1; first <= actions; first += size)
+        smaller = try_range(actor, first, std::min(first + size - 1, actions)) || smaller;
+    }
+    return smaller;
+  }
+
+  bool try_range(const std::string& actor, std::uint64_t first, std::uint64_t last) {
+    while (first <= last && without_.has(actor, first)) ++first;
+    while (first <= last && without_.has(actor, last)) --last;
+    if (first > last) return false;
+    Omissions next = without_;
+    next.add(actor, first, last);
+    return still_breaks(std::move(next));
+  }
+
+  const std::uint64_t seed_;
+  Omissions without_;
+  const std::string broken_;
+  int plays_left_;
+};
+
+/// A run in which a check found that, made small: all is left out without which it finds the same, to the
+/// word: another sentence of the same check may have another cause. First whole actors, then ranges, then
+/// single actions. Plays the run again for each that it tries, `most_plays` times at most.
+Omissions shrunk(std::uint64_t seed, const Omissions& from, const std::string& broken, int most_plays) {
+  return Shrinking(seed, from, broken, most_plays).result();
+}
 
 constexpr int kMostPlays = 400;  // to shrink one
 constexpr std::uint64_t kPlayedTwice = 100;
@@ -129,6 +233,7 @@ bool play_all(const Options& options, Tally& tally) {
 }
 
 }  // namespace
+
 }  // namespace adit::simulation
 
 int main(int argc, char** argv) {

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <expected>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -76,5 +77,17 @@ class Sessions {
   std::vector<Session> sessions_;  // in order of number
   std::uint64_t last_ = 0;
 };
+
+/// Sessions as saved across a process restart. Times are monotonic, so they are valid within one boot only.
+struct KeptSessions {
+  std::string boot;  // identifies the boot; "": not known
+  std::uint64_t last = 0;
+  std::vector<Session> sessions;  // in order of number
+};
+
+/// The text of the file. It contains secrets.
+std::string write_sessions(const KeptSessions& kept);
+/// An error says what is wrong and contains no secret.
+std::expected<KeptSessions, std::string> read_sessions(std::string_view json);
 
 }  // namespace adit::access

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "api/clock.hpp"
+#include "clock/chrony.hpp"
 #include "clock/messages.hpp"
-#include "clock/tracking.hpp"
 #include "host/root_program.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "access/session_file.hpp"
+#include "access/sessions.hpp"
 #include "admin/kept_file.hpp"
 #include "host/log.hpp"
 #include "host/service.hpp"

@@ -8,7 +8,6 @@
 #include "host/log.hpp"
 #include "host/random.hpp"
 #include "icd/sentence.hpp"
-#include "spare/code.hpp"
 #include "spare/file_name.hpp"
 #include "spare/sealed.hpp"
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
 #include "alarms/found.hpp"
-#include "alarms/words.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {

@@ -1,8 +1,8 @@
 // Conditions of the Command Post and its two endpoints.
 #include <algorithm>
 
+#include "alarms/alarm.hpp"
 #include "alarms/found.hpp"
-#include "alarms/words.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::alarms {

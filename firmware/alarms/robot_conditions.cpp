@@ -1,10 +1,10 @@
 // Conditions of the robots, their maps, and the clients.
 #include <algorithm>
 
+#include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
 #include "alarms/found.hpp"
-#include "alarms/standing.hpp"
-#include "alarms/words.hpp"
+#include "alarms/verdict.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
 

@@ -7,7 +7,6 @@
 
 #include "api/answers.hpp"
 #include "api/bundle.hpp"
-#include "api/exposition.hpp"
 #include "api/metrics.hpp"
 #include "api/number_in.hpp"
 #include "icd/letter_case.hpp"

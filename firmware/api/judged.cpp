@@ -4,8 +4,8 @@
 #include <map>
 #include <ranges>
 
-#include "alarms/standing.hpp"
-#include "alarms/words.hpp"
+#include "alarms/alarm.hpp"
+#include "alarms/verdict.hpp"
 #include "icd/require.hpp"
 #include "icd/sentence.hpp"
 

@@ -1,13 +1,37 @@
 #include "api/metrics.hpp"
 
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
-#include "api/exposition.hpp"
 #include "api/judged.hpp"
 #include "dispatch/report_life.hpp"
 
 namespace adit::api {
 namespace {
+
+/// Escapes backslashes and newlines, and in a label's value quotation marks.
+std::string escaped(std::string_view text, bool quoted) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    if (c == '\\' || (quoted && c == '"')) safe += '\\';
+    if (c == '\n') {
+      safe += "\\n";
+    } else {
+      safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string sample_text(double value) {
+  if (std::isnan(value)) return "NaN";
+  if (std::isinf(value)) return value > 0 ? "+Inf" : "-Inf";
+  char text[32];
+  const auto [end, error] = std::to_chars(text, text + sizeof text, value);
+  return {text, end};
+}
 
 constexpr double kBytesPerMbit = 1e6 / 8;
 
@@ -220,6 +244,23 @@ void write_refused(Exposition& out, const Usage& usage) {
 }
 
 }  // namespace
+
+void Exposition::begin(std::string_view name, std::string_view type, std::string_view help) {
+  name_ = name;
+  text_.append("# HELP ").append(name).append(" ").append(escaped(help, false)).append("\n");
+  text_.append("# TYPE ").append(name).append(" ").append(type).append("\n");
+}
+
+void Exposition::sample(std::initializer_list<Label> labels, double value) {
+  text_ += name_;
+  char before = '{';
+  for (const auto& [name, text] : labels) {
+    text_.append(1, before).append(name).append("=\"").append(escaped(text, true)).append("\"");
+    before = ',';
+  }
+  if (labels.size() > 0) text_ += '}';
+  text_.append(" ").append(sample_text(value)).append("\n");
+}
 
 std::string write_metrics(const Measured& measured) {
   Exposition out;

@@ -1,10 +1,35 @@
 #pragma once
 
+#include <initializer_list>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "api/box.hpp"
 
 namespace adit::api {
+
+/// Metrics in Prometheus' text exposition format, version 0.0.4. Add the samples of a metric directly after
+/// it.
+class Exposition {
+ public:
+  static constexpr const char* kContentType = "text/plain; version=0.0.4; charset=utf-8";
+  using Label = std::pair<std::string_view, std::string_view>;
+
+  /// Begins a metric. A counter's name must end in "_total".
+  void counter(std::string_view name, std::string_view help) { begin(name, "counter", help); }
+  void gauge(std::string_view name, std::string_view help) { begin(name, "gauge", help); }
+  /// Adds a sample to the last metric. Each set of labels may occur once.
+  void sample(std::initializer_list<Label> labels, double value);
+  void sample(double value) { sample({}, value); }
+
+  const std::string& text() const { return text_; }
+
+ private:
+  void begin(std::string_view name, std::string_view type, std::string_view help);
+
+  std::string text_, name_;
+};
 
 /// Input of the metrics.
 struct Measured {

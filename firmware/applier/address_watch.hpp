@@ -9,7 +9,6 @@
 #include "applier/arp_socket.hpp"
 #include "applier/exchanged.hpp"
 #include "applier/options.hpp"
-#include "applier/sought.hpp"
 #include "applier/takers.hpp"
 #include "host/root_program.hpp"
 #include "loop/file_descriptor.hpp"

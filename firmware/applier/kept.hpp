@@ -4,7 +4,6 @@
 #include <string>
 
 #include "update/last_update.hpp"
-#include "update/proven.hpp"
 
 /// State of adit-update that outlives a boot, in its state directory. A missing file reads as the default. An
 /// error says what cannot be read, and why. save() returns true once the data survives a power cut.

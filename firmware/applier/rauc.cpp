@@ -5,6 +5,8 @@
 #include <thread>
 
 #include "host/output.hpp"
+#include "host/service.hpp"
+#include "update/health.hpp"
 
 namespace adit::applier {
 namespace {
@@ -39,6 +41,13 @@ std::expected<void, std::string> mark(const std::string& command, const char* ho
 }
 
 }  // namespace
+
+std::string version_in(const std::string& path) {
+  const auto text = host::read_file(path);
+  std::string value(text ? update::value_of("VERSION_ID", *text) : "");
+  std::erase(value, '"');
+  return value;
+}
 
 std::expected<update::Running, std::string> Rauc::status() const {
   const auto until = std::chrono::steady_clock::now() + kInstall;

@@ -9,6 +9,9 @@
 
 namespace adit::applier {
 
+/// VERSION_ID of os-release(5) without quotation marks; "" if absent.
+std::string version_in(const std::string& path);
+
 /// RAUC as a program. It describes a bundle only after its signature was verified. Errors are sentences.
 class Rauc {
  public:

@@ -4,7 +4,6 @@
 #include <expected>
 #include <string>
 
-#include "applier/export_file.hpp"
 #include "applier/options.hpp"
 #include "applier/sticks.hpp"
 #include "command_line/answer.hpp"

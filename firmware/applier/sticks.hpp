@@ -7,9 +7,21 @@
 #include <vector>
 
 #include "applier/options.hpp"
-#include "spare/medium.hpp"
+#include "spare/stick.hpp"
 
 namespace adit::applier {
+
+/// Temporary name. The next export replaces a file that remains after the stick was pulled out.
+inline constexpr const char* kUnfinished = "adit-spare.part";
+
+/// Writes an export into a directory that another user may have made, without following links. A crash leaves
+/// the old file or the new one: temporary name, fsync, rename, sync of the file system. A failed write is
+/// removed. An error is a sentence without the directory's name.
+std::expected<void, std::string> write_export(const std::string& folder, const std::string& name,
+                                              const std::string& bytes);
+
+/// Reads a whole export in the same way, without blocking. Error: not a plain file, unreadable, or longer than spare::kLargestExport.
+std::expected<std::string, std::string> read_export(const std::string& folder, const std::string& name);
 
 /// The USB sticks that are plugged in. systemd mounts each file system in a directory of its own
 /// (services/adit-stick@.service).

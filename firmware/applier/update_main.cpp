@@ -7,7 +7,6 @@
 
 #include "applier/kept.hpp"
 #include "applier/options.hpp"
-#include "applier/os_release.hpp"
 #include "applier/rauc.hpp"
 #include "applier/updater.hpp"
 #include "command_line/answer.hpp"

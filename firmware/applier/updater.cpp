@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "applier/kept.hpp"
-#include "applier/os_release.hpp"
+#include "applier/rauc.hpp"
 #include "applier/sticks.hpp"
 #include "host/log.hpp"
 #include "host/output.hpp"
 #include "host/service.hpp"
 #include "icd/try.hpp"
-#include "update/bundle_name.hpp"
+#include "update/bundle.hpp"
 #include "update/health.hpp"
 
 namespace adit::applier {

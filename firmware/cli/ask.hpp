@@ -9,7 +9,6 @@
 #include "cli/console.hpp"
 #include "cli/http_client.hpp"
 #include "cli/options.hpp"
-#include "cli/outcome.hpp"
 #include "codec/row.hpp"
 #include "icd/try.hpp"
 #include "settings/settings.hpp"

@@ -1,13 +1,19 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "cli/console.hpp"
 #include "cli/options.hpp"
-#include "cli/outcome.hpp"
 
 namespace adit::cli {
+
+/// The text of `adit COMMAND --help`; null: of `adit --help`.
+[[gnu::cold]] std::string help_about(const CommandRow* command);
+
+/// The line after an error that names the right help.
+[[gnu::cold]] std::string see_help(const CommandRow* command);
 
 /// Runs `adit` with the arguments `words`.
 Outcome run(std::span<const std::string_view> words, const Console& console = {});

@@ -6,6 +6,14 @@
 
 namespace adit::cli {
 
+enum class Exit : int { Fine = 0, Attention = 1, Unable = 2 };
+
+/// A command's output and exit status.
+struct Outcome {
+  Exit exit = Exit::Fine;
+  std::string out, err;
+};
+
 /// The terminal or other receiver of the output.
 struct Console {
   bool colour = false;

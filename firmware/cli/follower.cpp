@@ -3,11 +3,24 @@
 #include <utility>
 
 #include "cli/where.hpp"
-#include "codec/apply_patch.hpp"
 #include "codec/json.hpp"
+#include "codec/patch.hpp"
+#include "icd/text.hpp"
+#include "icd/try.hpp"
 
 namespace adit::cli {
 namespace {
+
+Event event_of(std::string_view lines) {
+  Event event;
+  while (!lines.empty()) {
+    const std::string_view line = icd::cut(lines, '\n');
+    constexpr std::string_view kType = "event: ", kData = "data: ";
+    if (line.starts_with(kType)) event.type = line.substr(kType.size());
+    if (line.starts_with(kData)) event.data = line.substr(kData.size());
+  }
+  return event;
+}
 
 Look seen(const Adit& adit, const codec::Value& told) {
   Seen seen{told, {}};
@@ -17,6 +30,20 @@ Look seen(const Adit& adit, const codec::Value& told) {
 }
 
 }  // namespace
+
+std::optional<Event> EventReader::next() {
+  while (true) {
+    const std::size_t end = unread_.find("\n\n", searched_);
+    if (end == std::string::npos) {
+      searched_ = unread_.empty() ? 0 : unread_.size() - 1;
+      return std::nullopt;
+    }
+    Event event = event_of(std::string_view(unread_).substr(0, end));
+    unread_.erase(0, end + 2);
+    searched_ = 0;
+    if (!event.data.empty()) return event;
+  }
+}
 
 std::optional<Look> Follower::look() {
   if (!stream_) return Clock::now() < again_ ? std::nullopt : open();
@@ -33,10 +60,9 @@ std::optional<Look> Follower::look() {
 
 std::optional<Look> Follower::open() {
   again_ = Clock::now() + kAgain;
-  auto stream =
-      HttpStream::ask(adit_.address, {.target = "/adit/events", .token = adit_.token.token}, kReadPatience);
-  if (!stream) return std::unexpected(std::move(stream.error()));
-  stream_ = *std::move(stream);
+  auto stream = ADIT_TRY(
+      HttpStream::ask(adit_.address, {.target = "/adit/events", .token = adit_.token.token}, kReadPatience));
+  stream_ = std::move(stream);
   events_ = {};
   has_told_ = false;
   heard_ = Clock::now();

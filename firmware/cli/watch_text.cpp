@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "alarms/alarm.hpp"
 #include "alarms/board.hpp"
-#include "alarms/words.hpp"
 #include "api/reports_csv.hpp"
 #include "cli/reports_text.hpp"
 #include "cli/status_text.hpp"

@@ -3,9 +3,17 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 namespace adit::codec {
+
+/// Whether a registered tag only annotates its content, so that a text, number, byte string, array or map
+/// keeps its meaning.
+bool is_remark(std::uint64_t tag);
+
+/// Describes another tag for a sentence.
+std::string tag_that_changes(std::uint64_t tag);
 
 /// Major types (RFC 8949 3.1).
 enum class Major : std::uint8_t { Unsigned, Negative, Bytes, Text, Array, Map, Tag, Simple };

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "codec/cbor_head.hpp"
 #include "codec/cbor_splitter.hpp"
-#include "codec/cbor_tag.hpp"
 #include "codec/plain_elements.hpp"
 #include "icd/sentence.hpp"
 #include "icd/try.hpp"

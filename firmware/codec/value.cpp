@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "codec/cbor_tag.hpp"
+#include "codec/cbor_head.hpp"
 
 namespace adit::codec {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dispatch/evidence.hpp"
+#include "dispatch/inquiry.hpp"
 #include "dispatch/report.hpp"
 #include "dispatch/report_book.hpp"
 #include "dispatch/report_verdict.hpp"

@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
+#include <vector>
 
-#include "forward/covered_count.hpp"
+#include "api/covered_map.hpp"
 #include "forward/fine_tiles.hpp"
 #include "icd/map_update.hpp"
 #include "loop/loop.hpp"
@@ -13,6 +15,28 @@
 #include "picture/mosaic.hpp"
 
 namespace adit::forward {
+
+/// Counts the covered area on request. A worker counts and gives way to messages.
+class CoveredCount final : public api::CoveredMap {
+ public:
+  static constexpr std::size_t kMostAskers = 256;
+
+  /// Both outlive this.
+  CoveredCount(loop::Workers& workers, const picture::Mosaic& mosaic) : workers_(workers), mosaic_(mosaic) {}
+
+  void covered(Done done) override;
+
+ private:
+  struct Job;
+  void pump();
+  void counted(const Job& job);
+
+  loop::Workers& workers_;
+  const picture::Mosaic& mosaic_;
+  std::vector<Done> askers_;  // of the next count
+  bool is_counting_ = false;
+  std::shared_ptr<picture::CoveredArea> area_ = std::make_shared<picture::CoveredArea>();  // a running job's
+};
 
 /// The picture of delivered maps. A worker draws one at a time and gives way to messages (loop::JobQueue).
 class MapPicture {

@@ -11,7 +11,6 @@
 #include "icd/try.hpp"
 #include "lanes/lattice.hpp"
 #include "pack/pack.hpp"
-#include "pack/pack_cells.hpp"
 #include "pack/stitch.hpp"
 
 namespace adit::forward {

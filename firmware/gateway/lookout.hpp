@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "alarms/growth.hpp"
 #include "alarms/habits.hpp"
 #include "alarms/post_watch.hpp"
 #include "forward/flow.hpp"

@@ -1,7 +1,7 @@
 #include "gateway/overview.hpp"
 
+#include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
-#include "alarms/words.hpp"
 #include "api/judged.hpp"
 #include "box/notices.hpp"
 #include "box/version.hpp"

@@ -13,7 +13,6 @@
 #include "lanes/map_queue.hpp"
 #include "lanes/precision.hpp"
 #include "lanes/sender.hpp"
-#include "lanes/successive.hpp"
 #include "lanes/turns.hpp"
 #include "lanes/waiting_map.hpp"
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <utility>
 
 #include "icd/require.hpp"
 #include "lanes/stitch.hpp"

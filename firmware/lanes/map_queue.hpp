@@ -7,11 +7,20 @@
 #include <utility>
 #include <vector>
 
+#include "icd/map_update.hpp"
 #include "lanes/canvases.hpp"
-#include "lanes/successive.hpp"
+#include "lanes/sender.hpp"
 #include "lanes/waiting_map.hpp"
 
 namespace adit::lanes {
+
+/// Two successive queued clouds of one sender with the same fields, byte order and origin.
+struct Successive {
+  Sender sender;
+  std::vector<std::uint64_t> older_updates, newer_updates;  // WaitingMap::updates, to find them again
+  icd::MapData older, newer;                                // not compressed
+  std::uint32_t point_step = 0;                             // bytes
+};
 
 /// The queued maps of one sender, in the order in which they were made. MapLane describes the functions.
 class MapQueue {

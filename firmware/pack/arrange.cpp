@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "codec/gzip_whole.hpp"
-#include "pack/box.hpp"
 #include "pack/coordinates.hpp"
 #include "pack/point_layout.hpp"
 #include "pack/point_order.hpp"

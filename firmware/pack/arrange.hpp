@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
-#include "pack/box.hpp"
+#include "pack/coordinates.hpp"
 #include "pack/point_layout.hpp"
 
 namespace adit::pack {

@@ -1,6 +1,5 @@
 #include "pack/coordinates.hpp"
 
-#include <algorithm>
 #include <string_view>
 
 #include "icd/require.hpp"

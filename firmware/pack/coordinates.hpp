@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
 
 #include "icd/map_update.hpp"
@@ -44,6 +46,22 @@ class CoordinateReader {
 
   std::array<std::size_t, 3> offsets_;
   bool is_double_, is_bigendian_;
+};
+
+/// The smallest axis-parallel box around some points. Without points its low is above its high.
+struct Box {
+  Coordinates low = all(std::numeric_limits<double>::max()),
+              high = all(std::numeric_limits<double>::lowest());
+
+  void add(const Coordinates& point) {
+    for (std::size_t axis = 0; axis < point.size(); ++axis) {
+      low[axis] = std::min(low[axis], point[axis]);
+      high[axis] = std::max(high[axis], point[axis]);
+    }
+  }
+
+ private:
+  static Coordinates all(double metres) { return {metres, metres, metres}; }
 };
 
 }  // namespace adit::pack

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "icd/map_update.hpp"
-#include "pack/box.hpp"
+#include "pack/coordinates.hpp"
 
 namespace adit::pack {
 

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "icd/placement.hpp"
-#include "pack/box.hpp"
 #include "pack/coordinates.hpp"
 #include "pack/point_layout.hpp"
 

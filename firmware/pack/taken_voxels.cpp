@@ -1,12 +1,19 @@
 #include "pack/taken_voxels.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "pack/points.hpp"
 
 namespace adit::pack {
 namespace {
+
+constexpr unsigned kBitsInBlock = 2;                        // of an index: the voxel within its block
+constexpr unsigned kBitsOfBlock = 21 - kBitsInBlock;        // of an index: the block
+constexpr std::uint64_t kIsThere = std::uint64_t{1} << 63;  // set in the place of each block
+
+constexpr std::size_t kFewest = 1024;  // places
 
 /// Merges a voxel into the last block, because neighbours often share one.
 void note(const VoxelBlock& found, std::vector<VoxelBlock>& all) {
@@ -41,6 +48,65 @@ class Held {
 };
 
 }  // namespace
+
+Voxels::Voxels(const icd::PointCloud2& cloud, double edge) : coordinates_(cloud), per_metre_(1 / edge) {
+  if (cloud.origin && *cloud.origin != icd::Pose{}) placement_.emplace(*cloud.origin);
+}
+
+/// Indexes start at the lowest within reach, so they are not negative and truncation rounds down.
+VoxelBlock Voxels::of(std::span<const std::uint8_t> point) const {
+  const auto [x, y, z] = coordinates_(point);
+  icd::Point at{x, y, z};
+  if (placement_) at = (*placement_)(at);
+  VoxelBlock found{kIsThere, 0};
+  unsigned within = 0;
+  for (const double metres : {at.x, at.y, at.z}) {
+    const double index = metres * per_metre_ + kReach;
+    if (!(index >= 0 && index < 2.0 * kReach)) return {};  // also if it is not a number
+    const auto whole = static_cast<std::uint32_t>(index);
+    found.place = found.place << kBitsOfBlock | whole >> kBitsInBlock;
+    within = within << kBitsInBlock | (whole & ((1u << kBitsInBlock) - 1));
+  }
+  found.place |= kIsThere;
+  found.voxels = std::uint64_t{1} << within;
+  return found;
+}
+
+/// The index of the block, or of the free place for it. Fibonacci hashing (Knuth, The Art of Computer
+/// Programming 3, 6.4).
+std::size_t VoxelSet::place_of(std::uint64_t place) const {
+  constexpr std::uint64_t kGolden = 0x9e3779b97f4a7c15u;
+  std::size_t at = (place * kGolden) >> (64 - std::countr_zero(places_.size()));
+  while (places_[at].place != 0 && places_[at].place != place) at = (at + 1) & (places_.size() - 1);
+  return at;
+}
+
+std::uint64_t VoxelSet::voxels_at(std::uint64_t place) const {
+  return places_.empty() ? 0 : places_[place_of(place)].voxels;
+}
+
+void VoxelSet::add(const VoxelBlock& block) {
+  if (places_.empty()) grow(kFewest);
+  if (places_[place_of(block.place)].place == 0) {
+    if (places_with_another() > places_.size()) grow(places_with_another());
+    ++count_;
+  }
+  VoxelBlock& its = places_[place_of(block.place)];
+  its.place = block.place;
+  its.voxels |= block.voxels;
+}
+
+std::size_t VoxelSet::places_with_another() const {
+  if (places_.empty()) return kFewest;
+  return 4 * (count_ + 1) > 3 * places_.size() ? 2 * places_.size() : places_.size();
+}
+
+void VoxelSet::grow(std::size_t places) {
+  const auto before = std::exchange(places_, std::vector<VoxelBlock>(places));
+  for (const VoxelBlock& block : before) {
+    if (block.place != 0) places_[place_of(block.place)] = block;
+  }
+}
 
 TakenVoxels::Rest TakenVoxels::leave_out(const icd::RobotName& robot, const icd::PointCloud2& cloud,
                                          const icd::MapData& data, double edge) const {

@@ -3,15 +3,63 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "icd/map_update.hpp"
+#include "icd/placement.hpp"
 #include "icd/robot_name.hpp"
-#include "pack/voxel_set.hpp"
-#include "pack/voxels.hpp"
+#include "pack/coordinates.hpp"
 
 namespace adit::pack {
+
+/// Some voxels of one block of 4 x 4 x 4 voxels.
+struct VoxelBlock {
+  std::uint64_t place = 0;   // of the block; 0: no block
+  std::uint64_t voxels = 0;  // one bit for each voxel
+  friend bool operator==(const VoxelBlock&, const VoxelBlock&) = default;
+};
+
+/// Finds the voxel of "darpa" (ICD 6.1) in which a point of the cloud lies. Voxels are cubes; one has its
+/// lower corner at the origin of "darpa". The cloud's own origin is applied (ICD 6.3.2).
+class Voxels {
+ public:
+  /// Voxels reach this far from the origin along each axis.
+  static constexpr std::int64_t kReach = 1 << 20;
+
+  /// `edge`: metres, > 0.
+  Voxels(const icd::PointCloud2& cloud, double edge);
+
+  /// The voxel of a point of point_step bytes. A block with place 0 if it is out of reach or not finite.
+  VoxelBlock of(std::span<const std::uint8_t> point) const;
+
+ private:
+  CoordinateReader coordinates_;
+  std::optional<icd::Placement> placement_;  // absent: the points are in "darpa"
+  double per_metre_;
+};
+
+/// Voxels by block: open addressing, at most three quarters full.
+class VoxelSet {
+ public:
+  /// The voxels of the block at `place`; 0 if there is none.
+  std::uint64_t voxels_at(std::uint64_t place) const;
+  /// The set is unchanged if this throws std::bad_alloc.
+  void add(const VoxelBlock& block);
+
+  /// Memory now, and after another block is added.
+  std::size_t bytes() const { return places_.size() * sizeof(VoxelBlock); }
+  std::size_t bytes_with_another() const { return places_with_another() * sizeof(VoxelBlock); }
+
+ private:
+  std::size_t place_of(std::uint64_t place) const;
+  std::size_t places_with_another() const;
+  void grow(std::size_t places);
+
+  std::vector<VoxelBlock> places_;  // empty, or a power of two
+  std::size_t count_ = 0;
+};
 
 /// For each robot, the voxels in which the Command Post has accepted a point. Another point of such a voxel
 /// need not be sent.

@@ -8,10 +8,8 @@
 #include "icd/require.hpp"
 #include "icd/try.hpp"
 #include "picture/aligned_grid.hpp"
-#include "picture/draw_parts.hpp"
 #include "picture/grid_cells.hpp"
 #include "picture/palette.hpp"
-#include "picture/sheet.hpp"
 #include "picture/turned_grid.hpp"
 
 namespace adit::picture {

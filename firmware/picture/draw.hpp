@@ -10,6 +10,7 @@
 
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
+#include "picture/sheet.hpp"
 #include "picture/tile.hpp"
 
 namespace adit::picture {
@@ -57,5 +58,11 @@ inline constexpr std::size_t kMostColumns = std::size_t{1} << 20;
 /// grid's cells, in pixels.
 inline constexpr std::size_t kMostDabs = std::size_t{32} << 20;
 inline constexpr double kLargestTurnedCell = 64;
+
+/// Draw a map on an empty sheet. The result is the number of cells, points or pixels that were left out.
+icd::Checked<std::size_t> draw_grid(const icd::OccupancyGrid& grid, const icd::MapData& data, Sheet& sheet,
+                                    const Between& between);
+icd::Checked<std::size_t> draw_cloud(const icd::PointCloud2& cloud, const icd::MapData& data, Sheet& sheet,
+                                     const Between& between);
 
 }  // namespace adit::picture

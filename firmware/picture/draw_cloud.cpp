@@ -6,7 +6,6 @@
 #include "icd/try.hpp"
 #include "picture/cloud_points.hpp"
 #include "picture/draw.hpp"
-#include "picture/draw_parts.hpp"
 #include "picture/palette.hpp"
 
 namespace adit::picture {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "picture/draw_parts.hpp"
+#include "picture/draw.hpp"
 #include "picture/sheet.hpp"
 
 namespace adit::picture {

@@ -8,6 +8,8 @@
 namespace adit::spare {
 namespace {
 
+constexpr std::size_t kGroup = 4;
+
 // Format: the magic, the version byte and a zero, the salt, the nonce, and the sealed content with its tag.
 // The tag authenticates all bytes before it.
 constexpr std::string_view kMagic = "adit-spare";
@@ -36,6 +38,42 @@ std::expected<Key, std::string> key_of(std::string_view code, const std::uint8_t
 }
 
 }  // namespace
+
+std::string draw_code(const std::array<std::uint8_t, kCodeDigits>& random) {
+  // The low decimal digits of a number of 128 bits. Their probabilities differ by less than 1 in 2^70.
+  std::array<std::uint8_t, kCodeDigits> number = random;
+  std::string code;
+  for (std::size_t i = 0; i < kCodeDigits; ++i) {
+    unsigned rest = 0;
+    for (std::uint8_t& byte : number) {
+      rest = rest << 8 | byte;
+      byte = static_cast<std::uint8_t>(rest / 10);
+      rest %= 10;
+    }
+    code += static_cast<char>('0' + rest);
+  }
+  return code;
+}
+
+std::string spoken(std::string_view code) {
+  std::string text;
+  for (std::size_t i = 0; i < code.size(); ++i) {
+    if (i != 0 && i % kGroup == 0) text += ' ';
+    text += code[i];
+  }
+  return text;
+}
+
+std::optional<std::string> code_in(std::string_view typed) {
+  std::string code;
+  for (const char each : typed) {
+    if (each == ' ' || each == '-') continue;
+    if (each < '0' || each > '9' || code.size() == kCodeDigits) return std::nullopt;
+    code += each;
+  }
+  if (code.size() != kCodeDigits) return std::nullopt;
+  return code;
+}
 
 std::expected<std::string, std::string> seal(std::string_view content, std::string_view code,
                                              const Seed& seed) {

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <expected>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -10,6 +12,20 @@
 /// Messages, as files, about the stick in the box between aditd, which has no privileges, and adit-spare,
 /// which runs as root: README.md.
 namespace adit::spare {
+
+/// A file system on a USB stick, mounted if the box can read it.
+struct Medium {
+  std::string name = "";  // kernel's name: "sda1"
+  std::string disk = "";  // its disk: "sda"
+  bool is_mounted = false;
+  bool is_write_protected = false;
+  std::uint64_t room = 0;  // free bytes
+};
+
+/// Where to write an export of `size` bytes: the partition with the most room of the only stick. An error is
+/// a sentence for the user at the box: no stick, several sticks (the export must not have to be searched
+/// for), a stick that cannot be read or written, or no room.
+std::expected<Medium, std::string> medium_for(std::span<const Medium> media, std::uint64_t size);
 
 /// aditd's request and the export to write, in aditd's state directory. adit-spare removes both.
 inline constexpr const char* kStickRequestFile = "stick.json";

@@ -8,7 +8,6 @@
 #include "codec/row_file.hpp"
 #include "update/bundle.hpp"
 #include "update/last_update.hpp"
-#include "update/proven.hpp"
 
 /// Messages, as files, between aditd, which has no privileges, and adit-update, which runs as root:
 /// README.md.

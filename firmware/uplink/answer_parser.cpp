@@ -3,28 +3,26 @@
 // more byte, it fails although the bytes were parsed correctly (basic_parser.ipp, parse_chunk_header()).
 #define BOOST_DISABLE_ASSERTS
 
-#include "uplink/answer_parser.hpp"
-
-#include <optional>
-#include <utility>
-
-#include "icd/require.hpp"
-#include "icd/text.hpp"
-#include "loop/guard.hpp"
-#include "uplink/http_date.hpp"
-
 // GCC 12 warns of an uninitialised boost::optional if the sanitizers prevent inlining.
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC diagnostic pop
+#endif
+#include "uplink/answer_parser.hpp"
+
 #include <boost/beast/core/buffers_range.hpp>
 #include <boost/beast/http/error.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic pop
-#endif
+#include <ctime>
+#include <utility>
+
+#include "icd/require.hpp"
+#include "icd/text.hpp"
+#include "loop/guard.hpp"
 
 namespace adit::uplink {
 namespace {
@@ -86,6 +84,19 @@ std::string to_string(boost::beast::string_view text) {
 }
 
 }  // namespace
+
+std::optional<std::chrono::sys_seconds> http_date(const std::string& text) {
+  using namespace std::chrono;
+  constexpr std::string_view kForm = "Sun, 06 Nov 1994 08:49:37 GMT";
+  if (text.size() != kForm.size()) return std::nullopt;
+  std::tm parts{};
+  const char* const end = strptime(text.c_str() + 3, ", %d %b %Y %H:%M:%S GMT", &parts);
+  if (end != text.c_str() + text.size()) return std::nullopt;
+  const year_month_day date{year(parts.tm_year + 1900), month(static_cast<unsigned>(parts.tm_mon + 1)),
+                            day(static_cast<unsigned>(parts.tm_mday))};
+  if (!date.ok()) return std::nullopt;
+  return sys_days(date) + hours(parts.tm_hour) + minutes(parts.tm_min) + seconds(parts.tm_sec);
+}
 
 struct AnswerParser::Impl {
   std::unique_ptr<Parser> parser;

@@ -1,13 +1,19 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "uplink/connection.hpp"
 
 namespace adit::uplink {
+
+/// Parses "Sun, 06 Nov 1994 08:49:37 GMT" (IMF-fixdate, RFC 9110 5.6.7). nullopt if `text` is no such date.
+/// Does not check the name of the day.
+std::optional<std::chrono::sys_seconds> http_date(const std::string& text);
 
 /// Parses an HTTP/1 answer to one request as its bytes arrive (RFC 9112). Skips interim answers (1xx).
 ///

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <span>
 
-#include "clock/tracking.hpp"
+#include "clock/chrony.hpp"
 #include "loop/file_descriptor.hpp"
 #include "loop/loop.hpp"
 

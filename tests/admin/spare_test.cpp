@@ -8,7 +8,6 @@
 #include "host/folder.hpp"
 #include "host/service.hpp"
 #include "ledger/ledger.hpp"
-#include "spare/code.hpp"
 #include "spare/sealed.hpp"
 
 namespace adit::admin {

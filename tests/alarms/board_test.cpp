@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "alarms/acknowledged.hpp"
+#include "alarms/alarm.hpp"
 #include "alarms/alike.hpp"
-#include "alarms/words.hpp"
 
 namespace adit::alarms {
 namespace {

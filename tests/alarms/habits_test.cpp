@@ -3,8 +3,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "alarms/growth.hpp"
-
 namespace adit::alarms {
 namespace {
 

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "api/exposition.hpp"
 #include "api/exposition_grammar.hpp"
 #include "api/played.hpp"
 #include "api/scenes.hpp"

@@ -5,9 +5,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "alarms/alarm.hpp"
 #include "alarms/board.hpp"
 #include "alarms/conditions.hpp"
-#include "alarms/words.hpp"
 #include "api/judged.hpp"
 #include "api/scenes.hpp"
 #include "icd/sentence.hpp"

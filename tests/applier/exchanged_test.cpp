@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include "applier/sought.hpp"
 #include "network/messages.hpp"
 
 namespace adit::applier {

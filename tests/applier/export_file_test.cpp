@@ -1,5 +1,3 @@
-#include "applier/export_file.hpp"
-
 #include <gmock/gmock.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -7,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "applier/sticks.hpp"
 #include "host/folder.hpp"
 #include "spare/sealed.hpp"
 

@@ -10,7 +10,6 @@
 #include "codec/gzip.hpp"
 #include "codec/gzip_whole.hpp"
 #include "pack/pack.hpp"
-#include "pack/pack_cells.hpp"
 
 namespace adit::bench {
 namespace {

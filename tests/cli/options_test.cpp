@@ -7,7 +7,6 @@
 
 #include "cli/command.hpp"
 #include "cli/commands.hpp"
-#include "cli/help.hpp"
 
 namespace adit::cli {
 namespace {

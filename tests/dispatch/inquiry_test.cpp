@@ -1,5 +1,6 @@
 #include "dispatch/inquiry.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 namespace adit::dispatch {
@@ -95,6 +96,92 @@ TEST_F(InquiryTest, HoldsOthersBackLongerOnlyWhereTheLastStatusesSayMore) {
   EXPECT_FALSE(inquiry_.is_pending(at(19)));
   hear(20, Finding::Silent);
   EXPECT_FALSE(inquiry_.is_pending(at(20)));
+}
+
+constexpr std::optional<std::int64_t> kUnknown = std::nullopt;
+
+icd::RunStatus status(std::int64_t remaining, std::int64_t score, double clock = 300) {
+  return {score, clock, remaining, "adit"};
+}
+
+struct EvidenceCase {
+  const char* name;
+  icd::RunStatus before;
+  std::int64_t doubts;
+  SentSince since;
+  icd::RunStatus now;
+  Finding finding;
+  std::optional<std::int64_t> points_each;
+};
+void PrintTo(const EvidenceCase& one, std::ostream* out) {
+  *out << one.name;
+}
+
+const EvidenceCase kEvidenceCases[] = {
+    {"NothingChanged", status(20, 3), 1, {}, status(20, 3), Finding::NotRecorded, kUnknown},
+    {"OneUsedAndNoPoint", status(20, 3), 1, {}, status(19, 3), Finding::Recorded, 0},
+    {"OneUsedAndAPoint", status(20, 3), 1, {}, status(19, 4), Finding::Recorded, 1},
+    {"TheLastOneUsed", status(1, 3), 1, {}, status(0, 3), Finding::Recorded, 0},
+    {"TwoUsedByOne", status(20, 3), 1, {}, status(18, 3), Finding::Contradicts, kUnknown},
+    {"MoreLeftThanBefore", status(20, 3), 1, {}, status(21, 3), Finding::Contradicts, kUnknown},
+    {"APointForNothing", status(20, 3), 1, {}, status(20, 4), Finding::Contradicts, kUnknown},
+    {"TwoPointsForOne", status(20, 3), 1, {}, status(19, 5), Finding::Contradicts, kUnknown},
+    {"APointLost", status(20, 3), 1, {}, status(19, 2), Finding::Contradicts, kUnknown},
+    {"NothingLeftToUse", status(0, 3), 1, {}, status(0, 3), Finding::Silent, kUnknown},
+    {"ClockNotStarted", status(20, 0, 0), 1, {}, status(20, 0, 0), Finding::Silent, kUnknown},
+    {"StartedSince", status(20, 0, 0), 1, {}, status(20, 0, 9), Finding::NotRecorded, kUnknown},
+    {"StartedSinceWithOtherCounts", status(5, 0, 0), 1, {}, status(25, 0, 9), Finding::Silent, kUnknown},
+    {"StartedSinceWithOneLess", status(20, 0, 0), 1, {}, status(19, 0, 9), Finding::Silent, kUnknown},
+    {"TwoOfTwo", status(20, 3), 2, {}, status(18, 3), Finding::Recorded, 0},
+    {"TwoOfTwoWithBothPoints", status(20, 3), 2, {}, status(18, 5), Finding::Recorded, 1},
+    {"TwoOfTwoWithOnePoint", status(20, 3), 2, {}, status(18, 4), Finding::Recorded, kUnknown},
+    {"OneOfTwo", status(20, 3), 2, {}, status(19, 3), Finding::Silent, kUnknown},
+    {"NoneOfTwo", status(20, 3), 2, {}, status(20, 3), Finding::NotRecorded, kUnknown},
+    {"ThreeOfTwo", status(20, 3), 2, {}, status(17, 3), Finding::Contradicts, kUnknown},
+    {"OnlyWhatWasSentSince", status(20, 3), 1, {2, 1}, status(18, 4), Finding::NotRecorded, kUnknown},
+    {"OneMoreThanSentSince", status(20, 3), 1, {2, 1}, status(17, 5), Finding::Recorded, 1},
+    {"LessThanSentSince", status(20, 3), 1, {2, 0}, status(19, 3), Finding::Contradicts, kUnknown},
+    {"UsedUpBySentSince", status(2, 3), 1, {2, 0}, status(0, 3), Finding::Silent, kUnknown},
+};
+
+class EvidenceTable : public testing::TestWithParam<EvidenceCase> {};
+
+TEST_P(EvidenceTable, SaysWhatTheCountsProve) {
+  const EvidenceCase& one = GetParam();
+  const Evidence evidence = weigh(one.before, one.doubts, one.since, one.now);
+  EXPECT_EQ(evidence.finding, one.finding) << evidence.why;
+  EXPECT_EQ(evidence.points_each, one.points_each);
+}
+
+INSTANTIATE_TEST_SUITE_P(Counts, EvidenceTable, testing::ValuesIn(kEvidenceCases),
+                         [](const auto& one) { return one.param.name; });
+
+TEST(Evidence, ShowsItsFigures) {
+  EXPECT_EQ(weigh(status(20, 3), 2, {1, 1}, status(19, 4)).why,
+            "remaining_reports went from 20 to 19 and the score from 3 to 4, 1 of it by reports sent since, "
+            "with 2 reports in doubt");
+  EXPECT_THAT(weigh(status(20, 3), 1, {}, status(18, 3)).why,
+              testing::HasSubstr("does another sender report"));
+}
+
+/// The law behind the table: what the same events give by themselves is never called a contradiction, and
+/// never the opposite of what happened.
+TEST(Evidence, IsTrueOfEveryHistoryWithoutAnotherSender) {
+  for (std::int64_t left = 1; left <= 6; ++left) {
+    for (std::int64_t doubts = 1; doubts <= 3; ++doubts) {
+      for (std::int64_t done = 0; done <= doubts; ++done) {
+        for (std::int64_t points = 0; points <= done; ++points) {
+          for (std::int64_t others = 0; others + done <= left; ++others) {
+            const auto now = status(left - done - others, 3 + points);
+            const Finding finding = weigh(status(left, 3), doubts, {others, 0}, now).finding;
+            EXPECT_NE(finding, Finding::Contradicts);
+            EXPECT_TRUE(finding != Finding::Recorded || done == doubts);
+            EXPECT_TRUE(finding != Finding::NotRecorded || done == 0);
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

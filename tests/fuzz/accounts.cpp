@@ -2,7 +2,7 @@
 #include "access/accounts.hpp"
 
 #include "access/devices.hpp"
-#include "access/session_file.hpp"
+#include "access/sessions.hpp"
 #include "alarms/acknowledged.hpp"
 #include "target.hpp"
 

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "clock/chrony.hpp"
-#include "clock/tracking.hpp"
 #include "target.hpp"
 
 namespace adit::fuzz {

@@ -7,7 +7,7 @@
 #include "icd/bearer_token.hpp"
 #include "intake/target.hpp"
 #include "target.hpp"
-#include "uplink/http_date.hpp"
+#include "uplink/answer_parser.hpp"
 
 namespace adit::fuzz {
 namespace {

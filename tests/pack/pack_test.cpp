@@ -1,17 +1,41 @@
 #include "pack/pack.hpp"
 
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "codec/gzip.hpp"
+#include "codec/gzip_whole.hpp"
+#include "icd/chunked_bytes.hpp"
+#include "pack/grids.hpp"
 #include "pack/layouts.hpp"
 
 namespace adit::pack {
 namespace {
+
+/// What zlib itself inflates of the one gzip member that `bytes` are; fails the test where they are none, or
+/// where anything follows it. `most`: more than is expected.
+std::vector<std::uint8_t> only_member(const icd::ChunkedBytes& bytes, std::size_t most) {
+  std::vector<std::uint8_t> member = bytes.to_vector(), out(most + 1);
+  z_stream stream{};
+  inflateInit2(&stream, MAX_WBITS + 16);
+  stream.next_in = member.data();
+  stream.avail_in = static_cast<uInt>(member.size());
+  stream.next_out = out.data();
+  stream.avail_out = static_cast<uInt>(out.size());
+  EXPECT_EQ(inflate(&stream, Z_FINISH), Z_STREAM_END) << (stream.msg == nullptr ? "cut short" : stream.msg);
+  EXPECT_EQ(stream.avail_in, 0U) << "bytes after the member";
+  out.resize(stream.total_out);
+  inflateEnd(&stream);
+  return out;
+}
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -135,5 +159,66 @@ TEST(Pack, LeavesACloudThatIsCompressedAsItIs) {
   EXPECT_EQ(pack(cloud), cloud);
 }
 
+/// As it is kept.
+icd::MapData kept(const Grid& grid) {
+  return {codec::gzip(icd::ChunkedBytes(grid.cells), codec::GzipStrategy::Runs), icd::Compression::Gzip,
+          grid.cells.size()};
+}
+
+icd::MapData kept_by(int level, const Grid& grid) {
+  return {*codec::gzip_whole(grid.cells, level, 2 * grid.cells.size() + 100), icd::Compression::Gzip,
+          grid.cells.size()};
+}
+
+std::vector<Grid> grids() {
+  return {cave(400, 300, 1),           graded(cave(400, 300, 2)),
+          speckled(cave(400, 300, 3)), measured(cave(400, 300, 4)),
+          noise(300, 300, 101),        noise(300, 300, 2),
+          noise(300, 300, 256),        Grid("all unknown", 2000, 1000),
+          Grid("one row", 90'000, 1),  Grid("few cells", 20, 20)};
+}
+
+TEST(PackCells, GivesBackEachCellAndIsNeverLargerThanThey_HoweverTheyAreKept) {
+  for (const Grid& grid : grids()) {
+    for (const icd::MapData& data : {kept(grid), kept_by(1, grid), kept_by(12, grid)}) {
+      for (const Effort effort : {Effort::Quick, Effort::Full}) {
+        SCOPED_TRACE(grid.what);
+        const icd::MapData packed = *pack_cells(data, effort);
+        EXPECT_EQ(packed.raw_size, grid.cells.size());
+        EXPECT_LE(packed.bytes.size(), std::min(data.bytes.size(), grid.cells.size()));
+        if (packed.compression == icd::Compression::None) {
+          EXPECT_EQ(packed.bytes.to_vector(), grid.cells);
+        } else {
+          EXPECT_EQ(only_member(packed.bytes, grid.cells.size()), grid.cells);
+        }
+      }
+    }
+  }
+}
+
+TEST(PackCells, TakesLibdeflateIfItIsSmallerAndFullIfThereIsTime) {
+  const Grid grid = graded(cave(400, 300, 8));
+  EXPECT_EQ(pack_cells(kept(grid), Effort::Full), kept_by(kCellsLevel, grid));
+  EXPECT_EQ(pack_cells(kept(grid), Effort::Quick), kept_by(kQuickCellsLevel, grid));
+  EXPECT_EQ(pack_cells(kept(grid), Effort::None), kept(grid));
+  EXPECT_EQ(pack_cells(kept_by(12, grid), Effort::Full), kept_by(12, grid));
+}
+
+TEST(PackCells, SendsACellAsItIs) {
+  const Grid grid("one cell", 1, 1);
+  const icd::MapData cell{icd::ChunkedBytes(grid.cells), icd::Compression::None, 1};
+  EXPECT_EQ(pack_cells(kept(grid), Effort::Full), cell);
+  EXPECT_EQ(pack_cells(cell, Effort::Full), cell);
+}
+
+TEST(PackCells, SaysThatDataIsDamaged) {
+  icd::MapData damaged = kept(cave(300, 300, 3));
+  std::vector<std::uint8_t> member = damaged.bytes.to_vector();
+  member[member.size() / 2] ^= 0x10;
+  damaged.bytes = icd::ChunkedBytes(member);
+  EXPECT_EQ(pack_cells(damaged, Effort::Full), std::nullopt);
+}
+
 }  // namespace
+
 }  // namespace adit::pack

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "access/admission.hpp"
-#include "access/session_file.hpp"
 #include "access/sessions.hpp"
 #include "admin/session_keeper.hpp"
 #include "admin/store.hpp"

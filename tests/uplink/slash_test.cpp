@@ -1,6 +1,5 @@
-#include "uplink/slash.hpp"
-
 #include "asking.hpp"
+#include "uplink/exchange.hpp"
 
 namespace adit::uplink {
 namespace {

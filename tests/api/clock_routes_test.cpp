@@ -1,7 +1,6 @@
-#include "api/clock.hpp"
-
 #include <gmock/gmock.h>
 
+#include "api/clock.hpp"
 #include "api/on_page.hpp"
 
 namespace adit::api {

@@ -9,6 +9,7 @@ import { looksOf } from "./map_theme.js";
 import { MapView } from "./map_view.js";
 
 const PAIR_MARGIN = 4; // metres around two reports that are compared
+const SCALE_ROOM = 4; // letters: the scale and a report above it
 
 export class MapOfRun {
   #canvas;
@@ -179,7 +180,7 @@ export class MapOfRun {
   #fitAll() {
     const area = this.#scene.bounds(), size = `${this.#view.width} ${this.#view.height}`;
     if (!area || (!this.#isExact && size === this.#fittedSize && this.#view.holds(area))) return;
-    this.#view.fit(area);
+    this.#view.fit(area, SCALE_ROOM * this.#drawing.picture.fontSize);
     this.#fittedSize = size;
     this.#isExact = false;
   }

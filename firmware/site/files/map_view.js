@@ -2,6 +2,7 @@
 
 const MAX_METRES = 8192, MIN_SCALE = 0.02, MAX_SCALE = 400;
 const SAME = 1e-6; // pixels
+const MARGIN = 0.05; // of a side, around what is fitted
 
 const clamp = (value, least, most) => Math.min(most, Math.max(least, value));
 
@@ -70,10 +71,11 @@ export class MapView {
     this.lookAt(this.centre.x + before.x - after.x, this.centre.y + before.y - after.y);
   }
 
-  /** Shows the whole of an area with a margin; a small one not larger than is useful. */
-  fit({ left, right, bottom, top }) {
-    this.lookAt((left + right) / 2, (bottom + top) / 2);
-    const scale = 0.9 * Math.min(this.width / Math.max(1, right - left), this.height / Math.max(1, top - bottom));
+  /** Shows the whole of an area with a margin, of at least `below` pixels at the lower edge; a small one not larger than is useful. */
+  fit({ left, right, bottom, top }, below = 0) {
+    const margin = MARGIN * this.height, more = Math.max(0, below - margin);
+    const scale = Math.min((1 - 2 * MARGIN) * this.width / Math.max(1, right - left), (this.height - 2 * margin - more) / Math.max(1, top - bottom));
     this.scale = clamp(scale, MIN_SCALE, 40);
+    this.lookAt((left + right) / 2, (bottom + top) / 2 - more / 2 / this.scale);
   }
 }

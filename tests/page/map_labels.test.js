@@ -2,6 +2,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { groupReports } from "../../firmware/site/files/map_groups.js";
+import { drawLayers } from "../../firmware/site/files/map_layers.js";
 import { Labels } from "../../firmware/site/files/map_labels.js";
 import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
 import { lastSeen } from "../../firmware/site/files/map_robots.js";
@@ -26,6 +27,41 @@ function dice(seed) {
 }
 
 const overlap = (a, b) => a[0] < b[2] && a[2] > b[0] && a[1] < b[3] && a[3] > b[1];
+
+test("fits an area so that the scale and a sign stand clear below it", () => {
+  const area = { left: 0, right: 30, bottom: -10, top: 50 };
+  for (const [width, height, room] of [[390, 200, 48], [1920, 1080, 48], [390, 500, 0]]) {
+    const view = Object.assign(new MapView(), { width, height });
+    view.fit(area, room);
+    const [left, lowest] = view.toPixel({ x: 0, y: -10 }), [right, highest] = view.toPixel({ x: 30, y: 50 });
+    assert.ok(lowest <= height - Math.max(room, height * 0.05) + 1e-6 && highest >= height * 0.05 - 1e-6 && left >= 0 && right <= width, `${width} x ${height}`);
+    assert.ok(lowest - highest >= height * 0.9 - room - 1e-6, "and as large as there is room");
+    assert.ok(view.holds(area));
+  }
+});
+
+test("draws the tiles of a place as one image, made again if one of them changed", (t) => {
+  const drawn = [], made = [];
+  t.after(() => delete globalThis.document);
+  globalThis.document = /** @type {any} */ ({
+    documentElement: { dataset: { theme: "dark" } },
+    createElement: () => ({ getContext: () => ({ drawImage: (image) => made.push(image.name) }) }),
+  });
+  const images = { r1: { name: "r1" }, r2: { name: "r2" } }, layers = ["r1", "r2"].map((robot) =>
+    ({ kind: "grid", robot, tiles: new Map([["0/0/0", { level: 0, x: 0, y: 0 }]]) }));
+  const tiles = { side: 256, metresPerPixel: [0.25], metresOf: () => 64, image: ({ robot }) => images[robot] };
+  const view = Object.assign(new MapView(), { width: 400, height: 300, scale: 4 });
+  const draw = (those = layers) => drawLayers({ drawImage: (image) => drawn.push(image) }, view, tiles, those, null, 1);
+  draw();
+  draw();
+  assert.deepEqual(made, ["r1", "r2"]);
+  assert.equal(drawn.length, 2);
+  images.r2 = { name: "r2 later" };
+  draw();
+  assert.deepEqual(made.slice(2), ["r1", "r2 later"]);
+  draw(layers.slice(1));
+  assert.equal(drawn.at(-1), images.r2, "of a single layer, its own image");
+});
 
 test("writes no name upon another, nor cut at the edge, nor upon what is drawn", () => {
   const paint = paper(), roll = dice(7), drawn = [];

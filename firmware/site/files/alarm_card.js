@@ -1,6 +1,6 @@
 // One alarm with its action, as the strip and the list of all show it.
 import { barred } from "./actions.js";
-import { make, mark, say } from "./dom.js";
+import { attribute, make, mark, say, set } from "./dom.js";
 import { post } from "./session.js";
 import { clip, clock, timeOfDay } from "./words.js";
 
@@ -45,7 +45,7 @@ export function fillCard(node, alarm, time) {
   say(lasts, clock(time - alarm.since));
   say(text.lastChild, reasonOf(alarm));
   say(act, clip(alarm.action.word, 20));
-  act.hidden = !alarm.action.word || !isWay(alarm.action.link);
-  if (!act.hidden && act.getAttribute("href") !== alarm.action.link) act.href = alarm.action.link;
-  seen.hidden = alarm.acknowledged || alarm.id === BOX_LOST || barred() !== "";
+  set(act, { hidden: !alarm.action.word || !isWay(alarm.action.link) });
+  if (!act.hidden) attribute(act, "href", alarm.action.link);
+  set(seen, { hidden: alarm.acknowledged || alarm.id === BOX_LOST || barred() !== "" });
 }

@@ -1,6 +1,6 @@
 // All alarms, each with a link to what it means, and the last that went.
 import { alarmCard, BOX_LOST, fillCard, formerly } from "./alarm_card.js";
-import { list, make, say } from "./dom.js";
+import { attribute, list, make, mark, say, set } from "./dom.js";
 
 export function fillAlarmList(dialog, alarms, over, time) {
   dialog.querySelector(".none").hidden = alarms.length > 0;
@@ -11,9 +11,10 @@ export function fillAlarmList(dialog, alarms, over, time) {
     item.append(card);
     return item;
   }, (item, alarm) => {
-    item.firstChild.dataset.key = alarm.id;
-    item.querySelector("a.help").hidden = alarm.id === BOX_LOST;
-    item.querySelector("a.help").href = `/help#${alarm.id.split(":")[0]}`;
+    const help = item.querySelector("a.help");
+    mark(item.firstChild, "key", alarm.id);
+    set(help, { hidden: alarm.id === BOX_LOST });
+    attribute(help, "href", `/help#${alarm.id.split(":")[0]}`);
     fillCard(item.firstChild, alarm, time);
   });
   dialog.querySelector(".before").hidden = over.length === 0;

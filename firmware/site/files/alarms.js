@@ -26,7 +26,7 @@ function calm(over, verdict) {
     cards.replaceChildren(make("div.calm", make("span.glyph"), make("p.tx", make("strong", "No alarm"), make("span.why"))));
   }
   const node = cards.querySelector(".calm");
-  node.dataset.key = "calm";
+  mark(node, "key", "calm");
   mark(node.firstChild, "level", verdict.level === "good" ? "good" : "quiet");
   say(node.querySelector(".why"), over.length ? `last alarm: ${formerly(over[0])}` : "no earlier alarm");
 }

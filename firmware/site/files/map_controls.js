@@ -44,9 +44,8 @@ section.querySelector(".by-robot").addEventListener("change", ({ target }) => ma
 export const time = new TimeBar(section.querySelector(".time"), (at) => map.setTime(at));
 
 function showTimes({ reports, run_number }, now) {
-  time.stretch(map.first(), now);
   const mine = reports.filter(({ run }) => run === run_number);
-  time.setTicks({ reports: mine.map((report) => ({ at: report.received, level: life(report).level })), alarms: alarmTicks() });
+  time.stretch(map.first(), now, { reports: mine.map((report) => ({ at: report.received, level: life(report).level })), alarms: alarmTicks() });
 }
 
 function showRobots() {

@@ -1,8 +1,10 @@
 // The picture of the maps on a canvas: of which level a layer is drawn, which of its tiles are seen, and each in its place.
+import { grouped } from "./grouped.js";
 import { themeNow } from "./theme_now.js";
 
 const MAX_PIXEL = 4; // pixels: where the base's are larger, a finer level is drawn, if there is one
 const MAX_FINER_TILES = 200; // tiles at a time, the uppermost layers first: a layer that finds no room is as coarse as the base
+const MAX_JOINED = 200; // images of several layers
 
 const pixelsOf = (tiles, view, density, level) => (tiles.metresOf(level) / tiles.side) * view.scale * density;
 
@@ -91,21 +93,46 @@ const intersection = (a, b) => ({
   top: Math.min(a.top, b.top),
 });
 
+const joined = new Map(); // images of several layers by kind and place, the last used last: {images, blend, canvas}
+
+/** One image of all `images` of a place, the lowest first, at their own resolution. It is drawn again if one of them changed: twenty robots
+ *  that map the same place cost no more than one while the map is moved. */
+function join(key, images, blend) {
+  if (images.length === 1) return images[0];
+  const last = joined.get(key);
+  const isSame = last?.blend === blend && last.images.length === images.length && images.every((image, i) => image === last.images[i]);
+  const canvas = last?.canvas ?? document.createElement("canvas");
+  joined.delete(key);
+  joined.set(key, { images, blend, canvas });
+  if (joined.size > MAX_JOINED) joined.delete(joined.keys().next().value);
+  if (isSame) return canvas;
+  [canvas.width, canvas.height] = [images[0].width, images[0].height]; // and blank
+  const ctx = canvas.getContext("2d");
+  ctx.globalCompositeOperation = blend;
+  for (const image of images) ctx.drawImage(image, 0, 0);
+  return canvas;
+}
+
 /** Draws the visible tiles in `piece` (metres): the clouds, and blends the grids into them. At each pixel the colour that differs more
  *  from the ground's stays, so that walls show through clouds and free cells do not. Without clouds the uppermost grid stays. */
 export function drawLayers(ctx, view, tiles, layers, at, density, piece = view.bounds()) {
   const seen = intersection(piece, view.bounds()); // a coarse tile is larger than that, and what lies in it is not to be asked for
-  const visible = visibleTiles(tiles, layers, view, density, at, seen), isCloud = ({ layer }) => layer.kind === "cloud";
-  const draw = ({ layer, places }) => places.forEach((place) => drawTile(ctx, view, tiles, place, imageOf(tiles, layer, place, at), density));
-  const clouds = visible.filter(isCloud);
-  clouds.forEach(draw);
-  if (clouds.length) ctx.globalCompositeOperation = themeNow() === "light" ? "darken" : "lighten";
-  visible.filter((each) => !isCloud(each)).forEach(draw);
+  const visible = visibleTiles(tiles, layers, view, density, at, seen);
+  const isCloud = ({ layer }) => layer.kind === "cloud", clouds = visible.filter(isCloud), grids = visible.filter((each) => !isCloud(each));
+  const draw = (those, blend) => {
+    const all = those.flatMap(({ layer, places }) => places.map((place) => ({ layer, place, ...imageOf(tiles, layer, place, at) }))).filter(({ image }) => image);
+    ctx.globalCompositeOperation = blend;
+    for (const its of grouped(all, ({ place, of }) => (of === place ? place.name : place)).values()) {
+      const [{ layer, place, of }] = its;
+      drawTile(ctx, view, tiles, place, { image: join(`${layer.kind} ${place.name}`, its.map(({ image }) => image), blend), of }, density);
+    }
+  };
+  draw(clouds, "source-over");
+  draw(grids, clouds.length ? (themeNow() === "light" ? "darken" : "lighten") : "source-over");
   ctx.globalCompositeOperation = "source-over";
 }
 
 function drawTile(ctx, view, tiles, { level, x, y }, { image, of }, density) {
-  if (!image) return;
   const metres = tiles.metresOf(level), whole = tiles.metresOf(of.level);
   ctx.imageSmoothingEnabled = pixelsOf(tiles, view, density, of.level) < 1;
   // Whole pixels, so that no line shows between two tiles.

@@ -6,6 +6,7 @@ import { themeNow } from "./theme_now.js";
 import { clip } from "./words.js";
 
 const INTERVAL = 5000; // ms: markers are asked for no more often
+const FEW = 1000; // twice as many markers are asked for half as often
 const TEXT = 9, MESH = 10; // of visualization_msgs/Marker
 const MADE_OF_POINTS = [4, 5, 6, 7, 8, 11];
 const LONGEST = 40; // letters
@@ -42,7 +43,7 @@ export class Markers {
   async follow(version) {
     if (this.#asked || version === this.#version || performance.now() < this.#due) return;
     this.#asked = true;
-    this.#due = performance.now() + INTERVAL;
+    this.#due = performance.now() + INTERVAL * Math.max(1, this.#all.size / FEW);
     try {
       const answer = await fetchSoon(`/adit/markers?since=${this.#version}`);
       if (answer.ok) this.#store(await answer.json());

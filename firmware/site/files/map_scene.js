@@ -5,7 +5,7 @@ import { Tiles } from "./map_tiles.js";
 import { Tracks } from "./map_tracks.js";
 import { Steps } from "./steps.js";
 
-const INTERVAL = 3000; // ms: maps are asked for no more often
+const INTERVAL = 5000; // ms: maps are asked for no more often
 const MAX_METRES = 8192; // from the origin: what is farther away is not fitted into the view
 
 export class MapScene {

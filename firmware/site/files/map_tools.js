@@ -1,5 +1,5 @@
 // What stands on the map: zoom, measuring, and which robot is followed.
-import { mark, list, make, say } from "./dom.js";
+import { attribute, mark, list, make, say } from "./dom.js";
 import { drawn } from "./icons.js";
 import { clip } from "./words.js";
 
@@ -26,7 +26,7 @@ const choice = () => section.querySelector(".follow select");
 
 function show() {
   const { isOn, words } = map.ruler();
-  section.querySelector(".measure").setAttribute("aria-pressed", String(isOn));
+  attribute(section.querySelector(".measure"), "aria-pressed", String(isOn));
   mark(document.body, "measures", String(isOn));
   say(section.querySelector(".measured"), words);
   const followed = map.followed() ?? "";

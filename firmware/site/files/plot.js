@@ -1,4 +1,5 @@
 // Small plots of the last ten minutes, a value a second: kept by the page itself, and before it was opened by the box.
+import { attribute } from "./dom.js";
 
 const SPAN = 600, BUCKET = 4, HEIGHT = 32;
 
@@ -56,8 +57,6 @@ export class Plot {
     });
     close(from + buckets.length - 1);
     const gaps = buckets.map(({ isLost }, i) => (isLost ? `M${from + i - 1} 0h1v${HEIGHT}h-1Z` : ""));
-    this.#svg.querySelector(".lost").setAttribute("d", gaps.join(""));
-    this.#svg.querySelector(".line").setAttribute("d", line);
-    this.#svg.querySelector(".area").setAttribute("d", area);
+    for (const [name, d] of Object.entries({ lost: gaps.join(""), line, area })) attribute(this.#svg.querySelector(`.${name}`), "d", d);
   }
 }

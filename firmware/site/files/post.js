@@ -1,5 +1,5 @@
 // The Command Post: its two endpoints, and how much of the link is in use.
-import { badge, list, make, mark, say } from "./dom.js";
+import { attribute, badge, list, make, mark, say } from "./dom.js";
 import { clip, mbit, ms } from "./words.js";
 
 const at = (id) => document.getElementById(id);
@@ -24,6 +24,6 @@ export function showPost(view, lost) {
   const share = view.budget_mbit > 0 ? Math.min(100, (100 * view.sent_mbit) / view.budget_mbit) : 0;
   say(at("sent"), lost ? "–" : `${mbit(view.sent_mbit)} Mbit/s`);
   say(at("budget"), `of ${mbit(view.budget_mbit)}`);
-  at("bar").setAttribute("aria-valuenow", share.toFixed(0));
+  attribute(at("bar"), "aria-valuenow", share.toFixed(0));
   at("bar").firstElementChild.style.inlineSize = `${share}%`;
 }

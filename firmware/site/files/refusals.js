@@ -1,6 +1,6 @@
 // What this box refused to its senders, newest first, with the sentence that they got.
 import { barred } from "./actions.js";
-import { list, make, say } from "./dom.js";
+import { list, make, say, set } from "./dom.js";
 import { ago, clip } from "./words.js";
 
 /** A list has a step of its own. */
@@ -23,8 +23,8 @@ const partsOf = (row) => (row.parts ? `${row.parts} ${row.parts === 1 ? "part" :
 const section = document.getElementById("refusals");
 
 export function showRefusals(refusals, now) {
-  section.querySelector(".rows").hidden = refusals.length === 0;
-  section.querySelector(".empty").hidden = refusals.length > 0;
+  set(section.querySelector(".rows"), { hidden: refusals.length === 0 });
+  set(section.querySelector(".empty"), { hidden: refusals.length > 0 });
   say(section.querySelector(".count"), refusals.length ? String(refusals.reduce((sum, row) => sum + weightOf(row), 0)) : "");
   // Two of one moment are told apart by how many stand before them.
   const seen = new Map();

@@ -1,6 +1,6 @@
 // What the Command Post would not take: rejected until the operator sends it again or discards it.
 import { barred } from "./actions.js";
-import { giveFocus, list, make, say } from "./dom.js";
+import { giveFocus, list, make, say, set } from "./dom.js";
 import { post } from "./session.js";
 import { ago, clip } from "./words.js";
 
@@ -54,8 +54,8 @@ function update(node, row, now) {
 export function showRejected(rows, now) {
   const waiting = rows.filter(({ replaced }) => !replaced).length; // adit_rejected_messages counts the same
   if (!rows.length && performance.now() - saidAt > READ) say(said, "");
-  block.hidden = !rows.length && !said.textContent;
-  block.querySelector("h4").hidden = !rows.length;
+  set(block, { hidden: !rows.length && !said.textContent });
+  set(block.querySelector("h4"), { hidden: !rows.length });
   say(block.querySelector(".count"), waiting ? String(waiting) : "");
   list(block.querySelector(".rows"), rows, (row) => row.number, create, (node, row) => update(node, row, now));
 }

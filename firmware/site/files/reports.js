@@ -2,7 +2,7 @@
 import { barred, actionsOf, CORRECT, isBusy, outcomeOf, perform } from "./actions.js";
 import { icon } from "./artifact_icons.js";
 import { correct } from "./compose.js";
-import { badge, list, make, mark, say } from "./dom.js";
+import { attribute, badge, list, make, mark, say, set } from "./dom.js";
 import { isCounted, nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
 import { showHistory } from "./history.js";
@@ -148,16 +148,16 @@ function update(node, report, view, now) {
   const isTold = isMore || isOpen(report) || level === "bad" || level === "ask";
   const nearest = isTold ? nearestOf(report, view) : undefined;
   if (!still.isHeld || own.has(report.number) || !node.dataset.told || report.sends_at) say(rest, isTold ? clip(more(report, nearest, now)) : "");
-  node.dataset.told = "true";
+  mark(node, "told", "true");
   if (!still.isHeld || own.has(report.number) || !near.firstChild) showNear(near, report, isMore || level === "ask" ? nearest : undefined);
-  open.setAttribute("aria-expanded", String(isMore));
+  attribute(open, "aria-expanded", String(isMore));
   say(open.lastChild, `Details of report ${report.number}`);
   showActions(actions, report, view, isMore || level === "ask" || Boolean(report.sends_at));
-  acts.hidden = !acts.querySelector("button");
+  set(acts, { hidden: !acts.querySelector("button") });
   const came = outcomeOf(report.number);
   say(outcome, came ? clip(came.text) : isBusy(report.number) ? "…" : "");
   mark(outcome, "bad", String(Boolean(came?.bad)));
-  history.hidden = !isMore;
+  set(history, { hidden: !isMore });
   if (isMore) showHistory(history, report);
 }
 
@@ -204,15 +204,16 @@ export function showReports(view, now) {
   const shown = still.order(inOrder(all.filter(isWanted)).slice(0, most), ({ number }) => number);
   const count = section.querySelector(".count");
   say(count, counted(mine));
-  count.parentNode.title = count.textContent;
-  others.hidden = mine.length === view.reports.length;
-  others.setAttribute("aria-pressed", String(showsOthers));
+  set(count.parentNode, { title: count.textContent });
+  set(others, { hidden: mine.length === view.reports.length });
+  attribute(others, "aria-pressed", String(showsOthers));
   say(others, "All runs");
-  newer.hidden = still.waiting === 0;
+  set(newer, { hidden: still.waiting === 0 });
   say(newer, `${still.waiting} new`);
-  rows.hidden = shown.length === 0;
-  section.querySelector(".empty").hidden = shown.length > 0;
-  say(section.querySelector(".empty"), all.length ? "No such report." : "No report yet.");
+  const empty = section.querySelector(".empty");
+  set(rows, { hidden: shown.length === 0 });
+  set(empty, { hidden: shown.length > 0 });
+  say(empty, all.length ? "No such report." : "No report yet.");
   say(section.querySelector(".barred"), barred());
   list(rows, shown, (report) => report.number, create, (node, report) => update(node, report, view, now));
 }

@@ -1,5 +1,5 @@
 // Robots as rows, worst first. Nothing moves under a pointer or the focus: what changes in the order waits until it is left.
-import { badge, list, make, mark, say } from "./dom.js";
+import { attribute, badge, list, make, mark, say, set } from "./dom.js";
 import { BOX, pathOf, worstAge } from "./robot_ages.js";
 import { tint } from "./robot_colour.js";
 import { mapAge } from "./robot_state.js";
@@ -45,9 +45,8 @@ function updateRow(row, robot, isFull) {
   mark(row, "level", robot.level);
   badge(age, robot.level, ageWords(robot));
   say(kinds, words(robot, isFull));
-  row.title = [`${robot.name}: ${robot.word}`, ...robot.kinds.map(({ title }) => title)].join("\n");
-  const path = pathOf(robot.name);
-  if (spark.firstChild.getAttribute("d") !== path) spark.firstChild.setAttribute("d", path);
+  set(row, { title: [`${robot.name}: ${robot.word}`, ...robot.kinds.map(({ title }) => title)].join("\n") });
+  attribute(spark.firstChild, "d", pathOf(robot.name));
 }
 
 /** The rows within `panel`, a list `ul`. `isFull`: with all that is known of each kind. */

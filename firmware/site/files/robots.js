@@ -1,5 +1,5 @@
 // Is each robot's map arriving? Its panel, and what the Command Post said to what was sent.
-import { badge, list, make, mark, say } from "./dom.js";
+import { badge, list, make, mark, say, set } from "./dom.js";
 import { kindOf } from "./arriving.js";
 import { area, coveredIn } from "./covered.js";
 import { sampleAges } from "./robot_ages.js";
@@ -23,7 +23,7 @@ function showShared(all) {
     say(node.firstChild, SHARED[state.kind] ?? state.kind);
     const isWell = state.level === "good" || state.level === "quiet";
     badge(node.lastChild, state.level, isWell ? state.text ?? mapAge(state.age) : state.word);
-    node.title = state.title;
+    set(node, { title: state.title });
   });
 }
 
@@ -55,7 +55,7 @@ export function showRobots(view, now, lost) {
   showVerdict(view, now, lost);
   if (!lost) sampleAges(state.robots, now);
   mark(panel, "away", String(lost || isAway));
-  panel.querySelector(".empty").hidden = state.robots.length > 0;
+  set(panel.querySelector(".empty"), { hidden: state.robots.length > 0 });
   rows.show(state.robots, now);
   showShared(covered?.robots.length ? [...state.shared, { kind: "covered", level: "quiet", text: area(covered.square_metres, covered.whole), title: COVERED }] : state.shared);
   showSayings(view.activities);

@@ -35,8 +35,7 @@ export async function lookAgain(base, title, run) {
   if (!map) offer();
   map.lookAgain(base, { reports: [...reports].reverse(), run_number: run, now: end, colours });
   showTools({ robots: tracks.map(({ robot }) => ({ name: robot })) });
-  time.stretch(first, end);
-  time.setTicks({
+  time.stretch(first, end, {
     reports: reports.map((report) => ({ at: report.received, level: life(report).level })),
     alarms: attention.filter(({ came }) => came).map(({ at }) => ({ at, level: "bad" })),
   });

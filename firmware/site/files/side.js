@@ -2,7 +2,7 @@
 // tab is shown. The map stays where it is.
 
 import { drawn } from "./icons.js";
-import { isShown, mark, say } from "./dom.js";
+import { isShown, mark, say, set } from "./dom.js";
 import { clip } from "./words.js";
 
 const sides = [...document.querySelectorAll("main > .side")];
@@ -69,8 +69,8 @@ const LEVELS = ["bad", "ask", "wait"];
 /** How many alarms are of what is behind a tab, and the worst of them. */
 export function showOnTab(name, alarms) {
   const tab = tabs.find(({ dataset }) => dataset.tab === name), sign = tab.querySelector(".waits");
-  sign.hidden = alarms.length === 0;
+  set(sign, { hidden: alarms.length === 0 });
   mark(sign, "level", LEVELS.find((level) => alarms.some(({ severity }) => severity === level)) ?? "");
   say(sign, String(alarms.length));
-  tab.title = alarms.map(({ what }) => clip(what, 60)).join(", ");
+  set(tab, { title: alarms.map(({ what }) => clip(what, 60)).join(", ") });
 }

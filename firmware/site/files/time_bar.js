@@ -51,8 +51,9 @@ export class TimeBar {
     return this.#isEnd ? null : Math.floor(this.#first) + Number(this.#slider.value);
   }
 
-  /** From the first to the last second that can be shown; `first` null: there is nothing yet. */
-  stretch(first, last) {
+  /** From the first to the last second that can be shown; `first` null: there is nothing yet. `ticks`: where they stand, {reports: [{at,
+   *  level}], alarms: [{at, level}]}. */
+  stretch(first, last, ticks) {
     const wasEnd = this.#isEnd, at = this.at;
     const slider = this.#slider;
     for (const control of [slider, ...this.#node.querySelectorAll(".steps button:not(.live)")]) control.disabled = first === null;
@@ -60,16 +61,10 @@ export class TimeBar {
       [this.#first, slider.max] = [first, Math.max(1, Math.ceil(last - Math.floor(first)))];
       slider.value = Math.max(0, at - Math.floor(first)); // the same time, from another beginning
     }
-    [this.#first, this.#last] = [first, last];
+    [this.#first, this.#last, this.#ticks] = [first, last, ticks];
     slider.max = first === null ? 1 : Math.max(1, Math.ceil(last - Math.floor(first)));
     if (wasEnd) slider.value = slider.max;
     this.#say();
-    this.#drawTicks();
-  }
-
-  /** Where ticks stand: {reports: [{at, level}], alarms: [{at, level}]}. */
-  setTicks(ticks) {
-    this.#ticks = ticks;
     this.#drawTicks();
   }
 

@@ -1,5 +1,5 @@
 // Is every map arriving? For the strip of the run and of the display.
-import { badge, mark, say } from "./dom.js";
+import { badge, mark, say, set } from "./dom.js";
 import { clip } from "./words.js";
 
 /** The answer in a few words, and why. */
@@ -9,5 +9,5 @@ export function showVerdict(view, now, lost) {
   mark(node, "level", level);
   badge(node, level, clip(what, 60));
   say(node.querySelector(".reason"), clip(why, 120));
-  node.title = why;
+  set(node, { title: why });
 }

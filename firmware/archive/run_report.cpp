@@ -1,5 +1,7 @@
 #include "archive/run_report.hpp"
 
+#include <string.h>  // strverscmp, of glibc
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -144,8 +146,16 @@ std::string oldest_map(const api::KeptRun& run, const std::string& robot) {
   return oldest ? fixed(*oldest, 0) + " s" : "never there";
 }
 
+/// Numbers in names by their value, as on the page: r2 before r10.
+struct ByNumber {
+  bool operator()(const std::string& one, const std::string& other) const {
+    const int difference = strverscmp(one.c_str(), other.c_str());
+    return difference != 0 ? difference < 0 : one < other;
+  }
+};
+
 std::string robots_table(const api::KeptRun& run, const picture::Covered& covered) {
-  std::map<std::string, double> metres;
+  std::map<std::string, double, ByNumber> metres;
   for (const std::string& robot : run.facts.robots) metres[robot] = 0;
   for (const api::Track& track : run.tracks) metres[track.robot] = length_of(track);
   if (metres.empty()) return "<p>No robot sent a message.</p>\n";

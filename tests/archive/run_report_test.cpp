@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <regex>
+#include <set>
 
 #include "archive/a_run.hpp"
 #include "archive/html.hpp"
@@ -68,6 +69,25 @@ TEST(RunReport, DrawsChosenColoursAndTellsRobotsOfOneColourApartByTheirLines) {
   // the second colour, because the first one is r3's
   EXPECT_THAT(lines, testing::ElementsAre("#025447 2.4 1.2", "#6b56a3 0.7 0.9", "#9e4930 1 0",
                                           "#6b56a3 2.7 0.9 0.7 0.9"));
+}
+
+TEST(RunReport, GivesFortyRobotsDifferentColours) {
+  api::KeptRun kept{{}, picture::Mosaic(), {}, {}, {}};
+  for (int i = 0; i < 40; ++i) kept.tracks.push_back({"r" + std::to_string(i), {{1000.0 + i, {}, 0}}});
+  const std::string drawn = drawn_map(kept, {});
+  const std::regex line(R"re(<polyline class="track" stroke="(#\w+)")re");
+  std::set<std::string> colours;
+  for (std::sregex_iterator at(drawn.begin(), drawn.end(), line), end; at != end; ++at)
+    colours.insert((*at)[1]);
+  EXPECT_EQ(colours.size(), 40U);
+}
+
+TEST(RunReport, ListsRobotsByTheNumbersInTheirNames) {
+  api::KeptRun kept{{}, picture::Mosaic(), {}, {}, {}};
+  kept.facts.robots = {"r10", "r2", "r1"};
+  const std::string html = run_report(kept, {});
+  EXPECT_LT(html.find("<td>r1</td>"), html.find("<td>r2</td>"));
+  EXPECT_LT(html.find("<td>r2</td>"), html.find("<td>r10</td>"));
 }
 
 TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {

@@ -9,7 +9,9 @@
 namespace adit::panel {
 namespace {
 
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
 
 class Gpio : public testing::Test {
  protected:
@@ -138,6 +140,17 @@ TEST_F(Gpio, NamesAChipThatThereIsNot) {
     EXPECT_EQ(open().error(), "panel: chip " + chip + ": No such file or directory");
     EXPECT_EQ(open_button().error(), "panel: chip " + chip + ": No such file or directory");
   }
+}
+
+TEST_F(Gpio, SaysThatAChipCannotBeOpenedIfTheLineMayBeOnIt) {
+  settings_.chip = "";
+  fake_gpio().chips["/dev/gpiochip1"].opens_with = EACCES;
+  const auto lines = open();
+  ASSERT_FALSE(lines.has_value());
+  EXPECT_THAT(lines.error(), StartsWith("panel: line HEALTH (health) of any chip: "));
+  EXPECT_THAT(lines.error(), EndsWith("Permission denied"));
+  settings_.chip = "/dev/gpiochip1";
+  EXPECT_EQ(open_button().error(), "panel: chip /dev/gpiochip1: Permission denied");
 }
 
 TEST_F(Gpio, NamesALineThatSomebodyElseHas) {

@@ -6,6 +6,7 @@ pkg_check_modules(microhttpd REQUIRED IMPORTED_TARGET libmicrohttpd>=0.9.75)
 pkg_check_modules(cjson REQUIRED IMPORTED_TARGET libcjson)
 pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)
 pkg_check_modules(systemd REQUIRED IMPORTED_TARGET libsystemd)
-pkg_check_modules(gpiod REQUIRED IMPORTED_TARGET libgpiod<2)
+pkg_check_modules(gpiod REQUIRED IMPORTED_TARGET libgpiod<3)
+string(REGEX MATCH "^[0-9]+" gpiod_MAJOR ${gpiod_VERSION})  # 1 in Debian 12, 2 in Debian 13
 pkg_check_modules(crypt REQUIRED IMPORTED_TARGET libcrypt)
 pkg_check_modules(sodium REQUIRED IMPORTED_TARGET libsodium)

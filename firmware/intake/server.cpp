@@ -195,11 +195,12 @@ void Server::Impl::look_at_deadlines() {
 }
 
 void Server::Impl::connected(MHD_Connection* connection, void** client_cls) {
-  const auto* address = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS);
-  const auto* socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD);
-  auto client =
-      std::make_unique<Client>(*this, loop_, connection, socket->connect_fd,
-                               address_text(address->client_addr), local_address(socket->connect_fd));
+  // libmicrohttpd 1 overwrites the answer at the next question.
+  const sockaddr* const address =
+      MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CLIENT_ADDRESS)->client_addr;
+  const int socket = MHD_get_connection_info(connection, MHD_CONNECTION_INFO_CONNECTION_FD)->connect_fd;
+  auto client = std::make_unique<Client>(*this, loop_, connection, socket, address_text(address),
+                                         local_address(socket));
   Client* const known = client.get();
   clients_.emplace(known->number(), std::move(client));
   *client_cls = known;

@@ -39,6 +39,8 @@ std::uint32_t state_of(int fd) {
 
 }  // namespace
 
+const bool Client::kReadsChunks = MHD_VERSION < 0x01000000;
+
 Client::Client(Engine& engine, loop::Loop& loop, MHD_Connection* connection, int fd, std::string peer,
                std::string local)
     : engine_(engine),
@@ -143,9 +145,9 @@ void Client::enter(Phase phase) {
 
 void Client::head_begun(std::string_view target) {
   target_ = target;
-  // Adds a field before the client's own field. libmicrohttpd obeys the first one, does not know this coding,
-  // and passes on the body as it arrives. Its own parser of chunks accepts more than RFC 9112 allows.
-  if (gate_.next_is_chunked()) {
+  // Adds a field before the client's own field. libmicrohttpd 0.9 obeys the first one, does not know this
+  // coding, and passes on the body as it arrives.
+  if (kReadsChunks && gate_.next_is_chunked()) {
     MHD_set_connection_value(connection_, MHD_HEADER_KIND, MHD_HTTP_HEADER_TRANSFER_ENCODING, "as-it-comes");
   }
 }

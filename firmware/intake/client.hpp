@@ -36,6 +36,11 @@ class Engine {
 /// One client's connection, from accept to close. Lives as long as libmicrohttpd's connection.
 class Client {
  public:
+  /// Adit reads chunked bodies itself, because the reader of libmicrohttpd 0.9 accepts more than RFC 9112
+  /// allows. Version 1 rejects codings that it does not know, so its own reader is used, and told to be
+  /// strict.
+  static const bool kReadsChunks;
+
   /// The state of the connection. Each has its own deadline.
   enum class Phase : std::uint8_t {
     Head,     // a head is arriving, or the first one is awaited

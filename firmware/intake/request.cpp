@@ -54,7 +54,7 @@ Request::Request(Client& client, std::string_view method) : client_(&client), is
 void Request::begin(std::string_view method, Target target, const Framing& framing) {
   left_ = framing.length;
   has_body_ = framing.has_body;
-  if (!framing.length) chunks_.emplace();
+  if (!framing.length && Client::kReadsChunks) chunks_.emplace();
   head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
                 client_->number(), framing.length);
 }

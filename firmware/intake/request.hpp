@@ -89,7 +89,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   bool has_body_ = false;
   bool in_call_ = false;               // a call of the handler is running
   bool resumed_ = false;               // since the last piece
-  std::optional<ChunkReader> chunks_;  // set if the body is chunked
+  std::optional<ChunkReader> chunks_;  // set if the body is chunked and Adit reads it
   std::optional<std::uint64_t> left_;  // of the body; absent if chunked
   std::size_t thrown_away_ = 0;
 };

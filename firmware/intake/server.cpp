@@ -114,7 +114,8 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
       MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
       MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED,
       &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK, &Impl::head_begun, this,
-      MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_END);
+      MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_STRICT_FOR_CLIENT,
+      Client::kReadsChunks ? 0 : 1, MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
   accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
     MHD_add_connection(daemon_, fd, peer, size);

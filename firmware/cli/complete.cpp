@@ -80,6 +80,7 @@ Result<Outcome> complete_courses(const Call& call) {
   const auto setup = ADIT_TRY(fetch<api::SetupView>(call.adit, "/adit/settings"));
   const auto settings = ADIT_TRY(settings_in(setup.row));
   std::vector<Candidate> all;
+  all.reserve(settings.courses.size());
   for (const settings::Course& course : settings.courses)
     all.push_back({course.name, course.scoring.address});
   return said(call, json_of(all), lines(all));

@@ -180,7 +180,8 @@ export class MapOfRun {
   #fitAll() {
     const area = this.#scene.bounds(), size = `${this.#view.width} ${this.#view.height}`;
     if (!area || (!this.#isExact && size === this.#fittedSize && this.#view.holds(area))) return;
-    this.#view.fit(area, SCALE_ROOM * this.#drawing.picture.fontSize);
+    const isPhone = matchMedia("(max-width: 900px)").matches; // as map.css: the legend has a row of its own
+    this.#view.fit(area, isPhone ? SCALE_ROOM * this.#drawing.picture.fontSize : 0);
     this.#fittedSize = size;
     this.#isExact = false;
   }

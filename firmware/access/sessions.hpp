@@ -87,7 +87,7 @@ struct KeptSessions {
 
 /// The text of the file. It contains secrets.
 std::string write_sessions(const KeptSessions& kept);
-/// An error says what is wrong and contains no secret.
+/// An error names its cause and contains no secret.
 std::expected<KeptSessions, std::string> read_sessions(std::string_view json);
 
 }  // namespace adit::access

@@ -4,7 +4,6 @@
 #include <microhttpd.h>
 #include <netinet/in.h>
 #include <poll.h>
-#include <strings.h>
 #include <sys/epoll.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
@@ -13,6 +12,7 @@
 #include <atomic>
 #include <utility>
 
+#include "icd/letter_case.hpp"
 #include "intake/answer.hpp"
 #include "intake/icd_routes.hpp"
 #include "intake/request.hpp"
@@ -175,7 +175,7 @@ void Client::request_over(bool is_answered) {
 bool Client::client_keeps_connection() const {
   const char* const said =
       MHD_lookup_connection_value(connection_, MHD_HEADER_KIND, MHD_HTTP_HEADER_CONNECTION);
-  return !gate_.framing().is_version_1_0 && (said == nullptr || ::strcasecmp(said, "keep-alive") == 0);
+  return !gate_.framing().is_version_1_0 && (said == nullptr || icd::same_but_for_case(said, "keep-alive"));
 }
 
 void Client::expect_head() {

@@ -69,8 +69,8 @@ class Client {
   /// may still read.
   bool hung_up() const { return hung_up_; }
 
-  /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Not to be called
-  /// from its callbacks, except at the end of a request whose connection stays.
+  /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Call this
+  /// in its callbacks only at the end of a request whose connection stays.
   void hold_back();
   Gate& gate() { return gate_; }
   /// libmicrohttpd has read the request line.
@@ -119,7 +119,8 @@ class Client {
   Held::Doing doing() const;
   void enter(Phase phase);
   void expect_head();
-  /// RFC 9112 9.3. False if it is not sure: another Connection field than keep-alive, or HTTP/1.0.
+  /// RFC 9112 9.3. Also false if the answer is uncertain: a Connection field other than keep-alive, or
+  /// HTTP/1.0.
   bool client_keeps_connection() const;
   bool keeps_up();
   void happened(std::uint32_t events);

@@ -70,7 +70,7 @@ TEST(Bundle, IsNeverLargerThanItsLimitEvenWhereNothingCanBePacked) {
   EXPECT_GT(bundle.size(), kMostBundle - 100'000);
 }
 
-/// A folder, for a test's time.
+/// A temporary folder of one test.
 struct Folder {
   Folder() {
     std::string name = testing::TempDir() + "ustar.XXXXXX";

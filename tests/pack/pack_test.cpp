@@ -20,8 +20,8 @@
 namespace adit::pack {
 namespace {
 
-/// What zlib itself inflates of the one gzip member that `bytes` are; fails the test where they are none, or
-/// where anything follows it. `most`: more than is expected.
+/// The content of the gzip member `bytes`, inflated by zlib. Fails the test if `bytes` are not one member, or
+/// if more bytes follow it. `most`: a limit above the expected size.
 std::vector<std::uint8_t> only_member(const icd::ChunkedBytes& bytes, std::size_t most) {
   std::vector<std::uint8_t> member = bytes.to_vector(), out(most + 1);
   z_stream stream{};

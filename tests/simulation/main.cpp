@@ -20,7 +20,7 @@
 namespace adit::simulation {
 namespace {
 
-/// What came of many runs. Of plain numbers, to be handed from one process to another.
+/// The results of many runs, as plain numbers, because one process passes them to another.
 struct Tally {
   std::uint64_t runs = 0, events = 0, faults = 0, failed = 0;
   double hours = 0;  // simulated

@@ -2,7 +2,7 @@
 
 const MAX_METRES = 8192, MIN_SCALE = 0.02, MAX_SCALE = 400;
 const SAME = 1e-6; // pixels
-const MARGIN = 0.05; // of a side, around what is fitted
+const MARGIN = 0.05; // of a side, around the fitted area
 
 const clamp = (value, least, most) => Math.min(most, Math.max(least, value));
 

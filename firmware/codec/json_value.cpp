@@ -2,7 +2,6 @@
 
 #include <charconv>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -19,7 +18,15 @@ namespace {
 
 bool reals_in(std::string_view object, std::span<const std::string_view> names, std::span<double> into);
 icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::size_t end);
+constexpr std::size_t kUsualMembers = 4;  // of an object: a quaternion
 constexpr ListFormat kJsonLists = {.element = element_at, .reals = reals_in, .gap = 1};
+
+/// Whether the number stands for exactly one integer.
+bool is_whole(double number) {
+  constexpr double kWholeBelow = 9007199254740992;  // 2^53: larger ones may stand for another integer
+  const bool negative_zero = number == 0 && std::signbit(number);
+  return std::abs(number) < kWholeBelow && number == std::floor(number) && !negative_zero;
+}
 
 /// Each function reads the named item and moves past it. False: invalid document.
 class JsonReader {
@@ -122,17 +129,12 @@ class JsonReader {
     if (!grammar.complete()) return false;
     if (into == nullptr) return is_finite(grammar, text);
     const double number = take_json_number(text);
-    *into = json_number_value(number);
+    if (is_whole(number)) {
+      into->is.emplace<std::int64_t>(static_cast<std::int64_t>(number));
+    } else {
+      into->is.emplace<double>(number);
+    }
     return !std::isinf(number);
-  }
-
-  /// Removes and returns the items of `waiting` from `first` on.
-  template <class Item>
-  static std::vector<Item> take_from(std::vector<Item>& waiting, std::size_t first) {
-    const auto begin = waiting.begin() + static_cast<std::ptrdiff_t>(first);
-    std::vector<Item> taken(std::make_move_iterator(begin), std::make_move_iterator(waiting.end()));
-    waiting.erase(begin, waiting.end());
-    return taken;
   }
 
   /// Reads the items up to the closing `bracket`. `each` starts after the opening bracket or a comma.
@@ -148,16 +150,8 @@ class JsonReader {
   bool array(Value* into) {
     if (into == nullptr) return items(']', [&] { return value(nullptr); });
     if (whole_ != nullptr) return list(*into);
-    const std::size_t first = elements_.size();
-    const auto element = [&] {
-      Value element;
-      if (!value(&element)) return false;
-      elements_.push_back(std::move(element));
-      return true;
-    };
-    if (!items(']', element)) return false;
-    into->is.emplace<Value::Array>(take_from(elements_, first));
-    return true;
+    auto& elements = into->is.emplace<Value::Array>();
+    return items(']', [&] { return value(&elements.emplace_back()); });
   }
 
   bool list(Value& into) {
@@ -182,17 +176,12 @@ class JsonReader {
 
   bool object(Value* into) {
     if (into == nullptr) return items('}', [&] { return name(nullptr) && value(nullptr); });
-    const std::size_t first = members_.size();
-    const auto member = [&] {
-      std::string named;
-      Value meant;
-      if (!name(&named) || !value(&meant)) return false;
-      members_.emplace_back(std::move(named), std::move(meant));
-      return true;
-    };
-    if (!items('}', member)) return false;
-    into->is.emplace<Value::Object>(take_from(members_, first));
-    return true;
+    auto& members = into->is.emplace<Value::Object>();
+    return items('}', [&] {
+      if (members.empty()) members.reserve(kUsualMembers);
+      Value::Member& member = members.emplace_back(std::string(), Value());
+      return name(&member.first) && value(&member.second);
+    });
   }
 
   const char* at_;
@@ -201,9 +190,6 @@ class JsonReader {
   std::size_t outside_left_ = std::numeric_limits<std::size_t>::max();  // values that are kept
   const SharedText* whole_ = nullptr;                                   // null: no array is left as text
   int depth_ = 0;
-  // Parts of all open values, so that each value gets exactly the memory it needs.
-  std::vector<Value> elements_;
-  std::vector<Value::Member> members_;
 };
 
 /// List::reals() of well-formed text.
@@ -243,10 +229,7 @@ icd::Checked<Value> element_at(const SharedText& text, std::size_t begin, std::s
 }  // namespace
 
 Value json_number_value(double number) {
-  constexpr double kWholeBelow = 9007199254740992;  // 2^53: larger ones may stand for another integer
-  const bool whole = std::abs(number) < kWholeBelow && number == std::floor(number);
-  const bool negative_zero = number == 0 && std::signbit(number);
-  if (whole && !negative_zero) return {static_cast<std::int64_t>(number)};
+  if (is_whole(number)) return {static_cast<std::int64_t>(number)};
   return {number};
 }
 

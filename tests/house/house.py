@@ -1,4 +1,4 @@
-"""The rooms of firmware/: their floors; and as their CMakeLists.txt say their order, whom each names, and its door."""
+"""The rooms of firmware/: their floors; and as their CMakeLists.txt say their order, whom each names, and its public headers."""
 import pathlib
 import re
 
@@ -20,18 +20,18 @@ def order():
 
 
 def named_by(room):
-    """The rooms that a room's CMakeLists.txt names, and the headers of its own door."""
-    rooms, door = set(), set()
+    """The rooms that a room's CMakeLists.txt names, and its public headers."""
+    rooms, public = set(), set()
     for file in (FIRMWARE / room).rglob("CMakeLists.txt"):
         text = re.sub(r"#[^\n]*", "", file.read_text())
         for call in re.findall(r"adit_room\(([^)]*)\)", text):
-            parts = re.split(r"\b(SOURCES|FAST|SEAM|DOOR|ROOMS|LIBRARIES)\b", call)
+            parts = re.split(r"\b(SOURCES|OPTIMIZED_SOURCES|PLATFORM_SOURCES|PUBLIC_HEADERS|ROOMS|LIBRARIES)\b", call)
             lists = dict(zip(parts[1::2], parts[2::2]))
             rooms |= set(lists.get("ROOMS", "").split())
-            door |= set(lists.get("DOOR", "").split())
+            public |= set(lists.get("PUBLIC_HEADERS", "").split())
         for call in re.findall(r"target_link_libraries\(([^)]*)\)", text):
             rooms |= set(re.findall(r"\badit_(\w+)", call)) - {"options"}
-    return rooms - {room}, door
+    return rooms - {room}, public
 
 
 def closure(room, named):

@@ -1,20 +1,20 @@
 # A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
-#   adit_room(codec SOURCES json.cpp cbor.cpp FAST base64.cpp ROOMS icd LIBRARIES PkgConfig::cjson)
-# SOURCES are compiled to be small (WAY: or as it says, headers.cmake), FAST ones to be fast: what works on each byte of a map or each number of a state.
+#   adit_room(codec SOURCES json.cpp cbor.cpp OPTIMIZED_SOURCES base64.cpp ROOMS icd LIBRARIES PkgConfig::cjson)
+# SOURCES are compiled to be small (WAY: or as it says, headers.cmake), OPTIMIZED_SOURCES ones to be fast: what works on each byte of a map or each number of a state.
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
-# DOOR are the headers that other rooms may include: tests/house/rooms sees to it.
-# SEAM are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,
+# PUBLIC_HEADERS are the headers that other rooms may include: tests/house/rooms sees to it.
+# PLATFORM_SOURCES are sources that meet the machine (time, threads, sockets, randomness). They are a library of their own,
 # adit_<name>_linux, which comes with adit_<name> into every program but those with the property ADIT_SIMULATED: such a
 # program implements their headers itself.
 function(adit_room name)
-  cmake_parse_arguments(ROOM "" "WAY" "SOURCES;FAST;SEAM;DOOR;ROOMS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ROOM "" "WAY" "SOURCES;OPTIMIZED_SOURCES;PLATFORM_SOURCES;PUBLIC_HEADERS;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM ROOM_ROOMS PREPEND adit_)
   if(NOT ROOM_WAY)
     set(ROOM_WAY small)
   endif()
   set(scope PUBLIC)
-  if(ROOM_FAST)
-    add_library(adit_${name}_fast OBJECT ${ROOM_FAST})
+  if(ROOM_OPTIMIZED_SOURCES)
+    add_library(adit_${name}_fast OBJECT ${ROOM_OPTIMIZED_SOURCES})
     target_include_directories(adit_${name}_fast PRIVATE ${PROJECT_SOURCE_DIR}/firmware)
     target_link_libraries(adit_${name}_fast PRIVATE adit_options ${ROOM_ROOMS} ${ROOM_LIBRARIES})
     adit_compiled(adit_${name}_fast fast)
@@ -31,8 +31,8 @@ function(adit_room name)
   endif()
   target_include_directories(adit_${name} ${scope} ${PROJECT_SOURCE_DIR}/firmware)
   target_link_libraries(adit_${name} ${scope} ${ROOM_ROOMS} ${ROOM_LIBRARIES})
-  if(ROOM_SEAM)
-    add_library(adit_${name}_linux STATIC ${ROOM_SEAM})
+  if(ROOM_PLATFORM_SOURCES)
+    add_library(adit_${name}_linux STATIC ${ROOM_PLATFORM_SOURCES})
     target_link_libraries(adit_${name}_linux PRIVATE adit_options PUBLIC adit_${name})
     target_link_libraries(adit_${name} PUBLIC $<$<NOT:$<BOOL:$<TARGET_PROPERTY:ADIT_SIMULATED>>>:adit_${name}_linux>)
   endif()

@@ -9,7 +9,7 @@
 #include "command_line/read.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 namespace adit::cli {
 namespace {
@@ -71,7 +71,7 @@ class Words {
     const auto row = std::ranges::find(commands(), word, &CommandRow::name);
     if (row == commands().end())
       return std::string("no such command: ").append(word) +
-             spelling::did_you_mean(word, names_of_commands());
+             icd::did_you_mean(word, names_of_commands());
     if (row->forms.empty()) {
       options_.help = true;
     } else {
@@ -87,7 +87,7 @@ class Words {
       return std::nullopt;
     }
     const auto words = words_of(*options_.command);
-    return "expected " + codec::in_turn(words) + ", got " + word + spelling::did_you_mean(word, words);
+    return "expected " + codec::in_turn(words) + ", got " + word + icd::did_you_mean(word, words);
   }
 
   Wrong take_argument(const std::string& word) {

@@ -7,7 +7,7 @@
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 namespace adit::cli {
 namespace {
@@ -77,7 +77,7 @@ Result<std::vector<ShownKey>> keys_named(const api::SetupView& setup, const std:
     put_values(setup.settings, key.path, "", found.back().values);
   }
   if (!found.empty()) return found;
-  return failed("no such settings key: " + name + spelling::did_you_mean(name, known));
+  return failed("no such settings key: " + name + icd::did_you_mean(name, known));
 }
 
 Value* value_at(Value& settings, std::string_view path) {

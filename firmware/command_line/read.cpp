@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 namespace adit::command_line {
 namespace {
@@ -36,7 +36,7 @@ std::string unknown(std::string_view word, const Program& program) {
   std::vector<std::string_view> known;
   known.reserve(program.rows.size());
   for (const Row& row : program.rows) known.push_back(without_dashes(row.word));
-  const auto meant = spelling::nearest(without_dashes(word), known);
+  const auto meant = icd::nearest(without_dashes(word), known);
   if (!meant) return sentence;
   const auto row = std::ranges::find(known, *meant) - known.begin();
   return sentence.append("; did you mean ")

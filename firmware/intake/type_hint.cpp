@@ -6,7 +6,7 @@
 #include "icd/artifact_report.hpp"
 #include "icd/letter_case.hpp"
 #include "icd/sentence.hpp"
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 namespace adit::intake {
 namespace {
@@ -32,7 +32,7 @@ std::string type_hint(std::string_view type) {
   for (const std::string_view known : icd::kArtifactTypes) {
     const std::string letters = letters_of(known);
     const std::string_view only[] = {letters};
-    if (is_part(word, letters) || spelling::nearest(word, only, 0))
+    if (is_part(word, letters) || icd::nearest(word, only, 0))
       return icd::sentence("; did you mean ", known, "?");
   }
   return "";

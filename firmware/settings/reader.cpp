@@ -6,7 +6,7 @@
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
 #include "icd/text.hpp"
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 namespace adit::settings {
 namespace {
@@ -94,7 +94,7 @@ void Reader::tell_unknown(const std::string& name, const std::vector<Child>& chi
   known.reserve(children.size());
   for (const Child& child : children) known.push_back(child.name);
   errors.push_back(
-      {joined(path, shown_name(name)), icd::sentence("no such key", spelling::did_you_mean(name, known),
+      {joined(path, shown_name(name)), icd::sentence("no such key", icd::did_you_mean(name, known),
                                                      " (keys here: ", icd::listed(known), ")")});
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace adit::spelling {
+namespace adit::icd {
 
 /// The one of `known` that `word` was likely meant to be: a third of its letters differ at most, or `few`, or
 /// one begins with the other.
@@ -15,4 +15,4 @@ std::optional<std::string_view> nearest(std::string_view word, std::span<const s
 /// "; did you mean status?", or "" where none of `known` is near.
 std::string did_you_mean(std::string_view word, std::span<const std::string_view> known);
 
-}  // namespace adit::spelling
+}  // namespace adit::icd

@@ -1,10 +1,10 @@
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 #include <algorithm>
 #include <numeric>
 #include <vector>
 
-namespace adit::spelling {
+namespace adit::icd {
 namespace {
 
 /// Letters to insert, leave out or replace (Levenshtein).
@@ -52,4 +52,4 @@ std::string did_you_mean(std::string_view word, std::span<const std::string_view
   return meant ? std::string("; did you mean ").append(*meant).append("?") : "";
 }
 
-}  // namespace adit::spelling
+}  // namespace adit::icd

@@ -1,8 +1,8 @@
-#include "spelling/nearest.hpp"
+#include "icd/suggestion.hpp"
 
 #include <gtest/gtest.h>
 
-namespace adit::spelling {
+namespace adit::icd {
 namespace {
 
 constexpr std::string_view kKnown[] = {"status", "reports", "run", "settings", "at"};
@@ -36,4 +36,4 @@ TEST(AMisspeltWord, IsAskedFor) {
 }
 
 }  // namespace
-}  // namespace adit::spelling
+}  // namespace adit::icd

@@ -19,7 +19,7 @@ enum class MappingVerdict : std::uint8_t {
   Taken,      // 2xx with JSON or an empty body
   Throttled,  // 429: retry more slowly
   Refused,    // 400, 413, 422 with JSON or an empty body: do not retry
-  Suspect,    // 500, or 400, 413, 422 with a page: the message is at fault if others pass (lanes::Blame)
+  Suspect,    // 500, or 400, 413, 422 with a page: the message is at fault if others pass (queues::Blame)
   Failing,    // all others: retry
 };
 MappingVerdict mapping_verdict(int status, Body body);

@@ -63,23 +63,24 @@ bool Clocks::hear(double there) {
 }
 
 void Clocks::stamp(icd::MapUpdate& update, const intake::Sender& sender) {
-  const lanes::Stamper stamper{sender.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
+  const queues::Stamper stamper{sender.address, icd::Uri::MapUpdate, update.name ? update.name->text() : ""};
   std::optional<icd::Stamp>& stamp = update.header().stamp;
   stamp = senders_.shift(stamper, stamp, loop_.stamp_now(), sender.connection);
   keep();
 }
 
-std::vector<lanes::PostedPose> Clocks::stamped(const icd::StateUpdate& update, const intake::Sender& sender) {
+std::vector<queues::PostedPose> Clocks::stamped(const icd::StateUpdate& update,
+                                                const intake::Sender& sender) {
   const std::optional<icd::Stamp> stamp = update.header.stamp;
   const double now = loop_.stamp_now();
-  std::vector<lanes::PostedPose> poses;
+  std::vector<queues::PostedPose> poses;
   poses.reserve(update.poses.size());
   for (const icd::NamedPose& named : update.poses) {
-    const lanes::Stamper stamper{sender.address, icd::Uri::StateUpdate, named.name.text()};
+    const queues::Stamper stamper{sender.address, icd::Uri::StateUpdate, named.name.text()};
     poses.push_back({.name = named.name,
                      .pose = named.pose,
                      .stamp = senders_.shift(stamper, stamp, now, sender.connection),
-                     .address = lanes::is_set(stamp) ? sender.address : ""});
+                     .address = queues::is_set(stamp) ? sender.address : ""});
   }
   keep();
   return poses;

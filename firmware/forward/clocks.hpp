@@ -11,10 +11,10 @@
 #include "icd/state_update.hpp"
 #include "intake/desk.hpp"
 #include "journal/journal.hpp"
-#include "lanes/posted_pose.hpp"
-#include "lanes/stamps.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
+#include "queues/posted_pose.hpp"
+#include "queues/stamps.hpp"
 
 namespace adit::forward {
 
@@ -42,7 +42,7 @@ class Clocks {
 
   /// Convert stamps to the stamp clock, and journal the sender's offsets.
   void stamp(icd::MapUpdate& update, const intake::Sender& sender);
-  std::vector<lanes::PostedPose> stamped(const icd::StateUpdate& update, const intake::Sender& sender);
+  std::vector<queues::PostedPose> stamped(const icd::StateUpdate& update, const intake::Sender& sender);
   void stamp(icd::MarkersUpdate& update, const intake::Sender& sender);
 
   /// Writes the bound of the stamps if it is due. Call now and then. The writer's thread waits for the disk.
@@ -67,7 +67,7 @@ class Clocks {
   journal::Journal& journal_;
   StampFloor floor_;
   const std::expected<StampFloor::Kept, std::string> kept_;  // from the previous process
-  lanes::StampShift senders_;
+  queues::StampShift senders_;
   dispatch::Leap leap_;
   Off off_;
   std::string boot_;

@@ -14,7 +14,7 @@ namespace {
 /// rooms' files.
 std::uint64_t beside_maps(const settings::Settings& settings) {
   constexpr std::uint64_t kOthers = 8u << 20;
-  return 4 * std::uint64_t{settings.queues.marker_bytes} + lanes::RejectedMessages::kMostBytes + kOthers;
+  return 4 * std::uint64_t{settings.queues.marker_bytes} + queues::RejectedMessages::kMostBytes + kOthers;
 }
 
 archive::Limits limits_of(const settings::Settings& settings) {

@@ -5,7 +5,7 @@
 
 #include "host/log.hpp"
 #include "icd/refuse.hpp"
-#include "lanes/map_lane.hpp"
+#include "queues/map_queue.hpp"
 
 namespace adit::forward {
 namespace {
@@ -14,7 +14,7 @@ namespace {
 bool covers(const icd::MapUpdate& newer, const icd::MapUpdate& older) {
   const auto* grid = std::get_if<icd::OccupancyGrid>(&newer.msg);
   const auto* old = std::get_if<icd::OccupancyGrid>(&older.msg);
-  return grid != nullptr && old != nullptr && newer.name == older.name && lanes::covers(*grid, *old);
+  return grid != nullptr && old != nullptr && newer.name == older.name && queues::covers(*grid, *old);
 }
 
 }  // namespace

@@ -24,11 +24,11 @@ std::size_t slot_of(const settings::CommandPost& post) {
   return static_cast<std::size_t>(std::max(bytes, 1.0));
 }
 
-lanes::Sender sender_of(const Traffic& traffic) {
+queues::Sender sender_of(const Traffic& traffic) {
   return {icd::RobotName::parse(traffic.robot), traffic.kind == Kind::Grid};
 }
 
-/// For lanes::Blame.
+/// For queues::Blame.
 std::string whose(const icd::MapUpdate& map) {
   return (map.is_grid() ? "grid " : "cloud ") + (map.name ? map.name->text() : "");
 }
@@ -55,10 +55,10 @@ Maps::Maps(loop::Loop& loop, loop::Workers& workers, loop::Writer& writer, spool
       pace_(icd::Uri::MapUpdate, settings.command_post.rates.map_hz, random, journal),
       wake_(loop.timer([this] { pump(); })),
       slot_(pace::map_bytes_per_second(settings.command_post.budget_mbit)),
-      lane_(settings.queues.merge_bytes),
+      queue_(settings.queues.merge_bytes),
       trouble_(spool.trouble()) {
   take_settings();
-  lane_.canvases().lead_to(channel_.address());
+  queue_.canvases().lead_to(channel_.address());
 }
 
 void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
@@ -70,10 +70,10 @@ void Maps::carry_on(const journal::Carried& carried, bool ran_before) {
 }
 
 void Maps::take_settings() {
-  lane_.a_slot_carries(slot_of(settings_.command_post));
-  lane_.merge_at_most(settings_.queues.merge_bytes);
-  lane_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
-  lane_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
+  queue_.a_slot_carries(slot_of(settings_.command_post));
+  queue_.merge_at_most(settings_.queues.merge_bytes);
+  queue_.clouds_are(settings::by_robot(settings_.robots, &settings::Robot::clouds));
+  queue_.precisions_are(settings::by_robot(settings_.robots, &settings::Robot::precision));
   points_.edges_are(settings::by_robot(settings_.robots, &settings::Robot::voxel_metres));
 }
 
@@ -115,7 +115,7 @@ void Maps::go_on() {
     wake_.call_at(starts());
     return;
   }
-  if (lane_.count() == 0) return;
+  if (queue_.count() == 0) return;
   const loop::Instant begin = begins_to_pack(now);
   if (now >= begin) return prepare(next);
   wake_.call_at(begin);
@@ -183,10 +183,10 @@ void Maps::taken(const Place& sent, const uplink::Answered& answered) {
   const std::size_t updates = sent->waiting.updates.size();
   if (sent->waiting.again) map.header().stamp = sent->waiting.again;
   // First: the writer works in order.
-  for (const icd::MapUpdate* const said : lanes::said_by(sent->waiting)) rejected_.taken(*said);
+  for (const icd::MapUpdate* const said : queues::said_by(sent->waiting)) rejected_.taken(*said);
   forget(sent->waiting.updates);
   blame_.passed(whose(map), loop_.now());
-  lane_.carried(lanes::Sender::of(map), sent->packed.body.size());
+  queue_.carried(queues::Sender::of(map), sent->packed.body.size());
   record_.forwarded(traffic_of(map), updates, sent->packed.body.size(), answered.status, loop_.wall_now());
   if (!map.is_grid()) record_.rounded_to(traffic_of(map), sent->packed.precision);
   points_taken(*sent);
@@ -209,7 +209,7 @@ void Maps::verdict(const Place& sent, const uplink::Answered& answered) {
       return give_up(sent, answered.status, sentence);
     case MappingVerdict::Suspect:
       pace_.lost(now);
-      if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == lanes::Blame::Next::Reject)
+      if (blame_.failed(whose(sent->waiting.map), sent->waiting.trial, now) == queues::Blame::Next::Reject)
         return give_up(sent, answered.status,
                        sentence + " (other maps were delivered, this map failed repeatedly)");
       record_.not_taken(traffic, NotTaken::Failed, answered.status, sentence);
@@ -232,7 +232,7 @@ void Maps::again(const Place& sent) {
 /// Except one in flight.
 void Maps::put_back(Place& prepared) {
   if (!prepared || prepared->is_under_way) return;
-  const auto replaced = lane_.put_back(prepared->waiting);
+  const auto replaced = queue_.put_back(prepared->waiting);
   prepared.reset();
   forget(replaced);
 }
@@ -240,7 +240,7 @@ void Maps::put_back(Place& prepared) {
 /// Parts of a merged or stitched map are tried separately.
 void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
   ahead_.failed(false);
-  lanes::WaitingMap& waiting = sent->waiting;
+  queues::QueuedMap& waiting = sent->waiting;
   record_.not_taken(traffic_of(waiting.map), NotTaken::Refused, status, sentence);
   if (waiting.again) waiting.map.header().stamp = waiting.again;
   if (waiting.parts.empty()) {
@@ -249,13 +249,13 @@ void Maps::give_up(const Place& sent, int status, const std::string& sentence) {
     return leaves(sent);
   }
   if (sent == prepared_) put_back(following_);
-  lane_.put_back_apart(waiting);
+  queue_.put_back_apart(waiting);
   leaves(sent);
 }
 
-bool Maps::is_said_by_what_goes(const lanes::WaitingMap& back) const {
-  return (prepared_ && lanes::replaces(prepared_->waiting, back)) ||
-         (following_ && lanes::replaces(following_->waiting, back));
+bool Maps::is_said_by_what_goes(const queues::QueuedMap& back) const {
+  return (prepared_ && queues::replaces(prepared_->waiting, back)) ||
+         (following_ && queues::replaces(following_->waiting, back));
 }
 
 void Maps::link_is_back() {
@@ -270,11 +270,11 @@ bool Maps::stop() {
 }
 
 std::size_t Maps::waiting(const Traffic& traffic) const {
-  return lane_.count(sender_of(traffic)) + prepared_of(traffic).size();
+  return queue_.count(sender_of(traffic)) + prepared_of(traffic).size();
 }
 
 std::optional<loop::Instant> Maps::waits_since(const Traffic& traffic) const {
-  std::optional<loop::Instant> oldest = lane_.oldest(sender_of(traffic));
+  std::optional<loop::Instant> oldest = queue_.oldest(sender_of(traffic));
   for (const Prepared* prepared : prepared_of(traffic)) {
     oldest = std::min(oldest.value_or(prepared->waiting.accepted), prepared->waiting.accepted);
   }

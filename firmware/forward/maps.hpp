@@ -20,10 +20,10 @@
 #include "forward/uri_pace.hpp"
 #include "icd/map_update.hpp"
 #include "icd/status.hpp"
-#include "lanes/ahead.hpp"
-#include "lanes/map_lane.hpp"
-#include "lanes/stamps.hpp"
 #include "loop/workers.hpp"
+#include "queues/ahead.hpp"
+#include "queues/map_queue.hpp"
+#include "queues/stamps.hpp"
 #include "spool/spool.hpp"
 
 namespace adit::forward {
@@ -31,7 +31,7 @@ namespace adit::forward {
 /// Maps to the mapping endpoint. The writer stores a map before Adit accepts it. A worker packs one map while
 /// another is sent. They go one at a time on a connection of their own, within the link's budget. If the
 /// Command Post answers well, a map starts when the one before has arrived, without its answer
-/// (lanes::Ahead). Two maps never share a second of the Command Post's limit.
+/// (queues::Ahead). Two maps never share a second of the Command Post's limit.
 ///
 /// Each of two maps in flight ends separately. A failed one returns to the queue, and no other starts before
 /// both have ended. A 429 does not count for maps sent before it (pace::RateLimit). Stamps rise in the order
@@ -87,7 +87,7 @@ class Maps {
 
   bool packing() const { return preparing_; }
   const Channel& channel() const { return channel_; }
-  std::size_t queued_bytes() const { return lane_.bytes(); }
+  std::size_t queued_bytes() const { return queue_.bytes(); }
   std::size_t waiting(const Traffic& traffic) const;
   /// When the oldest map, queued or in flight, was accepted.
   std::optional<loop::Instant> waits_since(const Traffic& traffic) const;
@@ -99,7 +99,7 @@ class Maps {
     std::string why;
   };
   struct Prepared {
-    lanes::WaitingMap waiting;
+    queues::QueuedMap waiting;
     Packed packed;                   // empty body: not packed, or nothing to send
     std::vector<Damaged> damaged;    // cannot be sent
     loop::Duration packing_took{0};  // by the worker
@@ -119,13 +119,13 @@ class Maps {
   void carry_on_grids(const journal::Carried& carried, bool ran_before);
   bool is_told(const icd::MapUpdate& update);
   void compare();
-  void compared(const lanes::Successive& two, bool has_all);
+  void compared(const queues::Successive& two, bool has_all);
   /// A map that is being stored. The writer owns it until then.
   struct Keeping {
     std::uint64_t number = 0;
     std::size_t bytes_received = 0, size = 0;
     std::uint64_t spare = 0;          // bytes to leave free
-    std::optional<icd::Stamp> again;  // lanes::WaitingMap::again
+    std::optional<icd::Stamp> again;  // queues::QueuedMap::again
     bool says_nothing = false;        // no valid point: not stored
     icd::MapUpdate update;
     std::shared_ptr<spool::MapFile> file;  // with the data that arrived
@@ -136,8 +136,8 @@ class Maps {
   void kept(Keeping& keeping, const std::function<void(icd::Checked<void>)>& done);
   void kept_again(Keeping& keeping, const std::function<bool(bool kept)>& done);
   std::vector<const Prepared*> prepared_of(const Traffic& traffic) const;
-  bool is_said_by_what_goes(const lanes::WaitingMap& back) const;
-  lanes::WaitingMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
+  bool is_said_by_what_goes(const queues::QueuedMap& back) const;
+  queues::QueuedMap waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const;
   std::uint64_t next_number(bool again);
   void forget(std::span<const std::uint64_t> numbers);
   void pump() noexcept;
@@ -150,8 +150,8 @@ class Maps {
   Place* place_of(const Place& prepared);
   void learn_from(const Prepared& prepared);
   void is_packed(const Place& prepared);
-  std::vector<std::uint64_t> unread_in(const lanes::WaitingMap& waiting) const;
-  static std::vector<Damaged> damaged_in(const lanes::WaitingMap& waiting,
+  std::vector<std::uint64_t> unread_in(const queues::QueuedMap& waiting) const;
+  static std::vector<Damaged> damaged_in(const queues::QueuedMap& waiting,
                                          const std::vector<std::uint64_t>& unread);
   void is_damaged(Place& place);
   void is_there(Place& place);
@@ -184,8 +184,8 @@ class Maps {
   loop::Source wake_;
 
   Slot slot_;
-  lanes::MapLane lane_;
-  lanes::StampOrder stamps_;
+  queues::MapQueue queue_;
+  queues::StampOrder stamps_;
   TakenPoints points_;
   std::uint64_t numbers_ = kFirstNumber, again_numbers_ = 0;
   int being_kept_ = 0;
@@ -195,9 +195,9 @@ class Maps {
   bool comparing_ = false;  // a worker compares two clouds
   Place prepared_;          // packed, ready or in flight
   Place following_;         // next; may be in flight
-  lanes::Ahead ahead_;
+  queues::Ahead ahead_;
   std::set<std::uint64_t> unread_;  // data not checked yet
-  lanes::Blame blame_;
+  queues::Blame blame_;
   bool stopping_ = false;
   bool are_grids_told_ = true;  // the journal has the areas of grids
 };

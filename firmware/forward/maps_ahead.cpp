@@ -45,9 +45,9 @@ void Maps::go_ahead(loop::Instant now) {
 
 /// If not, the answer to the one that is under way is awaited.
 bool Maps::may_go_ahead(loop::Instant now) const {
-  const lanes::Ahead::Before before{.map = prepared_->waiting,
-                                    .arrived = prepared_->arrived.value_or(now),
-                                    .went_ahead = prepared_->went_ahead};
+  const queues::Ahead::Before before{.map = prepared_->waiting,
+                                     .arrived = prepared_->arrived.value_or(now),
+                                     .went_ahead = prepared_->went_ahead};
   return prepared_->is_under_way && pace_.may_go_ahead(now) &&
          ahead_.may_go(following_->waiting, before, now);
 }

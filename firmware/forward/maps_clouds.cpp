@@ -9,10 +9,10 @@ namespace adit::forward {
 /// One pair at a time, to save memory. Both stay queued and may be sent.
 void Maps::compare() {
   if (comparing_ || stopping_) return;
-  auto next = lane_.to_compare();
+  auto next = queue_.to_compare();
   if (!next) return;
   struct Comparison {
-    lanes::Successive two;
+    queues::Successive two;
     bool has_all = false;
   };
   const auto it = std::make_shared<Comparison>(Comparison{*std::move(next)});
@@ -23,17 +23,17 @@ void Maps::compare() {
   comparing_ = true;
 }
 
-void Maps::compared(const lanes::Successive& two, bool has_all) {
+void Maps::compared(const queues::Successive& two, bool has_all) {
   comparing_ = false;
   const Traffic traffic{Kind::Cloud, two.sender.name ? two.sender.name->text() : ""};
   if (has_all) {
-    const auto replaced = lane_.replace(two);
+    const auto replaced = queue_.replace(two);
     record_.replaced(traffic, replaced.size());
     forget(replaced);
   } else {
-    lane_.keep_both(two);
+    queue_.keep_both(two);
   }
-  record_.clouds_are(traffic, has_all ? lanes::Clouds::Whole : lanes::Clouds::Parts);
+  record_.clouds_are(traffic, has_all ? queues::Clouds::Whole : queues::Clouds::Parts);
   compare();
 }
 

@@ -7,15 +7,15 @@ namespace adit::forward {
 
 /// After a power cut the areas of earlier grids are unknown. The record that begins grids shows it.
 void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
-  lanes::Canvases::Posted posted = carried.grids().value_or(lanes::Canvases::Posted{});
+  queues::Canvases::Posted posted = carried.grids().value_or(queues::Canvases::Posted{});
   if (!carried.grids()) {
-    const auto everywhere = lanes::Extent::everywhere();
+    const auto everywhere = queues::Extent::everywhere();
     const auto told =
-        ran_before ? journal_.grids_posted(lanes::Canvases::kAnyName, everywhere) : journal_.grids_begin();
-    if (ran_before || !told) posted[lanes::Canvases::kAnyName] = everywhere;
+        ran_before ? journal_.grids_posted(queues::Canvases::kAnyName, everywhere) : journal_.grids_begin();
+    if (ran_before || !told) posted[queues::Canvases::kAnyName] = everywhere;
     are_grids_told_ = told.has_value();
   }
-  lane_.canvases().carry_on(std::move(posted));
+  queue_.canvases().carry_on(std::move(posted));
 }
 
 /// Journals posted areas, so that later processes know the cells that were never sent. False: not journaled,
@@ -23,14 +23,14 @@ void Maps::carry_on_grids(const journal::Carried& carried, bool ran_before) {
 bool Maps::is_told(const icd::MapUpdate& update) {
   if (!update.is_grid()) return true;
   if (!are_grids_told_) {
-    const auto everywhere = lanes::Extent::everywhere();
-    are_grids_told_ = journal_.grids_posted(lanes::Canvases::kAnyName, everywhere).has_value();
+    const auto everywhere = queues::Extent::everywhere();
+    are_grids_told_ = journal_.grids_posted(queues::Canvases::kAnyName, everywhere).has_value();
     if (!are_grids_told_) return false;
   }
-  const auto grows = lane_.canvases().grows(update);
+  const auto grows = queue_.canvases().grows(update);
   if (!grows) return true;
   if (!journal_.grids_posted(grows->first, grows->second)) return false;
-  lane_.canvases().grown(*grows);
+  queue_.canvases().grown(*grows);
   return true;
 }
 
@@ -45,20 +45,20 @@ void Maps::heard() {
   for (const Place& place : {prepared_, following_}) {
     if (place) under_way.push_back(&place->waiting.map);
   }
-  lane_.canvases().heard(under_way);
+  queue_.canvases().heard(under_way);
 }
 
 void Maps::change_run(dispatch::NextMap next) {
   points_.forget();
   pack_again();
-  lanes::Canvases& canvases = lane_.canvases();
+  queues::Canvases& canvases = queue_.canvases();
   if (next == dispatch::NextMap::Empty && is_heard_from()) return canvases.begin_run();
   if (next == dispatch::NextMap::Earlier) return canvases.take_up_run();
   canvases.change_run();
 }
 
 void Maps::leads_elsewhere() {
-  lane_.canvases().lead_to(channel_.address());
+  queue_.canvases().lead_to(channel_.address());
   pack_again();
 }
 

@@ -28,40 +28,41 @@ icd::Stamp stamp_of(const icd::MapUpdate& map) {
 
 /// A full queue accepts replacing maps. If it is full by number alone, it accepts merging maps.
 bool Maps::has_room_for(const icd::MapUpdate& update, bool replaces) const {
-  const std::size_t waiting = lane_.bytes() + bytes_being_kept_;
-  const std::size_t count = lane_.count() + static_cast<std::size_t>(being_kept_);
-  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !lane_.joins(update))) return false;
+  const std::size_t waiting = queue_.bytes() + bytes_being_kept_;
+  const std::size_t count = queue_.count() + static_cast<std::size_t>(being_kept_);
+  if (!replaces && count >= kMostMaps && (count >= kMostWithJoined || !queue_.joins(update))) return false;
   return replaces || waiting == 0 || waiting + update.data.bytes.size() <= settings_.queues.map_bytes;
 }
 
 /// With room for a grid that replaces one.
 std::shared_ptr<intake::MapArrival> Maps::arrives(MapArrival::Take take) {
   return std::make_shared<MapArrival>(
-      while_alive_, spool_, [this] { return lane_.largest_replaceable(); }, std::move(take));
+      while_alive_, spool_, [this] { return queue_.largest_replaceable(); }, std::move(take));
 }
 
 void Maps::take(icd::MapUpdate update, std::size_t bytes_received, std::shared_ptr<spool::MapFile> file,
                 std::function<void(icd::Checked<void>)> done) {
-  const bool replaces = lane_.replaces_any(update);
+  const bool replaces = queue_.replaces_any(update);
   const auto refuse = [&](icd::Refusal why) {
     if (file) writer_.submit([file = std::move(file)]() mutable { file.reset(); }, [] {});
     done(std::unexpected(std::move(why)));
   };
   if (!has_room_for(update, replaces)) {
     record_.no_room(traffic_of(update), loop_.wall_now());
-    return refuse({icd::Status::TooManyRequests,
-                   icd::sentence("the queue is full: ", lane_.count() + static_cast<std::size_t>(being_kept_),
-                                 " maps, ", (lane_.bytes() + bytes_being_kept_) / 1000000,
-                                 " MB; this map was not accepted, send it again later")});
+    return refuse(
+        {icd::Status::TooManyRequests,
+         icd::sentence("the queue is full: ", queue_.count() + static_cast<std::size_t>(being_kept_),
+                       " maps, ", (queue_.bytes() + bytes_being_kept_) / 1000000,
+                       " MB; this map was not accepted, send it again later")});
   }
   if (!is_told(update)) return refuse(not_kept());
   const auto keeping = std::make_shared<Keeping>();
   keeping->bytes_received = bytes_received;
   // Newer grids and whole clouds need room beside the old one.
   const bool is_whole =
-      update.is_grid() || lane_.clouds_of(lanes::Sender::of(update)) == lanes::Clouds::Whole;
+      update.is_grid() || queue_.clouds_of(queues::Sender::of(update)) == queues::Clouds::Whole;
   const std::uint64_t of_its_own = is_whole ? update.data.bytes.size() : 0;
-  if (!replaces) keeping->spare = std::max<std::uint64_t>(lane_.largest_replaceable(), of_its_own);
+  if (!replaces) keeping->spare = std::max<std::uint64_t>(queue_.largest_replaceable(), of_its_own);
   keeping->update = std::move(update);
   keeping->file = std::move(file);
   keep(keeping, [this, done = std::move(done)](Keeping& it) { kept(it, done); });
@@ -125,10 +126,10 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
   const icd::Stamp stamp = update.header().stamp.value_or(loop_.stamp_now());
   record_.accepted(traffic_of(update), update.data.bytes.size(), time_of(loop_, stamp));
   if (again) {
-    forget(lane_.put_back(waiting_again(number, std::move(update), stamp)));
+    forget(queue_.put_back(waiting_again(number, std::move(update), stamp)));
   } else {
     tell_clouds(update);
-    lane_.restore(number, std::move(update), loop_.now());
+    queue_.restore(number, std::move(update), loop_.now());
   }
   unread_.insert(number);
   compare();
@@ -139,14 +140,14 @@ void Maps::restore(std::uint64_t number, icd::MapUpdate update) {
 std::vector<std::uint64_t> Maps::add(std::uint64_t number, icd::MapUpdate update) {
   tell_clouds(update);
   const Traffic traffic = traffic_of(update);
-  auto replaced = lane_.add(number, std::move(update), loop_.now());
+  auto replaced = queue_.add(number, std::move(update), loop_.now());
   record_.replaced(traffic, replaced.size());
   return replaced;
 }
 
 void Maps::tell_clouds(const icd::MapUpdate& update) {
-  const lanes::Clouds clouds = lane_.clouds_of(lanes::Sender::of(update));
-  if (clouds != lanes::Clouds::Auto) record_.clouds_are(traffic_of(update), clouds);
+  const queues::Clouds clouds = queue_.clouds_of(queues::Sender::of(update));
+  if (clouds != queues::Clouds::Auto) record_.clouds_are(traffic_of(update), clouds);
 }
 
 void Maps::forget(std::span<const std::uint64_t> numbers) {
@@ -161,8 +162,8 @@ void Maps::forget(std::span<const std::uint64_t> numbers) {
 /// It must not follow a newer map that contains it.
 void Maps::send_again(icd::MapUpdate update, std::function<bool(bool kept)> done) {
   const icd::Stamp again = stamp_of(update);
-  const lanes::WaitingMap back = waiting_again(again_numbers_ + 1, update, again);
-  if (lane_.is_replaced(back) || is_said_by_what_goes(back)) {
+  const queues::QueuedMap back = waiting_again(again_numbers_ + 1, update, again);
+  if (queue_.is_replaced(back) || is_said_by_what_goes(back)) {
     done(true);
     return;
   }
@@ -179,14 +180,14 @@ void Maps::kept_again(Keeping& keeping, const std::function<bool(bool kept)>& do
     return host::log(host::Level::Error, "cannot send a rejected map again",
                      {{"why", keeping.kept.error().sentence}});
   }
-  lanes::WaitingMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
+  queues::QueuedMap back = waiting_again(keeping.number, std::move(*keeping.kept), *keeping.again);
   if (!is_wanted || is_said_by_what_goes(back)) return forget({&keeping.number, 1});
   unread_.insert(keeping.number);  // perhaps rejected by an earlier process
-  forget(lane_.put_back(std::move(back)));
+  forget(queue_.put_back(std::move(back)));
   pump();
 }
 
-lanes::WaitingMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const {
+queues::QueuedMap Maps::waiting_again(std::uint64_t number, icd::MapUpdate update, icd::Stamp again) const {
   return {
       .map = std::move(update), .accepted = loop_.now(), .updates = {number}, .alone = true, .again = again};
 }

@@ -11,8 +11,8 @@ namespace adit::forward {
 void Maps::prepare(Place& place) {
   auto prepared = std::make_shared<Prepared>();
   slot_.link_delivers(channel_.delivers());
-  lane_.a_message_holds(slot_.points_within(pace_.spacing()));
-  auto waiting = lane_.take(loop_.now());
+  queue_.a_message_holds(slot_.points_within(pace_.spacing()));
+  auto waiting = queue_.take(loop_.now());
   if (!waiting) return;
   prepared->waiting = std::move(*waiting);
   place = std::move(prepared);
@@ -28,7 +28,7 @@ void Maps::pack(const Place& prepared) {
   const Packing packing{settings_.command_post.arrange_clouds, slot_.hurry(pace_.spacing())};
   const auto unread = unread_in(prepared->waiting);
   std::vector<std::uint64_t> own;
-  lanes::add_own_numbers(own, prepared->waiting);
+  queues::add_own_numbers(own, prepared->waiting);
   spool_.work_begins(own);
   workers_.submit(
       loop::Urgency::OnTheWay,
@@ -40,7 +40,7 @@ void Maps::pack(const Place& prepared) {
         prepared->packing_took = loop.now() - begins;
         if (!prepared->packed.body.empty() || prepared->packed.left_out.is_all) return;
         std::vector<std::uint64_t> numbers;
-        lanes::add_own_numbers(numbers, prepared->waiting);
+        queues::add_own_numbers(numbers, prepared->waiting);
         prepared->damaged = damaged_in(prepared->waiting, numbers);
       },
       [this, began, prepared, unread] {
@@ -57,7 +57,7 @@ void Maps::pack(const Place& prepared) {
   preparing_ = true;
 }
 
-/// Null where it went back into the lane meanwhile.
+/// Null where it went back into the queue meanwhile.
 Maps::Place* Maps::place_of(const Place& prepared) {
   if (prepared == prepared_) return &prepared_;
   return prepared == following_ ? &following_ : nullptr;
@@ -70,41 +70,41 @@ void Maps::learn_from(const Prepared& prepared) {
 }
 
 /// The numbers of those maps in `waiting` whose data is still to be checked.
-std::vector<std::uint64_t> Maps::unread_in(const lanes::WaitingMap& waiting) const {
+std::vector<std::uint64_t> Maps::unread_in(const queues::QueuedMap& waiting) const {
   std::vector<std::uint64_t> numbers;
-  if (!unread_.empty()) lanes::add_own_numbers(numbers, waiting);
+  if (!unread_.empty()) queues::add_own_numbers(numbers, waiting);
   std::erase_if(numbers, [this](std::uint64_t number) { return !unread_.contains(number); });
   return numbers;
 }
 
-std::vector<Maps::Damaged> Maps::damaged_in(const lanes::WaitingMap& waiting,
+std::vector<Maps::Damaged> Maps::damaged_in(const queues::QueuedMap& waiting,
                                             const std::vector<std::uint64_t>& unread) {
   std::vector<Damaged> damaged;
-  const auto look_at = [&](const lanes::WaitingMap& one) {
+  const auto look_at = [&](const queues::QueuedMap& one) {
     if (std::ranges::find(unread, one.updates.back()) == unread.end()) return;
     if (auto checked = codec::check_data(one.map); !checked)
       damaged.push_back({one.updates.back(), std::move(checked.error().sentence)});
   };
   if (waiting.parts.empty()) look_at(waiting);
-  for (const lanes::WaitingMap& part : waiting.parts) look_at(part);
+  for (const queues::QueuedMap& part : waiting.parts) look_at(part);
   return damaged;
 }
 
 /// Records the damaged maps as failed and renames their files. The other parts are queued again, each alone.
 void Maps::is_damaged(Place& place) {
   const auto it = place;
-  lanes::WaitingMap rest = it->waiting;
+  queues::QueuedMap rest = it->waiting;
   std::vector<std::uint64_t> gone;
   for (const Damaged& each : it->damaged) gone.push_back(each.number);
   const auto is_gone = [&](std::uint64_t number) { return std::ranges::find(gone, number) != gone.end(); };
-  std::erase_if(rest.parts, [&](const lanes::WaitingMap& part) { return is_gone(part.updates.back()); });
+  std::erase_if(rest.parts, [&](const queues::QueuedMap& part) { return is_gone(part.updates.back()); });
   std::erase_if(rest.updates, is_gone);
   writer_.submit(
       [&spool = spool_, it] {
         for (const Damaged& each : it->damaged) spool.set_aside(each.number, each.why);
       },
       [] {});
-  if (!rest.parts.empty()) lane_.put_back_apart(std::move(rest));
+  if (!rest.parts.empty()) queue_.put_back_apart(std::move(rest));
   place.reset();  // nothing of what is damaged is tried again
   for (const Damaged& each : it->damaged) {
     unread_.erase(each.number);
@@ -122,7 +122,7 @@ void Maps::is_packed(const Place& prepared) {
   if (place == nullptr) return;
   if (!prepared->damaged.empty()) return is_damaged(*place);
   if (left_out.is_all) return is_there(*place);
-  if (prepared->packed.drawn) lane_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
+  if (prepared->packed.drawn) queue_.canvases().lay(prepared->waiting.map.name, *prepared->packed.drawn);
   prepared->packed.drawn.reset();
   if (!prepared->packed.body.empty()) {
     if (prepared->packed.stitched.raw_size > 0)
@@ -130,7 +130,7 @@ void Maps::is_packed(const Place& prepared) {
     return;
   }
   host::log(host::Level::Warning, "cannot join grids: their data is damaged");
-  lane_.put_back_apart(prepared->waiting);
+  queue_.put_back_apart(prepared->waiting);
   place->reset();
 }
 

@@ -26,11 +26,11 @@ icd::Refusal no_memory() {
 }  // namespace
 
 MarkerArrivals::MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
-                               lanes::MarkerLane& lane, Record& record, std::function<void()> came)
+                               queues::MarkerQueue& queue, Record& record, std::function<void()> came)
     : loop_(loop),
       workers_(workers),
       journal_(journal),
-      lane_(lane),
+      queue_(queue),
       record_(record),
       came_(std::move(came)),
       next_turn_(
@@ -60,7 +60,7 @@ void MarkerArrivals::end() {
 }
 
 bool MarkerArrivals::begin(Arrival& arrival) {
-  if (!lane_.has_room_for(*arrival.update) && !takes_some(arrival)) {
+  if (!queue_.has_room_for(*arrival.update) && !takes_some(arrival)) {
     return fail(
         arrival,
         {.status = icd::Status::TooManyRequests,
@@ -77,8 +77,8 @@ bool MarkerArrivals::begin(Arrival& arrival) {
 
 bool MarkerArrivals::takes_some(Arrival& arrival) {
   record_.no_room({Kind::Markers, ""}, loop_.wall_now());
-  icd::MarkersUpdate known = lane_.those_that_wait(*arrival.update);
-  if (known.markers.empty() || !lane_.has_room_for(known)) return false;
+  icd::MarkersUpdate known = queue_.those_that_wait(*arrival.update);
+  if (known.markers.empty() || !queue_.has_room_for(known)) return false;
   const std::size_t taken = known.markers.size(), all = arrival.update->markers.size();
   arrival.outcome = std::unexpected(
       icd::Refusal{icd::Status::TooManyRequests,
@@ -119,20 +119,20 @@ bool MarkerArrivals::add_part(Arrival& arrival) {
   const auto part = markers.subspan(arrival.added, std::min(kPart, markers.size() - arrival.added));
   const auto invisible = static_cast<std::size_t>(std::ranges::count_if(part, icd::is_invisible));
   record_.invisible(invisible);
-  arrival.last = lane_.add_part(part, arrival.last);
+  arrival.last = queue_.add_part(part, arrival.last);
   arrival.added += part.size();
   free_needless();
   if (arrival.added < markers.size()) {
     next_turn_.call_at(loop_.now());
     return false;
   }
-  lane_.end_of_update(arrival.last, loop_.now());
+  queue_.end_of_update(arrival.last, loop_.now());
   return true;
 }
 
 /// Up to tens of thousands of markers after a deletion.
 void MarkerArrivals::free_needless() {
-  auto needless = std::make_shared<std::vector<lanes::MarkerChanges>>(lane_.needless());
+  auto needless = std::make_shared<std::vector<queues::MarkerChanges>>(queue_.needless());
   if (!needless->empty()) workers_.submit(loop::Urgency::CanWait, [needless] { needless->clear(); }, [] {});
 }
 

@@ -10,9 +10,9 @@
 #include "icd/markers_update.hpp"
 #include "icd/status.hpp"
 #include "journal/journal.hpp"
-#include "lanes/marker_lane.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
+#include "queues/marker_queue.hpp"
 
 namespace adit::forward {
 
@@ -28,8 +28,8 @@ class MarkerArrivals {
   static constexpr std::size_t kPart = 500;  // markers per turn
 
   /// `came` is called after each update.
-  MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal, lanes::MarkerLane& lane,
-                 Record& record, std::function<void()> came);
+  MarkerArrivals(loop::Loop& loop, loop::Workers& workers, journal::Journal& journal,
+                 queues::MarkerQueue& queue, Record& record, std::function<void()> came);
 
   void take(icd::MarkersUpdate update, std::size_t bytes_received, Done done);
 
@@ -44,9 +44,9 @@ class MarkerArrivals {
     Done done;
     icd::Checked<void> outcome = {};
     std::string record = {};
-    bool is_kept = false;                                                // in the journal
-    std::size_t added = 0;                                               // markers in the queue
-    lanes::MarkerChanges::Place last = lanes::WaitingUpdates::kNowhere;  // place of the last one
+    bool is_kept = false;                                                 // in the journal
+    std::size_t added = 0;                                                // markers in the queue
+    queues::MarkerChanges::Place last = queues::QueuedUpdates::kNowhere;  // place of the last one
   };
   /// True: the outcome is known.
   using Step = bool (MarkerArrivals::*)(Arrival&);
@@ -65,7 +65,7 @@ class MarkerArrivals {
   loop::Loop& loop_;
   loop::Workers& workers_;
   journal::Journal& journal_;
-  lanes::MarkerLane& lane_;
+  queues::MarkerQueue& queue_;
   Record& record_;
   std::function<void()> came_;
   std::deque<Arrival> arrivals_;  // the first is in progress

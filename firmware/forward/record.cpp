@@ -70,13 +70,13 @@ void Record::invisible(std::size_t markers) {
   changed_();
 }
 
-void Record::rounded_to(const Traffic& traffic, lanes::Precision precision) {
-  row(traffic).precision = lanes::kPrecisionWords[static_cast<std::size_t>(precision)];
+void Record::rounded_to(const Traffic& traffic, queues::Precision precision) {
+  row(traffic).precision = queues::kPrecisionWords[static_cast<std::size_t>(precision)];
 }
 
-void Record::clouds_are(const Traffic& traffic, lanes::Clouds clouds) {
+void Record::clouds_are(const Traffic& traffic, queues::Clouds clouds) {
   if (traffic.kind == Kind::Cloud)
-    row(traffic).clouds = lanes::kCloudsWords[static_cast<std::size_t>(clouds)];
+    row(traffic).clouds = queues::kCloudsWords[static_cast<std::size_t>(clouds)];
 }
 
 void Record::forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status,

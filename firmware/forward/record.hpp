@@ -16,9 +16,9 @@
 #include "icd/status.hpp"
 #include "icd/uri.hpp"
 #include "intake/desk.hpp"
-#include "lanes/clouds.hpp"
-#include "lanes/precision.hpp"
 #include "loop/loop.hpp"
+#include "queues/clouds.hpp"
+#include "queues/precision.hpp"
 
 namespace adit::forward {
 
@@ -69,9 +69,9 @@ class Record {
   void no_valid_point(const Traffic& traffic, std::size_t bytes, api::Time now);
   void invisible(std::size_t markers);
   /// The detected kind of a robot's clouds.
-  void clouds_are(const Traffic& traffic, lanes::Clouds clouds);
+  void clouds_are(const Traffic& traffic, queues::Clouds clouds);
   /// The rounding of the last delivered cloud.
-  void rounded_to(const Traffic& traffic, lanes::Precision precision);
+  void rounded_to(const Traffic& traffic, queues::Precision precision);
   /// A message of `bytes` was delivered for `updates` accepted ones.
   void forwarded(const Traffic& traffic, std::size_t updates, std::size_t bytes, int status, api::Time now);
   /// `status` 0: no status came.

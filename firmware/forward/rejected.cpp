@@ -37,9 +37,9 @@ std::expected<void, std::string> write_message(const std::string& path, const ic
   return spool::write_whole(path, codec::write_markers_update(markers));
 }
 
-constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // in the order of lanes::Message
+constexpr std::string_view kKinds[] = {"map", "state", "markers"};  // in the order of queues::Message
 
-std::string reason_of(const lanes::RejectedMessage& item, bool replaced) {
+std::string reason_of(const queues::RejectedMessage& item, bool replaced) {
   return codec::write_json({Value::Object{{"kind", {std::string(kKinds[item.message.index()])}},
                                           {"status", {std::int64_t{item.status}}},
                                           {"why", {item.why}},
@@ -69,12 +69,12 @@ void write_replaced(const Files& files) {
 }
 
 template <class Message>
-icd::Checked<lanes::Message> any(icd::Checked<Message> message) {
+icd::Checked<queues::Message> any(icd::Checked<Message> message) {
   if (!message) return std::unexpected(std::move(message.error()));
-  return lanes::Message(std::move(*message));
+  return queues::Message(std::move(*message));
 }
 
-icd::Checked<lanes::Message> read_message(const std::string& path, std::string_view kind) {
+icd::Checked<queues::Message> read_message(const std::string& path, std::string_view kind) {
   if (kind == kKinds[0]) return any(spool::read_map(path));
   if (kind == kKinds[1]) return any(spool::read_state(path));
   if (kind == kKinds[2]) return any(spool::read_markers(path));
@@ -82,14 +82,14 @@ icd::Checked<lanes::Message> read_message(const std::string& path, std::string_v
 }
 
 /// 503: unreadable. Otherwise: damaged.
-icd::Checked<std::pair<std::string, lanes::RejectedMessage>> read_reason(const std::string& path) {
+icd::Checked<std::pair<std::string, queues::RejectedMessage>> read_reason(const std::string& path) {
   const auto file = spool::map_file(path);
   if (!file) return std::unexpected(spool::unreadable(path, file.error()));
   const auto value = codec::parse_json(spool::text_in(*file));
   if (!value) return icd::unprocessable(value.error());
   codec::Reading reading;
   const codec::Field root(*value, reading);
-  lanes::RejectedMessage item;
+  queues::RejectedMessage item;
   const std::string kind(root.member("kind").text());
   item.status = static_cast<int>(root.member("status").whole(0, 999));
   item.why = root.member("why").text();
@@ -99,13 +99,13 @@ icd::Checked<std::pair<std::string, lanes::RejectedMessage>> read_reason(const s
   return reading.outcome(std::pair(kind, std::move(item)));
 }
 
-std::string who(const lanes::Message& message) {
+std::string who(const queues::Message& message) {
   if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return map->name ? map->name->text() : "";
   const auto* state = std::get_if<icd::StateUpdate>(&message);
   return state != nullptr && state->poses.size() == 1 ? state->poses.front().name.text() : "";
 }
 
-std::string kind_of(const lanes::Message& message) {
+std::string kind_of(const queues::Message& message) {
   if (const auto* map = std::get_if<icd::MapUpdate>(&message)) return map->is_grid() ? "grid" : "cloud";
   return std::string(kKinds[message.index()]);
 }
@@ -145,16 +145,16 @@ void RejectedStore::restore() {
 icd::Checked<void> RejectedStore::restore_one(std::uint64_t number) {
   auto reason = ADIT_TRY(read_reason(path(number, kReason)));
   auto message = ADIT_TRY(read_message(path(number, kMessage), reason.first));
-  lanes::RejectedMessage& item = reason.second;
+  queues::RejectedMessage& item = reason.second;
   item.number = number;
   item.message = std::move(message);
   items_.restore(std::move(item));
   return {};
 }
 
-void RejectedStore::add(lanes::Message message, int status, const std::string& why, std::size_t bytes,
+void RejectedStore::add(queues::Message message, int status, const std::string& why, std::size_t bytes,
                         Origin origin) {
-  lanes::RejectedMessage item{
+  queues::RejectedMessage item{
       .message = std::move(message), .status = status, .why = why, .at = loop_.stamp_now(), .bytes = bytes};
   host::log(host::Level::Warning, "the Command Post rejected a message; it is kept",
             {{"kind", kind_of(item.message)},
@@ -162,11 +162,11 @@ void RejectedStore::add(lanes::Message message, int status, const std::string& w
              {"status", std::to_string(status)},
              {"why", why}});
   const auto said_again = [&](std::uint64_t number) {
-    const lanes::RejectedMessage* const older = items_.find(number);
-    return older == nullptr || older->replaced || lanes::replaces(item.message, older->message);
+    const queues::RejectedMessage* const older = items_.find(number);
+    return older == nullptr || older->replaced || queues::replaces(item.message, older->message);
   };
   std::vector<std::uint64_t> covered;
-  for (const lanes::RejectedMessage& older : items_.items()) {
+  for (const queues::RejectedMessage& older : items_.items()) {
     if (said_again(older.number)) covered.push_back(older.number);
   }
   for (const std::uint64_t gone : items_.add(std::move(item))) {
@@ -176,7 +176,7 @@ void RejectedStore::add(lanes::Message message, int status, const std::string& w
   keep(items_.items().back(), std::move(origin));
 }
 
-void RejectedStore::keep(const lanes::RejectedMessage& item, Origin origin) {
+void RejectedStore::keep(const queues::RejectedMessage& item, Origin origin) {
   const auto well = std::make_shared<bool>(false);
   writer_.submit(
       [well, message = item.message, reason = reason_of(item, item.replaced), unread = unread_,
@@ -198,7 +198,7 @@ void RejectedStore::keep(const lanes::RejectedMessage& item, Origin origin) {
 void RejectedStore::kept(std::uint64_t number, bool well, const Origin& origin) {
   --being_written_;
   origin.told(well);
-  const lanes::RejectedMessage* const item = items_.find(number);
+  const queues::RejectedMessage* const item = items_.find(number);
   if (well || item == nullptr || item->replaced) return origin.let_go();
   in_memory_[number] = origin.let_go;
 }
@@ -219,7 +219,7 @@ void RejectedStore::let_origin_go(std::uint64_t number) {
   in_memory_.erase(origin);
 }
 
-bool RejectedStore::taken(const lanes::Message& message, std::function<void()> written) {
+bool RejectedStore::taken(const queues::Message& message, std::function<void()> written) {
   const std::vector<std::uint64_t> replaced = items_.replaced_by(message);
   std::vector<Files> all;
   for (const std::uint64_t number : replaced) {
@@ -239,8 +239,8 @@ bool RejectedStore::taken(const lanes::Message& message, std::function<void()> w
   return !all.empty();
 }
 
-std::expected<lanes::Message, std::string> RejectedStore::to_be_sent(std::uint64_t number) {
-  const lanes::RejectedMessage* const item = items_.find(number);
+std::expected<queues::Message, std::string> RejectedStore::to_be_sent(std::uint64_t number) {
+  const queues::RejectedMessage* const item = items_.find(number);
   if (item == nullptr || leaving_.contains(number)) return std::unexpected(no_such(number));
   if (item->replaced) {
     return std::unexpected(
@@ -251,7 +251,7 @@ std::expected<lanes::Message, std::string> RejectedStore::to_be_sent(std::uint64
 }
 
 bool RejectedStore::sent_again(std::uint64_t number, bool kept) {
-  const lanes::RejectedMessage* const item = items_.find(number);
+  const queues::RejectedMessage* const item = items_.find(number);
   const bool is_wanted = item == nullptr || !item->replaced;
   if (kept && items_.take(number)) {
     forget(number);
@@ -269,7 +269,7 @@ std::expected<void, std::string> RejectedStore::discard(std::uint64_t number) {
 
 std::vector<api::RejectedRow> RejectedStore::rows() const {
   std::vector<api::RejectedRow> rows;
-  for (const lanes::RejectedMessage& item : items_.items()) {
+  for (const queues::RejectedMessage& item : items_.items()) {
     if (leaving_.contains(item.number)) continue;
     rows.push_back({.number = item.number,
                     .kind = kind_of(item.message),

@@ -9,13 +9,13 @@
 #include <vector>
 
 #include "api/run_view.hpp"
-#include "lanes/rejected_messages.hpp"
 #include "loop/loop.hpp"
 #include "loop/workers.hpp"
+#include "queues/rejected_messages.hpp"
 
 namespace adit::forward {
 
-/// Rejected maps, states and markers (lanes::RejectedMessages), in a directory that survives the process:
+/// Rejected maps, states and markers (queues::RejectedMessages), in a directory that survives the process:
 /// `N.cbor`, the message, and `N.json`, the reason. The writer writes in order.
 ///
 /// A message always has a file: its origin keeps the old file until told(), and this store keeps the new one
@@ -38,11 +38,11 @@ class RejectedStore {
   /// Why restore() could not read a file, or "".
   const std::string& unread() const { return unread_; }
 
-  void add(lanes::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
+  void add(queues::Message message, int status, const std::string& why, std::size_t bytes, Origin origin);
   /// The Command Post accepted `message`: marks older rejected messages that it contains, so that they are
   /// never sent. Forget `message` only after `written`, which is called on the loop. False: no mark to write,
   /// and `written` is not called.
-  bool taken(const lanes::Message& message, std::function<void()> written = [] {});
+  bool taken(const queues::Message& message, std::function<void()> written = [] {});
   bool empty() const { return items_.items().empty(); }
   /// Messages that were removed for newer ones.
   std::uint64_t dropped() const { return dropped_; }
@@ -50,7 +50,7 @@ class RejectedStore {
   bool all_kept() const { return being_written_ == 0; }
 
   /// Takes a message for sending. Call sent_again() next. An error: why it cannot be sent.
-  std::expected<lanes::Message, std::string> to_be_sent(std::uint64_t number);
+  std::expected<queues::Message, std::string> to_be_sent(std::uint64_t number);
   /// `kept`: the message is queued and stored elsewhere; otherwise it stays rejected. False: a newer message
   /// that contains it was accepted.
   bool sent_again(std::uint64_t number, bool kept);
@@ -60,7 +60,7 @@ class RejectedStore {
 
  private:
   std::string path(std::uint64_t number, const char* ending) const;
-  void keep(const lanes::RejectedMessage& item, Origin origin);
+  void keep(const queues::RejectedMessage& item, Origin origin);
   void kept(std::uint64_t number, bool well, const Origin& origin);
   void forget(std::uint64_t number);
   void let_origin_go(std::uint64_t number);
@@ -70,7 +70,7 @@ class RejectedStore {
   loop::Writer& writer_;
   const std::string folder_;
   std::string unread_;  // why restore() failed; file numbers may be reused then
-  lanes::RejectedMessages items_;
+  queues::RejectedMessages items_;
   int being_written_ = 0;
   std::set<std::uint64_t> leaving_;                           // between to_be_sent() and sent_again()
   std::map<std::uint64_t, std::function<void()>> in_memory_;  // messages without a file, and their origins

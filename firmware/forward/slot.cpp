@@ -32,7 +32,7 @@ loop::Duration Slot::lead() const {
   return std::min<loop::Duration>(packing_takes_, kLongestLead);
 }
 
-void Slot::packed(std::size_t points, std::size_t bytes, lanes::Precision precision) {
+void Slot::packed(std::size_t points, std::size_t bytes, queues::Precision precision) {
   if (points < kTelling) return;
   const double packed_to = static_cast<double>(bytes) / static_cast<double>(points);
   packed_to_ = std::clamp(packed_to / kOfExact.at(static_cast<std::size_t>(precision)), kSmallest, 1.0);
@@ -70,10 +70,10 @@ loop::Duration Slot::transfer(std::size_t bytes) const {
   return std::chrono::duration_cast<loop::Duration>(Seconds(static_cast<double>(bytes) / bytes_per_second_));
 }
 
-lanes::PointsAt Slot::points_within(loop::Duration spacing) const {
+queues::PointsAt Slot::points_within(loop::Duration spacing) const {
   const double bytes = std::max(bytes_per_second_ * Seconds(spacing).count(), kLeast);
   constexpr double kMost = 1e15;
-  lanes::PointsAt points{};
+  queues::PointsAt points{};
   std::ranges::transform(kOfExact, points.begin(), [&](double of_exact) {
     return static_cast<std::size_t>(std::min(bytes / (packed_to_ * of_exact), kMost));
   });

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lanes/precision.hpp"
 #include "loop/loop.hpp"
 #include "pack/effort.hpp"
+#include "queues/precision.hpp"
 #include "uplink/connection.hpp"
 
 namespace adit::forward {
@@ -23,7 +23,7 @@ class Slot {
   /// A map was packed, which took so long.
   void packing_took(loop::Duration took);
   /// Effort::Full packs so many bytes of a cloud's points to so many, at that precision.
-  void packed(std::size_t points, std::size_t bytes, lanes::Precision precision);
+  void packed(std::size_t points, std::size_t bytes, queues::Precision precision);
   /// A worker took so long to pack a map for which pack::seconds_for() expects so many seconds; 0: the map
   /// was not compressed.
   void worker_took(loop::Duration took, double expected);
@@ -43,7 +43,7 @@ class Slot {
   pack::Hurry hurry(loop::Duration spacing) const;
   /// How many bytes of points, not packed, leave within `spacing`, at each precision: by the last cloud, and
   /// by what rounding makes of clouds.
-  lanes::PointsAt points_within(loop::Duration spacing) const;
+  queues::PointsAt points_within(loop::Duration spacing) const;
 
  private:
   loop::Duration packing_takes_{0};

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 
-#include "lanes/stamps.hpp"
 #include "ledger/ledger.hpp"
+#include "queues/stamps.hpp"
 
 namespace adit::forward {
 
@@ -25,7 +25,7 @@ class StampFloor {
   static constexpr double kEvery = 150;  // seconds
   static constexpr double kSoon = 10;    // seconds, if the ledger has grown or the last write failed
   /// Stamps may be kJump ahead of now, and a disk may be slow.
-  static constexpr double kAhead = lanes::StampShift::kJump + kEvery + 15;
+  static constexpr double kAhead = queues::StampShift::kJump + kEvery + 15;
 
   explicit StampFloor(const std::string& state_folder) : file_(state_folder + '/' + kFile) {}
 

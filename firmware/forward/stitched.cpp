@@ -9,21 +9,21 @@
 #include "codec/write.hpp"
 #include "icd/refuse.hpp"
 #include "icd/try.hpp"
-#include "lanes/lattice.hpp"
 #include "pack/pack.hpp"
 #include "pack/stitch.hpp"
+#include "queues/lattice.hpp"
 
 namespace adit::forward {
 namespace {
 
 /// Its cells are only in parts.
-bool is_to_be_stitched(const lanes::WaitingMap& waiting) {
+bool is_to_be_stitched(const queues::QueuedMap& waiting) {
   return waiting.map.is_grid() && !waiting.parts.empty() && waiting.map.data.bytes.empty();
 }
 
 /// nullopt: damaged data.
-std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::MapData& data) {
-  lanes::Drawing drawing(under);
+std::optional<queues::Ground> drawn_over(const queues::Ground& under, const icd::MapData& data) {
+  queues::Drawing drawing(under);
   std::size_t left = static_cast<std::size_t>(under.cells.width * under.cells.height);
   const auto read =
       codec::for_each_piece(data, [&](std::span<const std::uint8_t> piece) -> icd::Checked<void> {
@@ -35,9 +35,9 @@ std::optional<lanes::Ground> drawn_over(const lanes::Ground& under, const icd::M
   return read && left == 0 ? std::optional(drawing.finish()) : std::nullopt;
 }
 
-double unit_of(lanes::Precision precision) {
-  if (precision == lanes::Precision::Millimetre) return pack::kMillimetre;
-  return precision == lanes::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
+double unit_of(queues::Precision precision) {
+  if (precision == queues::Precision::Millimetre) return pack::kMillimetre;
+  return precision == queues::Precision::EightMillimetres ? pack::kEightMillimetres : 0;
 }
 
 /// The origin shows it.
@@ -48,7 +48,7 @@ bool was_rounded(const icd::MapUpdate& before, const icd::MapUpdate& after) {
 
 }  // namespace
 
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Packing& packing) {
+Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out, const Packing& packing) {
   auto whole = whole_of(waiting);
   if (!whole) return {};
   Packed packed;
@@ -84,20 +84,20 @@ Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out, const Pa
   return packed;
 }
 
-icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting) {
+icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting) {
   icd::MapUpdate whole = waiting.map;
   if (!is_to_be_stitched(waiting)) return whole;
   const auto& grid = std::get<icd::OccupancyGrid>(whole.msg);
   std::vector<pack::Tile> tiles;
-  for (const lanes::WaitingMap& part : waiting.parts) {
-    const auto cells = lanes::cells_in(grid, std::get<icd::OccupancyGrid>(part.map.msg));
+  for (const queues::QueuedMap& part : waiting.parts) {
+    const auto cells = queues::cells_in(grid, std::get<icd::OccupancyGrid>(part.map.msg));
     if (!cells) return icd::refuse(icd::Status::ServiceUnavailable, "it is of another lattice");
     tiles.push_back({part.map.data, static_cast<std::size_t>(cells->x), static_cast<std::size_t>(cells->y),
                      static_cast<std::size_t>(cells->width), static_cast<std::size_t>(cells->height)});
   }
   auto data = ADIT_TRY(
       pack::stitch(grid.width, grid.height, tiles,
-                   waiting.has_gaps ? lanes::cells_under(*waiting.ground) : std::vector<std::uint8_t>{}));
+                   waiting.has_gaps ? queues::cells_under(*waiting.ground) : std::vector<std::uint8_t>{}));
   whole.data = std::move(data);
   return whole;
 }

@@ -6,10 +6,10 @@
 #include "forward/taken_points.hpp"
 #include "icd/chunked_bytes.hpp"
 #include "icd/status.hpp"
-#include "lanes/ground.hpp"
-#include "lanes/map_lane.hpp"
-#include "lanes/precision.hpp"
 #include "pack/effort.hpp"
+#include "queues/ground.hpp"
+#include "queues/map_queue.hpp"
+#include "queues/precision.hpp"
 
 namespace adit::forward {
 
@@ -18,13 +18,13 @@ struct Packed {
   icd::ChunkedBytes body;  // empty: all points left out, or the data of a part is damaged
   icd::MapData stitched;   // cells from its parts
   LeftOut left_out;
-  lanes::Precision precision = lanes::Precision::Exact;  // a cloud's rounding
-  std::size_t points_size = 0;                           // sent points, unpacked
-  std::size_t full_size = 0;                             // the same, packed by Effort::Full or as estimated
+  queues::Precision precision = queues::Precision::Exact;  // a cloud's rounding
+  std::size_t points_size = 0;                             // sent points, unpacked
+  std::size_t full_size = 0;                               // the same, packed by Effort::Full or as estimated
   pack::Effort effort = pack::Effort::Full;
   double expected = 0;  // packing seconds (pack::seconds_for)
   /// `ground` with the map drawn over it; nullopt: not wanted, or damaged.
-  std::optional<lanes::Ground> drawn;
+  std::optional<queues::Ground> drawn;
 };
 
 struct Packing {
@@ -34,10 +34,10 @@ struct Packing {
 };
 
 /// Rounds a cloud to waiting.precision, or keeps it exact if that is impossible. CPU-bound: call on a worker.
-Packed packed(const lanes::WaitingMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
+Packed packed(const queues::QueuedMap& waiting, LeavingOut leaving_out = {}, const Packing& packing = {});
 
 /// The map with its cells, stitched from its parts over the ground if necessary. An error describes the fault
 /// in the data.
-icd::Checked<icd::MapUpdate> whole_of(const lanes::WaitingMap& waiting);
+icd::Checked<icd::MapUpdate> whole_of(const queues::QueuedMap& waiting);
 
 }  // namespace adit::forward

@@ -16,7 +16,7 @@ namespace {
 /// Markers to write in one turn.
 constexpr std::size_t kAtOnce = 500;
 
-lanes::MarkerBounds bounds_of(const settings::Queues& queues) {
+queues::MarkerBounds bounds_of(const settings::Queues& queues) {
   return {.per_message = queues.markers_per_message,
           .bytes_per_message = queues.marker_bytes_per_message,
           .bytes = queues.marker_bytes};
@@ -89,13 +89,13 @@ icd::Checked<void> Telemetry::has_room_for(const icd::StateUpdate& update) {
   return icd::refuse(icd::Status::TooManyRequests, "not accepted: too many robots; send it again later");
 }
 
-icd::Checked<void> Telemetry::take(const std::vector<lanes::PostedPose>& poses,
+icd::Checked<void> Telemetry::take(const std::vector<queues::PostedPose>& poses,
                                    std::size_t bytes_received) noexcept {
-  const std::vector<lanes::PostedPose> news = state_.news_in(poses);
+  const std::vector<queues::PostedPose> news = state_.news_in(poses);
   if (const auto kept = journal_.accepted(news); !kept)
     return icd::refuse(icd::Status::ServiceUnavailable, "not accepted: it cannot be stored: ", kept.error(),
                        "; send it again later");
-  for (const lanes::PostedPose& pose : poses)
+  for (const queues::PostedPose& pose : poses)
     record_.accepted({Kind::State, pose.name.text()}, bytes_received, loop_.wall_now());
   state_.add(news, loop_.now());
   pump();
@@ -131,7 +131,7 @@ void Telemetry::send_state() {
   under_way_ = {Kind::State, waiting->accepted};
   channel_.send(
       icd::Uri::StateUpdate, codec::kCbor, body,
-      [this, sent = std::make_shared<const lanes::WaitingState>(std::move(*waiting)), bytes = body.size()](
+      [this, sent = std::make_shared<const queues::QueuedState>(std::move(*waiting)), bytes = body.size()](
           const uplink::Outcome& outcome) { answered(Kind::State, state_pace_, sent, bytes, outcome); });
 }
 
@@ -146,13 +146,13 @@ void Telemetry::send_markers() {
   }
   if (!waiting->is_ahead) journal_.markers_sent(waiting->update);
   under_way_ = {Kind::Markers, waiting->accepted};
-  markers_under_way_ = std::make_shared<const lanes::WaitingMarkers>(std::move(*waiting));
+  markers_under_way_ = std::make_shared<const queues::QueuedMarkers>(std::move(*waiting));
   if (markers_under_way_->update.markers.size() > kAtOnce) return wake_.call_at(loop_.now());
   write_markers();
 }
 
 void Telemetry::write_markers() {
-  const Shared<lanes::WaitingMarkers> sent = markers_under_way_;
+  const Shared<queues::QueuedMarkers> sent = markers_under_way_;
   const icd::ChunkedBytes body = codec::write_markers_update(sent->update);
   markers_pace_.sent(loop_.now());
   channel_.send(icd::Uri::MarkersUpdate, codec::kCbor, body,
@@ -161,7 +161,7 @@ void Telemetry::write_markers() {
                 });
 }
 
-bool Telemetry::send_again(const lanes::Message& message) {
+bool Telemetry::send_again(const queues::Message& message) {
   const bool kept = std::visit([this](const auto& each) { return wait_again(each); }, message);
   pump();
   return kept;
@@ -178,7 +178,7 @@ bool Telemetry::wait_again(icd::MarkersUpdate markers) {
     return marker.action == icd::MarkerAction::DeleteAll;
   };
   const bool wipes = std::ranges::any_of(markers.markers, deletes_all);
-  lanes::MarkerChanges under_way;
+  queues::MarkerChanges under_way;
   if (markers_under_way_) {
     for (const icd::Marker& marker : markers_under_way_->update.markers) under_way.apply(marker);
   }

@@ -15,9 +15,9 @@
 #include "forward/rejected.hpp"
 #include "forward/uri_pace.hpp"
 #include "icd/status.hpp"
-#include "lanes/marker_lane.hpp"
-#include "lanes/stamps.hpp"
-#include "lanes/state_lane.hpp"
+#include "queues/marker_queue.hpp"
+#include "queues/stamps.hpp"
+#include "queues/state_queue.hpp"
 
 namespace adit::forward {
 
@@ -51,7 +51,7 @@ class Telemetry {
   /// 429: too many robots.
   icd::Checked<void> has_room_for(const icd::StateUpdate& update);
   /// A state for which there is room. 503: it cannot be stored.
-  icd::Checked<void> take(const std::vector<lanes::PostedPose>& poses, std::size_t bytes_received) noexcept;
+  icd::Checked<void> take(const std::vector<queues::PostedPose>& poses, std::size_t bytes_received) noexcept;
   /// Stamps are on the stamp clock. 429: the queue is full; 503: it cannot be stored.
   void take(icd::MarkersUpdate update, std::size_t bytes_received, MarkerArrivals::Done done) {
     arrivals_.take(std::move(update), bytes_received, std::move(done));
@@ -62,7 +62,7 @@ class Telemetry {
 
   /// Queues a rejected message before later ones, without parts that they contain. Not for maps. False: it
   /// stays rejected, because it cannot be stored, it would delete markers in flight, or markers are arriving.
-  bool send_again(const lanes::Message& message);
+  bool send_again(const queues::Message& message);
 
   /// Stops sending. False while an answer is awaited.
   bool stop();
@@ -89,30 +89,30 @@ class Telemetry {
   void answered(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
                 const uplink::Outcome& outcome);
   /// Robots with news. Repeated poses do not count.
-  std::vector<Traffic> traffic_of(const lanes::WaitingState& state) const;
-  std::vector<Traffic> traffic_of(const lanes::WaitingMarkers& markers) const;
-  void put_back(const lanes::WaitingState& state) {
+  std::vector<Traffic> traffic_of(const queues::QueuedState& state) const;
+  std::vector<Traffic> traffic_of(const queues::QueuedMarkers& markers) const;
+  void put_back(const queues::QueuedState& state) {
     journal_.state_answered(false);
     state_.put_back(state);
   }
-  void put_back(const lanes::WaitingMarkers& markers) {
+  void put_back(const queues::QueuedMarkers& markers) {
     if (markers.is_ahead) return;
     journal_.markers_answered(false);
     markers_.put_back(markers);
   }
-  void done(const lanes::WaitingState&) { journal_.state_answered(true); }
-  void done(const lanes::WaitingMarkers& markers) {
+  void done(const queues::QueuedState&) { journal_.state_answered(true); }
+  void done(const queues::QueuedMarkers& markers) {
     if (!markers.is_ahead) journal_.markers_answered(true);
   }
 
   template <class Waiting>
   void judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
              const uplink::Outcome& outcome);
-  void passed(const lanes::WaitingState& state);
-  void passed(const lanes::WaitingMarkers& markers);
+  void passed(const queues::QueuedState& state);
+  void passed(const queues::QueuedMarkers& markers);
   /// Passes accepted messages to as_forwarded_.
-  void show(const Shared<lanes::WaitingState>& state);
-  void show(const Shared<lanes::WaitingMarkers>& markers);
+  void show(const Shared<queues::QueuedState>& state);
+  void show(const Shared<queues::QueuedMarkers>& markers);
   /// Call before sending. True: the markers were too many for one turn, and the turn is over.
   bool show_some();
   /// Finishes `sent` after its rejected predecessors are marked. Otherwise a kill could leave both unmarked,
@@ -120,14 +120,14 @@ class Telemetry {
   template <class Waiting>
   void replace(const Shared<Waiting>& sent);
   /// Rejects a single message. Among several it looks for the one at fault.
-  void give_up(const lanes::WaitingState& state, int status, const std::string& sentence, std::size_t bytes);
-  void give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
+  void give_up(const queues::QueuedState& state, int status, const std::string& sentence, std::size_t bytes);
+  void give_up(const queues::QueuedMarkers& markers, int status, const std::string& sentence,
                std::size_t bytes);
-  void set_aside(const lanes::Message& message, int status, const std::string& sentence, std::size_t bytes,
+  void set_aside(const queues::Message& message, int status, const std::string& sentence, std::size_t bytes,
                  std::function<void(bool kept)> told);
   /// True: the message is at fault. False: it is queued again.
-  bool is_to_blame(const lanes::WaitingState& state);
-  bool is_to_blame(const lanes::WaitingMarkers& markers);
+  bool is_to_blame(const queues::QueuedState& state);
+  bool is_to_blame(const queues::QueuedMarkers& markers);
   bool wait_again(const icd::StateUpdate& state);
   bool wait_again(icd::MarkersUpdate markers);
   bool wait_again(const icd::MapUpdate&) { return false; }
@@ -141,16 +141,16 @@ class Telemetry {
   Channel channel_;
   UriPace state_pace_, markers_pace_;
   loop::Source wake_;
-  lanes::StateLane state_;
-  lanes::MarkerLane markers_;
+  queues::StateQueue state_;
+  queues::MarkerQueue markers_;
   MarkerArrivals arrivals_;
-  Shared<lanes::WaitingMarkers> markers_under_way_;  // null: not in flight
-  Shared<lanes::WaitingMarkers> to_show_;            // null: all are shown
+  Shared<queues::QueuedMarkers> markers_under_way_;  // null: not in flight
+  Shared<queues::QueuedMarkers> to_show_;            // null: all are shown
   std::size_t shown_ = 0;                            // of to_show_
-  lanes::StampOrder state_stamps_, marker_stamps_;
+  queues::StampOrder state_stamps_, marker_stamps_;
   int state_failed_ = 0, markers_failed_ = 0;  // successive handler failures
-  lanes::Blame state_blame_, marker_blame_;
-  std::map<std::pair<std::string, std::int32_t>, lanes::Trial> marker_trials_;  // by ns and id
+  queues::Blame state_blame_, marker_blame_;
+  std::map<std::pair<std::string, std::int32_t>, queues::Trial> marker_trials_;  // by ns and id
   std::optional<std::pair<Kind, loop::Instant>> under_way_;  // and when its oldest news was accepted
   bool rejected_writes_ = false;  // do not send: the journal has one answer at a time
   bool stopping_ = false;

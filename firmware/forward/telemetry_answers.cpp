@@ -80,12 +80,12 @@ void Telemetry::judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std
   }
 }
 
-void Telemetry::passed(const lanes::WaitingState& state) {
+void Telemetry::passed(const queues::QueuedState& state) {
   state_.passed(state);
   for (const icd::NamedPose& pose : state.update.poses) state_blame_.passed(pose.name.text(), loop_.now());
 }
 
-void Telemetry::passed(const lanes::WaitingMarkers& markers) {
+void Telemetry::passed(const queues::QueuedMarkers& markers) {
   marker_blame_.passed("", loop_.now());
   if (markers.is_ahead) return;
   markers_.passed();
@@ -93,11 +93,11 @@ void Telemetry::passed(const lanes::WaitingMarkers& markers) {
   for (const icd::Marker& marker : markers.update.markers) marker_trials_.erase({marker.ns, marker.id});
 }
 
-void Telemetry::show(const Shared<lanes::WaitingState>& state) {
+void Telemetry::show(const Shared<queues::QueuedState>& state) {
   as_forwarded_.forwarded(state->news, loop_.wall_now());
 }
 
-void Telemetry::show(const Shared<lanes::WaitingMarkers>& markers) {
+void Telemetry::show(const Shared<queues::QueuedMarkers>& markers) {
   to_show_ = markers;
   shown_ = 0;
 }
@@ -122,7 +122,7 @@ void Telemetry::replace(const Shared<Waiting>& sent) {
   if (!rejected_writes_) done(*sent);
 }
 
-void Telemetry::give_up(const lanes::WaitingState& state, int status, const std::string& sentence,
+void Telemetry::give_up(const queues::QueuedState& state, int status, const std::string& sentence,
                         std::size_t bytes) {
   if (state.update.poses.size() > 1) {
     journal_.state_answered(false);
@@ -135,7 +135,7 @@ void Telemetry::give_up(const lanes::WaitingState& state, int status, const std:
   });
 }
 
-void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const std::string& sentence,
+void Telemetry::give_up(const queues::QueuedMarkers& markers, int status, const std::string& sentence,
                         std::size_t bytes) {
   if (markers.is_ahead) return;  // it has its own turn
   if (markers.update.markers.size() > 1) {
@@ -149,7 +149,7 @@ void Telemetry::give_up(const lanes::WaitingMarkers& markers, int status, const 
   });
 }
 
-void Telemetry::set_aside(const lanes::Message& message, int status, const std::string& sentence,
+void Telemetry::set_aside(const queues::Message& message, int status, const std::string& sentence,
                           std::size_t bytes, std::function<void(bool kept)> told) {
   const auto go_on = [this, told = std::move(told)](bool kept) {
     rejected_writes_ = false;
@@ -160,18 +160,18 @@ void Telemetry::set_aside(const lanes::Message& message, int status, const std::
   rejected_writes_ = true;
 }
 
-bool Telemetry::is_to_blame(const lanes::WaitingState& state) {
+bool Telemetry::is_to_blame(const queues::QueuedState& state) {
   bool to_blame = state_failed_ >= kTriesTogether;
   if (state.update.poses.size() == 1) {
     const icd::RobotName& name = state.update.poses.front().name;
     to_blame =
-        state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) == lanes::Blame::Next::Reject;
+        state_blame_.failed(name.text(), state_.trial_of(name), loop_.now()) == queues::Blame::Next::Reject;
   }
   if (!to_blame) put_back(state);
   return to_blame;
 }
 
-bool Telemetry::is_to_blame(const lanes::WaitingMarkers& markers) {
+bool Telemetry::is_to_blame(const queues::QueuedMarkers& markers) {
   if (markers.is_ahead) return false;
   if (markers.update.markers.size() != 1) {
     const bool narrow = markers_failed_ >= kTriesTogether;
@@ -181,27 +181,27 @@ bool Telemetry::is_to_blame(const lanes::WaitingMarkers& markers) {
   const icd::Marker& marker = markers.update.markers.front();
   if (marker_trials_.size() >= kMostTrials) marker_trials_.clear();
   const bool to_blame = marker_blame_.failed("", marker_trials_[{marker.ns, marker.id}], loop_.now()) ==
-                        lanes::Blame::Next::Reject;
+                        queues::Blame::Next::Reject;
   if (!to_blame) {
     journal_.markers_answered(false);
     markers_.put_behind(markers);
   }
   return to_blame;
 }
-std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingState& state) const {
+std::vector<Traffic> Telemetry::traffic_of(const queues::QueuedState& state) const {
   std::vector<Traffic> all;
   all.reserve(state.news.size());
   for (const icd::NamedPose& pose : state.news) all.push_back({Kind::State, pose.name.text()});
   return all;
 }
 
-std::vector<Traffic> Telemetry::traffic_of(const lanes::WaitingMarkers&) const {
+std::vector<Traffic> Telemetry::traffic_of(const queues::QueuedMarkers&) const {
   return {{Kind::Markers, ""}};
 }
 
-template void Telemetry::answered(Kind, UriPace&, const Shared<lanes::WaitingState>&, std::size_t,
+template void Telemetry::answered(Kind, UriPace&, const Shared<queues::QueuedState>&, std::size_t,
                                   const uplink::Outcome&);
-template void Telemetry::answered(Kind, UriPace&, const Shared<lanes::WaitingMarkers>&, std::size_t,
+template void Telemetry::answered(Kind, UriPace&, const Shared<queues::QueuedMarkers>&, std::size_t,
                                   const uplink::Outcome&);
 
 }  // namespace adit::forward

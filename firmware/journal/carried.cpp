@@ -88,7 +88,7 @@ void Carried::machine_is(const std::string& boot) {
 }
 
 bool Carried::read_senders(std::string_view said) {
-  lanes::StampShift::Clocks clocks;
+  queues::StampShift::Clocks clocks;
   if (!store::read(said, clocks)) return false;
   for (const auto& [stamper, clock] : clocks) {
     if (!is_known(stamper.uri)) return false;
@@ -97,18 +97,18 @@ bool Carried::read_senders(std::string_view said) {
   return true;
 }
 
-/// lanes::StateLane::news_in() has kept only the newest poses.
+/// queues::StateQueue::news_in() has kept only the newest poses.
 bool Carried::read_poses(std::string_view said) {
   std::vector<std::tuple<std::string, std::string, std::optional<icd::Stamp>, icd::Pose>> read;
   if (!store::read(said, read)) return false;
-  std::vector<lanes::PostedPose> poses;
+  std::vector<queues::PostedPose> poses;
   poses.reserve(read.size());
   for (auto& [text, address, stamp, pose] : read) {
     auto name = icd::RobotName::parse(text);
     if (!name) return false;
     poses.push_back({*std::move(name), pose, stamp, std::move(address)});
   }
-  for (lanes::PostedPose& posted : poses) {
+  for (queues::PostedPose& posted : poses) {
     if (posted.stamp && !posted.address.empty())
       senders_.given({posted.address, icd::Uri::StateUpdate, posted.name.text()}, *posted.stamp);
     const auto known = robots_.find(posted.name);
@@ -173,9 +173,9 @@ void Carried::state_comes_back() {
   for (auto& [name, robot] : robots_) robot.news = std::exchange(robot.under_way, false) || robot.news;
 }
 
-/// As lanes::MarkerLane::put_back().
+/// As queues::MarkerQueue::put_back().
 void Carried::markers_come_back() {
-  lanes::MarkerChanges older;
+  queues::MarkerChanges older;
   for (icd::Marker& marker : std::exchange(markers_under_way_, {})) older.apply(std::move(marker));
   markers_.apply_before(std::move(older));
 }

@@ -16,11 +16,11 @@
 #include "icd/markers_update.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/uri.hpp"
-#include "lanes/extent.hpp"
-#include "lanes/marker_changes.hpp"
-#include "lanes/posted_pose.hpp"
-#include "lanes/stamps.hpp"
 #include "pace/rate_limit.hpp"
+#include "queues/extent.hpp"
+#include "queues/marker_changes.hpp"
+#include "queues/posted_pose.hpp"
+#include "queues/stamps.hpp"
 #include "store/contents.hpp"
 #include "store/values.hpp"
 
@@ -72,7 +72,7 @@ class Carried {
  public:
   /// A pose that is queued (`news`), or in flight without an answer.
   struct Robot {
-    lanes::PostedPose posted;
+    queues::PostedPose posted;
     bool news = true, under_way = false;
   };
 
@@ -87,11 +87,11 @@ class Carried {
 
   /// std::nullopt: the first process of this boot.
   const std::optional<Clock>& clock() const { return clock_; }
-  const lanes::StampShift& senders() const { return senders_; }
+  const queues::StampShift& senders() const { return senders_; }
   const std::map<icd::Uri, pace::Learned>& paces() const { return paces_; }
   const std::map<icd::Uri, icd::Stamp>& stamps() const { return stamps_; }
-  /// lanes::Canvases::Posted. std::nullopt: not recorded.
-  const std::optional<std::map<std::string, lanes::Extent>>& grids() const { return grids_; }
+  /// queues::Canvases::Posted. std::nullopt: not recorded.
+  const std::optional<std::map<std::string, queues::Extent>>& grids() const { return grids_; }
   /// Robots whose present pose is not delivered. Delivered poses are dropped, because the next process may
   /// serve another Command Post.
   const std::map<icd::RobotName, Robot>& robots() const { return robots_; }
@@ -113,13 +113,13 @@ class Carried {
   void markers_come_back();
 
   std::optional<Clock> clock_;
-  lanes::StampShift senders_;
+  queues::StampShift senders_;
   std::map<icd::Uri, pace::Learned> paces_;
   std::map<icd::Uri, icd::Stamp> stamps_;
-  std::optional<std::map<std::string, lanes::Extent>> grids_;
+  std::optional<std::map<std::string, queues::Extent>> grids_;
   std::map<icd::RobotName, Robot> robots_;
   std::map<std::string, Heard> heard_;
-  lanes::MarkerChanges markers_;
+  queues::MarkerChanges markers_;
   std::vector<icd::Marker> markers_under_way_;
 };
 
@@ -147,14 +147,14 @@ template <>
 inline constexpr auto store::kMembers<journal::Heard::Times> =
     std::tuple(&journal::Heard::Times::accepted, &journal::Heard::Times::forwarded);
 template <>
-inline constexpr auto store::kMembers<lanes::Stamper> =
-    std::tuple(&lanes::Stamper::address, &lanes::Stamper::uri, &lanes::Stamper::robot);
+inline constexpr auto store::kMembers<queues::Stamper> =
+    std::tuple(&queues::Stamper::address, &queues::Stamper::uri, &queues::Stamper::robot);
 template <>
-inline constexpr auto store::kMembers<lanes::SenderClock> =
-    std::tuple(&lanes::SenderClock::theirs, &lanes::SenderClock::ours, &lanes::SenderClock::latest);
+inline constexpr auto store::kMembers<queues::SenderClock> =
+    std::tuple(&queues::SenderClock::theirs, &queues::SenderClock::ours, &queues::SenderClock::latest);
 template <>
-inline constexpr auto store::kMembers<lanes::Extent> =
-    std::tuple(&lanes::Extent::left, &lanes::Extent::bottom, &lanes::Extent::right, &lanes::Extent::top);
+inline constexpr auto store::kMembers<queues::Extent> =
+    std::tuple(&queues::Extent::left, &queues::Extent::bottom, &queues::Extent::right, &queues::Extent::top);
 template <>
 inline constexpr auto store::kMembers<pace::Learned> =
     std::tuple(&pace::Learned::earliest, &pace::Learned::spacing, &pace::Learned::under_way,
@@ -164,9 +164,9 @@ inline constexpr auto store::kMembers<pace::Span> = std::tuple(&pace::Span::firs
 template <>
 inline constexpr auto store::kMembers<icd::RobotName> = std::tuple(&icd::RobotName::text);
 template <>
-inline constexpr auto store::kMembers<lanes::PostedPose> =
-    std::tuple(&lanes::PostedPose::name, &lanes::PostedPose::address, &lanes::PostedPose::stamp,
-               &lanes::PostedPose::pose);
+inline constexpr auto store::kMembers<queues::PostedPose> =
+    std::tuple(&queues::PostedPose::name, &queues::PostedPose::address, &queues::PostedPose::stamp,
+               &queues::PostedPose::pose);
 template <>
 inline constexpr auto store::kMembers<icd::Pose> = std::tuple(&icd::Pose::position, &icd::Pose::orientation);
 template <>

@@ -78,7 +78,7 @@ void Journal::begin(const Clock& clock) {
   note(Kind::Clock, store::bytes_of(clock));
 }
 
-void Journal::senders(const lanes::StampShift::Clocks& clocks) {
+void Journal::senders(const queues::StampShift::Clocks& clocks) {
   if (!clocks.empty()) note(Kind::Senders, store::bytes_of(clocks));
 }
 

@@ -58,7 +58,7 @@ class Journal {
 
   /// Error: not stored; the client must not get a success.
   using Kept = std::expected<void, std::string>;
-  Kept accepted(std::span<const lanes::PostedPose> poses) {
+  Kept accepted(std::span<const queues::PostedPose> poses) {
     return append(Kind::Poses, store::bytes_of(poses));
   }
   Kept accepted(const icd::MarkersUpdate& update) {
@@ -67,7 +67,7 @@ class Journal {
   /// The bytes of the markers. Any thread may make them.
   Kept accepted_markers(const std::string& bytes) { return append(Kind::Markers, bytes); }
 
-  void senders(const lanes::StampShift::Clocks& clocks);
+  void senders(const queues::StampShift::Clocks& clocks);
   /// For the next process. A failed record is dropped, because the next one replaces it.
   void heard(const Heard& heard) { (void)append(Kind::Heard, store::bytes_of(heard)); }
 
@@ -82,7 +82,7 @@ class Journal {
   void stamped(icd::Uri uri, icd::Stamp stamp) { note(Kind::Stamp, store::bytes_of(uri, stamp)); }
   /// Starts the record of posted grids; grids_posted() does so too.
   Kept grids_begin() { return append(Kind::Grids, {}); }
-  Kept grids_posted(const std::string& name, const lanes::Extent& extent) {
+  Kept grids_posted(const std::string& name, const queues::Extent& extent) {
     return append(Kind::Grids, store::bytes_of(name, extent));
   }
 

@@ -123,7 +123,7 @@ void check_voxels(const std::vector<Robot>& robots, std::vector<Error>& errors) 
     const double edge = robots[i].voxel_metres;
     if (edge > 0 && edge < kSmallest) {
       errors.push_back({path, icd::sentence("expected 0, or 0.01 to 10, got ", edge)});
-    } else if (edge > 0 && robots[i].clouds == lanes::Clouds::Whole) {
+    } else if (edge > 0 && robots[i].clouds == queues::Clouds::Whole) {
       errors.push_back({path, icd::sentence("robots[", i,
                                             "].clouds is \"whole\": points can be left out only of clouds "
                                             "that the Command Post adds to the earlier clouds")});

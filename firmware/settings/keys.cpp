@@ -95,11 +95,11 @@ constexpr Key kKeys[] = {
     {"robots[].clouds",
      "How this robot posts clouds. auto: a newer cloud replaces a queued cloud whose points it contains. "
      "whole: each cloud contains the earlier ones and replaces them. parts: every cloud is sent.",
-     choice<MEMBER(robots.back().clouds)>(lanes::kCloudsWords)},
+     choice<MEMBER(robots.back().clouds)>(queues::kCloudsWords)},
     {"robots[].precision",
      "How far Adit may round coordinates of this robot's clouds. exact: not at all. 1mm, 8mm: to such steps. "
      "auto: as far as the queued clouds require. Needs command_post.arrange_clouds.",
-     choice<MEMBER(robots.back().precision)>(lanes::kPrecisionWords)},
+     choice<MEMBER(robots.back().precision)>(queues::kPrecisionWords)},
     {"robots[].voxel_metres",
      "The edge of a voxel in metres (at least 0.01); 0: every point is sent. Adit sends one point of each "
      "voxel. Only for a Command Post that adds each cloud to the earlier ones, and not for whole clouds.",

@@ -13,8 +13,8 @@
 #include "dispatch/reports.hpp"
 #include "icd/robot_name.hpp"
 #include "icd/rules.hpp"
-#include "lanes/clouds.hpp"
-#include "lanes/precision.hpp"
+#include "queues/clouds.hpp"
+#include "queues/precision.hpp"
 
 namespace adit::settings {
 
@@ -111,8 +111,8 @@ inline constexpr std::string_view kColourWords[] = {
 struct Robot {
   std::string name;   // icd::RobotName
   std::string alias;  // the name in its messages, replaced by `name`; "": unset
-  lanes::Clouds clouds = lanes::Clouds::Auto;
-  lanes::Precision precision = lanes::Precision::Exact;  // for its clouds
+  queues::Clouds clouds = queues::Clouds::Auto;
+  queues::Precision precision = queues::Precision::Exact;  // for its clouds
   double voxel_metres = 0;  // edge of a voxel, of which one point is sent; 0: all points are sent
   std::uint8_t colour = 0;  // index of kColourWords; 0: by the order of the first poses
 };

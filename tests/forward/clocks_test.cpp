@@ -196,7 +196,7 @@ TEST_F(ClocksTest, AStateOfAnyNumberOfRobotsTakesSoManyClocks) {
   for (int i = 0; i < 500; ++i) update.poses.push_back({*icd::RobotName::parse(std::to_string(i)), {}});
   clocks_->stamped(update, {.address = "10.0.0.5"});
   EXPECT_LE(journal::left_in(folder_.path() + "/journal").senders().clocks().size(),
-            lanes::StampShift::kMostOfAddress);
+            queues::StampShift::kMostOfAddress);
 }
 
 }  // namespace

@@ -24,8 +24,8 @@ icd::MapUpdate large_cloud(const char* robot) {
   return cloud;
 }
 
-lanes::WaitingMap waiting(icd::MapUpdate map, lanes::Precision precision = lanes::Precision::Exact) {
-  lanes::WaitingMap waiting;
+queues::QueuedMap waiting(icd::MapUpdate map, queues::Precision precision = queues::Precision::Exact) {
+  queues::QueuedMap waiting;
   waiting.map = std::move(map);
   waiting.precision = precision;
   return waiting;
@@ -60,7 +60,7 @@ TEST(HurriedCloud, IsPackedAsAnyOtherWhereTheLinkIsSlow) {
 
 TEST(HurriedCloud, IsRoundedWhereItIsToBe) {
   const icd::MapUpdate cloud = large_cloud("r1");
-  for (const auto precision : {lanes::Precision::Millimetre, lanes::Precision::EightMillimetres}) {
+  for (const auto precision : {queues::Precision::Millimetre, queues::Precision::EightMillimetres}) {
     const Packed hurried = packed(waiting(cloud, precision), {}, {.hurry = kFast});
     EXPECT_EQ(hurried.body, packed(waiting(cloud, precision)).body);
     EXPECT_EQ(hurried.precision, precision);

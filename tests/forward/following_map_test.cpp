@@ -11,7 +11,7 @@ namespace {
 class FollowingMap : public WithLettingPost {
  protected:
   /// One is under way, and one is packed.
-  void two_are_out_of_the_lane() {
+  void two_are_out_of_the_queue() {
     take(grid_of("first", 10));
     ASSERT_TRUE(come({"first"}));
     take(grid_of("second", 10));
@@ -20,7 +20,7 @@ class FollowingMap : public WithLettingPost {
 };
 
 TEST_F(FollowingMap, IsPackedWhileTheOneBeforeIsUnderWay) {
-  two_are_out_of_the_lane();
+  two_are_out_of_the_queue();
   EXPECT_EQ(post_.came().size(), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "first"}), 1u);
   EXPECT_EQ(maps_->waiting({Kind::Grid, "second"}), 1u);
@@ -30,7 +30,7 @@ TEST_F(FollowingMap, IsPackedWhileTheOneBeforeIsUnderWay) {
 }
 
 TEST_F(FollowingMap, GoesBackWithTheOneBefore) {
-  two_are_out_of_the_lane();
+  two_are_out_of_the_queue();
   for (const char* answer : {"500 Oops", "200 OK", "200 OK"}) post_.answer(answer);
   EXPECT_TRUE(loop::turn_until(loop_, [&] {
     return maps_->waiting({Kind::Grid, "first"}) + maps_->waiting({Kind::Grid, "second"}) == 0;
@@ -39,7 +39,7 @@ TEST_F(FollowingMap, GoesBackWithTheOneBefore) {
 }
 
 TEST_F(FollowingMap, GoesWhereTheOneBeforeIsRefused) {
-  two_are_out_of_the_lane();
+  two_are_out_of_the_queue();
   post_.answer("422 No");
   EXPECT_TRUE(come({"first", "second"}));
   EXPECT_EQ(rejected_.rows().size(), 1u);

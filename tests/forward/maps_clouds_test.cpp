@@ -72,7 +72,7 @@ TEST_F(CloudsThatWait, StayWhereANewerOneLacksAPoint) {
 }
 
 TEST_F(CloudsThatWait, AreReplacedByTheNewestWhereTheSettingSaysThatTheyAreWhole) {
-  settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Whole}};
+  settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
   maps_.settings_changed();
   take({1, 2});
   take({7});
@@ -81,7 +81,7 @@ TEST_F(CloudsThatWait, AreReplacedByTheNewestWhereTheSettingSaysThatTheyAreWhole
 }
 
 TEST_F(CloudsThatWait, AllArriveWhereTheSettingSaysThatTheyAreParts) {
-  settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Parts}};
+  settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
   maps_.settings_changed();
   take({1, 2});
   take({1, 2});

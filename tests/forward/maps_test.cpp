@@ -119,7 +119,7 @@ TEST_F(MapsTest, NeverTellThatNoGridWasSentWhereThatIsNotKnown) {
       fs::copy_file(entry.path(), file);
       fs::resize_file(file, size);
       const auto left = journal::Journal(loop_, cut.path()).read();
-      EXPECT_TRUE(!left.grids() || left.grids()->contains(lanes::Canvases::kAnyName)) << size;
+      EXPECT_TRUE(!left.grids() || left.grids()->contains(queues::Canvases::kAnyName)) << size;
     }
   }
   EXPECT_TRUE(journal::left_in(journal_folder_.path()).grids());
@@ -211,7 +211,7 @@ TEST_F(MapsTest, ThatReplaceWhatWaitsAreTakenByAFullQueueAndOthersAreNot) {
 }
 
 TEST_F(MapsTest, WithoutAValidPointAreAcceptedAndCountedAndReplaceNothing) {
-  settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Whole}};
+  settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Whole}};
   maps_.settings_changed();
   const Traffic traffic{Kind::Cloud, "r1"};
   const float nan = std::numeric_limits<float>::quiet_NaN();
@@ -241,7 +241,7 @@ TEST_F(MapsTest, WaitSinceTheOldestNewsOfTheirRobotAndKindWasAccepted) {
 }
 
 TEST_F(MapsTest, AreBoundedInNumberHoweverSmallTheyAreUnlessTheyJoinWhatWaits) {
-  settings_.robots = {{.name = "r1", .alias = "", .clouds = lanes::Clouds::Parts}};
+  settings_.robots = {{.name = "r1", .alias = "", .clouds = queues::Clouds::Parts}};
   maps_.settings_changed();
   settings_.queues.map_bytes = std::size_t{1} << 30;
   const auto cloud_of = [](bool is_bigendian) {

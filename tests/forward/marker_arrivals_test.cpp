@@ -26,7 +26,7 @@ icd::Marker change(std::int32_t id, std::string text, icd::MarkerAction action =
   return marker;
 }
 
-/// More than goes into the lane in one turn.
+/// More than goes into the queue in one turn.
 icd::MarkersUpdate many(const std::string& text) {
   icd::MarkersUpdate update;
   for (std::int32_t id = 0; id < 2500; ++id) update.markers.push_back(change(id, text));
@@ -51,11 +51,11 @@ class MarkerArrivalsTest : public testing::Test {
   loop::Loop loop_;
   loop::Workers workers_{loop_, 1};
   journal::Journal journal_{loop_, folder_.path() + "/journal"};
-  lanes::MarkerLane lane_{{}};
+  queues::MarkerQueue queue_{{}};
   Record record_{[] {}};
   int came_ = 0;
   std::vector<icd::Status> said_;
-  MarkerArrivals arrivals_{loop_, workers_, journal_, lane_, record_, [this] { ++came_; }};
+  MarkerArrivals arrivals_{loop_, workers_, journal_, queue_, record_, [this] { ++came_; }};
 };
 
 TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
@@ -63,7 +63,7 @@ TEST_F(MarkerArrivalsTest, AreThereAtOnceWhereTheyAreFew) {
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
   EXPECT_EQ(came_, 1);
   EXPECT_TRUE(arrivals_.empty());
-  EXPECT_EQ(lane_.pending(), left());
+  EXPECT_EQ(queue_.pending(), left());
 }
 
 TEST_F(MarkerArrivalsTest, AreCountedWhereNobodySeesThem) {  // ICD 6.6
@@ -83,12 +83,12 @@ TEST_F(MarkerArrivalsTest, AreAnsweredOnceAllAreKeptAndWait) {
   take(many("many"));
   EXPECT_THAT(said_, ElementsAre());
   ASSERT_TRUE(turn_until([this] { return arrivals_.is_in_part(); }));
-  EXPECT_EQ(lane_.count(), 0u) << "they come in other turns";
+  EXPECT_EQ(queue_.count(), 0u) << "they come in other turns";
   EXPECT_THAT(said_, ElementsAre());
-  EXPECT_EQ(left().size(), 2500u) << "the journal has all before the lane has any";
+  EXPECT_EQ(left().size(), 2500u) << "the journal has all before the queue has any";
   ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
-  EXPECT_EQ(lane_.pending(), many("many").markers);
+  EXPECT_EQ(queue_.pending(), many("many").markers);
 }
 
 /// As the journal has them, and whoever reads it in a life to come.
@@ -97,28 +97,28 @@ TEST_F(MarkerArrivalsTest, ComeInTheOrderInWhichTheyWereTaken) {
   take({{change(2499, "newer")}});
   take({{change(7, "", icd::MarkerAction::Delete)}});
   ASSERT_TRUE(turn_until([this] { return said_.size() == 3; }));
-  EXPECT_EQ(lane_.pending(), left());
-  EXPECT_EQ(lane_.pending().at(2499).text, "newer");
-  EXPECT_EQ(lane_.pending().at(7).action, icd::MarkerAction::Delete);
+  EXPECT_EQ(queue_.pending(), left());
+  EXPECT_EQ(queue_.pending().at(2499).text, "newer");
+  EXPECT_EQ(queue_.pending().at(7).action, icd::MarkerAction::Delete);
 }
 
 TEST_F(MarkerArrivalsTest, OfADeleteAllNothingBeforeItIsLeft) {
   take(many("older"));
   take({{change(0, "wipe", icd::MarkerAction::DeleteAll), change(3, "newer")}});
   ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
-  EXPECT_EQ(lane_.count(), 2u);
-  EXPECT_EQ(lane_.pending(), left());
+  EXPECT_EQ(queue_.count(), 2u);
+  EXPECT_EQ(queue_.pending(), left());
 }
 
-TEST_F(MarkerArrivalsTest, AreRefusedAsAWholeWhereTheLaneIsFull) {
-  lane_.keep_within({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
+TEST_F(MarkerArrivalsTest, AreRefusedAsAWholeWhereTheQueueIsFull) {
+  queue_.keep_within({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
   take(many("12345"));
   icd::MarkersUpdate others = many("12345");
   for (icd::Marker& marker : others.markers) marker.id += 10'000;
   take(std::move(others));
   ASSERT_TRUE(turn_until([this] { return said_.size() == 2; }));
   EXPECT_THAT(said_, ElementsAre(icd::Status::Ok, icd::Status::TooManyRequests));
-  EXPECT_EQ(lane_.count(), 2500u);
+  EXPECT_EQ(queue_.count(), 2500u);
   EXPECT_EQ(left().size(), 2500u);
 }
 

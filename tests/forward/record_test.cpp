@@ -12,7 +12,7 @@ TEST(Record, TellsWhatBecameOfEachRobotsMaps) {
   Record record([&] { ++changes; });
   record.accepted(kCloudOfR1, 1000, 10.0);
   record.accepted(kCloudOfR1, 1100, 11.0);
-  record.rounded_to(kCloudOfR1, lanes::Precision::EightMillimetres);
+  record.rounded_to(kCloudOfR1, queues::Precision::EightMillimetres);
   record.forwarded(kCloudOfR1, 2, 900, 200, 12.0);
   record.accepted({Kind::Grid, "r1"}, 5, 13.0);
   record.not_taken({Kind::Grid, "r1"}, NotTaken::Throttled, 429, "too frequent");

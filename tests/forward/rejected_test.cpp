@@ -47,7 +47,8 @@ class RejectedStoreTest : public testing::Test {
     return other.rows();
   }
 
-  void add(lanes::Message message, int status = 422, const std::string& why = "no", std::size_t bytes = 100) {
+  void add(queues::Message message, int status = 422, const std::string& why = "no",
+           std::size_t bytes = 100) {
     rejected_->add(std::move(message), status, why, bytes,
                    {.told = [this](bool kept) { ++(kept ? told_.kept : told_.not_kept); },
                     .let_go = [this] { ++told_.let_go; }});
@@ -167,7 +168,7 @@ TEST_F(RejectedStoreTest, SaysWhenItIsWrittenThatSomethingWasOvertaken) {
 TEST_F(RejectedStoreTest, CountsWhatMadePlaceAndWasNotSaidAgain) {
   for (int i = 0; i < 5; ++i) add(state());
   EXPECT_EQ(rejected_->dropped(), 0) << "the newer state says all of it";
-  for (std::size_t i = 0; i < lanes::RejectedMessages::kMostItems + 3; ++i) {
+  for (std::size_t i = 0; i < queues::RejectedMessages::kMostItems + 3; ++i) {
     add(grid(static_cast<double>(i)));
   }
   EXPECT_EQ(rejected_->dropped(), 4);

@@ -7,7 +7,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-using lanes::Precision;
+using queues::Precision;
 constexpr loop::Instant kBegin{std::chrono::seconds(100)};
 constexpr std::size_t kMegabyte = 1'000'000;
 
@@ -22,7 +22,7 @@ std::size_t exact_in(const Slot& slot, int seconds) {
 
 TEST(Slot, HoldsMoreOfCloudsThatAreRounded) {
   Slot slot(10 * kMegabyte);
-  const lanes::PointsAt at_first = slot.points_within(std::chrono::seconds(1));
+  const queues::PointsAt at_first = slot.points_within(std::chrono::seconds(1));
   EXPECT_LT(at_first[0], at_first[1]);
   EXPECT_LT(at_first[1], at_first[2]);
   slot.packed(4 * kMegabyte, kMegabyte, Precision::EightMillimetres);

@@ -27,7 +27,7 @@ TEST_F(StampFloorTest, IsNeverBelowAStampThatWasGivenOutWheneverThePowerIsCut) {
   StampFloor living(folder_.string());
   for (double now = 1.7e9; now < 1.7e9 + 1000; now += 1) {  // once a second
     if (const auto due = living.due(now, 5, {})) living.write(*due);
-    const double latest = now + 1 + lanes::StampShift::kJump;  // until it is asked again
+    const double latest = now + 1 + queues::StampShift::kJump;  // until it is asked again
     ASSERT_GT(StampFloor(folder_.string()).read()->floor, latest);
     ASSERT_LT(StampFloor(folder_.string()).read()->floor, now + 171) << "nor far ahead";
   }

@@ -24,11 +24,11 @@ icd::MapUpdate row_at(double x, const std::vector<std::uint8_t>& values) {
            values.size()}};
 }
 
-lanes::WaitingMap taken_of(const std::vector<icd::MapUpdate>& maps) {
-  lanes::MapLane lane{0};
+queues::QueuedMap taken_of(const std::vector<icd::MapUpdate>& maps) {
+  queues::MapQueue queue{0};
   std::uint64_t number = 0;
-  for (const icd::MapUpdate& map : maps) lane.add(++number, map, lanes::Instant{});
-  return *lane.take();
+  for (const icd::MapUpdate& map : maps) queue.add(++number, map, queues::Instant{});
+  return *queue.take();
 }
 
 std::vector<std::uint8_t> cells_of(const icd::MapData& data) {
@@ -71,14 +71,14 @@ TEST(StitchedMap, HasNoBodyIfItsDataOrThatOfAPartIsDamaged) {
 }
 
 TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
-  lanes::MapLane lane{0};
+  queues::MapQueue queue{0};
   std::uint64_t number = 0;
   const auto take = [&](const std::vector<icd::MapUpdate>& maps) {
-    for (const icd::MapUpdate& map : maps) lane.add(++number, map, lanes::Instant{});
-    auto waiting = *lane.take();
+    for (const icd::MapUpdate& map : maps) queue.add(++number, map, queues::Instant{});
+    auto waiting = *queue.take();
     Packed map = packed(waiting);
     EXPECT_TRUE(map.drawn);
-    if (map.drawn) lane.canvases().lay(waiting.map.name, *map.drawn);
+    if (map.drawn) queue.canvases().lay(waiting.map.name, *map.drawn);
     return map;
   };
   take({row_at(0, {1, 2, 3, 4})});
@@ -90,14 +90,14 @@ TEST(StitchedMap, HasWhatWasSentLastInTheGapsBetweenItsParts) {
 }
 
 /// A cloud of `points` from `begin` metres on, as it was taken to be sent.
-lanes::WaitingMap cloud_at(float begin, int points, lanes::Precision precision) {
+queues::QueuedMap cloud_at(float begin, int points, queues::Precision precision) {
   std::vector<float> xs;
   for (int i = 0; i < points; ++i) xs.push_back(begin + 0.0137F * static_cast<float>(i * i % 997));
   return {.map = cloud_along_x("r1", xs), .accepted = {}, .updates = {1}, .precision = precision};
 }
 
 TEST(PackedCloud, SaysHowFarItWasRounded) {
-  using lanes::Precision;
+  using queues::Precision;
   for (const Precision each : {Precision::Exact, Precision::Millimetre, Precision::EightMillimetres}) {
     const Packed map = packed(cloud_at(5, 2000, each));
     EXPECT_EQ(map.precision, each);
@@ -106,10 +106,10 @@ TEST(PackedCloud, SaysHowFarItWasRounded) {
 }
 
 TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
-  const auto precision_of = [](const lanes::WaitingMap& waiting, bool arranges) {
+  const auto precision_of = [](const queues::QueuedMap& waiting, bool arranges) {
     return packed(waiting, {}, {.arranges_clouds = arranges}).precision;
   };
-  using lanes::Precision;
+  using queues::Precision;
   EXPECT_EQ(precision_of(cloud_at(5, 2000, Precision::Millimetre), /*arranges=*/false), Precision::Exact);
   EXPECT_EQ(precision_of(cloud_at(9000, 2000, Precision::Millimetre), /*arranges=*/true), Precision::Exact);
   EXPECT_EQ(precision_of(cloud_at(5, 2, Precision::Millimetre), /*arranges=*/true), Precision::Exact)
@@ -118,8 +118,8 @@ TEST(PackedCloud, IsExactWhereItCannotBeRounded) {
 
 TEST(PackedCloud, IsAsItCameIfPackingWouldTakeTooMuchMemory) {
   constexpr std::size_t kMost = pack::kMostPacked / 12;
-  for (const auto precision : {lanes::Precision::Exact, lanes::Precision::Millimetre}) {
-    lanes::WaitingMap waiting = cloud_at(5, 2000, precision);
+  for (const auto precision : {queues::Precision::Exact, queues::Precision::Millimetre}) {
+    queues::QueuedMap waiting = cloud_at(5, 2000, precision);
     const auto is_packed = [&](std::size_t points) {
       waiting.map.data = cloud_along_x("r1", std::vector<float>(points)).data;
       const Packed map = packed(waiting);

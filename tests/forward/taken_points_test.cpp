@@ -20,7 +20,7 @@ class TakenPointsTest : public testing::Test {
   TakenPointsTest() { points_.edges_are({{*icd::RobotName::parse("r1"), 0.5}}); }
 
   Packed pack(const icd::MapUpdate& map) {
-    const lanes::WaitingMap waiting{.map = map, .accepted = {}, .updates = {1}};
+    const queues::QueuedMap waiting{.map = map, .accepted = {}, .updates = {1}};
     return packed(waiting, points_.leaving_out(map));
   }
   Packed pack(const std::vector<float>& xs) { return pack(cloud_along_x("r1", xs)); }

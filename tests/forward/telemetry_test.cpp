@@ -21,7 +21,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::UnorderedElementsAre;
 
-std::vector<lanes::PostedPose> pose(const char* robot, double stamp) {
+std::vector<queues::PostedPose> pose(const char* robot, double stamp) {
   return {{*icd::RobotName::parse(robot), {}, stamp, "10.0.0.5"}};
 }
 
@@ -220,7 +220,7 @@ TEST_F(NewsTest, HoldsADeleteAllWhereEverythingFails) {
   EXPECT_THAT(texts(left().markers()), ElementsAre("wipe", "1", "2"));
 }
 
-TEST_F(NewsTest, OfAFullLaneTakesInWhatChangesTheMarkersThatWait) {
+TEST_F(NewsTest, OfAFullQueueTakesInWhatChangesTheMarkersThatWait) {
   settings_.queues.marker_bytes = 2 * icd::bytes_of(marker("a", "old"));
   const auto life = life_without_a_token();
   ASSERT_TRUE(life->take(icd::MarkersUpdate{{marker("a", "old")}}));

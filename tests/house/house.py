@@ -5,7 +5,7 @@ import re
 FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "firmware"
 FLOORS = {
     "the interface": "icd codec",
-    "the rules": "lanes pack picture pace dispatch settings network update clock spare access alarms",
+    "the rules": "queues pack picture pace dispatch settings network update clock spare access alarms",
     "the doors": "command_line loop store ledger uplink intake panel host spool journal archive",
     "the flow": "forward",
     "the box": "admin box",

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "lanes/merged.hpp"
+#include "queues/merged.hpp"
 
 namespace adit::journal {
 namespace {
@@ -20,7 +20,7 @@ using testing::IsEmpty;
 using testing::Pair;
 using testing::SizeIs;
 
-std::vector<lanes::PostedPose> state(const char* name, double x, double stamp) {
+std::vector<queues::PostedPose> state(const char* name, double x, double stamp) {
   return {{*icd::RobotName::parse(name), {.position = {x, 0, 0}, .orientation = {}}, stamp, "10.0.0.5"}};
 }
 
@@ -71,8 +71,8 @@ TEST(Carried, HasPosesUntilTheyWereTaken) {
 TEST(Carried, HasPosesAsTheyWere) {
   const icd::Pose pose{.position = {1.5, -2, 1e-300}, .orientation = {0, 0, 0.6, 0.8}};
   const icd::RobotName name = *icd::RobotName::parse("r1");
-  for (const lanes::PostedPose& posted :
-       {lanes::PostedPose{name, pose, 12.25, "10.0.0.5"}, lanes::PostedPose{name, pose, {}, ""}}) {
+  for (const queues::PostedPose& posted :
+       {queues::PostedPose{name, pose, 12.25, "10.0.0.5"}, queues::PostedPose{name, pose, {}, ""}}) {
     Carried carried;
     tell(carried, Kind::Poses, store::bytes_of(std::vector{posted}));
     carried = again(carried);
@@ -170,14 +170,15 @@ TEST(Carried, HasClocksPacesAndStamps) {
       .under_way = true,
       .from_answers = true,
       .single = 2};
-  const lanes::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"}, r2{"10.0.0.5", icd::Uri::MapUpdate, "r2"};
+  const queues::Stamper r1{"10.0.0.5", icd::Uri::StateUpdate, "r1"},
+      r2{"10.0.0.5", icd::Uri::MapUpdate, "r2"};
   Carried carried;
   EXPECT_FALSE(carried.clock());
   tell(carried, Kind::Clock,
        store::bytes_of(Clock{.boot = "b1", .at = pace::Instant(seconds(5)), .stamp = 1.5e9}));
   tell(carried, Kind::Senders,
-       store::bytes_of(lanes::StampShift::Clocks{{r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}},
-                                                 {r2, {.theirs = 7, .ours = 1.5e9, .latest = 8}}}));
+       store::bytes_of(queues::StampShift::Clocks{{r1, {.theirs = 100, .ours = 1.5e9, .latest = 104}},
+                                                  {r2, {.theirs = 7, .ours = 1.5e9, .latest = 8}}}));
   tell(carried, Kind::Pace, store::bytes_of(icd::Uri::MapUpdate, learned));
   tell(carried, Kind::Stamp, store::bytes_of(icd::Uri::StateUpdate, 1.5e9 + 4));
   for (const Carried& each : {carried, again(carried)}) {
@@ -201,7 +202,7 @@ TEST(Carried, HasClocksPacesAndStamps) {
 TEST(Carried, HasTheClocksThatStatesLeft) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> step{-7, 5};
-  lanes::StampShift live;
+  queues::StampShift live;
   Carried carried;
   std::map<std::string, double> theirs;  // by address
   for (int i = 0; i < 2000; ++i) {
@@ -212,7 +213,7 @@ TEST(Carried, HasTheClocksThatStatesLeft) {
         live.shift({address, icd::Uri::StateUpdate, robot}, stamp, 1.5e9 + i * 0.5, random() % 2);
     if (const auto changed = live.changed(); !changed.empty())
       tell(carried, Kind::Senders, store::bytes_of(changed));
-    const std::vector<lanes::PostedPose> poses{{*icd::RobotName::parse(robot), {}, ours, address}};
+    const std::vector<queues::PostedPose> poses{{*icd::RobotName::parse(robot), {}, ours, address}};
     tell(carried, Kind::Poses, store::bytes_of(std::span(poses)));
     if (i % 100 == 50) carried = again(carried);
   }
@@ -276,17 +277,17 @@ TEST(Carried, KnowsWhereGridsWerePostedOnceThatIsTold) {
   EXPECT_FALSE(carried.grids());
   tell(carried, Kind::Grids);
   EXPECT_THAT(again(carried).grids(), testing::Optional(IsEmpty()));
-  const lanes::Extent first{-1, -2, 3, 4}, larger{-1, -2, 30, 4};
+  const queues::Extent first{-1, -2, 3, 4}, larger{-1, -2, 30, 4};
   tell(carried, Kind::Grids, store::bytes_of("r1", first));
   tell(carried, Kind::Grids, store::bytes_of("r1", larger));
-  tell(carried, Kind::Grids, store::bytes_of("*", lanes::Extent::everywhere()));
+  tell(carried, Kind::Grids, store::bytes_of("*", queues::Extent::everywhere()));
   EXPECT_FALSE(carried.apply(Kind::Grids, "torn"));
   carried.machine_is("another start");
   EXPECT_THAT(again(carried).grids(), testing::Optional(testing::ElementsAre(
-                                          Pair("*", lanes::Extent::everywhere()), Pair("r1", larger))));
+                                          Pair("*", queues::Extent::everywhere()), Pair("r1", larger))));
 }
 
-/// The law: what a journal comes to is what waits in the lanes, however sending goes and wherever a snapshot
+/// The law: what a journal comes to is what waits in the queues, however sending goes and wherever a snapshot
 /// was made.
 TEST(Carried, IsWhatWaitsInTheLanes) {
   std::mt19937_64 random{1};
@@ -307,7 +308,7 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
         icd::MarkersUpdate update;
         for (int left = pick(4); left >= 0; --left) update.markers.push_back(any(i));
         tell(carried, Kind::Markers, store::bytes_of(update.markers));
-        waiting = lanes::merged(waiting, update.markers);
+        waiting = queues::merged(waiting, update.markers);
         break;
       }
       case 1:  // sent
@@ -321,14 +322,14 @@ TEST(Carried, IsWhatWaitsInTheLanes) {
         tell(carried, Kind::MarkersDone);
         break;
       case 3:
-        waiting = lanes::merged(under_way, waiting);
+        waiting = queues::merged(under_way, waiting);
         under_way.clear();
         tell(carried, Kind::MarkersBack);
         break;
       default:
         carried = again(carried);
     }
-    ASSERT_EQ(carried.markers().markers, lanes::merged(under_way, waiting)) << i;
+    ASSERT_EQ(carried.markers().markers, queues::merged(under_way, waiting)) << i;
   }
 }
 

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<lanes::PostedPose> pose(double x) {
+std::vector<queues::PostedPose> pose(double x) {
   return {{*icd::RobotName::parse("r1"), {.position = {x, 0, 0}, .orientation = {}}, x, "10.0.0.5"}};
 }
 

@@ -95,7 +95,7 @@ TEST(SettingsChanges, KnowAnItemByItsNameAndNotByItsPlace) {
   Settings after = before;
   after.robots.erase(after.robots.begin());
   after.robots.front().alias = "";
-  after.robots.push_back({"uav1", "", lanes::Clouds::Whole});
+  after.robots.push_back({"uav1", "", queues::Clouds::Whole});
   EXPECT_THAT(
       sentences(changes(before, after)),
       ElementsAre(R"(robots[ugv1].name: "ugv1" -> null)", R"(robots[ugv1].alias: "" -> null)",

@@ -50,7 +50,7 @@ bool is_before(const Change& change, const Change& other, const Changes& all,
 }
 
 /// Whether `late`, which was posted after `early`, may have been overtaken by it as far as its stamp tells:
-/// the first late one of a clock that was set back may (`lanes/step_back.hpp`).
+/// the first late one of a clock that was set back may (`queues/step_back.hpp`).
 bool seems_overtaken(const Change& late, const Change& early, const Changes& all) {
   if (late.stamp == 0 || late.stamp >= early.stamp || late.stamp < early.stamp - kJump) return false;
   if (late.stamp >= early.stamp - kOutOfOrder) return true;

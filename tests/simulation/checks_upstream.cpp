@@ -37,7 +37,7 @@ constexpr std::int64_t kLeastGiven = 1'500'000;
 
 /// Of the station's clock, which runs as the world's does: the first message of a robot counts as posted when
 /// it came, and each later one as much later as its stamp is. Of a robot of which one was held for so long
-/// that the next one is far ahead of it, nothing is known: its clock is taken again (lanes/stamps.hpp).
+/// that the next one is far ahead of it, nothing is known: its clock is taken again (queues/stamps.hpp).
 class Spacing {
  public:
   explicit Spacing(const std::vector<Event>& events) {

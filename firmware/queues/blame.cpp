@@ -1,0 +1,37 @@
+#include "queues/blame.hpp"
+
+#include <algorithm>
+
+namespace adit::queues {
+
+Blame::Sender& Blame::sender(const std::string& whose) {
+  if (senders_.size() >= kMostSenders && !senders_.contains(whose)) senders_.clear();
+  return senders_[whose];
+}
+
+void Blame::passed(const std::string& whose, Instant now) {
+  sender(whose).passes = true;
+  last_passed_ = now;
+}
+
+Blame::Next Blame::failed(const std::string& whose, Trial& trial, Instant now) {
+  Sender& its = sender(whose);
+  if (its.passes && trial.failures == 0) its.wavered = now;
+  its.passes = false;
+  const bool alone = trial.failed && last_passed_ && *last_passed_ > *trial.failed &&
+                     !somebody_wavered(whose, *trial.failed);
+  ++trial.failures;
+  if (alone) ++trial.strikes;
+  trial.failed = now;
+  trial.steps_behind = true;
+  trial.rests_until = trial.strikes == 0 ? now : now + kFirstRest * (1 << std::min(trial.strikes - 1, 8));
+  return trial.strikes >= kMostStrikes ? Next::Reject : Next::Again;
+}
+
+bool Blame::somebody_wavered(const std::string& but, Instant since) const {
+  return std::ranges::any_of(senders_, [&](const auto& item) {
+    return item.first != but && item.second.wavered && *item.second.wavered > since;
+  });
+}
+
+}  // namespace adit::queues

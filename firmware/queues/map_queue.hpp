@@ -1,0 +1,147 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "icd/map_update.hpp"
+#include "queues/canvases.hpp"
+#include "queues/clouds.hpp"
+#include "queues/precision.hpp"
+#include "queues/queued_map.hpp"
+#include "queues/sender.hpp"
+#include "queues/sender_queue.hpp"
+#include "queues/turns.hpp"
+
+namespace adit::queues {
+
+/// The queued maps.
+///
+/// Turns: a sender is a robot's maps of one kind. If N senders have queued maps, each is served within N
+/// messages (Turns). Each try is a turn, whatever its outcome.
+///
+/// Order and replacement within a sender:
+/// - The oldest map goes first.
+/// - A newer grid replaces an older grid that it covers, and inherits its age. Grids of that name that it
+/// does
+///   not cover go ahead of it, so that old cells are never sent after newer ones.
+/// - take() stitches grids of one lattice that fill a rectangle. It fills gaps between them with the cells
+/// that
+///   were last sent there, if these are known (stitch.hpp, canvases.hpp).
+/// - Clouds stay in order. take() merges clouds that follow each other.
+/// - A cloud replaces all earlier ones if the robot's clouds are Clouds::Whole. With Clouds::Auto it replaces
+///   the previous one if a comparison shows that it has all its points (to_compare(), replace()).
+/// - No other map is dropped.
+///
+/// Result for the grids of one name and lattice: a Command Post that overwrites cells ends with the newest
+/// posted value in each cell, unknown included. A Command Post that overlays (unknown overwrites nothing)
+/// ends with the newest value wherever that value is known.
+///
+/// A map on trial (Blame) lets others go first while it rests. A grid on trial holds back later grids of its
+/// name for its first kInPlace failures, including failures of grids that it replaced. After that they go
+/// ahead of it.
+class MapQueue {
+ public:
+  /// `merge_bytes`: the most bytes of points that take() merges into one message.
+  explicit MapQueue(std::size_t merge_bytes) : merge_bytes_(merge_bytes) {}
+
+  void merge_at_most(std::size_t bytes) { merge_bytes_ = bytes; }
+  /// The bytes that the link carries between two messages; at least 1.
+  void a_slot_carries(std::size_t bytes) { slot_bytes_ = bytes; }
+
+  /// Applies to clouds that are added from now on. Robots that are not named have Clouds::Auto.
+  void clouds_are(std::map<icd::RobotName, Clouds> clouds) { clouds_ = std::move(clouds); }
+
+  Clouds clouds_of(const Sender& sender) const;
+
+  /// Applies to clouds that are taken from now on. Robots that are not named have Precision::Exact.
+  void precisions_are(std::map<icd::RobotName, Precision> precisions) { precisions_ = std::move(precisions); }
+  /// The bytes of points that fit into one message; take() merges no more. With Precision::Auto, take()
+  /// chooses the finest precision at which all queued clouds of the robot fit.
+  void a_message_holds(const PointsAt& points) { holds_ = points; }
+
+  /// Adds a map. Returns the numbers of the updates whose maps it replaced; the map stands for them from now
+  /// on. A number is used once.
+  std::vector<std::uint64_t> add(std::uint64_t number, icd::MapUpdate map, Instant now);
+
+  /// Adds a map that was queued before a restart; call in the order of the numbers. It replaces no other map,
+  /// because comparisons would delay the start.
+  void restore(std::uint64_t number, icd::MapUpdate map, Instant now);
+
+  static constexpr int kInPlace = SenderQueue::kInPlace;
+
+  /// Takes the next map to be sent out of the queue. Without `now`, maps that rest are taken as well.
+  std::optional<QueuedMap> take(Instant now = Instant::max());
+
+  /// The sent cells of each robot's grids. The caller reports there how a grid was drawn.
+  Canvases& canvases() { return canvases_; }
+
+  /// A message of `sender` used `bytes` of the link. The sender pays for the part beyond one slot with turns.
+  void carried(const Sender& sender, std::size_t bytes);
+
+  /// Queues a map again that was not delivered, or that the operator sends again: as the sender's first map,
+  /// but behind older ones that are sent again. If a newer queued grid covers it, that grid inherits its
+  /// updates and age instead. Returns the numbers of updates that are no longer needed, as add() does.
+  std::vector<std::uint64_t> put_back(QueuedMap map);
+
+  /// Queues the parts of a merged or stitched map again, each by itself, as the sender's first maps. They are
+  /// not joined again, so that only the part that the Command Post rejects fails. Requires parts.
+  void put_back_apart(QueuedMap map);
+
+  /// Two successive clouds that have not been compared yet, or nothing. Call replace() or keep_both() with
+  /// the outcome.
+  std::optional<Successive> to_compare() const;
+  /// The newer cloud has all points of the older one and replaces it, if both are still queued unchanged.
+  /// Returns numbers as add() does.
+  std::vector<std::uint64_t> replace(const Successive& two);
+  /// The newer cloud lacks points of the older one, or the comparison failed.
+  void keep_both(const Successive& two);
+
+  /// Whether add() would replace a queued map.
+  bool replaces_any(const icd::MapUpdate& map) const;
+  /// Whether take() could merge or stitch it with the last queued map of its sender.
+  bool joins(const icd::MapUpdate& map) const;
+  /// Whether a newer queued grid covers it.
+  bool is_replaced(const QueuedMap& map) const;
+
+  std::size_t count() const { return count_; }
+  std::size_t count(const Sender& sender) const;
+  /// When the oldest queued map of that sender was accepted, or nothing.
+  std::optional<Instant> oldest(const Sender& sender) const;
+  std::size_t bytes() const { return bytes_; }  // of memory, held by all queued maps
+  /// The size of the largest queued grid or whole cloud, in bytes: a map that replaces it may need as much.
+  std::size_t largest_replaceable() const;
+  /// The number of known senders: those with queued maps, and those that still pay with turns.
+  std::size_t senders() const { return senders_.size(); }
+
+ private:
+  struct Waiting {
+    SenderQueue queue;
+    Turn turn;
+  };
+  using Senders = std::map<Sender, Waiting>;
+
+  Senders::iterator next(Instant now);
+  Waiting& joins(const Sender& sender);
+  void forget_those_that_are_gone();
+  template <class Change>
+  auto change(SenderQueue& queue, Change change);
+  const SenderQueue* queue_of(const Sender& sender) const;
+  QueuedMap waiting(std::uint64_t number, icd::MapUpdate map, Instant now) const;
+  Precision precision_of(const Sender& sender, const SenderQueue& queue) const;
+
+  Senders senders_;
+  std::map<icd::RobotName, Clouds> clouds_;
+  std::map<icd::RobotName, Precision> precisions_;
+  PointsAt holds_ = kAnyPoints;
+  Turns turns_;
+  Canvases canvases_;
+  std::size_t merge_bytes_;
+  std::size_t slot_bytes_ = 8u << 20;
+  std::size_t count_ = 0, bytes_ = 0;
+};
+
+}  // namespace adit::queues

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "icd/markers_update.hpp"
+#include "queues/map_queue.hpp"
+#include "queues/marker_changes.hpp"
+#include "queues/queued_updates.hpp"
+
+namespace adit::queues {
+
+struct QueuedMarkers {
+  icd::MarkersUpdate update;
+  Instant accepted;           // when the oldest news in it was accepted
+  std::uint64_t updates = 0;  // how many accepted updates are complete with this message
+  bool is_ahead = false;      // a copy of a queued change, sent ahead of the others
+};
+
+/// Limits of the marker queue. Bytes are those of icd::bytes_of().
+struct MarkerBounds {
+  std::size_t per_message = 2000;           // markers; at least 1
+  std::size_t bytes_per_message = 1 << 20;  // unless a single marker is larger
+  std::size_t bytes = 32 << 20;             // of all queued changes
+};
+
+/// The queued changes of markers, oldest first.
+class MarkerQueue {
+ public:
+  static constexpr std::size_t kMostMarkers = 100'000;
+
+  explicit MarkerQueue(MarkerBounds bounds) : bounds_(bounds), most_now_(bounds.per_message) {}
+
+  /// Sets new limits. Queued changes stay.
+  void keep_within(MarkerBounds bounds);
+
+  /// Whether the limits allow `update`, so that no sender can fill the memory while the Command Post is away.
+  /// A quarter of the bytes is reserved for updates that only replace queued changes: a growing path is
+  /// accepted after new markers are not. An empty queue has room for any update.
+  bool has_room_for(const icd::MarkersUpdate& update) const;
+  /// For an update without room: its changes of markers that are queued already, so that a full queue holds
+  /// the newest change of each. Changes before the last DeleteAll are left out.
+  icd::MarkersUpdate those_that_wait(const icd::MarkersUpdate& update) const;
+  void add(icd::MarkersUpdate update, Instant now);
+  /// Adds a part of a large update, because all of it at once would block the loop. Moves from `some`.
+  /// `last`: the result of the previous part, or kNowhere. Call end_of_update() after the last part, and no
+  /// take() before.
+  MarkerChanges::Place add_part(std::span<icd::Marker> some, MarkerChanges::Place last);
+  void end_of_update(MarkerChanges::Place last, Instant now);
+  /// The changes that a DeleteAll made needless since the last call. Freeing them takes long; any thread may
+  /// do it.
+  std::vector<MarkerChanges> needless() { return std::exchange(needless_, {}); }
+  /// Takes the oldest changes out, in order. Nothing if none is queued.
+  std::optional<QueuedMarkers> take();
+  /// Queues the result of the last take() again, which was not delivered: ahead of newer changes, and merged
+  /// with them. The cost grows with `markers`, not with the queue.
+  void put_back(const QueuedMarkers& markers);
+  /// The same, and halves the number of markers in a message, so that the marker that the Command Post
+  /// rejects is found.
+  void put_back_narrower(const QueuedMarkers& markers);
+  /// Queues a single failed change behind all others, unless they make it needless. A DeleteAll stays first,
+  /// because later changes depend on it. Instead, take() gives a copy of one later change once, in turn, to
+  /// find out whether others are accepted. The result at the Command Post is the same.
+  void put_behind(const QueuedMarkers& markers);
+  /// Whether a queued change makes an earlier change of that marker needless.
+  bool says_more_than(const icd::Marker& earlier) const { return changes_.says_more_than(earlier); }
+  /// The last message was accepted: the next one may have twice as many markers.
+  void passed() { most_now_ = std::min(bounds_.per_message, most_now_ * 2); }
+
+  std::size_t count() const { return changes_.size().count; }  // queued changes
+  std::size_t bytes() const { return changes_.size().bytes; }
+  /// All queued changes, in order.
+  std::vector<icd::Marker> pending() const;
+  std::optional<Instant> oldest() const { return updates_.oldest(); }
+  bool empty() const { return updates_.empty(); }
+
+ private:
+  std::optional<icd::Marker> one_ahead();
+
+  MarkerBounds bounds_;
+  std::size_t most_now_;       // markers in the next message
+  bool may_go_ahead_ = false;  // the first change is a DeleteAll that failed: another one goes once
+  MarkerChanges::Place ahead_ = QueuedUpdates::kNowhere;  // of the last change that went ahead
+  MarkerChanges changes_;
+  QueuedUpdates updates_;
+  std::vector<MarkerChanges> needless_;
+};
+
+}  // namespace adit::queues

@@ -1,0 +1,123 @@
+#include "queues/queued_map.hpp"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+#include <variant>
+
+#include "icd/require.hpp"
+
+namespace adit::queues {
+
+const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map) {
+  if (map.data.compression != icd::Compression::None) return nullptr;
+  return std::get_if<icd::PointCloud2>(&map.msg);
+}
+
+std::size_t bytes_held(const QueuedMap& waiting) {
+  constexpr std::size_t kFrame = 1024;
+  std::size_t bytes = kFrame + waiting.map.data.bytes.size() + waiting.updates.size() * sizeof(std::uint64_t);
+  if (const auto* cloud = std::get_if<icd::PointCloud2>(&waiting.map.msg)) {
+    for (const auto& field : cloud->fields) bytes += sizeof field + field.name.size();
+  } else {
+    for (const QueuedMap& part : waiting.parts) bytes += bytes_held(part);
+  }
+  return bytes;
+}
+
+std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken) {
+  if (!taken.has_gaps) return {&taken.map};
+  std::vector<const icd::MapUpdate*> maps;
+  maps.reserve(taken.parts.size());
+  for (const QueuedMap& part : taken.parts) maps.push_back(&part.map);
+  return maps;
+}
+
+bool says_all_of(const QueuedMap& newer, const QueuedMap& older) {
+  if (newer.map.name != older.map.name || newer.map.is_grid() != older.map.is_grid()) return false;
+  if (!newer.map.is_grid()) return newer.is_whole;
+  if (newer.has_gaps) {
+    return std::ranges::any_of(newer.parts, [&](const QueuedMap& part) { return says_all_of(part, older); });
+  }
+  return covers(std::get<icd::OccupancyGrid>(newer.map.msg), std::get<icd::OccupancyGrid>(older.map.msg));
+}
+
+bool replaces(const QueuedMap& newer, const QueuedMap& older) {
+  return is_newer(newer, older) && says_all_of(newer, older);
+}
+
+/// A clock that was set back gives many maps the same stamp. They are sent again oldest first, so the later
+/// one is newer.
+bool is_newer(const QueuedMap& waiting, const QueuedMap& back) {
+  if (!waiting.again) return true;
+  return back.again &&
+         std::pair(*waiting.again, waiting.updates.back()) > std::pair(*back.again, back.updates.back());
+}
+
+void join(QueuedMap& to, const QueuedMap& from) {
+  if (to.parts.empty()) to.parts.push_back(to);
+  if (from.parts.empty()) {
+    to.parts.push_back(from);
+  } else {
+    to.parts.insert(to.parts.end(), from.parts.begin(), from.parts.end());
+  }
+  const auto middle = static_cast<std::ptrdiff_t>(to.updates.size());
+  const bool in_order = to.updates.back() < from.updates.front();
+  to.updates.insert(to.updates.end(), from.updates.begin(), from.updates.end());
+  if (!in_order) std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
+  to.accepted = std::min(to.accepted, from.accepted);
+}
+
+/// A single part may not contain the maps that the whole replaced since it was merged, so their updates go
+/// with the last part.
+std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again) {
+  icd::require(!map.parts.empty());
+  std::vector<std::uint64_t> of_parts, others;
+  for (QueuedMap& part : map.parts) {
+    part.alone = !may_join_again;
+    of_parts.insert(of_parts.end(), part.updates.begin(), part.updates.end());
+  }
+  std::ranges::sort(of_parts);
+  std::ranges::set_difference(map.updates, of_parts, std::back_inserter(others));
+  auto& last = map.parts.back().updates;
+  last.insert(last.begin(), others.begin(), others.end());
+  std::ranges::sort(last);
+  return std::move(map.parts);
+}
+
+bool may_join(const QueuedMap& map) {
+  return !map.alone && map.trial.failures == 0 && !map.again;
+}
+
+void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of) {
+  if (of.parts.empty()) numbers.push_back(of.updates.back());
+  for (const QueuedMap& part : of.parts) numbers.push_back(part.updates.back());
+}
+
+void take_over(QueuedMap& to, QueuedMap from) {
+  const auto middle = static_cast<std::ptrdiff_t>(from.updates.size());
+  from.updates.insert(from.updates.end(), to.updates.begin(), to.updates.end());
+  to.updates = std::move(from.updates);
+  std::inplace_merge(to.updates.begin(), to.updates.begin() + middle, to.updates.end());
+  to.accepted = std::min(to.accepted, from.accepted);
+  // It also inherits the place, the rest and the strikes, but never the last two: it must fail itself to be
+  // rejected.
+  if (to.trial.failures > 0) return;
+  to.trial = from.trial;
+  to.trial.strikes = std::min(to.trial.strikes, Blame::kMostStrikes - 2);
+}
+
+bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b) {
+  return a.fields == b.fields && a.point_step == b.point_step && a.is_bigendian == b.is_bigendian &&
+         a.origin.value_or(icd::Pose{}) == b.origin.value_or(icd::Pose{});
+}
+
+icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer) {
+  icd::require(older.name == newer.name && !older.is_grid() && !newer.is_grid());
+  older.msg = newer.msg;
+  older.data.bytes.append(newer.data.bytes);
+  older.data.raw_size += newer.data.raw_size;
+  return older;
+}
+
+}  // namespace adit::queues

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "icd/map_update.hpp"
+#include "queues/blame.hpp"
+#include "queues/ground.hpp"
+#include "queues/precision.hpp"
+
+namespace adit::queues {
+
+/// Whether `newer` contains all cells of `older`, so that `older` need not be sent (ICD 6.3.1, promise 2).
+/// They have one lattice, and older's extent is within newer's. One lattice: the same resolution, orientation
+/// and height, and origins that are a whole number of cells apart, to a thousandth of a cell. Reflexive and
+/// transitive.
+bool covers(const icd::OccupancyGrid& newer, const icd::OccupancyGrid& older);
+
+/// Whether one message can have the points of both: fields, point_step, byte order and origin are the same.
+bool mergeable(const icd::PointCloud2& a, const icd::PointCloud2& b);
+
+/// One update with older's points, then newer's, and newer's header. Shares their bytes. Requires mergeable
+/// clouds of one name with uncompressed data.
+icd::MapUpdate merge(icd::MapUpdate older, const icd::MapUpdate& newer);
+
+/// A queued map and the accepted updates that it stands for: its own, those it replaced, those merged into
+/// it.
+struct QueuedMap {
+  icd::MapUpdate map;
+  Instant accepted;                    // when the oldest of `updates` was accepted
+  std::vector<std::uint64_t> updates;  // numbers, oldest first
+  /// The maps that were merged or stitched into it, in the order in which they were made; else empty. Until a
+  /// stitched grid is packed, only its parts have its cells.
+  std::vector<QueuedMap> parts{};
+  bool alone = false;  // not to be merged or stitched
+  /// A stitched grid whose parts do not fill it. The cells between them are those of `ground`.
+  bool has_gaps = false;
+  /// For a grid that is being sent: the cells sent before. Null: it is not drawn (Canvases).
+  std::shared_ptr<const Ground> ground{};
+  /// For a cloud: it contains all earlier ones.
+  bool is_whole = false;
+  /// For a cloud: it was compared with the previous one.
+  bool is_compared = false;
+  /// For a cloud that is being sent: how far it may be rounded; not Auto.
+  Precision precision = Precision::Exact;
+  Trial trial{};  // its failures at the Command Post
+  /// Only for a rejected map that the operator sends again: its original stamp. It orders the map before all
+  /// maps that were never rejected, and identifies it.
+  std::optional<icd::Stamp> again{};
+};
+
+/// The maps that are delivered if `taken` is accepted: the map itself, or the parts of a map with gaps,
+/// because a gap has no news.
+std::vector<const icd::MapUpdate*> said_by(const QueuedMap& taken);
+/// Whether `newer`, which was just accepted, contains all of `older`: it is a grid that covers it, has a part
+/// that covers it (if it has gaps), or is a whole cloud.
+bool says_all_of(const QueuedMap& newer, const QueuedMap& older);
+/// The same for a retry: `newer` is queued or in flight, and must be newer than `older`, which was not
+/// delivered.
+bool replaces(const QueuedMap& newer, const QueuedMap& older);
+
+/// Whether `waiting` is newer than `back`, which was not delivered.
+bool is_newer(const QueuedMap& waiting, const QueuedMap& back);
+
+/// The bytes of memory that it takes, without its data: itself, its fields, and the allocator's overhead.
+std::size_t bytes_held(const QueuedMap& waiting);
+
+/// Appends the numbers of the maps that are sent with it, without those that they replaced.
+void add_own_numbers(std::vector<std::uint64_t>& numbers, const QueuedMap& of);
+
+/// `to` replaces `from`, and takes its updates and age.
+void take_over(QueuedMap& to, QueuedMap from);
+
+/// Merges `from` into `to`, which takes its updates and keeps both as parts. The parts share their bytes.
+void join(QueuedMap& to, const QueuedMap& from);
+
+/// The parts of `map`, each with its updates. `may_join_again`: they may be merged again. Requires parts.
+std::vector<QueuedMap> parts_of(QueuedMap map, bool may_join_again);
+
+/// Whether it may be merged or stitched with others.
+bool may_join(const QueuedMap& map);
+
+/// The cloud, if its points can be joined to others; null for a grid and for packed points.
+const icd::PointCloud2* loose_cloud_in(const icd::MapUpdate& map);
+
+}  // namespace adit::queues

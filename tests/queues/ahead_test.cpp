@@ -1,0 +1,105 @@
+#include "queues/ahead.hpp"
+
+#include <gtest/gtest.h>
+
+#include "queues/maps.hpp"
+
+namespace adit::queues {
+namespace {
+
+QueuedMap waits(icd::MapUpdate map) {
+  return {.map = std::move(map), .accepted = at(0), .updates = {1}};
+}
+
+QueuedMap whole(QueuedMap cloud) {
+  cloud.is_whole = true;
+  return cloud;
+}
+
+const QueuedMap kGrid = waits(grid_update("r1", grid(0, 0, 10, 10)));
+const QueuedMap kCloud = waits(cloud_update("r1", {1}));
+
+/// At a Command Post that has taken so many.
+Ahead after(int taken) {
+  Ahead ahead;
+  for (int i = 0; i < taken; ++i) ahead.taken(false);
+  return ahead;
+}
+
+bool may_go(const Ahead& ahead, double now = 1, bool went_ahead = false) {
+  return ahead.may_go(kGrid, {.map = kCloud, .arrived = at(1), .went_ahead = went_ahead}, at(now));
+}
+
+TEST(Ahead, GoesWhereTheOrderIsOfNoConsequence) {
+  const QueuedMap other_grid = waits(grid_update("r2", grid(0, 0, 10, 10)));
+  const QueuedMap merged = waits(cloud_update("", {1}));
+  const struct {
+    const QueuedMap &one, &other;
+    bool in_any_order;
+  } cases[] = {{kGrid, other_grid, true},
+               {kGrid, kCloud, true},
+               {kCloud, merged, true},
+               {kCloud, kCloud, true},
+               {kGrid, kGrid, false},
+               {kCloud, whole(kCloud), false},
+               {whole(kCloud), whole(kCloud), false},
+               {whole(kCloud), whole(merged), true}};
+  for (const auto& each : cases) {
+    EXPECT_EQ(in_any_order(each.one, each.other), each.in_any_order) << &each - cases;
+    EXPECT_EQ(in_any_order(each.other, each.one), each.in_any_order) << &each - cases;
+  }
+}
+
+TEST(Ahead, GoesOnceSomeWereTakenInARow) {
+  EXPECT_FALSE(may_go(after(Ahead::kWell - 1)));
+  Ahead ahead = after(Ahead::kWell);
+  EXPECT_TRUE(may_go(ahead));
+  ahead.failed(false);
+  EXPECT_FALSE(may_go(ahead));
+  for (int i = 0; i < Ahead::kWell; ++i) ahead.taken(false);
+  EXPECT_TRUE(may_go(ahead));
+}
+
+TEST(Ahead, GoesWhileTheAnswerIsNotLate) {
+  const double late = std::chrono::duration<double>(Ahead::kLate).count();
+  EXPECT_TRUE(may_go(after(Ahead::kWell), 1 + late));
+  EXPECT_FALSE(may_go(after(Ahead::kWell), 1.001 + late));
+}
+
+TEST(Ahead, GoesAfterOneThatWentAheadOnceOneOfTheseWasTaken) {
+  Ahead ahead = after(Ahead::kWell);
+  EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial";
+  ahead.taken(true);
+  EXPECT_TRUE(may_go(ahead, 1, true));
+  ahead.failed(true);
+  for (int i = 0; i < Ahead::kMostWell; ++i) ahead.taken(false);
+  EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial again";
+  EXPECT_TRUE(may_go(ahead));
+}
+
+TEST(Ahead, GoesWithNoneThatFailedBefore) {
+  QueuedMap failed = kGrid;
+  failed.trial.failures = 1;
+  const Ahead ahead = after(Ahead::kWell);
+  EXPECT_FALSE(ahead.may_go(failed, {.map = kCloud, .arrived = at(1), .went_ahead = false}, at(1)));
+  EXPECT_FALSE(ahead.may_go(kCloud, {.map = failed, .arrived = at(1), .went_ahead = false}, at(1)));
+}
+
+TEST(Ahead, GoesEverLessOftenWhereTwoAreTooMuch) {
+  Ahead ahead;
+  for (int tried = 0, taken_between = Ahead::kWell; tried < 10; ++tried) {
+    int taken = 0;
+    for (; !may_go(ahead); ++taken) ahead.taken(false);
+    EXPECT_EQ(taken, taken_between);
+    ahead.failed(true);
+    taken_between = std::min(2 * taken_between, Ahead::kMostWell);
+  }
+  for (int i = 0; i < Ahead::kMostWell; ++i) ahead.taken(false);
+  ahead.taken(true);
+  ahead.failed(false);
+  for (int i = 0; i < Ahead::kWell; ++i) ahead.taken(false);
+  EXPECT_TRUE(may_go(ahead)) << "one was taken";
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,200 @@
+// Whose fault a 500 is: Blame and the queues, against servers of several kinds, on simulated time.
+#include "queues/blame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "queues/map_queue.hpp"
+#include "queues/maps.hpp"
+
+namespace adit::queues {
+namespace {
+
+/// Whether a server takes the map whose points are that value, at that second.
+using Server = std::function<bool(std::uint8_t, double)>;
+
+struct Outcome {
+  std::vector<std::uint8_t> taken, rejected;
+  std::size_t waiting = 0;
+  int tries_of_first = 0;
+};
+
+/// `senders` robots post a cloud each second, numbered 1, 2, 3...: the first posts 1, the second 2, and so
+/// on. One is sent each second, as the gateway sends them.
+Outcome played(const Server& server, int clouds, int senders, double until) {
+  MapQueue queue(0);  // nothing is merged
+  Blame blame;
+  Outcome outcome;
+  int posted = 0;
+  for (double now = 0; now < until; now += 1) {
+    for (int i = 0; i < 1 && posted < clouds; ++i, ++posted) {
+      const std::string name = "ugv" + std::to_string(posted % senders);
+      queue.add(static_cast<std::uint64_t>(posted) + 1,
+                cloud_update(name, {static_cast<std::uint8_t>(posted + 1)}), at(now));
+    }
+    auto map = queue.take(at(now));
+    if (!map) continue;
+    const std::uint8_t which = points_of(map->map).front();
+    const std::string name = map->map.name->text();
+    outcome.tries_of_first += which == 1 ? 1 : 0;
+    if (server(which, now)) {
+      blame.passed(name, at(now));
+      outcome.taken.push_back(which);
+    } else if (blame.failed(name, map->trial, at(now)) == Blame::Next::Reject) {
+      outcome.rejected.push_back(which);
+    } else {
+      queue.put_back(std::move(*map));
+    }
+  }
+  outcome.waiting = queue.count();
+  return outcome;
+}
+
+TEST(Blame, SetsNothingAsideInAnOutageHoweverLongItIs) {
+  for (const double length : {3.0, 30.0, 600.0}) {
+    const Server outage = [&](std::uint8_t, double now) { return now < 5 || now >= 5 + length; };
+    const Outcome outcome = played(outage, 20, 3, 5 + length + 30);
+    EXPECT_TRUE(outcome.rejected.empty()) << length;
+    EXPECT_EQ(outcome.taken.size(), 20) << length;
+    EXPECT_EQ(outcome.waiting, 0) << length;
+  }
+}
+
+TEST(Blame, SetsTheOneAsideThatFailsAloneAndLetsOthersPass) {
+  for (const int senders : {1, 2, 5}) {
+    const Outcome outcome = played([](std::uint8_t which, double) { return which != 1; }, 30, senders, 60);
+    EXPECT_EQ(outcome.rejected, std::vector<std::uint8_t>{1}) << senders;
+    EXPECT_EQ(outcome.taken.size(), 29) << senders;
+    EXPECT_GE(outcome.tries_of_first, 4) << senders << ": its tries are few";
+    EXPECT_LE(outcome.tries_of_first, 6) << senders << ": it holds others up";
+  }
+}
+
+TEST(Blame, SetsSeveralAsideThatFailWhileOthersPass) {
+  const auto is_good = [](std::uint8_t which, double) { return which % 5 != 0 || which > 30; };
+  const Outcome outcome = played(is_good, 100, 5, 300);
+  EXPECT_EQ(outcome.rejected.size(), 6) << "a robot whose first maps all fail";
+  EXPECT_EQ(outcome.taken.size(), 94);
+}
+
+TEST(Blame, LeavesWaitingWhatFailsWhileNothingElseIsSent) {
+  const Outcome outcome = played([](std::uint8_t which, double) { return which % 5 != 0; }, 30, 5, 200);
+  EXPECT_GE(outcome.rejected.size(), 1);
+  EXPECT_EQ(outcome.rejected.size() + outcome.waiting, 6) << "the last wait until another passes";
+  EXPECT_EQ(outcome.taken.size(), 24);
+}
+
+TEST(Blame, SpacesTheTries) {
+  Blame blame;
+  Trial trial;
+  std::vector<double> rests;
+  double now = 0;
+  while (blame.failed("ugv1", trial, at(now)) == Blame::Next::Again) {
+    blame.passed("ugv2", at(now + 0.5));
+    const double rest = std::chrono::duration<double>(trial.rests_until - at(now)).count();
+    rests.push_back(rest);
+    now += std::max(rest, 1.0);
+  }
+  EXPECT_EQ(rests, (std::vector<double>{0, 2, 4}));
+}
+
+TEST(Blame, TakesAFailureBeforeAnyOtherPassedForNoStrike) {
+  Blame blame;
+  Trial trial;
+  blame.passed("ugv2", at(0));
+  for (int i = 1; i < 100; ++i) {
+    ASSERT_EQ(blame.failed("ugv1", trial, at(i)), Blame::Next::Again);
+  }
+  EXPECT_EQ(trial.strikes, 0);
+}
+
+TEST(Blame, AcceptsNoStrikeWhereSomebodyElsesMessagesWaver) {
+  Blame blame;
+  Trial trial, other;
+  blame.passed("ugv2", at(0));
+  blame.failed("ugv1", trial, at(1));
+  blame.passed("ugv3", at(2));
+  blame.failed("ugv2", other, at(3));  // it passed before
+  blame.failed("ugv1", trial, at(4));
+  EXPECT_EQ(trial.strikes, 0);
+  blame.passed("ugv3", at(5));
+  blame.failed("ugv2", other, at(6));  // on trial itself: it says nothing of others
+  blame.failed("ugv1", trial, at(7));
+  EXPECT_EQ(trial.strikes, 1);
+}
+
+TEST(Blame, SetsHardlyAnythingAsideWhereHalfFailsByChance) {
+  std::size_t rejected = 0, taken = 0;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    std::mt19937_64 random{seed};
+    const Outcome outcome = played([&](std::uint8_t, double) { return random() % 2 == 0; }, 60, 4, 400);
+    rejected += outcome.rejected.size();
+    taken += outcome.taken.size();
+    EXPECT_EQ(outcome.waiting, 0);
+  }
+  EXPECT_LE(rejected, taken / 50);
+}
+
+TEST(MapQueueOnTrial, LetsOneOtherGoFirst) {
+  MapQueue queue(0);
+  queue.add(1, cloud_update("ugv1", {1}), at(0));
+  queue.add(2, cloud_update("ugv2", {2}), at(1));
+  queue.add(3, cloud_update("ugv2", {3}), at(2));
+  Blame blame;
+  auto first = queue.take(at(3));
+  ASSERT_EQ(points_of(first->map).front(), 1);
+  blame.failed("ugv1", first->trial, at(3));
+  queue.put_back(std::move(*first));
+  EXPECT_EQ(points_of(queue.take(at(4))->map).front(), 2);
+  EXPECT_EQ(points_of(queue.take(at(5))->map).front(), 1) << "one other, not all";
+}
+
+TEST(MapQueueOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
+  MapQueue queue(0);
+  queue.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
+  queue.add(2, grid_update("ugv1", grid(0.25, 0.25, 10, 10)),
+            at(1));  // overlaps it, and fills no rectangle with it
+  Blame blame;
+  for (int i = 0; i < MapQueue::kInPlace; ++i) {
+    auto taken = queue.take(at(10 * i));
+    ASSERT_EQ(taken->updates.front(), 1) << i;
+    blame.failed("ugv1", taken->trial, at(10 * i));
+    queue.put_back(std::move(*taken));
+  }
+  EXPECT_EQ(queue.take(at(100))->updates.front(), 2) << "to see whether others pass";
+}
+
+TEST(MapQueueOnTrial, MergesNothingWithWhatFailed) {
+  MapQueue queue(1000);
+  queue.add(1, cloud_update("ugv1", {1}), at(0));
+  Blame blame;
+  auto first = queue.take(at(1));
+  blame.failed("ugv1", first->trial, at(1));
+  queue.put_back(std::move(*first));
+  queue.add(2, cloud_update("ugv1", {2}), at(2));
+  queue.add(3, cloud_update("ugv1", {3}), at(2));
+  EXPECT_EQ(points_of(queue.take(at(3))->map), (std::vector<std::uint8_t>{2, 3}));
+  EXPECT_EQ(points_of(queue.take(at(4))->map), (std::vector<std::uint8_t>{1}));
+}
+
+TEST(MapQueueOnTrial, HandsItsPlaceToANewerGridThatCoversIt) {
+  MapQueue queue(0);
+  queue.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
+  auto first = queue.take(at(1));
+  first->trial.failures = 4;
+  first->trial.strikes = Blame::kMostStrikes - 1;
+  first->trial.failed = at(1);
+  queue.put_back(std::move(*first));
+  queue.add(2, grid_update("ugv1", grid(0, 0, 20, 20)), at(2));
+  const auto newer = queue.take(at(3));
+  EXPECT_EQ(newer->updates, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_LE(newer->trial.strikes, Blame::kMostStrikes - 2) << "it is to fail by itself";
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,226 @@
+#include "queues/canvases.hpp"
+
+#include <gmock/gmock.h>
+
+#include "queues/map_queue.hpp"
+#include "queues/maps.hpp"
+#include "queues/packing.hpp"
+
+namespace adit::queues {
+namespace {
+
+class CanvasesTest : public testing::Test {
+ protected:
+  static icd::MapUpdate window_at(int x, int y, int side = 10, double resolution = 0.5) {
+    const auto size = static_cast<std::uint32_t>(side);
+    icd::MapUpdate map = grid_update("R1", grid(x * resolution, y * resolution, size, size, resolution));
+    map.data = {icd::ChunkedBytes{std::vector<std::uint8_t>(map.data.raw_size, 7)}, icd::Compression::None,
+                map.data.raw_size};
+    return map;
+  }
+  void add(icd::MapUpdate map) {
+    ++number_;
+    if (const auto grows = queue_.canvases().grows(map)) {
+      queue_.canvases().grown(*grows);
+      posted_[grows->first] = grows->second;
+    }
+    queue_.add(number_, std::move(map), at(static_cast<double>(number_)));
+  }
+  QueuedMap taken() {
+    auto next = queue_.take();
+    packed_of(queue_, *next);
+    return *std::move(next);
+  }
+  /// How many of two windows, one up to the right of the other, go in one message.
+  std::size_t go_together(int x, int y) {
+    add(window_at(x, y));
+    add(window_at(x + 2, y + 2));
+    const std::size_t together = taken().updates.size();
+    while (queue_.count() > 0) taken();
+    return together;
+  }
+
+  /// After the first, which is never stitched.
+  std::size_t go_together_from_now_on(int x, int y) {
+    go_together(300, 300);
+    return go_together(x, y);
+  }
+  void hear(int statuses) {
+    for (int i = 0; i < statuses; ++i) queue_.canvases().heard({});
+  }
+
+  MapQueue queue_{0};
+  Canvases::Posted posted_;
+  std::uint64_t number_ = 0;
+};
+
+TEST_F(CanvasesTest, KnowWhatWasSentAndWhatNeverWas) {
+  EXPECT_EQ(go_together(0, 0), 1) << "nothing is known before the first";
+  EXPECT_EQ(go_together(4, 4), 2);
+  EXPECT_EQ(go_together(0, 2), 2) << "over what was sent";
+  EXPECT_EQ(go_together(-300, 500), 2) << "elsewhere";
+}
+
+TEST_F(CanvasesTest, DoNotKnowWhatWasSentOnAnotherLattice) {
+  add(window_at(0, 0, 40, 0.25));
+  taken();
+  EXPECT_EQ(go_together(5, 5), 1);
+  EXPECT_EQ(go_together(6, 6), 1) << "nor do they learn it";
+  EXPECT_EQ(go_together(70, 70), 2) << "there nothing was, tiles away";
+}
+
+TEST_F(CanvasesTest, BeginARunWithWhatWasSentSinceTheSecondLastStatus) {
+  go_together(0, 0);
+  hear(1);
+  queue_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1) << "the status may have been asked for before it arrived";
+  hear(2);
+  queue_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 2);
+}
+
+TEST_F(CanvasesTest, BeginARunWithWhatWasUnderWayAtTheSecondLastStatus) {
+  add(window_at(100, 100));
+  const QueuedMap under_way = taken();
+  const icd::MapUpdate* const maps[] = {&under_way.map};
+  queue_.canvases().heard(maps);
+  hear(1);
+  queue_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(102, 102), 1) << "what lies in its corner is not known";
+  hear(2);
+  queue_.canvases().begin_run();
+  EXPECT_EQ(go_together_from_now_on(102, 102), 2);
+}
+
+TEST_F(CanvasesTest, BeginARunWithWhatALifeBeforeMayHaveSentInIt) {
+  for (const int statuses : {0, 1, 2}) {
+    queue_ = MapQueue{0};
+    queue_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
+    hear(statuses);
+    queue_.canvases().begin_run();
+    EXPECT_EQ(go_together_from_now_on(4, 4), statuses == 2 ? 2 : 1) << statuses;
+  }
+}
+
+TEST_F(CanvasesTest, KnowNoMoreWhatLiesThereWhereTheRunMayBeAnother) {
+  go_together(0, 0);
+  hear(2);
+  queue_.canvases().change_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1);
+  EXPECT_EQ(go_together(340, 340), 2) << "there nothing was";
+}
+
+TEST_F(CanvasesTest, TakeWhateverWasPostedForSentInARunFromBefore) {
+  go_together(0, 0);
+  hear(2);
+  queue_.canvases().begin_run();
+  hear(2);
+  queue_.canvases().take_up_run();
+  EXPECT_EQ(go_together_from_now_on(4, 4), 1);
+}
+
+TEST_F(CanvasesTest, DoNotKnowAfterARestartWhatWasSentBefore) {
+  go_together(0, 0);
+  hear(2);
+  queue_.canvases().begin_run();
+  queue_ = MapQueue{0};
+  queue_.canvases().carry_on(posted_);
+  go_together(300, 300);
+  EXPECT_EQ(go_together(4, 4), 1);
+  EXPECT_EQ(go_together(340, 340), 2);
+  queue_ = MapQueue{0};
+  queue_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
+  go_together(0, 0);
+  EXPECT_EQ(go_together(40, 40), 1);
+}
+
+TEST_F(CanvasesTest, KnowOfEachCommandPostByItself) {
+  queue_.canvases().lead_to("10.100.1.201:8000");
+  go_together(0, 0);
+  queue_.canvases().lead_to("10.100.2.201:8000");
+  add(window_at(100, 100));
+  taken();
+  EXPECT_EQ(go_together(0, 0), 2) << "this one has nothing there";
+  queue_.canvases().lead_to("10.100.1.201:8000");
+  go_together(200, 200);
+  EXPECT_EQ(go_together(0, 0), 1);
+}
+
+TEST_F(CanvasesTest, KnowWhatOneCommandPostHasWhenARunBeginsAtAnother) {
+  queue_.canvases().carry_on({{"R1", extent_of(grid(-1000, -1000, 100, 100))}});
+  queue_.canvases().lead_to("10.100.1.201:8000");
+  go_together(0, 0);
+  queue_.canvases().lead_to("10.100.2.201:8000");
+  hear(2);
+  queue_.canvases().begin_run();
+  go_together(100, 100);
+  EXPECT_EQ(go_together(0, 0), 2);
+  EXPECT_EQ(go_together(-1990, -1990), 2);
+  queue_.canvases().lead_to("10.100.1.201:8000");
+  go_together(200, 200);
+  EXPECT_EQ(go_together(0, 0), 1);
+  EXPECT_EQ(go_together(-1990, -1990), 1) << "of an earlier life";
+}
+
+TEST_F(CanvasesTest, DoNotKnowWhatATryThatFailedHasLeft) {
+  go_together(0, 0);
+  add(window_at(4, 4));
+  QueuedMap failed = taken();
+  ++failed.trial.failures;
+  queue_.put_back(std::move(failed));
+  add(window_at(6, 6));
+  add(window_at(8, 8));
+  EXPECT_EQ(taken().updates.size(), 1) << "it";
+  EXPECT_EQ(taken().updates.size(), 1) << "a corner between the others is in its tile";
+}
+
+TEST_F(CanvasesTest, HaveOlderCellsForAGapByTheNextTry) {
+  go_together(0, 0);
+  add(window_at(4, 4));
+  add(window_at(6, 6));
+  QueuedMap both = taken();
+  ASSERT_TRUE(both.has_gaps);
+  queue_.put_back(std::move(both));
+  EXPECT_EQ(queue_.count(), 2) << "so it comes back as its parts";
+  EXPECT_EQ(taken().parts.size(), 2);
+}
+
+TEST_F(CanvasesTest, ForgetTheOldestForTheMemorysBound) {
+  queue_.canvases() = Canvases{8};
+  go_together(0, 0);
+  EXPECT_EQ(go_together(3, 3), 2);
+  for (int i = 1; i < 12; ++i) go_together(100 * i, 0);
+  EXPECT_EQ(go_together(1100, 2), 2);
+  EXPECT_EQ(go_together(3, 3), 1);
+  for (int i = 0; i < 600; ++i) {
+    queue_.add(1, grid_update("x" + std::to_string(i), grid(0, 0, 4, 4)), at(1));
+    auto next = queue_.take();
+    EXPECT_TRUE(!next->ground || i <= static_cast<int>(Canvases::kMostNames));
+  }
+}
+
+TEST_F(CanvasesTest, AreNotKeptOfWholeMapsNorOfWhatIsTurnedOrTooLarge) {
+  add(window_at(0, 0));
+  EXPECT_TRUE(taken().ground);
+  add(window_at(-1, -1, 12));
+  EXPECT_FALSE(taken().ground) << "all that was sent lies in it";
+  add(window_at(4, 4));
+  EXPECT_TRUE(taken().ground);
+  auto turned = window_at(0, 0);
+  std::get<icd::OccupancyGrid>(turned.msg).origin.orientation = {0, 0, 0.6, 0.8};
+  add(turned);
+  EXPECT_FALSE(taken().ground);
+  queue_.add(99, grid_update("R1", grid(-500, -500, 3000, 3000)), at(99));
+  EXPECT_FALSE(queue_.take()->ground);
+}
+
+TEST(ExtentOfAGrid, HoldsItsCells) {
+  EXPECT_EQ(extent_of(grid(1, 2, 10, 20, 0.5)), (Extent{0.5, 1.5, 6.5, 12.5}));
+  auto turned = grid(0, 0, 10, 20, 1);
+  turned.origin.orientation = {0, 0, 1, 0};
+  EXPECT_TRUE(extent_of(turned).holds({-10, -20, 0, 0}));
+  EXPECT_EQ(extent_of(grid(1e308, 0, 4'000'000'000, 1, 1e300)), Extent::everywhere());
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,170 @@
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+
+#include "queues/maps.hpp"
+
+namespace adit::queues {
+namespace {
+
+icd::Quaternion yaw(double angle) {
+  return {0, 0, std::sin(angle / 2), std::cos(angle / 2)};
+}
+
+/// `older` moved by cells along the newer's own axes.
+icd::OccupancyGrid shifted(icd::OccupancyGrid older, double angle, double cells_x, double cells_y) {
+  const double x = cells_x * older.resolution, y = cells_y * older.resolution;
+  older.origin.orientation = yaw(angle);
+  older.origin.position.x += std::cos(angle) * x - std::sin(angle) * y;
+  older.origin.position.y += std::sin(angle) * x + std::cos(angle) * y;
+  return older;
+}
+
+struct CoverCase {
+  const char* what;
+  icd::OccupancyGrid newer, older;
+  bool covered;
+};
+
+icd::OccupancyGrid with_z(icd::OccupancyGrid grid, double z) {
+  grid.origin.position.z = z;
+  return grid;
+}
+
+icd::OccupancyGrid turned(icd::OccupancyGrid grid, double angle) {
+  grid.origin.orientation = yaw(angle);
+  return grid;
+}
+
+TEST(Covers, FollowsTheTableOfCases) {
+  const double far = 1e300;
+  const CoverCase cases[] = {
+      {"the same extent", grid(-5, 3, 40, 30), grid(-5, 3, 40, 30), true},
+      {"grown on every side", grid(-1, -1, 80, 80), grid(0, 0, 40, 30), true},
+      {"grown to the right only", grid(0, 0, 41, 30), grid(0, 0, 40, 30), true},
+      {"one cell less to the right", grid(0, 0, 39, 30), grid(0, 0, 40, 30), false},
+      {"one cell less at the top", grid(0, 0, 40, 29), grid(0, 0, 40, 30), false},
+      {"one cell less to the left", grid(0.05, 0, 80, 80), grid(0, 0, 40, 30), false},
+      {"one cell less at the bottom", grid(0, 0.05, 80, 80), grid(0, 0, 40, 30), false},
+      {"half a cell off", grid(-1.025, -1, 80, 80), grid(0, 0, 40, 30), false},
+      {"a hundredth of a cell off", grid(-1.0005, -1, 80, 80), grid(0, 0, 40, 30), false},
+      {"a millionth of a cell off", grid(-1 - 5e-8, -1 + 5e-8, 80, 80), grid(0, 0, 40, 30), true},
+      {"finer", grid(0, 0, 400, 400, 0.025), grid(0, 0, 40, 30), false},
+      {"another height", with_z(grid(-1, -1, 80, 80), 0.5), grid(0, 0, 40, 30), false},
+      {"the same height", with_z(grid(-1, -1, 80, 80), 0.5), with_z(grid(0, 0, 40, 30), 0.5), true},
+      {"another orientation", turned(grid(-1, -1, 80, 80), 0.01), grid(0, 0, 40, 30), false},
+      {"so far out that cells cannot be told apart, alike", grid(far, 0, 80, 80), grid(far, 0, 40, 30), true},
+      {"so far out, smaller", grid(far, 0, 39, 80), grid(far, 0, 40, 30), false},
+      {"so far out, elsewhere", grid(far, 0, 80, 80), grid(far * 2, 0, 40, 30), false},
+      {"far out and near", grid(0, 0, 80, 80), grid(far, 0, 40, 30), false},
+      {"the widest there can be", grid(0, 0, 4294967295u, 4294967295u), grid(0, 0, 4294967295u, 1), true},
+      {"a resolution that overflows", grid(1, 1, 2, 2, 5e-324), grid(1, 1, 1, 1, 5e-324), true},
+  };
+  for (const auto& [what, newer, older, covered] : cases) EXPECT_EQ(covers(newer, older), covered) << what;
+}
+
+TEST(Covers, TakesWhatFloat32MakesOfTheResolutionForOneLattice) {
+  const double resolution = static_cast<double>(0.05F);  // 0.05000000074505806
+  for (int cells = 1; cells < 4000; cells += 7) {
+    const auto older = grid(-10, -10, 100, 100, resolution);
+    const auto newer = grid(-10 - cells * 0.05, -10, 8192, 100, resolution);
+    EXPECT_TRUE(covers(newer, older)) << cells << " cells apart";
+  }
+}
+
+TEST(Covers, MeasuresAlongTheAxesOfTurnedGrids) {
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> angle{-std::numbers::pi, std::numbers::pi}, metres{-200, 200};
+  std::uniform_int_distribution<int> cells{-50, 50};
+  for (int i = 0; i < 2000; ++i) {
+    auto newer = grid(metres(random), metres(random), 60, 40, 0.1);
+    const double turn = angle(random);
+    newer = turned(newer, turn);
+    const int x = cells(random), y = cells(random);
+    auto older = shifted(newer, turn, x, y);
+    older.width = 20;
+    older.height = 10;
+    const bool inside = x >= 0 && y >= 0 && x + 20 <= 60 && y + 10 <= 40;
+    EXPECT_EQ(covers(newer, older), inside) << x << ", " << y << " turned by " << turn;
+    EXPECT_FALSE(covers(newer, shifted(newer, turn, x + 0.5, y)));
+  }
+}
+
+/// Any grid: few values of each kind, so that laws are tried where they bite.
+icd::OccupancyGrid any_grid(std::mt19937_64& random) {
+  const auto one_of = [&](std::initializer_list<double> values) {
+    return values.begin()[std::uniform_int_distribution<std::size_t>{0, values.size() - 1}(random)];
+  };
+  auto any = grid(one_of({0, 0.1, -0.1, -0.3, 0.0999, 1e-5, 1e290}), one_of({0, 0.1, -0.2, 0.00004, 0.00006}),
+                  static_cast<std::uint32_t>(one_of({1, 2, 4, 7})),
+                  static_cast<std::uint32_t>(one_of({1, 3, 6})), one_of({0.1, 0.1, 0.1, 0.05}));
+  any.origin.position.z = one_of({0, 0, 0, 0.00004, 0.2});
+  any.origin.orientation = yaw(one_of({0, 0, 0, 1}));
+  return any;
+}
+
+TEST(Covers, IsReflexive) {
+  std::mt19937_64 random{2};
+  for (int i = 0; i < 1000; ++i) {
+    const auto any = any_grid(random);
+    EXPECT_TRUE(covers(any, any));
+  }
+}
+
+TEST(Covers, IsTransitive) {
+  std::mt19937_64 random{3};
+  int chains = 0;
+  for (int i = 0; i < 40'000; ++i) {
+    const auto a = any_grid(random), b = any_grid(random);
+    for (int left = covers(a, b) ? 50 : 0; left > 0; --left) {
+      const auto c = any_grid(random);
+      if (!covers(b, c)) continue;
+      ++chains;
+      ASSERT_TRUE(covers(a, c));
+    }
+  }
+  EXPECT_GT(chains, 30);
+}
+
+/// The middle of a cell in "darpa", by the ICD's words (6.3.1): origin, then row by row along the grid's
+/// axes.
+icd::Point middle_of(const icd::OccupancyGrid& grid, double column, double row) {
+  const double angle = 2 * std::atan2(grid.origin.orientation.z, grid.origin.orientation.w);
+  const double x = (column + 0.5) * grid.resolution, y = (row + 0.5) * grid.resolution;
+  return {grid.origin.position.x + std::cos(angle) * x - std::sin(angle) * y,
+          grid.origin.position.y + std::sin(angle) * x + std::cos(angle) * y, grid.origin.position.z};
+}
+
+/// Whether some cell of `grid` lies where that point is, to a thousandth of a cell.
+bool has_cell_at(const icd::OccupancyGrid& grid, const icd::Point& point) {
+  const double close = grid.resolution * 0.002;
+  for (std::uint32_t row = 0; row < grid.height; ++row) {
+    for (std::uint32_t column = 0; column < grid.width; ++column) {
+      const auto middle = middle_of(grid, column, row);
+      if (std::hypot(middle.x - point.x, middle.y - point.y, middle.z - point.z) < close) return true;
+    }
+  }
+  return false;
+}
+
+TEST(Covers, IsNeverTrueWhereACellOfTheOlderLiesOutsideTheNewer) {
+  std::mt19937_64 random{4};
+  int covered = 0;
+  for (int i = 0; i < 100'000; ++i) {
+    const auto newer = any_grid(random), older = any_grid(random);
+    if (!covers(newer, older)) continue;
+    ++covered;
+    for (const double row : {0.0, older.height - 1.0}) {
+      for (const double column : {0.0, older.width - 1.0}) {
+        ASSERT_TRUE(has_cell_at(newer, middle_of(older, column, row)));
+      }
+    }
+  }
+  EXPECT_GT(covered, 100);
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,290 @@
+#include "queues/map_queue.hpp"
+
+#include <gmock/gmock.h>
+
+#include "queues/maps.hpp"
+
+namespace adit::queues {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Optional;
+
+constexpr std::size_t kPlenty = 1u << 20;
+
+const auto kSmall = grid(0, 0, 10, 10);
+const auto kLarge = grid(-1, -1, 80, 80);
+const auto kElsewhere = grid(100, 100, 10, 10);
+
+TEST(MapQueue, GivesOutFirstWhoCameFirst) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  queue.add(2, cloud_update("R2", {1}), at(2));
+  queue.add(3, grid_update("", kSmall), at(3));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+  EXPECT_FALSE(queue.take());
+}
+
+TEST(MapQueue, ReplacesAGridByANewerOneThatCoversItWhichKeepsItsPlaceAndAge) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  queue.add(2, grid_update("R2", kSmall), at(2));
+  EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)), ElementsAre(1));
+  EXPECT_EQ(queue.count(), 2);
+  const auto first = queue.take();
+  EXPECT_THAT(first->updates, ElementsAre(1, 3));
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(first->map.msg), kLarge);
+  EXPECT_EQ(first->accepted, at(1));
+}
+
+TEST(MapQueue, SaysOfEachUpdateOnlyOnceThatItWasReplaced) {
+  MapQueue queue{kPlenty};
+  EXPECT_THAT(queue.add(1, grid_update("R1", kSmall), at(1)), IsEmpty());
+  EXPECT_THAT(queue.add(2, grid_update("R1", kSmall), at(2)), ElementsAre(1));
+  EXPECT_THAT(queue.add(3, grid_update("R1", kSmall), at(3)), ElementsAre(2));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
+}
+
+TEST(MapQueue, KeepsAGridThatTheNewerDoesNotCover) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kElsewhere), at(1));
+  EXPECT_THAT(queue.add(2, grid_update("R1", kLarge), at(2)), IsEmpty());
+  EXPECT_EQ(queue.count(), 2);
+}
+
+TEST(MapQueue, KeepsAGridOfAnotherRobot) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  EXPECT_THAT(queue.add(2, grid_update("R2", kLarge), at(2)), IsEmpty());
+  EXPECT_THAT(queue.add(3, grid_update("", kLarge), at(3)), IsEmpty());
+  EXPECT_EQ(queue.count(), 3);
+}
+
+TEST(MapQueue, ReplacesAllThatANewGridCovers) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  queue.add(2, grid_update("R1", grid(1, 1, 10, 10)), at(2));
+  EXPECT_THAT(queue.add(3, grid_update("R1", kLarge), at(3)), ElementsAre(1, 2));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
+}
+
+TEST(MapQueue, NeverSendsOldCellsAfterNewerOnes) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  queue.add(2, grid_update("R2", kSmall), at(2));
+  queue.add(3, grid_update("R1", grid(0.2, 0.2, 200, 200)), at(3));  // overlaps the next, and is not covered
+  queue.add(4, grid_update("R1", kLarge), at(4));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 4));
+}
+
+TEST(MapQueue, MergesCloudsThatFollowEachOtherWhileMoreThanOneWait) {
+  MapQueue queue{kPlenty};
+  queue.add(1, cloud_update("R1", {1, 2}), at(1));
+  queue.add(2, grid_update("R2", kSmall), at(2));
+  queue.add(3, cloud_update("R1", {3}), at(3));
+  const auto merged = queue.take();
+  EXPECT_THAT(merged->updates, ElementsAre(1, 3));
+  EXPECT_THAT(points_of(merged->map), ElementsAre(1, 2, 3));
+  EXPECT_EQ(merged->map.data.raw_size, 36);
+  EXPECT_EQ(merged->accepted, at(1));
+  EXPECT_EQ(queue.count(), 1);
+}
+
+TEST(MapQueue, TakesMergedCloudsApartAgainAndSendsEachByItself) {
+  MapQueue queue{kPlenty};
+  queue.add(1, cloud_update("R1", {1}), at(1));
+  queue.add(2, cloud_update("R1", {2}), at(2));
+  auto merged = *queue.take();
+  queue.add(3, cloud_update("R1", {3}), at(3));
+  queue.put_back(std::move(merged));
+  merged = *queue.take();
+  EXPECT_THAT(merged.updates, ElementsAre(1, 2, 3));
+  queue.put_back_apart(std::move(merged));
+  queue.add(4, cloud_update("R1", {4}), at(4));
+  queue.add(5, cloud_update("R1", {5}), at(5));
+  for (const float point : {1.0F, 2.0F, 3.0F}) {
+    const auto part = queue.take();
+    EXPECT_THAT(part->updates, ElementsAre(static_cast<std::uint64_t>(point)));
+    EXPECT_THAT(points_of(part->map), ElementsAre(point));
+  }
+  EXPECT_THAT(queue.take()->updates, ElementsAre(4, 5)) << "those that came later are merged as ever";
+  EXPECT_EQ(queue.bytes(), 0);
+}
+
+TEST(MapQueue, MergedCloudsHaveTheNewersHeader) {
+  auto older = cloud_update("R1", {1}), newer = cloud_update("R1", {2});
+  older.header().stamp = 10;
+  newer.header().stamp = 11;
+  EXPECT_THAT(merge(older, newer).header().stamp, Optional(11.0));
+}
+
+TEST(MapQueue, MergesWithinItsLimitAndInOrder) {
+  MapQueue queue{36};  // three points
+  queue.add(1, cloud_update("R1", {1, 2}), at(1));
+  queue.add(2, cloud_update("R1", {3, 4}), at(2));
+  queue.add(3, cloud_update("R1", {5}), at(3));  // would fit, but must not go ahead of 2
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2, 3));
+}
+
+TEST(MapQueue, MergesNoCloudsPastOneThatDoesNotFit) {
+  auto other = icd::xyz();
+  other.is_bigendian = true;
+  MapQueue queue{kPlenty};
+  queue.add(1, cloud_update("R1", {1}), at(1));
+  queue.add(2, cloud_update("R1", {2}, other), at(2));
+  queue.add(3, cloud_update("R1", {3}), at(3));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+}
+
+TEST(MapQueue, MergesNoPackedCloud) {
+  auto packed = cloud_update("R1", {2});
+  packed.data.compression = icd::Compression::Gzip;
+  MapQueue queue{kPlenty};
+  queue.add(1, cloud_update("R1", {1}), at(1));
+  queue.put_back({packed, at(0), {0}});
+  queue.add(2, cloud_update("R1", {3}), at(2));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(0));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2));
+}
+
+TEST(MapQueue, SaysWhichCloudsCanBeMerged) {
+  const auto plain = icd::xyz();
+  auto step = plain, fields = plain, bytes = plain, moved = plain, still = plain;
+  step.point_step = 16;
+  fields.fields[2].name = "Z";
+  bytes.is_bigendian = true;
+  moved.origin = icd::Pose{{1, 0, 0}, {}};
+  still.origin = icd::Pose{};  // ICD 6.3.2: the same as none
+  EXPECT_TRUE(mergeable(plain, plain));
+  EXPECT_TRUE(mergeable(plain, still));
+  EXPECT_FALSE(mergeable(plain, step));
+  EXPECT_FALSE(mergeable(plain, fields));
+  EXPECT_FALSE(mergeable(plain, bytes));
+  EXPECT_FALSE(mergeable(plain, moved));
+}
+
+TEST(MapQueue, PutsBackWhatCouldNotBeSentFirstOfItsSenders) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  queue.add(2, cloud_update("R2", {1}), at(2));
+  auto failed = *queue.take();
+  queue.add(3, grid_update("R1", kElsewhere), at(3));
+  EXPECT_FALSE(queue.is_replaced(failed));
+  EXPECT_THAT(queue.put_back(failed), ElementsAre());
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "a try is a turn";
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(3));
+}
+
+TEST(MapQueue, PutsBackNoGridThatANewerOneCovers) {
+  MapQueue queue{kPlenty};
+  queue.add(1, grid_update("R1", kSmall), at(1));
+  auto failed = *queue.take();
+  queue.add(2, cloud_update("R2", {1}), at(2));
+  queue.add(3, grid_update("R1", kLarge), at(3));
+  EXPECT_TRUE(queue.is_replaced(failed));
+  EXPECT_THAT(queue.put_back(failed), ElementsAre(1)) << "nobody needs it any more";
+  EXPECT_EQ(queue.count(), 2);
+  EXPECT_THAT(queue.take()->updates, ElementsAre(2)) << "R2's turn";
+  const auto heir = queue.take();
+  EXPECT_THAT(heir->updates, ElementsAre(1, 3));
+  EXPECT_EQ(heir->accepted, at(1));
+  EXPECT_EQ(std::get<icd::OccupancyGrid>(heir->map.msg), kLarge);
+}
+
+QueuedMap sent_again(std::uint64_t number, const icd::OccupancyGrid& grid, icd::Stamp stamp) {
+  QueuedMap map{grid_update("R1", grid), at(9), {number}};
+  map.again = stamp;
+  return map;
+}
+
+TEST(MapQueue, SendsAgainInTheOrderInWhichTheyWereMadeAndDropsNoneForAnOlderOne) {
+  MapQueue queue{kPlenty};
+  EXPECT_THAT(queue.put_back(sent_again(3, kSmall, 30)), IsEmpty());
+  EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
+  EXPECT_THAT(queue.put_back(sent_again(2, kLarge, 20)), IsEmpty());
+  for (const std::uint64_t number : {1, 2, 3}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+}
+
+// A clock that was set back: the simulation's seed 60002763 lost the later one's area to the older one's.
+TEST(MapQueue, TakesOfOneStampTheLaterThatIsSentAgainForTheNewer) {
+  MapQueue queue{kPlenty};
+  EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
+  EXPECT_FALSE(queue.is_replaced(sent_again(2, kSmall, 10)));
+  EXPECT_THAT(queue.put_back(sent_again(2, kSmall, 10)), IsEmpty());
+  for (const std::uint64_t number : {1, 2}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+  queue.put_back(sent_again(2, kLarge, 10));
+  EXPECT_TRUE(queue.is_replaced(sent_again(1, kSmall, 10)));
+}
+
+TEST(MapQueue, SendsACloudAgainByHandBeforeTheOthersOfItsSender) {
+  MapQueue queue{0};
+  queue.add(7, cloud_update("R1", {1}), at(1));
+  QueuedMap map{cloud_update("R1", {2}), at(9), {1}, {}, true};
+  map.again = 10;
+  queue.put_back(map);
+  for (const std::uint64_t number : {1, 7}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
+}
+
+TEST(MapQueue, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasRejectedMessages) {
+  MapQueue queue{kPlenty};
+  queue.add(7, grid_update("R1", kSmall), at(1));
+  auto failed = *queue.take();
+  queue.put_back(sent_again(1, kLarge, 10));
+  EXPECT_THAT(queue.put_back(failed), IsEmpty());
+  EXPECT_THAT(queue.take()->updates, ElementsAre(1));
+  EXPECT_THAT(queue.take()->updates, ElementsAre(7));
+}
+
+TEST(MapQueue, CountsTheMemoryThatIsHeld) {
+  MapQueue queue{kPlenty};
+  EXPECT_EQ(queue.bytes(), 0);
+  queue.add(1, cloud_update("R1", {1, 2, 3}), at(1));
+  EXPECT_GE(queue.bytes(), 36);
+  queue.add(2, grid_update("R1", kSmall), at(2));
+  queue.add(3, grid_update("R1", kSmall), at(3));
+  auto taken = *queue.take();
+  queue.put_back(taken);
+  while (queue.take()) {
+  }
+  EXPECT_EQ(queue.bytes(), 0);
+}
+
+TEST(MapQueue, IsNotSlowedDownByAFloodOfTinyClouds) {
+  MapQueue queue{kPlenty / 4};
+  const auto tiny = cloud_update("R1", {1});
+  for (std::uint64_t i = 0; i < 30'000; ++i) queue.add(i, tiny, at(1));
+  EXPECT_EQ(queue.take()->updates.size(), kPlenty / 4 / 12);
+}
+
+TEST(MapQueue, TellsWhatJoinsTheLastThatWaitsOfItsSender) {
+  MapQueue queue{1000};
+  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0, 0, 4, 4))));
+  queue.add(1, grid_update("R1", grid(0, 0, 4, 4)), at(1));
+  EXPECT_TRUE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4))));
+  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.2, 0, 4, 4, 0.1)))) << "of another lattice";
+  EXPECT_FALSE(queue.joins(grid_update("R2", grid(0.2, 0, 4, 4))));
+  queue.put_back_apart(*[&] {
+    queue.add(2, grid_update("R1", grid(0.2, 0, 4, 4)), at(2));
+    return queue.take();
+  }());
+  EXPECT_FALSE(queue.joins(grid_update("R1", grid(0.4, 0, 4, 4)))) << "what waits goes by itself";
+
+  auto turned = icd::xyz();
+  turned.is_bigendian = true;
+  queue.add(3, cloud_update("R1", {1}), at(3));
+  EXPECT_TRUE(queue.joins(cloud_update("R1", {2})));
+  EXPECT_FALSE(queue.joins(cloud_update("R1", {2}, turned)));
+  EXPECT_FALSE(queue.joins(cloud_update("", {2})));
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <vector>
+
+#include "queues/marker_changes.hpp"
+
+namespace adit::queues {
+
+/// What is to be sent of `older` followed by `newer`.
+inline std::vector<icd::Marker> merged(const std::vector<icd::Marker>& older,
+                                       const std::vector<icd::Marker>& newer) {
+  MarkerChanges changes;
+  for (const icd::Marker& marker : older) changes.apply(marker);
+  for (const icd::Marker& marker : newer) changes.apply(marker);
+  return changes.take(changes.size());
+}
+
+}  // namespace adit::queues

@@ -1,0 +1,364 @@
+#include "queues/rejected_messages.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+
+#include "queues/maps.hpp"
+#include "queues/marker_queue.hpp"
+#include "queues/state_queue.hpp"
+
+namespace adit::queues {
+namespace {
+
+icd::StateUpdate state_of(const std::vector<std::string>& names, double x = 0) {
+  icd::StateUpdate update;
+  icd::Pose pose;
+  pose.position.x = x;
+  for (const std::string& name : names) update.poses.push_back({*robot(name), pose});
+  return update;
+}
+
+icd::Marker marker(const std::string& ns, std::int32_t id,
+                   icd::MarkerAction action = icd::MarkerAction::Add) {
+  icd::Marker marker;
+  marker.ns = ns;
+  marker.id = id;
+  marker.action = action;
+  return marker;
+}
+
+RejectedMessage item(Message message, std::size_t bytes = 100) {
+  RejectedMessage item;
+  item.message = std::move(message);
+  item.status = 422;
+  item.why = "no";
+  item.bytes = bytes;
+  return item;
+}
+
+/// Those that it replaces, now that the Command Post took it.
+std::vector<std::uint64_t> taken(RejectedMessages& rejected, const Message& message) {
+  auto replaced = rejected.replaced_by(message);
+  rejected.mark_replaced(replaced);
+  return replaced;
+}
+
+TEST(RejectedMessages, KnowsWhatOvertakesAnother) {
+  const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
+                large = grid_update("ugv1", grid(0, 0, 20, 20)),
+                others = grid_update("ugv2", grid(0, 0, 20, 20)), cloud = cloud_update("ugv1", {1});
+  EXPECT_TRUE(replaces(large, small));
+  EXPECT_TRUE(replaces(small, small));
+  EXPECT_FALSE(replaces(small, large));
+  EXPECT_FALSE(replaces(others, small));
+  EXPECT_FALSE(replaces(cloud, cloud)) << "nothing covers a cloud";
+  EXPECT_FALSE(replaces(cloud, small));
+
+  const Message one = state_of({"ugv1"}), both = state_of({"ugv1", "ugv2"});
+  EXPECT_TRUE(replaces(both, one));
+  EXPECT_FALSE(replaces(one, both));
+  EXPECT_FALSE(replaces(both, small));
+
+  const Message a = icd::MarkersUpdate{{marker("a", 1)}},
+                ab = icd::MarkersUpdate{{marker("a", 1), marker("b", 1)}},
+                gone = icd::MarkersUpdate{{marker("a", 1, icd::MarkerAction::Delete)}},
+                all_gone = icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}};
+  EXPECT_TRUE(replaces(ab, a));
+  EXPECT_FALSE(replaces(a, ab));
+  EXPECT_TRUE(replaces(gone, a));
+  EXPECT_TRUE(replaces(all_gone, ab));
+  EXPECT_FALSE(replaces(ab, all_gone));
+}
+
+TEST(RejectedMessages, MarksWhatSomethingNewerSaysAllOf) {
+  RejectedMessages rejected;
+  rejected.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
+  rejected.add(item(cloud_update("ugv1", {1})));
+  EXPECT_TRUE(taken(rejected, grid_update("ugv1", grid(5, 5, 10, 10))).empty());
+  EXPECT_EQ(rejected.replaced_by(grid_update("ugv1", grid(0, 0, 30, 30))).size(), 1u);
+  EXPECT_FALSE(rejected.find(1)->replaced) << "not before it is marked";
+  EXPECT_EQ(taken(rejected, grid_update("ugv1", grid(0, 0, 30, 30))), std::vector<std::uint64_t>{1});
+  EXPECT_TRUE(taken(rejected, grid_update("ugv1", grid(0, 0, 30, 30))).empty()) << "it was marked before";
+  EXPECT_TRUE(rejected.find(1)->replaced);
+  EXPECT_FALSE(rejected.find(2)->replaced);
+}
+
+TEST(RejectedMessages, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
+  const auto made_at = [](icd::Stamp stamp, std::uint32_t cells) {
+    icd::MapUpdate map = grid_update("ugv1", grid(0, 0, cells, cells));
+    map.header().stamp = stamp;
+    return map;
+  };
+  RejectedMessages rejected;
+  rejected.add(item(made_at(20, 10)));
+  EXPECT_TRUE(taken(rejected, made_at(10, 30)).empty());
+  EXPECT_TRUE(rejected.add(item(made_at(10, 30))).empty()) << "nor where that is rejected again";
+  EXPECT_EQ(taken(rejected, made_at(30, 30)), (std::vector<std::uint64_t>{1, 2}));
+}
+
+/// Of 30 x 10 cells, of which nothing was made but the ten at the left and the ten at the right.
+QueuedMap with_a_gap() {
+  QueuedMap stitched{.map = grid_update("ugv1", grid(0, 0, 30, 10)), .accepted = {}, .updates = {1, 2}};
+  for (const double x : {0.0, 2.0})
+    stitched.parts.push_back(
+        {.map = grid_update("ugv1", grid(x, 0, 10, 10)), .accepted = {}, .updates = {1}});
+  stitched.has_gaps = true;
+  return stitched;
+}
+
+TEST(RejectedMessages, IsNotOvertakenByTheGapOfAStitchedGrid) {
+  QueuedMap stitched = with_a_gap();
+  RejectedMessages rejected;
+  rejected.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
+  rejected.add(item(grid_update("ugv1", grid(2, 0, 5, 5))));    // within the second part
+  std::vector<std::uint64_t> replaced;
+  for (const icd::MapUpdate* const map : said_by(stitched))
+    std::ranges::copy(taken(rejected, *map), std::back_inserter(replaced));
+  EXPECT_EQ(replaced, std::vector<std::uint64_t>{2});
+  stitched.has_gaps = false;
+  ASSERT_EQ(said_by(stitched).size(), 1u);
+  EXPECT_EQ(taken(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
+}
+
+TEST(RejectedMessages, IsSentAgainWhereWhatGoesHasAGapThere) {
+  const auto back = [](double x, std::uint32_t cells) {
+    return QueuedMap{
+        .map = grid_update("ugv1", grid(x, 0, cells, cells)), .accepted = {}, .updates = {3}, .again = 10};
+  };
+  const QueuedMap goes = with_a_gap();
+  EXPECT_FALSE(replaces(goes, back(1, 10))) << "in the middle";
+  EXPECT_FALSE(replaces(goes, back(1.8, 5))) << "half in the second part";
+  EXPECT_TRUE(replaces(goes, back(2, 5))) << "within it";
+}
+
+TEST(RejectedMessages, MarksADeleteAllThatWouldDeleteSomethingNewer) {
+  RejectedMessages rejected;
+  rejected.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
+  EXPECT_TRUE(taken(rejected, state_of({"ugv1"})).empty());
+  EXPECT_EQ(taken(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
+}
+
+TEST(RejectedMessages, HoldsOneForEachThatWouldSayTheSame) {
+  RejectedMessages rejected;
+  for (int i = 0; i < 1000; ++i) rejected.add(item(state_of({"ugv1", "ugv2"}, i)));
+  EXPECT_EQ(rejected.items().size(), 1);
+  EXPECT_EQ(rejected.items().front().number, 1000);
+}
+
+TEST(RejectedMessages, IsBounded) {
+  RejectedMessages rejected;
+  for (std::size_t i = 0; i < 3 * RejectedMessages::kMostItems; ++i)
+    rejected.add(item(cloud_update("ugv1", {1})));
+  EXPECT_EQ(rejected.items().size(), RejectedMessages::kMostItems);
+  EXPECT_EQ(rejected.items().front().number, 2 * RejectedMessages::kMostItems + 1) << "the oldest go";
+
+  rejected.add(item(cloud_update("ugv1", {1}), RejectedMessages::kMostBytes + 1));
+  EXPECT_EQ(rejected.items().size(), 1) << "one is always kept";
+}
+
+TEST(RejectedMessages, GivesAwayWhatIsTakenOnce) {
+  RejectedMessages rejected;
+  rejected.add(item(cloud_update("ugv1", {1})));
+  EXPECT_TRUE(rejected.take(1));
+  EXPECT_FALSE(rejected.take(1));
+  EXPECT_EQ(rejected.find(1), nullptr);
+}
+
+TEST(StateQueueApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
+  StateQueue queue;
+  queue.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(0));
+  queue.put_back_apart(*queue.take());
+  std::vector<std::string> passed;
+  for (int i = 0; i < 3; ++i) {
+    const auto taken = queue.take(at(1 + i));
+    ASSERT_EQ(taken->update.poses.size(), 1);
+    const icd::RobotName& name = taken->update.poses.front().name;
+    if (name.text() == "ugv2") {
+      queue.give_up(name, at(1 + i));
+    } else {
+      queue.passed(*taken);
+      passed.push_back(name.text());
+    }
+  }
+  EXPECT_EQ(passed, (std::vector<std::string>{"ugv1", "ugv3"}));
+  EXPECT_TRUE(queue.empty());
+
+  queue.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(5));
+  const auto together = queue.take(at(6));
+  ASSERT_EQ(together->update.poses.size(), 2) << "those that passed go together again";
+  const auto apart = queue.take(at(20));
+  ASSERT_EQ(apart->update.poses.size(), 1);
+  EXPECT_EQ(apart->update.poses.front().name.text(), "ugv2");
+  queue.passed(*apart);
+  queue.add(posted(state_of({"ugv1"})), at(21));
+  EXPECT_EQ(queue.take(at(22))->update.poses.size(), 3);
+}
+
+TEST(StateQueueApart, SendsAgainOnlyWhatWasGivenUpAndIsTheNewest) {
+  const icd::StateUpdate set_aside = state_of({"ugv1"});
+  StateQueue queue;
+  queue.add_unless_known(set_aside, at(0));
+  const auto given_up = queue.take();
+  ASSERT_TRUE(given_up) << "nothing newer is known";
+  queue.add_unless_known(set_aside, at(1));
+  EXPECT_TRUE(queue.empty()) << "it is under way";
+  queue.give_up(set_aside.poses.front().name, at(1));
+  queue.add_unless_known(set_aside, at(2));
+  const auto again = queue.take();
+  ASSERT_TRUE(again);
+  queue.passed(*again);
+  queue.add_unless_known(set_aside, at(3));
+  EXPECT_TRUE(queue.empty()) << "it was taken";
+
+  queue.add(posted(set_aside), at(4));
+  queue.take();
+  queue.add(posted(set_aside), at(5));  // a newer one
+  queue.give_up(set_aside.poses.front().name, at(6));
+  queue.passed(*queue.take());
+  queue.add_unless_known(set_aside, at(7));
+  EXPECT_TRUE(queue.empty()) << "a newer one was taken";
+}
+
+TEST(StateQueueApart, LetsARobotOnTrialRestWhileOthersHaveNews) {
+  StateQueue queue;
+  queue.add(posted(state_of({"ugv1", "ugv2"})), at(0));
+  queue.give_up(*robot("ugv2"), at(0));
+  EXPECT_EQ(queue.take(at(1))->update.poses.front().name.text(), "ugv1");
+  EXPECT_FALSE(queue.empty()) << "ugv2 has news still";
+  EXPECT_EQ(queue.unsent().size(), 1) << "and ugv1 is under way";
+}
+
+TEST(MarkerQueueNarrower, FindsTheOneThatIsAtFault) {
+  MarkerQueue queue({.per_message = 64});
+  icd::MarkersUpdate update;
+  for (int id = 0; id < 64; ++id) update.markers.push_back(marker("a", id));
+  queue.add(update, at(0));
+  std::vector<std::int32_t> refused;
+  std::size_t taken = 0;
+  int messages = 0;
+  while (auto waiting = queue.take()) {
+    ++messages;
+    const auto& markers = waiting->update.markers;
+    const bool bad = std::ranges::find(markers, 37, &icd::Marker::id) != markers.end();
+    if (!bad) {
+      queue.passed();
+      taken += markers.size();
+    } else if (markers.size() > 1) {
+      queue.put_back_narrower(*waiting);
+    } else {
+      refused.push_back(markers.front().id);
+    }
+  }
+  EXPECT_EQ(refused, std::vector<std::int32_t>{37});
+  EXPECT_EQ(taken, 63);
+  EXPECT_LE(messages, 30);
+}
+
+TEST(MarkerQueueBehind, LetsOthersGoFirstAndLosesNothing) {
+  MarkerQueue queue({.per_message = 1});
+  queue.add({{marker("a", 1)}}, at(0));
+  queue.add({{marker("b", 1)}}, at(0));
+  const auto first = queue.take();
+  queue.put_behind(*first);
+  EXPECT_EQ(queue.take()->update.markers.front().ns, "b");
+  const auto again = queue.take();
+  EXPECT_EQ(again->update.markers.front().ns, "a");
+  EXPECT_EQ(again->updates, 1);
+}
+
+TEST(MarkerQueueBehind, GivesOutTheFirstOfAnUpdateWhenTheOthersHaveGone) {
+  MarkerQueue queue({.per_message = 1});
+  queue.add({{marker("a", 1), marker("b", 1)}}, at(0));
+  queue.put_behind(*queue.take());
+  EXPECT_EQ(queue.take()->updates, 0u) << "its update has not gone whole";
+  ASSERT_TRUE(queue.oldest());
+  const auto again = queue.take();
+  EXPECT_EQ(again->update.markers.front().ns, "a");
+  EXPECT_EQ(again->updates, 1u);
+}
+
+TEST(MarkerQueueBehind, LeavesTheNewerChangeOfTheSameMarkerInItsPlace) {
+  MarkerQueue queue({.per_message = 1});
+  queue.add({{marker("a", 1)}}, at(0));
+  const auto first = queue.take();
+  icd::Marker newer = marker("a", 1);
+  newer.text = "newer";
+  queue.add({{newer}}, at(1));
+  queue.put_behind(*first);
+  EXPECT_EQ(queue.count(), 1);
+  const auto taken = queue.take();
+  EXPECT_EQ(taken->update.markers.front().text, "newer");
+  EXPECT_EQ(taken->updates, 2);
+}
+
+TEST(MarkerQueueBehind, NeverPutsADeleteAllBehindWhatFollowsIt) {
+  MarkerQueue queue({.per_message = 1});
+  queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1)}}, at(0));
+  for (int round = 0; round < 3; ++round) {
+    const auto first = queue.take();
+    ASSERT_EQ(first->update.markers.front().action, icd::MarkerAction::DeleteAll);
+    queue.put_behind(*first);
+    (void)queue.take();  // what goes ahead of it once
+  }
+  queue.passed();
+  EXPECT_EQ(queue.take()->update.markers.front().action, icd::MarkerAction::DeleteAll);
+  EXPECT_EQ(queue.take()->update.markers.front().ns, "a") << "in its own turn too";
+}
+
+TEST(MarkerQueueBehind, TriesWhetherOthersPassAheadOfADeleteAll) {
+  MarkerQueue queue({.per_message = 1});
+  queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1), marker("b", 1)}}, at(0));
+  std::vector<std::string> ahead;
+  for (int round = 0; round < 3; ++round) {
+    queue.put_behind(*queue.take());
+    const auto other = queue.take();
+    EXPECT_TRUE(other->is_ahead);
+    EXPECT_EQ(other->updates, 0u) << "it waits still";
+    ahead.push_back(other->update.markers.front().ns);
+  }
+  EXPECT_EQ(ahead, (std::vector<std::string>{"a", "b", "a"})) << "one of them may be at fault too";
+  EXPECT_EQ(queue.count(), 3u);
+}
+
+TEST(MarkerQueueBehind, HasNothingToSendAheadOfADeleteAllThatIsAlone) {
+  MarkerQueue queue({.per_message = 1});
+  queue.add({{marker("", 0, icd::MarkerAction::DeleteAll)}}, at(0));
+  queue.put_behind(*queue.take());
+  const auto again = queue.take();
+  EXPECT_FALSE(again->is_ahead);
+  EXPECT_EQ(again->updates, 1u);
+}
+
+/// It would go to another Command Post, hours later.
+TEST(StateQueue, MakesNoNewsOfWhatWasNoneWhenSendingFails) {
+  StateQueue queue;
+  queue.add(posted(state_of({"ugv1"})), at(0));
+  queue.passed(*queue.take());
+  queue.add(posted(state_of({"ugv2"})), at(1));
+  const auto both = *queue.take();
+  ASSERT_EQ(both.update.poses.size(), 2u);
+  queue.put_back(both);
+  ASSERT_EQ(queue.unsent().size(), 1u);
+  EXPECT_EQ(queue.unsent().front().name.text(), "ugv2");
+}
+
+TEST(StateQueue, ForgetsRobotsWithoutNewsWhereItIsFull) {
+  StateQueue queue;
+  icd::StateUpdate many;
+  for (std::size_t i = 0; i < StateQueue::kMostRobots; ++i) {
+    many.poses.push_back({*robot("r" + std::to_string(i)), {}});
+  }
+  queue.add(posted(many), at(0));
+  const auto under_way = *queue.take();
+  EXPECT_FALSE(queue.has_room_for(state_of({"ugv1"}))) << "they may come back";
+  queue.passed(under_way);
+  queue.add(posted(state_of({"r7"})), at(1));
+  ASSERT_TRUE(queue.has_room_for(state_of({"ugv1"})));
+  queue.add(posted(state_of({"ugv1"})), at(2));
+  EXPECT_EQ(queue.take()->update.poses.size(), 2u);
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,229 @@
+#include "queues/stamps.hpp"
+
+#include <gmock/gmock.h>
+
+#include <limits>
+#include <random>
+#include <string>
+#include <vector>
+
+namespace adit::queues {
+namespace {
+
+using testing::DoubleNear;
+
+constexpr double kNow = 1'650'000'000;
+
+Stamper of(const std::string& robot, const std::string& address = "10.0.0.5") {
+  return {address, icd::Uri::StateUpdate, robot};
+}
+
+TEST(StampShift, TakesTheFirstStampAsNowAndKeepsTheSpacingFromThenOn) {
+  StampShift shift;
+  EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow), kNow);
+  EXPECT_THAT(shift.shift(of("R1"), 100.3, kNow + 2), DoubleNear(kNow + 0.3, 1e-6)) << "however late it came";
+  EXPECT_THAT(shift.shift(of("R1"), 100.1, kNow + 2), DoubleNear(kNow + 0.1, 1e-6)) << "out of order";
+}
+
+TEST(StampShift, StampsWhatHasNoStampWithNow) {
+  StampShift shift;
+  EXPECT_EQ(shift.shift(of("R1"), {}, kNow), kNow);
+  EXPECT_EQ(shift.shift(of("R1"), 0.0, kNow + 1), kNow + 1) << "ROS: not set";
+  EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow + 2), kNow + 2) << "the first that it gave";
+}
+
+TEST(StampShift, PutsWhatHasNoStampNotBeforeWhatItsSenderStampedLast) {
+  StampShift shift;
+  shift.shift(of("R1"), 100.0, kNow);
+  const icd::Stamp ahead = shift.shift(of("R1"), 104.0, kNow + 1);
+  EXPECT_EQ(shift.shift(of("R1"), {}, kNow + 1), ahead);
+  EXPECT_EQ(shift.shift(of("R1"), {}, kNow + 9), kNow + 9);
+}
+
+TEST(StampShift, KeepsSendersApart) {
+  StampShift shift;
+  EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow), kNow);
+  EXPECT_EQ(shift.shift(of("R2"), 9000.0, kNow + 1), kNow + 1);
+  EXPECT_THAT(shift.shift(of("R1"), 101.5, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
+}
+
+TEST(StampShift, StartsAgainWhereAClockJumpedBackward) {
+  StampShift shift;
+  shift.shift(of("R1"), 100.0, kNow);
+  EXPECT_THAT(shift.shift(of("R1"), 95.5, kNow + 1), DoubleNear(kNow - 4.5, 1e-6)) << "late, no jump";
+  EXPECT_EQ(shift.shift(of("R1"), 94.5, kNow + 1), kNow + 1);
+  EXPECT_THAT(shift.shift(of("R1"), 95.0, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
+}
+
+TEST(StampShift, StartsAgainWhereAClockJumpedAhead) {
+  StampShift shift;
+  shift.shift(of("R1"), 100.0, kNow);
+  EXPECT_THAT(shift.shift(of("R1"), 104.5, kNow), DoubleNear(kNow + 4.5, 1e-6)) << "no jump";
+  EXPECT_THAT(shift.shift(of("R1"), 3600.0, kNow + 1), DoubleNear(kNow + 4.5, 1e-6))
+      << "nor behind what it had";
+  EXPECT_THAT(shift.shift(of("R1"), 3601.0, kNow + 2), DoubleNear(kNow + 5.5, 1e-6));
+  EXPECT_EQ(shift.shift(of("R1"), 9000.0, kNow + 60), kNow + 60);
+}
+
+TEST(StampShift, PutsWhatAClockSaysAfterItWasSetBackBehindNothingThatItHasSaid) {
+  for (const double back : {2.0, 3.5, 4.9, 5.1, 3600.0}) {
+    SCOPED_TRACE(back);
+    StampShift shift;
+    shift.shift(of("R1"), 10'000.0, kNow, 1);
+    const icd::Stamp ahead = shift.shift(of("R1"), 10'004.0, kNow + 0.1, 1);
+    const icd::Stamp first = shift.shift(of("R1"), 10'004.1 - back, kNow + 0.2, 1);
+    EXPECT_GE(first, ahead) << "its pose counts at once";
+    EXPECT_THAT(shift.shift(of("R1"), 10'004.4 - back, kNow + 0.3, 1), DoubleNear(first + 0.3, 1e-6));
+  }
+}
+
+TEST(StampShift, KeepsTheSpacingOfStampsOfAnySize) {
+  StampShift shift;
+  EXPECT_EQ(shift.shift(of("R1"), 1e308, kNow), kNow);
+  EXPECT_EQ(shift.shift(of("R1"), 1e308, kNow + 1), kNow);
+  EXPECT_EQ(shift.shift(of("R1"), std::numeric_limits<double>::max(), kNow + 1), kNow + 1);
+  EXPECT_EQ(shift.shift(of("R1"), std::numeric_limits<double>::denorm_min(), kNow + 2), kNow + 2);
+}
+
+TEST(StampShift, IsNeverNegativeNorFarAheadOfNow) {
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> any{0, 60};
+  StampShift shift;
+  for (int i = 0; i < 2000; ++i) {
+    const double now = i * 0.1;
+    const auto stamp = shift.shift(of("R1"), any(random), now);
+    ASSERT_GE(stamp, 0);
+    ASSERT_LE(stamp, now + StampShift::kJump);
+  }
+}
+
+TEST(StampShift, ForgetsTheAddressThatWasSilentLongest) {
+  StampShift shift;
+  const Stamper silent = of("R1", "silent"), busy = of("R1", "busy");
+  shift.shift(silent, 100.0, kNow);
+  shift.shift(busy, 100.0, kNow);
+  for (std::size_t i = 1; i < StampShift::kMostAddresses; ++i) {
+    shift.shift(of("R1", std::to_string(i)), 5.0, kNow);
+    shift.shift(busy, 100.0, kNow);
+  }
+  EXPECT_THAT(shift.shift(busy, 100.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6));
+  EXPECT_EQ(shift.shift(silent, 100.5, kNow + 3), kNow + 3) << "restarted";
+}
+
+TEST(StampShift, AnAddressHasSoManyClocksAndTakesNobodyElses) {
+  StampShift shift;
+  const Stamper other = of("R1", "10.0.0.6"), first = of("0"), late = of("late");
+  shift.shift(other, 100.0, kNow);
+  for (int i = 0; i < 2000; ++i) shift.shift(of(std::to_string(i)), 5.0, kNow);
+  EXPECT_EQ(shift.shift(late, 7.0, kNow + 1), kNow + 2) << "by the clock that all further robots share";
+  EXPECT_LE(shift.clocks().size(), 1 + StampShift::kMostOfAddress);
+  EXPECT_THAT(shift.shift(first, 5.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6)) << "its own goes on";
+  EXPECT_THAT(shift.shift(other, 100.5, kNow + 3), DoubleNear(kNow + 0.5, 1e-6));
+  for (const icd::Uri uri : icd::kUris) shift.shift({"10.0.0.5", uri, "new"}, 5.0, kNow);
+  EXPECT_EQ(shift.clocks().size(), 1 + StampShift::kMostOfAddress);
+}
+
+icd::Marker marker(std::optional<icd::Stamp> stamp) {
+  icd::Marker made;
+  made.header.stamp = stamp;
+  return made;
+}
+
+TEST(StampShift, KeepsTheSpacingOfTheMarkersOfAMessage) {
+  StampShift shift;
+  const Stamper stamper{"10.0.0.5", icd::Uri::MarkersUpdate, ""};
+  std::vector<icd::Marker> markers{marker({}), marker(50), marker(49.5), marker(51), marker(0)};
+  shift.shift_each(stamper, markers, kNow);
+  std::vector<icd::Marker> later{marker(51.5)};
+  shift.shift_each(stamper, later, kNow + 3);
+  std::vector<double> shifted;
+  for (const auto* some : {&markers, &later})
+    for (const icd::Marker& each : *some) shifted.push_back(*each.header.stamp - kNow);
+  EXPECT_THAT(shifted, testing::Pointwise(DoubleNear(1e-6), {0.0, 0.0, -0.5, 1.0, 1.0, 1.5}));
+}
+
+/// A state's stamps are recorded with its poses.
+TEST(StampShift, TellsEachClockOnceThatWasSetOrThatAMapOrMarkerStamped) {
+  StampShift shift;
+  shift.shift(of("R1"), {}, kNow);
+  EXPECT_TRUE(shift.changed().empty());
+  for (const char* robot : {"R2", "R1", "R2"}) shift.shift(of(robot), 100.0, kNow);
+  shift.shift(of("R2"), 101.0, kNow);
+  const auto changed = shift.changed();
+  ASSERT_EQ(changed.size(), 2);
+  EXPECT_EQ(changed[0].first, of("R2"));
+  EXPECT_EQ(changed[0].second.latest, 101.0);
+  EXPECT_TRUE(shift.changed().empty());
+  shift.shift(of("R2"), 101.5, kNow + 1);
+  EXPECT_TRUE(shift.changed().empty()) << "as it was set";
+  shift.shift(of("R2"), 90.0, kNow + 1);
+  EXPECT_EQ(shift.changed().size(), 1) << "set again";
+  for (const icd::Uri uri : {icd::Uri::MapUpdate, icd::Uri::MarkersUpdate}) {
+    for (const double stamp : {50.0, 51.0}) {
+      shift.shift({"R1", uri, ""}, stamp, kNow);
+      EXPECT_EQ(shift.changed().size(), 1);
+    }
+  }
+}
+
+/// As one life hands over to the next, at any message: nobody can see that it did.
+TEST(StampShift, GoesOnInTheNextLifeAsIfNothingHadBeen) {
+  std::mt19937_64 random{1};
+  std::uniform_real_distribution<double> step{-6, 4};
+  StampShift uninterrupted, living;
+  double theirs = 9000;
+  for (int i = 0; i < 3000; ++i) {
+    const double now = kNow + i * 0.5;
+    const std::string sender = "R" + std::to_string(i % 3);
+    theirs = std::max(0.0, theirs + step(random) + 1.2);
+    ASSERT_EQ(living.shift(of(sender), theirs, now), uninterrupted.shift(of(sender), theirs, now)) << i;
+    StampShift next;
+    for (const auto& [each, clock] : living.clocks()) next.carry_on(each, clock);
+    living = std::move(next);
+  }
+}
+
+TEST(StampShift, KnowsWhatTheClockOfARobotShowsThatSpeaksForAWhile) {
+  StampShift shift;
+  EXPECT_FALSE(shift.told(kNow, 0, 1e9));
+  for (int second = 0; second <= 9; ++second) shift.shift(of("R1"), 5000.0 + second, kNow + second);
+  EXPECT_FALSE(shift.told(kNow + 9, 0, 1e9));
+  shift.shift(of("R1"), 5010.0, kNow + 10);
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(5012, 1e-6));
+  for (int second = 0; second <= 10; ++second) shift.shift(of("R2"), 100.0 + second, kNow + second);
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1e9), DoubleNear(112, 1e-6)) << "the earliest";
+  EXPECT_THAT(*shift.told(kNow + 12, 1000, 1e9), DoubleNear(5012, 1e-6)) << "the other one's is not set";
+  EXPECT_THAT(*shift.told(kNow + 12, 0, 1000), DoubleNear(112, 1e-6));
+  EXPECT_FALSE(shift.told(kNow + 21, 0, 1e9)) << "they say nothing any more";
+}
+
+TEST(StampShift, ForgetsInTheNextLifeTheAddressThatWasSilentLongest) {
+  StampShift shift;
+  const auto at = [](std::size_t address) { return of("R1", std::to_string(address)); };
+  for (std::size_t i = 0; i < StampShift::kMostAddresses; ++i) shift.shift(at(i), 5.0, kNow);
+  shift.shift(at(0), 5.5, kNow);
+  StampShift next;
+  for (const auto& [sender, clock] : shift.clocks()) next.carry_on(sender, clock);
+  next.shift(of("R1", "new"), 5.0, kNow + 9);
+  EXPECT_THAT(next.shift(at(0), 6.0, kNow + 9), DoubleNear(kNow + 1, 1e-6));
+  EXPECT_EQ(next.shift(at(1), 6.0, kNow + 9), kNow + 9);
+}
+
+TEST(StampOrder, GoesOnFromTheLastOfAnEarlierLife) {
+  StampOrder order;
+  order.carry_on(10);
+  EXPECT_EQ(order.next(9), 10);
+  order.carry_on(8);
+  EXPECT_EQ(order.next(9.5), 10);
+}
+
+TEST(StampOrder, NeverRunsBackward) {
+  StampOrder order;
+  EXPECT_EQ(order.next(10), 10);
+  EXPECT_EQ(order.next(10.5), 10.5);
+  EXPECT_EQ(order.next(9), 10.5);
+  EXPECT_EQ(order.next(10.6), 10.6);
+}
+
+}  // namespace
+}  // namespace adit::queues

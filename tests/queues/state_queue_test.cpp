@@ -1,0 +1,199 @@
+#include "queues/state_queue.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <string>
+
+#include "queues/maps.hpp"
+
+namespace adit::queues {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Optional;
+using testing::SizeIs;
+
+icd::NamedPose pose(const std::string& name, double x) {
+  return {*robot(name), {{x, 0, 0}, {}}};
+}
+
+std::vector<PostedPose> state(std::optional<icd::Stamp> stamp, std::vector<icd::NamedPose> poses,
+                              const std::string& address = "10.0.0.5") {
+  return posted({{stamp}, std::move(poses)}, address);
+}
+
+void post(StateQueue& queue, const std::vector<PostedPose>& poses, Instant now) {
+  queue.add(queue.news_in(poses), now);
+}
+
+TEST(StateQueue, SendsAllRobotsTogetherThoughEachPostsAlone) {
+  StateQueue queue;
+  post(queue, state(10, {pose("R2", 2)}), at(1));
+  post(queue, state(11, {pose("R1", 1)}), at(2));
+  const auto taken = queue.take();
+  EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 1), pose("R2", 2)));
+  EXPECT_THAT(taken->update.header.stamp, Optional(11.0));
+  EXPECT_EQ(taken->accepted, at(1));
+}
+
+TEST(StateQueue, SendsRobotsWithoutNewsToo) {
+  StateQueue queue;
+  post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
+  queue.take();
+  post(queue, state(12, {pose("R2", 3)}), at(2));
+  const auto taken = queue.take();
+  EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 1), pose("R2", 3)));
+  EXPECT_THAT(taken->news, ElementsAre(pose("R2", 3)));
+}
+
+TEST(StateQueue, GivesOutNothingWithoutNews) {
+  StateQueue queue;
+  EXPECT_FALSE(queue.take());
+  post(queue, state(10, {pose("R1", 1)}), at(1));
+  EXPECT_FALSE(queue.empty());
+  queue.take();
+  EXPECT_TRUE(queue.empty());
+  EXPECT_FALSE(queue.take());
+}
+
+struct OrderCase {
+  const char* what;
+  std::optional<icd::Stamp> held, newer;
+  const char* address;  // of the newer one
+  double x;             // that is kept: 1, which came first, or 2
+};
+
+class StateQueueOrder : public testing::TestWithParam<OrderCase> {};
+
+TEST_P(StateQueueOrder, IsByTheStampsOfOneClientAndElseByArrival) {
+  const OrderCase& given = GetParam();
+  StateQueue queue;
+  post(queue, state(given.held, {pose("R1", 1)}), at(1));
+  queue.passed(*queue.take());
+  post(queue, state(given.newer, {pose("R1", 2)}, given.address), at(2));
+  EXPECT_EQ(queue.empty(), given.x == 1) << "one that is older is no news";
+  post(queue, state(1, {pose("R2", 0)}), at(3));
+  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", given.x), pose("R2", 0)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Table, StateQueueOrder,
+                         testing::Values(OrderCase{"newer", 10, 11, "10.0.0.5", 2},
+                                         OrderCase{"late", 10, 9, "10.0.0.5", 1},
+                                         OrderCase{"the same", 10, 10, "10.0.0.5", 2},
+                                         OrderCase{"of another client", 10, 9, "10.0.0.6", 2},
+                                         OrderCase{"without a stamp", 10, {}, "10.0.0.5", 2},
+                                         OrderCase{"after one without a stamp", {}, 9, "10.0.0.5", 2}),
+                         [](const auto& test) {
+                           std::string name = test.param.what;
+                           std::ranges::replace(name, ' ', '_');
+                           return name;
+                         });
+
+TEST(StateQueue, RepeatsNoPoseInARunThatItWasNotPostedIn) {
+  StateQueue queue;
+  post(queue, state(10, {pose("R1", 1), pose("R2", 1)}), at(1));
+  queue.passed(*queue.take());
+  post(queue, state(11, {pose("R2", 2), pose("R3", 2)}), at(2));
+  queue.begin_run();
+  post(queue, state(12, {pose("R3", 3)}), at(3));
+  const auto first = queue.take();
+  EXPECT_THAT(first->update.poses, ElementsAre(pose("R2", 2), pose("R3", 3))) << "what waits is not lost";
+  queue.passed(*first);
+  post(queue, state(13, {pose("R4", 4)}), at(4));
+  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R3", 3), pose("R4", 4)));
+  EXPECT_THAT(queue.news_in(state(9, {pose("R1", 9)})), IsEmpty()) << "it came late";
+}
+
+TEST(StateQueue, RepeatsAPoseOfTheRunBeforeOnlyUntilItIsTaken) {
+  StateQueue queue;
+  post(queue, state(10, {pose("R1", 1)}), at(1));
+  const auto under_way = *queue.take();
+  queue.begin_run();
+  queue.put_back(under_way);
+  const auto again = queue.take();
+  EXPECT_THAT(again->news, ElementsAre(pose("R1", 1)));
+  post(queue, state(11, {pose("R1", 2)}), at(2));
+  queue.passed(*again);
+  queue.passed(*queue.take());
+  post(queue, state(12, {pose("R2", 3)}), at(3));
+  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", 2), pose("R2", 3))) << "it posted since";
+}
+
+TEST(StateQueue, WhatIsPutBackIsNewsAgainAndNeverOverwritesNewer) {
+  StateQueue queue;
+  post(queue, state(10, {pose("R1", 1), pose("R2", 1)}), at(1));
+  const auto failed = *queue.take();
+  post(queue, state(11, {pose("R1", 2)}), at(2));
+  queue.put_back(failed);
+  EXPECT_EQ(queue.oldest(), at(1));
+  const auto taken = queue.take();
+  EXPECT_THAT(taken->update.poses, ElementsAre(pose("R1", 2), pose("R2", 1)));
+  EXPECT_EQ(taken->accepted, at(1));
+}
+
+TEST(StateQueue, HasAnEndToTheRobotsItKnows) {
+  StateQueue queue;
+  icd::StateUpdate many;
+  for (std::size_t i = 0; i < StateQueue::kMostRobots; ++i) many.poses.push_back(pose(std::to_string(i), 0));
+  EXPECT_TRUE(queue.has_room_for(many));
+  queue.add(posted(many), at(1));
+  EXPECT_FALSE(queue.has_room_for({{}, {pose("R1", 0)}}));
+  EXPECT_TRUE(queue.has_room_for({{}, {pose("7", 0)}})) << "a robot that it knows";
+}
+
+TEST(StateQueue, ShowsEachRobotsNewestPoseAndTellsEachNewsUntilItIsTakenHoweverSendingGoes) {
+  std::mt19937_64 random{1};
+  const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
+  StateQueue queue;
+  std::map<icd::RobotName, std::pair<icd::Stamp, double>> newest;
+  std::map<icd::RobotName, double> lacking;  // at the Command Post
+  int number = 0;
+  const auto add = [&] {
+    icd::StateUpdate update{{number + pick(5)}, {}};
+    for (const char* name : {"R1", "R2", "R3"}) {
+      if (pick(2) == 0) continue;
+      update.poses.push_back(pose(name, number));
+      auto& known = newest.try_emplace(*robot(name), -1, 0).first->second;
+      if (*update.header.stamp < known.first) continue;
+      known = {*update.header.stamp, number};
+      lacking[*robot(name)] = number;
+    }
+    post(queue, posted(update), at(number));
+    ++number;
+  };
+  for (int i = 0; i < 5000; ++i) {
+    if (pick(2) == 0) add();
+    ASSERT_EQ(queue.empty(), lacking.empty());
+    auto taken = queue.take();
+    if (!taken) continue;
+    ASSERT_THAT(taken->update.poses, SizeIs(newest.size()));
+    for (const auto& robot : taken->update.poses) {
+      ASSERT_EQ(robot.pose.position.x, newest.at(robot.name).second);
+    }
+    std::map<icd::RobotName, double> told;
+    for (const auto& news : taken->news) told[news.name] = news.pose.position.x;
+    ASSERT_EQ(told, lacking);
+    if (pick(3) != 0) lacking.clear();
+    const bool is_taken = lacking.empty();
+    if (pick(3) == 0) add();
+    is_taken ? queue.passed(*taken) : queue.put_back(*taken);
+  }
+}
+
+TEST(StateQueue, ForgetsRobotsThatNobodyNeedBeToldOf) {
+  StateQueue queue;
+  post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
+  queue.passed(*queue.take());
+  post(queue, state(12, {pose("R2", 3)}), at(2));
+  queue.forget_what_was_taken();
+  EXPECT_TRUE(queue.take());
+  post(queue, state(13, {pose("R3", 4)}), at(3));
+  EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R2", 3), pose("R3", 4)));
+}
+
+}  // namespace
+}  // namespace adit::queues

@@ -1,0 +1,144 @@
+// What a Command Post has in the end is what was posted, however grids were stitched on their way.
+#include <gmock/gmock.h>
+
+#include <map>
+#include <random>
+#include <set>
+#include <string>
+#include <tuple>
+
+#include "queues/lattice.hpp"
+#include "queues/map_queue.hpp"
+#include "queues/maps.hpp"
+#include "queues/packing.hpp"
+
+namespace adit::queues {
+namespace {
+
+/// Of a name and a lattice; the lattice is that of a grid which is kept for it.
+using Place = std::tuple<std::string, int, std::int64_t, std::int64_t>;
+
+/// A server's cells.
+class Replay {
+ public:
+  explicit Replay(bool overlays) : overlays_(overlays) {}
+  void put(const Place& place, std::uint8_t value) {
+    if (overlays_ && value == icd::kUnknownCell) return;
+    cells[place] = value;
+  }
+  std::map<Place, std::uint8_t> cells;
+
+ private:
+  bool overlays_;
+};
+
+class StitchLaws : public testing::TestWithParam<std::uint64_t> {
+ protected:
+  static icd::OccupancyGrid lattice(int which) {
+    return which == 0   ? grid(0, 0, 1, 1, 0.05)
+           : which == 1 ? grid(0.025, 0, 1, 1, 0.05)
+                        : grid(0, 0, 1, 1, 0.1);
+  }
+
+  /// Each cell of a grid, in its order.
+  template <class Visit>
+  static void for_each_cell(const icd::MapUpdate& map, Visit visit) {
+    const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
+    const std::string name = map.name ? map.name->text() : "";
+    for (int which = 0; which < 3; ++which) {
+      const auto cells = cells_in(lattice(which), grid);
+      if (!cells) continue;
+      for (std::int64_t y = cells->y; y < cells->top(); ++y) {
+        for (std::int64_t x = cells->x; x < cells->right(); ++x) visit(Place{name, which, x, y});
+      }
+    }
+  }
+
+  void run() {
+    for (int step = 0; step < 300; ++step) {
+      const int what = pick(10);
+      if (what < 6) post();
+      if (what >= 6) send(what);
+    }
+    while (queue_.count() > 0) send(9);
+  }
+
+  void post() {
+    auto origin = lattice(pick(8) == 0 ? pick(3) : 0);
+    origin.width = static_cast<std::uint32_t>(1 + pick(5));
+    origin.height = static_cast<std::uint32_t>(1 + pick(5));
+    origin.origin = *corner_at(origin, pick(12) - 6, pick(12) - 6);
+    icd::MapUpdate map = grid_update(pick(4) == 0 ? "" : "R1", origin);
+    std::vector<std::uint8_t> values(map.data.raw_size);
+    for (auto& value : values)
+      value = pick(4) == 0 ? icd::kUnknownCell : static_cast<std::uint8_t>(pick(101));
+    map.data.bytes = icd::ChunkedBytes{values};
+    auto value = values.begin();
+    for_each_cell(map, [&](const Place& place) {
+      newest_[place] = *value;
+      posted_[place].insert(*value++);
+    });
+    ++number_;
+    queue_.add(number_, std::move(map), at(static_cast<double>(number_)));
+  }
+
+  /// As a gateway does: others come while it is on its way, and it may not arrive, or be refused.
+  void send(int how) {
+    auto next = queue_.take();
+    if (!next) return;
+    const auto cells = packed_of(queue_, *next);
+    while (pick(3) == 0) post();
+    if (how == 6) {
+      queue_.put_back(std::move(*next));
+    } else if (how == 7 && !next->parts.empty()) {
+      queue_.put_back_apart(std::move(*next));
+    } else {
+      arrives(*next, cells);
+    }
+  }
+
+  void arrives(const QueuedMap& sent, const std::vector<std::uint8_t>& cells) {
+    auto value = cells.begin();
+    for_each_cell(sent.map, [&](const Place& place) {
+      overwriting_.put(place, *value);
+      overlaying_.put(place, *value++);
+    });
+    EXPECT_EQ(value, cells.end());
+    stitched_ += sent.parts.empty() ? 0 : 1;
+  }
+
+  int pick(int below) { return std::uniform_int_distribution{0, below - 1}(random_); }
+
+  std::mt19937_64 random_{GetParam()};
+  MapQueue queue_{0};
+  std::uint64_t number_ = 0;
+  int stitched_ = 0;
+  std::map<Place, std::uint8_t> newest_;
+  std::map<Place, std::set<std::uint8_t>> posted_;
+  Replay overwriting_{false}, overlaying_{true};
+};
+
+TEST_P(StitchLaws, AServerHasTheNewestValueOfEachCellThatWasPosted) {
+  run();
+  EXPECT_GT(stitched_, 5);
+  for (const auto& [place, value] : overwriting_.cells) {
+    EXPECT_TRUE(newest_.contains(place) || value == icd::kUnknownCell) << "nobody posted that cell";
+  }
+  for (const auto& [place, value] : newest_) {
+    EXPECT_EQ(overwriting_.cells.at(place), value) << "unknown cells too, where it overwrites";
+  }
+  for (const auto& [place, value] : newest_) {
+    const auto has = overlaying_.cells.find(place);
+    if (value != icd::kUnknownCell) {
+      ASSERT_NE(has, overlaying_.cells.end());
+      EXPECT_EQ(has->second, value);
+    } else if (has != overlaying_.cells.end()) {
+      EXPECT_TRUE(posted_.at(place).contains(has->second)) << "once known, it stays where it overlays";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Courses, StitchLaws, testing::Range(std::uint64_t{1}, std::uint64_t{16}));
+
+}  // namespace
+}  // namespace adit::queues

@@ -146,7 +146,7 @@ std::string kind_of(const std::string& id) {
 
 /// Those that the README has a row of: the first of each row, and what follows it in that cell.
 std::set<std::string> kinds_in_readme() {
-  const std::string text = text_of("firmware/alarms/README.md");
+  const std::string text = text_of("firmware/rules/alarms/README.md");
   std::set<std::string> kinds;
   for (std::size_t at = text.find("\n| `"); at != std::string::npos; at = text.find("\n| `", at + 1)) {
     const std::string cell = text.substr(at + 3, text.find(" | ", at + 3) - at - 3);
@@ -185,7 +185,7 @@ std::string troubles(Side side) {
 }
 
 TEST(AlarmsTroubles, HaveARowForEachKindInItsWords) {
-  const std::string page = text_of("firmware/alarms/TROUBLE.md");
+  const std::string page = text_of("firmware/rules/alarms/TROUBLE.md");
   for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
     const std::string title = std::string("\n<!-- ") + std::string(kSideWords[side]) + " -->\n";
     const std::size_t from = page.find(title);

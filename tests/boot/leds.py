@@ -1,4 +1,4 @@
-"""Reads patterns off the lights, as firmware/panel/README.md names them, from what the GPIO lines do."""
+"""Reads patterns off the lights, as firmware/doors/panel/README.md names them, from what the GPIO lines do."""
 
 import math
 

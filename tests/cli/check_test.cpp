@@ -53,10 +53,10 @@ TEST_F(Check, TellsEveryErrorByItsPath) {
 
 TEST_F(Check, SaysWhatGoodSettingsComeTo) {
   const Outcome outcome =
-      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json"});
+      run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, ADIT_SOURCE_DIR
-            "/firmware/settings/example.json: correct\n"
+            "/firmware/rules/settings/example.json: correct\n"
             "  scoring  10.100.1.200:8000  on darpa0 only\n"
             "  mapping  10.100.1.201:8000  on darpa0 only\n"
             "  team     0.0.0.0:8000       on team0 only\n"
@@ -72,7 +72,7 @@ TEST_F(Check, SaysTheSameToScripts) {
             "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}],"
             "\"warnings\":[]}\n");
   const Outcome good = run(
-      std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/settings/example.json", "--json"});
+      std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json", "--json"});
   EXPECT_EQ(good.exit, Exit::Fine);
   EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[],\"warnings\":[]}\n");
 }

@@ -22,7 +22,7 @@ def made():
     """Their folder, as share/ has them. It goes with the program."""
     folder = tempfile.TemporaryDirectory(prefix="adit-manuals-")
     made.kept = folder
-    subprocess.run([SOURCE / "toolchain" / "manuals", folder.name, SOURCE / "firmware/settings/example.json",
+    subprocess.run([SOURCE / "toolchain" / "manuals", folder.name, SOURCE / "firmware/rules/settings/example.json",
                     *(BIN / name for name in PROGRAMS)],
                    check=True, env={**os.environ, "SOURCE_DATE_EPOCH": "1566309785"})
     return pathlib.Path(folder.name)

@@ -122,7 +122,7 @@ class AtATerminal(unittest.TestCase):
                                 ("adit reports send --y", "adit reports send --yes"), ("adit help wa", "adit help watch"),
                                 ("adit settings show reports.n", "adit settings show reports.near_metres"),
                                 ("adit --at 10.0.0.1:8000 id", "adit --at 10.0.0.1:8000 identify"),
-                                (f"adit check {SOURCE}/firmware/settings/exam", f"adit check {SOURCE}/firmware/settings/example.json"),
+                                (f"adit check {SOURCE}/firmware/rules/settings/exam", f"adit check {SOURCE}/firmware/rules/settings/example.json"),
                                 ("aditd --setti", "aditd --settings"), ("adit-robots --style ro", "adit-robots --style ros"),
                                 ("adit-panel --so", "adit-panel --socket")):
                 with self.subTest(shell=shell, line=line):

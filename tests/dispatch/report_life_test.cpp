@@ -150,7 +150,7 @@ std::string diagram() {
 }
 
 TEST(ReportLife, IsDrawnInTheDocsAsItIs) {
-  std::ifstream file(ADIT_SOURCE_DIR "/firmware/dispatch/README.md");
+  std::ifstream file(ADIT_SOURCE_DIR "/firmware/rules/dispatch/README.md");
   std::stringstream text;
   text << file.rdbuf();
   EXPECT_THAT(text.str(), testing::HasSubstr("```mermaid\n" + diagram() + "```\n"));

@@ -3,26 +3,29 @@ import pathlib
 import re
 
 FIRMWARE = pathlib.Path(__file__).resolve().parents[2] / "firmware"
-FLOORS = {
-    "the interface": "icd codec",
-    "the rules": "queues pack picture pace dispatch settings network update clock spare access alarms",
-    "the doors": "command_line loop store ledger uplink intake panel host spool journal archive",
-    "the flow": "forward",
-    "the box": "admin box",
-    "the faces": "site api cli",
-    "the programs": "gateway applier rehearsal",
-}
+ROOMS = re.findall(r"add_subdirectory\((\w+)/(\w+)\)", (FIRMWARE / "CMakeLists.txt").read_text())  # floor and room, in order
 
 
 def order():
-    text = (FIRMWARE / "CMakeLists.txt").read_text()
-    return re.findall(r"add_subdirectory\((\w+)\)", text)
+    return [room for _, room in ROOMS]
+
+
+def floors():
+    """The rooms of each floor, bottom up."""
+    rooms = {}
+    for floor, room in ROOMS:
+        rooms.setdefault(floor, []).append(room)
+    return rooms
+
+
+def folder(room):
+    return next(FIRMWARE / floor / room for floor, name in ROOMS if name == room)
 
 
 def named_by(room):
     """The rooms that a room's CMakeLists.txt names, and its public headers."""
     rooms, public = set(), set()
-    for file in (FIRMWARE / room).rglob("CMakeLists.txt"):
+    for file in folder(room).rglob("CMakeLists.txt"):
         text = re.sub(r"#[^\n]*", "", file.read_text())
         for call in re.findall(r"adit_room\(([^)]*)\)", text):
             parts = re.split(r"\b(SOURCES|OPTIMIZED_SOURCES|PLATFORM_SOURCES|PUBLIC_HEADERS|ROOMS|LIBRARIES)\b", call)

@@ -66,7 +66,7 @@ std::string in_hex(std::string_view bytes) {
   return hex;
 }
 
-/// The format of 0.1.0 (firmware/ledger/README.md). It never changes: later members come behind these.
+/// The format of 0.1.0 (firmware/doors/ledger/README.md). It never changes: later members come behind these.
 TEST(LedgerRecord, HasTheseBytes) {
   const std::string report = said(full_report()), run = said(full_run());
   const std::string history = said(Step{10, "queued", "why"});

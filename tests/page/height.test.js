@@ -1,7 +1,7 @@
 // Which height the page takes for a place on the map, case by case, and how it says so.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { heightNote, heightsAt } from "../../firmware/site/files/height.js";
+import { heightNote, heightsAt } from "../../firmware/doors/site/files/height.js";
 
 const track = (name, ...poses) => ({ name, poses: poses.map(([at, x, y, z]) => [at, x, y, z, 0]) });
 const HERE = { x: 10, y: 20 };

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { robotRgb } from "../../firmware/site/files/robot_colour.js";
+import { robotRgb } from "../../firmware/doors/site/files/robot_colour.js";
 import { until } from "./box.js";
 import { becomes, box, canvas, changed, picture } from "./pictures.js";
 import { serve } from "./stage.js";

@@ -1,7 +1,7 @@
 // The map looked at closely: what was forwarded is drawn with its own cells, by the real programs.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { drawLayers } from "../../firmware/site/files/map_layers.js";
+import { drawLayers } from "../../firmware/doors/site/files/map_layers.js";
 import { box as boxAtWork, TOKENS, until } from "./box.js";
 import { box, canvas } from "./pictures.js";
 import { countAwaited } from "./stage.js";

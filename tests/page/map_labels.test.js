@@ -1,13 +1,13 @@
 // What is reckoned for the map without a browser: names that do not collide, steps of the grid in metres, layers that are copied.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { groupReports } from "../../firmware/site/files/map_groups.js";
-import { drawLayers } from "../../firmware/site/files/map_layers.js";
-import { Labels } from "../../firmware/site/files/map_labels.js";
-import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/site/files/map_metres.js";
-import { lastSeen } from "../../firmware/site/files/map_robots.js";
-import { filled } from "../../firmware/site/files/map_tracks.js";
-import { MapView } from "../../firmware/site/files/map_view.js";
+import { groupReports } from "../../firmware/doors/site/files/map_groups.js";
+import { drawLayers } from "../../firmware/doors/site/files/map_layers.js";
+import { Labels } from "../../firmware/doors/site/files/map_labels.js";
+import { drawGridLabels, drawScaleBar, stepOf, gridLabelBoxes } from "../../firmware/doors/site/files/map_metres.js";
+import { lastSeen } from "../../firmware/doors/site/files/map_robots.js";
+import { filled } from "../../firmware/doors/site/files/map_tracks.js";
+import { MapView } from "../../firmware/doors/site/files/map_view.js";
 
 const SIZE = 12;
 

@@ -1,7 +1,7 @@
 // What stands on the map: whom it follows, what is measured on it, and its colours.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { robotRgb } from "../../firmware/site/files/robot_colour.js";
+import { robotRgb } from "../../firmware/doors/site/files/robot_colour.js";
 import { until } from "./box.js";
 import { box, canvas } from "./pictures.js";
 import { axeFindsNothing, hears, settled, toTab, watch } from "./watch.js";

@@ -16,7 +16,7 @@ async function described() {
   return description;
 }
 
-const readme = readFileSync(new URL("../../firmware/api/README.md", import.meta.url), "utf8");
+const readme = readFileSync(new URL("../../firmware/doors/api/README.md", import.meta.url), "utf8");
 const api = await described();
 const operations = Object.entries(api.paths).flatMap(([path, methods]) =>
   Object.entries(methods).map(([method, operation]) => ({ path, method: method.toUpperCase(), operation })));

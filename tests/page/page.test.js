@@ -19,7 +19,7 @@ test("shows how the run stands, and that every map arrives", async (t) => {
   assert.deepEqual(page.complaints, []);
 });
 
-// Chromium without the calls that came after the floor (README of firmware/site). What Chromium cannot forget, house: browsers finds.
+// Chromium without the calls that came after the floor (README of firmware/doors/site). What Chromium cannot forget, house: browsers finds.
 const atTheFloor = (page) => page.addInitScript(() => {
   for (const name of ["toSorted", "toSpliced", "toReversed", "with"]) delete Array.prototype[name];
   delete Map.groupBy;

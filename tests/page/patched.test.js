@@ -1,7 +1,7 @@
 // What the page makes of a patch, case by case; that the box's patches are right is tests/codec/patch_test.cpp's.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { patched } from "../../firmware/site/files/patched.js";
+import { patched } from "../../firmware/doors/site/files/patched.js";
 
 const rows = (...numbers) => numbers.map((number) => ({ number, note: `n${number}` }));
 const view = { now: 1, run: null, at: { x: 1, y: 2 }, marks: [7], rows: rows(1, 2, 3) };

@@ -2,8 +2,8 @@
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
-import { linesOf } from "../../firmware/site/files/artifact_icons.js";
-import { chooseColours, dashesOf, kindOf, lookOf, robotLooks, orderRobots, rgbOf, robotRgb, toneOf } from "../../firmware/site/files/robot_colour.js";
+import { linesOf } from "../../firmware/doors/site/files/artifact_icons.js";
+import { chooseColours, dashesOf, kindOf, lookOf, robotLooks, orderRobots, rgbOf, robotRgb, toneOf } from "../../firmware/doors/site/files/robot_colour.js";
 
 const TWENTY = [...Array(20).keys()];
 const GROUNDS = { dark: "0b0e10", light: "eceae4", red: "080000" };
@@ -50,7 +50,7 @@ test("robots of one chosen colour have different patterns, and the others have t
 });
 
 test("the settings name as many colours as there are", () => {
-  const source = `${readFileSync(new URL("../../firmware/settings/settings.hpp", import.meta.url))}`;
+  const source = `${readFileSync(new URL("../../firmware/rules/settings/settings.hpp", import.meta.url))}`;
   const [words] = /kColourWords\[\] = \{[^}]+\}/.exec(source);
   assert.equal(words.match(/"\w+"/g).length, 1 + TWENTY.length);
 });
@@ -71,7 +71,7 @@ test("no robot has the hue of a level", () => {
 });
 
 test("the run's report has the colours of the light page", () => {
-  const source = `${readFileSync(new URL("../../firmware/archive/run_report_drawn.cpp", import.meta.url))}`;
+  const source = `${readFileSync(new URL("../../firmware/doors/archive/run_report_drawn.cpp", import.meta.url))}`;
   const hex = (place) => `#${robotRgb(place, "light").map((part) => part.toString(16).padStart(2, "0")).join("")}`;
   assert.deepEqual(source.match(/#[0-9a-f]{6}/g), [...Array(40).keys()].map(hex));
 });
@@ -89,7 +89,7 @@ test("OKLCH is converted as its author says", () => {
 });
 
 test("each artifact type of the ICD has an icon of its own, and what is none has another", () => {
-  const types = `${readFileSync(new URL("../../firmware/artifact_types.inc", import.meta.url))}`.match(/^".*"/gm).map((line) => line.slice(1, -1));
+  const types = `${readFileSync(new URL("../../firmware/interface/icd/artifact_types.inc", import.meta.url))}`.match(/^".*"/gm).map((line) => line.slice(1, -1));
   assert.equal(types.length, 10);
   assert.equal(new Set([...types, "Ghost"].map(linesOf)).size, 11);
   assert.equal(linesOf("CELL PHONE"), linesOf("Cell Phone"));

@@ -1,7 +1,7 @@
 // The runs that are kept, by the real box: listed by course, looked at again, printed, deleted.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { robotRgb } from "../../firmware/site/files/robot_colour.js";
+import { robotRgb } from "../../firmware/doors/site/files/robot_colour.js";
 import { OPERATOR, VIEWER, box, play, until } from "./box.js";
 import { armed, axeFindsNothing, shoot, visitor } from "./watch.js";
 

@@ -1,8 +1,8 @@
 // What is typed on the set-up's page: checked as it is typed, and never lost.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { merged } from "../../firmware/site/files/draft.js";
-import { inShort, spoken } from "../../firmware/site/files/names.js";
+import { merged } from "../../firmware/doors/site/files/draft.js";
+import { inShort, spoken } from "../../firmware/doors/site/files/names.js";
 import { come, PASSWORD, until } from "./fresh_box.js";
 import { complaints, COURSES, field, hears, ready, review, step, type } from "./setup_page.js";
 

@@ -11,7 +11,7 @@ import { patient } from "./patience.js";
 /** The folder of the programs that are tested. */
 export const BIN = resolve(process.env.ADIT_BIN);
 /** The pages as they are written. */
-export const FILES = fileURLToPath(new URL("../../firmware/site/files", import.meta.url));
+export const FILES = fileURLToPath(new URL("../../firmware/doors/site/files", import.meta.url));
 /** Debian's shell of Chromium: the same engine in half the time that the whole browser takes. */
 export const CHROMIUM = process.env.CHROMIUM ?? "/usr/bin/chromium-headless-shell";
 

@@ -1,7 +1,7 @@
 // When a page takes it that somebody set the box's clock, without a browser.
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { Steps } from "../../firmware/site/files/steps.js";
+import { Steps } from "../../firmware/doors/site/files/steps.js";
 
 const YEARS = 3e8;
 

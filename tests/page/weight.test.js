@@ -16,7 +16,7 @@ import { visitor } from "./watch.js";
 const PAGES = ["", "display", "runs", "setup", "system", "help", "login.html"];
 const MOST_REQUESTS = 5; // the page, its script, its style, its icon, and what loads it again
 const MOST = 60_000; // bytes of one page as they are sent
-const SITE = fileURLToPath(new URL("../../firmware/site/", import.meta.url));
+const SITE = fileURLToPath(new URL("../../firmware/doors/site/", import.meta.url));
 
 async function stageFor(t) {
   const stage = await serve("calm");
@@ -93,7 +93,7 @@ test("what is named by its content is that, and may be kept; a page is asked for
 function made(files) {
   const folder = mkdtempSync(join(tmpdir(), "adit-bundle-"));
   try {
-    execFileSync(join(SITE, "bundle"), [files, join(SITE, "parts"), join(SITE, "../artifact_types.inc"), folder], { stdio: "pipe" });
+    execFileSync(join(SITE, "bundle"), [files, join(SITE, "parts"), join(SITE, "../../interface/icd/artifact_types.inc"), folder], { stdio: "pipe" });
     const served = join(folder, "served");
     return Object.fromEntries(readdirSync(served).map((file) => [file, readFileSync(join(served, file), "utf8")]));
   } finally {

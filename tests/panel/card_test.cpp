@@ -58,7 +58,7 @@ std::string strip(Pattern pattern) {
 
 /// What one sees, in the README's words.
 std::string seen(Pattern pattern) {
-  const std::string text = text_of("firmware/panel/README.md"),
+  const std::string text = text_of("firmware/doors/panel/README.md"),
                     head = "\n| " + std::string(name_of(pattern)) + " | ";
   const std::size_t at = text.find(head) + head.size();
   return text.substr(at, text.find(" |", at) - at);

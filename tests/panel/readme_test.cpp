@@ -21,21 +21,21 @@ std::string table_of_states() {
 }
 
 TEST(PanelReadme, HasTheTableOfTheStates) {
-  EXPECT_NE(text_of("firmware/panel/README.md").find(table_of_states()), std::string::npos)
-      << "put this table into firmware/panel/README.md:\n"
+  EXPECT_NE(text_of("firmware/doors/panel/README.md").find(table_of_states()), std::string::npos)
+      << "put this table into firmware/doors/panel/README.md:\n"
       << table_of_states();
 }
 
 TEST(PanelReadme, DrawsThePatternsAsTheyAre) {
-  EXPECT_NE(text_of("firmware/panel/README.md").find("](patterns.svg)"), std::string::npos);
-  EXPECT_TRUE(text_of("firmware/panel/patterns.svg") == drawing())
-      << "put this into firmware/panel/patterns.svg:\n"
+  EXPECT_NE(text_of("firmware/doors/panel/README.md").find("](patterns.svg)"), std::string::npos);
+  EXPECT_TRUE(text_of("firmware/doors/panel/patterns.svg") == drawing())
+      << "put this into firmware/doors/panel/patterns.svg:\n"
       << drawing();
 }
 
 TEST(PanelReadme, HasARowForEachPattern) {
   for (const Pattern pattern : kPatterns) {
-    EXPECT_NE(text_of("firmware/panel/README.md").find("\n| " + std::string(name_of(pattern)) + " | "),
+    EXPECT_NE(text_of("firmware/doors/panel/README.md").find("\n| " + std::string(name_of(pattern)) + " | "),
               std::string::npos)
         << name_of(pattern);
   }

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from patience import patient, wait_until
 
-DEMO = Path(__file__).resolve().parents[2] / "firmware/rehearsal/demo/demo"
+DEMO = Path(__file__).resolve().parents[2] / "firmware/programs/rehearsal/demo/demo"
 SIZE = struct.Struct("4H")  # winsize: rows, columns, and pixels that nobody counts
 HOME, BELOW = b"\x1b[H", b"\x1b[J"
 TO_THE_END = re.compile(r"\x1b\[K")

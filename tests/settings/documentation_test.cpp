@@ -14,7 +14,7 @@ namespace adit::settings {
 namespace {
 
 std::string text_of(const std::string& file) {
-  std::ifstream stream(ADIT_SOURCE_DIR "/firmware/settings/" + file);
+  std::ifstream stream(ADIT_SOURCE_DIR "/firmware/rules/settings/" + file);
   EXPECT_TRUE(stream.is_open()) << file;
   return {std::istreambuf_iterator<char>(stream), {}};
 }
@@ -38,7 +38,7 @@ std::string reference() {
 
 TEST(SettingsReadme, HoldsTheTableOfAllKeysAsTheParserHasThem) {
   EXPECT_NE(text_of("README.md").find(reference()), std::string::npos)
-      << "put this table into firmware/settings/README.md:\n"
+      << "put this table into firmware/rules/settings/README.md:\n"
       << reference();
 }
 

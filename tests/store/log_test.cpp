@@ -28,7 +28,7 @@ class LogTest : public testing::Test {
   std::map<std::string, std::string> files_;
 };
 
-/// The format of 0.1.0 (firmware/store/README.md).
+/// The format of 0.1.0 (firmware/doors/store/README.md).
 TEST(Frame, HasTheseBytes) {
   const std::string bytes = written({5, 0x0102, 3, 0x0101, "adit"}, {8, 1}, 0x1122334455667788, 64);
   const std::string expected(

@@ -1,5 +1,5 @@
-"""A reader of the ledger's files that shares no code with aditd: written from firmware/store/README.md and
-firmware/ledger/README.md. It repairs nothing: a missing record is an error."""
+"""A reader of the ledger's files that shares no code with aditd: written from firmware/doors/store/README.md and
+firmware/doors/ledger/README.md. It repairs nothing: a missing record is an error."""
 
 import re
 import struct

@@ -1,4 +1,4 @@
-"""The tables of firmware/intake/clients/refusals.md: requests, and the status and sentence with which Adit rejects each."""
+"""The tables of firmware/doors/intake/clients/refusals.md: requests, and the status and sentence with which Adit rejects each."""
 
 import copy
 import json

@@ -1,4 +1,4 @@
-"""The pages for client authors (firmware/intake/clients) are true: the commands and the Python of README.md are run, its C++ is in
+"""The pages for client authors (firmware/doors/intake/clients) are true: the commands and the Python of README.md are run, its C++ is in
 the example, which test_clients.py runs, and each refusal of refusals.md is made. ADIT_WRITE=1 writes the refusals into that page."""
 
 import doctest
@@ -15,7 +15,7 @@ from programs import Stage
 from reporting import QUICK, began
 
 SOURCE = pathlib.Path(os.environ["ADIT_SOURCE"])
-SHOWN = SOURCE / "firmware/intake/clients"
+SHOWN = SOURCE / "firmware/doors/intake/clients"
 PAGE, REFUSALS = SHOWN / "README.md", SHOWN / "refusals.md"
 BLOCK = re.compile(r"^```(\w*)\n(.*?)^```", re.S | re.M)
 # What differs each time: when, how long, where.

@@ -1,4 +1,4 @@
-"""The clients that are shown to teams (firmware/intake/clients), in Python and in C++, against the real programs: whatever
+"""The clients that are shown to teams (firmware/doors/intake/clients), in Python and in C++, against the real programs: whatever
 becomes of an answer, of the service or of the Command Post, each ends with what is true, and nothing is recorded twice."""
 
 import json
@@ -14,7 +14,7 @@ import programs
 from programs import CommandPost, Stage, wait_until
 from reporting import QUICK, began
 
-SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/intake/clients"
+SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/doors/intake/clients"
 CLIENTS = {"Python": ["/usr/bin/python3", "-B", SHOWN / "example.py"], "C++": [programs.BIN / "adit_client_example"]}
 UPDATES = ("map", "state", "markers")
 ANSWERED, REFUSED, NOT_KNOWN = 0, 1, 3  # exit status

@@ -1,4 +1,4 @@
-"""The ROS node that is shown to teams (firmware/intake/clients): what it makes of messages as ROS 1 and ROS 2 have them in
+"""The ROS node that is shown to teams (firmware/doors/intake/clients): what it makes of messages as ROS 1 and ROS 2 have them in
 Python, and the node itself on Debian's ROS 1, before the real programs."""
 
 import array
@@ -16,7 +16,7 @@ import programs
 from delivered import Delivered
 from programs import Stage, wait_until
 
-SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/intake/clients"
+SHOWN = pathlib.Path(os.environ["ADIT_SOURCE"]) / "firmware/doors/intake/clients"
 sys.path.append(str(SHOWN))
 sys.dont_write_bytecode = True
 from ros_messages import Robot  # noqa: E402

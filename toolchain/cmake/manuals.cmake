@@ -13,7 +13,7 @@ if(ADIT_MANUALS)
     list(APPEND programs adit-rehearsal adit-robots)
   endif()
   list(TRANSFORM programs REPLACE "(.+)" "$<TARGET_FILE:\\1>" OUTPUT_VARIABLE files)
-  set(example ${PROJECT_SOURCE_DIR}/firmware/settings/example.json)
+  set(example ${PROJECT_SOURCE_DIR}/firmware/rules/settings/example.json)
   file(GLOB makers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/toolchain/manual/*.py)
   add_custom_command(OUTPUT manuals.made
     COMMAND ${CMAKE_COMMAND} -E rm -rf manuals

@@ -1,4 +1,4 @@
-# A room: one folder of firmware/, one static library adit_<name>, one namespace adit::<name>.
+# A room: one folder firmware/<floor>/<name>, one static library adit_<name>, one namespace adit::<name>.
 #   adit_room(codec SOURCES json.cpp cbor.cpp OPTIMIZED_SOURCES base64.cpp ROOMS icd LIBRARIES PkgConfig::cjson)
 # SOURCES are compiled to be small (WAY: or as it says, headers.cmake), OPTIMIZED_SOURCES ones to be fast: what works on each byte of a map or each number of a state.
 # ROOMS are the rooms whose headers it includes, all of them named before it in firmware/CMakeLists.txt.
@@ -9,13 +9,15 @@
 function(adit_room name)
   cmake_parse_arguments(ROOM "" "WAY" "SOURCES;OPTIMIZED_SOURCES;PLATFORM_SOURCES;PUBLIC_HEADERS;ROOMS;LIBRARIES" ${ARGN})
   list(TRANSFORM ROOM_ROOMS PREPEND adit_)
+  file(RELATIVE_PATH place ${PROJECT_SOURCE_DIR}/firmware ${CMAKE_CURRENT_SOURCE_DIR})
+  string(REGEX REPLACE "/.*" "" floor ${place})
   if(NOT ROOM_WAY)
     set(ROOM_WAY small)
   endif()
   set(scope PUBLIC)
   if(ROOM_OPTIMIZED_SOURCES)
     add_library(adit_${name}_fast OBJECT ${ROOM_OPTIMIZED_SOURCES})
-    target_include_directories(adit_${name}_fast PRIVATE ${PROJECT_SOURCE_DIR}/firmware)
+    target_include_directories(adit_${name}_fast PRIVATE ${PROJECT_SOURCE_DIR}/firmware/${floor})
     target_link_libraries(adit_${name}_fast PRIVATE adit_options ${ROOM_ROOMS} ${ROOM_LIBRARIES})
     adit_compiled(adit_${name}_fast fast)
     list(APPEND ROOM_SOURCES $<TARGET_OBJECTS:adit_${name}_fast>)
@@ -29,7 +31,7 @@ function(adit_room name)
     add_library(adit_${name} INTERFACE)
     set(scope INTERFACE)
   endif()
-  target_include_directories(adit_${name} ${scope} ${PROJECT_SOURCE_DIR}/firmware)
+  target_include_directories(adit_${name} ${scope} ${PROJECT_SOURCE_DIR}/firmware/${floor})
   target_link_libraries(adit_${name} ${scope} ${ROOM_ROOMS} ${ROOM_LIBRARIES})
   if(ROOM_PLATFORM_SOURCES)
     add_library(adit_${name}_linux STATIC ${ROOM_PLATFORM_SOURCES})

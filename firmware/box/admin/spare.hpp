@@ -1,0 +1,82 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "admin/spare_file.hpp"
+#include "admin/spare_stick.hpp"
+#include "admin/taking_over.hpp"
+#include "api/spare.hpp"
+#include "loop/loop.hpp"
+#include "loop/workers.hpp"
+#include "spare/content.hpp"
+
+namespace adit::admin {
+
+/// The box's standby and its export, and the import of another box's (firmware/rules/spare/README.md).
+class Spare final : public api::Spare {
+ public:
+  /// Functions of the gateway, called on the loop.
+  struct Asked {
+    /// The export's content, without the data about this box and its standby.
+    std::function<std::expected<spare::Content, std::string>()> content;
+    /// Whether the time of day is reliable.
+    std::function<bool()> is_time_set;
+    /// Replaces the gateway; the new one reads the files again.
+    std::function<void()> restart;
+  };
+
+  /// `status_folder`: of adit-spare. `stuck`: why the box is a standby in spite of its file (an unfinished
+  /// takeover, unreadable settings), or "". `workers`: for jobs of 0.1 s. `loop`, `workers` and `taking_over`
+  /// must outlive this object.
+  Spare(loop::Loop& loop, loop::Workers& workers, TakingOver& taking_over, std::string state_folder,
+        const std::string& status_folder, const std::string& stuck, Asked asked);
+
+  /// Why the box is a standby, or "".
+  const std::string& standby() const { return standby_; }
+  /// Why its file could not be read, or "".
+  const std::string& unread() const { return unread_; }
+  bool is_stuck() const { return !stuck_.empty(); }
+  /// Call when the gateway ends without requests in flight. `expected`: the answer of /api/status then.
+  void ends(const std::optional<icd::RunStatus>& expected);
+
+  api::SpareView spare() const override;
+  icd::Checked<void> stand_by() override;
+  icd::Checked<void> resume() override;
+  void export_to(Sealed done) override;
+  void export_to_stick(Done done) override;
+  icd::Checked<void> take_from_stick(const std::string& name) override;
+  icd::Checked<void> take_in(std::string file) override;
+  void open(const std::string& code, Done done) override;
+  icd::Checked<void> forget() override;
+  icd::Checked<void> take_over() override;
+
+ private:
+  icd::Checked<void> keep(const SpareFile& next);
+  bool is_of_this_rest(const std::string& file) const;
+  /// `file`: the export. `name`: the box's address for the team.
+  using Named = std::function<void(icd::Checked<std::string> file, const std::string& name)>;
+  void seal(const Named& done);
+  void taken_from_stick(std::string file);
+  icd::Checked<void> opened(std::expected<std::string, std::string> text);
+
+  loop::Loop& loop_;
+  loop::Workers& workers_;
+  TakingOver& taking_over_;
+  std::string state_;
+  SpareStick stick_;
+  std::string stuck_, unread_;
+  Asked asked_;
+  loop::Source restart_;  // fires after the client has its answer
+  SpareFile file_;
+  std::string standby_;
+  bool goes_on_standby_ = false;  // when this gateway ends
+  bool takes_over_ = false;
+  std::shared_ptr<const std::string> sealed_;  // imported and not opened yet, or null
+  std::optional<spare::Content> taken_in_;
+  settings::Saved taken_settings_;  // of taken_in_
+};
+
+}  // namespace adit::admin

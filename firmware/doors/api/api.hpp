@@ -1,0 +1,91 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "api/box_routes.hpp"
+#include "api/entrance.hpp"
+#include "api/kept_runs_routes.hpp"
+#include "api/live.hpp"
+#include "api/map_routes.hpp"
+#include "api/network_routes.hpp"
+#include "api/page_routes.hpp"
+#include "api/redacted.hpp"
+#include "api/report_list.hpp"
+#include "api/report_routes.hpp"
+#include "api/route.hpp"
+#include "api/run_routes.hpp"
+#include "api/session_routes.hpp"
+#include "api/settings_routes.hpp"
+#include "api/spare_routes.hpp"
+#include "api/update_routes.hpp"
+#include "icd/bearer_token.hpp"
+#include "icd/redaction.hpp"
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::api {
+
+/// The gateway's parts that the API uses.
+struct Served {
+  const Source& source;
+  Operator& judge;
+  Keys& keys;
+  Setup& setup;
+  Network& network;
+  SelfTest& test;
+  Updates& updates;
+  Box& box;
+  KeptRuns& runs;
+  Clock& clock;
+  FinerMap& finer;
+  CoveredMap& covered;
+  Spare& spare;
+};
+
+/// The API for the page and for scripts, on the team's side after a login, and the page's files. Table:
+/// routes.cpp. Description: README.md. Protection: firmware/rules/access/README.md.
+///
+/// Every answer except events has X-Content-Type-Options, Referrer-Policy and a Content-Security-Policy of
+/// `default-src 'none'` with the page's needs. Every error is a JSON string.
+class Api final : public intake::Handler {
+ public:
+  /// `tokens`: each admits a script as an operator. `redaction`: applied to every answer. The other arguments
+  /// must outlive this object, and all work and answers in progress.
+  Api(loop::Loop& loop, const Served& served, std::vector<icd::BearerToken> tokens,
+      icd::Redaction redaction = icd::Redaction());
+
+  intake::Shown shown(const intake::RequestHead& head) override { return entrance_.shown(head); }
+  std::unique_ptr<intake::BodySink> open(const intake::RequestHead& head,
+                                         std::shared_ptr<intake::Responder> asked_by,
+                                         std::shared_ptr<intake::Flow> flow) override;
+
+  /// Replaces tokens and redaction.
+  void let_in(std::vector<icd::BearerToken> tokens, icd::Redaction redaction);
+
+  /// Call after a change of data that the page shows.
+  void changed() { live_.changed(); }
+
+ private:
+  void handle(const Route& route, const Call& call);
+
+  const std::shared_ptr<SharedRedaction> redaction_;
+  Entrance entrance_;
+  Live live_;
+  PageRoutes pages_;
+  SessionRoutes sessions_;
+  RunRoutes run_;
+  MapRoutes maps_;
+  const ReportLists lists_;
+  ReportRoutes reports_;
+  SettingsRoutes settings_;
+  NetworkRoutes network_;
+  UpdateRoutes updates_;
+  BoxRoutes box_;
+  KeptRunsRoutes kept_;
+  SpareRoutes spare_;
+  const Handlers handlers_;
+};
+
+}  // namespace adit::api

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "access/admission.hpp"
+#include "api/keys.hpp"
+#include "api/route.hpp"
+#include "icd/bearer_token.hpp"
+#include "intake/server.hpp"
+#include "loop/loop.hpp"
+
+namespace adit::api {
+
+/// Admission to all routes under /adit/: firmware/rules/access/README.md.
+class Entrance {
+ public:
+  /// `tokens`: each admits a script. `loop` and `keys` must outlive this object.
+  Entrance(loop::Loop& loop, Keys& keys, std::vector<icd::BearerToken> tokens)
+      : loop_(loop), keys_(keys), tokens_(std::move(tokens)) {}
+
+  /// Replaces the tokens.
+  void let_in(std::vector<icd::BearerToken> tokens) { tokens_ = std::move(tokens); }
+
+  /// Error 401 or 403: the client may not do what `who` may.
+  icd::Checked<Asker> admit(const intake::RequestHead& head, Who who);
+  /// Visitor::session is valid until the next call on this object.
+  std::optional<access::Visitor> who(const intake::RequestHead& head);
+  intake::Shown shown(const intake::RequestHead& head);
+  /// The client's known device, or null. As Devices::find().
+  const access::Device* device(const intake::RequestHead& head);
+  /// Whether the client may still receive a long answer. This object must outlive the result.
+  std::function<bool()> may_stay(const Asker& asker);
+
+  access::Sessions& sessions() { return keys_.sessions(); }
+
+ private:
+  loop::Loop& loop_;
+  Keys& keys_;
+  std::vector<icd::BearerToken> tokens_;
+};
+
+/// The answer to a rejected client.
+intake::Answer turned_away(const icd::Refusal& refusal);
+
+}  // namespace adit::api

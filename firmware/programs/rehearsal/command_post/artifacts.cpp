@@ -1,0 +1,91 @@
+#include "rehearsal/command_post/artifacts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <optional>
+
+namespace adit::rehearsal {
+namespace {
+
+constexpr auto kTypes = std::to_array<std::string_view>({
+#include "icd/artifact_types.inc"
+});
+
+constexpr double kScoringDistance = 5.0;  // metres, by the competition's rules
+
+bool same_letters(std::string_view a, std::string_view b) {
+  const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
+  return std::ranges::equal(a, b, {}, lower, lower);
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view space = " \t\r";
+  const auto first = text.find_first_not_of(space);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(space) - first + 1);
+}
+
+std::optional<double> number_of(std::string_view text) {
+  double number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
+  return number;
+}
+
+std::optional<Artifact> artifact_of(std::string_view line) {
+  std::array<std::string_view, 4> cells;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    const auto comma = line.find(',');
+    if ((comma == std::string_view::npos) != (i + 1 == cells.size())) return std::nullopt;
+    cells[i] = trimmed(line.substr(0, comma));
+    line.remove_prefix(comma == std::string_view::npos ? line.size() : comma + 1);
+  }
+  const auto x = number_of(cells[1]);
+  const auto y = number_of(cells[2]);
+  const auto z = number_of(cells[3]);
+  if (!is_artifact_type(cells[0]) || !x || !y || !z) return std::nullopt;
+  return Artifact{std::string(cells[0]), {*x, *y, *z}};
+}
+
+}  // namespace
+
+bool is_artifact_type(std::string_view type) {
+  return std::ranges::any_of(kTypes, [type](std::string_view known) { return same_letters(known, type); });
+}
+
+std::expected<std::vector<Artifact>, std::string> read_artifacts(const std::string& path) {
+  std::ifstream file(path);
+  std::string line;
+  if (!std::getline(file, line)) return std::unexpected(path + ": cannot be read");
+  if (trimmed(line) != "type,x,y,z") return std::unexpected(path + ":1: expected the header type,x,y,z");
+  std::vector<Artifact> artifacts;
+  for (int number = 2; std::getline(file, line); ++number) {
+    if (trimmed(line).empty()) continue;
+    auto artifact = artifact_of(line);
+    if (!artifact) {
+      return std::unexpected(path + ":" + std::to_string(number) +
+                             ": expected an artifact type and three numbers, as in Cell Phone,1.5,-2,0");
+    }
+    artifacts.push_back(std::move(*artifact));
+  }
+  return artifacts;
+}
+
+bool claim(std::vector<Artifact>& artifacts, std::string_view type, const Point& position) {
+  Artifact* nearest = nullptr;
+  double least = kScoringDistance;
+  for (Artifact& artifact : artifacts) {
+    const double distance = std::hypot(artifact.position.x - position.x, artifact.position.y - position.y,
+                                       artifact.position.z - position.z);
+    if (artifact.claimed || distance > least || !same_letters(artifact.type, type)) continue;
+    nearest = &artifact;
+    least = distance;
+  }
+  if (nearest != nullptr) nearest->claimed = true;
+  return nearest != nullptr;
+}
+
+}  // namespace adit::rehearsal

@@ -40,8 +40,9 @@ void robots_and_queue(std::vector<Facts>& days) {
   days.back().streams.back().no_room = 1;
   days.back().unknown_robots = {"NAME"};
   days.back().known_robots = {"uav1"};
-  days.back().crowds = {
-      {Crowd::Is::NoRoom, "ADDRESS"}, {Crowd::Is::WrongToken, "ADDRESS"}, {Crowd::Is::Strangers, "ADDRESS"}};
+  days.back().crowds = {{Crowd::Is::NoRoom, "ADDRESS"},
+                        {Crowd::Is::WrongToken, "ADDRESS"},
+                        {Crowd::Is::Unauthenticated, "ADDRESS"}};
   days.back().shut_out = true;
   days.push_back(well(6));
   for (auto& [name, robot] : days.back().robots) robot.silent = true;

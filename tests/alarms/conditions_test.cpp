@@ -86,7 +86,7 @@ const ConditionCase kConditionCases[] = {
     {"wrong_tokens", Ask, Side::Robot, "Wrong tokens are in use", "10.0.0.9",
      [](Facts& facts) { facts.crowds = {{Crowd::Is::WrongToken, "10.0.0.9"}}; }},
     {"unauthenticated", Wait, Side::Robot, "Too many clients are anonymous", "10.0.0.9",
-     [](Facts& facts) { facts.crowds = {{Crowd::Is::Strangers, "10.0.0.9"}}; }},
+     [](Facts& facts) { facts.crowds = {{Crowd::Is::Unauthenticated, "10.0.0.9"}}; }},
     {"report_held:7", Ask, Side::Box, "Report 7 is held", "it may be the same", report<ReportFact::Is::Held>},
     {"report_in_doubt:7", Ask, Side::CommandPost, "Report 7 is in doubt", "",
      report<ReportFact::Is::InDoubt>},

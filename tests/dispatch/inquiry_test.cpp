@@ -29,7 +29,7 @@ class InquiryTest : public testing::Test {
     return last;
   }
 
-  Inquiry inquiry_{Patience{.doubt_for = seconds(10), .asks = 3}, at(0)};
+  Inquiry inquiry_{InquiryPolicy{.doubt_for = seconds(10), .asks = 3}, at(0)};
 };
 
 TEST_F(InquiryTest, BelievesRecordedAtTheSecondStatusThatSaysSo) {

@@ -78,7 +78,7 @@ TEST_F(Correcting, GivesRepeatsOfTheOldReportTheCorrectionsAnswer) {
 }
 
 TEST_F(Correcting, AnswersAClientThatStillWaits) {
-  Scene scene({.review = Review::All, .patience = {}});
+  Scene scene({.review = Review::All, .policy = {}});
   const ClientId client = scene.post(1);
   ASSERT_EQ(scene.reports().correct(1, drill(5), scene.time()), 2);
   ASSERT_EQ(scene.send_next(), 2) << "the operator has seen it";
@@ -166,7 +166,7 @@ TEST_F(Correcting, MovesAReportOfAnEarlierRunIntoThisOne) {
 }
 
 TEST_F(Correcting, WaitsForAnUndo) {
-  Scene scene({.review = Review::All, .patience = {}, .undo = std::chrono::seconds(10)});
+  Scene scene({.review = Review::All, .policy = {}, .undo = std::chrono::seconds(10)});
   scene.post(1);
   ASSERT_EQ(scene.reports().correct(1, drill(5), scene.time()), 2);
   EXPECT_TRUE(scene.reports().sends_at(scene.report(2)).has_value());

@@ -81,7 +81,7 @@ TEST_F(ARunningClock, ALongSilenceIsComparedWithIt) {
 }
 
 TEST_F(ARunningClock, ALeapOfTheClockForStampsIsNoSilence) {
-  scene.leap(5e6);
+  scene.step_clock(5e6);
   scene.restart();
   scene.hear(20, 0, 110);
   EXPECT_EQ(scene.reports().run().number, 1);
@@ -89,7 +89,7 @@ TEST_F(ARunningClock, ALeapOfTheClockForStampsIsNoSilence) {
 }
 
 TEST_F(ARunningClock, ASilenceBesideALeapIsOneStill) {
-  scene.leap(5e6);
+  scene.step_clock(5e6);
   scene.wait(3600);
   scene.restart();
   scene.hear(20, 0, 120);

@@ -11,7 +11,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 ReportRules with_undo(Review review = Review::Off) {
-  return {.review = review, .patience = {}, .undo = std::chrono::seconds(10)};
+  return {.review = review, .policy = {}, .undo = std::chrono::seconds(10)};
 }
 
 class Undo : public testing::Test {

@@ -96,15 +96,15 @@ class Scene {
   }
   void set_box_clock_forward(double seconds) { clock_set_by_ += seconds; }
   /// So it is told with the next restart.
-  void leap(double seconds) {
+  void step_clock(double seconds) {
     set_box_clock_forward(seconds);
-    leap_ = {.to = time().stamp, .by = seconds};
+    clock_step_ = {.to = time().stamp, .by = seconds};
   }
 
   /// The program ends at once, and begins again with what is on disk.
   void restart(const std::string& post = "10.100.1.200:8000") {
     reports_ = std::make_unique<Reports>(rules_, output_);
-    reports_->leapt(leap_);
+    reports_->clock_stepped(clock_step_);
     reports_->open(all_reports(), all_runs(), time(), post);
   }
   /// The settings name another place, and the program goes on.
@@ -214,7 +214,7 @@ class Scene {
   std::unique_ptr<Reports> reports_;
   double now_ = 100;
   double clock_set_by_ = 0;
-  Leap leap_;
+  ClockStep clock_step_;
   ClientId last_client_ = 0;
 };
 

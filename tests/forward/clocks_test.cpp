@@ -117,7 +117,7 @@ TEST_F(ClocksTest, AMachineWithAClockGoesOnByIt) {
 
 TEST_F(ClocksTest, ALeapIsWhatStampsGoAheadBeyondTheTimeThatWentBy) {
   live();
-  EXPECT_EQ(clocks_->leap(), dispatch::Leap()) << "nothing is known of a life before";
+  EXPECT_EQ(clocks_->clock_step(), dispatch::ClockStep()) << "nothing is known of a life before";
   const double before = now();
   loop_.set_wall(before + 5 * kFar);
   keep();
@@ -126,11 +126,11 @@ TEST_F(ClocksTest, ALeapIsWhatStampsGoAheadBeyondTheTimeThatWentBy) {
   live("another start");
   live("another start");  // of the service: it is to be borne out still
   EXPECT_TRUE(clocks_->hear(loop_.wall_now()));
-  EXPECT_NEAR(clocks_->leap().by, 5 * kFar, 1);
-  EXPECT_NEAR(clocks_->leap().between(before, now()), kFar, 1) << "so long it was off";
-  const dispatch::Leap leap = clocks_->leap();
+  EXPECT_NEAR(clocks_->clock_step().by, 5 * kFar, 1);
+  EXPECT_NEAR(clocks_->clock_step().between(before, now()), kFar, 1) << "so long it was off";
+  const dispatch::ClockStep step = clocks_->clock_step();
   live("another start");
-  EXPECT_EQ(clocks_->leap(), leap) << "the next life of the service has it, too";
+  EXPECT_EQ(clocks_->clock_step(), step) << "the next life of the service has it, too";
   EXPECT_FALSE(clocks_->hear(loop_.wall_now() + kFar));
 }
 
@@ -147,7 +147,7 @@ TEST_F(ClocksTest, HowLongTheMachineWasOffIsForItsClockAndTheCommandPostToSay) {
     loop_.set_wall(known + kFar);
     live("second");
     if (each.there) clocks_->hear(known + *each.there);
-    EXPECT_NEAR(clocks_->leap().between(before, now()), each.off, 1) << each.there.value_or(0);
+    EXPECT_NEAR(clocks_->clock_step().between(before, now()), each.off, 1) << each.there.value_or(0);
     std::filesystem::remove(folder_.path() + '/' + StampFloor::kFile);
   }
 }
@@ -159,7 +159,7 @@ TEST_F(ClocksTest, AMachineWithoutAClockWasOffForNoTimeThatIsKnown) {
   loop_.set_stamp(before - kFar);
   loop_.set_wall(before - kFar);
   live("another start");
-  EXPECT_NEAR(clocks_->leap().between(before, now()), 0, 1);
+  EXPECT_NEAR(clocks_->clock_step().between(before, now()), 0, 1);
 }
 
 TEST_F(ClocksTest, AClockThatWasSetBackStaysSoInTheNextLife) {

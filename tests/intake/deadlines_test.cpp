@@ -55,7 +55,7 @@ class StrangersDeadlines : public Deadlines {
 };
 
 TEST_F(Deadlines, CloseAClientThatSaysNothing) {
-  pass(kHere.stranger_within - 1ms);
+  pass(kHere.unauthenticated_within - 1ms);
   EXPECT_TRUE(is_open());
   pass(1ms);
   EXPECT_TRUE(client.closes());
@@ -63,9 +63,9 @@ TEST_F(Deadlines, CloseAClientThatSaysNothing) {
 }
 
 TEST_F(Deadlines, CloseAClientThatDripsItsHeaders) {
-  drip("GET /echo", kHere.stranger_within / 10);
+  drip("GET /echo", kHere.unauthenticated_within / 10);
   EXPECT_TRUE(is_open());
-  drip(" ", kHere.stranger_within / 10);
+  drip(" ", kHere.unauthenticated_within / 10);
   const auto reply = client.reply();
   ASSERT_TRUE(reply);
   EXPECT_EQ(reply->status, 408);
@@ -112,15 +112,15 @@ TEST_F(Deadlines, CloseAClientThatDripsItsBody) {
 
 TEST_F(StrangersDeadlines, CloseAClientThatDripsItsBody) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nContent-Length: 100\r\n\r\n");
-  drip("xxxx", kHere.stranger_within / 5);
+  drip("xxxx", kHere.unauthenticated_within / 5);
   EXPECT_TRUE(is_open());
-  drip("x", kHere.stranger_within / 5);
+  drip("x", kHere.unauthenticated_within / 5);
   EXPECT_EQ(status(), 408);
 }
 
 TEST_F(StrangersDeadlines, AreNotThoseOfWhoHasShownAToken) {
   client.send("POST /echo HTTP/1.1\r\nHost: adit\r\nAuthorization: Bearer x\r\nContent-Length: 7\r\n\r\n");
-  drip("xxxxxxx", kHere.stranger_within / 5);
+  drip("xxxxxxx", kHere.unauthenticated_within / 5);
   EXPECT_EQ(status(), 200);
 }
 
@@ -203,7 +203,7 @@ TEST_F(Deadlines, OfSomeLeaveOthersServed) {
   for (int i = 0; i < 10; ++i) {
     client.send(request("POST", "/echo", {}, "fine"));
     EXPECT_EQ(status(), 200);
-    pass(kHere.stranger_within / 10);
+    pass(kHere.unauthenticated_within / 10);
   }
   for (auto& each : slow) EXPECT_TRUE(each->closes());
 }
@@ -211,7 +211,7 @@ TEST_F(Deadlines, OfSomeLeaveOthersServed) {
 TEST(RealDeadlines, CloseAClientThatSaysNothing) {
   ScriptedHandler handler;
   Listen soon = kHere;
-  soon.stranger_within = 50ms;
+  soon.unauthenticated_within = 50ms;
   const Served served(handler, soon);
   EXPECT_TRUE(RawClient(served.port()).closes());
 }

@@ -28,7 +28,7 @@ class ServerRoom : public testing::Test {
   }
   bool known_come_to(std::size_t count) {
     return served.eventually(
-        [&] { return served.server().connections() - served.server().strangers() == count; });
+        [&] { return served.server().connections() - served.server().unauthenticated() == count; });
   }
 
   ScriptedHandler handler;
@@ -56,7 +56,7 @@ TEST_F(RoomAsItIs, IsThereForWhoShowsATokenWhileStrangersHoldAHundredSockets) {
     known.send(request("POST", "/echo", kToken, "3"));
     ASSERT_TRUE(known.reply()) << i;
   }
-  EXPECT_TRUE(served.eventually([&] { return served.server().strangers() <= 32; }));
+  EXPECT_TRUE(served.eventually([&] { return served.server().unauthenticated() <= 32; }));
   EXPECT_GE(served.ended(Ended::GaveWay), 60u);
   const auto told = held.front()->reply();
   ASSERT_TRUE(told);

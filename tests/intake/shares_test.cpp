@@ -12,7 +12,7 @@ namespace {
 using namespace std::chrono_literals;
 using Doing = Held::Doing;
 
-constexpr Shares kShares{.strangers = 4, .known = 6, .known_of_address = 3};
+constexpr Shares kShares{.unauthenticated = 4, .known = 6, .known_of_address = 3};
 constexpr std::string_view kNew = "new";
 
 std::vector<Held> several(std::uint64_t first, int count, std::string_view address, bool known, Doing doing) {
@@ -36,44 +36,45 @@ std::vector<Held> together(std::initializer_list<std::vector<Held>> parts) {
 
 TEST(Shares, AreAQuarterForStrangersAndTheRestForThoseWhoAreKnown) {
   const auto usual = Shares::of(128, 64);
-  EXPECT_EQ(usual.strangers, 32u);
+  EXPECT_EQ(usual.unauthenticated, 32u);
   EXPECT_EQ(usual.known, 96u);
   EXPECT_EQ(usual.known_of_address, 64u);
-  EXPECT_EQ(Shares::of(1024, 1024).strangers, 32u) << "however many there are";
+  EXPECT_EQ(Shares::of(1024, 1024).unauthenticated, 32u) << "however many there are";
   EXPECT_EQ(Shares::of(20, 64).known_of_address, 15u);
   EXPECT_EQ(Shares::of(1, 1).known, 1u);
-  EXPECT_EQ(Shares::of(1, 1).strangers, 1u);
+  EXPECT_EQ(Shares::of(1, 1).unauthenticated, 1u);
 }
 
 TEST(StrangerToGo, IsNobodyWhileTheShareLasts) {
   const auto held =
       together({several(1, 4, "a", false, Doing::Sending), several(10, 6, "b", true, Doing::Idle)});
-  EXPECT_FALSE(stranger_to_go(held, kShares));
+  EXPECT_FALSE(unauthenticated_to_close(held, kShares));
 }
 
 TEST(StrangerToGo, IsTheOldestOfTheAddressThatHasMost) {
   const auto held =
       together({several(1, 2, "a", false, Doing::Sending), several(5, 3, "b", false, Doing::Sending)});
-  EXPECT_EQ(stranger_to_go(held, kShares), 5u);
-  EXPECT_EQ(stranger_to_go(several(1, 5, "a", false, Doing::Waiting), kShares), 1u);
+  EXPECT_EQ(unauthenticated_to_close(held, kShares), 5u);
+  EXPECT_EQ(unauthenticated_to_close(several(1, 5, "a", false, Doing::Waiting), kShares), 1u);
 }
 
 TEST(StrangerToGo, IsOneThatIsIdleWhereThereIsOne) {
   const auto held =
       together({several(1, 4, "a", false, Doing::Waiting), several(5, 1, "a", false, Doing::Idle)});
-  EXPECT_EQ(stranger_to_go(held, kShares), 5u);
+  EXPECT_EQ(unauthenticated_to_close(held, kShares), 5u);
 }
 
 TEST(StrangerToGo, IsNotOneWhoMayBeAboutToShowAToken) {
   const auto fresh = several(1, 5, "a", false, Doing::Fresh);
-  EXPECT_FALSE(stranger_to_go(fresh, kShares));
-  EXPECT_EQ(stranger_to_go(together({fresh, several(10, 1, "b", false, Doing::Sending)}), kShares), 10u);
+  EXPECT_FALSE(unauthenticated_to_close(fresh, kShares));
+  EXPECT_EQ(unauthenticated_to_close(together({fresh, several(10, 1, "b", false, Doing::Sending)}), kShares),
+            10u);
 }
 
 TEST(StrangerToGo, IsNeverOneWhoIsKnown) {
   const auto held =
       together({several(1, 6, "a", true, Doing::Idle), several(10, 5, "b", false, Doing::Sending)});
-  EXPECT_EQ(stranger_to_go(held, kShares), 10u);
+  EXPECT_EQ(unauthenticated_to_close(held, kShares), 10u);
 }
 
 TEST(RoomForWhoIsKnown, IsThereHoweverManyStrangersThereAre) {
@@ -96,7 +97,7 @@ TEST(RoomForWhoIsKnown, IsMadeByWhoMayHaveHungUpWhereNobodyIsIdle) {
 
 TEST(RoomForWhoIsKnown, IsNotThereWhereAllWaitForAnswers) {
   const auto others = several(1, 6, "a", true, Doing::Waiting);
-  EXPECT_FALSE(room_for(kNew, others, {.strangers = 4, .known = 6, .known_of_address = 6}).is_there);
+  EXPECT_FALSE(room_for(kNew, others, {.unauthenticated = 4, .known = 6, .known_of_address = 6}).is_there);
 }
 
 TEST(RoomForWhoIsKnown, IsMadeByAnAddressWithMoreThanItsShareWhoseRequestIsNotWhole) {
@@ -104,7 +105,7 @@ TEST(RoomForWhoIsKnown, IsMadeByAnAddressWithMoreThanItsShareWhoseRequestIsNotWh
       together({several(1, 1, "a", true, Doing::Sending), several(3, 2, "b", true, Doing::Waiting),
                 several(5, 3, "c", true, Doing::Sending)});
   EXPECT_EQ(room_for(kNew, others, kShares).gives_way, 5u);
-  const Shares even{.strangers = 4, .known = 2, .known_of_address = 2};
+  const Shares even{.unauthenticated = 4, .known = 2, .known_of_address = 2};
   EXPECT_FALSE(
       room_for(kNew,
                together({several(1, 1, "a", true, Doing::Sending), several(3, 1, "b", true, Doing::Sending)}),
@@ -145,9 +146,9 @@ TEST(RoomFor, KeepsTheSharesWhateverComes) {
       }
       newcomer.known = newcomer.known && room.is_there;
       held.push_back(newcomer);
-      while (const auto gone = stranger_to_go(held, kShares)) ASSERT_TRUE(ends(*gone));
+      while (const auto gone = unauthenticated_to_close(held, kShares)) ASSERT_TRUE(ends(*gone));
       const auto known = std::ranges::count(held, true, &Held::known);
-      ASSERT_LE(held.size() - static_cast<std::size_t>(known), kShares.strangers);
+      ASSERT_LE(held.size() - static_cast<std::size_t>(known), kShares.unauthenticated);
       ASSERT_LE(static_cast<std::size_t>(known), kShares.known);
       for (const std::string& address : addresses)
         ASSERT_LE(std::ranges::count_if(

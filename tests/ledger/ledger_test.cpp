@@ -70,7 +70,7 @@ TEST(Ledger, HasACorrectionWithWhatWasPostedAfterAStart) {
   {
     auto ledger = open_or_fail(state.path());
     ToLedger output(ledger);
-    dispatch::Reports reports({.review = dispatch::Review::All, .patience = {}}, output);
+    dispatch::Reports reports({.review = dispatch::Review::All, .policy = {}}, output);
     reports.open({}, {}, {});
     reports.status_heard({.score = 0, .run_clock = 1, .remaining_reports = 20, .current_team = "t"}, {}, {});
     reports.take({.report = {.type = "Drill", .position = {1, 2, 3}}, .sender = "10.0.0.7"}, 1, true, {});

@@ -163,8 +163,8 @@ TEST(Settings, AreAsPatientWithReportsAsTheRulesOfReportsByThemselves) {
   const dispatch::ReportRules rules;
   const Reports reports = parsed(sample()).reports;
   EXPECT_EQ(reports.answer_within, rules.answer_within);
-  EXPECT_EQ(reports.doubt_for, rules.patience.doubt_for);
-  EXPECT_EQ(reports.doubt_asks, rules.patience.asks);
+  EXPECT_EQ(reports.doubt_for, rules.policy.doubt_for);
+  EXPECT_EQ(reports.doubt_asks, rules.policy.asks);
   EXPECT_EQ(reports.review, rules.review);
   EXPECT_EQ(reports.near_metres, rules.near_metres);
   EXPECT_EQ(reports.undo, rules.undo);

@@ -180,11 +180,11 @@ bool Client::client_keeps_connection() const {
 
 void Client::expect_head() {
   const Listen& listen = engine_.listen();
-  expect_bytes(known_ ? listen.rate_over : listen.stranger_within);
+  expect_bytes(known_ ? listen.rate_over : listen.unauthenticated_within);
 }
 
 void Client::expect_body() {
-  expect_bytes(engine_.listen().stranger_within);
+  expect_bytes(engine_.listen().unauthenticated_within);
   if (!known_ || ended_) return;
   rate_.emplace(engine_.listen().rate_over, engine_.now());
   set_deadline(rate_->look_at());

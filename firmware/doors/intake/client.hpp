@@ -86,8 +86,8 @@ class Client {
   void expect_reading(std::chrono::milliseconds within);
   /// How long a client may take to read the last answer of its connection.
   static constexpr std::chrono::milliseconds kLingerWithin{2000};
-  /// The client must send the rest of the body: an unauthenticated client within Listen::stranger_within, an
-  /// authenticated one at the least rate.
+  /// The client must send the rest of the body: an unauthenticated client within
+  /// Listen::unauthenticated_within, an authenticated one at the least rate.
   void expect_body();
   void body_came(std::size_t bytes);
   /// Call this before an answer begins. True: the connection must end with it, because libmicrohttpd has read

@@ -19,7 +19,7 @@ namespace {
 /// largest map is discarded, at the least rate; from an unauthenticated one much less.
 constexpr std::size_t kReadAway = 64 * 1024;
 constexpr std::chrono::milliseconds kReadAwayWithin(1000);
-constexpr std::size_t kLinger = 256 << 20, kLingerOfStranger = 256 << 10;
+constexpr std::size_t kLinger = 256 << 20, kLingerUnauthenticated = 256 << 10;
 
 Answer failure() {
   return error_answer(icd::Status::InternalServerError,
@@ -96,7 +96,7 @@ Next Request::throw_away(std::size_t bytes) {
   if (answered()) sink_.reset();  // frees its data, because discarding may take long
   thrown_away_ += bytes;
   client_->body_came(bytes);
-  return thrown_away_ > (client_->is_known() ? kLinger : kLingerOfStranger) ? Next::Close : Next::GoOn;
+  return thrown_away_ > (client_->is_known() ? kLinger : kLingerUnauthenticated) ? Next::Close : Next::GoOn;
 }
 
 Next Request::take_chunks(std::span<const std::uint8_t> piece) {

@@ -51,7 +51,7 @@ class Server::Impl final : public Engine {
   void stop_listening();
   std::uint16_t port() const { return port_; }
   std::size_t connections() const { return clients_.size(); }
-  std::size_t strangers() const;
+  std::size_t unauthenticated() const;
 
   loop::Instant now() const override { return loop_.now(); }
   const Listen& listen() const override { return listen_; }
@@ -78,7 +78,7 @@ class Server::Impl final : public Engine {
   void connected(MHD_Connection* connection, void** client_cls);
   std::vector<Held> held_but(const Client* one) const;
   /// Closes unauthenticated connections above their share.
-  void send_strangers_away();
+  void close_unauthenticated();
   /// For a request with a right token. False: refuse the request.
   bool make_room_for(Client& client);
   void run();
@@ -110,7 +110,7 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
   daemon_ = MHD_start_daemon(
       MHD_USE_EPOLL | MHD_ALLOW_SUSPEND_RESUME | MHD_USE_ERROR_LOG, 0, nullptr, nullptr, &Impl::request_came,
       this, MHD_OPTION_EXTERNAL_LOGGER, &Impl::say_nothing, nullptr, MHD_OPTION_LISTEN_SOCKET, socket.get(),
-      MHD_OPTION_CONNECTION_LIMIT, shares_.strangers + shares_.known + kOnTheirWayOut,
+      MHD_OPTION_CONNECTION_LIMIT, shares_.unauthenticated + shares_.known + kOnTheirWayOut,
       MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
       MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED,
       &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK, &Impl::head_begun, this,
@@ -168,7 +168,7 @@ void Server::Impl::run() {
     has_more = MHD_get_timeout(daemon_, &wait_ms) == MHD_YES && wait_ms == 0;
   }
   if (has_more) run_soon();
-  send_strangers_away();
+  close_unauthenticated();
 }
 
 /// For connections that libmicrohttpd has added or answered. It has not read from them since.
@@ -212,7 +212,7 @@ void Server::Impl::tell(Ended why, const std::string& address) {
   if (listen_.ended) listen_.ended(why, address);
 }
 
-std::size_t Server::Impl::strangers() const {
+std::size_t Server::Impl::unauthenticated() const {
   return static_cast<std::size_t>(
       std::ranges::count_if(clients_, [](const auto& each) { return !each.second->is_known(); }));
 }
@@ -226,9 +226,10 @@ std::vector<Held> Server::Impl::held_but(const Client* one) const {
   return all;
 }
 
-void Server::Impl::send_strangers_away() {
-  if (strangers() <= shares_.strangers) return;
-  while (const auto number = stranger_to_go(held_but(nullptr), shares_)) clients_.at(*number)->give_way();
+void Server::Impl::close_unauthenticated() {
+  if (unauthenticated() <= shares_.unauthenticated) return;
+  while (const auto number = unauthenticated_to_close(held_but(nullptr), shares_))
+    clients_.at(*number)->give_way();
 }
 
 bool Server::Impl::make_room_for(Client& client) {
@@ -343,8 +344,8 @@ std::uint16_t Server::port() const {
 std::size_t Server::connections() const {
   return impl_->connections();
 }
-std::size_t Server::strangers() const {
-  return impl_->strangers();
+std::size_t Server::unauthenticated() const {
+  return impl_->unauthenticated();
 }
 void Server::stop_listening() {
   impl_->stop_listening();

@@ -35,7 +35,7 @@ struct Listen {
   std::string interface;   // SO_BINDTODEVICE; "": not bound
   bool free_bind = false;  // also at an address that this machine does not have (yet)
   std::uint32_t connections = 128, connections_per_address = 64;  // Shares
-  std::chrono::milliseconds stranger_within{5000};                // unauthenticated: each head; each body
+  std::chrono::milliseconds unauthenticated_within{5000};         // unauthenticated: each head; each body
   std::chrono::milliseconds rate_over{10000};  // authenticated: each head; LeastRate's window
   std::chrono::milliseconds idle{60000};       // between requests
   std::chrono::milliseconds late{1000};        // delay of late answers (TokenGuesses)
@@ -150,7 +150,7 @@ class Server {
   std::uint16_t port() const;
   std::size_t connections() const;
   /// Connections that have shown no token.
-  std::size_t strangers() const;
+  std::size_t unauthenticated() const;
   /// Accepts no new connections; requests in flight continue. A copy of the socket still listens, and clients
   /// that connect wait for its owner.
   void stop_listening();

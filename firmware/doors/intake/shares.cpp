@@ -10,7 +10,7 @@ namespace adit::intake {
 namespace {
 
 /// Part of all connections. A browser that is not logged in opens six.
-constexpr std::uint32_t kPartOfStrangers = 4, kMostStrangers = 32;
+constexpr std::uint32_t kPartOfUnauthenticated = 4, kMostUnauthenticated = 32;
 
 using Counts = std::map<std::string_view, std::size_t>;
 
@@ -58,16 +58,18 @@ std::vector<Held> those(std::span<const Held> held, const auto& which) {
 }  // namespace
 
 Shares Shares::of(std::uint32_t connections, std::uint32_t of_address) {
-  const std::uint32_t strangers = std::clamp(connections / kPartOfStrangers, 1u, kMostStrangers);
-  const std::uint32_t known = std::max(connections, strangers + 1) - strangers;
-  return {.strangers = strangers, .known = known, .known_of_address = std::min(of_address, known)};
+  const std::uint32_t unauthenticated =
+      std::clamp(connections / kPartOfUnauthenticated, 1u, kMostUnauthenticated);
+  const std::uint32_t known = std::max(connections, unauthenticated + 1) - unauthenticated;
+  return {
+      .unauthenticated = unauthenticated, .known = known, .known_of_address = std::min(of_address, known)};
 }
 
-std::optional<std::uint64_t> stranger_to_go(std::span<const Held> held, const Shares& shares) {
-  const auto strangers = those(held, [](const Held& each) { return !each.known; });
-  const auto seen = those(strangers, [](const Held& each) { return each.doing != Held::Doing::Fresh; });
-  if (strangers.size() <= shares.strangers || seen.empty()) return std::nullopt;
-  const Counts counts = by_address(strangers);
+std::optional<std::uint64_t> unauthenticated_to_close(std::span<const Held> held, const Shares& shares) {
+  const auto unauthenticated = those(held, [](const Held& each) { return !each.known; });
+  const auto seen = those(unauthenticated, [](const Held& each) { return each.doing != Held::Doing::Fresh; });
+  if (unauthenticated.size() <= shares.unauthenticated || seen.empty()) return std::nullopt;
+  const Counts counts = by_address(unauthenticated);
   return std::ranges::min_element(seen, {},
                                   [&](const Held& each) {
                                     return std::tuple(-static_cast<std::int64_t>(counts.at(each.address)),

@@ -12,7 +12,7 @@ namespace adit::intake {
 /// Limits of simultaneous connections. Unauthenticated connections have a small share of their own, so that
 /// authenticated ones (with a token or a session) always have room.
 struct Shares {
-  std::uint32_t strangers = 0, known = 0;
+  std::uint32_t unauthenticated = 0, known = 0;
   std::uint32_t known_of_address = 0;
 
   /// Splits `connections`, of which one address may have `of_address`.
@@ -39,7 +39,7 @@ struct Held {
 /// The number of the unauthenticated connection to close, or nullopt if they are within their share or all
 /// fresh. It belongs to the address with most such connections: an idle one, or else the oldest. Fresh
 /// connections are not closed, because they may be about to show a token.
-std::optional<std::uint64_t> stranger_to_go(std::span<const Held> held, const Shares& shares);
+std::optional<std::uint64_t> unauthenticated_to_close(std::span<const Held> held, const Shares& shares);
 
 /// Whether one more authenticated request has room, and the connection that gives way for it.
 struct Room {

@@ -50,8 +50,8 @@ struct Clock {
   std::string boot;  // host::boot()
   pace::Instant at{};
   double stamp = 0;
-  double leapt_to = 0, leapt_by = 0;  // dispatch::Leap at the start of this boot
-  double off = 0, off_since = 0;      // forward::Clocks::Off
+  double step_to = 0, step_by = 0;  // dispatch::ClockStep at the start of this boot
+  double off = 0, off_since = 0;    // forward::Clocks::Off
 };
 
 /// When a robot was last heard, by the stamp clock, and how often it sends.
@@ -137,8 +137,8 @@ namespace adit {
 
 template <>
 inline constexpr auto store::kMembers<journal::Clock> =
-    std::tuple(&journal::Clock::boot, &journal::Clock::at, &journal::Clock::stamp, &journal::Clock::leapt_to,
-               &journal::Clock::leapt_by, &journal::Clock::off, &journal::Clock::off_since);
+    std::tuple(&journal::Clock::boot, &journal::Clock::at, &journal::Clock::stamp, &journal::Clock::step_to,
+               &journal::Clock::step_by, &journal::Clock::off, &journal::Clock::off_since);
 template <>
 inline constexpr auto store::kMembers<journal::Heard> =
     std::tuple(&journal::Heard::robot, &journal::Heard::messages, &journal::Heard::gap, &journal::Heard::last,

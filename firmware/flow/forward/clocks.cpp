@@ -19,7 +19,7 @@ void Clocks::carry_on(journal::Carried& carried, const std::string& boot) {
   if (clock) {
     senders_ = carried.senders();
     loop_.set_stamp(clock->stamp + std::chrono::duration<double>(loop_.now() - clock->at).count());
-    leap_ = {.to = clock->leapt_to, .by = clock->leapt_by};
+    clock_step_ = {.to = clock->step_to, .by = clock->step_by};
     off_ = {.seconds = clock->off, .since = clock->off_since};
   } else {
     begin_start(kept);
@@ -35,8 +35,8 @@ journal::Clock Clocks::now() const {
   return {.boot = boot_,
           .at = loop_.now(),
           .stamp = loop_.stamp_now(),
-          .leapt_to = leap_.to,
-          .leapt_by = leap_.by,
+          .step_to = clock_step_.to,
+          .step_by = clock_step_.by,
           .off = off_.seconds,
           .off_since = off_.since};
 }
@@ -49,14 +49,14 @@ void Clocks::begin_start(const StampFloor::Kept& kept) {
   if (kept.floor <= 0 || kept.wall <= 0) return;
   const double went_on = loop_.stamp_now() - (kept.floor - StampFloor::kAhead);
   const double went_by = loop_.wall_now() - kept.wall;
-  leap_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on)};
-  off_ = {.seconds = std::clamp(went_by, 0.0, leap_.by), .since = kept.wall};
+  clock_step_ = {.to = loop_.stamp_now(), .by = std::max(0.0, went_on)};
+  off_ = {.seconds = std::clamp(went_by, 0.0, clock_step_.by), .since = kept.wall};
 }
 
 bool Clocks::hear(double there) {
   if (off_.seconds <= 0) return false;
-  const double off_there = there - off_.since - (loop_.stamp_now() - leap_.to);
-  leap_.by -= std::clamp(off_there, 0.0, off_.seconds);
+  const double off_there = there - off_.since - (loop_.stamp_now() - clock_step_.to);
+  clock_step_.by -= std::clamp(off_there, 0.0, off_.seconds);
   off_ = {};
   journal_.clock(now());
   return true;

@@ -34,8 +34,8 @@ class Clocks {
 
   /// The stamp clock's step at this boot. The Command Post must confirm the time off, because the box's clock
   /// may be wrong by a year.
-  const dispatch::Leap& leap() const { return leap_; }
-  /// `there`: the Command Post's time of day. True: leap() changed.
+  const dispatch::ClockStep& clock_step() const { return clock_step_; }
+  /// `there`: the Command Post's time of day. True: clock_step() changed.
   bool hear(double there);
   /// True if this box may have sent messages before this process.
   bool ran_before() const { return ran_before_; }
@@ -68,7 +68,7 @@ class Clocks {
   StampFloor floor_;
   const std::expected<StampFloor::Kept, std::string> kept_;  // from the previous process
   queues::StampShift senders_;
-  dispatch::Leap leap_;
+  dispatch::ClockStep clock_step_;
   Off off_;
   std::string boot_;
   bool ran_before_ = false;

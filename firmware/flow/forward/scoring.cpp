@@ -19,7 +19,7 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
   return {.answer_within = reports.answer_within,
           .review = reports.review,
           .near_metres = reports.near_metres,
-          .patience = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks},
+          .policy = {.doubt_for = reports.doubt_for, .asks = reports.doubt_asks},
           .undo = reports.undo};
 }
 
@@ -58,7 +58,7 @@ void Scoring::start() {
 /// On standby without the address, so that no run begins.
 void Scoring::open_reports() {
   auto next = std::make_unique<dispatch::Reports>(rules_of(settings_.reports), output_);
-  next->leapt(clocks_.leap());
+  next->clock_stepped(clocks_.clock_step());
   next->open(ledger_.reports(), ledger_.runs(), time(), stopping_ ? "" : channel_.address(), *reports_);
   reports_ = std::move(next);
 }
@@ -212,7 +212,7 @@ void Scoring::send(const dispatch::Report& report) {
 /// First, because judging uses the length of the silence.
 void Scoring::hear_time() {
   const auto there = channel_.time_there();
-  if (there && clocks_.hear(*there)) reports_->leapt(clocks_.leap());
+  if (there && clocks_.hear(*there)) reports_->clock_stepped(clocks_.clock_step());
 }
 
 void Scoring::report_answered(const uplink::Outcome& outcome) {

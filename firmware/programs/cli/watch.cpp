@@ -31,15 +31,15 @@ namespace adit::cli {
 namespace {
 
 /// Waits; SIGINT, SIGTERM and SIGHUP end the wait instead of the program. Only for a process with one thread.
-class Patience {
+class SignalPoll {
  public:
   enum class Woken : std::uint8_t { ByTime, ByChange, ToEnd };
 
   /// `keys`: q or the end of standard input also ends the wait.
-  explicit Patience(bool keys);
-  ~Patience();
-  Patience(const Patience&) = delete;
-  Patience& operator=(const Patience&) = delete;
+  explicit SignalPoll(bool keys);
+  ~SignalPoll();
+  SignalPoll(const SignalPoll&) = delete;
+  SignalPoll& operator=(const SignalPoll&) = delete;
 
   /// ByTime: the time is over, or `fd` (unless -1) is readable. ByChange: the screen's size has changed.
   Woken wait(std::chrono::milliseconds longest, int fd);
@@ -85,7 +85,7 @@ std::pair<std::size_t, std::size_t> size_of_terminal() {
                : std::pair{kUsualRows, kUsualColumns};
 }
 
-Patience::Patience(bool keys) : keys_(keys) {
+SignalPoll::SignalPoll(bool keys) : keys_(keys) {
   sigset_t signals;
   sigemptyset(&signals);
   for (const int signal : {SIGINT, SIGQUIT, SIGTERM, SIGHUP, SIGWINCH}) sigaddset(&signals, signal);
@@ -93,11 +93,11 @@ Patience::Patience(bool keys) : keys_(keys) {
   signals_ = loop::FileDescriptor(signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK));
 }
 
-Patience::~Patience() {
+SignalPoll::~SignalPoll() {
   pthread_sigmask(SIG_SETMASK, &before_, nullptr);
 }
 
-Patience::Woken Patience::wait(std::chrono::milliseconds longest, int fd) {
+SignalPoll::Woken SignalPoll::wait(std::chrono::milliseconds longest, int fd) {
   std::array<pollfd, 3> ends{
       {{signals_.get(), POLLIN, 0}, {keys_ ? STDIN_FILENO : -1, POLLIN, 0}, {fd, POLLIN, 0}}};
   if (poll(ends.data(), ends.size(), static_cast<int>(longest.count())) <= 0) return Woken::ByTime;
@@ -108,7 +108,7 @@ Patience::Woken Patience::wait(std::chrono::milliseconds longest, int fd) {
   return ends_by_key() ? Woken::ToEnd : Woken::ByChange;
 }
 
-bool Patience::ends_by_key() const {
+bool SignalPoll::ends_by_key() const {
   std::array<char, 64> keys{};
   const ssize_t size = ::read(STDIN_FILENO, keys.data(), keys.size());
   return size <= 0 || std::string_view(keys.data(), static_cast<std::size_t>(size)).contains('q');
@@ -218,7 +218,7 @@ std::unique_ptr<Shown> shown_for(const Options& options, const Console& console,
 Result<Outcome> watch(const Call& call) {
   const auto& [adit, options, console] = call;
   const bool drawn = console.screen && !options.json;
-  Patience patience(drawn && isatty(STDIN_FILENO) == 1);
+  SignalPoll poll(drawn && isatty(STDIN_FILENO) == 1);
   Follower follower(adit);
   std::unique_ptr<Shown> shown;  // created with the first display
   std::optional<Look> seen;
@@ -238,9 +238,9 @@ Result<Outcome> watch(const Call& call) {
     }
     const auto until = is_news ? std::min(next, follower.due()) : follower.due();
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
-    const auto woken = patience.wait(std::max(left, std::chrono::milliseconds(0)), follower.fd());
-    if (woken == Patience::Woken::ToEnd) return Outcome{};
-    if (woken == Patience::Woken::ByChange && drawn && shown) shown->show(*seen);
+    const auto woken = poll.wait(std::max(left, std::chrono::milliseconds(0)), follower.fd());
+    if (woken == SignalPoll::Woken::ToEnd) return Outcome{};
+    if (woken == SignalPoll::Woken::ByChange && drawn && shown) shown->show(*seen);
   }
 }
 

@@ -20,7 +20,7 @@ std::vector<alarms::Crowd> Crowding::crowds(loop::Instant now) const {
     if (at(why).count == 0 || now - at(why).last >= kRecent) continue;
     const Is is = why == intake::Ended::NoRoom       ? Is::NoRoom
                   : why == intake::Ended::WrongToken ? Is::WrongToken
-                                                     : Is::Strangers;
+                                                     : Is::Unauthenticated;
     crowds.push_back({is, most_of(why)});
   }
   return crowds;

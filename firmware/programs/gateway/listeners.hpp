@@ -39,7 +39,7 @@ class Listeners {
   bool serves() const { return !serving_.empty(); }
   std::size_t connections() const { return sum(&intake::Server::connections); }
   /// Unauthenticated ones.
-  std::size_t strangers() const { return sum(&intake::Server::strangers); }
+  std::size_t unauthenticated() const { return sum(&intake::Server::unauthenticated); }
 
  private:
   struct Bounds {

@@ -179,7 +179,7 @@ std::optional<api::ReportDetail> Overview::report(std::int64_t number) const {
 
 void Overview::add_to(api::Usage& usage) const {
   usage.connections += rooms_.listeners.connections();
-  usage.unauthenticated = rooms_.listeners.strangers();
+  usage.unauthenticated = rooms_.listeners.unauthenticated();
   usage.ended = {{"no_room", crowding_.count(intake::Ended::NoRoom)},
                  {"gave_way", crowding_.count(intake::Ended::GaveWay)},
                  {"idle", crowding_.count(intake::Ended::Idle)},

@@ -58,7 +58,7 @@ struct Robot {
 };
 
 struct Crowd {
-  enum class Is : std::uint8_t { NoRoom, WrongToken, Strangers };
+  enum class Is : std::uint8_t { NoRoom, WrongToken, Unauthenticated };
   Is is = Is::NoRoom;
   std::string address = {};  // of most of these clients
 };

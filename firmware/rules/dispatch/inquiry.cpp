@@ -56,7 +56,7 @@ Finding Inquiry::hear(const Evidence& evidence, double run_clock, Instant asked,
   finding_ = finding;
   in_vain_ = !is_pending(now);
   if (finding == Finding::Recorded && agreeing_ < kRecordedAsks) return Finding::Silent;
-  const bool late_enough = asked - lost_ >= patience_.doubt_for && agreeing_ >= patience_.asks;
+  const bool late_enough = asked - lost_ >= policy_.doubt_for && agreeing_ >= policy_.asks;
   if (finding == Finding::NotRecorded && !late_enough) return Finding::Silent;
   return finding;
 }
@@ -72,13 +72,13 @@ bool Inquiry::stands_still(double run_clock, Instant now) const {
 
 Inquiry::Instant Inquiry::next_ask(Instant now) const {
   if (!asked_) return now;
-  return *asked_ + (is_pending(now) ? patience_.doubt_for / 10 : patience_.doubt_for);
+  return *asked_ + (is_pending(now) ? policy_.doubt_for / 10 : policy_.doubt_for);
 }
 
 bool Inquiry::is_pending(Instant now) const {
-  if (now < lost_ + patience_.doubt_for * 3 / 2) return true;
+  if (now < lost_ + policy_.doubt_for * 3 / 2) return true;
   const bool speaks = finding_ == Finding::Recorded || finding_ == Finding::NotRecorded;
-  return speaks && now < *last_heard_ + patience_.doubt_for / 2;
+  return speaks && now < *last_heard_ + policy_.doubt_for / 2;
 }
 
 }  // namespace adit::dispatch

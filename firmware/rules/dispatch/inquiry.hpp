@@ -35,7 +35,7 @@ struct Evidence {
 Evidence weigh(const icd::RunStatus& before, std::int64_t doubts, const SentSince& since,
                const icd::RunStatus& now);
 
-struct Patience {
+struct InquiryPolicy {
   /// From the loss to a request whose status may say "not recorded". The Command Post may record a report so
   /// late.
   std::chrono::milliseconds doubt_for{10000};
@@ -48,7 +48,7 @@ class Inquiry {
   using Instant = std::chrono::steady_clock::time_point;
   static constexpr std::int64_t kRecordedAsks = 2;  // successive statuses that must say "recorded"
 
-  Inquiry(const Patience& patience, Instant lost) : patience_(patience), lost_(lost) {}
+  Inquiry(const InquiryPolicy& policy, Instant lost) : policy_(policy), lost_(lost) {}
 
   /// Adds the evidence of a status that was requested at `asked`. Returns the certain result, else Silent.
   Finding hear(const Evidence& evidence, double run_clock, Instant asked, Instant now);
@@ -64,7 +64,7 @@ class Inquiry {
  private:
   bool stands_still(double run_clock, Instant now) const;
 
-  Patience patience_;
+  InquiryPolicy policy_;
   Instant lost_;
   std::optional<Instant> asked_;
   Finding finding_ = Finding::Silent;

@@ -19,7 +19,7 @@ struct Time {
 
 /// A step of the stamp clock at a boot. The clock may step by more than the time for which the machine was
 /// off.
-struct Leap {
+struct ClockStep {
   double to = 0;  // stamps from here on are later by `by`; seconds since 1970
   double by = 0;  // seconds
 
@@ -27,7 +27,7 @@ struct Leap {
   double between(double from, double until) const {
     return until - from - (from < to && to <= until ? by : 0);
   }
-  friend bool operator==(const Leap&, const Leap&) = default;
+  friend bool operator==(const ClockStep&, const ClockStep&) = default;
 };
 
 /// What the ledger holds of an artifact report.

@@ -26,7 +26,7 @@ struct ReportRules {
   std::chrono::milliseconds answer_within{20000};  // then a client gets the state instead of the answer
   Review review = Review::Off;
   double near_metres = 5;  // same type and so near: a near duplicate
-  Patience patience;
+  InquiryPolicy policy;
   std::size_t most_waiting = 1000;
   std::chrono::seconds undo{0};  // how long a report waits for an undo, if Posted::can_be_undone
 };
@@ -85,7 +85,7 @@ class Reports {
   /// `spacing`: the time between requests by the Command Post's limit.
   void paced(Instant::duration spacing) { account_.paced(spacing); }
   /// Stamps that were read from disk may be from before the step.
-  void leapt(const Leap& leap) { account_.leapt(leap); }
+  void clock_stepped(const ClockStep& step) { account_.clock_stepped(step); }
 
   /// Accepts a report. Output answers the client now or later. `may_send`: no request is in flight and the
   /// rate limit allows one. True: the report is on disk as sending(); send it.

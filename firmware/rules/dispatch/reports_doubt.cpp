@@ -37,7 +37,7 @@ void Reports::doubt_began(Instant now) {
   inquiry_.reset();
   const auto doubts = book_.doubts(run().number);
   if (!doubts.empty() && undecidable(*doubts.front(), run(), &run()).empty()) {
-    inquiry_.emplace(rules_.patience, now);
+    inquiry_.emplace(rules_.policy, now);
   }
 }
 
@@ -164,7 +164,7 @@ bool Reports::blur_doubts(std::int64_t judged, Time time) {
   }
   if (!book_.note(blurred)) return false;
   if (its_run != run().number) return true;  // no inquiry there
-  account_.lose(time.now + rules_.patience.doubt_for);
+  account_.lose(time.now + rules_.policy.doubt_for);
   doubt_began(time.now);
   return true;
 }

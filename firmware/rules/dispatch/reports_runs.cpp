@@ -134,7 +134,7 @@ bool Reports::anything_was_sent_here() const {
 /// Queued reports are held, young ones go on into the new run. Either run may have recorded a doubt that was
 /// sent around the last status, so it enters the new one.
 std::vector<Report> Reports::steps_into(std::int64_t next, const std::string& why, Time time) {
-  const std::chrono::duration<double> late = rules_.patience.doubt_for + kYoung;
+  const std::chrono::duration<double> late = rules_.policy.doubt_for + kYoung;
   const double last_word = run().heard - late.count();
   std::vector<Report> steps;
   const auto step_of = [&](const Report& report, bool enters) {

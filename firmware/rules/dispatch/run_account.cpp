@@ -70,7 +70,7 @@ const Run* RunAccount::named_before() const {
 /// after a boot.
 double RunAccount::silence(Time time) const {
   if (clock_at_) return std::chrono::duration<double>(time.now - *clock_at_).count();
-  return std::max(0.0, leap_.between(run().heard, time.stamp) - kClockAhead);
+  return std::max(0.0, clock_step_.between(run().heard, time.stamp) - kClockAhead);
 }
 
 void RunAccount::begin(const std::string& why, std::int64_t may_be,

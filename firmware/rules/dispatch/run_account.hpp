@@ -25,8 +25,8 @@ class RunAccount {
   explicit RunAccount(ReportBook& book) : book_(book) {}
 
   /// The step that is subtracted from the run's silence.
-  void leapt(const Leap& leap) { leap_ = leap; }
-  double between(double from, double until) const { return leap_.between(from, until); }
+  void clock_stepped(const ClockStep& step) { clock_step_ = step; }
+  double between(double from, double until) const { return clock_step_.between(from, until); }
   /// `latest`: highest run number of a report, which may have been written before its run.
   void open(std::vector<Run> all, std::int64_t latest, const std::string& post);
 
@@ -91,7 +91,7 @@ class RunAccount {
   ReportBook& book_;
   Runs runs_;
   std::string post_;
-  Leap leap_;
+  ClockStep clock_step_;
   double written_ = 0;  // Run::heard on disk
   double status_at_ = 0;
   Instant::duration fresh_ = kFresh;

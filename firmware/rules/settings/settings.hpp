@@ -59,7 +59,7 @@ std::vector<std::string_view> words(std::string_view text);
 
 struct Reports {
   std::chrono::milliseconds answer_within{20000};  // a client that has waited so long gets 503
-  std::chrono::milliseconds doubt_for{10000};      // dispatch::Patience
+  std::chrono::milliseconds doubt_for{10000};      // dispatch::InquiryPolicy
   std::int64_t doubt_asks = 3;
   dispatch::Review review = dispatch::Review::Off;
   double near_metres = 5;

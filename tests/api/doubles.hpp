@@ -60,8 +60,8 @@ struct FakeSource final : Source {
 
 /// Does as it is told, and remembers what it was.
 struct FakeOperator final : Operator {
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) override {
-    judged.emplace_back(number, action);
+  std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) override {
+    decided.emplace_back(number, action);
     return outcome ? *outcome : number;
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
@@ -74,7 +74,7 @@ struct FakeOperator final : Operator {
     return outcome ? *outcome : 42;
   }
   std::expected<void, std::string> rejected(std::uint64_t number, RejectedAction action) override {
-    judged_messages.emplace_back(number, action);
+    decided_messages.emplace_back(number, action);
     if (!rejected_trouble.empty()) return std::unexpected(rejected_trouble);
     return {};
   }
@@ -90,12 +90,12 @@ struct FakeOperator final : Operator {
     return 1000 + seconds;
   }
 
-  std::vector<std::pair<std::int64_t, Action>> judged;
+  std::vector<std::pair<std::int64_t, Action>> decided;
   std::vector<std::pair<icd::ArtifactReport, bool>> reported;
   std::vector<std::pair<std::int64_t, icd::ArtifactReport>> corrected;
   std::optional<std::expected<std::int64_t, std::string>>
-      outcome;  // of judge(), report() and correct(), where it is not the same number, 41 or 42
-  std::vector<std::pair<std::uint64_t, RejectedAction>> judged_messages;
+      outcome;  // of decide(), report() and correct(), where it is not the same number, 41 or 42
+  std::vector<std::pair<std::uint64_t, RejectedAction>> decided_messages;
   std::string rejected_trouble;  // of rejected(), where there is any
   std::vector<std::string> acknowledged;
   std::string alarm_trouble;  // of acknowledge(), where there is any

@@ -32,7 +32,7 @@ inline const std::vector<intake::Header> kJsonByToken = {kByToken, {"Content-Typ
 struct Doubles {
   Served served() {
     return {.source = source,
-            .judge = judge,
+            .decisions = decisions,
             .keys = keys,
             .setup = setup,
             .network = network,
@@ -47,7 +47,7 @@ struct Doubles {
   }
 
   FakeSource source;
-  FakeOperator judge;
+  FakeOperator decisions;
   FakeKeys keys;
   FakeSetup setup;
   FakeNetwork network;

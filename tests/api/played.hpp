@@ -31,7 +31,7 @@ inline ReportCounts counts_of(const std::vector<ReportRow>& rows) {
 /// What was done to a scene's reports, so that a browser sees it done.
 class Played {
  public:
-  std::expected<std::int64_t, std::string> judge(const RunView& view, std::int64_t number, Action action) {
+  std::expected<std::int64_t, std::string> decide(const RunView& view, std::int64_t number, Action action) {
     const auto found = std::ranges::find(view.reports, number, &ReportRow::number);
     if (found == view.reports.end()) return std::unexpected("there is no such report");
     if (found->state == "rejected") return std::unexpected("the step could not be written down; try again");
@@ -62,7 +62,7 @@ class Played {
   std::expected<void, std::string> rejected(const RunView& view, std::uint64_t number) {
     const auto found = std::ranges::find(view.rejected, number, &RejectedRow::number);
     if (found == view.rejected.end()) return std::unexpected("nothing of that number is rejected");
-    judged_aside_.insert(number);
+    decided_messages_.insert(number);
     return {};
   }
 
@@ -85,7 +85,7 @@ class Played {
     for (alarms::Alarm& alarm : view.alarms) alarm.acknowledged |= acknowledged_.contains(alarm.id);
     view.run_number += runs_;
     std::erase_if(view.rejected,
-                  [this](const RejectedRow& row) { return judged_aside_.contains(row.number); });
+                  [this](const RejectedRow& row) { return decided_messages_.contains(row.number); });
     for (ReportRow& row : view.reports) {
       if (const auto state = states_.find(row.number); state != states_.end()) {
         row.state = state->second;
@@ -109,7 +109,7 @@ class Played {
     return row.number;
   }
 
-  std::set<std::uint64_t> judged_aside_;
+  std::set<std::uint64_t> decided_messages_;
   std::set<std::string> acknowledged_;
   std::map<std::int64_t, std::string> states_;
   std::int64_t runs_ = 0;         // that the operator declared

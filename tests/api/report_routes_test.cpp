@@ -108,13 +108,13 @@ TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
   post("/adit/reports/12/withdraw");
   post("/adit/reports/12/hold");
   post("/adit/reports/7/settle");
-  EXPECT_THAT(judge.judged, ElementsAre(Pair(7, Action::Send), Pair(12, Action::Withdraw),
-                                        Pair(12, Action::Hold), Pair(7, Action::Settle)));
-  judge.outcome = 13;
+  EXPECT_THAT(decisions.decided, ElementsAre(Pair(7, Action::Send), Pair(12, Action::Withdraw),
+                                             Pair(12, Action::Hold), Pair(7, Action::Settle)));
+  decisions.outcome = 13;
   const auto answer = post("/adit/reports/7/resubmit");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_EQ(answer.body, "{\"report\":13}");
-  EXPECT_THAT(judge.judged.back(), Pair(7, Action::Resubmit));
+  EXPECT_THAT(decisions.decided.back(), Pair(7, Action::Resubmit));
 }
 
 TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
@@ -122,9 +122,9 @@ TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
   EXPECT_EQ(static_cast<int>(answer.status), 202);
   EXPECT_EQ(answer.body, "{\"report\":41}");
   compose(R"({"type":"rope","x":0,"y":0,"z":0,"resubmit":true})");
-  ASSERT_EQ(judge.reported.size(), 2u);
-  EXPECT_EQ(judge.reported[0], std::pair(icd::ArtifactReport{"Drill", {1.5, -2, 0}}, false));
-  EXPECT_EQ(judge.reported[1], std::pair(icd::ArtifactReport{"rope", {0, 0, 0}}, true));
+  ASSERT_EQ(decisions.reported.size(), 2u);
+  EXPECT_EQ(decisions.reported[0], std::pair(icd::ArtifactReport{"Drill", {1.5, -2, 0}}, false));
+  EXPECT_EQ(decisions.reported[1], std::pair(icd::ArtifactReport{"rope", {0, 0, 0}}, true));
 }
 
 TEST_F(ReportRoutesTest, CorrectAReportByTheRulesOfANewOne) {
@@ -132,13 +132,13 @@ TEST_F(ReportRoutesTest, CorrectAReportByTheRulesOfANewOne) {
   const auto answer = correct(R"({"type":"Drill","x":1.5,"y":-2,"z":0})");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_EQ(answer.body, "{\"report\":42}");
-  EXPECT_THAT(judge.corrected, ElementsAre(Pair(7, icd::ArtifactReport{"Drill", {1.5, -2, 0}})));
+  EXPECT_THAT(decisions.corrected, ElementsAre(Pair(7, icd::ArtifactReport{"Drill", {1.5, -2, 0}})));
   EXPECT_THAT(correct(R"({"type":"Lamp","x":0,"y":0,"z":0})").body,
               testing::HasSubstr("type: expected one of"));
   EXPECT_THAT(correct(R"({"type":"Rope","x":0,"y":"1","z":0})").body, testing::HasSubstr("y: expected"));
   EXPECT_EQ(correct("{").status, icd::Status::BadRequest);
-  EXPECT_EQ(judge.corrected.size(), 1u);
-  judge.outcome = std::unexpected("report 7 is in doubt: only a held report can be corrected");
+  EXPECT_EQ(decisions.corrected.size(), 1u);
+  decisions.outcome = std::unexpected("report 7 is in doubt: only a held report can be corrected");
   EXPECT_EQ(correct(R"({"type":"Drill","x":1.5,"y":-2,"z":0})").status, icd::Status::Conflict);
   EXPECT_EQ(post("/adit/reports/8/correct", R"({"type":"Drill","x":1.5,"y":-2,"z":0})").status,
             icd::Status::NotFound);
@@ -148,9 +148,9 @@ TEST_F(ReportRoutesTest, LeaveOutANameThatIsNoRobotsAndSayWhy) {
   EXPECT_EQ(compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0,"name":"spot1"})").body, "{\"report\":41}");
   EXPECT_EQ(compose(R"({"type":"Drill","x":9,"y":-2,"z":0,"name":7})").body,
             R"({"report":41,"left_out":"name: expected a string, got a whole number"})");
-  ASSERT_EQ(judge.reported.size(), 2u);
-  EXPECT_EQ(judge.reported[0].first.robot, icd::RobotName::parse("spot1"));
-  EXPECT_EQ(judge.reported[1].first.robot, std::nullopt);
+  ASSERT_EQ(decisions.reported.size(), 2u);
+  EXPECT_EQ(decisions.reported[0].first.robot, icd::RobotName::parse("spot1"));
+  EXPECT_EQ(decisions.reported[1].first.robot, std::nullopt);
 }
 
 TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
@@ -166,18 +166,18 @@ TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
     EXPECT_THAT(answer.body, testing::HasSubstr(sentence));
   }
   EXPECT_EQ(compose("{").status, icd::Status::BadRequest);
-  EXPECT_THAT(judge.reported, IsEmpty());
+  EXPECT_THAT(decisions.reported, IsEmpty());
 }
 
 TEST_F(ReportRoutesTest, SayWhyAComposedReportWasNotTaken) {
-  judge.outcome = std::unexpected("1000 reports are queued already; this report was not accepted");
+  decisions.outcome = std::unexpected("1000 reports are queued already; this report was not accepted");
   const auto answer = compose(R"({"type":"Rope","x":0,"y":0,"z":0})");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(json::parse(answer.body), "1000 reports are queued already; this report was not accepted");
 }
 
 TEST_F(ReportRoutesTest, SayWhyAActionCannotBe) {
-  judge.outcome = std::unexpected("report 7 is answered: it is finished and cannot be withdrawn");
+  decisions.outcome = std::unexpected("report 7 is answered: it is finished and cannot be withdrawn");
   const auto answer = post("/adit/reports/7/withdraw");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(json::parse(answer.body), "report 7 is answered: it is finished and cannot be withdrawn");
@@ -193,7 +193,7 @@ TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherActions) {
         "/adit/reports/7/history", "/adit/reports/99999999999999999999", "/adit/reports/7/send/"}) {
     EXPECT_EQ(get(path).status, icd::Status::NotFound) << path;
   }
-  EXPECT_THAT(judge.judged, IsEmpty());
+  EXPECT_THAT(decisions.decided, IsEmpty());
 }
 
 TEST_F(ReportRoutesTest, TakeAnyOfTheTokens) {
@@ -213,7 +213,7 @@ TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
   chunked->on_body(piece);
   ASSERT_TRUE(responder->answered);
   EXPECT_EQ(responder->answered->status, icd::Status::ContentTooLarge);
-  EXPECT_EQ(judge.judged.size(), 1u);
+  EXPECT_EQ(decisions.decided.size(), 1u);
 }
 
 TEST(ReportRoutesOnAServer, DoAActionAndShowIt) {

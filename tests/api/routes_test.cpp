@@ -124,10 +124,10 @@ TEST(Routes, DoNothingForWhomTheyDoNotLetIn) {
       Asked page;
       page.status_of(route, visitor.shows(page), R"({"seconds":1,"type":"Drill","x":1,"y":2,"z":3})");
       EXPECT_FALSE(page.took_body && page.responder->answered->status == Status::Ok);
-      EXPECT_TRUE(page.judge.judged.empty() && page.judge.reported.empty() &&
-                  page.judge.judged_messages.empty());
-      EXPECT_EQ(page.judge.run, 1);
-      EXPECT_EQ(page.judge.identified, 0);
+      EXPECT_TRUE(page.decisions.decided.empty() && page.decisions.reported.empty() &&
+                  page.decisions.decided_messages.empty());
+      EXPECT_EQ(page.decisions.run, 1);
+      EXPECT_EQ(page.decisions.identified, 0);
       EXPECT_EQ(page.setup.saves + page.setup.resets + page.network.reverted, 0);
       EXPECT_TRUE(page.network.wanted.empty() && page.network.confirmed.empty());
       EXPECT_FALSE(page.test.view.running);

@@ -23,12 +23,12 @@ TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsRejectedMessages) {
   EXPECT_EQ(sent.status, icd::Status::Ok);
   EXPECT_EQ(sent.body, R"({"rejected":7})");
   EXPECT_EQ(post("/adit/rejected/8/discard").status, icd::Status::Ok);
-  EXPECT_THAT(judge.judged_messages,
+  EXPECT_THAT(decisions.decided_messages,
               ElementsAre(Pair(7, RejectedAction::Send), Pair(8, RejectedAction::Discard)));
 }
 
 TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsRejectedMessages) {
-  judge.rejected_trouble = "something newer was sent since";
+  decisions.rejected_trouble = "something newer was sent since";
   const auto answer = post("/adit/rejected/7/send");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(answer.body, R"("something newer was sent since")");
@@ -40,12 +40,12 @@ TEST_F(RunRoutesTest, KnowNothingRejectedMessagesByWhatIsNoNumber) {
         "/adit/rejected/-1/send", "/adit/rejected/7/send/more"}) {
     EXPECT_EQ(post(wrong).status, icd::Status::NotFound) << wrong;
   }
-  EXPECT_TRUE(judge.judged_messages.empty());
+  EXPECT_TRUE(decisions.decided_messages.empty());
 }
 
 TEST_F(RunRoutesTest, BeginALedgerInsteadOfOneThatCannotBeRead) {
   EXPECT_EQ(post("/adit/ledger/new").body, R"({"kept_as":"ledger.damaged-1"})");
-  judge.ledger = std::unexpected(icd::Refusal{icd::Status::Conflict, "the ledger can be read"});
+  decisions.ledger = std::unexpected(icd::Refusal{icd::Status::Conflict, "the ledger can be read"});
   const auto answer = post("/adit/ledger/new");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(answer.body, R"("the ledger can be read")");
@@ -55,7 +55,7 @@ TEST_F(RunRoutesTest, MakeTheLightsBlinkAndSayUntilWhen) {
   const auto answer = identify(R"({"seconds": 12.5})");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_EQ(nlohmann::json::parse(answer.body)["identify_until"], 1012.5);
-  EXPECT_EQ(judge.identified, 12.5);
+  EXPECT_EQ(decisions.identified, 12.5);
 }
 
 TEST_F(RunRoutesTest, NameTheFieldOfABlinkThatIsWrong) {
@@ -68,26 +68,26 @@ TEST_F(RunRoutesTest, NameTheFieldOfABlinkThatIsWrong) {
   EXPECT_EQ(identify("").status, icd::Status::BadRequest);
   EXPECT_EQ(identify("seconds=10").status, icd::Status::BadRequest);
   EXPECT_EQ(identify("[10]").status, icd::Status::UnprocessableEntity);
-  EXPECT_EQ(judge.identified, 0);
+  EXPECT_EQ(decisions.identified, 0);
 }
 
 TEST_F(RunRoutesTest, AcknowledgeAnAlarmByItsId) {
   const auto acknowledge = [this](const char* body) { return post("/adit/alarms/acknowledge", body); };
   EXPECT_EQ(acknowledge(R"({"id": "robot_silent:uav5"})").body, R"({"acknowledged":"robot_silent:uav5"})");
-  EXPECT_THAT(judge.acknowledged, testing::ElementsAre("robot_silent:uav5"));
+  EXPECT_THAT(decisions.acknowledged, testing::ElementsAre("robot_silent:uav5"));
   for (const char* wrong : {"{}", R"({"id": 5})", R"({"id": null})", "[]"})
     EXPECT_EQ(acknowledge(wrong).status, icd::Status::UnprocessableEntity) << wrong;
   EXPECT_EQ(acknowledge("").status, icd::Status::BadRequest);
-  judge.alarm_trouble = "there is no such alarm any more";
+  decisions.alarm_trouble = "there is no such alarm any more";
   const auto gone = acknowledge(R"({"id": "robot_silent:uav6"})");
   EXPECT_EQ(gone.status, icd::Status::Conflict);
   EXPECT_EQ(gone.body, "\"there is no such alarm any more\"");
-  EXPECT_EQ(judge.acknowledged.size(), 1u);
+  EXPECT_EQ(decisions.acknowledged.size(), 1u);
 }
 
 TEST_F(RunRoutesTest, DeclareANewRun) {
   EXPECT_EQ(post("/adit/runs").body, "{\"run\":2}");
-  EXPECT_EQ(judge.run, 2);
+  EXPECT_EQ(decisions.run, 2);
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 #include "alarms/alarm.hpp"
 #include "alarms/board.hpp"
 #include "alarms/conditions.hpp"
-#include "api/judged.hpp"
 #include "api/scenes.hpp"
+#include "api/verdicts.hpp"
 #include "icd/sentence.hpp"
 
 namespace adit::api {
@@ -34,7 +34,7 @@ TEST(RunView, HasTheAgesThatTheAlarmsGoBy) {
   alarms::Facts facts{.now = 1000};
   facts.streams = streams_of(view.activities, facts.now);
   facts.streams[0].forwarded = 26;
-  judge(view, facts);
+  add_verdicts(view, facts);
   EXPECT_EQ(view.activities[0].age, 26);
   EXPECT_EQ(view.activities[0].behind, 25);
   EXPECT_EQ(view.activities[1].age, std::nullopt);
@@ -51,7 +51,7 @@ TEST(RunView, SaysHowOldTheRobotsOwnDataIsAndNotWhenItWasForwarded) {
   view.robots = {{.name = "r", .position = {}, .at = 999}, {.name = "before", .position = {}}};
   alarms::Facts facts{.now = 1000};
   facts.streams = streams_of(view.activities, facts.now);
-  judge(view, facts);
+  add_verdicts(view, facts);
   EXPECT_EQ(view.activities[0].age, 94) << "it was queued for long";
   EXPECT_EQ(view.activities[1].age, 20) << "the newest one was not delivered";
   EXPECT_EQ(view.robots[0].age, 94);
@@ -92,7 +92,7 @@ TEST(RunView, SaysHowARobotStands) {
     view.activities.resize(facts.streams.size());
     for (std::size_t i = 0; i < facts.streams.size(); ++i)
       view.activities[i].kind = facts.streams[i].kind, view.activities[i].robot = facts.streams[i].robot;
-    judge(view, facts);
+    add_verdicts(view, facts);
     std::string standing;
     for (const auto& [name, level, word, silent, has_map, age] : view.standings)
       standing += icd::sentence(alarms::kLevelWords[static_cast<std::size_t>(level)], ", ", word,
@@ -106,7 +106,7 @@ std::string standing_of(const EndpointRow& row, const alarms::Facts& facts = {})
   RunView view;
   view.endpoints = {row};
   view.alarms = alarms::Board().shown(alarms::conditions_of(facts), facts.now);
-  judge(view, facts);
+  add_verdicts(view, facts);
   const auto level = static_cast<std::size_t>(view.endpoints[0].level);
   return icd::sentence(alarms::kLevelWords[level], " ", view.endpoints[0].word);
 }

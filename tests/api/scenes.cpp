@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "api/judged.hpp"
+#include "api/verdicts.hpp"
 
 namespace adit::api {
 namespace {
@@ -241,7 +241,7 @@ std::optional<RunView> scene(std::string_view name, Time now, double elapsed) {
     RunView view = each.made(now, elapsed);
     alarms::Facts facts{.now = now};
     facts.streams = streams_of(view.activities, now);
-    judge(view, facts);
+    add_verdicts(view, facts);
     return view;
   }
   return {};

@@ -23,10 +23,11 @@ struct Played : api::Page {
   }
   /// What an answer may have changed.
   auto state() {
-    return std::tuple(judge.judged, judge.reported.size(), judge.judged_messages.size(), judge.run,
-                      judge.identified, setup.saves, setup.set, setup.resets, keys.operator_, keys.viewer,
-                      keys.sessions().all(loop.now()).size(), network.wanted.size(), network.confirmed,
-                      network.reverted, test.view.running, updates.sticks, updates.restarts);
+    return std::tuple(decisions.decided, decisions.reported.size(), decisions.decided_messages.size(),
+                      decisions.run, decisions.identified, setup.saves, setup.set, setup.resets,
+                      keys.operator_, keys.viewer, keys.sessions().all(loop.now()).size(),
+                      network.wanted.size(), network.confirmed, network.reverted, test.view.running,
+                      updates.sticks, updates.restarts);
   }
 };
 

@@ -57,8 +57,8 @@ class Stage final : public Source, public Operator {
     if (row == rows.end()) return {};
     return ReportDetail{*row, {{row->received, "received", ""}, {row->changed, row->state, row->note}}, {}};
   }
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) override {
-    return played_.judge(view(), number, action);
+  std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) override {
+    return played_.decide(view(), number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return played_.report(view(), report, resubmit);
@@ -143,7 +143,7 @@ int serve(std::uint16_t port, const std::string& first, const std::string& more)
   clock.view = {.now = loop.wall_now() - 7200, .managed = more == "clock-behind", .why = {}, .refusal = {}};
   Api page{loop,
            {.source = stage,
-            .judge = stage,
+            .decisions = stage,
             .keys = keys,
             .setup = setup,
             .network = network,

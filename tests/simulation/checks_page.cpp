@@ -144,7 +144,7 @@ bool is_blurred(const Evidence& evidence, const Json& row) {
 }
 
 /// A report that is called recorded is, with the points that it got.
-void judge_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
+void classify_reports(const Evidence& evidence, const Reading& reading, Broken& broken) {
   for (const Json& row : reading.view.at("reports")) {
     const std::string state = row.at("state");
     if (row.at("position").is_null()) continue;
@@ -272,7 +272,7 @@ void honest(const Evidence& evidence, Broken& broken) {
     if (begun > reading.asked || is_switching(evidence, reading)) continue;
     judge_run(evidence, begun, reading, broken);
     judge_ages(evidence, account, reading, broken);
-    judge_reports(evidence, reading, broken);
+    classify_reports(evidence, reading, broken);
     judge_last_answers(evidence, begun, reading, broken);
     judge_metrics(evidence, reading, broken);
     if (reading.lie.starts_with("Honest")) broken.push_back(reading.lie);

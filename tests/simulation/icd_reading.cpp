@@ -31,7 +31,7 @@ rehearsal::Request read(const HttpMessage& request) {
   return read;
 }
 
-void judge_report(const std::string& body, Findings& findings) {
+void classify_report(const std::string& body, Findings& findings) {
   const auto document = rehearsal::read_document(body, rehearsal::Format::JsonText);
   if (!document) return findings.breaks("JSON parsing failed: " + document.error());
   if (document->repeated) findings.breaks("'" + *document->repeated + "' is given twice");
@@ -49,7 +49,7 @@ void judge_body(const rehearsal::Request& request, Findings& findings) {
   if (request.method == "GET") return;
   const bool is_report = request.target == rehearsal::kReportsUri;
   rehearsal::check_content(request, !is_report, findings);
-  if (is_report) return judge_report(request.body, findings);
+  if (is_report) return classify_report(request.body, findings);
   rehearsal::Judgement judgement;
   judgement.uri = request.target;
   const bool cbor = request.content_type == "application/cbor";

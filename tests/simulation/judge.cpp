@@ -64,14 +64,14 @@ void Judge::viewed(const nlohmann::json& view) {
     for (const nlohmann::json& row : view.at("reports")) {
       // What is in doubt elsewhere is found out there.
       const bool elsewhere = row.at("run") != view.at("run_number") && row.at("state") == "in_doubt";
-      if (!elsewhere) judge_report(row);
+      if (!elsewhere) classify_report(row);
     }
     if (random_.chance(0.05)) words_.push_back({"/adit/identify", "identify", R"({"seconds": 4})", 0});
   }
   for (const nlohmann::json& row : view.at("rejected")) judge_aside(row);
 }
 
-void Judge::judge_report(const nlohmann::json& row) {
+void Judge::classify_report(const nlohmann::json& row) {
   if (row.at("position").is_null()) return;  // of a damaged ledger: nobody knows what it was
   const std::string state = row.at("state");
   const std::int64_t id = row.at("number"),

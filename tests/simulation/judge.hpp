@@ -32,7 +32,7 @@ class Judge {
   };
   void look();
   void viewed(const nlohmann::json& view);
-  void judge_report(const nlohmann::json& row);
+  void classify_report(const nlohmann::json& row);
   void judge_held(std::int64_t number, std::int64_t serial);
   void correct(std::int64_t number, std::int64_t serial);
   void judge_aside(const nlohmann::json& row);

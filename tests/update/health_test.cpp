@@ -28,22 +28,22 @@ TEST(Health, OfAServiceThatIsNotReadyIsNone) {
 }
 
 TEST(Health, OfASlotOnTrialIsGoodAfterAMinuteOfReadiness) {
-  EXPECT_EQ(judge(true, std::nullopt, false), Health::Wait);
-  EXPECT_EQ(judge(true, 0s, false), Health::Wait);
-  EXPECT_EQ(judge(true, 59s, false), Health::Wait);
-  EXPECT_EQ(judge(true, 60s, false), Health::Good);
+  EXPECT_EQ(classify(true, std::nullopt, false), Health::Wait);
+  EXPECT_EQ(classify(true, 0s, false), Health::Wait);
+  EXPECT_EQ(classify(true, 59s, false), Health::Wait);
+  EXPECT_EQ(classify(true, 60s, false), Health::Good);
 }
 
 TEST(Health, OfASlotOnTrialThatIsLateEndsInARestart) {
-  EXPECT_EQ(judge(true, std::nullopt, true), Health::Restart);
-  EXPECT_EQ(judge(true, 30s, true), Health::Restart) << "it comes and goes";
-  EXPECT_EQ(judge(true, 60s, true), Health::Good);
+  EXPECT_EQ(classify(true, std::nullopt, true), Health::Restart);
+  EXPECT_EQ(classify(true, 30s, true), Health::Restart) << "it comes and goes";
+  EXPECT_EQ(classify(true, 60s, true), Health::Good);
 }
 
 TEST(Health, OfASlotThatWasGoodOnceIsGoodAtOnceAndNeverEndsInARestart) {
-  EXPECT_EQ(judge(false, 0s, false), Health::Good);
-  EXPECT_EQ(judge(false, std::nullopt, false), Health::Wait);
-  EXPECT_EQ(judge(false, std::nullopt, true), Health::Wait);
+  EXPECT_EQ(classify(false, 0s, false), Health::Good);
+  EXPECT_EQ(classify(false, std::nullopt, false), Health::Wait);
+  EXPECT_EQ(classify(false, std::nullopt, true), Health::Wait);
 }
 
 }  // namespace

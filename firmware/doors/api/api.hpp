@@ -30,7 +30,7 @@ namespace adit::api {
 /// The gateway's parts that the API uses.
 struct Served {
   const Source& source;
-  Operator& judge;
+  Operator& decisions;
   Keys& keys;
   Setup& setup;
   Network& network;

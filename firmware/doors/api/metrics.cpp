@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "api/judged.hpp"
+#include "api/verdicts.hpp"
 #include "dispatch/report_life.hpp"
 
 namespace adit::api {

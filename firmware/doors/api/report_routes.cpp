@@ -75,9 +75,9 @@ intake::Answer ReportRoutes::one(std::int64_t number) const {
   return report ? fresh(*report) : no_such(number);
 }
 
-intake::Answer ReportRoutes::judge(std::int64_t number, Action action) {
+intake::Answer ReportRoutes::decide(std::int64_t number, Action action) {
   if (!source_.report(number)) return no_such(number);
-  const auto moved = operator_.judge(number, action);
+  const auto moved = operator_.decide(number, action);
   if (!moved) return refusal(icd::Status::Conflict, moved.error());
   return object({{"report", json(*moved)}});
 }

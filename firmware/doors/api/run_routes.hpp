@@ -16,8 +16,8 @@ class RunRoutes {
   static constexpr double kLeast = 1, kMost = 60;  // seconds of flashing lights
 
   /// All must outlive this object.
-  RunRoutes(const Source& source, Operator& judge, Live& live, Entrance& entrance)
-      : source_(source), operator_(judge), live_(live), entrance_(entrance) {}
+  RunRoutes(const Source& source, Operator& decisions, Live& live, Entrance& entrance)
+      : source_(source), operator_(decisions), live_(live), entrance_(entrance) {}
 
   intake::Answer run() const;
   std::unique_ptr<intake::BodySink> events(const Call& call);

@@ -73,7 +73,7 @@ struct ActivityRow {
   std::uint64_t accepted = 0, forwarded = 0, replaced = 0, merged = 0, throttled = 0, failed = 0,
                 refused_upstream = 0, no_room = 0, queued = 0;
   std::optional<Time> behind_since, last_accepted, last_forwarded, last_no_room;
-  std::optional<double> behind, age;  // from judge()
+  std::optional<double> behind, age;  // from add_verdicts()
   std::uint64_t bytes_received = 0, bytes_sent = 0;
   int last_status = 0;
   std::string last_sentence;
@@ -81,7 +81,7 @@ struct ActivityRow {
   std::uint64_t points_left_out = 0, no_valid_point = 0, invisible = 0;
   alarms::Arrival arrival = alarms::Arrival::NotYet;
   alarms::Level level = alarms::Level::Quiet;
-  std::string word = {};  // from judge()
+  std::string word = {};  // from add_verdicts()
 
   static const codec::Row kRow;
 };
@@ -117,7 +117,7 @@ struct EndpointRow {
   std::optional<double> answer_ms = {};
   std::uint64_t throttled = 0, foreign = 0;
   alarms::Level level = alarms::Level::Quiet;
-  std::string word = {};  // from judge()
+  std::string word = {};  // from add_verdicts()
 
   static const codec::Row kRow;
 };
@@ -141,7 +141,7 @@ struct RobotRow {
   icd::Point position;
   double heading = 0;
   std::optional<Time> at = {};     // nullopt: before the boot, when the clock may have been different
-  std::optional<double> age = {};  // from judge()
+  std::optional<double> age = {};  // from add_verdicts()
 
   static const codec::Row kRow;
 };

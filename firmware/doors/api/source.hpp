@@ -44,7 +44,7 @@ class Operator {
  public:
   virtual ~Operator() = default;
   /// Returns the number of the affected report. An error is a sentence.
-  virtual std::expected<std::int64_t, std::string> judge(std::int64_t number, Action action) = 0;
+  virtual std::expected<std::int64_t, std::string> decide(std::int64_t number, Action action) = 0;
   /// Accepts the operator's report like a client's. Returns its number, or that of an equal report. An error
   /// is a sentence.
   virtual std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report,

@@ -109,9 +109,9 @@ class Flow final : public intake::Desk {
   void claimed(icd::Uri uri) { pace_of(uri).claimed(loop_.now()); }
 
   /// Operator's actions: api::Operator.
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) {
+  std::expected<std::int64_t, std::string> decide(std::int64_t number, api::Action action) {
     if (!standby_.empty()) return std::unexpected(standby_);
-    return scoring_.judge(number, action);
+    return scoring_.decide(number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) {
     if (!standby_.empty()) return std::unexpected(standby_);

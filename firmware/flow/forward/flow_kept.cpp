@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "api/judged.hpp"
+#include "api/verdicts.hpp"
 #include "forward/flow.hpp"
 
 namespace adit::forward {

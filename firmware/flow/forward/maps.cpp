@@ -156,11 +156,11 @@ void Maps::send(const Place& prepared) {
 
 void Maps::answered(const Place& sent, const uplink::Outcome& outcome) {
   sent->is_under_way = false;
-  judge(sent, outcome);
+  classify(sent, outcome);
   pump();
 }
 
-void Maps::judge(const Place& sent, const uplink::Outcome& outcome) {
+void Maps::classify(const Place& sent, const uplink::Outcome& outcome) {
   if (const auto* answer = std::get_if<uplink::Answered>(&outcome)) return verdict(sent, *answer);
   pace_.failed(outcome, loop_.now());
   record_.not_taken(traffic_of(sent->waiting.map), NotTaken::Failed, 0, sentence_of(outcome));

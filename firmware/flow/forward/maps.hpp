@@ -161,7 +161,7 @@ class Maps {
   void go_ahead(loop::Instant now);
   bool may_go_ahead(loop::Instant now) const;
   void answered(const Place& sent, const uplink::Outcome& outcome);
-  void judge(const Place& sent, const uplink::Outcome& outcome);
+  void classify(const Place& sent, const uplink::Outcome& outcome);
   void verdict(const Place& sent, const uplink::Answered& answered);
   void taken(const Place& sent, const uplink::Answered& answered);
   void leaves(const Place& sent);

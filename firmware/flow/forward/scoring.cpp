@@ -23,6 +23,23 @@ dispatch::ReportRules rules_of(const settings::Reports& reports) {
           .undo = reports.undo};
 }
 
+dispatch::Reports::Outcome carry_out(dispatch::Reports& reports, std::int64_t number, api::Action action,
+                                     dispatch::Time time) {
+  switch (action) {
+    case api::Action::Send:
+      return reports.send(number, time);
+    case api::Action::Hold:
+      return reports.hold(number, time);
+    case api::Action::Withdraw:
+      return reports.withdraw(number, time);
+    case api::Action::Settle:
+      return reports.settle(number, time);
+    case api::Action::Resubmit:
+      return reports.resubmit(number, time);
+  }
+  std::unreachable();
+}
+
 /// If the Command Post answered without a status.
 intake::Answer no_status_in(const uplink::Answered& answered) {
   if (answered.status >= 400) return client_answer(answered);
@@ -216,7 +233,7 @@ void Scoring::hear_time() {
 }
 
 void Scoring::report_answered(const uplink::Outcome& outcome) {
-  judge_report(outcome);
+  classify_report(outcome);
   known_status_.no_longer_fresh();  // score and remaining reports may have changed
   poll_due_ = true;
   watch_deadlines();
@@ -224,7 +241,7 @@ void Scoring::report_answered(const uplink::Outcome& outcome) {
   pump();
 }
 
-void Scoring::judge_report(const uplink::Outcome& outcome) {
+void Scoring::classify_report(const uplink::Outcome& outcome) {
   hear_time();
   const loop::Instant now = loop_.now();
   if (const auto* answered = std::get_if<uplink::Answered>(&outcome)) {
@@ -295,13 +312,13 @@ void Scoring::ask_status(bool decides) {
 void Scoring::status_answered(const uplink::Outcome& outcome) {
   const loop::Instant asked = std::exchange(asked_status_, std::nullopt)->at;
   poll_.call_at(loop_.now() + kAskEvery);
-  judge_status(outcome, asked);
+  classify_status(outcome, asked);
   watch_deadlines();
   record_.changed();
   pump();
 }
 
-void Scoring::judge_status(const uplink::Outcome& outcome, loop::Instant asked) {
+void Scoring::classify_status(const uplink::Outcome& outcome, loop::Instant asked) {
   hear_time();
   const loop::Instant now = loop_.now();
   const auto* answered = std::get_if<uplink::Answered>(&outcome);
@@ -342,13 +359,8 @@ void Scoring::answer_askers(const intake::Answer& answer) {
   for (const Asker& asker : std::exchange(askers_, {})) asker.responder->answer(answer);
 }
 
-dispatch::Reports::Outcome Scoring::judge(std::int64_t number, api::Action action) noexcept {
-  const dispatch::Reports::Outcome outcome =
-      action == api::Action::Send       ? reports_->send(number, time())
-      : action == api::Action::Hold     ? reports_->hold(number, time())
-      : action == api::Action::Withdraw ? reports_->withdraw(number, time())
-      : action == api::Action::Settle   ? reports_->settle(number, time())
-                                        : reports_->resubmit(number, time());
+dispatch::Reports::Outcome Scoring::decide(std::int64_t number, api::Action action) noexcept {
+  const dispatch::Reports::Outcome outcome = carry_out(*reports_, number, action, time());
   record_.changed();
   pump();
   return outcome;

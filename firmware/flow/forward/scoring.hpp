@@ -66,7 +66,7 @@ class Scoring {
   void tick();
 
   /// Returns the number of the changed report, or why the action failed.
-  dispatch::Reports::Outcome judge(std::int64_t number, api::Action action) noexcept;
+  dispatch::Reports::Outcome decide(std::int64_t number, api::Action action) noexcept;
   /// Accepts the operator's report. Returns its number when it is on disk.
   dispatch::Reports::Outcome report(const icd::ArtifactReport& report, bool resubmit);
   /// Returns the number of the report that is sent instead.
@@ -111,10 +111,10 @@ class Scoring {
   void send(const dispatch::Report& report);
   void send_next();
   void report_answered(const uplink::Outcome& outcome);
-  void judge_report(const uplink::Outcome& outcome);
+  void classify_report(const uplink::Outcome& outcome);
   void ask_status(bool decides);
   void status_answered(const uplink::Outcome& outcome);
-  void judge_status(const uplink::Outcome& outcome, loop::Instant asked);
+  void classify_status(const uplink::Outcome& outcome, loop::Instant asked);
   void answer_askers(const intake::Answer& answer);
   void watch_deadlines();
   void tell_askers(loop::Instant now);

@@ -106,8 +106,8 @@ class Telemetry {
   }
 
   template <class Waiting>
-  void judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
-             const uplink::Outcome& outcome);
+  void classify(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
+                const uplink::Outcome& outcome);
   void passed(const queues::QueuedState& state);
   void passed(const queues::QueuedMarkers& markers);
   /// Passes accepted messages to as_forwarded_.

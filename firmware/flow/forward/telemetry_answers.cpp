@@ -32,13 +32,13 @@ void Telemetry::answered(Kind kind, UriPace& pace, const Shared<Waiting>& sent, 
                          const uplink::Outcome& outcome) {
   if (kind == Kind::Markers) markers_under_way_.reset();
   under_way_.reset();
-  judge(kind, pace, sent, bytes, outcome);
+  classify(kind, pace, sent, bytes, outcome);
   pump();
 }
 
 template <class Waiting>
-void Telemetry::judge(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
-                      const uplink::Outcome& outcome) {
+void Telemetry::classify(Kind kind, UriPace& pace, const Shared<Waiting>& sent, std::size_t bytes,
+                         const uplink::Outcome& outcome) {
   const loop::Instant now = loop_.now();
   const auto* answer = std::get_if<uplink::Answered>(&outcome);
   const int status = answer != nullptr ? answer->status : 0;

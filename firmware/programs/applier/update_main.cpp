@@ -77,7 +77,7 @@ std::expected<void, std::string> watch_health(const UpdateOptions& options) {
   const bool trial = last_update && update::on_trial(*last_update, running, host::boot());
   const auto late_at = now() + options.within;
   while (true) {
-    const auto health = update::judge(trial, ready(options.systemctl), now() >= late_at);
+    const auto health = update::classify(trial, ready(options.systemctl), now() >= late_at);
     if (health == update::Health::Restart) return restart(options.systemctl);
     if (health == update::Health::Good) break;
     std::this_thread::sleep_for(trial ? kOnTrial : kElse);

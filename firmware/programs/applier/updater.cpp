@@ -55,8 +55,8 @@ std::vector<Candidate> candidates(const std::string& sticks, const std::string& 
 }
 
 /// The update in a file, or why it cannot be installed.
-std::expected<update::Offer, std::string> judge(const Candidate& candidate, const Rauc& rauc,
-                                                const update::Running& running) {
+std::expected<update::Offer, std::string> checked_offer(const Candidate& candidate, const Rauc& rauc,
+                                                        const update::Running& running) {
   if (!update::is_plain(candidate.name))
     return std::unexpected("rename the file: only ASCII characters are allowed");
   const auto file = ADIT_TRY(BundleFile::open(candidate.folder + '/' + candidate.name));
@@ -71,7 +71,7 @@ std::expected<update::Offer, std::string> judge(const Candidate& candidate, cons
 OnStick look_at_sticks(const std::string& folder, const Rauc& rauc, const update::Running& running) {
   OnStick found;
   for (const Candidate& candidate : candidates(folder, running.compatible, found.trouble)) {
-    const auto offer = judge(candidate, rauc, running);
+    const auto offer = checked_offer(candidate, rauc, running);
     if (!offer) {
       found.trouble = host::escaped(candidate.name) + ": " + offer.error();
     } else if (!found.offer ||

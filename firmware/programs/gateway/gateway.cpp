@@ -85,7 +85,7 @@ Gateway::Gateway(loop::Loop& loop, Parts parts)
                 disk_writer_),
       api_(loop,
            {.source = overview_,
-            .judge = *this,
+            .decisions = *this,
             .keys = accounts_,
             .setup = setup_,
             .network = network_,

@@ -36,8 +36,8 @@ class Gateway final : public api::Operator {
   /// A line for systemd.
   std::string status_line() const { return overview_.status_line(); }
 
-  std::expected<std::int64_t, std::string> judge(std::int64_t number, api::Action action) override {
-    return flow_.judge(number, action);
+  std::expected<std::int64_t, std::string> decide(std::int64_t number, api::Action action) override {
+    return flow_.decide(number, action);
   }
   std::expected<std::int64_t, std::string> report(const icd::ArtifactReport& report, bool resubmit) override {
     return flow_.report(report, resubmit);

@@ -2,7 +2,7 @@
 
 #include "alarms/alarm.hpp"
 #include "alarms/conditions.hpp"
-#include "api/judged.hpp"
+#include "api/verdicts.hpp"
 #include "box/notices.hpp"
 #include "box/version.hpp"
 #include "host/log.hpp"
@@ -140,7 +140,7 @@ api::RunView Overview::view() const {
   for (api::ReportRow& row : view.reports) tell_time_of_day(row, rooms_.loop);
   const alarms::Facts found = facts(view.activities);
   view.alarms = board_.shown(alarms::conditions_of(found), found.now);
-  api::judge(view, found);
+  api::add_verdicts(view, found);
   for (const panel::Light light : panel::kLights) {
     view.lights.push_back(
         {.name = std::string(panel::name_of(light)),

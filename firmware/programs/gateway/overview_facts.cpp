@@ -1,7 +1,7 @@
 // Facts for the rules of alarms.
 #include <algorithm>
 
-#include "api/judged.hpp"
+#include "api/verdicts.hpp"
 #include "gateway/overview.hpp"
 #include "host/disk.hpp"
 

@@ -196,7 +196,7 @@ class Reports {
   ReportBook::Step after_loss(const Report& doubt, const Evidence& evidence) const;
   void send_again(const std::vector<const Report*>& doubts, const Evidence& evidence, Time time);
   void explain(const std::vector<const Report*>& doubts, const std::string& why, Time time);
-  bool blur_doubts(std::int64_t judged, Time time);
+  bool blur_doubts(std::int64_t decided, Time time);
   void ask_for_others(Time time);
 
   // Runs.

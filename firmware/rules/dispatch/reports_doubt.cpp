@@ -156,11 +156,11 @@ void Reports::explain(const std::vector<const Report*>& doubts, const std::strin
 /// Forgets the expected counts of other doubts, which no longer show the result. Call it before the
 /// operator's decision is written, so that a power cut between leaves no wrong evidence. False: the write
 /// failed.
-bool Reports::blur_doubts(std::int64_t judged, Time time) {
-  const std::int64_t its_run = book_.at(judged).run;
+bool Reports::blur_doubts(std::int64_t decided, Time time) {
+  const std::int64_t its_run = book_.at(decided).run;
   std::vector<Report> blurred;
   for (const Report* const doubt : book_.doubts(its_run)) {
-    if (doubt->number != judged && doubt->before) blurred.emplace_back(*doubt).before.reset();
+    if (doubt->number != decided && doubt->before) blurred.emplace_back(*doubt).before.reset();
   }
   if (!book_.note(blurred)) return false;
   if (its_run != run().number) return true;  // no inquiry there

@@ -31,13 +31,13 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
   if (undo_.contains(number)) {
     return end_undo(number, kSent, time) ? Outcome(number) : std::unexpected(kDisk);
   }
-  const bool judged = report->state == ReportState::InDoubt;
-  if (const Report* const other = judged ? nullptr : twin(*report); other != nullptr) {
+  const bool decided = report->state == ReportState::InDoubt;
+  if (const Report* const other = decided ? nullptr : twin(*report); other != nullptr) {
     return cannot(*report,
                   icd::sentence("report ", other->number, " is the same and is ", shown_name_of(other->state),
                                 " in this run; to send it again, resubmit that report"));
   }
-  if (judged && !blur_doubts(number, time)) return std::unexpected(kDisk);
+  if (decided && !blur_doubts(number, time)) return std::unexpected(kDisk);
   const bool moved = step(number, ReportEvent::Released, kSent, time, [&](Report& sent) {
     sent.asked = true;
     sent.same_as = 0;
@@ -45,7 +45,7 @@ Reports::Outcome Reports::send(std::int64_t number, Time time) {
     sent.run = meant_run().number;
   });
   if (!moved) return std::unexpected(kDisk);
-  if (judged) ask_for_others(time);
+  if (decided) ask_for_others(time);
   return number;
 }
 

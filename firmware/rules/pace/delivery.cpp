@@ -52,7 +52,7 @@ void Delivery::goes_on(const Progress& now) {
   starved_ = starved_ || is_starved(now);
   if (now.at - began_.at < std::max<Duration>(kInterval, 2 * now.least_round_trip)) return;
   const double rate = rate_until(now);
-  if (rate > 0 && (!starved_ || rate > link_ * kFound)) judge(rate, now.at);
+  if (rate > 0 && (!starved_ || rate > link_ * kFound)) measure(rate, now.at);
   if (!drains_ && link_ < most_ && now.at >= probe_at_) probes_ = true;
   begins(now);
 }
@@ -69,7 +69,7 @@ void Delivery::queue_ended_probe(const Progress& now) {
   begins(now);
 }
 
-void Delivery::judge(double rate, Instant now) {
+void Delivery::measure(double rate, Instant now) {
   remember(rate, now);
   const double given = pace();
   stands_ = queued_ ? stands_ + 1 : 0;

@@ -51,7 +51,7 @@ class Delivery {
  private:
   double rate_until(const Progress& now) const;
   void queue_ended_probe(const Progress& now);
-  void judge(double rate, Instant now);
+  void measure(double rate, Instant now);
   void remember(double rate, Instant now);
   void carries(double rate, Instant now);
   void end_probe(bool in_vain, Instant now);

@@ -27,7 +27,7 @@ std::string wait_for_trial(std::string_view version) {
                        " s");
 }
 
-Health judge(bool trial, const Ready& ready, bool late) {
+Health classify(bool trial, const Ready& ready, bool late) {
   if (ready && (!trial || *ready >= kHealthyFor)) return Health::Good;
   return trial && late ? Health::Restart : Health::Wait;
 }

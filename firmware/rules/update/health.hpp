@@ -34,6 +34,6 @@ std::string wait_for_trial(std::string_view version);
 /// `late`: kGoodWithin is over. A slot that is not on trial is good once aditd is ready, so that short runs
 /// (a loose plug) do not count against it. It never causes a restart, because its fault is the settings,
 /// which a user corrects on a running box.
-Health judge(bool trial, const Ready& ready, bool late);
+Health classify(bool trial, const Ready& ready, bool late);
 
 }  // namespace adit::update

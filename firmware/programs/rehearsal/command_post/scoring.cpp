@@ -100,12 +100,12 @@ Judgement StrictScoring::judge(const Request& request) {
   } else if (judgement.uri == kStatusUri) {
     judgement.outcome = answered(200, status_body(run_, Clock::now()));
   } else {
-    judge_report(request, judgement);
+    classify_report(request, judgement);
   }
   return judgement;
 }
 
-void StrictScoring::judge_report(const Request& request, Judgement& judgement) {
+void StrictScoring::classify_report(const Request& request, Judgement& judgement) {
   Findings& findings = judgement.findings;
   check_content(request, false, findings);
   const auto document = read_document(request.body, Format::JsonText);

@@ -20,7 +20,7 @@ class StrictScoring : public Endpoint {
 
  private:
   bool too_many(const Request& request);
-  void judge_report(const Request& request, Judgement& judgement);
+  void classify_report(const Request& request, Judgement& judgement);
 
   const std::string token_;
   Run& run_;
@@ -38,7 +38,7 @@ class MeasuredScoring : public Endpoint {
 
  private:
   void judge_known(const Request& request, Judgement& judgement);
-  void judge_report(const Request& request, Judgement& judgement);
+  void classify_report(const Request& request, Judgement& judgement);
   bool too_many(const Request& request);
 
   const std::string token_;

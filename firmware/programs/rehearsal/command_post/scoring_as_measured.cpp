@@ -75,11 +75,11 @@ void MeasuredScoring::judge_known(const Request& request, Judgement& judgement) 
     body["run_clock"] = kMeasuredStatusClock;
     judgement.outcome = answered(200, body);
   } else {
-    judge_report(request, judgement);
+    classify_report(request, judgement);
   }
 }
 
-void MeasuredScoring::judge_report(const Request& request, Judgement& judgement) {
+void MeasuredScoring::classify_report(const Request& request, Judgement& judgement) {
   check_content(request, false, judgement.findings);
   if (!is_json(request.content_type)) {
     judgement.outcome = detailed(415, "Unsupported media type in request.");

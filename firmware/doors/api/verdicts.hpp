@@ -19,6 +19,6 @@ std::vector<alarms::Stream> streams_of(const std::vector<ActivityRow>& rows, Tim
 
 /// Computes ages, arrival, levels, words, standings and verdict from the view's other members. Requires that
 /// `facts.streams` is streams_of(view.activities).
-void judge(RunView& view, const alarms::Facts& facts);
+void add_verdicts(RunView& view, const alarms::Facts& facts);
 
 }  // namespace adit::api

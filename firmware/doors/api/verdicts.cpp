@@ -1,4 +1,4 @@
-#include "api/judged.hpp"
+#include "api/verdicts.hpp"
 
 #include <algorithm>
 #include <map>
@@ -56,7 +56,7 @@ StandingRow standing_of(const std::string& name, std::vector<const ActivityRow*>
   return {name, worst.level, worst.word, silent, has_map, age};
 }
 
-void judge_robots(RunView& view, const alarms::Facts& facts) {
+void add_robots(RunView& view, const alarms::Facts& facts) {
   std::map<std::string, std::vector<const ActivityRow*>> all;
   for (const ActivityRow& row : view.activities) all[row.robot].push_back(&row);
   all.erase("");
@@ -84,7 +84,7 @@ constexpr std::pair<std::string_view, std::string_view> kTroubles[] = {
     {"command_post_throttling", "slow down"}};
 
 /// Trouble without an alarm may pass: some servers close the connection after each answer.
-void judge_endpoint(EndpointRow& row, const std::vector<alarms::Alarm>& alarms) {
+void add_endpoint(EndpointRow& row, const std::vector<alarms::Alarm>& alarms) {
   const bool is_well = row.trouble.empty() && (row.connected || row.last_status > 0);
   row.level = is_well ? alarms::Level::Good : alarms::Level::Wait;
   row.word = is_well                  ? "connected"
@@ -103,7 +103,7 @@ void judge_endpoint(EndpointRow& row, const std::vector<alarms::Alarm>& alarms) 
 
 }  // namespace
 
-void judge(RunView& view, const alarms::Facts& facts) {
+void add_verdicts(RunView& view, const alarms::Facts& facts) {
   icd::require(facts.streams.size() == view.activities.size());
   for (std::size_t i = 0; i < view.activities.size(); ++i) {
     ActivityRow& row = view.activities[i];
@@ -122,8 +122,8 @@ void judge(RunView& view, const alarms::Facts& facts) {
     if (its != view.activities.end() && its->age) robot.at = facts.now - *its->age;
     if (robot.at) robot.age = seconds_since(*robot.at, facts.now);
   }
-  for (EndpointRow& row : view.endpoints) judge_endpoint(row, view.alarms);
-  judge_robots(view, facts);
+  for (EndpointRow& row : view.endpoints) add_endpoint(row, view.alarms);
+  add_robots(view, facts);
   view.verdict = alarms::verdict_of(facts);
 }
 

@@ -71,8 +71,8 @@ TEST_F(Check, SaysTheSameToScripts) {
   EXPECT_EQ(wrong.out,
             "{\"good\":false,\"errors\":[{\"path\":\"version\",\"what\":\"expected 1, got 2\"}],"
             "\"warnings\":[]}\n");
-  const Outcome good = run(
-      std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json", "--json"});
+  const Outcome good = run(std::vector<std::string_view>{
+      "check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json", "--json"});
   EXPECT_EQ(good.exit, Exit::Fine);
   EXPECT_EQ(good.out, "{\"good\":true,\"errors\":[],\"warnings\":[]}\n");
 }

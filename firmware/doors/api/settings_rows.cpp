@@ -15,11 +15,11 @@ using codec::Row;
 using codec::Schema;
 using codec::Value;
 
-constexpr Schema kSettingsSchema = {.type = "object",
-                                    .more =
-                                        R"("description":"The settings file: firmware/rules/settings/README.md.",)"
-                                        R"("properties":{"version":{"const":1}},"required":["version"])",
-                                    .name = "Settings"};
+constexpr Schema kSettingsSchema = {
+    .type = "object",
+    .more = R"("description":"The settings file: firmware/rules/settings/README.md.",)"
+            R"("properties":{"version":{"const":1}},"required":["version"])",
+    .name = "Settings"};
 constexpr Kind kSettings = {
     .write = codec::kind_of<Value>.write, .read = codec::kind_of<Value>.read, .schema = &kSettingsSchema};
 

@@ -8,8 +8,8 @@
 #include "codec/row.hpp"
 #include "command_line/read.hpp"
 #include "icd/sentence.hpp"
-#include "icd/text.hpp"
 #include "icd/suggestion.hpp"
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {
@@ -70,8 +70,7 @@ class Words {
   Wrong take_command(std::string_view word) {
     const auto row = std::ranges::find(commands(), word, &CommandRow::name);
     if (row == commands().end())
-      return std::string("no such command: ").append(word) +
-             icd::did_you_mean(word, names_of_commands());
+      return std::string("no such command: ").append(word) + icd::did_you_mean(word, names_of_commands());
     if (row->forms.empty()) {
       options_.help = true;
     } else {

@@ -6,8 +6,8 @@
 #include "codec/json.hpp"
 #include "host/log.hpp"
 #include "icd/sentence.hpp"
-#include "icd/text.hpp"
 #include "icd/suggestion.hpp"
+#include "icd/text.hpp"
 
 namespace adit::cli {
 namespace {

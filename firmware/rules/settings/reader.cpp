@@ -5,8 +5,8 @@
 
 #include "codec/json.hpp"
 #include "icd/sentence.hpp"
-#include "icd/text.hpp"
 #include "icd/suggestion.hpp"
+#include "icd/text.hpp"
 
 namespace adit::settings {
 namespace {

@@ -118,6 +118,18 @@ TEST_F(GateTest, NothingFollowsAChunkedBody) {
   EXPECT_EQ(handler.ends, 1);
 }
 
+TEST_F(GateTest, AChunkedRequestThatWasReadWithTheOneBeforeItIsNotTaken) {
+  RawClient client(served.port());
+  client.send(request("POST", "/echo", {}, "x") + request("POST", "/echo", "Transfer-Encoding: chunked\r\n") +
+              "1\r\ny\r\n0\r\n\r\n");
+  const auto reply = client.reply();
+  ASSERT_TRUE(reply);
+  EXPECT_EQ(reply->body, "POST /echo  127.0.0.1 x");
+  EXPECT_EQ(reply->header("connection"), "close");
+  EXPECT_EQ(client.rest(), "");
+  EXPECT_EQ(handler.ends, 1);
+}
+
 TEST_F(GateTest, AHeadThatWasReadWithTheRequestBeforeItIsNotTaken) {
   RawClient client(served.port());
   client.send(request("POST", "/echo", {}, "x") + "GET /echo HTTP/1.1\r\nHo");

@@ -36,6 +36,16 @@ TEST_F(ServerLives, ClientResetsWhileItsAnswerIsAwaited) {
   });
 }
 
+TEST_F(ServerLives, ClientWithChunksResetsWhileItsAnswerIsAwaited) {
+  client.send(request("POST", "/later", "Transfer-Encoding: chunked\r\n") + "1\r\nx\r\n0\r\n\r\n");
+  ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
+  client.reset();
+  EXPECT_TRUE(no_connections());
+  EXPECT_EQ(handler.gone, 1);
+  EXPECT_EQ(handler.exchanges, 0);
+  served.on_loop([&] { handler.responders[0]->answer({.body = "1", .headers = {}}); });
+}
+
 TEST_F(ServerLives, AConnectionEndsWithItsAnswerIfTheRequestSaysSo) {
   client.close();
   for (const std::string_view head :
@@ -137,8 +147,10 @@ TEST_F(ServerLives, ResponderIsAnsweredAsTheClientResets) {
 TEST_F(ServerLives, ServerEndsWithARequestInEachPhase) {
   std::vector<std::unique_ptr<RawClient>> clients;
   const std::string unfinished = " HTTP/1.1\r\nHost: adit\r\nContent-Length: 5000000\r\n\r\nbegun";
+  const std::string chunk = " HTTP/1.1\r\nHost: adit\r\nTransfer-Encoding: chunked\r\n\r\n5\r\nbegun\r\n";
   for (const std::string& text :
-       {std::string("GET /echo HT"), "POST /echo" + unfinished, "POST /held" + unfinished,
+       {std::string("GET /echo HT"), "POST /echo" + chunk, "POST /held" + chunk,
+        "POST /later" + chunk + "0\r\n\r\n", "POST /echo" + unfinished, "POST /held" + unfinished,
         "POST /midway" + unfinished, "POST /eager" + unfinished, request("GET", "/later"),
         request("GET", "/stream"), request("GET", "/echo"),
         std::string("POST /refuse HTTP/1.1\r\nHost: adit\r\nContent-Length: 10\r\n\r\n")}) {
@@ -146,14 +158,14 @@ TEST_F(ServerLives, ServerEndsWithARequestInEachPhase) {
     clients.back()->send(text);
   }
   ASSERT_TRUE(served.eventually([&] {
-    return handler.responders.size() == 2 && handler.streams.size() == 1 && handler.flows.size() == 1 &&
-           handler.body_bytes == 4 * std::string_view("begun").size();
+    return handler.responders.size() == 3 && handler.streams.size() == 1 && handler.flows.size() == 2 &&
+           handler.body_bytes == 7 * std::string_view("begun").size();
   }));
   served.on_loop([&] {
     handler.streams[0]->send("x");
     served.destroy_server();
     EXPECT_EQ(handler.exchanges, 0);
-    EXPECT_EQ(handler.gone, 4);
+    EXPECT_EQ(handler.gone, 7);
     for (auto& responder : handler.responders) {
       EXPECT_TRUE(responder->client_gone());
       responder->answer({.body = "late", .headers = {}});

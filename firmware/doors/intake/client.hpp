@@ -10,13 +10,16 @@
 #include "intake/least_rate.hpp"
 #include "intake/server.hpp"
 #include "intake/shares.hpp"
+#include "loop/guard.hpp"
 #include "loop/loop.hpp"
 
 struct MHD_Connection;
 
 namespace adit::intake {
 
+class Client;
 class Request;
+enum class Next : std::uint8_t;
 
 /// The server as a Client sees it.
 class Engine {
@@ -31,16 +34,13 @@ class Engine {
   virtual void tell(Ended why, const std::string& address) = 0;
   /// Calls hold_back() of the client `number` after libmicrohttpd has run.
   virtual void hold_back_soon(std::uint64_t number) = 0;
+  /// The gate has let in a request.
+  virtual void begin_request(Client& client) = 0;
 };
 
 /// One client's connection, from accept to close. Lives as long as libmicrohttpd's connection.
 class Client {
  public:
-  /// Adit reads chunked bodies itself, because the reader of libmicrohttpd 0.9 accepts more than RFC 9112
-  /// allows. Version 1 rejects codings that it does not know, so its own reader is used, and told to be
-  /// strict.
-  static const bool kReadsChunks;
-
   /// The state of the connection. Each has its own deadline.
   enum class Phase : std::uint8_t {
     Head,     // a head is arriving, or the first one is awaited
@@ -70,16 +70,19 @@ class Client {
   bool hung_up() const { return hung_up_; }
 
   /// Keeps libmicrohttpd from reading until the next request's head is whole and valid. Call this
-  /// in its callbacks only at the end of a request whose connection stays.
+  /// in its callbacks only at the end of a request whose connection stays. Reads on in a chunked body.
   void hold_back();
   Gate& gate() { return gate_; }
-  /// libmicrohttpd has read the request line.
-  void head_begun(std::string_view target);
-  const std::string& target() const { return target_; }
   void request_begun(std::shared_ptr<Request> request);
   /// `is_answered`: the answer was sent completely.
   void request_over(bool is_answered);
   const std::shared_ptr<Request>& request() const { return request_; }
+  /// Calls `step`, which goes on with the request. If it throws, the request fails.
+  template <class Step>
+  Next guarded(const Step& step) {
+    Next next{};
+    return loop::guarded("a request", [&] { next = step(); }) ? next : fail();
+  }
 
   /// The client must send bytes, or must read its answer, within that time.
   void expect_bytes(std::chrono::milliseconds within);
@@ -110,7 +113,9 @@ class Client {
   void resume();
   bool suspended() const { return suspended_; }
 
-  /// Writes past libmicrohttpd, which must have no bytes to write, and closes the sending direction.
+  /// Writes past libmicrohttpd, which must have no bytes to write.
+  void say(std::string_view text);
+  /// Then closes the sending direction.
   void say_last(std::string_view text);
   /// Closes both directions. libmicrohttpd notices in its next run.
   void cut();
@@ -130,6 +135,9 @@ class Client {
   bool has_said_all() const;
   void look_at_head();
   void refuse_head();
+  Next fail();
+  bool begin_chunked();
+  void read_on();
 
   Engine& engine_;
   loop::Loop& loop_;
@@ -137,7 +145,6 @@ class Client {
   int fd_;
   std::uint64_t number_;
   std::string peer_, local_;
-  std::string target_;
   Phase phase_ = Phase::Head;
   loop::Instant since_;
   loop::Instant deadline_ = loop::Instant::max();
@@ -148,6 +155,9 @@ class Client {
   std::uint64_t taken_before_ = 0;  // the last value of Gate::Traffic::taken
   bool arrived_ = false;            // bytes arrived since the last look at the head
   bool ended_ = false;              // the client has closed its direction
+  /// The next or present request is chunked, and Adit reads it. libmicrohttpd stays suspended until cut();
+  /// suspended_ says if Adit reads.
+  bool reads_ = false;
   bool suspended_ = false;
   bool hung_up_ = false;
   Gate gate_;

@@ -67,15 +67,17 @@ Gate::Finding Gate::look(loop::Instant now, bool at_once) {
 }
 
 /// Notes the valid heads of the first request and of whole requests after it, because libmicrohttpd reads
-/// them together.
+/// them together. Not those after a chunked one, or of a chunked one after others: libmicrohttpd must not
+/// read it.
 void Gate::take_sound_heads(std::string_view bytes) {
   sound_.clear();
   next_ = 0;
   HeadChecker head = head_;
   while (true) {
-    sound_.push_back({.head_bytes = head.size(), .framing = head.framing()});
-    const std::size_t left = bytes.size() - head.size();
     const auto length = head.framing().length;
+    if (!length && !sound_.empty()) return;
+    sound_.push_back({.head = std::string(bytes.substr(0, head.size())), .framing = head.framing()});
+    const std::size_t left = bytes.size() - head.size();
     if (!length || *length >= left) return;
     bytes.remove_prefix(head.size() + static_cast<std::size_t>(*length));
     head = {};
@@ -86,10 +88,17 @@ void Gate::take_sound_heads(std::string_view bytes) {
 bool Gate::let_in() {
   if (stage_ != Stage::Open) return false;
   stage_ = Stage::Entered;
-  const Sound& sound = sound_[next_++];
+  Sound& sound = sound_[next_++];
   framing_ = sound.framing;
-  requests_end_ += sound.head_bytes + framing_.length.value_or(0);
+  head_text_ = std::move(sound.head);
+  requests_end_ += head_text_.size() + framing_.length.value_or(0);
   return true;
+}
+
+bool Gate::let_in_past_libmicrohttpd() {
+  if (!let_in()) return false;
+  std::string read(head_text_.size(), '\0');
+  return ::recv(fd_, read.data(), read.size(), MSG_DONTWAIT) == static_cast<ssize_t>(read.size());
 }
 
 Gate::Traffic Gate::traffic() const {

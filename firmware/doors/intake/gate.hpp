@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "intake/head_checker.hpp"
@@ -34,12 +36,16 @@ class Gate {
   /// The present head.
   const HeadChecker& head() const { return head_; }
 
-  /// True if the next request to let in has a chunked body.
+  /// True if the next request to let in has a chunked body. Its head is the first one in the socket.
   bool next_is_chunked() const { return next_ < sound_.size() && !sound_[next_].framing.length; }
-  /// libmicrohttpd begins a request. False: its head was not checked.
+  /// A request begins. False: its head was not checked.
   bool let_in();
+  /// Also reads the head from the socket, which libmicrohttpd then does not see. False: the head is not
+  /// there any more.
+  bool let_in_past_libmicrohttpd();
   /// Of the last request that was let in.
   const Framing& framing() const { return framing_; }
+  std::string take_head_text() { return std::move(head_text_); }
   /// The kernel's counts of the connection's bytes, from the first one. If the socket is no TCP socket (a
   /// socketpair of the simulation): those of the requests that were let in.
   struct Traffic {
@@ -60,7 +66,7 @@ class Gate {
  private:
   enum class Stage : std::uint8_t { Waiting, Open, Entered, Refused };
   struct Sound {
-    std::size_t head_bytes = 0;
+    std::string head;
     Framing framing;
   };
   void take_sound_heads(std::string_view bytes);
@@ -71,6 +77,7 @@ class Gate {
   std::vector<Sound> sound_;  // requests whose heads libmicrohttpd may read
   std::size_t next_ = 0;      // the next one of sound_
   Framing framing_;
+  std::string head_text_;
   std::size_t looked_at_ = 0;  // checked bytes of the head
   loop::Instant looked_ = {};  // the time of the last check
   loop::Instant again_at_ = {};

@@ -2,26 +2,29 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "intake/field_text.hpp"
 #include "intake/server.hpp"
 #include "intake/target.hpp"
 
-struct MHD_Connection;
-
 namespace adit::intake {
 
-/// The head of a request. libmicrohttpd keeps its fields.
+/// The parts of a head that HeadChecker has found whole.
+struct HeadParts {
+  std::string_view method, target;
+  std::string_view fields;  // the lines of the fields
+};
+HeadParts parts_of(std::string_view head);
+
+/// The head of a request.
 class Head final : public RequestHead {
  public:
-  Head(MHD_Connection* connection, std::string_view method, Target target, const std::string& peer,
-       const std::string& local, std::uint64_t number, std::optional<std::uint64_t> length)
-      : connection_(connection),
-        method_(method),
-        target_(std::move(target)),
-        peer_(peer),
-        local_(local),
-        number_(number),
-        length_(length) {}
+  /// `text`: a head that HeadChecker has found whole. `target`: its target.
+  Head(std::string text, Target target, const std::string& peer, const std::string& local,
+       std::uint64_t number, std::optional<std::uint64_t> length);
+  Head(const Head&) = delete;
+  Head& operator=(const Head&) = delete;
 
   std::string_view method() const override { return method_; }
   std::string_view path() const override { return target_.path; }
@@ -33,8 +36,9 @@ class Head final : public RequestHead {
   std::uint64_t connection() const override { return number_; }
 
  private:
-  MHD_Connection* connection_;
-  std::string method_;
+  std::string text_;
+  std::string_view method_;  // this and fields_ are in text_
+  std::vector<FieldLine> fields_;
   Target target_;
   const std::string& peer_;
   const std::string& local_;

@@ -4,6 +4,7 @@
 
 #include <utility>
 
+#include "icd/letter_case.hpp"
 #include "intake/answer.hpp"
 #include "intake/client.hpp"
 #include "intake/icd_routes.hpp"
@@ -51,12 +52,12 @@ class Owed final : public Responder {
 
 Request::Request(Client& client, std::string_view method) : client_(&client), is_head_(method == "HEAD") {}
 
-void Request::begin(std::string_view method, Target target, const Framing& framing) {
+void Request::begin(std::string text, Target target, const Framing& framing) {
   left_ = framing.length;
   has_body_ = framing.has_body;
-  if (!framing.length && Client::kReadsChunks) chunks_.emplace();
-  head_.emplace(client_->connection(), method, std::move(target), client_->peer(), client_->local(),
-                client_->number(), framing.length);
+  if (!framing.length) chunks_.emplace();
+  head_.emplace(std::move(text), std::move(target), client_->peer(), client_->local(), client_->number(),
+                framing.length);
 }
 
 void Request::open(Handler& handler) {
@@ -70,6 +71,9 @@ void Request::open(Handler& handler) {
     turn_away();
   } else {
     client_->expect_body();
+    if (chunks_ && icd::same_but_for_case(head_->header("Expect"), "100-continue")) {
+      client_->say("HTTP/1.1 100 Continue\r\n\r\n");
+    }
   }
 }
 
@@ -89,7 +93,16 @@ Next Request::body(std::span<const std::uint8_t> piece) {
   }
   if (left_) *left_ -= std::min<std::uint64_t>(piece.size(), *left_);
   if (answered()) return Next::GoOn;  // the rest is read and ignored
-  return chunks_ ? take_chunks(piece) : take(piece);
+  if (chunks_) {
+    take_chunks(piece);
+  } else {
+    take(piece);
+  }
+  return Next::GoOn;
+}
+
+bool Request::has_unended_body() const {
+  return chunks_ && chunks_->state() == ChunkReader::State::Whole && stage_ == Stage::Body && !answered();
 }
 
 Next Request::throw_away(std::size_t bytes) {
@@ -99,34 +112,29 @@ Next Request::throw_away(std::size_t bytes) {
   return thrown_away_ > (client_->is_known() ? kLinger : kLingerUnauthenticated) ? Next::Close : Next::GoOn;
 }
 
-Next Request::take_chunks(std::span<const std::uint8_t> piece) {
+void Request::take_chunks(std::span<const std::uint8_t> piece) {
   std::string data;
   const auto state = chunks_->feed({reinterpret_cast<const char*>(piece.data()), piece.size()}, data);
   if (state == ChunkReader::State::Refused) {
     refuse(error_answer(icd::Status::BadRequest, chunks_->trouble()));
-    return Next::GoOn;
+  } else if (!data.empty()) {
+    take({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
   }
-  if (!data.empty()) take({reinterpret_cast<const std::uint8_t*>(data.data()), data.size()});
-  if (state != ChunkReader::State::Whole || answered()) return Next::GoOn;
-  return client_->suspended() ? Next::Again : end();
 }
 
-Next Request::take(std::span<const std::uint8_t> piece) {
+void Request::take(std::span<const std::uint8_t> piece) {
   resumed_ = false;
   in_call_ = true;
   const bool more = sink_->on_body(piece);
   in_call_ = false;
   if (answered()) {
     turn_away();
-    return Next::GoOn;
-  }
-  if (more || resumed_) {
+  } else if (more || resumed_) {
     client_->body_came(piece.size());
   } else {
     client_->expect_nothing();
     client_->suspend();
   }
-  return Next::GoOn;
 }
 
 Next Request::end() {
@@ -169,7 +177,7 @@ void Request::refuse(const Answer& answer) {
 }
 
 Next Request::hand_over() {
-  if (chunks_) {  // for libmicrohttpd the body lasts as long as the connection
+  if (chunks_) {  // libmicrohttpd does not know of the request
     turn_away();
     return Next::GoOn;
   }

@@ -14,18 +14,18 @@ namespace adit::intake {
 
 class Client;
 
-/// What libmicrohttpd does with the connection after a callback. Again: when the connection is resumed, pass
-/// the last byte of the piece again.
-enum class Next : std::uint8_t { GoOn, Again, Close };
+/// What happens to the connection after a step of the request.
+enum class Next : std::uint8_t { GoOn, Close };
 
-/// One request, from its head to the end of its answer. libmicrohttpd's callbacks drive it on one side, and
-/// holders of its Responder or Flow on the other. It outlives its connection while they hold it.
+/// One request, from its head to the end of its answer. libmicrohttpd's callbacks drive it on one side, or
+/// Client if its body is chunked, and holders of its Responder or Flow on the other. It outlives its
+/// connection while they hold it.
 class Request final : public Responder, public Flow, public std::enable_shared_from_this<Request> {
  public:
   Request(Client& client, std::string_view method);
 
   /// The connection's side. The head is whole.
-  void begin(std::string_view method, Target target, const Framing& framing);
+  void begin(std::string text, Target target, const Framing& framing);
   const RequestHead& head() const { return *head_; }
   void open(Handler& handler);
   /// Answers 400 without a handler and closes the connection.
@@ -34,6 +34,8 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   void refuse_for_room(std::string_view sentence);
   /// A piece of the body; of a chunked body with its chunk headers.
   Next body(std::span<const std::uint8_t> piece);
+  /// True if a chunked body is whole, and end() was not called.
+  bool has_unended_body() const;
   /// The body is whole. Called again each time the connection is resumed.
   Next end();
   void late();
@@ -68,10 +70,10 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   };
 
   bool answered() const { return answer_ || stream_; }
-  Next take(std::span<const std::uint8_t> piece);
+  void take(std::span<const std::uint8_t> piece);
   /// Discards a piece of a body that was answered before it was whole.
   Next throw_away(std::size_t bytes);
-  Next take_chunks(std::span<const std::uint8_t> piece);
+  void take_chunks(std::span<const std::uint8_t> piece);
   /// Sends an answer that came before the body was whole.
   void turn_away();
   void refuse(const Answer& answer);
@@ -89,7 +91,7 @@ class Request final : public Responder, public Flow, public std::enable_shared_f
   bool has_body_ = false;
   bool in_call_ = false;               // a call of the handler is running
   bool resumed_ = false;               // since the last piece
-  std::optional<ChunkReader> chunks_;  // set if the body is chunked and Adit reads it
+  std::optional<ChunkReader> chunks_;  // set if the body is chunked
   std::optional<std::uint64_t> left_;  // of the body; absent if chunked
   std::size_t thrown_away_ = 0;
 };

@@ -59,6 +59,7 @@ class Server::Impl final : public Engine {
   void look_at(loop::Instant when) override;
   void tell(Ended why, const std::string& address) override;
   void hold_back_soon(std::uint64_t number) override { to_hold_back_.push_back(number); }
+  void begin_request(Client& client) override;
 
  private:
   static MHD_Result request_came(void* cls, MHD_Connection* connection, const char* url, const char* method,
@@ -68,13 +69,11 @@ class Server::Impl final : public Engine {
                                 MHD_RequestTerminationCode why);
   static void connection_changed(void* cls, MHD_Connection* connection, void** client_cls,
                                  MHD_ConnectionNotificationCode what);
-  static void* head_begun(void* cls, const char* target, MHD_Connection* connection);
   /// parse_target() decodes targets, so libmicrohttpd must not.
   static std::size_t leave_escaped(void* cls, MHD_Connection* connection, char* text);
   static void say_nothing(void*, const char*, va_list) {}
 
-  Next hear(Client& client, std::string_view method, std::string_view upload, void** request_cls);
-  void first_call(Client& client, std::string_view method);
+  Next hear(Client& client, std::string_view upload, void** request_cls);
   void connected(MHD_Connection* connection, void** client_cls);
   std::vector<Held> held_but(const Client* one) const;
   /// Closes unauthenticated connections above their share.
@@ -113,9 +112,8 @@ std::expected<void, std::string> Server::Impl::start(loop::FileDescriptor given)
       MHD_OPTION_CONNECTION_LIMIT, shares_.unauthenticated + shares_.known + kOnTheirWayOut,
       MHD_OPTION_CONNECTION_TIMEOUT, 0u, MHD_OPTION_CONNECTION_MEMORY_LIMIT, kConnectionMemory,
       MHD_OPTION_NOTIFY_CONNECTION, &Impl::connection_changed, this, MHD_OPTION_NOTIFY_COMPLETED,
-      &Impl::request_completed, this, MHD_OPTION_URI_LOG_CALLBACK, &Impl::head_begun, this,
-      MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr, MHD_OPTION_STRICT_FOR_CLIENT,
-      Client::kReadsChunks ? 0 : 1, MHD_OPTION_END);
+      &Impl::request_completed, this, MHD_OPTION_UNESCAPE_CALLBACK, &Impl::leave_escaped, nullptr,
+      MHD_OPTION_END);
   if (daemon_ == nullptr) return std::unexpected("the HTTP server did not start");
   accepts_ = accept_instead(socket.get(), [this](int fd, const sockaddr* peer, unsigned size) {
     MHD_add_connection(daemon_, fd, peer, size);
@@ -137,7 +135,7 @@ Server::Impl::~Impl() {
   stopping_ = true;
   readable_ = {};
   stop_listening();
-  for (const auto& [number, client] : clients_) client->resume();  // otherwise libmicrohttpd aborts
+  for (const auto& [number, client] : clients_) client->cut();  // libmicrohttpd aborts if one is suspended
   MHD_stop_daemon(daemon_);
 }
 
@@ -238,14 +236,16 @@ bool Server::Impl::make_room_for(Client& client) {
   return room.is_there;
 }
 
-void Server::Impl::first_call(Client& client, std::string_view method) {
-  auto request = std::make_shared<Request>(client, method);
+void Server::Impl::begin_request(Client& client) {
+  std::string head = client.gate().take_head_text();
+  const HeadParts parts = parts_of(head);
+  auto request = std::make_shared<Request>(client, parts.method);
   client.request_begun(request);
-  auto target = parse_target(client.target());
+  auto target = parse_target(parts.target);
   if (!target) {
     request->refuse_head("request target: expected a path of UTF-8, percent-encoded");
   } else {
-    request->begin(method, std::move(*target), client.gate().framing());
+    request->begin(std::move(head), std::move(*target), client.gate().framing());
     const Shown shown = turnstile_.shown(request->head());
     const bool known = shown == Shown::Token || shown == Shown::Enough;
     const bool has_room = !known || client.is_known() || make_room_for(client);
@@ -265,28 +265,22 @@ Client* client_of(MHD_Connection* connection) {
 
 }  // namespace
 
-MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, const char*, const char* method,
+MHD_Result Server::Impl::request_came(void* cls, MHD_Connection* connection, const char*, const char*,
                                       const char*, const char* upload, std::size_t* upload_size,
                                       void** request_cls) {
   auto& server = *static_cast<Impl*>(cls);
   Client* client = client_of(connection);
   if (client == nullptr || server.stopping_) return MHD_NO;
-  Next next = Next::Close;
   const std::string_view piece(upload, std::exchange(*upload_size, 0));
-  if (!loop::guarded("a request", [&] { next = server.hear(*client, method, piece, request_cls); }) &&
-      client->request()) {
-    loop::guarded("the answer to a failed request", [&] { next = client->request()->failed(); });
-  }
-  if (next == Next::Again) *upload_size = 1;
+  const Next next = client->guarded([&] { return server.hear(*client, piece, request_cls); });
   return next == Next::Close ? MHD_NO : MHD_YES;
 }
 
-Next Server::Impl::hear(Client& client, std::string_view method, std::string_view upload,
-                        void** request_cls) {
+Next Server::Impl::hear(Client& client, std::string_view upload, void** request_cls) {
   if (*request_cls == nullptr) {
     if (!client.gate().let_in()) return Next::Close;
     *request_cls = &client;
-    first_call(client, method);
+    begin_request(client);
     return Next::GoOn;
   }
   if (upload.empty()) return client.request()->end();
@@ -311,16 +305,12 @@ void Server::Impl::connection_changed(void* cls, MHD_Connection* connection, voi
     loop::guarded("a connection of the team", [&] { server.connected(connection, client_cls); });
   } else if (auto* client = static_cast<Client*>(std::exchange(*client_cls, nullptr)); client != nullptr) {
     loop::guarded("a connection of the team", [&] {
+      // Of a request that libmicrohttpd does not know.
+      if (const std::shared_ptr<Request> request = client->request()) request->completed();
       server.clients_.erase(client->number());
       server.run_soon();  // libmicrohttpd checks only then if there is room for another connection
     });
   }
-}
-
-void* Server::Impl::head_begun(void*, const char* target, MHD_Connection* connection) {
-  Client* const client = client_of(connection);
-  if (client != nullptr) loop::guarded("the head of a request", [&] { client->head_begun(target); });
-  return nullptr;
 }
 
 std::size_t Server::Impl::leave_escaped(void*, MHD_Connection*, char* text) {

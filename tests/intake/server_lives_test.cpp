@@ -132,12 +132,12 @@ TEST_F(ServerLives, ResponderIsAnsweredAsTheClientResets) {
   for (int i = 0; i < 50; ++i) {
     RawClient racing(served.port());
     racing.send(request("GET", "/later"));
-    ASSERT_TRUE(served.eventually([&] { return handler.responders.size() == 1; }));
-    served.loop().post([&] {
-      for (auto& responder : std::exchange(handler.responders, {})) {
-        responder->answer({.body = "1", .headers = {}});
-      }
-    });
+    std::vector<std::shared_ptr<Responder>> own;  // not that of the next client, which may come first
+    ASSERT_TRUE(served.eventually([&] {
+      own = std::exchange(handler.responders, {});
+      return own.size() == 1;
+    }));
+    served.loop().post([own = std::move(own)] { own[0]->answer({.body = "1", .headers = {}}); });
     racing.reset();
   }
   client.close();

@@ -42,7 +42,10 @@ def refuses_who_cannot_sign():
                             ({"ADIT_SIGNING_KEY": f"{folder}/none", "ADIT_SIGNING_CERT": certificate}, "is no private key"),
                             ({"ADIT_SIGNING_KEY": other, "ADIT_SIGNING_CERT": certificate}, "is not the key of the certificate"),
                             ({"ADIT_SIGNING_KEY": old, "ADIT_SIGNING_CERT": at_its_end}, "ends within a week"),
-                            ({"ADIT_SIGNING_KEY": short, "ADIT_SIGNING_CERT": of_short}, "cannot sign by SHA-256")):
+                            ({"ADIT_SIGNING_KEY": short, "ADIT_SIGNING_CERT": of_short}, "cannot sign by SHA-256"),
+                            ({"ADIT_SIGNING_KEY": key, "ADIT_SIGNING_CERT": certificate}, "ADIT_APT_KEY is not"),
+                            ({"ADIT_APT_KEY": "nobody@adit.invalid"}, "expected a fingerprint"),
+                            ({"ADIT_APT_KEY": "0" * 40}, "GnuPG cannot sign by the key")):
             status, said = release("--programs", BUILD, VERSION, "generic-x86_64", **signer)
             assert status != 0 and why in said, said
 
@@ -66,9 +69,9 @@ def main():
     assert re.search(r"\n    sha256 Fingerprint=(\w\w:){31}\w\w\n", readme) and "a key of one checkout alone" in readme, readme
     assert (FOLDER / "CHANGES.md").read_text().startswith(f"# Adit {VERSION}\n")
     listed = {line.split()[1] for line in (FOLDER / "SHA256SUMS").read_text().splitlines()}
-    present = {path.name for path in FOLDER.iterdir()}
+    present = {str(path.relative_to(FOLDER)) for path in FOLDER.rglob("*") if path.is_file()}
     assert present == listed | {"SHA256SUMS", "SHA256SUMS.sig", "adit.pub"}, present ^ listed
-    for kind in (f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".raucb", ".img", ".spdx.json"):
+    for kind in ("apt/dists/bookworm/InRelease", f"apt/pool/bookworm/adit_{VERSION}_", f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".raucb", ".img", ".spdx.json"):
         assert any(kind in name for name in listed), kind
     with open(FOLDER / "CHANGES.md", "a", encoding="utf-8") as changes:
         changes.write("And more.\n")

@@ -15,7 +15,9 @@ namespace adit::admin {
 namespace {
 
 using namespace std::chrono_literals;
+using testing::EndsWith;
 using testing::HasSubstr;
+using testing::StartsWith;
 namespace fs = std::filesystem;
 
 std::string content_of(const std::string& path) {
@@ -96,6 +98,26 @@ TEST_F(UpdatesTest, SayWhereThereAreNone) {
   EXPECT_EQ(updates_.restart(true).error().sentence, "RAUC does not run here: no");
   EXPECT_TRUE(updates_.update().runs_here) << "a fault to show";
   EXPECT_FALSE(asked());
+}
+
+TEST_F(UpdatesTest, ShowTheNewerVersionThatAptHas) {
+  EXPECT_EQ(updates_.update().newer, std::nullopt);
+  EXPECT_EQ(updates_.update().newer_why, "") << "no apt here";
+  const std::string file = run_.put(update::kNewerFile, "\n");
+  EXPECT_EQ(updates_.update().newer, "");
+  run_.put(update::kNewerFile, "1:0.2.0~rc1+deb13\n");
+  EXPECT_EQ(updates_.update().newer, "1:0.2.0~rc1+deb13");
+  for (const std::string wrong :
+       {"", "0.2.0", "0.2 0\n", "0.2.0\n\n", "<b>\n", "apt-cache failed: E: \x1b[2J\n"}) {
+    run_.put(update::kNewerFile, wrong);
+    EXPECT_EQ(updates_.update().newer, std::nullopt) << wrong;
+    EXPECT_THAT(updates_.update().newer_why, StartsWith(file + ": expected a version"));
+  }
+  EXPECT_THAT(updates_.update().newer_why, EndsWith("got 'apt-cache failed: E: \\x1b[2J'"));
+  fs::remove(file);
+  fs::create_directory(file);
+  EXPECT_EQ(updates_.update().newer, std::nullopt);
+  EXPECT_THAT(updates_.update().newer_why, HasSubstr(file));
 }
 
 TEST_F(UpdatesTest, LeaveAWholeBundleAndAskForIt) {

@@ -29,7 +29,8 @@ TEST_F(UpdateRoutesTest, TellWhatRuns) {
   updates.view.running = {"adit-qemu-virt", "0.1.0", "A", "B"};
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body), json::parse(R"({
     "managed": true, "why": "", "runs_here": false, "board": "adit-qemu-virt", "version": "0.1.0", "slot": "A", "other_slot": "B", "trial": false,
-    "doing": null, "stray": null, "progress": null, "refusal": null, "last": null, "stick": null, "stick_why": null})"));
+    "doing": null, "stray": null, "progress": null, "refusal": null, "last": null, "stick": null, "stick_why": null,
+    "newer": null, "newer_why": null})"));
 }
 
 TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
@@ -41,6 +42,8 @@ TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
   updates.view.last = {update::Stage::Left, "0.2.0", "B", "boot", "it did not"};
   updates.view.stick = update::Offer{"adit-x.raucb", "0.3.0"};
   updates.view.stick_why = "too old";
+  updates.view.newer = "";
+  updates.view.newer_why = "no";
   const json shown = json::parse(ask("GET", "/adit/update").body);
   EXPECT_EQ(shown["why"], "RAUC does not run here");
   EXPECT_EQ(shown["doing"], "installing");
@@ -51,6 +54,8 @@ TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
             json::parse(R"({"stage": "left", "version": "0.2.0", "slot": "B", "why": "it did not"})"));
   EXPECT_EQ(shown["stick"], json::parse(R"({"name": "adit-x.raucb", "version": "0.3.0"})"));
   EXPECT_EQ(shown["stick_why"], "too old");
+  EXPECT_EQ(shown["newer"], "") << "known: none";
+  EXPECT_EQ(shown["newer_why"], "no");
 }
 
 /// As a squashfs of `used` bytes begins.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "api/updates.hpp"
 #include "cli/say.hpp"
 #include "cli/status_text.hpp"
 #include "cli/view.hpp"
@@ -17,7 +18,9 @@ namespace {
 using testing::HasSubstr;
 
 Outcome asked(const std::string& json, const std::vector<std::string_view>& words) {
-  return say(Server(Server::ok(json)), words);
+  return say(Server({{"GET /adit/run", Server::ok(json)},
+                     {"GET /adit/update", Server::ok(codec::to_json(api::UpdateView{}))}}),
+             words);
 }
 
 /// `adit status` with the options of the environment of a box.
@@ -48,6 +51,20 @@ TEST(Status, ReadsEveryMemberThatThePageWrites) {
   const Outcome outcome = asked(codec::to_json(view), {"status"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(outcome.out, status_text(view, false));
+}
+
+TEST(Status, NamesNewerVersions) {
+  api::UpdateView update;
+  update.newer = "0.2.0";
+  update.stick = {"adit-a-board-0.3.0.raucb", "0.3.0"};
+  Server::Answers answers{{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
+                          {"GET /adit/update", Server::ok(codec::to_json(update))}};
+  EXPECT_EQ(say(Server(answers), {"status"}).out, status_text(sample_view(), false) +
+                                                      "On the stick is 0.3.0 (adit-a-board-0.3.0.raucb): "
+                                                      "adit update --stick\napt has 0.2.0: apt upgrade\n");
+  answers["GET /adit/update"] = Server::reply("503 Service Unavailable", "\"not now\"");
+  EXPECT_EQ(say(Server(answers), {"status"}).out,
+            status_text(sample_view(), false) + "cannot ask for newer versions: not now\n");
 }
 
 TEST(Status, IsFineWhereAllAlarmsMayPass) {

@@ -40,6 +40,24 @@ TEST(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
   EXPECT_EQ(told.exit, Exit::Attention);
 }
 
+TEST(Update, OfAPcIsApts) {
+  api::UpdateView pc;
+  pc.why = "adit-update does not run here";
+  const auto said_of = [&pc] {
+    return say_update(Server({{"GET /adit/update", Server::ok(codec::to_json(pc))}}), {});
+  };
+  EXPECT_EQ(said_of().out, "This box cannot be updated: adit-update does not run here\n");
+  pc.newer_why = "no permission";
+  EXPECT_THAT(said_of().out, EndsWith("The newer version of apt is not known: no permission\n"));
+  EXPECT_EQ(said_of().exit, Exit::Attention);
+  pc.newer_why = "";
+  pc.newer = "";
+  EXPECT_EQ(said_of().out, "apt has no newer version\n");
+  pc.newer = "0.2.0";
+  EXPECT_EQ(said_of().out, "apt has 0.2.0: apt upgrade\n");
+  EXPECT_EQ(said_of().exit, Exit::Fine);
+}
+
 TEST(Update, GoesBackOrStaysWhereItIsAskedTo) {
   const std::string after = Server::ok(codec::to_json(a_box("")));
   const Server server({{"POST /adit/update/back", after}, {"POST /adit/update/stay", after}});

@@ -100,8 +100,11 @@ class Repository(Story):
     def test_the_next_release_is_an_upgrade(self):
         publish("now")
         self.update()
+        told = f"apt has {self.candidate()}: apt upgrade\n"
+        programs.wait_until(lambda: told in self.box.shell("adit status", good=False), "the newer version to be shown", 60)
         self.box.apt("upgrade")
         self.assertEqual(self.box.version(), self.candidate())
+        programs.wait_until(lambda: self.box.shell("adit update") == "apt has no newer version\n", "it to be no longer shown", 60)
         self.assertNotEqual(self.box.version(), "0.0.9")
         programs.wait_until(self.box.answers, "the page to answer", 60)
 

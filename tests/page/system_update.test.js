@@ -130,12 +130,16 @@ test("says to a viewer that another slot is running, and offers him nothing", as
 
 test("says why it cannot restart the box, and what to do then", async (t) => {
   const { page } = await come(t);
-  let runsHere = true;
-  await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "cannot read the status of adit-update: Input/output error", runs_here: runsHere, doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null } }));
+  let runsHere = true, newer = null, notKnown = null;
+  await page.route("**/adit/update", (route) => route.fulfill({ json: { managed: false, why: "cannot read the status of adit-update: Input/output error", runs_here: runsHere, doing: null, progress: null, refusal: null, last: null, stick: null, stick_why: null, newer, newer_why: notKnown } }));
   await page.locator("#restart").getByText("This page cannot restart the box: cannot read the status of adit-update: Input/output error. To restart it now, switch the box off and on.").waitFor();
   assert.equal(await page.locator("#restart").getByRole("button").count(), 0);
   runsHere = false; // a PC
   for (const id of ["#update", "#restart"]) await page.locator(id).waitFor({ state: "hidden" });
+  newer = "0.2.0";
+  await updating(page).getByText('apt has 0.2.0. To install it, run "apt upgrade" on this machine.').waitFor();
+  [newer, notKnown] = [null, "no permission"];
+  await updating(page).getByText("The newer version of apt is not known: no permission.").waitFor();
 });
 
 test("lets a viewer see the update and do nothing", async (t) => {

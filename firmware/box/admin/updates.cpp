@@ -1,5 +1,6 @@
 #include "admin/updates.hpp"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -13,6 +14,11 @@
 
 namespace adit::admin {
 namespace {
+
+/// Characters of Debian's versions (deb-version(7)).
+constexpr std::string_view kOfVersions =
+    "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.+~:-";
+constexpr std::size_t kLongestLine = 200;
 
 /// The action to show until adit-update reports its own.
 const char* doing_of(update::Request::What what) {
@@ -31,6 +37,20 @@ icd::Checked<void> check_room(const std::string& folder, std::uint64_t size) {
   return refuse(icd::Status::ServiceUnavailable,
                 icd::sentence("the bundle has ", size, " bytes, but the disk has room for ",
                               free > Updates::kSpared ? free - Updates::kSpared : 0));
+}
+
+/// Reads the newer version that apt has, a line that services/pc/newer writes on a PC.
+void read_newer(const std::string& path, api::UpdateView& view) {
+  const auto text = host::read_if_there(path);
+  if (!text) view.newer_why = text.error();
+  if (!text || !*text) return;
+  const std::string line(std::string_view(**text).substr(0, std::min((*text)->find('\n'), kLongestLine)));
+  if (line + '\n' == **text && line.find_first_not_of(kOfVersions) == std::string::npos) {
+    view.newer = line;
+  } else {
+    view.newer_why =
+        icd::sentence(path, ": expected a version and a line feed, got '", host::escaped(line), "'");
+  }
 }
 
 }  // namespace
@@ -64,6 +84,7 @@ api::UpdateView Updates::update() const {
     view.stick = status->stick;
     view.stick_why = status->stick_trouble;
   }
+  read_newer(adit_update_.directory() + '/' + update::kNewerFile, view);
   if (auto trouble = adit_update_.trouble(); !trouble.empty()) view.refusal = std::move(trouble);
   if (receiving_ != nullptr) {
     view.doing = "receiving";

@@ -26,7 +26,9 @@ struct UpdateView {
   bool trial = false;  // the running version is on trial
   std::string stray;   // why an unexpected slot runs, with its name, or ""
   std::optional<update::Offer> stick;
-  std::string stick_why;  // why the stick's files cannot be installed, or ""
+  std::string stick_why;             // why the stick's files cannot be installed, or ""
+  std::optional<std::string> newer;  // newer version that apt has; "": none; std::nullopt: not known
+  std::string newer_why;             // why that cannot be read, or ""
 
   static const codec::Row kRow;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "api/updates.hpp"
 #include "cli/ask.hpp"
 
 namespace adit::cli {
@@ -54,6 +55,8 @@ Result<Outcome> dump_ledger(const Options& options, const Console& console);
 Result<Outcome> test(const Call& call);
 /// Shows the update, or installs one from a file or the stick and waits for its end, or restarts the box.
 Result<Outcome> update(const Call& call);
+/// Lines about newer versions that apt or a stick has, or "".
+std::string newer_lines(const api::UpdateView& view);
 
 Result<Outcome> check(const Options& options, const Console& console);
 

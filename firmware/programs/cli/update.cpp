@@ -35,7 +35,9 @@ std::string last_line(const UpdateView& view) {
 }
 
 std::string text_of(const UpdateView& view, bool /*colour*/) {
-  if (!view.managed) return line("This box cannot be updated: ", view.why);
+  if (!view.runs_here && view.newer)
+    return view.newer->empty() ? line("apt has no newer version") : newer_lines(view);
+  if (!view.managed) return line("This box cannot be updated: ", view.why) + newer_lines(view);
   const update::Running& running = view.running;
   std::string out = line(running.version, " runs, in slot ", running.slot, " (an update goes into slot ",
                          running.other, ") of ", running.compatible);
@@ -46,16 +48,15 @@ std::string text_of(const UpdateView& view, bool /*colour*/) {
   if (!view.doing.empty()) out += line("The box is ", view.doing);
   if (!view.refusal.empty()) out += line("The last update was rejected: ", view.refusal);
   out += last_line(view);
-  if (view.stick)
-    out += line("On the stick is ", view.stick->version, " (", view.stick->name, "): adit update --stick");
   if (!view.stick_why.empty()) out += line("On the stick: ", view.stick_why);
-  return out;
+  return out + newer_lines(view);
 }
 
 bool is_fine(const UpdateView& view) {
   const Stage stage = view.last.stage;
   const bool has_failed = stage == Stage::Failed || stage == Stage::Left || stage == Stage::Interrupted;
-  return !has_failed && view.managed && view.refusal.empty() && view.stray.empty();
+  return !has_failed && (view.managed || (!view.runs_here && view.newer)) && view.refusal.empty() &&
+         view.stray.empty();
 }
 
 Result<std::string> read_bundle(const std::string& path) {
@@ -100,6 +101,15 @@ Result<Outcome> upload(const Call& call) {
 }
 
 }  // namespace
+
+std::string newer_lines(const UpdateView& view) {
+  std::string out;
+  if (view.stick)
+    out += line("On the stick is ", view.stick->version, " (", view.stick->name, "): adit update --stick");
+  if (view.newer && !view.newer->empty()) out += line("apt has ", *view.newer, ": apt upgrade");
+  if (!view.newer_why.empty()) out += line("The newer version of apt is not known: ", view.newer_why);
+  return out;
+}
 
 Result<Outcome> update(const Call& call) {
   const Options& options = call.options;

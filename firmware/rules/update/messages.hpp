@@ -16,6 +16,8 @@ namespace adit::update {
 /// aditd's request and the uploaded bundle, in aditd's state directory. adit-update removes both.
 inline constexpr const char* kRequestFile = "update.json";
 inline constexpr const char* kBundleFile = "update.raucb";
+/// On a PC, beside adit-update's status: the newer version that apt has, or "", and a line feed.
+inline constexpr const char* kNewerFile = "newer";
 /// Files in adit-update's state directory.
 inline constexpr const char* kLastUpdateFile = "last.json";
 inline constexpr const char* kProvenFile = "proven.json";

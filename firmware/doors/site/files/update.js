@@ -72,10 +72,11 @@ export async function offerUpdate(operator) {
     outcome.dataset.bad = !doing && Boolean(bad);
   }
   function show(view) {
-    const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit } = view;
-    section.hidden = !view.runs_here;
+    const { managed, why, version, slot, doing, progress, refusal, trial, last, stick: offer, stick_why: unfit, newer, newer_why: notKnown } = view;
+    const ofApt = newer ? `apt has ${newer}. To install it, run "apt upgrade" on this machine.` : notKnown && `The newer version of apt is not known: ${notKnown}.`;
+    section.hidden = !view.runs_here && !ofApt;
     const end = last && `${last.version} ${trial ? "is on trial" : STAGES[last.stage] ?? last.stage}${last.why && `: ${last.why}`}`;
-    told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : why;
+    told.textContent = managed ? [`${version}, slot ${slot}`, end, unfit].filter(Boolean).join(". ") : view.runs_here ? why : ofApt;
     sayOutcome(doing, refusal);
     bar.hidden = !doing;
     if (progress !== null) bar.value = progress;

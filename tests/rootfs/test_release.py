@@ -44,6 +44,7 @@ def refuses_who_cannot_sign():
                             ({"ADIT_SIGNING_KEY": old, "ADIT_SIGNING_CERT": at_its_end}, "ends within a week"),
                             ({"ADIT_SIGNING_KEY": short, "ADIT_SIGNING_CERT": of_short}, "cannot sign by SHA-256"),
                             ({"ADIT_SIGNING_KEY": key, "ADIT_SIGNING_CERT": certificate}, "ADIT_APT_KEY is not"),
+                            ({"ADIT_SIGNING_KEY": key, "ADIT_SIGNING_CERT": certificate, "ADIT_APT_KEY": "0" * 40}, "ADIT_MAINTAINER is not"),
                             ({"ADIT_APT_KEY": "nobody@adit.invalid"}, "expected a fingerprint"),
                             ({"ADIT_APT_KEY": "0" * 40}, "GnuPG cannot sign by the key")):
             status, said = release("--programs", BUILD, VERSION, "generic-x86_64", **signer)
@@ -71,7 +72,7 @@ def main():
     listed = {line.split()[1] for line in (FOLDER / "SHA256SUMS").read_text().splitlines()}
     present = {str(path.relative_to(FOLDER)) for path in FOLDER.rglob("*") if path.is_file()}
     assert present == listed | {"SHA256SUMS", "SHA256SUMS.sig", "adit.pub"}, present ^ listed
-    for kind in ("apt/dists/bookworm/InRelease", f"apt/pool/bookworm/adit_{VERSION}_", f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".raucb", ".img", ".spdx.json"):
+    for kind in ("apt/dists/bookworm/InRelease", f"adit_{VERSION}.dsc", f"adit_{VERSION}.tar.xz", f"apt/pool/bookworm/adit_{VERSION}_", f"adit_{VERSION}_", f"adit-rehearsal_{VERSION}_", ".oci.tar", ".raucb", ".img", ".spdx.json"):
         assert any(kind in name for name in listed), kind
     with open(FOLDER / "CHANGES.md", "a", encoding="utf-8") as changes:
         changes.write("And more.\n")

@@ -49,8 +49,8 @@ constexpr Member kUpdate[] = {
     member<&UpdateView::stick>("stick"),
     member<&UpdateView::stick_why>("stick_why", "why the update on a stick cannot be installed")
         .as(codec::kTextOrNull),
-    member<&UpdateView::newer>("newer",
-                               "newer version that apt has; empty: none; null: not known, as without apt"),
+    member<&UpdateView::newer>(
+        "newer", "newer version that apt has; empty: no newer one; null: not known, as without apt"),
     member<&UpdateView::newer_why>("newer_why", "why the newer version cannot be read")
         .as(codec::kTextOrNull),
 };

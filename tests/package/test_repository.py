@@ -68,6 +68,7 @@ class Repository(Story):
     def test_it_is_installed_from_a_repository(self):
         publish("before")
         self.box.shell("rm -f /etc/apt/sources.list /etc/apt/sources.list.d/*; cp /packages/repository/apt/adit-bookworm.sources /etc/apt/sources.list.d/adit.sources")
+        self.box.shell(f"install -d -m 700 /etc/adit/secrets; umask 077; echo {programs.TEAM_TOKEN} >/etc/adit/secrets/team.token")
         self.update()
         self.box.apt("install adit", team=pc.PORTS["team"], command_post=pc.PORTS["command_post"])
         self.assertEqual(self.box.version(), "0.0.9")
@@ -101,7 +102,7 @@ class Repository(Story):
         publish("now")
         self.update()
         told = f"apt has {self.candidate()}: apt upgrade\n"
-        programs.wait_until(lambda: told in self.box.shell("adit status", good=False), "the newer version to be shown", 60)
+        programs.wait_until(lambda: told in self.box.shell("adit status", good=False), f"'{told}' in adit status", 60)
         self.box.apt("upgrade")
         self.assertEqual(self.box.version(), self.candidate())
         programs.wait_until(lambda: self.box.shell("adit update") == "apt has no newer version\n", "it to be no longer shown", 60)

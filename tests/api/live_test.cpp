@@ -85,8 +85,12 @@ class LiveTest : public testing::Test {
 
   void pass(milliseconds length) { time.pass(loop, length); }
 
-  /// Something that pages are told of.
+  /// Something that pages are told of at once.
   void change() {
+    source.now.alarms.emplace_back();
+    live.changed();
+  }
+  void change_in_the_queue() {
     ++source.now.queued_bytes;
     live.changed();
   }
@@ -120,12 +124,33 @@ TEST_F(LiveTest, SendsNoMoreEventsASecondThanAllowedHoweverMuchChanges) {
   EXPECT_LE(page->sent.size(), 1 + Live::kEventsPerSecond + 1);
 }
 
-TEST_F(LiveTest, TellsAChangeThatComesAfterAPauseWithoutDelay) {
+TEST_F(LiveTest, TellsOnceASecondOfWhatNeedsNoOperator) {
+  const auto page = open();
+  for (int i = 0; i < 300; ++i) {
+    change_in_the_queue();
+    pass(milliseconds{10});
+  }
+  EXPECT_GE(page->sent.size(), 1 + 2);
+  EXPECT_LE(page->sent.size(), 1 + 3);
+  pass(milliseconds{1000});
+  EXPECT_THAT(page->sent.back(), HasSubstr("\"queued_bytes\":300"));
+}
+
+TEST_F(LiveTest, TellsOfReportsAndAlarmsThatComeAfterAPauseWithoutDelay) {
+  source.now = team(1, 1);
   const auto page = open();
   pass(milliseconds{300});
-  change();
+  source.now.alarms.emplace_back();
+  live.changed();
   pass(milliseconds{40});
   EXPECT_THAT(page->sent, SizeIs(2));
+  pass(milliseconds{250});
+  change_in_the_queue();
+  source.now.reports.front().state = "in_doubt";
+  live.changed();
+  pass(milliseconds{40});
+  ASSERT_THAT(page->sent, SizeIs(3));
+  EXPECT_THAT(page->sent[2], HasSubstr("queued_bytes")) << "an event has all that changed";
 }
 
 TEST_F(LiveTest, TellsTheLastOfManyChanges) {
@@ -134,7 +159,7 @@ TEST_F(LiveTest, TellsTheLastOfManyChanges) {
   live.changed();
   source.now.version = "new";
   live.changed();
-  pass(milliseconds{400});
+  pass(milliseconds{1040});
   ASSERT_THAT(page->sent, SizeIs(2));
   EXPECT_NE(page->sent[1].find("\"new\""), std::string::npos);
 }
@@ -199,7 +224,7 @@ TEST_F(LiveTest, TellsOfOneRobotsPoseInFewBytesWhateverTheListsLengths) {
   robot.heading = 3.0123456;
   robot.at = source.now.now = 1'793'000'124.123456;
   live.changed();
-  pass(milliseconds{400});
+  pass(milliseconds{1040});
   ASSERT_THAT(page->sent, SizeIs(2));
   EXPECT_EQ(
       page->sent[1],
@@ -294,7 +319,7 @@ TEST_F(LiveTest, GivesEveryPageEveryView) {
     if (step % 5 == 3) readers.back().stream->queued = 1u << 20;
     change_some(source.now, random);
     live.changed();
-    pass(milliseconds{260});
+    pass(milliseconds{1040});
     for (OfPage& reader : readers) {
       for (; reader.read < reader.stream->sent.size(); ++reader.read) {
         const std::string& event = reader.stream->sent[reader.read];

@@ -1,4 +1,4 @@
-// When a page draws itself: the box tells of moves four times a second, which nobody reads.
+// When a page draws itself: events may come four times a second, which is more than a user reads.
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { text, watch } from "./watch.js";

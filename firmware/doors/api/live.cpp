@@ -12,6 +12,7 @@ namespace adit::api {
 namespace {
 
 constexpr auto kSpacing = std::chrono::milliseconds{1000 / Live::kEventsPerSecond};
+constexpr std::chrono::seconds kCalm{1};
 
 /// Rounds to milliseconds, millimetres or microseconds, which is finer than the page shows and halves the
 /// text.
@@ -20,11 +21,16 @@ double rounded(double number) {
   return std::round(number * kSteps) / kSteps + 0.0;  // avoids -0
 }
 
-/// Clocks change all the time and are not news.
-bool is_news(const std::optional<codec::Value>& patch) {
-  return patch && std::ranges::any_of(std::get<codec::Value::Object>(patch->is), [](const auto& member) {
-           return member.first != "now" && member.first != "run_clock";
-         });
+/// How long after the last event a patch may be sent. Clocks change all the time and are not news. An
+/// operator acts on reports and alarms.
+std::chrono::milliseconds spacing_of(const std::optional<codec::Value>& patch) {
+  std::chrono::milliseconds spacing = Live::kHeartbeat;
+  if (!patch) return spacing;
+  for (const auto& [name, value] : std::get<codec::Value::Object>(patch->is)) {
+    if (name == "reports" || name == "alarms") return kSpacing;
+    if (name != "now" && name != "run_clock") spacing = kCalm;
+  }
+  return spacing;
 }
 
 }  // namespace
@@ -87,13 +93,16 @@ void Live::send_to_all(bool in_any_case) {
   RunView now = look();
   const codec::Value nothing{codec::Value::Object()};
   const auto patch = codec::patch(told_, now);
-  if (in_any_case || is_news(patch) || looked_ >= sent_ + kHeartbeat) {
+  const auto spacing = spacing_of(patch);
+  if (in_any_case || looked_ >= sent_ + spacing) {
     told_ = std::move(now);
     whole_.clear();
     sent_ = looked_;
     drop_the_gone("event: patch\ndata: " + codec::write_json(patch.value_or(nothing)) + "\n\n");
+    if (!pages_.empty()) timer_.call_at(sent_ + kHeartbeat);
+  } else {
+    timer_.call_at(sent_ + spacing);
   }
-  if (!pages_.empty()) timer_.call_at(sent_ + kHeartbeat);
 }
 
 bool Live::tell(const OpenPage& page, std::string_view event) {

@@ -7,7 +7,8 @@ const RETRY = 5000, EVERY = 60_000; // ms
 const OPEN = ["held", "queued", "sending", "in_doubt"];
 
 const known = new Map(); // by number
-let newest = new Set(); // numbers, of the last event
+let last = null, newest = new Set(); // of the last event: its reports, and their numbers
+let all = null; // that the page shows; null: to be listed anew
 let isWhole = false; // all are known as they are: each change since was in an event
 let asked = -Infinity;
 
@@ -17,7 +18,9 @@ const sameClock = (one, other) => Math.abs(one.received - other.received) < 1;
 /** What an event has is newer, and so may be what was heard meanwhile, unless the box's clock was set. */
 function learn(row) {
   const was = known.get(row.number), isLater = was && was.changed > row.changed && sameClock(was, row);
-  if (!newest.has(row.number) && !isLater) known.set(row.number, row);
+  if (newest.has(row.number) || isLater) return;
+  known.set(row.number, row);
+  all = null;
 }
 
 async function learnAll() {
@@ -33,24 +36,28 @@ async function learnAll() {
 /** What became of one that events do not have any more. */
 const learnOne = (number) => get(`/adit/reports/${number}`).then(learn, () => (isWhole = false));
 
-/** The reports of an event and those that are older than its, newest first. `lost`: the box does not answer, so that changes go by. */
-export function allReports({ reports }, lost) {
+function hear(reports) {
   const before = newest;
+  last = reports;
+  all = null;
   newest = new Set(reports.map(({ number }) => number));
   for (const row of reports) {
     const was = known.get(row.number);
     if (was && !sameClock(was, row)) isWhole = false; // all times are others
     known.set(row.number, row);
   }
+  if (reports.length >= IN_EVENT) for (const number of before) if (!newest.has(number) && isOpen(known.get(number))) learnOne(number);
+  if (reports.length < IN_EVENT && known.size > reports.length) known.clear();
+}
+
+/** The reports of an event and those that are older than its, newest first; the same list if none changed. `lost`: the box does not
+ *  answer, so that changes go by. */
+export function allReports({ reports }, lost) {
+  if (reports !== last) hear(reports);
   if (lost) isWhole = false;
-  if (reports.length < IN_EVENT) {
-    if (known.size > reports.length) known.clear();
-    return reports;
-  }
+  if (reports.length < IN_EVENT) return reports;
   const retry = isWhole ? Infinity : RETRY;
   const wait = reports.every(isOpen) ? EVERY : retry; // of more than 200 open ones events have not all
   if (!lost && performance.now() - asked > wait) learnAll();
-  for (const number of before) if (!newest.has(number) && isOpen(known.get(number))) learnOne(number);
-  const older = [...known.values()].filter(({ number }) => !newest.has(number));
-  return [...reports, ...older.sort((a, b) => b.number - a.number)];
+  return (all ??= [...reports, ...[...known.values()].filter(({ number }) => !newest.has(number)).sort((a, b) => b.number - a.number)]);
 }

@@ -2,6 +2,7 @@
 import { get, isFault } from "./session.js";
 
 const EVERY = 10_000; // ms: at least, between two questions
+const [WHOLE, TENTHS] = [0, 1].map((digits) => new Intl.NumberFormat("en", { minimumFractionDigits: digits, maximumFractionDigits: digits }));
 
 let last = null, run = null, asked = -Infinity, isAsking = false;
 
@@ -26,6 +27,5 @@ export function coveredIn(view) {
 
 /** "4,213 m²", with a sign if it is more: the box could not draw all of a grid. */
 export function area(squareMetres, isWhole) {
-  const digits = squareMetres < 100 ? 1 : 0;
-  return `${isWhole ? "" : "≥ "}${squareMetres.toLocaleString("en", { minimumFractionDigits: digits, maximumFractionDigits: digits })} m²`;
+  return `${isWhole ? "" : "≥ "}${(squareMetres < 100 ? TENTHS : WHOLE).format(squareMetres)} m²`;
 }

@@ -51,9 +51,9 @@ export class MapOfRun {
   }
 
   show(run) {
-    const { picture } = this.#drawing;
+    const { picture } = this.#drawing, isUrgent = run.reports !== this.#scene.run?.reports;
     if (this.#scene.show(run)) picture.changed();
-    picture.update();
+    picture.update(isUrgent);
   }
 
   /** Shows a run that is kept: see MapScene.replay(). */

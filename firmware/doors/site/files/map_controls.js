@@ -3,6 +3,7 @@ import { life } from "./arriving.js";
 import { list, make, say } from "./dom.js";
 import { MapOfRun } from "./map.js";
 import { offerTools, showTools } from "./map_tools.js";
+import { remembered } from "./remembered.js";
 import { tint } from "./robot_colour.js";
 import { alarmTicks } from "./run_history.js";
 import { TimeBar } from "./time_bar.js";
@@ -43,10 +44,9 @@ section.querySelector(".by-robot").addEventListener("change", ({ target }) => ma
 /** The time that is shown. */
 export const time = new TimeBar(section.querySelector(".time"), (at) => map.setTime(at));
 
-function showTimes({ reports, run_number }, now) {
-  const mine = reports.filter(({ run }) => run === run_number);
-  time.stretch(map.first(), now, { reports: mine.map((report) => ({ at: report.received, level: life(report).level })), alarms: alarmTicks() });
-}
+const ticksOf = remembered((reports, run_number) =>
+  reports.filter(({ run }) => run === run_number).map((report) => ({ at: report.received, level: life(report).level })));
+const showTimes = ({ reports, run_number }, now) => time.stretch(map.first(), now, { reports: ticksOf(reports, run_number), alarms: alarmTicks() });
 
 function showRobots() {
   const create = (robot) => {

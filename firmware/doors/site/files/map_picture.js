@@ -4,7 +4,7 @@ import { CachedLayer } from "./map_cached_layer.js";
 
 const REST = 160; // ms without a move: then all is drawn exactly for what is seen
 const FRAME_BUDGET = 10; // ms: the rest waits for the next frame
-const MIN_INTERVAL = 500, MAX_INTERVAL = 1500; // ms: between two pictures of what the box sends
+const MIN_INTERVAL = 1500, MAX_INTERVAL = 2500; // ms: between two pictures of what the box sends
 const ATTENDED = 3000, ATTENDED_INTERVAL = 400; // ms: so long after a hand's action it is drawn so often, for it may be waited for
 
 export class Picture {
@@ -80,9 +80,9 @@ export class Picture {
     this.#later ||= setTimeout(() => this.#drawChanged(), this.#looked + (isAttended ? ATTENDED_INTERVAL : MAX_INTERVAL) - now);
   }
 
-  /** The page draws itself: so does the map, with the same frame. */
-  update() {
-    if (this.#isChanged && performance.now() - this.#looked >= MIN_INTERVAL) this.#drawChanged();
+  /** The page draws itself: so does the map every other time, with the same frame. */
+  update(isUrgent) {
+    if (this.#isChanged && (isUrgent || performance.now() - this.#looked >= MIN_INTERVAL)) this.#drawChanged();
   }
 
   #drawChanged() {

@@ -23,6 +23,7 @@ export class MapScene {
   lateRobots = new Set(); // robots whose map does not come
   silentRobots = new Set(); // those of lateRobots that are silent
   #steps = new Steps();
+  #reportChanges = 0;
   #version = -1;
   #isAsking = false;
   #due = -Infinity;
@@ -40,6 +41,7 @@ export class MapScene {
 
   /** Gives whether robots or reports differ from those of the view before. */
   show(run) {
+    if (run.reports !== this.run?.reports) ++this.#reportChanges;
     this.run = run;
     if (this.#steps.seen(run.now)) this.#forget();
     if (run.map_version !== this.#version && !this.#isAsking && performance.now() >= this.#due) this.#refresh(run.map_version);
@@ -47,9 +49,8 @@ export class MapScene {
     this.tracks.follow(run);
     this.lateRobots = new Set(run.standings.filter(({ level }) => level === "bad").map(({ name }) => name));
     this.silentRobots = new Set(run.standings.filter(({ silent }) => silent).map(({ name }) => name));
-    const reports = run.reports.map(({ number, state, asking }) => [number, state, asking]);
     const robots = run.robots.map((robot) => [lastSeen(robot, this.silentRobots), robot.position, robot.heading, isStale(robot)]);
-    const key = JSON.stringify([reports, run.near_metres, robots, run.colours, this.markers.at(run.now).length, [...this.lateRobots]]);
+    const key = JSON.stringify([this.#reportChanges, run.near_metres, robots, run.colours, this.markers.at(run.now).length, [...this.lateRobots]]);
     if (key === this.key) return false;
     this.key = key;
     return true;

@@ -144,16 +144,16 @@ function firstAfter(poses, time) {
 function trace(ctx, view, poses, from, to) {
   const begin = Math.max(0, firstAfter(poses, from) - 1), end = firstAfter(poses, to);
   if (end - begin < 2) return false;
-  let last = null, lastAt = -Infinity;
+  const step = MIN_STEP / view.scale;
+  let lastX = 0, lastY = 0, lastAt = -Infinity;
   ctx.beginPath();
   for (let i = begin; i < end; ++i) {
-    const [at, x, y] = poses[i], [left, top] = view.toPixel({ x, y });
-    const isGap = at - lastAt > GAP;
+    const { 0: at, 1: x, 2: y } = poses[i], isGap = at - lastAt > GAP;
     lastAt = at;
-    if (last && !isGap && i < end - 1 && Math.hypot(left - last[0], top - last[1]) < MIN_STEP) continue;
-    if (isGap) ctx.moveTo(left, top);
-    else ctx.lineTo(left, top);
-    last = [left, top];
+    if (!isGap && i < end - 1 && Math.hypot(x - lastX, y - lastY) < step) continue;
+    if (isGap) ctx.moveTo(...view.toPixel({ x, y }));
+    else ctx.lineTo(...view.toPixel({ x, y }));
+    [lastX, lastY] = [x, y];
   }
   return true;
 }

@@ -7,6 +7,7 @@ export class Plot {
   #values = [];
   #svg;
   #least;
+  #due = 0; // values, until it is drawn again
 
   /** `svg` has paths .lost (where the box did not answer), .area and .line; a plot reaches up to `least` at least. */
   constructor(svg, least) {
@@ -24,9 +25,10 @@ export class Plot {
   fill(valueAt) {
     const earlier = Array.from({ length: SPAN - this.#values.length }, (_, i) => valueAt(SPAN - 1 - i));
     this.#values = [...earlier, ...this.#values];
+    this.#due = 0;
   }
 
-  most = () => Math.max(...this.#values.map((value) => value ?? 0), 0);
+  most = () => this.#values.reduce((most, value) => Math.max(most, value ?? 0), 0);
 
   /** The highest of each four seconds, so that a short peak is seen, at its place from the right; and whether the box was
    *  lost in them. */
@@ -39,7 +41,10 @@ export class Plot {
     return buckets;
   }
 
+  /** Once for each bucket: until then it would not move. */
   draw() {
+    if (this.#due-- > 0) return;
+    this.#due = BUCKET - 1;
     const buckets = this.#buckets(), from = SPAN / BUCKET - buckets.length;
     const top = Math.max(this.#least, this.most());
     const y = (value) => (HEIGHT - 1 - (value / top) * (HEIGHT - 3)).toFixed(1);

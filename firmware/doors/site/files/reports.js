@@ -7,6 +7,7 @@ import { isCounted, nearTo } from "./near.js";
 import { comparePair } from "./pair.js";
 import { showHistory } from "./history.js";
 import { life } from "./arriving.js";
+import { remembered } from "./remembered.js";
 import { Still } from "./still.js";
 import { closeSide, goTab } from "./side.js";
 import { ago, clip, placeOf } from "./words.js";
@@ -19,7 +20,7 @@ let last = null; // what was shown: {view, now}
 let showsOthers = false; // what is done of other runs: of earlier ones, and of those at other Command Posts
 
 const isOpen = (report) => ["held", "queued", "sending", "in_doubt"].includes(report.state);
-const isOfOther = (report, view) => report.run !== view.run_number && !isOpen(report);
+const isOfOther = (report, { run_number }) => report.run !== run_number && !isOpen(report);
 
 const rowOf = (number) => rows.querySelector(`[data-key="${number}"]`);
 const again = () => last && showReports(last.view, last.now);
@@ -184,9 +185,8 @@ function counted(reports) {
 const keysOf = ({ state, type }) => [`state ${state}`, `type ${type}`];
 
 /** Offers the states and types that there are. Nothing changes in the list while it is open. */
-function showFilter(reports) {
+function showFilter(keys) {
   if (document.activeElement === filter) return;
-  const keys = [...new Set(reports.map(({ state }) => `state ${state}`)), ...new Set(reports.map(({ type }) => `type ${type}`))];
   const create = (key) => {
     const option = make("option", clip(key.replace(/^\w+ /, "").replace("in_doubt", "in doubt"), 20) || "All");
     option.value = key;
@@ -195,17 +195,23 @@ function showFilter(reports) {
   list(filter, ["", ...keys], (key) => key, create, () => {});
 }
 
+/** {all: the reports to list, keys: their states and types, count: in words, hasOthers}. */
+const arranged = remembered((reports, run_number, withOthers) => {
+  const mine = reports.filter((report) => !isOfOther(report, { run_number })), all = withOthers ? reports : mine;
+  const keys = [...new Set(all.map(({ state }) => `state ${state}`)), ...new Set(all.map(({ type }) => `type ${type}`))];
+  return { all, keys, count: counted(mine), hasOthers: mine.length < reports.length };
+});
+const wanted = remembered((reports, key) => inOrder(reports.filter((report) => !key || keysOf(report).includes(key) || life(report).level === "ask")));
+
 export function showReports(view, now) {
-  const mine = view.reports.filter((report) => !isOfOther(report, view));
   last = { view, now, count: view.reports.length };
-  const all = showsOthers ? view.reports : mine;
-  showFilter(all);
-  const isWanted = (report) => !filter.value || keysOf(report).includes(filter.value) || life(report).level === "ask";
-  const shown = still.order(inOrder(all.filter(isWanted)).slice(0, most), ({ number }) => number);
+  const { all, keys, count: words, hasOthers } = arranged(view.reports, view.run_number, showsOthers);
+  showFilter(keys);
+  const shown = still.order(wanted(all, filter.value).slice(0, most), ({ number }) => number);
   const count = section.querySelector(".count");
-  say(count, counted(mine));
-  set(count.parentNode, { title: count.textContent });
-  set(others, { hidden: mine.length === view.reports.length });
+  say(count, words);
+  set(count.parentNode, { title: words });
+  set(others, { hidden: !hasOthers });
   attribute(others, "aria-pressed", String(showsOthers));
   say(others, "All runs");
   set(newer, { hidden: still.waiting === 0 });

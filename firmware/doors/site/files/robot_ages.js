@@ -2,8 +2,10 @@
 // the box.
 
 const EVERY = 2, SPAN = 90; // seconds; samples
+const LEAST = 10; // seconds
 
 const values = new Map(); // by robot: the newest last; null: not known
+const paths = new Map(); // of these values
 let last = null; // when, in steps of EVERY
 
 /** Once each EVERY seconds of the box's time, however often it is called. What this page slept through is not known. */
@@ -13,6 +15,7 @@ export function sampleAges(robots, time) {
   const missed = last === null ? 0 : step - last - 1;
   if (missed < 0 || missed >= SPAN) values.clear(); // the box's clock was set
   last = step;
+  paths.clear();
   for (const name of values.keys()) if (!robots.some((robot) => robot.name === name)) values.delete(name);
   for (const { name, age } of robots) {
     const its = values.get(name) ?? [];
@@ -34,6 +37,7 @@ export function fillAges({ at, robots }, time) {
     const first = earlier.findIndex((age) => age !== null);
     if (first >= 0) values.set(robot, [...gapless(earlier.slice(first)), ...own]);
   }
+  paths.clear();
 }
 
 /** A step without a sample of its own, between two that have one, is as the one before. */
@@ -42,9 +46,14 @@ const gapless = (ages) => ages.map((age, i) => age ?? (i > 0 && i + 1 < ages.len
 /** The highest of the last minute. */
 export const worstAge = (name) => Math.max(0, ...(values.get(name) ?? []).slice(-60 / EVERY));
 
-/** A path of 0 to SPAN by 0 to 20, now at the right; as high as `least` seconds, or more where it was more. */
-export function pathOf(name, least = 10) {
-  const its = values.get(name) ?? [], top = Math.max(least, ...its), from = SPAN - its.length;
+/** A path of 0 to SPAN by 0 to 20, now at the right; as high as LEAST seconds, or more where it was more. */
+export function pathOf(name) {
+  if (!paths.has(name)) paths.set(name, drawn(name));
+  return paths.get(name);
+}
+
+function drawn(name) {
+  const its = values.get(name) ?? [], top = Math.max(LEAST, ...its), from = SPAN - its.length;
   let isGap = true;
   return its.map((age, i) => {
     if (age === null) return (isGap = true) && "";

@@ -20,7 +20,8 @@ export class TimeBar {
   #played = 0; // the timer
   #speed = SPEEDS[0];
   #ticks = { reports: [], alarms: [] };
-  #ticksDrawn = "";
+  #ticksDrawn = [];
+  #width = 0; // pixels of the slider: asking for it each second would lay the page out once more
 
   /** `node`: what holds .bar, output and .steps. `show(at)` is told what time to show; null: now. `end`: what the right end is called. */
   constructor(node, show, end = "now") {
@@ -36,7 +37,10 @@ export class TimeBar {
     this.#find("speed").addEventListener("click", () => this.#setSpeed(SPEEDS[(SPEEDS.indexOf(this.#speed) + 1) % SPEEDS.length]));
     this.#setSpeed(SPEEDS[0]);
     node.querySelector(".live")?.addEventListener("click", () => this.goLive());
-    new ResizeObserver(() => this.#drawTicks(true)).observe(this.#find("bar"));
+    new ResizeObserver(([{ contentRect: { width } }]) => {
+      this.#width = width;
+      this.#drawTicks(true);
+    }).observe(this.#find("bar"));
   }
 
   #find = (name) => this.#node.querySelector(`.${name}`);
@@ -52,7 +56,7 @@ export class TimeBar {
   }
 
   /** From the first to the last second that can be shown; `first` null: there is nothing yet. `ticks`: where they stand, {reports: [{at,
-   *  level}], alarms: [{at, level}]}. */
+   *  level}], alarms: [{at, level}]}, the same lists if they did not change. */
   stretch(first, last, ticks) {
     const wasEnd = this.#isEnd, at = this.at;
     const slider = this.#slider;
@@ -70,10 +74,10 @@ export class TimeBar {
 
   #drawTicks(isNew = false) {
     const begin = this.#first && Math.floor(this.#first);
-    const right = Math.round(this.#slider.clientWidth * Math.log(Number(this.#slider.max))); // another one moves a tick by a pixel
-    const key = JSON.stringify([begin, right, this.#ticks, document.documentElement.dataset.theme]);
-    if (!isNew && key === this.#ticksDrawn) return;
-    this.#ticksDrawn = key;
+    const right = Math.round(this.#width * Math.log(Number(this.#slider.max))); // another one moves a tick by a pixel
+    const shown = [begin, right, this.#ticks.reports, this.#ticks.alarms, document.documentElement.dataset.theme];
+    if (!isNew && shown.every((each, i) => each === this.#ticksDrawn[i])) return;
+    this.#ticksDrawn = shown;
     const first = Math.floor(this.#first ?? 0);
     drawTicks(this.#find("ticks"), this.#ticks, first, first + Number(this.#slider.max));
   }

@@ -8,7 +8,7 @@ const OPEN = ["held", "queued", "sending", "in_doubt"];
 
 const known = new Map(); // by number
 let last = null, newest = new Set(); // of the last event: its reports, and their numbers
-let all = null; // that the page shows; null: to be listed anew
+let all = null; // that the page shows; null: not listed yet
 let isWhole = false; // all are known as they are: each change since was in an event
 let asked = -Infinity;
 

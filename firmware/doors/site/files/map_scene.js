@@ -95,7 +95,7 @@ export class MapScene {
   kinds = () => new Set([...this.tiles.layers.values()].map((layer) => layer.kind));
   #isShown = (layer) => this.shown[layer.kind] && !this.hidden.has(layer.robot);
 
-  /** The layers of the maps that are shown, the lowest first: the merged map lies below those of robots, and clouds lie upon grids. */
+  /** The layers of the maps that are shown, the lowest first: the merged map lies below those of robots. */
   layers() {
     const rank = ({ kind, robot }) => 2 * Number(kind === "cloud") + Number(robot !== "");
     const layers = [...this.tiles.layers.values()].filter(this.#isShown);

@@ -287,9 +287,9 @@ TEST(Carried, KnowsWhereGridsWerePostedOnceThatIsTold) {
                                           Pair("*", queues::Extent::everywhere()), Pair("r1", larger))));
 }
 
-/// The law: what a journal comes to is what waits in the queues, however sending goes and wherever a snapshot
-/// was made.
-TEST(Carried, IsWhatWaitsInTheLanes) {
+/// The law: a journal that is read has the messages that are queued, after any course of sending and with a
+/// snapshot at any place.
+TEST(Carried, HasTheQueuedMessages) {
   std::mt19937_64 random{1};
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
   const auto any = [&](double x) {

@@ -115,7 +115,7 @@ TEST(ComparedClouds, StayWhereOneHasChangedMeanwhile) {
   queue.add(2, cloud_update("R1", {2}), at(2));
   queue.add(3, cloud_update("R1", {2, 3}), at(3));
   const auto two = *queue.to_compare();
-  queue.put_back(*queue.take());  // merged, with what was not compared
+  queue.put_back(*queue.take());  // merged with the cloud that was not compared
   queue.add(4, cloud_update("R1", {4}), at(4));
   EXPECT_THAT(queue.replace(two), IsEmpty());
   EXPECT_THAT(points_of(queue.take()->map), ElementsAre(1, 2, 2, 3, 4));

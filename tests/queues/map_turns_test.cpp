@@ -21,7 +21,7 @@ icd::MapUpdate patch(const std::string& name, std::uint64_t number) {
   return grid_update(name, grid(10.0 * static_cast<double>(number), 0, 10, 10));
 }
 
-/// A queue, what it has been given, and who waits for what.
+/// A queue, its maps so far, and the turn that each sender expects.
 struct Race {
   MapQueue queue{0};  // merges nothing
   std::uint64_t number = 0;

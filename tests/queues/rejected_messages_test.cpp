@@ -300,7 +300,7 @@ TEST(MarkerQueueBehind, NeverPutsADeleteAllBehindWhatFollowsIt) {
     const auto first = queue.take();
     ASSERT_EQ(first->update.markers.front().action, icd::MarkerAction::DeleteAll);
     queue.put_behind(*first);
-    (void)queue.take();  // what goes ahead of it once
+    (void)queue.take();  // the message that is sent ahead of it once
   }
   queue.passed();
   EXPECT_EQ(queue.take()->update.markers.front().action, icd::MarkerAction::DeleteAll);

@@ -35,9 +35,10 @@ constexpr double kGivesWay = 1;       // seconds, of which Adit takes 0.2
 /// Bytes a second: less than maps get of the smallest budget that an operator sets.
 constexpr std::int64_t kLeastGiven = 1'500'000;
 
-/// Of the station's clock, which runs as the world's does: the first message of a robot counts as posted when
-/// it came, and each later one as much later as its stamp is. Of a robot of which one was held for so long
-/// that the next one is far ahead of it, nothing is known: its clock is taken again (queues/stamps.hpp).
+/// For messages with the station's clock, which runs like the world's: a robot's first message counts as
+/// posted when it arrived, and each later one by the difference of the stamps. If a message was held for so
+/// long that the next one is far ahead of it, Adit learns the clock again (queues/stamps.hpp), and this check
+/// leaves the robot out from then on.
 class Spacing {
  public:
   explicit Spacing(const std::vector<Event>& events) {

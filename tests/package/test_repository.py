@@ -120,6 +120,10 @@ class Repository(Story):
         self.box.apt("upgrade")
         self.assertIn(f"adit 0.0.9 is older than {version}", self.box.apt("--allow-downgrades install adit=0.0.9", good=False))
         self.assertEqual(self.box.version(), version)
+        self.box.shell("printf 'Package: adit\\nPin: version 0.0.9\\nPin-Priority: 1001\\n' >/etc/apt/preferences.d/adit")
+        self.assertEqual(self.candidate(), "0.0.9")
+        self.assertEqual(self.box.shell("systemctl start adit-newer && cat /run/adit-update/newer"), "\n", "a pinned older version is not newer")
+        self.box.shell("rm /etc/apt/preferences.d/adit")
 
     def test_a_stick_serves_it_without_a_network(self):
         version = self.box.version()

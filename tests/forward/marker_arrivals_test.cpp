@@ -110,6 +110,17 @@ TEST_F(MarkerArrivalsTest, OfADeleteAllNothingBeforeItIsLeft) {
   EXPECT_EQ(queue_.pending(), left());
 }
 
+/// Its record alone would be longer than store::kMostBody.
+TEST_F(MarkerArrivalsTest, AreStoredIfTheyAreTheMostOfOneMessage) {
+  icd::MarkersUpdate most;
+  for (std::int32_t id = 0; id < 100'000; ++id)
+    most.markers.push_back(change(id, "", icd::MarkerAction::Delete));
+  take(most);
+  ASSERT_TRUE(turn_until([this] { return !said_.empty(); }));
+  EXPECT_THAT(said_, ElementsAre(icd::Status::Ok));
+  EXPECT_EQ(left(), most.markers);
+}
+
 TEST_F(MarkerArrivalsTest, AreRefusedAsAWholeWhereTheQueueIsFull) {
   queue_.keep_within({.bytes = 3000 * icd::bytes_of(change(0, "12345"))});
   take(many("12345"));

@@ -7,8 +7,8 @@
 namespace adit::journal {
 namespace {
 
-/// Limits a snapshot's messages to the size of the original ones.
-constexpr std::size_t kMarkersInARecord = 500;
+constexpr std::size_t kRecordBytes =
+    1u << 20;  // of markers, as in icd::bytes_of; store::kMostBody holds any marker
 
 bool is_known(icd::Uri uri) {
   return std::ranges::find(icd::kUris, uri) != std::end(icd::kUris);
@@ -211,8 +211,7 @@ void Carried::write(const std::function<void(Kind, std::string_view)>& to) const
   to(Kind::StateSent, store::bytes_of(write_robots(&Robot::under_way)));
   write_robots(&Robot::news);
   const auto write_markers = [&to](std::span<const icd::Marker> markers) {
-    for (; !markers.empty(); markers = markers.subspan(std::min(markers.size(), kMarkersInARecord)))
-      to(Kind::Markers, store::bytes_of(markers.first(std::min(markers.size(), kMarkersInARecord))));
+    for (const std::string& record : records_of(markers)) to(Kind::Markers, record);
   };
   write_markers(markers_under_way_);
   to(Kind::MarkersSent, names_of(markers_under_way_));
@@ -240,6 +239,17 @@ std::pair<Carried, std::string> read_records(const store::Contents& contents) {
     host::log(host::Level::Error, "unknown journal records skipped", {{"records", std::to_string(unknown)}});
   }
   return {std::move(carried), std::move(damage)};
+}
+
+std::vector<std::string> records_of(std::span<const icd::Marker> markers) {
+  std::vector<std::string> records;
+  do {
+    std::size_t count = 0, bytes = 0;
+    while (count < markers.size() && bytes < kRecordBytes) bytes += icd::bytes_of(markers[count++]);
+    records.push_back(store::bytes_of(markers.first(count)));
+    markers = markers.subspan(count);
+  } while (!markers.empty());
+  return records;
 }
 
 std::string names_of(std::span<const icd::Marker> markers) {

@@ -127,6 +127,10 @@ class Carried {
 /// because the message that was delivered may be in the gap. Unknown records are logged.
 std::pair<Carried, std::string> read_records(const store::Contents& contents);
 
+/// What the records of Kind::Markers say for an accepted message: at least one record, each of about a
+/// megabyte at most or of one marker. Any thread may make them.
+std::vector<std::string> records_of(std::span<const icd::Marker> markers);
+
 /// What a record of Kind::MarkersSent says: ns, id and action of each marker.
 std::string names_of(std::span<const icd::Marker> markers);
 

@@ -82,6 +82,13 @@ void Journal::senders(const queues::StampShift::Clocks& clocks) {
   if (!clocks.empty()) note(Kind::Senders, store::bytes_of(clocks));
 }
 
+Journal::Kept Journal::accepted_markers(std::span<const std::string> records) {
+  for (const std::string& record : records) {
+    if (auto kept = append(Kind::Markers, record); !kept) return kept;
+  }
+  return {};
+}
+
 void Journal::state_answered(bool done) {
   if (done) return note(Kind::StateDone, {});
   comes_back(Kind::StateSent, Kind::StateBack);

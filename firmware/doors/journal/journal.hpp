@@ -61,11 +61,10 @@ class Journal {
   Kept accepted(std::span<const queues::PostedPose> poses) {
     return append(Kind::Poses, store::bytes_of(poses));
   }
-  Kept accepted(const icd::MarkersUpdate& update) {
-    return accepted_markers(store::bytes_of(update.markers));
-  }
-  /// The bytes of the markers. Any thread may make them.
-  Kept accepted_markers(const std::string& bytes) { return append(Kind::Markers, bytes); }
+  Kept accepted(const icd::MarkersUpdate& update) { return accepted_markers(records_of(update.markers)); }
+  /// `records`: records_of() a message. After an error some of them can be stored: the next process sends
+  /// these markers though the client was refused, and the client's next try replaces them.
+  Kept accepted_markers(std::span<const std::string> records);
 
   void senders(const queues::StampShift::Clocks& clocks);
   /// For the next process. A failed record is dropped, because the next one replaces it.

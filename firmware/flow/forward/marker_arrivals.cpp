@@ -68,10 +68,10 @@ bool MarkerArrivals::begin(Arrival& arrival) {
          .setting = kMostThatWait});
   }
   if (bytes_of_all(*arrival.update) > kSmall) {
-    make_record(arrival);
+    make_records(arrival);
     return false;
   }
-  arrival.record = store::bytes_of(arrival.update->markers);
+  arrival.records = journal::records_of(arrival.update->markers);
   return keep(arrival);
 }
 
@@ -90,24 +90,25 @@ bool MarkerArrivals::takes_some(Arrival& arrival) {
   return true;
 }
 
-void MarkerArrivals::make_record(const Arrival& arrival) {
-  const auto made = std::make_shared<std::string>();
+void MarkerArrivals::make_records(const Arrival& arrival) {
+  const auto made = std::make_shared<std::vector<std::string>>();
   workers_.submit(
-      loop::Urgency::OnTheWay, [made, update = arrival.update] { *made = store::bytes_of(update->markers); },
+      loop::Urgency::OnTheWay,
+      [made, update = arrival.update] { *made = journal::records_of(update->markers); },
       [this, made] {
-        arrivals_.front().record = std::move(*made);
+        arrivals_.front().records = std::move(*made);
         go(&MarkerArrivals::keep);
       });
 }
 
 bool MarkerArrivals::keep(Arrival& arrival) {
-  if (arrival.record.empty()) return fail(arrival, no_memory());
-  if (const auto kept = journal_.accepted_markers(arrival.record); !kept) {
+  if (arrival.records.empty()) return fail(arrival, no_memory());
+  if (const auto kept = journal_.accepted_markers(arrival.records); !kept) {
     return fail(arrival, {icd::Status::ServiceUnavailable,
                           "not accepted: it cannot be stored: " + kept.error() + "; send it again later"});
   }
   arrival.is_kept = true;
-  arrival.record = {};
+  arrival.records = {};
   record_.accepted({Kind::Markers, ""}, arrival.bytes_received, loop_.wall_now());
   if (arrival.update->markers.size() <= kPart) return add_part(arrival);
   next_turn_.call_at(loop_.now());

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "forward/record.hpp"
 #include "icd/markers_update.hpp"
@@ -17,7 +18,7 @@
 namespace adit::forward {
 
 /// Markers updates on their way into the queue, one at a time and whole: first the journal, then the queue.
-/// For large updates a worker makes the record, and the queue takes several turns of the loop.
+/// For large updates a worker makes the records, and the queue takes several turns of the loop.
 class MarkerArrivals {
  public:
   /// 429: the queue is full; 503: it cannot be stored. A full queue still accepts changes of queued markers.
@@ -43,7 +44,7 @@ class MarkerArrivals {
     std::size_t bytes_received = 0;
     Done done;
     icd::Checked<void> outcome = {};
-    std::string record = {};
+    std::vector<std::string> records = {};                                // of the journal
     bool is_kept = false;                                                 // in the journal
     std::size_t added = 0;                                                // markers in the queue
     queues::MarkerChanges::Place last = queues::QueuedUpdates::kNowhere;  // place of the last one
@@ -55,7 +56,7 @@ class MarkerArrivals {
   bool begin(Arrival& arrival);
   /// The queue has no room for the whole update. True: some of its markers can be accepted.
   bool takes_some(Arrival& arrival);
-  void make_record(const Arrival& arrival);
+  void make_records(const Arrival& arrival);
   bool keep(Arrival& arrival);
   bool add_part(Arrival& arrival);
   void free_needless();

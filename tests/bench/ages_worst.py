@@ -59,12 +59,16 @@ def main(kind, host, port, token):
         at = time.time()
         body = once.replace(json.dumps(first).encode(), json.dumps(at).encode()) if form.endswith("json") else kind(at)
         connection = http.client.HTTPConnection(host, port, timeout=60)
-        connection.request("POST", uri, body, {"Authorization": f"Bearer {token}", "Content-Type": form})
-        answer = connection.getresponse()
-        text = answer.read()
-        if answer.status not in (200, 429):
-            sys.exit(f"answered {answer.status} {text[:300]!r}")
-        answers[answer.status] = answers.get(answer.status, 0) + 1
+        try:
+            connection.request("POST", uri, body, {"Authorization": f"Bearer {token}", "Content-Type": form})
+            answer = connection.getresponse()
+            status, text = answer.status, answer.read()
+        except (BrokenPipeError, ConnectionResetError):  # a proxy that answers 429 before it has read the body
+            status, text = "closed", b""
+        connection.close()
+        if status not in (200, 429, "closed"):
+            sys.exit(f"answered {status} {text[:300]!r}")
+        answers[status] = answers.get(status, 0) + 1
         print(answers, flush=True)
         posted += 1
         time.sleep(max(0, began + posted - time.monotonic()))

@@ -7,12 +7,12 @@ import { follow as followStream } from "./stream.js";
 const URGENT = ["alarms", "reports"]; // of a view
 const SILENCE = 10; // s; the worker says something every 4.5 s, also while the box is silent
 
-/** Follows the run: `show({view, time, lost, trouble})` each second, and at once if reports or alarms changed or the line went or came
- *  back. `view`: the last one (null: none came yet); `time`: the box's clock; `trouble`: the box's sentence, if it answers with an
- *  error. Gives what shows it once more. */
+/** Follows the run: `show({view, time, lost, trouble, isUrgent})` each second, and at once (`isUrgent`) if reports or alarms changed or the
+ *  line went or came back. `view`: the last one (null: none came yet); `time`: the box's clock; `trouble`: the box's sentence, if it
+ *  answers with an error. Gives what shows it once more, at once. */
 export function follow(url, show) {
   let view = null, heardAt = 0, lost = false, trouble = "";
-  const again = () => show({ view, lost, trouble, time: view && view.now + (performance.now() - heardAt) / 1000 });
+  const again = (isUrgent = true) => show({ view, lost, trouble, isUrgent, time: view && view.now + (performance.now() - heardAt) / 1000 });
   const hear = (message) => {
     const before = { view, lost };
     lost = Boolean(message.lost);
@@ -26,8 +26,8 @@ export function follow(url, show) {
   };
   if (globalThis.SharedWorker) share(url, hear);
   else followShown(url, hear);
-  setInterval(again, 1000);
-  return again;
+  setInterval(() => again(false), 1000);
+  return () => again();
 }
 
 /** By the worker of all tabs. If its script does not come, as from a box that was updated since, or the worker ends: alone. */

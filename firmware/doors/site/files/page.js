@@ -27,18 +27,23 @@ import { followNetwork } from "./pending.js";
 import { showWho } from "./session.js";
 import { clip, timeOfDay } from "./words.js";
 
-function show({ view: told, time, lost, trouble }) {
+const CALM = 1500; // ms: what only ages is drawn every other second
+let drawn = -Infinity;
+
+function show({ view: told, time, lost, trouble, isUrgent }) {
   const view = told && { ...told, reports: allReports(told, lost) };
   showLink(view, lost, trouble);
   linkIs(lost);
   showAlarms(view, time, lost, trouble);
   if (!view) return;
   showRun(view, time, lost);
-  showEnds(view, lost);
   showBoxActions(view, time);
+  showReports(view, time);
+  if (!isUrgent && performance.now() - drawn < CALM) return;
+  drawn = performance.now();
+  showEnds(view, lost);
   showLights(view.lights);
   showRobotsList(showRobots(view, time, lost), time);
-  showReports(view, time);
   showCompose(view);
   showMap(view, time);
   showPair(view, time);

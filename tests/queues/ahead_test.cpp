@@ -30,7 +30,7 @@ bool may_go(const Ahead& ahead, double now = 1, bool went_ahead = false) {
   return ahead.may_go(kGrid, {.map = kCloud, .arrived = at(1), .went_ahead = went_ahead}, at(now));
 }
 
-TEST(Ahead, GoesWhereTheOrderIsOfNoConsequence) {
+TEST(Ahead, AllowedIfTheOrderDoesNotMatter) {
   const QueuedMap other_grid = waits(grid_update("r2", grid(0, 0, 10, 10)));
   const QueuedMap merged = waits(cloud_update("", {1}));
   const struct {
@@ -50,7 +50,7 @@ TEST(Ahead, GoesWhereTheOrderIsOfNoConsequence) {
   }
 }
 
-TEST(Ahead, GoesOnceSomeWereTakenInARow) {
+TEST(Ahead, AllowedAfterSeveralDeliveriesInARow) {
   EXPECT_FALSE(may_go(after(Ahead::kWell - 1)));
   Ahead ahead = after(Ahead::kWell);
   EXPECT_TRUE(may_go(ahead));
@@ -60,13 +60,13 @@ TEST(Ahead, GoesOnceSomeWereTakenInARow) {
   EXPECT_TRUE(may_go(ahead));
 }
 
-TEST(Ahead, GoesWhileTheAnswerIsNotLate) {
+TEST(Ahead, AllowedWhileTheAnswerIsNotLate) {
   const double late = std::chrono::duration<double>(Ahead::kLate).count();
   EXPECT_TRUE(may_go(after(Ahead::kWell), 1 + late));
   EXPECT_FALSE(may_go(after(Ahead::kWell), 1.001 + late));
 }
 
-TEST(Ahead, GoesAfterOneThatWentAheadOnceOneOfTheseWasTaken) {
+TEST(Ahead, SecondAllowedAfterOneAheadWasDelivered) {
   Ahead ahead = after(Ahead::kWell);
   EXPECT_FALSE(may_go(ahead, 1, true)) << "a trial";
   ahead.taken(true);
@@ -77,7 +77,7 @@ TEST(Ahead, GoesAfterOneThatWentAheadOnceOneOfTheseWasTaken) {
   EXPECT_TRUE(may_go(ahead));
 }
 
-TEST(Ahead, GoesWithNoneThatFailedBefore) {
+TEST(Ahead, ForbiddenForAMapThatFailedBefore) {
   QueuedMap failed = kGrid;
   failed.trial.failures = 1;
   const Ahead ahead = after(Ahead::kWell);
@@ -85,7 +85,7 @@ TEST(Ahead, GoesWithNoneThatFailedBefore) {
   EXPECT_FALSE(ahead.may_go(kCloud, {.map = failed, .arrived = at(1), .went_ahead = false}, at(1)));
 }
 
-TEST(Ahead, GoesEverLessOftenWhereTwoAreTooMuch) {
+TEST(Ahead, BacksOffIfTwoInFlightFail) {
   Ahead ahead;
   for (int tried = 0, taken_between = Ahead::kWell; tried < 10; ++tried) {
     int taken = 0;

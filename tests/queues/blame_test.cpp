@@ -55,7 +55,7 @@ Outcome played(const Server& server, int clouds, int senders, double until) {
   return outcome;
 }
 
-TEST(Blame, SetsNothingAsideInAnOutageHoweverLongItIs) {
+TEST(Blame, RejectsNothingDuringAnOutage) {
   for (const double length : {3.0, 30.0, 600.0}) {
     const Server outage = [&](std::uint8_t, double now) { return now < 5 || now >= 5 + length; };
     const Outcome outcome = played(outage, 20, 3, 5 + length + 30);
@@ -65,7 +65,7 @@ TEST(Blame, SetsNothingAsideInAnOutageHoweverLongItIs) {
   }
 }
 
-TEST(Blame, SetsTheOneAsideThatFailsAloneAndLetsOthersPass) {
+TEST(Blame, RejectsTheOnlyFailingMapAndDeliversTheRest) {
   for (const int senders : {1, 2, 5}) {
     const Outcome outcome = played([](std::uint8_t which, double) { return which != 1; }, 30, senders, 60);
     EXPECT_EQ(outcome.rejected, std::vector<std::uint8_t>{1}) << senders;
@@ -75,14 +75,14 @@ TEST(Blame, SetsTheOneAsideThatFailsAloneAndLetsOthersPass) {
   }
 }
 
-TEST(Blame, SetsSeveralAsideThatFailWhileOthersPass) {
+TEST(Blame, RejectsSeveralFailingMapsWhileOthersPass) {
   const auto is_good = [](std::uint8_t which, double) { return which % 5 != 0 || which > 30; };
   const Outcome outcome = played(is_good, 100, 5, 300);
   EXPECT_EQ(outcome.rejected.size(), 6) << "a robot whose first maps all fail";
   EXPECT_EQ(outcome.taken.size(), 94);
 }
 
-TEST(Blame, LeavesWaitingWhatFailsWhileNothingElseIsSent) {
+TEST(Blame, KeepsFailingMapsQueuedIfNoOtherIsSent) {
   const Outcome outcome = played([](std::uint8_t which, double) { return which % 5 != 0; }, 30, 5, 200);
   EXPECT_GE(outcome.rejected.size(), 1);
   EXPECT_EQ(outcome.rejected.size() + outcome.waiting, 6) << "the last wait until another passes";
@@ -103,7 +103,7 @@ TEST(Blame, SpacesTheTries) {
   EXPECT_EQ(rests, (std::vector<double>{0, 2, 4}));
 }
 
-TEST(Blame, TakesAFailureBeforeAnyOtherPassedForNoStrike) {
+TEST(Blame, CountsNoStrikeBeforeAnotherMapPassed) {
   Blame blame;
   Trial trial;
   blame.passed("ugv2", at(0));
@@ -113,7 +113,7 @@ TEST(Blame, TakesAFailureBeforeAnyOtherPassedForNoStrike) {
   EXPECT_EQ(trial.strikes, 0);
 }
 
-TEST(Blame, AcceptsNoStrikeWhereSomebodyElsesMessagesWaver) {
+TEST(Blame, CountsNoStrikeIfAnotherSenderAlsoFails) {
   Blame blame;
   Trial trial, other;
   blame.passed("ugv2", at(0));
@@ -128,7 +128,7 @@ TEST(Blame, AcceptsNoStrikeWhereSomebodyElsesMessagesWaver) {
   EXPECT_EQ(trial.strikes, 1);
 }
 
-TEST(Blame, SetsHardlyAnythingAsideWhereHalfFailsByChance) {
+TEST(Blame, RejectsFewMapsIfHalfOfAllTriesFailAtRandom) {
   std::size_t rejected = 0, taken = 0;
   for (unsigned seed = 1; seed <= 20; ++seed) {
     std::mt19937_64 random{seed};
@@ -140,7 +140,7 @@ TEST(Blame, SetsHardlyAnythingAsideWhereHalfFailsByChance) {
   EXPECT_LE(rejected, taken / 50);
 }
 
-TEST(MapQueueOnTrial, LetsOneOtherGoFirst) {
+TEST(MapQueueOnTrial, SendsOneOtherMapFirst) {
   MapQueue queue(0);
   queue.add(1, cloud_update("ugv1", {1}), at(0));
   queue.add(2, cloud_update("ugv2", {2}), at(1));
@@ -169,7 +169,7 @@ TEST(MapQueueOnTrial, KeepsLaterGridsOfItsNameBehindItAtFirst) {
   EXPECT_EQ(queue.take(at(100))->updates.front(), 2) << "to see whether others pass";
 }
 
-TEST(MapQueueOnTrial, MergesNothingWithWhatFailed) {
+TEST(MapQueueOnTrial, DoesNotMergeAFailedMap) {
   MapQueue queue(1000);
   queue.add(1, cloud_update("ugv1", {1}), at(0));
   Blame blame;
@@ -182,7 +182,7 @@ TEST(MapQueueOnTrial, MergesNothingWithWhatFailed) {
   EXPECT_EQ(points_of(queue.take(at(4))->map), (std::vector<std::uint8_t>{1}));
 }
 
-TEST(MapQueueOnTrial, HandsItsPlaceToANewerGridThatCoversIt) {
+TEST(MapQueueOnTrial, GivesItsPlaceToANewerCoveringGrid) {
   MapQueue queue(0);
   queue.add(1, grid_update("ugv1", grid(0, 0, 10, 10)), at(0));
   auto first = queue.take(at(1));

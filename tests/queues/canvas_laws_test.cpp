@@ -215,7 +215,7 @@ class CanvasLaws : public testing::TestWithParam<std::uint64_t> {
 };
 
 /// Until another run is noticed, what lies in gaps is sent as it was in the one before.
-TEST_P(CanvasLaws, AServerHasTheNewestValueOfEachCellThatWasPostedAndNothingElsewhere) {
+TEST_P(CanvasLaws, ServerHasTheNewestValueOfEachPostedCell) {
   run(1000);
   EXPECT_GT(gaps_, 3);
   EXPECT_EQ(blanked_, 0) << "cells that nobody posted as unknown";

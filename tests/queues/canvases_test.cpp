@@ -54,14 +54,14 @@ class CanvasesTest : public testing::Test {
   std::uint64_t number_ = 0;
 };
 
-TEST_F(CanvasesTest, KnowWhatWasSentAndWhatNeverWas) {
+TEST_F(CanvasesTest, KnowSentAndUnsentAreas) {
   EXPECT_EQ(go_together(0, 0), 1) << "nothing is known before the first";
   EXPECT_EQ(go_together(4, 4), 2);
   EXPECT_EQ(go_together(0, 2), 2) << "over what was sent";
   EXPECT_EQ(go_together(-300, 500), 2) << "elsewhere";
 }
 
-TEST_F(CanvasesTest, DoNotKnowWhatWasSentOnAnotherLattice) {
+TEST_F(CanvasesTest, DoNotKnowAreasSentOnAnotherLattice) {
   add(window_at(0, 0, 40, 0.25));
   taken();
   EXPECT_EQ(go_together(5, 5), 1);
@@ -69,7 +69,7 @@ TEST_F(CanvasesTest, DoNotKnowWhatWasSentOnAnotherLattice) {
   EXPECT_EQ(go_together(70, 70), 2) << "there nothing was, tiles away";
 }
 
-TEST_F(CanvasesTest, BeginARunWithWhatWasSentSinceTheSecondLastStatus) {
+TEST_F(CanvasesTest, NewRunKnowsMapsSentSinceTheSecondLastStatus) {
   go_together(0, 0);
   hear(1);
   queue_.canvases().begin_run();
@@ -79,7 +79,7 @@ TEST_F(CanvasesTest, BeginARunWithWhatWasSentSinceTheSecondLastStatus) {
   EXPECT_EQ(go_together_from_now_on(4, 4), 2);
 }
 
-TEST_F(CanvasesTest, BeginARunWithWhatWasUnderWayAtTheSecondLastStatus) {
+TEST_F(CanvasesTest, NewRunKnowsMapsInFlightAtTheSecondLastStatus) {
   add(window_at(100, 100));
   const QueuedMap under_way = taken();
   const icd::MapUpdate* const maps[] = {&under_way.map};
@@ -92,7 +92,7 @@ TEST_F(CanvasesTest, BeginARunWithWhatWasUnderWayAtTheSecondLastStatus) {
   EXPECT_EQ(go_together_from_now_on(102, 102), 2);
 }
 
-TEST_F(CanvasesTest, BeginARunWithWhatALifeBeforeMayHaveSentInIt) {
+TEST_F(CanvasesTest, NewRunCountsMapsSentBeforeARestart) {
   for (const int statuses : {0, 1, 2}) {
     queue_ = MapQueue{0};
     queue_.canvases().carry_on({{Canvases::kAnyName, Extent::everywhere()}});
@@ -102,7 +102,7 @@ TEST_F(CanvasesTest, BeginARunWithWhatALifeBeforeMayHaveSentInIt) {
   }
 }
 
-TEST_F(CanvasesTest, KnowNoMoreWhatLiesThereWhereTheRunMayBeAnother) {
+TEST_F(CanvasesTest, ForgetCellsIfTheRunMayHaveChanged) {
   go_together(0, 0);
   hear(2);
   queue_.canvases().change_run();
@@ -110,7 +110,7 @@ TEST_F(CanvasesTest, KnowNoMoreWhatLiesThereWhereTheRunMayBeAnother) {
   EXPECT_EQ(go_together(340, 340), 2) << "there nothing was";
 }
 
-TEST_F(CanvasesTest, TakeWhateverWasPostedForSentInARunFromBefore) {
+TEST_F(CanvasesTest, ResumedRunCountsAllPostedMapsAsSent) {
   go_together(0, 0);
   hear(2);
   queue_.canvases().begin_run();
@@ -119,7 +119,7 @@ TEST_F(CanvasesTest, TakeWhateverWasPostedForSentInARunFromBefore) {
   EXPECT_EQ(go_together_from_now_on(4, 4), 1);
 }
 
-TEST_F(CanvasesTest, DoNotKnowAfterARestartWhatWasSentBefore) {
+TEST_F(CanvasesTest, ForgetSentCellsAtARestart) {
   go_together(0, 0);
   hear(2);
   queue_.canvases().begin_run();
@@ -134,7 +134,7 @@ TEST_F(CanvasesTest, DoNotKnowAfterARestartWhatWasSentBefore) {
   EXPECT_EQ(go_together(40, 40), 1);
 }
 
-TEST_F(CanvasesTest, KnowOfEachCommandPostByItself) {
+TEST_F(CanvasesTest, KeepCommandPostsApart) {
   queue_.canvases().lead_to("10.100.1.201:8000");
   go_together(0, 0);
   queue_.canvases().lead_to("10.100.2.201:8000");
@@ -146,7 +146,7 @@ TEST_F(CanvasesTest, KnowOfEachCommandPostByItself) {
   EXPECT_EQ(go_together(0, 0), 1);
 }
 
-TEST_F(CanvasesTest, KnowWhatOneCommandPostHasWhenARunBeginsAtAnother) {
+TEST_F(CanvasesTest, RunAtAnotherCommandPostChangesNothingHere) {
   queue_.canvases().carry_on({{"R1", extent_of(grid(-1000, -1000, 100, 100))}});
   queue_.canvases().lead_to("10.100.1.201:8000");
   go_together(0, 0);
@@ -162,7 +162,7 @@ TEST_F(CanvasesTest, KnowWhatOneCommandPostHasWhenARunBeginsAtAnother) {
   EXPECT_EQ(go_together(-1990, -1990), 1) << "of an earlier life";
 }
 
-TEST_F(CanvasesTest, DoNotKnowWhatATryThatFailedHasLeft) {
+TEST_F(CanvasesTest, DoNotKnowCellsOfAFailedTry) {
   go_together(0, 0);
   add(window_at(4, 4));
   QueuedMap failed = taken();
@@ -174,7 +174,7 @@ TEST_F(CanvasesTest, DoNotKnowWhatATryThatFailedHasLeft) {
   EXPECT_EQ(taken().updates.size(), 1) << "a corner between the others is in its tile";
 }
 
-TEST_F(CanvasesTest, HaveOlderCellsForAGapByTheNextTry) {
+TEST_F(CanvasesTest, SplitAFailedMapWithGapsIntoItsParts) {
   go_together(0, 0);
   add(window_at(4, 4));
   add(window_at(6, 6));
@@ -185,7 +185,7 @@ TEST_F(CanvasesTest, HaveOlderCellsForAGapByTheNextTry) {
   EXPECT_EQ(taken().parts.size(), 2);
 }
 
-TEST_F(CanvasesTest, ForgetTheOldestForTheMemorysBound) {
+TEST_F(CanvasesTest, ForgetTheOldestAtTheMemoryLimit) {
   queue_.canvases() = Canvases{8};
   go_together(0, 0);
   EXPECT_EQ(go_together(3, 3), 2);
@@ -199,7 +199,7 @@ TEST_F(CanvasesTest, ForgetTheOldestForTheMemorysBound) {
   }
 }
 
-TEST_F(CanvasesTest, AreNotKeptOfWholeMapsNorOfWhatIsTurnedOrTooLarge) {
+TEST_F(CanvasesTest, IgnoreWholeTurnedAndOversizedGrids) {
   add(window_at(0, 0));
   EXPECT_TRUE(taken().ground);
   add(window_at(-1, -1, 12));

@@ -39,7 +39,7 @@ icd::OccupancyGrid turned(icd::OccupancyGrid grid, double angle) {
   return grid;
 }
 
-TEST(Covers, FollowsTheTableOfCases) {
+TEST(Covers, HasTheResultsOfTheTable) {
   const double far = 1e300;
   const CoverCase cases[] = {
       {"the same extent", grid(-5, 3, 40, 30), grid(-5, 3, 40, 30), true},
@@ -66,7 +66,7 @@ TEST(Covers, FollowsTheTableOfCases) {
   for (const auto& [what, newer, older, covered] : cases) EXPECT_EQ(covers(newer, older), covered) << what;
 }
 
-TEST(Covers, TakesWhatFloat32MakesOfTheResolutionForOneLattice) {
+TEST(Covers, AcceptsAResolutionRoundedToFloat32) {
   const double resolution = static_cast<double>(0.05F);  // 0.05000000074505806
   for (int cells = 1; cells < 4000; cells += 7) {
     const auto older = grid(-10, -10, 100, 100, resolution);
@@ -150,7 +150,7 @@ bool has_cell_at(const icd::OccupancyGrid& grid, const icd::Point& point) {
   return false;
 }
 
-TEST(Covers, IsNeverTrueWhereACellOfTheOlderLiesOutsideTheNewer) {
+TEST(Covers, IsFalseIfAnOlderCellLiesOutsideTheNewer) {
   std::mt19937_64 random{4};
   int covered = 0;
   for (int i = 0; i < 100'000; ++i) {

@@ -41,7 +41,7 @@ std::vector<std::uint64_t> compare_all(MapQueue& queue) {
   return gone;
 }
 
-TEST(WholeClouds, ReplaceThoseThatWaitAndTakeTheirAge) {
+TEST(WholeClouds, ReplaceQueuedCloudsAndKeepTheirAge) {
   MapQueue queue = queue_of(Clouds::Whole);
   queue.add(1, cloud_update("R2", {9}), at(0));
   EXPECT_FALSE(queue.replaces_any(cloud_update("R1", {2})));
@@ -58,7 +58,7 @@ TEST(WholeClouds, ReplaceThoseThatWaitAndTakeTheirAge) {
   EXPECT_EQ(queue.bytes(), 0);
 }
 
-TEST(WholeClouds, ThatComeBackGiveWayToANewerOne) {
+TEST(WholeClouds, FailedCloudIsReplacedByANewerOne) {
   MapQueue queue = queue_of(Clouds::Whole);
   queue.add(1, cloud_update("R1", {1}), at(1));
   auto under_way = *queue.take();
@@ -75,7 +75,7 @@ TEST(WholeClouds, LeaveGridsOfTheirRobotAlone) {
   EXPECT_THAT(queue.add(3, grid_update("R1", grid(5, 5, 2, 2)), at(3)), IsEmpty());
 }
 
-TEST(ComparedClouds, AreReplacedByOneThatHasTheirPoints) {
+TEST(ComparedClouds, AreReplacedByACloudWithAllTheirPoints) {
   MapQueue queue{kRoom};
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
   EXPECT_FALSE(queue.to_compare()) << "nothing to compare it with";
@@ -92,7 +92,7 @@ TEST(ComparedClouds, AreReplacedByOneThatHasTheirPoints) {
   EXPECT_EQ(queue.bytes(), 0);
 }
 
-TEST(ComparedClouds, AreThoseOfOneKindOfPointsOnly) {
+TEST(ComparedClouds, ShareRobotAndPointLayout) {
   auto other = icd::xyz();
   other.is_bigendian = true;
   MapQueue queue{kRoom};
@@ -102,14 +102,14 @@ TEST(ComparedClouds, AreThoseOfOneKindOfPointsOnly) {
   EXPECT_FALSE(queue.to_compare());
 }
 
-TEST(ComparedClouds, AreNotWhatASettingSaysArrives) {
+TEST(ComparedClouds, AreNoneIfTheSettingIsParts) {
   MapQueue queue = queue_of(Clouds::Parts);
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {1}), at(2));
   EXPECT_FALSE(queue.to_compare());
 }
 
-TEST(ComparedClouds, StayWhereOneHasChangedMeanwhile) {
+TEST(ComparedClouds, StayIfOneChangedMeanwhile) {
   MapQueue queue{kRoom};
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {2}), at(2));
@@ -184,7 +184,7 @@ class CloudsCourse {
 
 class CloudLaws : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(CloudLaws, NoPostedPointIsLostWhereNothingSaysThatCloudsAreWhole) {
+TEST_P(CloudLaws, NoPointIsLostUnlessCloudsAreWhole) {
   for (const Clouds clouds : {Clouds::Auto, Clouds::Parts}) {
     CloudsCourse course{GetParam(), clouds};
     course.run(150);
@@ -192,7 +192,7 @@ TEST_P(CloudLaws, NoPostedPointIsLostWhereNothingSaysThatCloudsAreWhole) {
   }
 }
 
-TEST_P(CloudLaws, TheNewestPostedIsWhatIsSentLastWhereTheyAreWhole) {
+TEST_P(CloudLaws, NewestWholeCloudIsSentLast) {
   CloudsCourse course{GetParam(), Clouds::Whole};
   course.run(150);
   EXPECT_EQ(course.last, course.newest);

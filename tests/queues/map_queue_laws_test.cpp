@@ -97,7 +97,7 @@ TEST_P(MapQueueLaws, EveryUpdateComesOutExactlyOnce) {
   EXPECT_EQ(course_.queue_.bytes(), 0);
 }
 
-TEST_P(MapQueueLaws, EveryGridIsSentOrCoveredByOneOfItsNameSentAfterIt) {
+TEST_P(MapQueueLaws, EachGridIsSentOrCoveredByALaterOne) {
   for (const auto& [number, update] : course_.accepted) {
     const auto* grid = std::get_if<icd::OccupancyGrid>(&update.msg);
     if (!grid) continue;
@@ -110,7 +110,7 @@ TEST_P(MapQueueLaws, EveryGridIsSentOrCoveredByOneOfItsNameSentAfterIt) {
   }
 }
 
-TEST_P(MapQueueLaws, WhatWasReplacedWasNotSentItself) {
+TEST_P(MapQueueLaws, ReplacedGridsAreNotSent) {
   const std::set<std::uint64_t> once{course_.replaced.begin(), course_.replaced.end()};
   EXPECT_EQ(once.size(), course_.replaced.size());
   for (const auto& map : course_.sent) {
@@ -118,7 +118,7 @@ TEST_P(MapQueueLaws, WhatWasReplacedWasNotSentItself) {
   }
 }
 
-TEST_P(MapQueueLaws, GridsOfANameThatOverlapAreSentInTheOrderTheyWereMade) {
+TEST_P(MapQueueLaws, OverlappingGridsAreSentInOrder) {
   std::map<std::uint64_t, std::size_t> sent_as;  // by number
   for (std::size_t i = 0; i < course_.sent.size(); ++i) {
     for (const auto number : course_.sent[i].updates) sent_as[number] = i;
@@ -136,7 +136,7 @@ TEST_P(MapQueueLaws, GridsOfANameThatOverlapAreSentInTheOrderTheyWereMade) {
   }
 }
 
-TEST_P(MapQueueLaws, CloudsPointsComeOutCompleteAndInOrder) {
+TEST_P(MapQueueLaws, CloudPointsComeOutCompleteAndInOrder) {
   std::map<std::optional<icd::RobotName>, std::vector<std::uint8_t>> in, out;
   const auto append = [](auto& points, const icd::MapUpdate& map) {
     if (map.is_grid()) return;
@@ -148,7 +148,7 @@ TEST_P(MapQueueLaws, CloudsPointsComeOutCompleteAndInOrder) {
   EXPECT_EQ(in, out);
 }
 
-TEST_P(MapQueueLaws, MergesOnlyWhatCanBeMergedAndWithinTheLimit) {
+TEST_P(MapQueueLaws, MergesOnlyMergeableCloudsWithinTheLimit) {
   for (const auto& map : course_.sent) {
     if (map.map.is_grid() || map.updates.size() == 1) continue;
     EXPECT_LE(map.map.data.raw_size, kMergeBytes);
@@ -159,7 +159,7 @@ TEST_P(MapQueueLaws, MergesOnlyWhatCanBeMergedAndWithinTheLimit) {
   }
 }
 
-TEST_P(MapQueueLaws, WhatIsSentKeepsTheAgeOfItsOldestNews) {
+TEST_P(MapQueueLaws, SentMapsHaveTheAgeOfTheirOldestUpdate) {
   for (const auto& map : course_.sent) {
     EXPECT_EQ(map.accepted, course_.accepted_at.at(map.updates.front()));
   }

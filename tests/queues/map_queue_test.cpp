@@ -17,7 +17,7 @@ const auto kSmall = grid(0, 0, 10, 10);
 const auto kLarge = grid(-1, -1, 80, 80);
 const auto kElsewhere = grid(100, 100, 10, 10);
 
-TEST(MapQueue, GivesOutFirstWhoCameFirst) {
+TEST(MapQueue, SendsInOrderOfArrival) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, cloud_update("R2", {1}), at(2));
@@ -28,7 +28,7 @@ TEST(MapQueue, GivesOutFirstWhoCameFirst) {
   EXPECT_FALSE(queue.take());
 }
 
-TEST(MapQueue, ReplacesAGridByANewerOneThatCoversItWhichKeepsItsPlaceAndAge) {
+TEST(MapQueue, CoveringGridInheritsPlaceAndAge) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, grid_update("R2", kSmall), at(2));
@@ -40,7 +40,7 @@ TEST(MapQueue, ReplacesAGridByANewerOneThatCoversItWhichKeepsItsPlaceAndAge) {
   EXPECT_EQ(first->accepted, at(1));
 }
 
-TEST(MapQueue, SaysOfEachUpdateOnlyOnceThatItWasReplaced) {
+TEST(MapQueue, ReportsEachReplacedUpdateOnce) {
   MapQueue queue{kPlenty};
   EXPECT_THAT(queue.add(1, grid_update("R1", kSmall), at(1)), IsEmpty());
   EXPECT_THAT(queue.add(2, grid_update("R1", kSmall), at(2)), ElementsAre(1));
@@ -48,7 +48,7 @@ TEST(MapQueue, SaysOfEachUpdateOnlyOnceThatItWasReplaced) {
   EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2, 3));
 }
 
-TEST(MapQueue, KeepsAGridThatTheNewerDoesNotCover) {
+TEST(MapQueue, KeepsAGridThatIsNotCovered) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kElsewhere), at(1));
   EXPECT_THAT(queue.add(2, grid_update("R1", kLarge), at(2)), IsEmpty());
@@ -63,7 +63,7 @@ TEST(MapQueue, KeepsAGridOfAnotherRobot) {
   EXPECT_EQ(queue.count(), 3);
 }
 
-TEST(MapQueue, ReplacesAllThatANewGridCovers) {
+TEST(MapQueue, ReplacesAllCoveredGrids) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, grid_update("R1", grid(1, 1, 10, 10)), at(2));
@@ -82,7 +82,7 @@ TEST(MapQueue, NeverSendsOldCellsAfterNewerOnes) {
   EXPECT_THAT(queue.take()->updates, ElementsAre(1, 4));
 }
 
-TEST(MapQueue, MergesCloudsThatFollowEachOtherWhileMoreThanOneWait) {
+TEST(MapQueue, MergesConsecutiveCloudsOfARobot) {
   MapQueue queue{kPlenty};
   queue.add(1, cloud_update("R1", {1, 2}), at(1));
   queue.add(2, grid_update("R2", kSmall), at(2));
@@ -95,7 +95,7 @@ TEST(MapQueue, MergesCloudsThatFollowEachOtherWhileMoreThanOneWait) {
   EXPECT_EQ(queue.count(), 1);
 }
 
-TEST(MapQueue, TakesMergedCloudsApartAgainAndSendsEachByItself) {
+TEST(MapQueue, SplitsFailedMergedCloudsAndSendsEachAlone) {
   MapQueue queue{kPlenty};
   queue.add(1, cloud_update("R1", {1}), at(1));
   queue.add(2, cloud_update("R1", {2}), at(2));
@@ -155,7 +155,7 @@ TEST(MapQueue, MergesNoPackedCloud) {
   EXPECT_THAT(queue.take()->updates, ElementsAre(1, 2));
 }
 
-TEST(MapQueue, SaysWhichCloudsCanBeMerged) {
+TEST(MapQueue, TellsWhichCloudsCanBeMerged) {
   const auto plain = icd::xyz();
   auto step = plain, fields = plain, bytes = plain, moved = plain, still = plain;
   step.point_step = 16;
@@ -171,7 +171,7 @@ TEST(MapQueue, SaysWhichCloudsCanBeMerged) {
   EXPECT_FALSE(mergeable(plain, moved));
 }
 
-TEST(MapQueue, PutsBackWhatCouldNotBeSentFirstOfItsSenders) {
+TEST(MapQueue, PutsAFailedMapFirstOfItsSender) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   queue.add(2, cloud_update("R2", {1}), at(2));
@@ -184,7 +184,7 @@ TEST(MapQueue, PutsBackWhatCouldNotBeSentFirstOfItsSenders) {
   EXPECT_THAT(queue.take()->updates, ElementsAre(3));
 }
 
-TEST(MapQueue, PutsBackNoGridThatANewerOneCovers) {
+TEST(MapQueue, DropsAFailedGridThatANewerOneCovers) {
   MapQueue queue{kPlenty};
   queue.add(1, grid_update("R1", kSmall), at(1));
   auto failed = *queue.take();
@@ -206,7 +206,7 @@ QueuedMap sent_again(std::uint64_t number, const icd::OccupancyGrid& grid, icd::
   return map;
 }
 
-TEST(MapQueue, SendsAgainInTheOrderInWhichTheyWereMadeAndDropsNoneForAnOlderOne) {
+TEST(MapQueue, RetriesByHandKeepTheirOrder) {
   MapQueue queue{kPlenty};
   EXPECT_THAT(queue.put_back(sent_again(3, kSmall, 30)), IsEmpty());
   EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
@@ -215,7 +215,7 @@ TEST(MapQueue, SendsAgainInTheOrderInWhichTheyWereMadeAndDropsNoneForAnOlderOne)
 }
 
 // A clock that was set back: the simulation's seed 60002763 lost the later one's area to the older one's.
-TEST(MapQueue, TakesOfOneStampTheLaterThatIsSentAgainForTheNewer) {
+TEST(MapQueue, OfEqualStampsTheLaterRetryIsNewer) {
   MapQueue queue{kPlenty};
   EXPECT_THAT(queue.put_back(sent_again(1, kLarge, 10)), IsEmpty());
   EXPECT_FALSE(queue.is_replaced(sent_again(2, kSmall, 10)));
@@ -225,7 +225,7 @@ TEST(MapQueue, TakesOfOneStampTheLaterThatIsSentAgainForTheNewer) {
   EXPECT_TRUE(queue.is_replaced(sent_again(1, kSmall, 10)));
 }
 
-TEST(MapQueue, SendsACloudAgainByHandBeforeTheOthersOfItsSender) {
+TEST(MapQueue, RetryByHandSendsACloudFirstOfItsSender) {
   MapQueue queue{0};
   queue.add(7, cloud_update("R1", {1}), at(1));
   QueuedMap map{cloud_update("R1", {2}), at(9), {1}, {}, true};
@@ -234,7 +234,7 @@ TEST(MapQueue, SendsACloudAgainByHandBeforeTheOthersOfItsSender) {
   for (const std::uint64_t number : {1, 7}) EXPECT_THAT(queue.take()->updates, ElementsAre(number));
 }
 
-TEST(MapQueue, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasRejectedMessages) {
+TEST(MapQueue, RetryByHandIsOlderThanNeverRejectedMaps) {
   MapQueue queue{kPlenty};
   queue.add(7, grid_update("R1", kSmall), at(1));
   auto failed = *queue.take();
@@ -244,7 +244,7 @@ TEST(MapQueue, TakesNothingThatIsSentAgainForNewerThanWhatNeverWasRejectedMessag
   EXPECT_THAT(queue.take()->updates, ElementsAre(7));
 }
 
-TEST(MapQueue, CountsTheMemoryThatIsHeld) {
+TEST(MapQueue, CountsItsMemory) {
   MapQueue queue{kPlenty};
   EXPECT_EQ(queue.bytes(), 0);
   queue.add(1, cloud_update("R1", {1, 2, 3}), at(1));
@@ -258,14 +258,14 @@ TEST(MapQueue, CountsTheMemoryThatIsHeld) {
   EXPECT_EQ(queue.bytes(), 0);
 }
 
-TEST(MapQueue, IsNotSlowedDownByAFloodOfTinyClouds) {
+TEST(MapQueue, StaysFastInAFloodOfTinyClouds) {
   MapQueue queue{kPlenty / 4};
   const auto tiny = cloud_update("R1", {1});
   for (std::uint64_t i = 0; i < 30'000; ++i) queue.add(i, tiny, at(1));
   EXPECT_EQ(queue.take()->updates.size(), kPlenty / 4 / 12);
 }
 
-TEST(MapQueue, TellsWhatJoinsTheLastThatWaitsOfItsSender) {
+TEST(MapQueue, TellsIfAMapMergesIntoTheLastOfItsSender) {
   MapQueue queue{1000};
   EXPECT_FALSE(queue.joins(grid_update("R1", grid(0, 0, 4, 4))));
   queue.add(1, grid_update("R1", grid(0, 0, 4, 4)), at(1));

@@ -64,7 +64,7 @@ class Waits {
 
 class MapTurns : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(MapTurns, WhoWaitsLetsOnlyThoseGoFirstWhoWaitedAlreadyAndEachOnce) {
+TEST_P(MapTurns, WaitingSenderIsPassedAtMostOnceByEach) {
   std::mt19937_64 random{GetParam()};
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
   Race race;
@@ -86,7 +86,7 @@ TEST_P(MapTurns, WhoWaitsLetsOnlyThoseGoFirstWhoWaitedAlreadyAndEachOnce) {
   }
 }
 
-TEST_P(MapTurns, ARobotsNewestMapIsAsOldAsThereAreSendersWhateverOneOfThemDoes) {
+TEST_P(MapTurns, NewestMapWaitsAtMostOneTurnPerSender) {
   std::mt19937_64 random{GetParam()};
   Race race;
   std::vector<std::string> names = {"hostile"};
@@ -103,7 +103,7 @@ TEST_P(MapTurns, ARobotsNewestMapIsAsOldAsThereAreSendersWhateverOneOfThemDoes) 
   }
 }
 
-TEST_P(MapTurns, WhoSendsLargeMapsGetsNoMoreOfTheLinkThanTheOthers) {
+TEST_P(MapTurns, LargeMapsGetNoMoreOfTheLink) {
   constexpr std::size_t kLargest = 9;  // slots
   std::mt19937_64 random{GetParam()};
   Race race;
@@ -123,7 +123,7 @@ TEST_P(MapTurns, WhoSendsLargeMapsGetsNoMoreOfTheLinkThanTheOthers) {
 
 INSTANTIATE_TEST_SUITE_P(Races, MapTurns, testing::Range(std::uint64_t{1}, std::uint64_t{11}));
 
-TEST(MapTurn, IsOfARobotsGridsAndOfItsClouds) {
+TEST(MapTurn, GridsAndCloudsOfARobotTakeSeparateTurns) {
   MapQueue queue{0};
   queue.add(1, patch("R1", 1), at(1));
   queue.add(2, patch("R1", 2), at(2));
@@ -132,7 +132,7 @@ TEST(MapTurn, IsOfARobotsGridsAndOfItsClouds) {
     EXPECT_THAT(queue.take()->updates, testing::ElementsAre(number));
 }
 
-TEST(MapTurn, IsNotSavedUpByWhoWaitsForNothing) {
+TEST(MapTurn, IsNotSavedUpByAnIdleSender) {
   Race race;
   for (int i = 0; i < 20; ++i) {
     race.post(patch("R1", race.number));
@@ -143,7 +143,7 @@ TEST(MapTurn, IsNotSavedUpByWhoWaitsForNothing) {
   for (const char* name : {"R2", "R1", "R2", "R1", "R2", "R1"}) EXPECT_EQ(race.send(), name);
 }
 
-TEST(MapTurn, IsPaidForEvenByWhoLeftMeanwhile) {
+TEST(MapTurn, DebtOutlastsAnEmptyQueue) {
   Race race;
   race.post(patch("hostile", 1));
   for (int i = 0; i < 4; ++i) race.post(patch("R1", race.number));
@@ -152,13 +152,13 @@ TEST(MapTurn, IsPaidForEvenByWhoLeftMeanwhile) {
   for (const char* name : {"R1", "R1", "R1", "hostile", "R1"}) EXPECT_EQ(race.send(), name);
 }
 
-TEST(MapTurn, CostsOnlyWhatIsLostByOthers) {
+TEST(MapTurn, IsFreeIfNoOtherSenderWaits) {
   Race race;
   for (int i = 0; i < 3; ++i) race.post(patch("R1", race.number));
   for (int i = 0; i < 3; ++i) EXPECT_EQ(race.send(9 * kSlot), "R1") << "nobody else waits";
 }
 
-TEST(MapTurn, OfSendersThatAreGoneIsForgotten) {
+TEST(MapTurn, ForgetsSendersThatAreGone) {
   Race race;
   for (std::uint64_t i = 0; i < 1000; ++i) {
     race.post(patch("R" + std::to_string(i), i));

@@ -80,26 +80,26 @@ class AnyChanges {
   int text_ = 0;
 };
 
-TEST(MarkerChanges, TheNewerChangeTakesThePlaceOfTheOlder) {
+TEST(MarkerChanges, NewerChangeReplacesTheOlder) {
   EXPECT_THAT(merged({add(1, "old"), add(2)}, {add(1, "new")}), ElementsAre(add(1, "new"), add(2)));
   EXPECT_THAT(merged({add(1), add(2)}, {remove(1)}), ElementsAre(remove(1), add(2)));
   EXPECT_THAT(merged({remove(1)}, {add(1)}), ElementsAre(add(1)));
 }
 
-TEST(MarkerChanges, TellsNamespacesApart) {
+TEST(MarkerChanges, NamespacesAreSeparate) {
   const auto a = marker(icd::MarkerAction::Add, "a", 1), b = marker(icd::MarkerAction::Add, "b", 1);
   EXPECT_THAT(merged({a}, {b}), ElementsAre(a, b));
 }
 
-TEST(MarkerChanges, DeleteAllTakesThePlaceOfAllBeforeIt) {
+TEST(MarkerChanges, DeleteAllReplacesAllBeforeIt) {
   EXPECT_THAT(merged({add(1), remove(2)}, {remove_all(), add(3)}), ElementsAre(remove_all(), add(3)));
 }
 
-TEST(MarkerChanges, DeletesNothingThatADeleteAllHasDeleted) {
+TEST(MarkerChanges, DropsADeleteAfterADeleteAll) {
   EXPECT_THAT(merged({remove_all(), add(1)}, {remove(1), remove(2)}), ElementsAre(remove_all()));
 }
 
-TEST(MarkerChanges, ReplayingTheMergedChangesGivesTheSameSceneAsReplayingBoth) {
+TEST(MarkerChanges, MergingKeepsTheScene) {
   AnyChanges any{1};
   for (int i = 0; i < 1500; ++i) {
     const Scene scene = replay({}, any.changes());
@@ -117,7 +117,7 @@ std::vector<icd::Marker> in_order(const MarkerChanges& changes) {
   return all;
 }
 
-TEST(MarkerChanges, ComeToTheSameWhereTheOlderOnesComeLate) {
+TEST(MarkerChanges, LateOlderChangesGiveTheSameScene) {
   AnyChanges any{3};
   for (int i = 0; i < 1500; ++i) {
     const Scene scene = replay({}, any.changes());
@@ -136,7 +136,7 @@ TEST(MarkerChanges, ComeToTheSameWhereTheOlderOnesComeLate) {
   }
 }
 
-TEST(MarkerQueue, GivesOutNothingWhereNothingWaits) {
+TEST(MarkerQueue, GivesNothingIfEmpty) {
   MarkerQueue queue{{.per_message = 10}};
   EXPECT_TRUE(queue.empty());
   EXPECT_FALSE(queue.take());
@@ -156,7 +156,7 @@ TEST(MarkerQueue, SendsTheMarkersOfManyUpdatesTogether) {
   EXPECT_TRUE(queue.empty());
 }
 
-TEST(MarkerQueue, AnUpdateCountsInTheMessageWithTheLastOfItsMarkers) {
+TEST(MarkerQueue, CountsAnUpdateWithItsLastMarker) {
   MarkerQueue queue{{.per_message = 2}};
   queue.add({{add(1), add(2), add(3)}}, at(1));
   queue.add({{add(1, "new")}}, at(2));
@@ -167,7 +167,7 @@ TEST(MarkerQueue, AnUpdateCountsInTheMessageWithTheLastOfItsMarkers) {
   EXPECT_EQ(queue.take()->updates, 1);
 }
 
-TEST(MarkerQueue, AnUpdateWithoutMarkersComesOutToo) {
+TEST(MarkerQueue, SendsAnUpdateWithoutMarkers) {
   MarkerQueue queue{{.per_message = 2}};
   queue.add({}, at(1));
   EXPECT_FALSE(queue.empty());
@@ -176,7 +176,7 @@ TEST(MarkerQueue, AnUpdateWithoutMarkersComesOutToo) {
   EXPECT_EQ(taken->updates, 1);
 }
 
-TEST(MarkerQueue, WhatIsPutBackGoesBeforeWhatCameMeanwhile) {
+TEST(MarkerQueue, FailedMarkersGoBeforeLaterOnes) {
   MarkerQueue queue{{.per_message = 10}};
   queue.add({{add(1), add(2)}}, at(1));
   auto failed = *queue.take();
@@ -188,7 +188,7 @@ TEST(MarkerQueue, WhatIsPutBackGoesBeforeWhatCameMeanwhile) {
   EXPECT_EQ(taken->updates, 2);
 }
 
-TEST(MarkerQueue, ADeleteAllThatCameMeanwhileStandsForWhatIsPutBack) {
+TEST(MarkerQueue, LaterDeleteAllReplacesFailedMarkers) {
   MarkerQueue queue{{.per_message = 10}};
   queue.add({{add(1), add(2)}}, at(1));
   auto failed = *queue.take();
@@ -199,7 +199,7 @@ TEST(MarkerQueue, ADeleteAllThatCameMeanwhileStandsForWhatIsPutBack) {
   EXPECT_EQ(taken->updates, 2);
 }
 
-TEST(MarkerQueue, AMarkerThatChangesAllTheTimeHoldsUpNoOther) {
+TEST(MarkerQueue, FrequentChangesDoNotDelayOtherMarkers) {
   MarkerQueue queue{{.per_message = 1}};
   queue.add({{add(1), add(2)}}, at(1));
   queue.add({{add(1, "again")}}, at(2));
@@ -215,7 +215,7 @@ icd::Marker path(std::int32_t id, std::size_t points) {
   return path;
 }
 
-TEST(MarkerQueue, SendsNoMoreBytesTogetherThanItsBound) {
+TEST(MarkerQueue, LimitsTheBytesOfAMessage) {
   MarkerQueue queue{{.bytes_per_message = icd::bytes_of(path(1, 10)) + icd::bytes_of(path(2, 20))}};
   queue.add({{path(1, 10), path(2, 20), path(3, 1), path(4, 90), path(5, 0)}}, at(1));
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(1, 10), path(2, 20)));
@@ -224,7 +224,7 @@ TEST(MarkerQueue, SendsNoMoreBytesTogetherThanItsBound) {
   EXPECT_THAT(queue.take()->update.markers, ElementsAre(path(5, 0)));
 }
 
-TEST(MarkerQueue, HasAnEndToTheMarkersThatItHolds) {
+TEST(MarkerQueue, LimitsTheNumberOfMarkers) {
   MarkerQueue queue{{.per_message = 10, .bytes = std::size_t{1} << 30}};
   icd::MarkersUpdate many;
   for (std::size_t i = 0; i < MarkerQueue::kMostMarkers; ++i) {
@@ -238,7 +238,7 @@ TEST(MarkerQueue, HasAnEndToTheMarkersThatItHolds) {
   EXPECT_TRUE(queue.has_room_for({{add(-1)}}));
 }
 
-TEST(MarkerQueue, HasAnEndToTheBytesThatItHoldsAndTakesInWhatReplacesAChangeThatWaits) {
+TEST(MarkerQueue, LimitsBytesButAcceptsReplacements) {
   const std::size_t quarter = icd::bytes_of(path(1, 1000));
   MarkerQueue queue{{.bytes = 4 * quarter}};
   queue.add({{path(1, 1000), path(2, 1000), path(3, 1000)}}, at(1));
@@ -252,7 +252,7 @@ TEST(MarkerQueue, HasAnEndToTheBytesThatItHoldsAndTakesInWhatReplacesAChangeThat
   EXPECT_TRUE(queue.has_room_for({{remove_all(), path(4, 1000)}}));
 }
 
-TEST(MarkerQueue, TellsWhatItCanTakeInOfAnUpdateForWhichItHasNoRoom) {
+TEST(MarkerQueue, FullQueueStillAcceptsReplacementsInAnUpdate) {
   const std::size_t quarter = icd::bytes_of(path(1, 1000));
   MarkerQueue queue{{.bytes = 4 * quarter}};
   queue.add({{path(1, 1000), path(2, 1000), path(3, 1000)}}, at(1));
@@ -264,12 +264,12 @@ TEST(MarkerQueue, TellsWhatItCanTakeInOfAnUpdateForWhichItHasNoRoom) {
               ElementsAre(remove_all()));
 }
 
-TEST(MarkerQueue, TakesAnyUpdateWhereNothingWaits) {  // its sender could not be told when to try again
+TEST(MarkerQueue, AcceptsAnyUpdateIfEmpty) {  // its sender could not be told when to try again
   const MarkerQueue queue{{.bytes = 1000}};
   EXPECT_TRUE(queue.has_room_for({{path(1, 5000)}}));
 }
 
-TEST(MarkerQueue, HasRoomForOneMarkerHoweverOftenItChanges) {
+TEST(MarkerQueue, HasRoomForAMarkerThatChangesOften) {
   MarkerQueue queue{{}};
   constexpr int kTimes = 200'000;
   const icd::MarkersUpdate updates[] = {{{add(1)}}, {{remove_all()}}};
@@ -282,7 +282,7 @@ TEST(MarkerQueue, HasRoomForOneMarkerHoweverOftenItChanges) {
   EXPECT_TRUE(queue.empty());
 }
 
-TEST(MarkerChanges, KnowTheirSizeAndWhatItWouldBe) {
+TEST(MarkerChanges, TellTheirSizeAndTheirSizeWithAnUpdate) {
   AnyChanges any{2};
   for (int i = 0; i < 300; ++i) {
     MarkerChanges changes;
@@ -305,7 +305,7 @@ TEST(MarkerChanges, KnowTheirSizeAndWhatItWouldBe) {
 /// Drives a queue with random changes and failures against a display that replays what it is sent.
 class MarkerQueueLaws : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(MarkerQueueLaws, TheDisplayEndsAsIfEveryUpdateHadBeenReplayedAndEveryOneIsCountedOnce) {
+TEST_P(MarkerQueueLaws, FinalSceneIsRightAndEachUpdateCountsOnce) {
   constexpr std::size_t kMost = 3, kMostBytes = 3000;
   AnyChanges any{GetParam()};
   MarkerQueue queue{{.per_message = kMost, .bytes_per_message = kMostBytes}};
@@ -346,7 +346,7 @@ TEST_P(MarkerQueueLaws, TheDisplayEndsAsIfEveryUpdateHadBeenReplayedAndEveryOneI
 
 INSTANTIATE_TEST_SUITE_P(Courses, MarkerQueueLaws, testing::Range(std::uint64_t{1}, std::uint64_t{61}));
 
-TEST(MarkerQueue, KeepsWithinOtherBoundsFromNowOn) {
+TEST(MarkerQueue, AppliesNewLimitsFromThenOn) {
   MarkerQueue queue({.per_message = 2});
   queue.add({{add(1), add(2), add(3), add(4), add(5)}}, at(1));
   queue.keep_within({.per_message = 3});
@@ -356,7 +356,7 @@ TEST(MarkerQueue, KeepsWithinOtherBoundsFromNowOn) {
   EXPECT_FALSE(queue.has_room_for({{add(6)}}));
 }
 
-TEST(MarkerQueue, StaysAsNarrowAsItHadToBecome) {
+TEST(MarkerQueue, KeepsItsReducedMessageSize) {
   MarkerQueue queue({.per_message = 4});
   queue.add({{add(1), add(2), add(3), add(4)}}, at(1));
   queue.put_back_narrower(*queue.take());

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kMergeRoom = 1 << 20;
 
-TEST(PrecisionFor, IsTheFinestAtWhichOneMessageHoldsAll) {
+TEST(PrecisionFor, IsTheFinestThatFitsOneMessage) {
   constexpr PointsAt kHolds{100, 150, 200};
   const std::pair<std::size_t, Precision> rows[] = {{0, Precision::Exact},
                                                     {100, Precision::Exact},
@@ -55,7 +55,7 @@ TEST_F(PrecisionOf, CloudsOfNoRobotAndGridsIsExact) {
   EXPECT_EQ(next(), Precision::Exact);
 }
 
-TEST_F(PrecisionOf, AutoIsAsFarAsWhatWaitsForcesIt) {
+TEST_F(PrecisionOf, AutoFollowsTheQueuedBytes) {
   add("R1", 1);
   const std::size_t one = queue_.bytes();
   queue_.a_message_holds({one, 2 * one, 3 * one});
@@ -69,7 +69,7 @@ TEST_F(PrecisionOf, AutoIsAsFarAsWhatWaitsForcesIt) {
   EXPECT_EQ(next(), Precision::Exact) << "once all is gone";
 }
 
-TEST_F(PrecisionOf, AutoMergesNoMoreThanTheMessageHoldsAtIt) {
+TEST_F(PrecisionOf, AutoMergesAtMostOneMessage) {
   add("R1", 1);
   const std::size_t points = queue_.take()->map.data.raw_size;
   queue_.a_message_holds({points, 2 * points, 3 * points});
@@ -79,7 +79,7 @@ TEST_F(PrecisionOf, AutoMergesNoMoreThanTheMessageHoldsAtIt) {
   EXPECT_EQ(taken->map.data.raw_size, 3 * points);
 }
 
-TEST_F(PrecisionOf, OneThatComesBackIsChosenAnew) {
+TEST_F(PrecisionOf, ARetriedCloudIsChosenAnew) {
   add("R1", 1);
   queue_.a_message_holds({1, 1, 1});
   auto back = *queue_.take();

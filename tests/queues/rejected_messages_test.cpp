@@ -45,7 +45,7 @@ std::vector<std::uint64_t> taken(RejectedMessages& rejected, const Message& mess
   return replaced;
 }
 
-TEST(RejectedMessages, KnowsWhatOvertakesAnother) {
+TEST(RejectedMessages, TellsIfAMessageReplacesAnother) {
   const Message small = grid_update("ugv1", grid(0, 0, 10, 10)),
                 large = grid_update("ugv1", grid(0, 0, 20, 20)),
                 others = grid_update("ugv2", grid(0, 0, 20, 20)), cloud = cloud_update("ugv1", {1});
@@ -72,7 +72,7 @@ TEST(RejectedMessages, KnowsWhatOvertakesAnother) {
   EXPECT_FALSE(replaces(ab, all_gone));
 }
 
-TEST(RejectedMessages, MarksWhatSomethingNewerSaysAllOf) {
+TEST(RejectedMessages, MarksMapsThatANewerOneContains) {
   RejectedMessages rejected;
   rejected.add(item(grid_update("ugv1", grid(0, 0, 10, 10))));
   rejected.add(item(cloud_update("ugv1", {1})));
@@ -85,7 +85,7 @@ TEST(RejectedMessages, MarksWhatSomethingNewerSaysAllOf) {
   EXPECT_FALSE(rejected.find(2)->replaced);
 }
 
-TEST(RejectedMessages, IsNotOvertakenByAnOlderGridThatIsSentAgain) {
+TEST(RejectedMessages, AreNotReplacedByAnOlderRetriedGrid) {
   const auto made_at = [](icd::Stamp stamp, std::uint32_t cells) {
     icd::MapUpdate map = grid_update("ugv1", grid(0, 0, cells, cells));
     map.header().stamp = stamp;
@@ -108,7 +108,7 @@ QueuedMap with_a_gap() {
   return stitched;
 }
 
-TEST(RejectedMessages, IsNotOvertakenByTheGapOfAStitchedGrid) {
+TEST(RejectedMessages, AreNotReplacedByTheGapOfAStitchedGrid) {
   QueuedMap stitched = with_a_gap();
   RejectedMessages rejected;
   rejected.add(item(grid_update("ugv1", grid(1, 0, 10, 10))));  // in the middle
@@ -122,7 +122,7 @@ TEST(RejectedMessages, IsNotOvertakenByTheGapOfAStitchedGrid) {
   EXPECT_EQ(taken(rejected, *said_by(stitched).front()), std::vector<std::uint64_t>{1});
 }
 
-TEST(RejectedMessages, IsSentAgainWhereWhatGoesHasAGapThere) {
+TEST(RejectedMessages, AreRetriedIfTheSentGridHasAGapThere) {
   const auto back = [](double x, std::uint32_t cells) {
     return QueuedMap{
         .map = grid_update("ugv1", grid(x, 0, cells, cells)), .accepted = {}, .updates = {3}, .again = 10};
@@ -133,14 +133,14 @@ TEST(RejectedMessages, IsSentAgainWhereWhatGoesHasAGapThere) {
   EXPECT_TRUE(replaces(goes, back(2, 5))) << "within it";
 }
 
-TEST(RejectedMessages, MarksADeleteAllThatWouldDeleteSomethingNewer) {
+TEST(RejectedMessages, MarksADeleteAllOlderThanAMarker) {
   RejectedMessages rejected;
   rejected.add(item(icd::MarkersUpdate{{marker("", 0, icd::MarkerAction::DeleteAll)}}));
   EXPECT_TRUE(taken(rejected, state_of({"ugv1"})).empty());
   EXPECT_EQ(taken(rejected, icd::MarkersUpdate{{marker("a", 1)}}), std::vector<std::uint64_t>{1});
 }
 
-TEST(RejectedMessages, HoldsOneForEachThatWouldSayTheSame) {
+TEST(RejectedMessages, KeepsOneOfEqualMessages) {
   RejectedMessages rejected;
   for (int i = 0; i < 1000; ++i) rejected.add(item(state_of({"ugv1", "ugv2"}, i)));
   EXPECT_EQ(rejected.items().size(), 1);
@@ -158,7 +158,7 @@ TEST(RejectedMessages, IsBounded) {
   EXPECT_EQ(rejected.items().size(), 1) << "one is always kept";
 }
 
-TEST(RejectedMessages, GivesAwayWhatIsTakenOnce) {
+TEST(RejectedMessages, GivesEachMessageOutOnce) {
   RejectedMessages rejected;
   rejected.add(item(cloud_update("ugv1", {1})));
   EXPECT_TRUE(rejected.take(1));
@@ -166,7 +166,7 @@ TEST(RejectedMessages, GivesAwayWhatIsTakenOnce) {
   EXPECT_EQ(rejected.find(1), nullptr);
 }
 
-TEST(StateQueueApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
+TEST(StateQueueApart, FindsTheFaultyRobotAndSendsTheOthers) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1", "ugv2", "ugv3"})), at(0));
   queue.put_back_apart(*queue.take());
@@ -196,7 +196,7 @@ TEST(StateQueueApart, FindsTheRobotThatIsAtFaultAndSendsTheOthers) {
   EXPECT_EQ(queue.take(at(22))->update.poses.size(), 3);
 }
 
-TEST(StateQueueApart, SendsAgainOnlyWhatWasGivenUpAndIsTheNewest) {
+TEST(StateQueueApart, RetriesOnlyTheNewestRejectedPose) {
   const icd::StateUpdate set_aside = state_of({"ugv1"});
   StateQueue queue;
   queue.add_unless_known(set_aside, at(0));
@@ -221,7 +221,7 @@ TEST(StateQueueApart, SendsAgainOnlyWhatWasGivenUpAndIsTheNewest) {
   EXPECT_TRUE(queue.empty()) << "a newer one was taken";
 }
 
-TEST(StateQueueApart, LetsARobotOnTrialRestWhileOthersHaveNews) {
+TEST(StateQueueApart, SendsOtherRobotsWhileOneIsOnTrial) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1", "ugv2"})), at(0));
   queue.give_up(*robot("ugv2"), at(0));
@@ -230,7 +230,7 @@ TEST(StateQueueApart, LetsARobotOnTrialRestWhileOthersHaveNews) {
   EXPECT_EQ(queue.unsent().size(), 1) << "and ugv1 is under way";
 }
 
-TEST(MarkerQueueNarrower, FindsTheOneThatIsAtFault) {
+TEST(MarkerQueueNarrower, FindsTheFaultyMarker) {
   MarkerQueue queue({.per_message = 64});
   icd::MarkersUpdate update;
   for (int id = 0; id < 64; ++id) update.markers.push_back(marker("a", id));
@@ -256,7 +256,7 @@ TEST(MarkerQueueNarrower, FindsTheOneThatIsAtFault) {
   EXPECT_LE(messages, 30);
 }
 
-TEST(MarkerQueueBehind, LetsOthersGoFirstAndLosesNothing) {
+TEST(MarkerQueueBehind, SendsOthersFirstAndLosesNothing) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1)}}, at(0));
   queue.add({{marker("b", 1)}}, at(0));
@@ -268,7 +268,7 @@ TEST(MarkerQueueBehind, LetsOthersGoFirstAndLosesNothing) {
   EXPECT_EQ(again->updates, 1);
 }
 
-TEST(MarkerQueueBehind, GivesOutTheFirstOfAnUpdateWhenTheOthersHaveGone) {
+TEST(MarkerQueueBehind, SendsAPostponedMarkerAfterTheOthers) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1), marker("b", 1)}}, at(0));
   queue.put_behind(*queue.take());
@@ -279,7 +279,7 @@ TEST(MarkerQueueBehind, GivesOutTheFirstOfAnUpdateWhenTheOthersHaveGone) {
   EXPECT_EQ(again->updates, 1u);
 }
 
-TEST(MarkerQueueBehind, LeavesTheNewerChangeOfTheSameMarkerInItsPlace) {
+TEST(MarkerQueueBehind, KeepsANewerChangeOfThePostponedMarker) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("a", 1)}}, at(0));
   const auto first = queue.take();
@@ -293,7 +293,7 @@ TEST(MarkerQueueBehind, LeavesTheNewerChangeOfTheSameMarkerInItsPlace) {
   EXPECT_EQ(taken->updates, 2);
 }
 
-TEST(MarkerQueueBehind, NeverPutsADeleteAllBehindWhatFollowsIt) {
+TEST(MarkerQueueBehind, DoesNotReorderADeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1)}}, at(0));
   for (int round = 0; round < 3; ++round) {
@@ -307,7 +307,7 @@ TEST(MarkerQueueBehind, NeverPutsADeleteAllBehindWhatFollowsIt) {
   EXPECT_EQ(queue.take()->update.markers.front().ns, "a") << "in its own turn too";
 }
 
-TEST(MarkerQueueBehind, TriesWhetherOthersPassAheadOfADeleteAll) {
+TEST(MarkerQueueBehind, TriesOtherMarkersAheadOfADeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll), marker("a", 1), marker("b", 1)}}, at(0));
   std::vector<std::string> ahead;
@@ -322,7 +322,7 @@ TEST(MarkerQueueBehind, TriesWhetherOthersPassAheadOfADeleteAll) {
   EXPECT_EQ(queue.count(), 3u);
 }
 
-TEST(MarkerQueueBehind, HasNothingToSendAheadOfADeleteAllThatIsAlone) {
+TEST(MarkerQueueBehind, SendsNothingAheadOfALoneDeleteAll) {
   MarkerQueue queue({.per_message = 1});
   queue.add({{marker("", 0, icd::MarkerAction::DeleteAll)}}, at(0));
   queue.put_behind(*queue.take());
@@ -332,7 +332,7 @@ TEST(MarkerQueueBehind, HasNothingToSendAheadOfADeleteAllThatIsAlone) {
 }
 
 /// It would go to another Command Post, hours later.
-TEST(StateQueue, MakesNoNewsOfWhatWasNoneWhenSendingFails) {
+TEST(StateQueue, FailedSendDoesNotMakeOldPosesNews) {
   StateQueue queue;
   queue.add(posted(state_of({"ugv1"})), at(0));
   queue.passed(*queue.take());
@@ -344,7 +344,7 @@ TEST(StateQueue, MakesNoNewsOfWhatWasNoneWhenSendingFails) {
   EXPECT_EQ(queue.unsent().front().name.text(), "ugv2");
 }
 
-TEST(StateQueue, ForgetsRobotsWithoutNewsWhereItIsFull) {
+TEST(StateQueue, ForgetsRobotsWithoutNewsIfFull) {
   StateQueue queue;
   icd::StateUpdate many;
   for (std::size_t i = 0; i < StateQueue::kMostRobots; ++i) {

@@ -18,21 +18,21 @@ Stamper of(const std::string& robot, const std::string& address = "10.0.0.5") {
   return {address, icd::Uri::StateUpdate, robot};
 }
 
-TEST(StampShift, TakesTheFirstStampAsNowAndKeepsTheSpacingFromThenOn) {
+TEST(StampShift, FirstStampIsNowAndSpacingIsKept) {
   StampShift shift;
   EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow), kNow);
   EXPECT_THAT(shift.shift(of("R1"), 100.3, kNow + 2), DoubleNear(kNow + 0.3, 1e-6)) << "however late it came";
   EXPECT_THAT(shift.shift(of("R1"), 100.1, kNow + 2), DoubleNear(kNow + 0.1, 1e-6)) << "out of order";
 }
 
-TEST(StampShift, StampsWhatHasNoStampWithNow) {
+TEST(StampShift, StampsUnstampedMessagesWithNow) {
   StampShift shift;
   EXPECT_EQ(shift.shift(of("R1"), {}, kNow), kNow);
   EXPECT_EQ(shift.shift(of("R1"), 0.0, kNow + 1), kNow + 1) << "ROS: not set";
   EXPECT_EQ(shift.shift(of("R1"), 100.0, kNow + 2), kNow + 2) << "the first that it gave";
 }
 
-TEST(StampShift, PutsWhatHasNoStampNotBeforeWhatItsSenderStampedLast) {
+TEST(StampShift, StampsUnstampedMessagesNotBeforeTheLastStamp) {
   StampShift shift;
   shift.shift(of("R1"), 100.0, kNow);
   const icd::Stamp ahead = shift.shift(of("R1"), 104.0, kNow + 1);
@@ -47,7 +47,7 @@ TEST(StampShift, KeepsSendersApart) {
   EXPECT_THAT(shift.shift(of("R1"), 101.5, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
 }
 
-TEST(StampShift, StartsAgainWhereAClockJumpedBackward) {
+TEST(StampShift, RestartsAfterAClockStepBack) {
   StampShift shift;
   shift.shift(of("R1"), 100.0, kNow);
   EXPECT_THAT(shift.shift(of("R1"), 95.5, kNow + 1), DoubleNear(kNow - 4.5, 1e-6)) << "late, no jump";
@@ -55,7 +55,7 @@ TEST(StampShift, StartsAgainWhereAClockJumpedBackward) {
   EXPECT_THAT(shift.shift(of("R1"), 95.0, kNow + 2), DoubleNear(kNow + 1.5, 1e-6));
 }
 
-TEST(StampShift, StartsAgainWhereAClockJumpedAhead) {
+TEST(StampShift, RestartsAfterAClockStepAhead) {
   StampShift shift;
   shift.shift(of("R1"), 100.0, kNow);
   EXPECT_THAT(shift.shift(of("R1"), 104.5, kNow), DoubleNear(kNow + 4.5, 1e-6)) << "no jump";
@@ -65,7 +65,7 @@ TEST(StampShift, StartsAgainWhereAClockJumpedAhead) {
   EXPECT_EQ(shift.shift(of("R1"), 9000.0, kNow + 60), kNow + 60);
 }
 
-TEST(StampShift, PutsWhatAClockSaysAfterItWasSetBackBehindNothingThatItHasSaid) {
+TEST(StampShift, StampsNeverGoBackAfterAClockStepBack) {
   for (const double back : {2.0, 3.5, 4.9, 5.1, 3600.0}) {
     SCOPED_TRACE(back);
     StampShift shift;
@@ -97,7 +97,7 @@ TEST(StampShift, IsNeverNegativeNorFarAheadOfNow) {
   }
 }
 
-TEST(StampShift, ForgetsTheAddressThatWasSilentLongest) {
+TEST(StampShift, ForgetsTheLongestSilentAddress) {
   StampShift shift;
   const Stamper silent = of("R1", "silent"), busy = of("R1", "busy");
   shift.shift(silent, 100.0, kNow);
@@ -110,7 +110,7 @@ TEST(StampShift, ForgetsTheAddressThatWasSilentLongest) {
   EXPECT_EQ(shift.shift(silent, 100.5, kNow + 3), kNow + 3) << "restarted";
 }
 
-TEST(StampShift, AnAddressHasSoManyClocksAndTakesNobodyElses) {
+TEST(StampShift, LimitsTheClocksOfAnAddress) {
   StampShift shift;
   const Stamper other = of("R1", "10.0.0.6"), first = of("0"), late = of("late");
   shift.shift(other, 100.0, kNow);
@@ -129,7 +129,7 @@ icd::Marker marker(std::optional<icd::Stamp> stamp) {
   return made;
 }
 
-TEST(StampShift, KeepsTheSpacingOfTheMarkersOfAMessage) {
+TEST(StampShift, KeepsTheSpacingOfMarkersInAMessage) {
   StampShift shift;
   const Stamper stamper{"10.0.0.5", icd::Uri::MarkersUpdate, ""};
   std::vector<icd::Marker> markers{marker({}), marker(50), marker(49.5), marker(51), marker(0)};
@@ -143,7 +143,7 @@ TEST(StampShift, KeepsTheSpacingOfTheMarkersOfAMessage) {
 }
 
 /// A state's stamps are recorded with its poses.
-TEST(StampShift, TellsEachClockOnceThatWasSetOrThatAMapOrMarkerStamped) {
+TEST(StampShift, ReportsEachChangedClockOnce) {
   StampShift shift;
   shift.shift(of("R1"), {}, kNow);
   EXPECT_TRUE(shift.changed().empty());
@@ -167,7 +167,7 @@ TEST(StampShift, TellsEachClockOnceThatWasSetOrThatAMapOrMarkerStamped) {
 }
 
 /// As one life hands over to the next, at any message: nobody can see that it did.
-TEST(StampShift, GoesOnInTheNextLifeAsIfNothingHadBeen) {
+TEST(StampShift, ContinuesUnchangedAfterARestart) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> step{-6, 4};
   StampShift uninterrupted, living;
@@ -183,7 +183,7 @@ TEST(StampShift, GoesOnInTheNextLifeAsIfNothingHadBeen) {
   }
 }
 
-TEST(StampShift, KnowsWhatTheClockOfARobotShowsThatSpeaksForAWhile) {
+TEST(StampShift, KnowsTheClockOfARobotThatSendsForAWhile) {
   StampShift shift;
   EXPECT_FALSE(shift.told(kNow, 0, 1e9));
   for (int second = 0; second <= 9; ++second) shift.shift(of("R1"), 5000.0 + second, kNow + second);
@@ -197,7 +197,7 @@ TEST(StampShift, KnowsWhatTheClockOfARobotShowsThatSpeaksForAWhile) {
   EXPECT_FALSE(shift.told(kNow + 21, 0, 1e9)) << "they say nothing any more";
 }
 
-TEST(StampShift, ForgetsInTheNextLifeTheAddressThatWasSilentLongest) {
+TEST(StampShift, ForgetsTheLongestSilentAddressAfterARestart) {
   StampShift shift;
   const auto at = [](std::size_t address) { return of("R1", std::to_string(address)); };
   for (std::size_t i = 0; i < StampShift::kMostAddresses; ++i) shift.shift(at(i), 5.0, kNow);
@@ -209,7 +209,7 @@ TEST(StampShift, ForgetsInTheNextLifeTheAddressThatWasSilentLongest) {
   EXPECT_EQ(next.shift(at(1), 6.0, kNow + 9), kNow + 9);
 }
 
-TEST(StampOrder, GoesOnFromTheLastOfAnEarlierLife) {
+TEST(StampOrder, ContinuesFromTheLastStampAfterARestart) {
   StampOrder order;
   order.carry_on(10);
   EXPECT_EQ(order.next(9), 10);
@@ -217,7 +217,7 @@ TEST(StampOrder, GoesOnFromTheLastOfAnEarlierLife) {
   EXPECT_EQ(order.next(9.5), 10);
 }
 
-TEST(StampOrder, NeverRunsBackward) {
+TEST(StampOrder, NeverGoesBack) {
   StampOrder order;
   EXPECT_EQ(order.next(10), 10);
   EXPECT_EQ(order.next(10.5), 10.5);

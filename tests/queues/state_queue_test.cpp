@@ -30,7 +30,7 @@ void post(StateQueue& queue, const std::vector<PostedPose>& poses, Instant now) 
   queue.add(queue.news_in(poses), now);
 }
 
-TEST(StateQueue, SendsAllRobotsTogetherThoughEachPostsAlone) {
+TEST(StateQueue, SendsAllRobotsInOneMessage) {
   StateQueue queue;
   post(queue, state(10, {pose("R2", 2)}), at(1));
   post(queue, state(11, {pose("R1", 1)}), at(2));
@@ -40,7 +40,7 @@ TEST(StateQueue, SendsAllRobotsTogetherThoughEachPostsAlone) {
   EXPECT_EQ(taken->accepted, at(1));
 }
 
-TEST(StateQueue, SendsRobotsWithoutNewsToo) {
+TEST(StateQueue, AlsoSendsRobotsWithoutNews) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
   queue.take();
@@ -50,7 +50,7 @@ TEST(StateQueue, SendsRobotsWithoutNewsToo) {
   EXPECT_THAT(taken->news, ElementsAre(pose("R2", 3)));
 }
 
-TEST(StateQueue, GivesOutNothingWithoutNews) {
+TEST(StateQueue, GivesNothingWithoutNews) {
   StateQueue queue;
   EXPECT_FALSE(queue.take());
   post(queue, state(10, {pose("R1", 1)}), at(1));
@@ -69,7 +69,7 @@ struct OrderCase {
 
 class StateQueueOrder : public testing::TestWithParam<OrderCase> {};
 
-TEST_P(StateQueueOrder, IsByTheStampsOfOneClientAndElseByArrival) {
+TEST_P(StateQueueOrder, IsByStampWithinAClientElseByArrival) {
   const OrderCase& given = GetParam();
   StateQueue queue;
   post(queue, state(given.held, {pose("R1", 1)}), at(1));
@@ -93,7 +93,7 @@ INSTANTIATE_TEST_SUITE_P(Table, StateQueueOrder,
                            return name;
                          });
 
-TEST(StateQueue, RepeatsNoPoseInARunThatItWasNotPostedIn) {
+TEST(StateQueue, RepeatsNoPoseOfAnEarlierRun) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 1)}), at(1));
   queue.passed(*queue.take());
@@ -108,7 +108,7 @@ TEST(StateQueue, RepeatsNoPoseInARunThatItWasNotPostedIn) {
   EXPECT_THAT(queue.news_in(state(9, {pose("R1", 9)})), IsEmpty()) << "it came late";
 }
 
-TEST(StateQueue, RepeatsAPoseOfTheRunBeforeOnlyUntilItIsTaken) {
+TEST(StateQueue, RetriesAPoseOfAnEarlierRunUntilDelivered) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1)}), at(1));
   const auto under_way = *queue.take();
@@ -123,7 +123,7 @@ TEST(StateQueue, RepeatsAPoseOfTheRunBeforeOnlyUntilItIsTaken) {
   EXPECT_THAT(queue.take()->update.poses, ElementsAre(pose("R1", 2), pose("R2", 3))) << "it posted since";
 }
 
-TEST(StateQueue, WhatIsPutBackIsNewsAgainAndNeverOverwritesNewer) {
+TEST(StateQueue, FailedPosesAreNewsAndReplaceNoNewerOnes) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 1)}), at(1));
   const auto failed = *queue.take();
@@ -135,7 +135,7 @@ TEST(StateQueue, WhatIsPutBackIsNewsAgainAndNeverOverwritesNewer) {
   EXPECT_EQ(taken->accepted, at(1));
 }
 
-TEST(StateQueue, HasAnEndToTheRobotsItKnows) {
+TEST(StateQueue, LimitsTheNumberOfRobots) {
   StateQueue queue;
   icd::StateUpdate many;
   for (std::size_t i = 0; i < StateQueue::kMostRobots; ++i) many.poses.push_back(pose(std::to_string(i), 0));
@@ -145,7 +145,7 @@ TEST(StateQueue, HasAnEndToTheRobotsItKnows) {
   EXPECT_TRUE(queue.has_room_for({{}, {pose("7", 0)}})) << "a robot that it knows";
 }
 
-TEST(StateQueue, ShowsEachRobotsNewestPoseAndTellsEachNewsUntilItIsTakenHoweverSendingGoes) {
+TEST(StateQueue, SendsTheNewestPosesUntilDelivered) {
   std::mt19937_64 random{1};
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
   StateQueue queue;
@@ -184,7 +184,7 @@ TEST(StateQueue, ShowsEachRobotsNewestPoseAndTellsEachNewsUntilItIsTakenHoweverS
   }
 }
 
-TEST(StateQueue, ForgetsRobotsThatNobodyNeedBeToldOf) {
+TEST(StateQueue, ForgetsDeliveredRobots) {
   StateQueue queue;
   post(queue, state(10, {pose("R1", 1), pose("R2", 2)}), at(1));
   queue.passed(*queue.take());

@@ -27,7 +27,7 @@ struct StepBackCase {
 
 class StepBackCases : public testing::TestWithParam<StepBackCase> {};
 
-TEST_P(StepBackCases, AreTold) {
+TEST_P(StepBackCases, AreDetected) {
   StepBack step_back;
   const StepBackCase& given = GetParam();
   for (std::size_t i = 0; i < given.said.size(); ++i) {
@@ -58,7 +58,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 /// A robot whose clock runs and posts over several connections, each of which waits for its answer before it
 /// takes the next message, and holds it up for as long as it likes.
-TEST(StepBack, IsNotSeenInWhateverOvertakesEachOtherOnTwoConnections) {
+TEST(StepBack, IsNotSeenInMessagesReorderedByConnections) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> held_up{0, 4.5};
   std::bernoulli_distribution often{0.3}, reopens{0.2};
@@ -82,7 +82,7 @@ TEST(StepBack, IsNotSeenInWhateverOvertakesEachOtherOnTwoConnections) {
 
 /// The rule from end to end: a robot's clock is set back now and then, and its newest pose is sent on after
 /// one message more at the latest.
-TEST(StepBack, IsFollowedWithinOneMessage) {
+TEST(StepBack, IsDetectedWithinOneMessage) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> by{2.0, 4.9};
   for (const int connections : {1, 2, 0}) {  // 0: a new one for each message

@@ -118,7 +118,7 @@ class StitchLaws : public testing::TestWithParam<std::uint64_t> {
   Replay overwriting_{false}, overlaying_{true};
 };
 
-TEST_P(StitchLaws, AServerHasTheNewestValueOfEachCellThatWasPosted) {
+TEST_P(StitchLaws, ServerHasTheNewestValueOfEachPostedCell) {
   run();
   EXPECT_GT(stitched_, 5);
   for (const auto& [place, value] : overwriting_.cells) {

@@ -13,7 +13,7 @@ std::vector<std::size_t> which(const std::vector<Cells>& grids) {
   return stitch(grids).which;
 }
 
-TEST(Stitch, IsOfGridsThatFillARectangle) {
+TEST(Stitch, JoinsGridsThatFillARectangle) {
   const auto row = stitch(std::vector<Cells>{{0, 0, 4, 4}, {4, 0, 4, 4}, {-2, 0, 2, 4}});
   EXPECT_THAT(row.which, ElementsAre(0, 1, 2));
   EXPECT_EQ(row.cells, (Cells{-2, 0, 10, 4}));
@@ -29,7 +29,7 @@ TEST(Stitch, LeavesNoGap) {
   EXPECT_THAT(which({{0, 0, 4, 4}, {4, 0, 4, 3}, {4, 3, 3, 1}}), ElementsAre(0)) << "one cell";
 }
 
-TEST(Stitch, HasGapsWhereItIsKnownWhatWasSentThere) {
+TEST(Stitch, HasGapsOnlyIfTheirCellsAreKnown) {
   const std::vector<Cells> windows{{0, 0, 10, 10}, {2, 3, 10, 10}, {5, 5, 10, 10}};
   std::vector<Cells> asked;
   const auto found = stitch(windows, [&](const Cells& all, std::span<const Cells> those) {
@@ -43,7 +43,7 @@ TEST(Stitch, HasGapsWhereItIsKnownWhatWasSentThere) {
   EXPECT_FALSE(row.has_gaps);
 }
 
-TEST(Stitch, HasNotMuchMoreCellsThanItsGrids) {
+TEST(Stitch, IsNotMuchLargerThanItsGrids) {
   const auto know_all = [](auto&&...) { return true; };
   EXPECT_EQ(stitch(std::vector<Cells>{{0, 0, 10, 10}, {70, 0, 10, 10}}, know_all).which.size(), 2);
   EXPECT_EQ(stitch(std::vector<Cells>{{0, 0, 10, 10}, {71, 0, 10, 10}}, know_all).which.size(), 1);
@@ -51,14 +51,14 @@ TEST(Stitch, HasNotMuchMoreCellsThanItsGrids) {
             1);
 }
 
-TEST(Stitch, NeedsOnlyThatAllTogetherFillIt) {
+TEST(Stitch, NeedsTheRectangleFilledByAllTogether) {
   std::vector<Cells> tiles;
   for (const int place : {4, 0, 8, 5, 2, 7, 1, 6, 3}) tiles.push_back({place % 3 * 5, place / 3 * 5, 5, 5});
   EXPECT_EQ(stitch(tiles).which.size(), 9);
   EXPECT_EQ(stitch(tiles).cells, (Cells{0, 0, 15, 15}));
 }
 
-TEST(Stitch, LetsNothingOverWhatStaysBehind) {
+TEST(Stitch, MovesNoGridPastAnOverlappingOne) {
   const Cells first{0, 0, 4, 4}, corner{3, 3, 4, 4}, beside{4, 0, 4, 4}, far{40, 40, 4, 4};
   EXPECT_THAT(which({first, corner, beside}), ElementsAre(0)) << "the corner is older than what it overlaps";
   EXPECT_THAT(which({first, beside, corner}), ElementsAre(0, 1)) << "it follows";
@@ -74,13 +74,13 @@ TEST(Stitch, IsBounded) {
   EXPECT_EQ(stitch(many).which.size(), kMostStitched);
 }
 
-TEST(Stitch, EndsSoonHoweverGridsLie) {
+TEST(Stitch, EndsSoonForAnyArrangement) {
   std::vector<Cells> stairs;
   for (std::int64_t i = 0; i < 64; ++i) stairs.push_back({i % 8 * 7, i * 5 % 64, 9 + i % 3, 9 + i % 5});
   EXPECT_GE(stitch(stairs).which.size(), 1);
 }
 
-TEST(StitchedGrid, HasTheNewestsHeaderAndTheCornerOfAll) {
+TEST(StitchedGrid, HasTheNewestHeaderAndTheOutermostCorner) {
   auto older = grid(0.25, 0.5, 4, 4, 0.25), newer = grid(1.25, 0.5, 4, 4, 0.25);
   older.header.stamp = 1;
   newer.header.stamp = 2;
@@ -92,7 +92,7 @@ TEST(StitchedGrid, HasTheNewestsHeaderAndTheCornerOfAll) {
   EXPECT_EQ(whole->height, 4);
 }
 
-TEST(StitchedGrid, LiesOnTheLatticeOfItsPartsHoweverTheyAreTurned) {
+TEST(StitchedGrid, LiesOnTheLatticeOfItsTurnedParts) {
   for (const icd::Quaternion turned : {icd::Quaternion{}, {0, 0, 0.6, 0.8}, {0.1, -0.3, 0.3, 0.9}}) {
     auto first = grid(0.1, 0.2, 3, 3, 0.1);
     first.origin.orientation = turned;

@@ -33,7 +33,7 @@ std::expected<std::string, std::string> decoded(std::string_view text, std::size
   return bytes;
 }
 
-TEST(Base64, DecodesTheVectorsOfRfc4648WithAndWithoutPadding) {
+TEST(Base64, DecodesTheVectorsOfRfc4648) {
   const std::vector<std::pair<std::string, std::string>> vectors = {{"", ""},
                                                                     {"Zg==", "f"},
                                                                     {"Zm8=", "fo"},
@@ -52,7 +52,7 @@ TEST(Base64, DecodesTheVectorsOfRfc4648WithAndWithoutPadding) {
   }
 }
 
-TEST(Base64, IsWrittenAsTheVectorsOfRfc4648) {
+TEST(Base64, EncodesTheVectorsOfRfc4648) {
   const auto written = [](std::string_view text) {
     return codec::base64_of({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
   };
@@ -67,7 +67,7 @@ TEST(Base64, IsWrittenAsTheVectorsOfRfc4648) {
   for (const auto& [bytes, text] : vectors) EXPECT_EQ(written(bytes), text);
 }
 
-TEST(Base64, RefusesWhatIsNoneAndSaysWhere) {
+TEST(Base64, RejectsInvalidTextWithItsPlace) {
   const std::vector<std::pair<std::string, std::string>> bad = {
       {"Zm9v YmFy", "character 4: a space is not in the base64 alphabet"},
       {"Zm9\n", "character 3: byte 0x0a is not in the base64 alphabet"},
@@ -91,7 +91,7 @@ TEST(Base64, RefusesWhatIsNoneAndSaysWhere) {
   }
 }
 
-TEST(Base64, GivesTheSameBytesHoweverTextAndRoomAreCut) {
+TEST(Base64, DecodesTheSameInPiecesOfAnySize) {
   constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::mt19937_64 random(7);
   for (int round = 0; round < 200; ++round) {

@@ -68,7 +68,7 @@ std::string json_of(const ordered_json& document, Randomness& random) {
   return document.dump(static_cast<int>(random() % 4) - 1, ' ', random() % 2 == 0);
 }
 
-TEST(AnyDocument, MeansTheSameToUsAndToAnotherParserInBothFormats) {
+TEST(AnyDocument, ReadsTheSameWithAnotherParser) {
   Randomness random(1);
   for (int round = 0; round < 1000; ++round) {
     const ordered_json document = random_document(random);
@@ -82,7 +82,7 @@ TEST(AnyDocument, MeansTheSameToUsAndToAnotherParserInBothFormats) {
   }
 }
 
-TEST(AnyDocument, IsTheSameWhereItsListsAreLeftAsText) {
+TEST(AnyDocument, IsTheSameWithListsLeftAsText) {
   Randomness random(7);
   for (int round = 0; round < 1000; ++round) {
     const ordered_json document = random_document(random);
@@ -96,7 +96,7 @@ TEST(AnyDocument, IsTheSameWhereItsListsAreLeftAsText) {
   }
 }
 
-TEST(AnyDocument, IsWrittenSoThatItReadsBackTheSame) {
+TEST(AnyDocument, ReadsBackTheSame) {
   Randomness random(2);
   for (int round = 0; round < 1000; ++round) {
     const ordered_json document = random_document(random);
@@ -108,7 +108,7 @@ TEST(AnyDocument, IsWrittenSoThatItReadsBackTheSame) {
 }
 
 /// A map whose data, between random members, is written in each of the four forms.
-TEST(AnyMapData, OfAnySizeAndFormArrivesAsItsBytes) {
+TEST(AnyMapData, ArrivesUnchangedInAnySizeAndForm) {
   Randomness random(3);
   const std::vector<std::size_t> sizes = {0,    1,    2,    3,    4,    5,    255,   256,   257,   4095,
                                           4096, 4097, 6143, 6144, 6145, 8191, 65535, 65536, 65537, 131'073};
@@ -170,7 +170,7 @@ bool ends_for_nlohmann_json(const std::string& body) {
   return body.find('\0') != std::string::npos;  // which it takes for the end of the document
 }
 
-TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
+TEST(AnyDamagedJson, GetsTheSameVerdictFromAnotherParser) {
   Randomness random(4);
   int taken = 0;
   constexpr int kRounds = 10'000;
@@ -189,7 +189,7 @@ TEST(AnyDamagedJson, IsJudgedWellFormedExactlyWhenAnotherParserSaysSo) {
 }
 
 /// What is read when it is whole, and what is read as it comes.
-TEST(AnyJson, IsTheSameWhetherDataIsSplitFromItOrNot) {
+TEST(AnyJson, IsTheSameWithAndWithoutSplitData) {
   Randomness random(6);
   constexpr int kRounds = 6000;
   RecordProperty("cases", kRounds);
@@ -213,7 +213,7 @@ TEST(AnyJson, IsTheSameWhetherDataIsSplitFromItOrNot) {
   EXPECT_LT(at_once, kRounds - kRounds / 20);
 }
 
-TEST(AnyDamagedBody, IsJudgedTheSameHoweverItIsCut) {
+TEST(AnyDamagedBody, GetsTheSameVerdictInAnyPieces) {
   Randomness random(5);
   constexpr int kRounds = 6000;
   RecordProperty("cases", kRounds);

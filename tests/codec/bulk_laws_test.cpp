@@ -82,14 +82,14 @@ int expect_the_same_however_cut(int rounds, Randomness& random, std::string (*da
   return good;
 }
 
-TEST(AnyBase64, IsTheSameByTheFastWayAndByTheSlowOne) {
+TEST(AnyBase64, DecodesTheSameOnTheFastAndSlowPath) {
   Randomness random(11);
   const int good = expect_the_same_however_cut(2000, random, random_base64);
   EXPECT_GT(good, 200);  // both verdicts were common enough to mean something
   EXPECT_LT(good, 1800);
 }
 
-TEST(AnyList, IsTheSameByTheFastWayAndByTheSlowOne) {
+TEST(AnyList, ReadsTheSameOnTheFastAndSlowPath) {
   Randomness random(12);
   const int good = expect_the_same_however_cut(700, random, random_list);
   EXPECT_GT(good, 70);
@@ -141,7 +141,7 @@ CborList random_cbor_list(Randomness& random) {
   return list;
 }
 
-TEST(AnyCborList, IsItsBytesHoweverItIsCut) {
+TEST(AnyCborList, ReadsTheSameInAnyPieces) {
   Randomness random(14);
   for (int round = 0; round < 500; ++round) {
     const CborList list = random_cbor_list(random);
@@ -155,7 +155,7 @@ TEST(AnyCborList, IsItsBytesHoweverItIsCut) {
   }
 }
 
-TEST(AnyCborList, ThatIsDamagedIsJudgedTheSameHoweverItIsCut) {
+TEST(AnyCborList, DamagedGetsTheSameVerdictInAnyPieces) {
   Randomness random(15);
   int good = 0;
   constexpr int kRounds = 1000;
@@ -183,7 +183,7 @@ TEST(AnyCborList, ThatIsDamagedIsJudgedTheSameHoweverItIsCut) {
   EXPECT_LT(good, kRounds - kRounds / 20);
 }
 
-TEST(WholeGroups, AreDecodedUpToTheFirstThatIsNoneAndAsFarAsThereIsRoom) {
+TEST(WholeGroups, AreDecodedUntilAnInvalidOneOrAFullBuffer) {
   Randomness random(13);
   for (int round = 0; round < 3000; ++round) {
     std::string text(4 * (random() % 60), 'A');
@@ -203,7 +203,7 @@ TEST(WholeGroups, AreDecodedUpToTheFirstThatIsNoneAndAsFarAsThereIsRoom) {
   }
 }
 
-TEST(WholeGroups, AreNoneWithinAGroup) {
+TEST(WholeGroups, AreNotFoundInsideAGroup) {
   Base64Decoder decoder;
   std::array<std::uint8_t, 100> out{};
   std::string_view first = "Zm";

@@ -44,7 +44,7 @@ const icd::PointCloud2& cloud_in(const icd::MapUpdate& map) {
 
 constexpr FieldRow kFloats[] = {{"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}};
 
-TEST(BigEndianCloud, IsTurnedIntoALittleEndianOneThatSaysTheSame) {
+TEST(BigEndianCloud, BecomesTheSameLittleEndianCloud) {
   constexpr FieldRow rows[] = {{"x", 1, 8, 1},    {"y", 9, 8, 1},      {"z", 17, 8, 1},
                                {"flag", 0, 2, 1}, {"ring", 26, 4, 2},  {"signed", 30, 5, 1},
                                {"tag", 34, 1, 3}, {"double", 38, 8, 1}};
@@ -68,7 +68,7 @@ TEST(BigEndianCloud, IsTurnedIntoALittleEndianOneThatSaysTheSame) {
   EXPECT_EQ(test::raw_data(map->data), all_turned);
 }
 
-TEST(BigEndianCloud, HasTheFloatsThatItsSenderMeant) {
+TEST(BigEndianCloud, HasTheFloatsOfItsSender) {
   const float sent[] = {1.5F, -20.25F, 3e8F};
   Bytes data;
   for (const float value : sent) {
@@ -98,7 +98,7 @@ TEST(BigEndianCloud, MayGiveOneValueTwoNames) {
   EXPECT_EQ(test::raw_data(map->data), (Bytes{3, 2, 1, 0, 7, 6, 5, 4, 11, 10, 9, 8, 15, 14, 13, 12}));
 }
 
-TEST(BigEndianCloud, WhoseValuesLieAcrossEachOtherGoesUpAsItCame) {
+TEST(BigEndianCloud, StaysBigEndianIfFieldsOverlap) {
   constexpr FieldRow rows[] = {
       {"x", 0, 7, 1}, {"y", 4, 7, 1}, {"z", 8, 7, 1}, {"rgb", 12, 7, 1}, {"red", 13, 2, 1}};
   const Bytes data(32, 0x41);
@@ -114,7 +114,7 @@ TEST(BigEndianCloud, WhoseValuesLieAcrossEachOtherGoesUpAsItCame) {
       "msg.is_bigendian: expected false for a cloud that has an origin and overlapping fields, got true");
 }
 
-TEST(BigEndianCloud, IsRefusedWhereItIsNoWholeNumberOfPoints) {
+TEST(BigEndianCloud, IsRejectedWithAPartialPoint) {
   EXPECT_EQ(test::sentence_of(read(big_endian_cloud(kFloats, 12, Bytes(13)))),
             "msg.data: expected a multiple of point_step 12, got 13 bytes");
 }

@@ -111,7 +111,7 @@ const std::vector<std::pair<std::string, std::string>> kGoodCbor = {
     {"a2 c2 6161 01 6162 02", R"({"b":2})"},  // under a tag that changes the meaning of a text
 };
 
-TEST(CborBody, OfEachExampleOfTheRfcIsTakenAndMeansWhatItSays) {
+TEST(CborBody, ReadsTheExamplesOfTheRfc) {
   for (const auto& [hex, meaning] : kGoodCbor) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       for (const Split split : {Split::Nothing, Split::MapData}) {
@@ -149,7 +149,7 @@ Value before_a_list(const std::string& hex, std::size_t size, Split split) {
   return std::get<Value::Object>(document->root.is).front().second;
 }
 
-TEST(CborBody, LeavesOutWhatStandsUnderATagThatChangesItsMeaning) {
+TEST(CborBody, SkipsValuesUnderATagThatChangesTheMeaning) {
   for (const std::string hex :
        {"c2 410a", "c2 5f410a410bff", "c4 820102", "c4 9f8001ff", "c4 80", "c4 a1 81 00 a0",
         "c4 bf 6161 c2 4101 ff", "c4 c2 c0 01", "c4 f6", "c4 fb3ff199999999999a", "c4 7f6161ff",
@@ -163,7 +163,7 @@ TEST(CborBody, LeavesOutWhatStandsUnderATagThatChangesItsMeaning) {
   }
 }
 
-TEST(CborBody, CountsNothingOfWhatItLeavesOut) {
+TEST(CborBody, DoesNotCountSkippedValues) {
   const Limits limits{.text_bytes = 20, .values = 3};
   const std::string body = from_hex("82 c4 98c8").append(200, '\1') + from_hex("01");
   EXPECT_TRUE(decode(kCborBody, Split::MapData, body, limits));
@@ -179,7 +179,7 @@ std::string tagged(std::uint64_t tag) {
 }
 
 /// By IANA's registry: those whose content stays a text, a number, bytes, an array or a map.
-TEST(CborBody, IsWhatItIsUnderATagThatRemarksOnItAlone) {
+TEST(CborBody, KeepsValuesUnderATagThatOnlyAnnotates) {
   const std::set<std::uint64_t> remarks = {0,   1,   21,  22,  23,  28,  32,   33,    34,    35,
                                            36,  39,  41,  64,  68,  72,  108,  201,   256,   258,
                                            259, 266, 267, 275, 296, 301, 1004, 21065, 22098, 55799};
@@ -191,7 +191,7 @@ TEST(CborBody, IsWhatItIsUnderATagThatRemarksOnItAlone) {
   }
 }
 
-TEST(CborBody, KeepsNumbersThatAreNoneForTheReaderToRefuse) {
+TEST(CborBody, KeepsNanAndInfinity) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const std::string_view hex : {"f97c00", "fa7f800000", "fb7ff0000000000000"}) {
     EXPECT_EQ(std::get<double>(decode_hex(hex)->root.is), kInfinity) << hex;
@@ -324,7 +324,7 @@ const std::vector<std::pair<std::string, std::string>> kBadCbor = {
     {"efbbbf7b7d", "1: bytes after the document (this looks like JSON; Content-Type says CBOR)"},
 };
 
-TEST(CborBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
+TEST(CborBody, RejectsMalformedCborWith400AndTheByte) {
   RecordProperty("cases", static_cast<int>(std::size(kBadCbor)));  // tests/hostile/run counts them
   for (const auto& [hex, why] : kBadCbor) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
@@ -339,7 +339,7 @@ TEST(CborBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
   }
 }
 
-TEST(CborBody, IsTakenNestedAsDeepAsIsAllowedAndNoDeeper) {
+TEST(CborBody, LimitsNesting) {
   for (const std::string_view open : {"81", "9f", "a16161", "bf6161", "c0"}) {
     std::string hex;
     for (int depth = 0; depth < BodyDecoder::kDeepest; ++depth) hex += open;
@@ -355,7 +355,7 @@ TEST(CborBody, IsTakenNestedAsDeepAsIsAllowedAndNoDeeper) {
   }
 }
 
-TEST(CborBody, OverItsLimitIsRefusedWith413) {
+TEST(CborBody, RejectsABodyOverTheLimitWith413) {
   const Limits limits{.text_bytes = 100, .data_bytes = 1000};
   const auto text_of = [](int size) {
     std::string text = "\x78";

@@ -53,7 +53,7 @@ const std::vector<CborCase> kGoodCborData = {
     {from_hex("a2 6178 c4 a1 636d7367 a1 6464617461 4162 636d7367 a1 6464617461 4161"), "a"},
 };
 
-TEST(CborData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
+TEST(CborData, IsSplitOutOfTheDocumentInEachForm) {
   for (const auto& [body, data, form] : kGoodCborData) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document = decode_in_chunks(kCborBody, Split::MapData, body, size);
@@ -67,7 +67,7 @@ TEST(CborData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
   }
 }
 
-TEST(CborData, ElsewhereOrOfAnotherKindStaysInTheRest) {
+TEST(CborData, ElsewhereOrOfAnotherKindIsNotSplitOut) {
   const std::vector<std::string> bodies = {
       map_with("f6"),
       map_with("f7"),
@@ -91,7 +91,7 @@ TEST(CborData, ElsewhereOrOfAnotherKindStaysInTheRest) {
   }
 }
 
-TEST(CborData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
+TEST(CborData, OfAnotherKindIsRejectedWith422AndTheElement) {
   const std::vector<std::pair<std::string, std::string>> cases = {
       {"63616263", ": expected a byte string, got a string"},
       {"7f63616263ff", ": expected a byte string, got a string"},
@@ -121,7 +121,7 @@ TEST(CborData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
   }
 }
 
-TEST(CborData, GivenTwiceIsRefused) {
+TEST(CborData, GivenTwiceIsRejected) {
   for (const std::string_view hex :
        {"a1 636d7367 a2 6464617461 4161 6464617461 4161", "a1 636d7367 a2 6464617461 f6 6464617461 80",
         "a2 636d7367 a1 6464617461 80 636d7367 a1 6464617461 f6"}) {
@@ -131,7 +131,7 @@ TEST(CborData, GivenTwiceIsRefused) {
   }
 }
 
-TEST(CborData, ThatIsNotWellFormedIsRefusedWith400) {
+TEST(CborData, IsRejectedWith400IfMalformed) {
   for (const std::string_view hex : {"5f6161ff", "5f00ff", "5f", "42 61", "82 01", "9f01", "81ff", "81c0ff",
                                      "81f800", "811c", "9bffffffffffffffff00", "8001"}) {
     const auto document = decode(kCborBody, Split::MapData, map_with(hex));
@@ -140,7 +140,7 @@ TEST(CborData, ThatIsNotWellFormedIsRefusedWith400) {
   }
 }
 
-TEST(CborData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
+TEST(CborData, HasItsOwnLimitAnsweredWith413) {
   const Limits limits{.text_bytes = 20, .data_bytes = 6000};
   const auto bytes = [](std::size_t size) {
     std::string body = map_with("59");
@@ -158,7 +158,7 @@ TEST(CborData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
   }
 }
 
-TEST(CborData, ThatSaysItIsOverItsLimitIsRefusedBeforeItComes) {
+TEST(CborData, IsRejectedByItsDeclaredLength) {
   const Limits limits{.data_bytes = 6000};
   for (const char* const hex :
        {"591771", "5b00000001ffffffff", "5bffffffffffffffff00", "5f591770 411a", "5f 591771"}) {

@@ -13,7 +13,7 @@ constexpr int kGzip = 31;
 constexpr int kZlib = 15;
 constexpr int kRaw = -15;
 
-TEST(BodyKind, IsReadFromTheHeadersWithParametersAndInAnyLetterCase) {
+TEST(BodyKind, IsReadFromHeadersInAnyCaseWithParameters) {
   for (const char* type :
        {"application/json", "Application/JSON", "application/json; charset=utf-8",
         "application/json;charset=\"UTF-8\"; x=y", " application/json ", "application/json ;"}) {
@@ -35,7 +35,7 @@ TEST(BodyKind, IsReadFromTheHeadersWithParametersAndInAnyLetterCase) {
   }
 }
 
-TEST(CompressedBody, OfEachCodingIsInflatedAsItArrives) {
+TEST(CompressedBody, IsInflatedAsItArrivesInEachCoding) {
   std::string json = R"({"msg":{"data":")";
   std::mt19937_64 random(3);
   for (int i = 0; i < 100000; ++i) json += "ABCDEFGH"[random() % 8];
@@ -54,7 +54,7 @@ TEST(CompressedBody, OfEachCodingIsInflatedAsItArrives) {
   }
 }
 
-TEST(CompressedBody, OfSeveralGzipMembersIsWhatTheyHoldTogether) {  // RFC 1952 2.2
+TEST(CompressedBody, JoinsSeveralGzipMembers) {  // RFC 1952 2.2
   const std::string nothing = deflated("", kGzip);
   const std::string body = nothing + deflated(R"({"a":)", kGzip) + nothing + nothing + deflated("1", kGzip) +
                            deflated("}", kGzip) + nothing;
@@ -65,7 +65,7 @@ TEST(CompressedBody, OfSeveralGzipMembersIsWhatTheyHoldTogether) {  // RFC 1952 
   }
 }
 
-TEST(CompressedBody, ThatIsDamagedIsRefusedWith400) {
+TEST(CompressedBody, IsRejectedWith400IfDamaged) {
   const std::string good = deflated("{\"a\":1}", kGzip);
   std::string bad_sum = good;
   bad_sum[bad_sum.size() - 8] = static_cast<char>(bad_sum[bad_sum.size() - 8] ^ 1);
@@ -110,7 +110,7 @@ TEST(CompressedBody, ThatIsDamagedIsRefusedWith400) {
   }
 }
 
-TEST(CompressedBody, OfABombIsRefusedWith413LongBeforeItsEnd) {
+TEST(CompressedBody, RejectsABombEarlyWith413) {
   const std::string blanks = deflated(std::string().append(10'000'000, ' '), kGzip);
   const std::string data = deflated(std::string(R"({"msg":{"data":")").append(10'000'000, 'A'), kGzip);
   const Limits limits{.text_bytes = 10'000, .data_bytes = 100'000};

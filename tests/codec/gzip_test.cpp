@@ -42,7 +42,7 @@ Inflated inflate_all(const icd::ChunkedBytes& bytes, std::size_t most = 1U << 24
   return inflated;
 }
 
-TEST(Gzip, MakesExactlyOneMemberAndNothingAfterIt) {
+TEST(Gzip, MakesExactlyOneMember) {
   for (const auto strategy : {GzipStrategy::Default, GzipStrategy::Runs}) {
     for (const std::size_t size : {0, 1, 100, 65535, 65536, 65537, 1'000'000}) {
       for (const Bytes& bytes : {noise(size, size), runs(size)}) {
@@ -58,7 +58,7 @@ TEST(Gzip, MakesGridsSmall) {
   EXPECT_LT(gzip(icd::ChunkedBytes(cells), GzipStrategy::Runs).size(), cells.size() / 8);
 }
 
-TEST(Gzipper, TakesPiecesOfAnySize) {
+TEST(Gzipper, AcceptsPiecesOfAnySize) {
   const Bytes bytes = runs(200'000);
   Gzipper gzipper(GzipStrategy::Runs);
   for (std::size_t i = 0, size = 1; i < bytes.size(); i += size, size = size * 3 % 1009) {
@@ -67,7 +67,7 @@ TEST(Gzipper, TakesPiecesOfAnySize) {
   EXPECT_EQ(test::only_member(gzipper.finish().to_vector()), bytes);
 }
 
-TEST(Gunzip, GivesBackWhatWasCompressedHoweverItIsCut) {
+TEST(Gunzip, InflatesTheSameInAnyPieces) {
   const Bytes bytes = runs(300'000);
   const Bytes member = test::compressed(bytes);
   for (const std::size_t piece : {1, 7, 1000, 65536}) {
@@ -77,13 +77,13 @@ TEST(Gunzip, GivesBackWhatWasCompressedHoweverItIsCut) {
   }
 }
 
-TEST(Gunzip, GivesNothingForTheMemberOfNothing) {
+TEST(Gunzip, InflatesAnEmptyMember) {
   const auto inflated = inflate_all(icd::ChunkedBytes(test::compressed({})));
   EXPECT_EQ(inflated.sentence, "taken");
   EXPECT_TRUE(inflated.bytes.empty());
 }
 
-TEST(Gunzip, RefusesWhatIsCutShortAnywhere) {
+TEST(Gunzip, RejectsTruncatedData) {
   const Bytes member = test::compressed(runs(1000));
   for (std::size_t size = 0; size < member.size(); ++size) {
     EXPECT_EQ(inflate_all(icd::ChunkedBytes(std::span(member).first(size))).sentence,
@@ -98,7 +98,7 @@ Bytes joined(std::initializer_list<Bytes> parts) {
   return all;
 }
 
-TEST(Gunzip, GivesWhatSeveralMembersHoldTogetherHoweverTheyAreCut) {  // RFC 1952 2.2
+TEST(Gunzip, JoinsSeveralMembersInAnyPieces) {  // RFC 1952 2.2
   const Bytes one = runs(100'000), other = noise(70'000, 1), nothing = test::compressed({});
   const Bytes members =
       joined({nothing, test::compressed(one), nothing, nothing, test::compressed(other), nothing});
@@ -119,7 +119,7 @@ TEST(Gunzip, StopsABombOfMembersSoonAfterItsLimit) {
   EXPECT_EQ(inflated.bytes.size(), 900u);
 }
 
-TEST(Gunzip, RefusesAnythingElseAfterAMember) {
+TEST(Gunzip, RejectsOtherDataAfterAMember) {
   const Bytes member = test::compressed(runs(1000));
   const Bytes cut(member.begin(), member.end() - 1);
   Bytes damaged = member;
@@ -136,7 +136,7 @@ TEST(Gunzip, RefusesAnythingElseAfterAMember) {
   }
 }
 
-TEST(Gunzip, RefusesWhatIsNoGzip) {
+TEST(Gunzip, RejectsOtherFormats) {
   const std::string start = "msg.data: expected a gzip member, got ";
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(Bytes(100, 'a'))).sentence, start + "incorrect header check");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(runs(100), 15))).sentence,
@@ -144,7 +144,7 @@ TEST(Gunzip, RefusesWhatIsNoGzip) {
   EXPECT_NE(inflate_all(icd::ChunkedBytes(test::compressed(runs(100), -15))).sentence, "taken");
 }
 
-TEST(Gunzip, RefusesABadChecksumAndABadLength) {
+TEST(Gunzip, RejectsABadChecksumOrLength) {
   Bytes bad_sum = test::compressed(runs(1000));
   bad_sum[bad_sum.size() - 8] ^= 1;
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(bad_sum)).sentence,
@@ -163,7 +163,7 @@ TEST(Gunzip, StopsAGzipBombSoonAfterItsLimit) {
   EXPECT_TRUE(inflated.bytes.empty());
 }
 
-TEST(ClaimedSize, IsWhatTheMemberHoldsHoweverItIsCut) {
+TEST(ClaimedSize, IsReadFromAnyPieces) {
   for (const std::size_t size : {0, 1, 300, 100'000}) {
     const Bytes member = gzip(icd::ChunkedBytes(runs(size)), GzipStrategy::Runs).to_vector();
     for (const std::size_t piece : {1, 2, 3, 65536}) EXPECT_EQ(claimed_size(in_pieces(member, piece)), size);
@@ -172,14 +172,14 @@ TEST(ClaimedSize, IsWhatTheMemberHoldsHoweverItIsCut) {
   EXPECT_EQ(claimed_size(icd::ChunkedBytes(Bytes{1, 2, 3, 0xff})), 0xff030201u);
 }
 
-TEST(Gunzip, TakesWhatIsExactlyAtItsLimit) {
+TEST(Gunzip, AcceptsDataOfExactlyTheLimit) {
   const Bytes bytes = runs(100'000);
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size()).sentence, "taken");
   EXPECT_EQ(inflate_all(icd::ChunkedBytes(test::compressed(bytes)), bytes.size() - 1).sentence,
             "413: msg.data: expected at most 99999 bytes, got more");
 }
 
-TEST(Gunzip, StopsWhereTheSinkRefuses) {
+TEST(Gunzip, StopsIfTheSinkRejectsData) {
   int calls = 0;
   const auto size = gunzip(icd::ChunkedBytes(test::compressed(runs(1'000'000))), 1U << 24U, "msg.data",
                            [&](std::span<const std::uint8_t>) -> icd::Checked<void> {

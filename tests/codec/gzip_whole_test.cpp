@@ -31,7 +31,7 @@ TEST(GzipWhole, MakesExactlyOneMemberAtEachLevel) {
   }
 }
 
-TEST(GzipWhole, IsNothingWhereItWouldTakeMore) {
+TEST(GzipWhole, FailsIfTheResultExceedsTheLimit) {
   for (const int level : {kFastestLevel, 6, kSmallestLevel}) {
     const Bytes bytes = mixed(100'000);
     const std::size_t size = gzip_whole(bytes, level, kEnough)->size();
@@ -41,7 +41,7 @@ TEST(GzipWhole, IsNothingWhereItWouldTakeMore) {
   }
 }
 
-TEST(GzipWhole, FitsIntoWhatIsALittleMore) {
+TEST(GzipWhole, FitsIntoASlightlyLargerLimit) {
   const Bytes bytes = mixed(100'000);
   const auto free = gzip_whole(bytes, 6, kEnough);
   const auto tight = gzip_whole(bytes, 6, free->size() + 16);
@@ -49,7 +49,7 @@ TEST(GzipWhole, FitsIntoWhatIsALittleMore) {
   EXPECT_EQ(*tight, *free);
 }
 
-TEST(GzipWhole, OfNoiseIsNothingWithinItsOwnSize) {
+TEST(GzipWhole, FailsForNoiseWithinItsOwnSize) {
   std::mt19937_64 random(1);
   Bytes noise(50'000);
   for (auto& byte : noise) byte = static_cast<std::uint8_t>(random());
@@ -62,7 +62,7 @@ TEST(GzipWhole, IsSmallerAtAHigherLevel) {
   EXPECT_LT(gzip_whole(bytes, kSmallestLevel, kEnough)->size(), gzip_whole(bytes, 1, kEnough)->size());
 }
 
-TEST(GunzipWhole, GivesBackWhatWasCompressedHoweverItIsCut) {
+TEST(GunzipWhole, InflatesTheSameInAnyPieces) {
   for (const std::size_t size : {0, 1, 100, 300'000}) {
     const Bytes bytes = mixed(size), member = test::compressed(bytes);
     for (const std::size_t piece : {7, 1000, 65'536}) {
@@ -71,13 +71,13 @@ TEST(GunzipWhole, GivesBackWhatWasCompressedHoweverItIsCut) {
   }
 }
 
-TEST(GunzipWhole, TakesNoOtherSize) {
+TEST(GunzipWhole, RejectsAnotherSize) {
   const Bytes bytes = mixed(1000);
   const icd::ChunkedBytes member(test::compressed(bytes));
   for (const std::size_t size : {0, 1, 999, 1001, 100'000}) EXPECT_FALSE(gunzip_whole(member, size)) << size;
 }
 
-TEST(GunzipWhole, TakesNothingThatIsCutShortOrGoesOn) {
+TEST(GunzipWhole, RejectsTruncatedAndTrailingData) {
   const Bytes bytes = mixed(300), member = test::compressed(bytes);
   for (std::size_t size = 0; size < member.size(); ++size) {
     EXPECT_FALSE(gunzip_whole(icd::ChunkedBytes(std::span(member).first(size)), bytes.size())) << size;
@@ -89,7 +89,7 @@ TEST(GunzipWhole, TakesNothingThatIsCutShortOrGoesOn) {
   }
 }
 
-TEST(GunzipWhole, TakesNothingThatIsDamaged) {
+TEST(GunzipWhole, RejectsDamagedData) {
   const Bytes bytes = mixed(300), member = test::compressed(bytes);
   for (std::size_t i = 10; i < member.size(); ++i) {  // its head says what does not matter
     Bytes damaged = member;

@@ -34,7 +34,7 @@ const std::vector<std::string> kGoodJson = {
     R"({"a":{"data":"!"},"msg":1})", R"({"msg":{"a":{}},"b":{"data":"!"}})", R"({"msg":{"data":null}})",
     R"({"msg":{"data":{"data":"!"}}})", R"({"msg":{"data":12}})", R"({"msg":{"data":true,"b":[1000]}})"};
 
-TEST(JsonBody, OfAnyGoodKindIsTakenAndMeansWhatAnotherParserReads) {
+TEST(JsonBody, ReadsTheSameAsAnotherParser) {
   for (const std::string& text : kGoodJson) {
     const auto expected = nlohmann::ordered_json::parse(text);
     for (const std::size_t size : {1, 2, 7, 1000000}) {
@@ -154,7 +154,7 @@ const std::vector<std::pair<std::string, std::string>> kBadJson = {
     {"\"\xe2\x82", "3: the document is cut short"},
 };
 
-TEST(JsonBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
+TEST(JsonBody, RejectsMalformedJsonWith400AndTheByte) {
   RecordProperty("cases", static_cast<int>(std::size(kBadJson)));  // tests/hostile/run counts them
   for (const auto& [text, why] : kBadJson) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
@@ -168,7 +168,7 @@ TEST(JsonBody, ThatIsNotWellFormedIsRefusedWith400AndTheByteItIsAbout) {
   }
 }
 
-TEST(JsonBody, IsTakenNestedAsDeepAsIsAllowedAndNoDeeper) {
+TEST(JsonBody, LimitsNesting) {
   for (const auto& [open, close] : {std::pair("[", "]"), std::pair("{\"a\":", "}")}) {
     std::string text = "1";
     for (int depth = 0; depth < BodyDecoder::kDeepest; ++depth)
@@ -182,7 +182,7 @@ TEST(JsonBody, IsTakenNestedAsDeepAsIsAllowedAndNoDeeper) {
   EXPECT_FALSE(decode(kJsonBody, Split::Nothing, std::string(1000000, '[')));
 }
 
-TEST(JsonBody, KeepsMembersInTheirOrderAndTheirDuplicates) {
+TEST(JsonBody, KeepsTheOrderAndDuplicatesOfMembers) {
   const auto document = decode(kJsonBody, Split::Nothing, R"({"b":1,"a":2,"b":3,"B":4})");
   ASSERT_TRUE(document);
   const auto& members = std::get<Value::Object>(document->root.is);
@@ -201,7 +201,7 @@ std::string quoted(std::size_t size) {
   return std::string("\"").append(size, 'x').append("\"");
 }
 
-TEST(JsonBody, OverItsLimitIsRefusedWith413AsSoonAsItIsOver) {
+TEST(JsonBody, RejectsABodyOverTheLimitAtOnceWith413) {
   const Limits limits{.text_bytes = 100, .data_bytes = 1000};
   EXPECT_TRUE(decode(kJsonBody, Split::Nothing, quoted(98), limits));
   for (const std::string& text : {quoted(99), std::string(101, ' '), std::string(101, '1'),

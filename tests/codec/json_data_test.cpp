@@ -32,7 +32,7 @@ const std::vector<JsonCase> kGoodJsonData = {
     JsonCase{R"({"msg":{"data":[97.0,9.8e1,-1.0,-0,0.99E2]}})", std::string("ab\xff\0c", 5),
              DataForm::Integers}};
 
-TEST(JsonData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
+TEST(JsonData, IsSplitOutOfTheDocumentInEachForm) {
   for (const auto& [body, data, form] : kGoodJsonData) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document = decode_in_chunks(kJsonBody, Split::MapData, body, size);
@@ -46,14 +46,14 @@ TEST(JsonData, OfEachFormIsGivenApartAndTheRestHasAMarkInItsPlace) {
   }
 }
 
-TEST(JsonData, StaysInTheRestWhenNothingIsToBeSplit) {
+TEST(JsonData, StaysInTheDocumentWithoutSplitting) {
   const auto document = decode(kJsonBody, Split::Nothing, R"({"msg":{"data":"Zm9v"}})");
   ASSERT_TRUE(document);
   EXPECT_EQ(document->data_form, DataForm::Absent);
   EXPECT_EQ(std::get<std::string>(msg_data(document->root)->is), "Zm9v");
 }
 
-TEST(JsonData, MarksTheMemberThatHeldItWhenMsgIsGivenTwice) {
+TEST(JsonData, IsMarkedInTheRightMsgIfMsgIsGivenTwice) {
   const auto document = decode(kJsonBody, Split::MapData, R"({"msg":{"a":null},"msg":{"data":"Zm9v"}})");
   ASSERT_TRUE(document);
   const auto& second = std::get<Value::Object>(document->root.is)[1].second;
@@ -85,7 +85,7 @@ const std::vector<std::pair<std::string, std::string>> kBadJsonData = {
     {R"("Zm9v"},"msg":{"data":null)", ": given twice"},
 };
 
-TEST(JsonData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
+TEST(JsonData, OfAnotherKindIsRejectedWith422AndTheElement) {
   for (const auto& [data, why] : kBadJsonData) {
     for (const std::size_t size : {1, 2, 7, 1000000}) {
       const auto document =
@@ -97,7 +97,7 @@ TEST(JsonData, OfAnotherKindIsRefusedWith422AndTheElementItIsAbout) {
   }
 }
 
-TEST(JsonData, ThatIsNotWellFormedIsRefusedWith400) {
+TEST(JsonData, IsRejectedWith400IfMalformed) {
   for (const std::string data :
        {"[1,]", "[,]", "[01]", "[1", "[1 2]", "[1}", "[-]", "\"Zm9v\n\"", "\"Zm9v\\q\"", "\"Zm9v\xff\""}) {
     const auto document = decode(kJsonBody, Split::MapData, R"({"msg":{"data":)" + data + "}}");
@@ -106,7 +106,7 @@ TEST(JsonData, ThatIsNotWellFormedIsRefusedWith400) {
   }
 }
 
-TEST(JsonData, CanBeTakenAsItComesAndCountsAllTheSame) {
+TEST(JsonData, CanBeTakenInPiecesAndStillCounts) {
   const Limits limits{.data_bytes = 6000};
   const auto feed = [](BodyDecoder& decoder, std::string_view text) {
     return decoder.feed({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
@@ -136,7 +136,7 @@ TEST(JsonData, CanBeTakenAsItComesAndCountsAllTheSame) {
   EXPECT_TRUE(feed(elements, ",true").error().sentence.starts_with("msg.data[5000]: "));
 }
 
-TEST(JsonData, OverItsLimitIsRefusedWith413WhileTheRestHasItsOwn) {
+TEST(JsonData, HasItsOwnLimitAnsweredWith413) {
   const Limits limits{.text_bytes = 40, .data_bytes = 6000};
   const auto body = [](const std::string& data) { return R"({"msg":{"data":)" + data + "}}"; };
   const auto integers = [](std::size_t count) {

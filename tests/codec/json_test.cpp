@@ -12,7 +12,7 @@
 namespace adit::codec::test {
 namespace {
 
-TEST(Json, IsParsedOrSaidWhyNot) {
+TEST(Json, ParsesOrTellsTheFault) {
   const auto value = parse_json(R"({"a":[1,2.5,"x",null,true]})");
   ASSERT_TRUE(value);
   EXPECT_TRUE(says(*value, nlohmann::ordered_json::parse(R"({"a":[1,2.5,"x",null,true]})")));
@@ -21,7 +21,7 @@ TEST(Json, IsParsedOrSaidWhyNot) {
   EXPECT_EQ(parse_json("").error(), "not well-formed JSON at byte 0: an empty document");
 }
 
-TEST(Json, IsToldFromWhatIsNone) {
+TEST(Json, IsDistinguishedFromOtherText) {
   for (const char* text : {"{}", " null ", "\"x\"", "1e5", "{\"msg\":{\"data\":\"!\",\"data\":1}}"}) {
     EXPECT_TRUE(parse_json(text)) << text;
   }
@@ -30,7 +30,7 @@ TEST(Json, IsToldFromWhatIsNone) {
   }
 }
 
-TEST(Json, IsWrittenOnOneLineAndReadAgainTheSame) {
+TEST(Json, IsWrittenOnOneLineAndReadsBackTheSame) {
   const std::string text =
       R"({"a":[1,-2,2.5,1e+300,18446744073709551615,true,false,null,[],{}],"b":"x\n\"\\\u0001é","":{"c":0.1}})";
   const auto value = parse_json(text);
@@ -40,7 +40,7 @@ TEST(Json, IsWrittenOnOneLineAndReadAgainTheSame) {
   EXPECT_TRUE(says(*value, nlohmann::ordered_json::parse(written))) << written;
 }
 
-TEST(Json, HasNullForWhatItCannotSay) {
+TEST(Json, WritesNullForValuesThatJsonLacks) {
   Value::Array array;
   array.push_back({Value::Bytes{{1, 2}}});
   array.push_back({Value::UnderTag{2}});
@@ -51,14 +51,14 @@ TEST(Json, HasNullForWhatItCannotSay) {
   EXPECT_EQ(write_json({std::move(array)}), "[null,null,null,null,null,18446744073709551615]");
 }
 
-TEST(Json, HasANumbersKind) {
+TEST(Json, KeepsTheKindOfANumber) {
   Value::Array array;
   for (const double number : {11.0, -0.0, 0.5, 1e21, 1e300}) array.push_back({number});
   array.push_back({std::int64_t{11}});
   EXPECT_EQ(write_json({std::move(array)}), "[11.0,-0.0,0.5,1e+21,1e+300,11]");
 }
 
-TEST(Value, SaysItsKindInASentence) {
+TEST(Value, TellsItsKindInASentence) {
   const std::vector<std::pair<Value, std::string>> kinds = {
       {{}, "null"},
       {{true}, "true or false"},
@@ -76,7 +76,7 @@ TEST(Value, SaysItsKindInASentence) {
 
 /// What is read by cJSON alone is no more than what the splitter lets through: documents made of pieces that
 /// go together, mostly, and then changed in one place.
-TEST(Json, IsReadAsStrictlyWhereItIsPlain) {
+TEST(Json, IsReadStrictlyOnTheFastPath) {
   std::mt19937 random(7);
   const auto below = [&random](std::size_t n) {
     return std::uniform_int_distribution<std::size_t>(0, n - 1)(random);

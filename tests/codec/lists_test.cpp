@@ -18,7 +18,7 @@ struct Row {
   std::string body, says;
 };
 
-TEST(Lists, AreWhereTheyStandWhateverIsAroundThem) {
+TEST(Lists, AreFoundAmongAnySurroundings) {
   const std::string hidden = R"("[\"],{\\")";
   const Row rows[] = {
       {kJsonBody, "[]", "[]"},
@@ -44,7 +44,7 @@ TEST(Lists, AreWhereTheyStandWhateverIsAroundThem) {
   }
 }
 
-TEST(Lists, AreNotParsedBeforeAnElementIsAskedFor) {
+TEST(Lists, AreParsedOnFirstUse) {
   const auto document = decode(kJsonBody, Split::Lists, R"({"a": [1, {"b": [2]}]})");
   ASSERT_TRUE(document);
   Reading reading;
@@ -63,7 +63,7 @@ TEST(Lists, AreNotParsedBeforeAnElementIsAskedFor) {
 }
 
 /// One way for objects of numbers, which must say no of everything that the general way reads otherwise.
-TEST(Lists, GiveTheNumbersOfAnObjectThatHoldsTheseMembersAlone) {
+TEST(Lists, GiveTheNumbersOfAnObjectWithExactlyTheseMembers) {
   constexpr std::string_view kNames[] = {"x", "y"};
   struct Element {
     BodyKind kind;
@@ -121,7 +121,7 @@ TEST(Lists, AreWellFormed) {
 }
 
 /// However long its lists are, of a message there is no more than this as a tree.
-TEST(Lists, LeaveFewValuesOutsideThem) {
+TEST(Lists, LeaveFewOtherValues) {
   const auto members = [](std::size_t count, std::string_view before, std::string_view after) {
     std::string body(before);
     for (std::size_t i = 0; i < count; ++i) body += "\"\":0,";

@@ -119,7 +119,7 @@ json through_cbor(const json& marker) {
   return sent_up(Format::Cbor, test::as_cbor({{"markers", json::array({marker})}}));
 }
 
-TEST(Marker, IsTheWholeOfRossDefinition) {
+TEST(Marker, HasAllMembersOfRos) {
   std::set<std::string> said;
   for (const auto& [name, value] : kSaid) said.insert(name);
   EXPECT_EQ(said, members_of_ros());
@@ -139,7 +139,7 @@ std::string kind_of(const json& value) {
   return value.is_number() ? "<int>" : value.is_string() ? "<string>" : value.type_name();
 }
 
-TEST(Marker, HasEachMemberOfTheIcdAsWhatTheIcdCallsIt) {
+TEST(Marker, HasEachMemberOfTheIcdInItsType) {
   const json whole(kSaid), sent = through_json(whole);
   std::istringstream lines(kIcdDefinition);
   for (std::string path, kind; lines >> path >> kind;) {
@@ -153,7 +153,7 @@ std::string kinds_of(const json& marker, const std::string& name) {
   return marker.value(name, json()).dump();
 }
 
-TEST(Marker, KeepsEachMemberThatCameIn) {
+TEST(Marker, KeepsEachReceivedMember) {
   for (const auto& [name, value] : kSaid) {
     json marker = least_marker();
     marker[name] = value;
@@ -164,7 +164,7 @@ TEST(Marker, KeepsEachMemberThatCameIn) {
   EXPECT_EQ(through_cbor(kSaid).dump(), json(kSaid).dump());
 }
 
-TEST(Marker, TakesRossDefaultForAMemberThatIsAbsentOrNull) {
+TEST(Marker, UsesDefaultsForAbsentAndNullMembers) {
   json marker = least_marker();
   marker.erase("points");
   const json without = through_json(marker);
@@ -191,7 +191,7 @@ std::string body_with_points(Format format, const std::string& raw) {
   return body.replace(body.find(place), place.size(), raw);
 }
 
-TEST(Marker, ReadsANumberOfItsGeometryInEachFormOfJson) {
+TEST(Marker, ReadsNumbersInEachFormOfJson) {
   for (const char* const three : {"3", "3.0", "3e0", "0.03E+2", "300e-2"}) {
     const std::string points = std::string(R"([{"x":)") + three + R"(,"y":-0.0,"z":0}])";
     const json up = sent_up(Format::Json, body_with_points(Format::Json, points));
@@ -199,7 +199,7 @@ TEST(Marker, ReadsANumberOfItsGeometryInEachFormOfJson) {
   }
 }
 
-TEST(Marker, ReadsANumberOfItsGeometryInEachFormOfCbor) {
+TEST(Marker, ReadsNumbersInEachFormOfCbor) {
   using namespace std::string_literals;
   const std::string forms[] = {"\x03"s,       "\x18\x03"s,         "\x1b\0\0\0\0\0\0\0\x03"s,
                                "\xf9\x42\0"s, "\xfa\x40\x40\0\0"s, "\xfb\x40\x08\0\0\0\0\0\0"s};
@@ -216,7 +216,7 @@ struct Refused {
   const char* sentence;
 };
 
-TEST(Marker, IsRefusedWithASentenceThatNamesTheMember) {
+TEST(Marker, IsRejectedWithTheNameOfTheMember) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   const json one = point(1, 2, 3);
   const Refused rows[] = {
@@ -270,7 +270,7 @@ TEST(Marker,
   }
 }
 
-TEST(BytesOfAMarker, AreNoFewerThanItTakesInAMessageAndInMemory) {
+TEST(BytesOfAMarker, CoverItsSizeInAMessageAndInMemory) {
   test::Random random(12);
   for (int round = 0; round < 100; ++round) {
     const icd::MarkersUpdate update = test::random_markers(random);

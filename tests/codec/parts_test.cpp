@@ -36,7 +36,7 @@ std::string names_of(const icd::StateUpdate& update) {
   return names;
 }
 
-TEST(StateParts, AreTheGoodPosesAndASentenceForEachOther) {
+TEST(StateParts, HaveTheGoodPosesAndASentenceForEachBadOne) {
   json message = state_of(4);
   message["poses"][1].erase("name");
   message["poses"][2]["position"]["x"] = "far";
@@ -52,14 +52,14 @@ TEST(StateParts, AreTheGoodPosesAndASentenceForEachOther) {
             "accepted)");
 }
 
-TEST(StateParts, AreAllWhereAllAreGood) {
+TEST(StateParts, HaveAllPosesIfAllAreGood) {
   const auto read_parts = read(read_state_parts, state_of(3));
   ASSERT_TRUE(read_parts);
   EXPECT_EQ(read_parts->refused.count, 0U);
   EXPECT_TRUE(read(read_state_parts, state_of(0)));
 }
 
-TEST(StateParts, TellOfTheFirstTenBadOnesAndCountTheOthers) {
+TEST(StateParts, ListTenBadPosesAndCountTheRest) {
   json message = state_of(30);
   for (int i = 1; i < 30; ++i) message["poses"][i]["name"] = 7;
   EXPECT_EQ(read(read_state_parts, message)->refused.refusal().parts,
@@ -70,7 +70,7 @@ TEST(StateParts, TellOfTheFirstTenBadOnesAndCountTheOthers) {
   EXPECT_TRUE(sentence.ends_with("; and 19 more like these (the other 1 was accepted)")) << sentence;
 }
 
-TEST(StateParts, AreRefusedAsAWholeWhereNoneIsGoodOrWhatIsAroundThemIsNot) {
+TEST(StateParts, RejectAMessageWithoutGoodPosesOrWithABadHeader) {
   json none = state_of(2);
   none["poses"][0] = nullptr;
   none["poses"][1].erase("orientation");
@@ -85,7 +85,7 @@ TEST(StateParts, AreRefusedAsAWholeWhereNoneIsGoodOrWhatIsAroundThemIsNot) {
   EXPECT_EQ(test::sentence_of(read(read_state_parts, json::object())), "poses: missing");
 }
 
-TEST(MarkerParts, AreTheGoodMarkersInTheirOrderAndASentenceForEachOther) {
+TEST(MarkerParts, HaveTheGoodMarkersAndASentenceForEachBadOne) {
   json message = test::good_markers();
   json bad = message["markers"][0];
   bad["color"]["a"] = 2;
@@ -136,7 +136,7 @@ Document read_python_3(const json& message, Split split) {
   return *decode({.format = Format::Cbor}, split, test::as_cbor(message));
 }
 
-TEST(TextOfPython2, IsTextInEveryMessageOfTheMappingEndpoint) {
+TEST(TextOfPython2, IsTextInEachMappingMessage) {
   const json markers = test::good_markers(), state = test::good_state();
   EXPECT_EQ(read_state_update(read_python_2(state, Split::Nothing), {}),
             read_state_update(read_python_3(state, Split::Nothing), {}));
@@ -152,7 +152,7 @@ TEST(TextOfPython2, IsTextInEveryMessageOfTheMappingEndpoint) {
   }
 }
 
-TEST(TextOfPython2, IsRefusedWhereItIsNotUtf8) {
+TEST(TextOfPython2, IsRejectedUnlessUtf8) {
   json message = test::good_state();
   message["poses"][0]["name"] = json::binary({'r', 0xC3});
   const auto document = decode({.format = Format::Cbor}, Split::Nothing, test::as_cbor(message));

@@ -91,11 +91,11 @@ std::string patch_text(const Way& before, const Way& now) {
   return found ? write_json(*found) : "";
 }
 
-TEST(Patch, IsNothingWhereNothingChanged) {
+TEST(Patch, IsEmptyIfNothingChanged) {
   EXPECT_EQ(patch_text(way(), way()), "");
 }
 
-TEST(Patch, HasTheMembersThatChanged) {
+TEST(Patch, HasTheChangedMembers) {
   Way now = way();
   now.now = 2;
   now.marks.push_back(8);
@@ -107,7 +107,7 @@ TEST(Patch, HasTheMembersThatChanged) {
   EXPECT_EQ(patch_text(now, way()), R"({"now":1.0,"top":null,"marks":[7]})");
 }
 
-TEST(Patch, HasWhatIsWrittenInAnotherWayAndWhatStandsAmongTheMembers) {
+TEST(Patch, HasDerivedAndInlinedMembers) {
   Way now = way();
   now.at = {.depth = 3, .width = 0.5};
   EXPECT_EQ(patch_text(way(), now), R"({"width":0.5})") << "both are shallow";
@@ -115,20 +115,20 @@ TEST(Patch, HasWhatIsWrittenInAnotherWayAndWhatStandsAmongTheMembers) {
   EXPECT_EQ(patch_text(way(), now), R"({"depth":"deep","width":0.5})");
 }
 
-TEST(Patch, OfARowHasItsPlaceAndWhatChangedOfIt) {
+TEST(Patch, OfARowHasItsPlaceAndItsChangedMembers) {
   Way now = way();
   now.steps[1].note = "B";
   EXPECT_EQ(patch_text(way(), now), R"({"steps":{"rows":{"1":{"note":"B"}}}})");
 }
 
-TEST(Patch, OfANewFirstRowLeavesTheOthersWhereTheyAre) {
+TEST(Patch, InsertsANewFirstRow) {
   Way now = way();
   now.steps.insert(now.steps.begin(), Step{.number = 4, .note = "d", .height = {}});
   EXPECT_EQ(patch_text(way(), now),
             R"({"steps":{"length":4,"kept":[[1,0,3]],"rows":{"0":{"number":4,"note":"d","height":null}}}})");
 }
 
-TEST(Patch, OfRowsThatWentOrMovedNamesThoseThatStayed) {
+TEST(Patch, RemovesAndMovesRows) {
   Way now = way();
   now.steps.erase(now.steps.begin() + 1);
   EXPECT_EQ(patch_text(way(), now), R"({"steps":{"length":2,"kept":[[0,0,1],[1,2,1]]}})");
@@ -143,7 +143,7 @@ TEST(Patch, OfRowsThatWentOrMovedNamesThoseThatStayed) {
   EXPECT_EQ(patch_text(way(), now), R"({"steps":{"length":0}})");
 }
 
-TEST(Patch, TellsRowsThatHaveNoNameByTheirPlaces) {
+TEST(Patch, IdentifiesUnnamedRowsByPlace) {
   Way before = way(), now = way();
   before.unnamed = {{1, "a", {}}, {2, "b", {}}};
   now.unnamed = {{2, "b", {}}, {2, "b", {}}, {5, "e", {}}};
@@ -152,7 +152,7 @@ TEST(Patch, TellsRowsThatHaveNoNameByTheirPlaces) {
       R"({"unnamed":{"length":3,"rows":{"0":{"number":2,"note":"b"},"2":{"number":5,"note":"e","height":null}}}})");
 }
 
-TEST(Patch, HasNothingThatSomebodyTypedAsAName) {
+TEST(Patch, UsesNoUserTextAsAName) {
   Way now = way();
   now.steps.insert(now.steps.begin(), Step{.number = 4, .note = "secret", .height = {}});
   const std::string text = patch_text(way(), now);
@@ -207,7 +207,7 @@ Value read_again(const Value& value) {
   return parse_json(write_json(value)).value();
 }
 
-TEST(Patch, MakesOfAnyViewTheNextOne) {
+TEST(Patch, TurnsAnyViewIntoTheNext) {
   Random random(7);
   for (int life = 0; life < 6; ++life) {
     Way told = way(), now = told;
@@ -241,7 +241,7 @@ std::string patched_view(std::string_view patch) {
   return patched_text(kView, patch);
 }
 
-TEST(ApplyPatch, ChangesWhatThePatchNames) {
+TEST(ApplyPatch, ChangesTheNamedMembers) {
   EXPECT_EQ(patched_view("{}"), kView);
   EXPECT_EQ(patched_view(R"({"at":{"y":3},"none":{"z":4}})"),
             R"({"at":{"x":1,"y":3},"none":{"z":4},"rows":[{"n":1,"a":"x"},{"n":2,"a":"y"}]})");
@@ -251,7 +251,7 @@ TEST(ApplyPatch, ChangesWhatThePatchNames) {
             R"({"at":{"x":1,"y":2},"none":null,"rows":[{"n":3},{"n":1,"a":"x"},{"n":2,"a":"z"}]})");
 }
 
-TEST(ApplyPatch, IsNothingWhereThePatchIsNoneOfThat) {
+TEST(ApplyPatch, RejectsInvalidRows) {
   for (const std::string_view rows :
        {R"({"length":-1})", R"({"length":"2"})", R"({"length":18446744073709551615})", R"({"length":100001})",
         R"({"kept":1})", R"({"kept":[1]})", R"({"kept":[[0,0]]})", R"({"kept":[[0,0,3]]})",

@@ -7,7 +7,7 @@
 namespace adit::codec::test {
 namespace {
 
-TEST(PlainElements, AreTakenWithTheirCommaAndAsManyAsAreTheSame) {
+TEST(PlainElements, CountARunOfEqualElements) {
   struct Case {
     std::string_view text;
     int value;  // -1: nothing is taken
@@ -50,7 +50,7 @@ TEST(PlainElements, AreTakenWithTheirCommaAndAsManyAsAreTheSame) {
   }
 }
 
-TEST(PlainElements, OfCborAreTakenUpToAsManyAsAreWanted) {
+TEST(PlainElements, CountARunOfEqualCborElements) {
   struct Case {
     std::string_view hex;
     std::uint64_t most;

@@ -97,7 +97,7 @@ Grid random_grid(Randomness& random) {
   return grid;
 }
 
-TEST(PressedCells, AreOneGzipMemberOfTheCells) {
+TEST(PressedCells, AreOneGzipMember) {
   const Grid grid{.width = 4, .height = 2, .data = {255, 255, 0, 0, 100, 7, 7, 7}, .compression = {}};
   for (const Body& body : bodies(grid, Says::First)) {
     const auto document = decode_in_chunks(body.kind, Split::MapData, body.text, 3);
@@ -109,7 +109,7 @@ TEST(PressedCells, AreOneGzipMemberOfTheCells) {
   }
 }
 
-TEST(PressedCells, AreNoneOfAGridThatSaysItLastOrIsGzippedOrOfACloud) {
+TEST(PressedCells, NeedAnUncompressedGridWithItsTypeFirst) {
   Grid grid{.width = 4, .height = 2, .data = Bytes(8, 0), .compression = {}};
   std::vector<Body> others = bodies(grid, Says::Last);
   for (const std::string_view type : {"PointCloud2", "OccupancyGrids", "Occupancy", ""}) {
@@ -129,7 +129,7 @@ TEST(PressedCells, AreNoneOfAGridThatSaysItLastOrIsGzippedOrOfACloud) {
   }
 }
 
-TEST(PressedCells, AreRefusedLikeAnyOtherAndTakenAsTheSameMap) {
+TEST(PressedCells, GiveTheSameMapAndTheSameRejections) {
   Randomness random(21);
   int good = 0;
   constexpr int kRounds = 50;
@@ -159,7 +159,7 @@ TEST(PressedCells, AreRefusedLikeAnyOtherAndTakenAsTheSameMap) {
   EXPECT_LT(good, 3 * kRounds);
 }
 
-TEST(PressedCells, AreTheSameWhereSomeAreTakenBefore) {
+TEST(PressedCells, AreTheSameIfTakenInPieces) {
   Randomness random(22);
   Bytes cells(300'000);  // that do not compress, so that there is something to take
   for (auto& cell : cells) cell = static_cast<std::uint8_t>(random() % 101);

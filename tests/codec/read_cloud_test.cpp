@@ -16,7 +16,7 @@ using test::json;
 using test::kInfinity;
 using test::read_map;
 
-TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
+TEST(ReadMapUpdate, RejectsAForbiddenCloud) {
   const IcdRow rows[] = {
       {"6.3.2", [](json& m) { m["msg"]["origin"] = 1; },
        "msg.origin: expected an object, got a whole number"},
@@ -89,7 +89,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInACloud) {
   expect_map_answers(rows, test::good_cloud());
 }
 
-TEST(ReadMapUpdate, RefusesACloudOverTheLargestMap) {
+TEST(ReadMapUpdate, RejectsACloudOverTheLargestMap) {
   icd::Rules rules;
   rules.map_bytes = 1600;
   const IcdRow rows[] = {
@@ -128,7 +128,7 @@ TEST(ReadMapUpdate, KeepsThePointsOfAllGzipMembers) {  // RFC 1952 2.2
   }
 }
 
-TEST(ReadMapUpdate, KeepsWhatACloudSaysAndItsPointsAsTheyAre) {
+TEST(ReadMapUpdate, KeepsTheMembersAndPointsOfACloud) {
   json message = test::good_cloud();
   message["msg"]["is_bigendian"] = 0;
   const auto map = read_map(Format::Json, test::as_json(message));
@@ -166,7 +166,7 @@ json organised_cloud(const Rows& rows, Bytes& points, Bytes& padded) {
   return message;
 }
 
-TEST(ReadMapUpdate, TakesThePointsOfAnOrganisedCloudAndNotThePaddingOfItsRows) {
+TEST(ReadMapUpdate, DropsTheRowPaddingOfAnOrganisedCloud) {
   // 85: no whole number of points in the data. The larger ones begin and end rows anywhere in a chunk.
   for (const Rows& rows : {Rows{5, 4, 88}, {5, 4, 85}, {1, 2, 17}, {640, 480, 10'241}, {3, 2, 200'000}}) {
     Bytes points, padded;
@@ -191,7 +191,7 @@ TEST(ReadMapUpdate, TakesThePointsOfAnOrganisedCloudAndNotThePaddingOfItsRows) {
 }
 
 /// As real drivers fill them in.
-TEST(ReadMapUpdate, DoesNotLookAtTheRowsOfACloudThatDoNotAddUpToPaddedOnes) {
+TEST(ReadMapUpdate, IgnoresInconsistentRowsOfACloud) {
   Bytes points, padded;
   const json message = organised_cloud({5, 4, 96}, points, padded);  // each row, with its padding, 6 points
   const std::pair<const char*, json> changes[] = {
@@ -212,7 +212,7 @@ TEST(ReadMapUpdate, DoesNotLookAtTheRowsOfACloudThatDoNotAddUpToPaddedOnes) {
   EXPECT_EQ(read_map(Format::Cbor, test::as_cbor(flat))->data.raw_size, 384U);
 }
 
-TEST(ReadMapUpdate, TakesACloudWithoutOriginByteOrderOrPoints) {
+TEST(ReadMapUpdate, AcceptsACloudWithoutOriginByteOrderOrPoints) {
   json message = test::good_cloud();
   message["msg"].erase("origin");
   message["msg"].erase("is_bigendian");

@@ -25,7 +25,7 @@ Bytes members_of(std::initializer_list<Bytes> parts) {
   return all;
 }
 
-TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
+TEST(ReadMapUpdate, RejectsAForbiddenGrid) {
   const IcdRow rows[] = {
       {"6.3.1", [](json& m) { m["msg"].erase("info"); }, "msg.info: missing"},
       {"6.3.1", [](json& m) { m["msg"]["info"] = 3; }, "msg.info: expected an object, got a whole number"},
@@ -131,7 +131,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAGrid) {
   expect_map_answers(rows, test::good_grid());
 }
 
-TEST(ReadMapUpdate, KeepsWhatAGridSays) {
+TEST(ReadMapUpdate, KeepsTheMembersOfAGrid) {
   for (const auto format : {Format::Json, Format::Cbor}) {
     json message = test::good_grid();
     message["msg"]["info"]["width"] = 4.0;
@@ -174,13 +174,13 @@ icd::ChunkedBytes kept_of(const Bytes& member, const Bytes& cells) {
   return map->data.bytes;
 }
 
-TEST(ReadMapUpdate, KeepsTheMemberOfAGridsSenderWhereItIsSmallerThanItsOwn) {
+TEST(ReadMapUpdate, KeepsTheSendersGzipMemberIfSmaller) {
   const Bytes cells = patterned(50'000), member = test::compressed(cells);
   EXPECT_EQ(kept_of(member, cells), icd::ChunkedBytes(member));
 }
 
 /// What follows a member hangs a Command Post.
-TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItsSenderHasSeveral) {
+TEST(ReadMapUpdate, UsesItsOwnGzipMemberIfTheSenderHasSeveral) {
   const Bytes cells = patterned(50'000), half(cells.begin(), cells.begin() + 25'000),
               rest(cells.begin() + 25'000, cells.end());
   for (const Bytes& members : {members_of({half, rest}), members_of({{}, cells}), members_of({cells, {}}),
@@ -189,7 +189,7 @@ TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItsSenderHasSeveral) {
   }
 }
 
-TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItIsSmaller) {
+TEST(ReadMapUpdate, UsesItsOwnGzipMemberIfSmaller) {
   Bytes cells(50'000, icd::kUnknownCell);
   for (std::size_t i = 0; i < cells.size(); i += 4'000) cells[i] = 100;
   Bytes stored{0x1f, 0x8b, 8, 0, 0, 0, 0, 0, 0, 255};  // one block that is not compressed (RFC 1951 3.2.4)
@@ -205,7 +205,7 @@ TEST(ReadMapUpdate, KeepsItsOwnMemberWhereItIsSmaller) {
   EXPECT_EQ(kept_of(stored, cells), gzip(icd::ChunkedBytes(cells), GzipStrategy::Runs));
 }
 
-TEST(ReadMapUpdate, KeepsNoMemberWithANameInItsHead) {
+TEST(ReadMapUpdate, KeepsNoGzipMemberWithAFileName) {
   const Bytes cells = patterned(50'000), plain = test::compressed(cells);
   Bytes named = plain;
   constexpr std::uint8_t kName = 8;  // RFC 1952 2.3.1

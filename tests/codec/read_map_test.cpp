@@ -15,7 +15,7 @@ using test::json;
 using test::kInfinity;
 using test::read_map;
 
-TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
+TEST(ReadMapUpdate, RejectsAForbiddenMap) {
   const IcdRow rows[] = {
       {"6.4", [](json&) {}, "taken"},
       {"6.4", [](json& m) { m = json::array(); }, "the body: expected an object, got an array"},
@@ -98,7 +98,7 @@ TEST(ReadMapUpdate, RefusesWhatTheIcdForbidsInAnyMap) {
   expect_map_answers(rows, test::good_cloud());
 }
 
-TEST(ReadMapUpdate, RefusesDataOverTheLargestMapWith413InEachForm) {
+TEST(ReadMapUpdate, RejectsDataOverTheLargestMapWith413) {
   icd::Rules rules;
   rules.map_bytes = 1600;
   const Bytes data(rules.map_bytes + 16, 0);
@@ -127,7 +127,7 @@ TEST(ReadMapUpdate, RefusesDataOverTheLargestMapWith413InEachForm) {
 }
 
 /// Data that says at its end that it is of a wrong size.
-TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
+TEST(ReadMapUpdate, AllocatesLittleForRejectedGzippedData) {
   constexpr std::size_t kLarge = 4'000'000, kEnoughForTheRest = 300;  // bytes; allocations
   icd::Rules rules;
   rules.map_bytes = kLarge;
@@ -155,7 +155,7 @@ TEST(ReadMapUpdate, KeepsNothingOfGzippedDataThatWillBeRefused) {
   }
 }
 
-TEST(ReadMapUpdate, RefusesDataOfAnotherKind) {  // ICD 6.3 (a), (b)
+TEST(ReadMapUpdate, RejectsDataOfAnotherKind) {  // ICD 6.3 (a), (b)
   const IcdRow rows[] = {
       {"6.3", [](json& m) { m["msg"]["data"] = 5; },
        "msg.data: expected a base64 string (JSON) or a byte string (CBOR), got a whole number"},
@@ -172,7 +172,7 @@ TEST(ReadMapUpdate, RefusesDataOfAnotherKind) {  // ICD 6.3 (a), (b)
             "msg.data: expected a byte string, got a string");
 }
 
-TEST(ReadMapUpdate, RefusesAMemberGivenTwiceWhereTheIcdReadsIt) {
+TEST(ReadMapUpdate, RejectsAMemberOfTheIcdGivenTwice) {
   const auto twice = [](const std::string& member, const std::string& again) {
     std::string body = test::as_json(test::good_grid());
     body.insert(body.find(member), again + ",");
@@ -188,7 +188,7 @@ TEST(ReadMapUpdate, RefusesAMemberGivenTwiceWhereTheIcdReadsIt) {
   EXPECT_EQ(twice(R"("type":)", R"("extra":1,"extra":2)"), "taken");
 }
 
-TEST(ReadMapUpdate, TakesWhatClientsSend) {
+TEST(ReadMapUpdate, AcceptsMessagesOfRealClients) {
   const IcdRow rows[] = {
       {"name absent", [](json& m) { m.erase("name"); }, "taken"},
       {"name null", [](json& m) { m["name"] = nullptr; }, "taken"},
@@ -208,7 +208,7 @@ TEST(ReadMapUpdate, TakesWhatClientsSend) {
   expect_map_answers(rows, test::good_cloud());
 }
 
-TEST(ReadMapUpdate, TakesAnyFrameWhereTheSettingsRewriteIt) {
+TEST(ReadMapUpdate, AcceptsAnyFrameIfTheSettingsRewriteIt) {
   icd::Rules rules;
   rules.rewrite_frame_id = true;
   const IcdRow rows[] = {{"6.1", [](json& m) { m["msg"]["header"]["frame_id"] = "map"; }, "taken"}};

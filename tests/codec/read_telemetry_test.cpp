@@ -40,7 +40,7 @@ void expect_answers(Reader<Message> reader, std::span<const IcdRow> rows, const 
   }
 }
 
-TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
+TEST(ReadStateUpdate, RejectsAForbiddenState) {
   const IcdRow rows[] = {
       {"6.5", [](json&) {}, "taken"},
       {"6.5", [](json& m) { m["poses"] = json::array(); }, "taken"},
@@ -82,7 +82,7 @@ TEST(ReadStateUpdate, RefusesWhatTheIcdForbids) {
   expect_answers(read_state_update, rows, test::good_state());
 }
 
-TEST(ReadUpdates, MakeEachQuaternionOneOfLengthOne) {
+TEST(ReadUpdates, NormalizeEachQuaternion) {
   const json twice = test::quaternion(0, 0, 1.2, 1.6);
   const icd::Quaternion once{0, 0, 0.6, 0.8};
   const auto expect_once = [&](const icd::Pose& pose) {
@@ -106,7 +106,7 @@ TEST(ReadUpdates, MakeEachQuaternionOneOfLengthOne) {
   }
 }
 
-TEST(ReadStateUpdate, KeepsWhatItSays) {
+TEST(ReadStateUpdate, KeepsItsMembers) {
   const auto state = read(read_state_update, Format::Json, test::as_json(test::good_state()));
   ASSERT_TRUE(state.has_value());
   EXPECT_EQ(state->header.stamp, 721.4);
@@ -115,7 +115,7 @@ TEST(ReadStateUpdate, KeepsWhatItSays) {
   EXPECT_EQ(state->poses[1].pose, (icd::Pose{{2, -2.5, 0.25}, {0, 0, 0.6, 0.8}}));
 }
 
-TEST(ReadStateUpdate, CountsTheLastPoseOfARobotThatIsNamedTwice) {
+TEST(ReadStateUpdate, KeepsTheLastPoseOfARobotNamedTwice) {
   json message = test::good_state();
   message["poses"].push_back(message["poses"][0]);
   message["poses"][2]["position"]["x"] = 9;
@@ -134,7 +134,7 @@ TEST(ReadStateUpdate, MakesAnAllZeroQuaternionTheIdentity) {
   EXPECT_EQ(state->poses[0].pose.orientation, icd::Quaternion{});
 }
 
-TEST(ReadStateUpdate, NamesAMemberUnderACborTagThatChangesItsMeaning) {
+TEST(ReadStateUpdate, NamesAMemberUnderAForeignCborTag) {
   constexpr std::uint64_t kRational = 30;
   const json tagged = json::binary({1, 2}, kRational);  // which nlohmann writes under that tag
   const IcdRow rows[] = {
@@ -167,7 +167,7 @@ TEST(ReadStateUpdate, AddsSecondsAndNanoseconds) {  // as ROS 1, ROS 2 and their
 }
 
 /// The double that is nearest to ROS's last one is a second that ROS does not have.
-TEST(ReadMarkersUpdate, GivesNoSecondBeyondThoseOfRosForItsLastTimes) {
+TEST(ReadMarkersUpdate, StaysWithinRosTimesByRounding) {
   json message = test::good_markers();
   message["markers"][0]["header"]["stamp"] = {{"secs", 4294967295}, {"nsecs", 999'999'999}};
   message["markers"][0]["lifetime"] = {{"secs", 2147483647}, {"nsecs", 999'999'999}};
@@ -177,7 +177,7 @@ TEST(ReadMarkersUpdate, GivesNoSecondBeyondThoseOfRosForItsLastTimes) {
   EXPECT_EQ(std::trunc(update->markers[0].lifetime), 2147483647);
 }
 
-TEST(ReadMarkersUpdate, GivesAMarkerThatHasNoNamespaceOne) {
+TEST(ReadMarkersUpdate, GivesAMarkerWithoutNamespaceOne) {
   json message = test::good_markers();
   const json marker = message["markers"][0];
   for (int i = 1; i < 4; ++i) message["markers"].push_back(marker);
@@ -194,7 +194,7 @@ TEST(ReadMarkersUpdate, GivesAMarkerThatHasNoNamespaceOne) {
   EXPECT_EQ(update->markers[3].ns, marker["ns"].get<std::string>());
 }
 
-TEST(ReadStateUpdate, RefusesAMemberGivenTwiceInAnyObjectThatItReads) {
+TEST(ReadStateUpdate, RejectsAMemberGivenTwice) {
   const std::string position = R"({"x":1,"y":2,"z":3})";
   const std::string orientation = R"({"x":0,"y":0,"z":0,"w":1})";
   const auto answer = [&](const std::string& members) {
@@ -210,7 +210,7 @@ TEST(ReadStateUpdate, RefusesAMemberGivenTwiceInAnyObjectThatItReads) {
             "poses: given twice");
 }
 
-TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
+TEST(ReadMarkersUpdate, RejectsForbiddenMarkers) {
   const IcdRow rows[] = {
       {"6.6", [](json&) {}, "taken"},
       {"6.6", [](json& m) { m["markers"] = json::array(); }, "taken"},
@@ -300,7 +300,7 @@ TEST(ReadMarkersUpdate, RefusesWhatTheIcdForbids) {
   expect_answers(read_markers_update, rows, test::good_markers());
 }
 
-TEST(ReadMarkersUpdate, KeepsWhatItSays) {
+TEST(ReadMarkersUpdate, KeepsItsMembers) {
   const auto update = read(read_markers_update, Format::Cbor, test::as_cbor(test::good_markers()));
   ASSERT_TRUE(update.has_value());
   ASSERT_EQ(update->markers.size(), 2U);
@@ -321,7 +321,7 @@ TEST(ReadMarkersUpdate, KeepsWhatItSays) {
   EXPECT_EQ(update->markers[1], deleted);
 }
 
-TEST(ReadMarkersUpdate, GivesTheLimitForWhatAFloat32IsPastItByRounding) {
+TEST(ReadMarkersUpdate, ClampsColorsThatRoundingPutPastTheLimit) {
   json message = test::good_markers();
   message["markers"][0]["color"] = {{"r", 1.0000001192}, {"g", -1e-9}, {"b", 0.99999994}, {"a", 1.00000001}};
   const auto update = read(read_markers_update, Format::Json, test::as_json(message));
@@ -329,14 +329,14 @@ TEST(ReadMarkersUpdate, GivesTheLimitForWhatAFloat32IsPastItByRounding) {
   EXPECT_EQ(update->markers[0].color, (icd::Color{1, 0, 0.99999994, 1}));
 }
 
-TEST(ReadMarkersUpdate, RewritesTheFrameOfEachMarkerWhereTheSettingsSaySo) {
+TEST(ReadMarkersUpdate, RewritesTheFrameIfTheSettingsSaySo) {
   icd::Rules rules;
   rules.rewrite_frame_id = true;
   const IcdRow rows[] = {{"6.1", [](json& m) { m["markers"][0]["header"]["frame_id"] = "map"; }, "taken"}};
   expect_answers(read_markers_update, rows, test::good_markers(), rules);
 }
 
-TEST(StateUpdates, AreReadUnderTheNameThatAnAliasStandsFor) {
+TEST(StateUpdates, ReplaceAliasesByNames) {
   icd::Rules rules;
   rules.aliases.emplace("husky-number-1", *icd::RobotName::parse("ugv1"));
   const auto name_of = [&](const std::string& name) {

@@ -162,7 +162,7 @@ std::string encoded(const std::string& body, const Coding& coding) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST(RoundTrip, OfMapsInEveryStyleOfClients) {
+TEST(RoundTrip, OfMapsInEachStyleOfClients) {
   Random random(7);
   for (int round = 0; round < 6; ++round) {
     for (const Style& style : kStyles) {
@@ -184,7 +184,7 @@ TEST(RoundTrip, OfMapsInEveryStyleOfClients) {
   }
 }
 
-TEST(RoundTrip, OfStateAndMarkersAsJsonThatClientsWrite) {
+TEST(RoundTrip, OfStatesAndMarkersInJsonOfClients) {
   Random random(8);
   for (int round = 0; round < kRounds; ++round) {
     const icd::StateUpdate state = test::random_state(random);

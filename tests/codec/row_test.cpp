@@ -77,11 +77,11 @@ TEST(Row, RejectsACountThatItsTypeCannotHold) {
   EXPECT_TRUE(reading.refused());
 }
 
-TEST(Row, IsReadAsItWasWritten) {
+TEST(Row, ReadsBackTheSame) {
   EXPECT_EQ(read_back(kJson), kJson);
 }
 
-TEST(Row, RefusesWithTheNameOfTheMember) {
+TEST(Row, RejectsWithTheNameOfTheMember) {
   EXPECT_EQ(read_back("{}"), "number: missing");
   EXPECT_EQ(read_back(R"({"number":3,"colour":"red","z":1.5,"note":null,"height":"up"})"),
             "height: expected a number, got a string");
@@ -102,7 +102,7 @@ constexpr Member kShaft[] = {member<&Shaft::depth>("depth"), member<&Shaft::widt
                              member<&Shaft::climbs>("climbs")};
 constexpr Row Shaft::kRow = {"", kShaft};
 
-TEST(Row, HasAllItsNumbersChangedButThoseThatAreExact) {
+TEST(Row, ChangesAllNumbersExceptExactOnes) {
   Shaft shaft = {.depth = 1, .width = 2, .mouth = {.x = 3, .y = 4, .z = 5}, .end = {.x = 6}};
   shaft.climbs = {climb(), climb()};
   shaft.climbs[1].top = icd::Point{.x = 7, .y = 8, .z = 9};

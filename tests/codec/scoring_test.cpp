@@ -41,7 +41,7 @@ const std::string kTheTen =
     "Rope, "
     "Cube, got ";
 
-TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
+TEST(ReadArtifactReport, RejectsAForbiddenReport) {
   const IcdRow rows[] = {
       {"5.2", [](json&) {}, "taken"},
       {"5.2", [](json& m) { m["name"] = "robot1"; }, "taken"},  // as in the ICD's own example
@@ -71,13 +71,13 @@ TEST(ReadArtifactReport, RefusesWhatTheIcdForbids) {
   }
 }
 
-TEST(ReadArtifactReport, RefusesAMemberGivenTwice) {
+TEST(ReadArtifactReport, RejectsAMemberGivenTwice) {
   EXPECT_EQ(test::sentence_of(read_report(R"({"x":1,"y":2,"z":3,"x":4,"type":"Rope"})")), "x: given twice");
   EXPECT_EQ(test::sentence_of(read_report(R"({"x":1,"y":2,"z":3,"type":"Gas","type":"Rope"})")),
             "type: given twice");
 }
 
-TEST(ReadArtifactReport, TakesOtherTypesWhereTheSettingsForwardThem) {
+TEST(ReadArtifactReport, AcceptsOtherTypesIfTheSettingsForwardThem) {
   icd::Rules rules;
   rules.forward_unknown_types = true;
   const auto answer = [&](const std::string& type) {
@@ -92,13 +92,13 @@ TEST(ReadArtifactReport, TakesOtherTypesWhereTheSettingsForwardThem) {
   EXPECT_TRUE(answer(std::string(65, 'a')).starts_with("type: expected 1 to 64 printable ASCII characters"));
 }
 
-TEST(ReadArtifactReport, KeepsTheTypeAsItsSenderWroteIt) {
+TEST(ReadArtifactReport, KeepsTheSpellingOfTheType) {
   const auto report = read_report(test::good_report().dump());
   ASSERT_TRUE(report.has_value());
   EXPECT_EQ(*report, (icd::ArtifactReport{.type = "backpack", .position = {1011.242, -244.433, -10.011}}));
 }
 
-TEST(ReadArtifactReport, NamesTheSettingThatAcceptsItsTypeIfOneDoes) {
+TEST(ReadArtifactReport, NamesTheSettingThatWouldAcceptTheType) {
   const auto setting = [](const std::string& type) {
     return read_report(R"({"x":1,"y":2,"z":3,"type":")" + type + R"("})").error().setting;
   };
@@ -107,7 +107,7 @@ TEST(ReadArtifactReport, NamesTheSettingThatAcceptsItsTypeIfOneDoes) {
   EXPECT_EQ(setting(""), "");
 }
 
-TEST(ReadArtifactReport, HasTheRobotThatItNames) {
+TEST(ReadArtifactReport, ReadsTheNamedRobot) {
   icd::Rules rules;
   rules.aliases.emplace("the dog", *icd::RobotName::parse("spot1"));
   const auto named = [&rules](const std::string& member) {
@@ -138,7 +138,7 @@ TEST(WriteArtifactReport, WritesTheIcdsExample) {
             R"({"x": 1011.242, "y": -244.433, "z": -10.011, "type": "backpack", "name": "robot1"})");
 }
 
-TEST(WriteArtifactReport, WritesFloatsAsWhatTheyAre) {  // ICD 5.2; a whole number is not one to every server
+TEST(WriteArtifactReport, WritesFloatsAsFloats) {  // ICD 5.2; a whole number is not one to every server
   const auto written = [](const char* x) {
     const auto report = read_report(std::string(R"({"x":)") + x + R"(,"y":0,"z":-0.0,"type":"Rope"})");
     return report ? write_artifact_report(*report) : report.error().sentence;
@@ -157,7 +157,7 @@ TEST(WriteArtifactReport, WritesFloatsAsWhatTheyAre) {  // ICD 5.2; a whole numb
   }
 }
 
-TEST(WriteArtifactReport, GivesTheSameDoublesBack) {
+TEST(WriteArtifactReport, WritesDoublesThatReadBackTheSame) {
   std::mt19937_64 random(5);
   for (int round = 0; round < 2000; ++round) {
     const auto number = [&random] {
@@ -179,7 +179,7 @@ TEST(WriteArtifactReport, GivesTheSameDoublesBack) {
   }
 }
 
-TEST(WriteArtifactReport, IsJsonEvenForWhatNoMessageHolds) {
+TEST(WriteArtifactReport, WritesJsonForAnyValues) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const json body = json::parse(write_artifact_report(
       {.type = "a\"\n\xff", .position = {nan, 1, -std::numeric_limits<double>::infinity()}}));
@@ -188,7 +188,7 @@ TEST(WriteArtifactReport, IsJsonEvenForWhatNoMessageHolds) {
   EXPECT_EQ(body["type"], "a\"\n\xef\xbf\xbd");
 }
 
-TEST(JsonString, EscapesWhatJsonMustEscapeAndReplacesWhatIsNoUtf8) {
+TEST(JsonString, EscapesControlsAndReplacesInvalidUtf8) {
   EXPECT_EQ(json_string("Missing field 'type'"), "\"Missing field 'type'\"");
   EXPECT_EQ(json_string(""), "\"\"");
   EXPECT_EQ(json_string("a\"b\\c"), R"("a\"b\\c")");
@@ -210,7 +210,7 @@ TEST(JsonString, IsJsonForAnyBytes) {
   }
 }
 
-TEST(ReadRunStatus, TakesTheClockByEitherName) {
+TEST(ReadRunStatus, ReadsTheClockByEitherName) {
   const icd::RunStatus expected{
       .score = 6, .run_clock = 721.4, .remaining_reports = 14, .current_team = "subt"};
   EXPECT_EQ(
@@ -221,7 +221,7 @@ TEST(ReadRunStatus, TakesTheClockByEitherName) {
       expected);  // ICD 5.1's table
 }
 
-TEST(ReadRunStatus, SaysWhyItCouldNotBeUnderstood) {
+TEST(ReadRunStatus, NamesTheFault) {
   const auto why = [](std::string_view body) { return why_not(read_run_status(body)); };
   EXPECT_EQ(why(R"({"score": 6, "run_clock": 0, "remaining_reports": 14})"), "understood");
   EXPECT_EQ(why(R"({"run_clock": 0, "remaining_reports": 14})"), "score: missing");
@@ -239,7 +239,7 @@ TEST(ReadRunStatus, SaysWhyItCouldNotBeUnderstood) {
   EXPECT_NE(why(""), "understood");
 }
 
-TEST(ReadReportReply, TakesTheIcdsExampleAndWhatServersSend) {
+TEST(ReadReportReply, AcceptsTheExampleOfTheIcdAndOfServers) {
   const icd::ReportReply expected{.id = 1,
                                   .run = "1",
                                   .team = "subt",
@@ -258,7 +258,7 @@ TEST(ReadReportReply, TakesTheIcdsExampleAndWhatServersSend) {
   EXPECT_EQ(read_report_reply(start + "1.5" + end).value().run, "1.5");
 }
 
-TEST(ReadReportReply, DoesWithoutWhatAditCanLiveWithout) {
+TEST(ReadReportReply, AcceptsMissingOptionalMembers) {
   const icd::ReportReply least{.run = "", .team = "", .report_status = "admin stop", .score_change = 0};
   EXPECT_EQ(read_report_reply(R"({"report_status": "admin stop", "score_change": 0})"), least);
   EXPECT_EQ(read_report_reply(R"({"id": "a-7", "run": null, "team": 5.0e300, "run_clock": null,
@@ -268,7 +268,7 @@ TEST(ReadReportReply, DoesWithoutWhatAditCanLiveWithout) {
             "admin stop");
 }
 
-TEST(ReadReportReply, SaysWhyItCouldNotBeUnderstood) {
+TEST(ReadReportReply, NamesTheFault) {
   const auto why = [](std::string_view body) { return why_not(read_report_reply(body)); };
   EXPECT_EQ(why(R"({"score_change": 0})"), "report_status: missing");
   EXPECT_EQ(why(R"({"report_status": "scored"})"), "score_change: missing");

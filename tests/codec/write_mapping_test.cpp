@@ -59,7 +59,7 @@ TEST(WriteMapUpdate, WritesAGridAsTheIcdListsIt) {  // ICD 6.3.1, 6.4
   expect_alike(read_back(write_map_update(update)), expected);
 }
 
-TEST(WriteMapUpdate, WritesTheSameWithItsDataFirst) {
+TEST(WriteMapUpdate, WritesTheSameWithDataFirst) {
   test::Random random(1);
   for (int i = 0; i < 100; ++i) {
     const icd::MapUpdate update = i % 2 == 0 ? test::random_grid(random) : test::random_cloud(random);
@@ -142,7 +142,7 @@ TEST(WriteStateUpdate, WritesAllAsTheIcdListsIt) {  // ICD 6.5
                {{"header", {{"frame_id", "darpa"}}}, {"poses", ordered_json::array()}});
 }
 
-TEST(WriteMarkersUpdate, WritesTheMembersThatTheIcdListsInItsOrder) {  // ICD 6.6
+TEST(WriteMarkersUpdate, WritesAllAsTheIcdListsIt) {  // ICD 6.6
   icd::Marker delete_all;
   delete_all.action = icd::MarkerAction::DeleteAll;
   const icd::MarkersUpdate update{{{.header = {1.0},
@@ -180,7 +180,7 @@ TEST(WriteMarkersUpdate, WritesTheMembersThatTheIcdListsInItsOrder) {  // ICD 6.
   expect_alike(read_back(write_markers_update(update)), expected);
 }
 
-TEST(CborWriter, WritesTheShortestHeadOfEachNumber) {  // RFC 8949 4.1, appendix A
+TEST(CborWriter, WritesTheShortestHead) {  // RFC 8949 4.1, appendix A
   const auto written = [](std::int64_t number) {
     CborWriter out;
     out.whole(number);
@@ -197,7 +197,7 @@ TEST(CborWriter, WritesTheShortestHeadOfEachNumber) {  // RFC 8949 4.1, appendix
   EXPECT_EQ(written(-1000), (Bytes{0x39, 0x03, 0xe7}));
 }
 
-TEST(CborWriter, WritesEveryNumberThatIsAskedForAsAFloatInSixtyFourBits) {
+TEST(CborWriter, WritesRealNumbersAsDoubles) {
   CborWriter out;
   out.real(1);
   EXPECT_EQ(out.finish().to_vector(), (Bytes{0xfb, 0x3f, 0xf0, 0, 0, 0, 0, 0, 0}));

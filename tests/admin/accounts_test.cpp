@@ -41,7 +41,7 @@ struct Life {
   Accounts accounts;
 };
 
-TEST(Accounts, DevicesEndWithThePasswordThoughAKillKeptThemInTheirFile) {
+TEST(Accounts, OldPasswordsDevicesAreForgottenAfterAKill) {
   const host::Folder folder;
   std::string old_operators, viewers;
   {
@@ -64,7 +64,7 @@ TEST(Accounts, DevicesEndWithThePasswordThoughAKillKeptThemInTheirFile) {
   EXPECT_TRUE(life.knows(viewers));
 }
 
-TEST(Accounts, ACodeIsKeptOnlyWhileItIsAskedFor) {
+TEST(Accounts, CodeIsStoredOnlyWhileRequired) {
   const host::Folder folder;
   Life(folder).set(Role::Operator, kOld);
   const std::string code =
@@ -73,7 +73,7 @@ TEST(Accounts, ACodeIsKeptOnlyWhileItIsAskedFor) {
   EXPECT_FALSE(std::filesystem::exists(code));
 }
 
-TEST(Accounts, AnUnreadableFileSetsNoPasswordAndStaysAsItIs) {
+TEST(Accounts, UnreadableFileSetsNoPasswordAndIsKept) {
   for (const char* const name : {Accounts::kFile, Accounts::kCodeFile}) {
     const host::Folder folder;
     ASSERT_EQ(mkfifo((folder / name).c_str(), 0600), 0);
@@ -86,7 +86,7 @@ TEST(Accounts, AnUnreadableFileSetsNoPasswordAndStaysAsItIs) {
   }
 }
 
-TEST(Accounts, ADamagedFileIsSetAsideAndTheCodeIsAskedAgain) {
+TEST(Accounts, DamagedFileIsRenamedAndTheCodeIsRequired) {
   const host::Folder folder;
   Life(folder).set(Role::Operator, kOld);
   folder.put(Accounts::kFile, "{\"version\":1,\"oper");
@@ -95,7 +95,7 @@ TEST(Accounts, ADamagedFileIsSetAsideAndTheCodeIsAskedAgain) {
   EXPECT_TRUE(std::filesystem::exists(folder / "access.json.damaged"));
 }
 
-TEST(Accounts, UnreadableDevicesStayAsTheyAre) {
+TEST(Accounts, UnreadableDevicesFileIsKept) {
   const host::Folder folder;
   ASSERT_EQ(mkfifo((folder / Accounts::kDevicesFile).c_str(), 0600), 0);
   {
@@ -106,7 +106,7 @@ TEST(Accounts, UnreadableDevicesStayAsTheyAre) {
   EXPECT_TRUE(std::filesystem::is_fifo(folder / Accounts::kDevicesFile));
 }
 
-TEST(Accounts, TheDeviceThatSetThePasswordStaysKnown) {
+TEST(Accounts, DeviceThatSetThePasswordStaysKnown) {
   const host::Folder folder;
   std::string own;
   {
@@ -120,7 +120,7 @@ TEST(Accounts, TheDeviceThatSetThePasswordStaysKnown) {
   EXPECT_TRUE(life.knows(own));
 }
 
-TEST(Accounts, APasswordIsNoneThatWasAnotherBeforeItWasChecked) {
+TEST(Accounts, PasswordChangedDuringACheckIsRejected) {
   const host::Folder folder;
   Life life(folder);
   life.set(Role::Operator, kOld);

@@ -44,7 +44,7 @@ class AcknowledgedFileTest : public testing::Test {
   host::Folder folder_;
 };
 
-TEST_F(AcknowledgedFileTest, KeepsThemForTheNextStart) {
+TEST_F(AcknowledgedFileTest, SurvivesARestart) {
   EXPECT_TRUE(read().empty()) << "of a first start";
   EXPECT_EQ(keep({{kHeld}}), 0u);
   EXPECT_EQ(read(), std::vector{kHeld});
@@ -55,7 +55,7 @@ TEST_F(AcknowledgedFileTest, KeepsThemForTheNextStart) {
   EXPECT_TRUE(read().empty());
 }
 
-TEST_F(AcknowledgedFileTest, KnowsNoneWhereItIsDamagedAndSaysSoOnce) {
+TEST_F(AcknowledgedFileTest, DamagedFileIsEmptyAndLoggedOnce) {
   for (const char* text : {"{\"version\":1,", "", "[]", "{\"version\":9,\"acknowledged\":[]}"}) {
     folder_.put("acknowledged.json", text);
     const std::uint64_t before = host::logged();
@@ -64,7 +64,7 @@ TEST_F(AcknowledgedFileTest, KnowsNoneWhereItIsDamagedAndSaysSoOnce) {
   }
 }
 
-TEST_F(AcknowledgedFileTest, IsWrittenOnlyWhereTheyChange) {
+TEST_F(AcknowledgedFileTest, IsWrittenOnlyAfterAChange) {
   keep({{kHeld}});
   loop::Loop loop;
   loop::Writer writer(loop);
@@ -76,7 +76,7 @@ TEST_F(AcknowledgedFileTest, IsWrittenOnlyWhereTheyChange) {
   EXPECT_EQ(host::read_file(folder_ / "acknowledged.json").value(), "untouched");
 }
 
-TEST_F(AcknowledgedFileTest, StaysAsItIsWhereItCannotBeRead) {
+TEST_F(AcknowledgedFileTest, UnreadableFileIsKept) {
   ASSERT_EQ(mkfifo((folder_ / "acknowledged.json").c_str(), 0600), 0);
   loop::Loop loop;
   loop::Writer writer(loop);
@@ -87,7 +87,7 @@ TEST_F(AcknowledgedFileTest, StaysAsItIsWhereItCannotBeRead) {
   EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "acknowledged.json"));
 }
 
-TEST_F(AcknowledgedFileTest, IsComplainedOfOnceWhereItCannotBeWritten) {
+TEST_F(AcknowledgedFileTest, WriteErrorIsLoggedOnce) {
   std::filesystem::create_directory(folder_ / "acknowledged.json");
   EXPECT_EQ(keep({{kHeld}, {}, {kHeld}}), 1u);
 }

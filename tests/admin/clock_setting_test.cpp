@@ -54,7 +54,7 @@ class ClockSettingTest : public testing::Test {
   ClockSetting setting_{loop_, state_.path(), run_.path(), chronyd_.port()};
 };
 
-TEST_F(ClockSettingTest, SaysWhyItCannotSetTheClockWhereAditClockDoesNotRun) {
+TEST_F(ClockSettingTest, ExplainsItselfIfAditClockDoesNotRun) {
   setting_.every_second(ntp_);
   EXPECT_FALSE(setting_.clock().managed);
   EXPECT_EQ(setting_.clock().source, std::nullopt) << "no source is known, but the time may be right";
@@ -66,7 +66,7 @@ TEST_F(ClockSettingTest, SaysWhyItCannotSetTheClockWhereAditClockDoesNotRun) {
   EXPECT_FALSE(asked());
 }
 
-TEST_F(ClockSettingTest, ClaimsNoTimeAndNoTroubleWhileAditClockStarts) {
+TEST_F(ClockSettingTest, ReportsNoTimeAndNoTroubleWhileAditClockStarts) {
   run_.put("adit-clock.service", "");
   ClockSetting starting{loop_, state_.path(), run_.path(), chronyd_.port(), run_.path()};
   starting.every_second({.server = "10.0.0.5", .clients = ""});
@@ -75,7 +75,7 @@ TEST_F(ClockSettingTest, ClaimsNoTimeAndNoTroubleWhileAditClockStarts) {
   EXPECT_EQ(starting.ntp_trouble(), "");
 }
 
-TEST_F(ClockSettingTest, AsksForTheOperatorsTimeAsOfThatInstant) {
+TEST_F(ClockSettingTest, RequestsTheOperatorsTimeAsOfItsEntry) {
   const clock::Status status{.boot = "b"};
   say(status);
   EXPECT_EQ(setting_.is_set(), false);
@@ -92,13 +92,13 @@ TEST_F(ClockSettingTest, AsksForTheOperatorsTimeAsOfThatInstant) {
   EXPECT_EQ(setting_.clock().refusal, "");
 }
 
-TEST_F(ClockSettingTest, RefusesATimeThatNoBoxCanHave) {
+TEST_F(ClockSettingTest, RejectsAnImpossibleTime) {
   say({});
   EXPECT_EQ(setting_.set_clock(5).error().status, icd::Status::UnprocessableEntity);
   EXPECT_FALSE(asked());
 }
 
-TEST_F(ClockSettingTest, TakesTheCommandPostsTimeOnceAndNotOverTheOperators) {
+TEST_F(ClockSettingTest, UsesTheCommandPostsTimeOnceUnlessOperatorSetIt) {
   say({});
   setting_.offered({Source::CommandPost, now() + 600});
   const auto first = asked();
@@ -112,7 +112,7 @@ TEST_F(ClockSettingTest, TakesTheCommandPostsTimeOnceAndNotOverTheOperators) {
   EXPECT_FALSE(asked());
 }
 
-TEST_F(ClockSettingTest, BringsTheSystemToTheLastTimeKnown) {
+TEST_F(ClockSettingTest, SetsTheSystemToTheLastKnownTime) {
   say({});
   setting_.offered({Source::LastKnown, now()});
   EXPECT_FALSE(asked()) << "the system's own";
@@ -123,7 +123,7 @@ TEST_F(ClockSettingTest, BringsTheSystemToTheLastTimeKnown) {
   EXPECT_NEAR(asked()->time, now(), 1);
 }
 
-TEST_F(ClockSettingTest, TellsWhyItWasNotSet) {
+TEST_F(ClockSettingTest, TellsWhyTheClockWasNotSet) {
   say({});
   ASSERT_TRUE(setting_.set_clock(1.8e9));
   say({.nonce = asked()->nonce, .refusal = "cannot set the clock: no", .source = Source::None});
@@ -135,7 +135,7 @@ TEST_F(ClockSettingTest, TellsWhyItWasNotSet) {
   EXPECT_TRUE(setting_.set_clock(1.8e9));
 }
 
-TEST_F(ClockSettingTest, AsksAgainWhereABusyBoxDidNotTakeItUpInTime) {
+TEST_F(ClockSettingTest, RetriesAnUnansweredRequest) {
   say({});
   setting_.offered({Source::CommandPost, now() + 600});
   const auto first = asked();
@@ -150,7 +150,7 @@ TEST_F(ClockSettingTest, AsksAgainWhereABusyBoxDidNotTakeItUpInTime) {
   EXPECT_NE(second->nonce, first->nonce);
 }
 
-TEST_F(ClockSettingTest, AsksAgainWhatWasRefused) {
+TEST_F(ClockSettingTest, RetriesARejectedRequest) {
   say({});
   setting_.offered({Source::CommandPost, now() + 600});
   const auto first = asked();
@@ -168,7 +168,7 @@ TEST_F(ClockSettingTest, AsksAgainWhatWasRefused) {
   EXPECT_NE(asked()->nonce, first->nonce);
 }
 
-TEST_F(ClockSettingTest, AsksForNtpAsTheSettingsHaveItAndWhenTheyChange) {
+TEST_F(ClockSettingTest, RequestsNtpPerSettingsAndAfterTheyChange) {
   say({});
   EXPECT_FALSE(asked_for_ntp()) << "it is off";
   ntp_ = {.server = "10.0.0.5", .clients = "10.0.0.0/24"};
@@ -183,7 +183,7 @@ TEST_F(ClockSettingTest, AsksForNtpAsTheSettingsHaveItAndWhenTheyChange) {
   EXPECT_EQ(asked_for_ntp(), ntp_);
 }
 
-TEST_F(ClockSettingTest, SaysThatAMachineThatKeepsItsTimeItselfSpeaksNoNtpForAdit) {
+TEST_F(ClockSettingTest, TellsThatNtpNeedsAditClock) {
   setting_.every_second(ntp_);
   EXPECT_EQ(setting_.ntp_trouble(), "");
   ntp_ = {.server = "10.0.0.5", .clients = ""};
@@ -193,7 +193,7 @@ TEST_F(ClockSettingTest, SaysThatAMachineThatKeepsItsTimeItselfSpeaksNoNtpForAdi
   EXPECT_FALSE(asked_for_ntp());
 }
 
-TEST_F(ClockSettingTest, TakesTheServersTimeWithinTheBoundsOfAnyOther) {
+TEST_F(ClockSettingTest, AcceptsANtpTimeWithinTheUsualBounds) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::Operator, .ntp = ntp_});
   hear(7776000);
@@ -202,7 +202,7 @@ TEST_F(ClockSettingTest, TakesTheServersTimeWithinTheBoundsOfAnyOther) {
   EXPECT_NEAR(asked()->time, now() + 7776000, 1);
 }
 
-TEST_F(ClockSettingTest, TakesTheFirstTimeOfAnotherServerWhateverTheStep) {
+TEST_F(ClockSettingTest, AcceptsAnyStepFromANewNtpServer) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::Ntp, .server = "10.0.0.6", .ntp = ntp_});
   setting_.offered({Source::CommandPost, now() + 600});
@@ -215,7 +215,7 @@ TEST_F(ClockSettingTest, TakesTheFirstTimeOfAnotherServerWhateverTheStep) {
   EXPECT_NEAR(asked()->time, now() - 3600, 1);
 }
 
-TEST_F(ClockSettingTest, TakesNoServersTimeThatIsNoTimeOfABox) {
+TEST_F(ClockSettingTest, RejectsAnImpossibleNtpTime) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::None, .ntp = ntp_});
   chronyd_.told = {.server = 0x0a000005, .heard = now(), .behind = -now()};
@@ -226,7 +226,7 @@ TEST_F(ClockSettingTest, TakesNoServersTimeThatIsNoTimeOfABox) {
   EXPECT_FALSE(asked());
 }
 
-TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnceItIsGone) {
+TEST_F(ClockSettingTest, OperatorSetsItOnlyIfNoNtpServerIsHeard) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   ASSERT_TRUE(setting_.set_clock(1.8e9)) << "nobody is heard";
@@ -245,7 +245,7 @@ TEST_F(ClockSettingTest, LetsNobodySetItWhileAnNtpServerKeepsItAndTheOperatorOnc
   EXPECT_TRUE(setting_.set_clock(1.8e9)) << "it is not asked any more";
 }
 
-TEST_F(ClockSettingTest, HearsNobodyWhoWasHeardLongAgoOrIsAnother) {
+TEST_F(ClockSettingTest, IgnoresOtherAndSilentNtpServers) {
   ntp_ = {.server = "10.0.0.5", .clients = ""};
   say({.source = Source::Ntp, .server = ntp_.server, .ntp = ntp_});
   for (const clock::Tracking& other :
@@ -262,7 +262,7 @@ TEST_F(ClockSettingTest, HearsNobodyWhoWasHeardLongAgoOrIsAnother) {
   }
 }
 
-TEST_F(ClockSettingTest, TellsWhyChronydDoesNotRunAndWhatItDoes) {
+TEST_F(ClockSettingTest, TellsWhatChronydDoesOrWhyItFails) {
   ntp_ = {.server = "", .clients = "10.0.0.0/24"};
   say({.source = Source::None, .ntp = ntp_, .trouble = "cannot start chronyd: no"});
   EXPECT_THAT(setting_.ntp_trouble(), HasSubstr("cannot start chronyd"));

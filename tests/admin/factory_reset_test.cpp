@@ -43,13 +43,13 @@ class FactoryResetTest : public testing::Test {
   FactoryReset reset_{store_, state_.path(), runtime_.path()};
 };
 
-TEST_F(FactoryResetTest, ForgetsNothingUnlessItWasBegun) {
+TEST_F(FactoryResetTest, DeletesNothingUnlessBegun) {
   EXPECT_EQ(reset_.finish(), false);
   EXPECT_TRUE(kept("access.json") && kept("settings.json") && kept("secrets/team.token"));
   EXPECT_FALSE(kept("forget.json"));
 }
 
-TEST_F(FactoryResetTest, ForgetsAllButTheReportsAndOnce) {
+TEST_F(FactoryResetTest, DeletesAllButTheReportsOnce) {
   ASSERT_TRUE(reset_.begin());
   EXPECT_TRUE(kept("access.json")) << "nothing is taken away while others use it";
   EXPECT_EQ(reset_.finish(), true);
@@ -59,7 +59,7 @@ TEST_F(FactoryResetTest, ForgetsAllButTheReportsAndOnce) {
   EXPECT_TRUE(kept("access.json"));
 }
 
-TEST_F(FactoryResetTest, GoesOnAfterItCameToNoEnd) {
+TEST_F(FactoryResetTest, ContinuesAfterAnInterruption) {
   std::filesystem::remove(state_ / "access.json");
   std::filesystem::create_directory(state_ / "access.json");  // stands for a file that cannot be removed
   ASSERT_TRUE(reset_.begin());
@@ -73,14 +73,14 @@ TEST_F(FactoryResetTest, GoesOnAfterItCameToNoEnd) {
   expect_first_start();
 }
 
-TEST_F(FactoryResetTest, ForgetsNothingWhereItIsNotKnownWhetherItWasBegun) {
+TEST_F(FactoryResetTest, DeletesNothingIfItsRequestCannotBeRead) {
   FactoryReset unknown(store_, state_ / std::string(300, 'x'), runtime_.path());
   EXPECT_THAT(unknown.finish().error(), HasSubstr("/reset: File name too long"));
   EXPECT_TRUE(kept("settings.json") && kept("secrets/team.token"));
   EXPECT_TRUE(std::filesystem::exists(runtime_ / "sessions.json"));
 }
 
-TEST_F(FactoryResetTest, IsRefusedWhereItCannotBeWrittenDown) {
+TEST_F(FactoryResetTest, IsRejectedIfItCannotBeRecorded) {
   FactoryReset nowhere(store_, state_ / "none", runtime_.path());
   EXPECT_THAT(nowhere.begin().error(), HasSubstr("No such file or directory"));
   ASSERT_TRUE(reset_.finish());

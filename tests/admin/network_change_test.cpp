@@ -57,7 +57,7 @@ class NetworkChangeTest : public testing::Test {
   NetworkChange change{loop, settings, adit_network, folder.path()};
 };
 
-TEST_F(NetworkChangeTest, TellsWhereAllEndpointsAreUntilAditNetworkKnows) {
+TEST_F(NetworkChangeTest, SendsAllEndpointsUntilAditNetworkKnowsThem) {
   settings.courses = {{"B", {"10.100.2.200", 8000}, {"10.100.1.201", 8000}},
                       {"C", {"fd00::1", 8000}, {"10.0.0.9", 8000}}};
   change.every_second();
@@ -73,21 +73,21 @@ TEST_F(NetworkChangeTest, TellsWhereAllEndpointsAreUntilAditNetworkKnows) {
   EXPECT_EQ(asked(), std::nullopt) << "it is known";
 }
 
-TEST_F(NetworkChangeTest, AsksNobodyWhereAditNetworkHasOtherInterfaces) {
+TEST_F(NetworkChangeTest, SendsNothingIfAditNetworkHasOtherInterfaces) {
   status.team_interface = "eth7";
   tell();
   change.every_second();
   EXPECT_EQ(asked(), std::nullopt);
 }
 
-TEST_F(NetworkChangeTest, IsConfirmedAtTheNewAddressAlone) {
+TEST_F(NetworkChangeTest, IsConfirmedOnlyAtTheNewAddress) {
   wait(numbers("192.168.8.11/24"));
   EXPECT_THAT(change.confirm("192.168.7.11").error().sentence,
               HasSubstr("confirm it at http://192.168.8.11:8000"));
   EXPECT_TRUE(change.confirm("192.168.8.11"));
 }
 
-TEST_F(NetworkChangeTest, OfTheModeIsConfirmedAtAnyAddressButTheOneThatGoes) {
+TEST_F(NetworkChangeTest, ModeIsConfirmedAtAnyAddressButTheOld) {
   for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
     wait(network::with_mode(mode));
     EXPECT_THAT(change.confirm("192.168.7.11").error().sentence,
@@ -96,7 +96,7 @@ TEST_F(NetworkChangeTest, OfTheModeIsConfirmedAtAnyAddressButTheOneThatGoes) {
   }
 }
 
-TEST_F(NetworkChangeTest, SaysNothingOfTheLastOneWhileAnotherWaits) {
+TEST_F(NetworkChangeTest, HidesTheLastChangeWhileAnotherIsPending) {
   status.ended = network::Ended::Confirmed;
   tell();
   EXPECT_EQ(change.network().last, "confirmed");
@@ -104,7 +104,7 @@ TEST_F(NetworkChangeTest, SaysNothingOfTheLastOneWhileAnotherWaits) {
   EXPECT_EQ(change.network().last, "");
 }
 
-TEST_F(NetworkChangeTest, KnowsWhoAnswersForTheCommandPost) {
+TEST_F(NetworkChangeTest, FindsTheHopToTheCommandPost) {
   const settings::Address endpoint{"10.100.1.201", 8000};
   EXPECT_EQ(change.next_hop(endpoint), "10.100.1.201");
   status.kept = numbers("192.168.7.11/24", "10.100.3.10/24", "10.100.3.1");
@@ -115,7 +115,7 @@ TEST_F(NetworkChangeTest, KnowsWhoAnswersForTheCommandPost) {
   EXPECT_EQ(change.next_hop(endpoint), "") << "there is no route to it";
 }
 
-TEST_F(NetworkChangeTest, ShowsThatTheInterfacesCannotBeRead) {
+TEST_F(NetworkChangeTest, TellsThatInterfacesCannotBeRead) {
   status.kept.reset();
   tell();
   change.network();  // reads the status, which stays fresh
@@ -132,7 +132,7 @@ TEST_F(NetworkChangeTest, ShowsThatTheInterfacesCannotBeRead) {
   EXPECT_THAT(hop.error(), HasSubstr("cannot read this machine's addresses"));
 }
 
-TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet) {
+TEST_F(NetworkChangeTest, TellsThatTheCommandPostSideHasNoAddress) {
   EXPECT_FALSE(change.fact().no_address);
   status.kept->command_post.clear();
   tell();
@@ -142,7 +142,7 @@ TEST_F(NetworkChangeTest, TellsTheOperatorThatTheCommandPostsSideHasNoAddressYet
   EXPECT_GT(change.fact().confirm_within, 0);
 }
 
-class AddressesTakenTest : public NetworkChangeTest {
+class AddressConflictsTest : public NetworkChangeTest {
  protected:
   /// As adit-network --watch does.
   void watch_tells(const std::vector<network::TakenAddress>& taken,
@@ -163,7 +163,7 @@ class AddressesTakenTest : public NetworkChangeTest {
   }
 };
 
-TEST_F(AddressesTakenTest, AreToldOnceForASide) {
+TEST_F(AddressConflictsTest, AreReportedOncePerSide) {
   EXPECT_TRUE(taken().empty()) << "nobody listens";
   watch_tells({on("darpa0", "10.100.1.10"), on("team0", "192.168.7.11"), on("darpa0", "10.100.2.10"),
                on("eth7", "10.9.9.9")});
@@ -174,14 +174,14 @@ TEST_F(AddressesTakenTest, AreToldOnceForASide) {
   EXPECT_TRUE(taken().empty());
 }
 
-TEST_F(AddressesTakenTest, CountForAWhileAfterTheyWereSeen) {
+TEST_F(AddressConflictsTest, CountForAWhile) {
   watch_tells({on("team0", "192.168.7.11", network::kTakenFor / 2)});
   EXPECT_EQ(taken().size(), 1u);
   watch_tells({on("team0", "192.168.7.11", network::kTakenFor)});
   EXPECT_TRUE(taken().empty()) << "who listened does not run any more";
 }
 
-TEST_F(AddressesTakenTest, AreTheCommandPostsAtTheTeamsPortWhereTheSettingsNameIt) {
+TEST_F(AddressConflictsTest, ShowExchangedCables) {
   const auto exchanged = [this] {
     const auto found = change.fact().exchanged;
     return found ? found->address + ' ' + found->found_on + ' ' + found->sought_on : "";
@@ -199,7 +199,7 @@ TEST_F(AddressesTakenTest, AreTheCommandPostsAtTheTeamsPortWhereTheSettingsNameI
   EXPECT_EQ(exchanged(), "10.100.3.1 team0 darpa0") << "the gateway to it";
 }
 
-TEST_F(AddressesTakenTest, OfADamagedFileAreNone) {
+TEST_F(AddressConflictsTest, AreEmptyIfTheFileIsDamaged) {
   std::ofstream(folder / network::kTakenFile) << R"({"format":1,"taken":[{"interface":"team0")";
   time.pass(host::kFresh);
   EXPECT_TRUE(taken().empty());

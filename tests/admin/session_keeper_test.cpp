@@ -32,7 +32,7 @@ class SessionKeeperTest : public testing::Test {
   std::uint8_t drawn_ = 0;
 };
 
-TEST_F(SessionKeeperTest, KeepsWhoIsLoggedInWithoutBeingAsked) {
+TEST_F(SessionKeeperTest, StoresSessionsAtOnce) {
   SessionKeeper before(file_, kStart);
   const std::string mine = log_in(before), other = log_in(before);
   before.sessions().end(before.sessions().all(kStart).front().number);
@@ -44,7 +44,7 @@ TEST_F(SessionKeeperTest, KeepsWhoIsLoggedInWithoutBeingAsked) {
   EXPECT_EQ(status.st_mode & 07777, 0600u);
 }
 
-TEST_F(SessionKeeperTest, ForgetsThoseOfAnotherStartOfTheMachine) {
+TEST_F(SessionKeeperTest, ForgetsSessionsOfAnotherBoot) {
   SessionKeeper before(file_, kStart);
   const std::string mine = log_in(before);
   std::string text = host::read_file(file_).value();
@@ -55,7 +55,7 @@ TEST_F(SessionKeeperTest, ForgetsThoseOfAnotherStartOfTheMachine) {
   EXPECT_FALSE(knows(after, mine));
 }
 
-TEST_F(SessionKeeperTest, StartsWithNobodyWhereTheFileIsDamaged) {
+TEST_F(SessionKeeperTest, StartsEmptyIfTheFileIsDamaged) {
   folder_.put("sessions.json", "{\"version\":1,");
   SessionKeeper keeper(file_, kStart);
   EXPECT_TRUE(keeper.sessions().all(kStart).empty());
@@ -64,7 +64,7 @@ TEST_F(SessionKeeperTest, StartsWithNobodyWhereTheFileIsDamaged) {
   EXPECT_TRUE(knows(after, mine));
 }
 
-TEST_F(SessionKeeperTest, GoesOnInMemoryWhereNothingCanBeReadOrWritten) {
+TEST_F(SessionKeeperTest, WorksInMemoryIfTheFileIsUnusable) {
   ASSERT_EQ(mkfifo(file_.c_str(), 0600), 0);
   for (const std::string& file : {folder_ / "none/sessions.json", file_}) {
     SessionKeeper keeper(file, kStart);

@@ -38,13 +38,13 @@ class SetupTest : public testing::Test {
                       [] {}};
 };
 
-TEST_F(SetupTest, AppliesNothingWhereTheBoxRunsWithTheSameSettings) {
+TEST_F(SetupTest, AppliesNothingIfSettingsAreUnchanged) {
   EXPECT_TRUE(setup_.save(setup_.settings()).has_value());
   EXPECT_EQ(applied_, 0);
   EXPECT_FALSE(std::filesystem::exists(saved_file()));
 }
 
-TEST_F(SetupTest, SavesNothingWhileTheSavedSettingsCannotBeRead) {
+TEST_F(SetupTest, RejectsASaveIfSavedSettingsCannotBeRead) {
   std::filesystem::create_directory(saved_file());
   setup_.runs_with(store_.load().value(), "");
   const auto saved = setup_.save(setup_.settings());
@@ -52,12 +52,12 @@ TEST_F(SetupTest, SavesNothingWhileTheSavedSettingsCannotBeRead) {
   EXPECT_EQ(saved.error().status, icd::Status::ServiceUnavailable);
 }
 
-TEST_F(SetupTest, RefusesAnythingWhileAChangeIsBeingApplied) {
+TEST_F(SetupTest, RejectsASaveWhileAnotherIsApplied) {
   ASSERT_TRUE(setup_.save(with_connections(30)).has_value());
   EXPECT_EQ(setup_.save(setup_.settings()).error().status, icd::Status::Conflict);
 }
 
-TEST_F(SetupTest, TellsWhyTheLastChangeIsNotInUseUntilOneIs) {
+TEST_F(SetupTest, TellsWhyTheLastChangeWasReverted) {
   EXPECT_EQ(setup_.trouble(), "");
   setup_.runs_with(store_.load().value(), "the last change was reverted: no room");
   EXPECT_EQ(setup_.trouble(), "the last change was reverted: no room");
@@ -65,7 +65,7 @@ TEST_F(SetupTest, TellsWhyTheLastChangeIsNotInUseUntilOneIs) {
   EXPECT_EQ(setup_.trouble(), "");
 }
 
-TEST_F(SetupTest, WarnsOfPagesThatMayPostWithoutAToken) {
+TEST_F(SetupTest, WarnsIfPagesMayPostWithoutAToken) {
   settings::Settings next = setup_.settings();
   next.team.origins = "http://10.0.0.20:3000";
   EXPECT_THAT(setup_.warnings(next), testing::IsEmpty()) << "all need a token";
@@ -75,7 +75,7 @@ TEST_F(SetupTest, WarnsOfPagesThatMayPostWithoutAToken) {
                                    testing::HasSubstr("pages of http://10.0.0.20:3000 may post reports")));
 }
 
-TEST_F(SetupTest, TellsOfATokenThatHasNotTheLengthOfTheCommandPosts) {  // ICD 4
+TEST_F(SetupTest, WarnsOfATokenOfUnusualLength) {  // ICD 4
   ASSERT_TRUE(store_.save_token("scoring", icd::BearerToken::parse("flux230{showroom")));
   ASSERT_TRUE(store_.save_token("mapping", icd::BearerToken::parse("flux230{showroo")));
   ASSERT_TRUE(store_.save_token("team", icd::BearerToken::parse("the-teams-own-token")));
@@ -90,7 +90,7 @@ TEST_F(SetupTest, TellsOfATokenThatHasNotTheLengthOfTheCommandPosts) {  // ICD 4
 
 // A save that fails halfway may leave its settings on the disk: whoever then asks for those that the box runs
 // with has them written, lest the next start has the others.
-TEST_F(SetupTest, WritesTheSettingsThatItRunsWithAfterASaveThatFailed) {
+TEST_F(SetupTest, SavesCurrentSettingsAfterAFailedSave) {
   std::filesystem::create_directories(saved_file() + "/in the way");
   EXPECT_EQ(setup_.save(with_connections(30)).error().status, icd::Status::ServiceUnavailable);
   std::filesystem::remove_all(saved_file());

@@ -46,14 +46,14 @@ class SpareStickTest : public testing::Test {
                     [this](std::string file) { taken_.push_back(std::move(file)); }};
 };
 
-TEST_F(SpareStickTest, IsNoneWhereAditSpareDoesNotRun) {
+TEST_F(SpareStickTest, IsAbsentIfAditSpareDoesNotRun) {
   EXPECT_FALSE(stick_.view());
   for (const auto& refused : {stick_.write(kName, "x"), stick_.take(kName)})
     EXPECT_THAT(why(refused), HasSubstr("adit-spare does not run"));
   EXPECT_FALSE(asked());
 }
 
-TEST_F(SpareStickTest, ShowsWhatIsOnItByTheNamesOfTheFiles) {
+TEST_F(SpareStickTest, ListsExportsByTheirFileNames) {
   say({.hindrance = "the stick is write-protected", .exports = {kName, "b.adit-spare"}});
   const auto view = stick_.view();
   ASSERT_TRUE(view);
@@ -64,7 +64,7 @@ TEST_F(SpareStickTest, ShowsWhatIsOnItByTheNamesOfTheFiles) {
   EXPECT_EQ(view->exports[1].box, "");
 }
 
-TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
+TEST_F(SpareStickTest, WritesTheFileBeforeTheRequest) {
   say({});
   ASSERT_TRUE(stick_.write(kName, "sealed"));
   EXPECT_EQ(host::read_file(state_ / spare::kForStickFile), "sealed");
@@ -81,13 +81,13 @@ TEST_F(SpareStickTest, HasTheWholeFileBesideTheRequest) {
   EXPECT_TRUE(taken_.empty());
 }
 
-TEST_F(SpareStickTest, IsNotWrittenWhereThatIsKnownToComeToNothing) {
+TEST_F(SpareStickTest, RejectsAWriteThatCannotSucceed) {
   say({.hindrance = "there is no stick in the box"});
   EXPECT_EQ(why(stick_.write(kName, "sealed")), "there is no stick in the box");
   EXPECT_FALSE(asked());
 }
 
-TEST_F(SpareStickTest, GivesWhatWasReadFromIt) {
+TEST_F(SpareStickTest, ReturnsTheReadFile) {
   say({.exports = {kName}});
   ASSERT_TRUE(stick_.take(kName));
   run_.put(spare::kFromStickFile, "sealed");
@@ -95,7 +95,7 @@ TEST_F(SpareStickTest, GivesWhatWasReadFromIt) {
   EXPECT_THAT(taken_, ElementsAre("sealed"));
 }
 
-TEST_F(SpareStickTest, SaysWhyItCameToNothing) {
+TEST_F(SpareStickTest, TellsWhyARequestFailed) {
   say({.exports = {kName}});
   ASSERT_TRUE(stick_.take(kName));
   answer({.refusal = "the file is not an export from Adit"});
@@ -107,7 +107,7 @@ TEST_F(SpareStickTest, SaysWhyItCameToNothing) {
   EXPECT_TRUE(taken_.empty());
 }
 
-TEST_F(SpareStickTest, IsAskedForNoNameThatLeadsElsewhere) {
+TEST_F(SpareStickTest, RejectsNamesOutsideTheStick) {
   say({});
   for (const char* const name : {"../../etc/shadow", "a/b.adit-spare", "passwd", ""})
     EXPECT_THAT(why(stick_.take(name)), HasSubstr("name: expected")) << name;

@@ -100,7 +100,7 @@ std::string why(const icd::Checked<void>& done) {
   return done ? "" : done.error().sentence;
 }
 
-TEST(SpareBox, IsExportedOnlyOnceItRests) {
+TEST(SpareBox, ExportsOnlyOnStandby) {
   Box box;
   EXPECT_THAT(box.exported().error().sentence, HasSubstr("not on standby"));
   ASSERT_TRUE(box.spare().stand_by());
@@ -112,7 +112,7 @@ TEST(SpareBox, IsExportedOnlyOnceItRests) {
   EXPECT_TRUE(box.exported());
 }
 
-TEST(SpareBox, GoesOnRestingUntilItIsWokenUp) {
+TEST(SpareBox, StaysOnStandbyUntilResumed) {
   Box box;
   ASSERT_TRUE(box.spare().stand_by());
   for (int life = 0; life < 3; ++life) {
@@ -125,7 +125,7 @@ TEST(SpareBox, GoesOnRestingUntilItIsWokenUp) {
   EXPECT_EQ(why(box.spare().resume()), "this box is not on standby");
 }
 
-TEST(SpareBox, AnotherRestHasAnotherCode) {
+TEST(SpareBox, EachStandbyHasItsOwnCode) {
   Box box;
   ASSERT_TRUE(box.spare().stand_by());
   box.restart();
@@ -137,7 +137,7 @@ TEST(SpareBox, AnotherRestHasAnotherCode) {
   EXPECT_NE(box.spare().spare().code, first);
 }
 
-TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
+TEST(SpareBox, ImportsTheExportThatItsCodeOpens) {
   Box first, second;
   ASSERT_TRUE(first.spare().stand_by());
   first.restart();
@@ -159,7 +159,7 @@ TEST(SpareBox, ASpareTakesInWhatItsCodeOpens) {
   EXPECT_EQ(why(second.spare().stand_by()), "this box is taking over just now");
 }
 
-TEST(SpareBox, IsExportedToTheStickOnlyOnceItRests) {
+TEST(SpareBox, ExportsToTheStickOnlyOnStandby) {
   Box box;
   box.say({});
   EXPECT_THAT(why(box.to_stick()), HasSubstr("not on standby"));
@@ -173,7 +173,7 @@ TEST(SpareBox, IsExportedToTheStickOnlyOnceItRests) {
   EXPECT_EQ(spare::read(*content)->about.name, "192.168.7.11");
 }
 
-TEST(SpareBox, TakesInWhatIsReadFromTheStickLikeWhatIsUploaded) {
+TEST(SpareBox, ImportsFromTheStickLikeAnUpload) {
   Box first, second;
   ASSERT_TRUE(first.spare().stand_by());
   first.restart();
@@ -195,7 +195,7 @@ TEST(SpareBox, DoesNotTakeOverFromItself) {
   EXPECT_THAT(why(box.opened(box.spare().spare().code)), HasSubstr("this box made the export itself"));
 }
 
-TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
+TEST(SpareBox, StaysOnStandbyIfTakeOverFails) {
   Box box;
   box.trouble = "the take-over is not finished: no space left";
   box.restart();
@@ -204,7 +204,7 @@ TEST(SpareBox, RestsWhereItCouldNotTakeOverYet) {
       << "it has nothing whole to hand on";
 }
 
-TEST(SpareBox, SaysNothingOfWhatAnEarlierRestWroteToTheStick) {
+TEST(SpareBox, HidesExportsOfAnEarlierStandby) {
   Box box;
   box.say({});
   ASSERT_TRUE(box.spare().stand_by());
@@ -228,7 +228,7 @@ spare::About about_of(Box& box) {
   return spare::read(*text)->about;
 }
 
-TEST(SpareBox, CountsItsRestsAndKeepsWhenTheyWere) {
+TEST(SpareBox, CountsStandbysAndRecordsTheirTimes) {
   Box box;
   for (const std::int64_t count : {1, 2}) {
     ASSERT_TRUE(box.spare().stand_by());
@@ -248,7 +248,7 @@ TEST(SpareBox, CountsItsRestsAndKeepsWhenTheyWere) {
   EXPECT_EQ(about_of(box).told_at, about_of(box).at);
 }
 
-TEST(SpareBox, IsNotWokenUpIfItsFileCannotBeReadAndIsIfThatIsDamaged) {
+TEST(SpareBox, ResumesWithADamagedButNotAnUnreadableFile) {
   Box box;
   ASSERT_TRUE(box.spare().stand_by());
   const std::filesystem::path file = box.state() / SpareFile::kName, elsewhere = box.state() / "elsewhere";
@@ -265,7 +265,7 @@ TEST(SpareBox, IsNotWokenUpIfItsFileCannotBeReadAndIsIfThatIsDamaged) {
   EXPECT_TRUE(box.spare().resume());
 }
 
-TEST(SpareFile, NamesWhatWasTakenOverFromBefore) {
+TEST(SpareFile, NamesEarlierTakeOvers) {
   const SpareFile file{.box = "own",
                        .taken = {{.box = "other", .at = 100}, {.box = "counts", .at = 100, .rest_count = 2}}};
   const auto hindrance = [&file](std::string box, double at, std::optional<std::int64_t> count = {}) {
@@ -280,7 +280,7 @@ TEST(SpareFile, NamesWhatWasTakenOverFromBefore) {
   EXPECT_THAT(hindrance("counts", 150, 1), HasSubstr("a later export of the same box"));
 }
 
-TEST(SpareFile, IsReadAsAnEarlierAditWroteIt) {
+TEST(SpareFile, ReadsFilesOfAnEarlierAdit) {
   const host::Folder folder;
   folder.put(SpareFile::kName, R"({"format":1,"box":"b","rest":{"code":"1","since":5,"expected":null},)"
                                R"("taken":[{"box":"other","at":100}]})");

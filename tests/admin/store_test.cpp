@@ -36,7 +36,7 @@ class StoreTest : public testing::Test {
   Store store_{given_ / "settings.json", given_.path(), state_.path()};
 };
 
-TEST_F(StoreTest, GivesWhatTheBoxWasGivenUntilSomethingIsSaved) {
+TEST_F(StoreTest, LoadsGivenSettingsUntilOthersAreSaved) {
   const auto given = store_.load().value();
   EXPECT_FALSE(given.saved);
   EXPECT_EQ(given.settings.team.connections, 20u);
@@ -48,7 +48,7 @@ TEST_F(StoreTest, GivesWhatTheBoxWasGivenUntilSomethingIsSaved) {
   EXPECT_EQ(saved.trouble, "");
 }
 
-TEST_F(StoreTest, TakesBackWhatWasSavedUntilItIsSettled) {
+TEST_F(StoreTest, RevertsToTheLastSettledSettings) {
   EXPECT_FALSE(store_.revert()) << "nothing is on trial";
   (void)store_.save(with_connections(30));
   store_.settle(with_connections(30));
@@ -60,14 +60,14 @@ TEST_F(StoreTest, TakesBackWhatWasSavedUntilItIsSettled) {
   EXPECT_FALSE(store_.revert());
 }
 
-TEST_F(StoreTest, TakesTheFirstBackToWhatTheBoxWasGiven) {
+TEST_F(StoreTest, RevertsTheFirstSaveToGivenSettings) {
   (void)store_.save(with_connections(30));
   EXPECT_TRUE(store_.revert());
   EXPECT_FALSE(store_.load().value().saved);
   EXPECT_EQ(connections(), 20u);
 }
 
-TEST_F(StoreTest, TakesEmptiedSettingsOfBeforeForNoneOfTheTeams) {
+TEST_F(StoreTest, ReportsEmptyPreviousSettingsAsDamaged) {
   (void)store_.save(with_connections(30));
   store_.settle(with_connections(30));
   (void)store_.save(with_connections(40));
@@ -76,7 +76,7 @@ TEST_F(StoreTest, TakesEmptiedSettingsOfBeforeForNoneOfTheTeams) {
   EXPECT_THAT(store_.load()->trouble, HasSubstr("the saved settings were set aside"));
 }
 
-TEST_F(StoreTest, SetsSavedSettingsAsideThatCannotBeUnderstood) {
+TEST_F(StoreTest, RenamesInvalidSavedSettings) {
   state_.put("settings.json", R"({"version": 1, "team": 7})");
   const auto loaded = store_.load().value();
   EXPECT_FALSE(loaded.saved);
@@ -86,7 +86,7 @@ TEST_F(StoreTest, SetsSavedSettingsAsideThatCannotBeUnderstood) {
   EXPECT_EQ(store_.load().value().trouble, "");
 }
 
-TEST_F(StoreTest, PassesOverWhatALaterAditSavedBeside) {
+TEST_F(StoreTest, IgnoresUnknownSettingsOfALaterAdit) {
   ASSERT_TRUE(store_.save(with_connections(30)));
   std::string text = host::read_file(state_ / "settings.json").value();
   text.insert(text.find('{') + 1, R"("beacons": {"port": 7}, )");
@@ -101,12 +101,12 @@ TEST_F(StoreTest, PassesOverWhatALaterAditSavedBeside) {
   EXPECT_EQ(host::read_file(state_ / "settings.json"), text) << "the later Adit finds it as it was";
 }
 
-TEST_F(StoreTest, SaysWhyNothingCanBeUsed) {
+TEST_F(StoreTest, TellsWhyNoSettingsCanBeUsed) {
   std::filesystem::remove(given_ / "settings.json");
   EXPECT_EQ(store_.load().error(), (given_ / "settings.json") + ": No such file or directory");
 }
 
-TEST_F(StoreTest, PrefersSavedTokensAndKeepsThemForAditdAlone) {
+TEST_F(StoreTest, PrefersSavedTokensReadableByAditdOnly) {
   ASSERT_TRUE(store_.save_token("scoring", icd::BearerToken::parse("saved-1")).has_value());
   EXPECT_EQ(store_.load()->secrets.token("scoring")->reveal(), "saved-1");
   struct stat status{};
@@ -119,7 +119,7 @@ TEST_F(StoreTest, PrefersSavedTokensAndKeepsThemForAditdAlone) {
   EXPECT_TRUE(store_.save_token("scoring", std::nullopt).has_value()) << "there is none, and that is well";
 }
 
-TEST_F(StoreTest, KnowsTheTokensOfEachCourse) {
+TEST_F(StoreTest, LoadsTheTokensOfEachCourse) {
   EXPECT_THAT(token_names(with_connections(30)),
               ElementsAre("scoring", "mapping", "team", "course.A.scoring", "course.A.mapping"));
   (void)store_.save(with_connections(30));
@@ -127,7 +127,7 @@ TEST_F(StoreTest, KnowsTheTokensOfEachCourse) {
   EXPECT_EQ(store_.load()->secrets.token("course.A.mapping")->reveal(), "of-a");
 }
 
-TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
+TEST_F(StoreTest, SettlingDeletesTokensOfRemovedCourses) {
   (void)store_.save_token("course.A.mapping", icd::BearerToken::parse("of-a"));
   (void)store_.save_token("course.B.mapping", icd::BearerToken::parse("of-b"));
   (void)store_.save_token("team", icd::BearerToken::parse("team-1"));
@@ -138,7 +138,7 @@ TEST_F(StoreTest, RemovesTheTokensOfCoursesThatAreNoMoreOnceThatIsSettled) {
   EXPECT_TRUE(kept("secrets/course.A.mapping.token") && kept("secrets/team.token"));
 }
 
-TEST_F(StoreTest, LeavesAnUnreadableFileAsItIsAndRevertsNothingForIt) {
+TEST_F(StoreTest, UnreadableFilesAreKeptAndPreventARevert) {
   (void)store_.save(with_connections(30));
   store_.settle(with_connections(30));
   (void)store_.save(with_connections(40));
@@ -165,7 +165,7 @@ TEST_F(StoreTest, LeavesAnUnreadableFileAsItIsAndRevertsNothingForIt) {
   EXPECT_TRUE(store_.revert());
 }
 
-TEST_F(StoreTest, SaysWhichSavedTokensAreDamagedAndKeepsTheirFiles) {
+TEST_F(StoreTest, NamesDamagedTokensAndKeepsTheirFiles) {
   for (const char* const name : {"mapping", "scoring"}) {
     (void)store_.save_token(name, icd::BearerToken::parse("saved-1"));
     state_.put("secrets/" + std::string(name) + ".token", "saved 1");
@@ -176,12 +176,12 @@ TEST_F(StoreTest, SaysWhichSavedTokensAreDamagedAndKeepsTheirFiles) {
   EXPECT_TRUE(kept("secrets/scoring.token"));
 }
 
-TEST_F(StoreTest, SaysThatItCannotBeWritten) {
+TEST_F(StoreTest, ReportsAWriteError) {
   Store nowhere(given_ / "settings.json", given_.path(), state_ / "none");
   EXPECT_THAT(nowhere.save(with_connections(30)).error(), HasSubstr("No such file or directory"));
 }
 
-TEST_F(StoreTest, ForgetsAllThatWasSavedAndNothingElse) {
+TEST_F(StoreTest, ForgetDeletesOnlySavedFiles) {
   state_.put("ledger", "reports");
   (void)store_.save(with_connections(30));
   (void)store_.save_token("scoring", icd::BearerToken::parse("saved-1"));

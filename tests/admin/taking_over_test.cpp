@@ -58,12 +58,12 @@ class TakingOverTest : public testing::Test {
   loop::Loop loop_;
 };
 
-TEST_F(TakingOverTest, DoesNothingUnlessItWasBegun) {
+TEST_F(TakingOverTest, DoesNothingUnlessBegun) {
   EXPECT_EQ(taking_over_.finish(loop_), false);
   EXPECT_FALSE(fs::exists(state_ / "ledger"));
 }
 
-TEST_F(TakingOverTest, TakesReportsSettingsTokensAndStampsOnce) {
+TEST_F(TakingOverTest, ImportsReportsSettingsTokensAndStampsOnce) {
   store_.save_token("mapping", icd::BearerToken::parse("the-spare-s-own"));
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   EXPECT_FALSE(fs::exists(state_ / "ledger")) << "nothing is changed while others use it";
@@ -80,7 +80,7 @@ TEST_F(TakingOverTest, TakesReportsSettingsTokensAndStampsOnce) {
   EXPECT_FALSE(fs::exists(state_ / "../../escaped.token"));
 }
 
-TEST_F(TakingOverTest, KeepsHowMuchTheLedgerHereHad) {
+TEST_F(TakingOverTest, RecordsTheSizeOfTheOldLedger) {
   const dispatch::Report report = answered(1);
   auto here = ledger::Ledger::open(state_.path());
   ASSERT_TRUE(here->write({&report, 1}));
@@ -93,7 +93,7 @@ TEST_F(TakingOverTest, KeepsHowMuchTheLedgerHereHad) {
   EXPECT_EQ(kept->ledger.log, 1U);
 }
 
-TEST_F(TakingOverTest, IsDoneAgainWhereThePowerWentBeforeItsLastStep) {
+TEST_F(TakingOverTest, RepeatsAfterAPowerCut) {
   const std::string text = spare::write(content());
   for (int cut = 0; cut < 3; ++cut) {
     ASSERT_TRUE(taking_over_.begin(text));
@@ -102,14 +102,14 @@ TEST_F(TakingOverTest, IsDoneAgainWhereThePowerWentBeforeItsLastStep) {
   }
 }
 
-TEST_F(TakingOverTest, EndsTheRestOfABoxThatTakesOver) {
+TEST_F(TakingOverTest, EndsStandby) {
   ASSERT_TRUE((SpareFile{.box = "b", .rest = Rest{.code = "1", .since = 5}}.write(state_.path())));
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   ASSERT_EQ(taking_over_.finish(loop_), true);
   EXPECT_FALSE(SpareFile::read(state_.path())->rest);
 }
 
-TEST_F(TakingOverTest, IsNotFinishedWhereItsLedgerIsNoneAndSaysSo) {
+TEST_F(TakingOverTest, RejectsAnInvalidLedger) {
   spare::Content other = content();
   other.ledger = "no ledger";
   ASSERT_TRUE(taking_over_.begin(spare::write(other)));
@@ -123,7 +123,7 @@ TEST_F(TakingOverTest, IsNotFinishedWhereItsLedgerIsNoneAndSaysSo) {
 
 /// What the Command Post said last at the first box is as old here as it was there, however the two clocks
 /// stand to each other: silence that nobody saw makes no new run.
-TEST_F(TakingOverTest, IsNotFinishedWhileTheListOfUsedExportsCannotBeRead) {
+TEST_F(TakingOverTest, FailsWhileUsedExportsCannotBeRead) {
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
   fs::create_directory(fs::path(state_.path()) / SpareFile::kName);
   EXPECT_FALSE(taking_over_.finish(loop_));
@@ -132,7 +132,7 @@ TEST_F(TakingOverTest, IsNotFinishedWhileTheListOfUsedExportsCannotBeRead) {
   EXPECT_THAT(reports(), SizeIs(2));
 }
 
-TEST_F(TakingOverTest, CountsTheTimeOfTheSwapOnlyWhereBothTimesOfDayAreTold) {
+TEST_F(TakingOverTest, CountsTheSwapTimeOnlyIfBothClocksAreSet) {
   for (const bool are_told : {false, true}) {
     const host::Folder folder;
     auto there = ledger::Ledger::open(folder.path());
@@ -153,7 +153,7 @@ TEST_F(TakingOverTest, CountsTheTimeOfTheSwapOnlyWhereBothTimesOfDayAreTold) {
   }
 }
 
-TEST_F(TakingOverTest, IsNotFinishedWhileTheStampsCannotBeRead) {
+TEST_F(TakingOverTest, FailsWhileStampsCannotBeRead) {
   const std::string file = state_ / forward::StampFloor::kFile;
   ASSERT_EQ(mkfifo(file.c_str(), 0600), 0);
   ASSERT_TRUE(taking_over_.begin(spare::write(content())));
@@ -161,13 +161,13 @@ TEST_F(TakingOverTest, IsNotFinishedWhileTheStampsCannotBeRead) {
   EXPECT_TRUE(fs::is_fifo(file));
 }
 
-TEST_F(TakingOverTest, SaysWhyItCannotReadWhetherItWasBegun) {
+TEST_F(TakingOverTest, TellsWhyItsRequestCannotBeRead) {
   fs::create_directory(state_ / TakingOver::kFile);
   EXPECT_FALSE(taking_over_.finish(loop_));
   EXPECT_EQ(taking_over_.unread(), (state_ / TakingOver::kFile) + ": is not a regular file");
 }
 
-TEST_F(TakingOverTest, KeepsWhatIsOfThisMachine) {
+TEST_F(TakingOverTest, KeepsSettingsOfThisMachine) {
   spare::Content other = content();
   other.settings =
       R"({"version":1,"command_post":{"scoring":{"address":"10.100.2.200","port":8000},)"
@@ -204,7 +204,7 @@ class WithoutTeamInterfaceTest : public TakingOverTest {
   }
 };
 
-TEST_F(WithoutTeamInterfaceTest, ListensAtTheFirstBoxesPortsAtItsOwnAddresses) {
+TEST_F(WithoutTeamInterfaceTest, ListensAtOwnAddressesWithTheOtherBoxsPorts) {
   begin(settings("9000", R"({"address":"10.9.9.9","port":80})"));
   ASSERT_EQ(taking_over_.finish(loop_), true);
   EXPECT_THAT(store_.load()->settings.team.listen,
@@ -212,7 +212,7 @@ TEST_F(WithoutTeamInterfaceTest, ListensAtTheFirstBoxesPortsAtItsOwnAddresses) {
       << "it cannot start at an address of the first box, and would return to its own settings";
 }
 
-TEST_F(WithoutTeamInterfaceTest, IsNotFinishedIfItWouldPostToItself) {
+TEST_F(WithoutTeamInterfaceTest, RejectsSettingsThatPostToItself) {
   begin(settings("8000", R"({"address":"10.9.9.9","port":8000})"));
   const auto done = taking_over_.finish(loop_);
   ASSERT_FALSE(done);
@@ -220,13 +220,13 @@ TEST_F(WithoutTeamInterfaceTest, IsNotFinishedIfItWouldPostToItself) {
   EXPECT_EQ(store_.load()->settings.team.listen.front().port, 8001);
 }
 
-TEST_F(TakingOverTest, NamesTheSettingsThatItLeavesOut) {
+TEST_F(TakingOverTest, NamesOmittedSettings) {
   spare::Content other = content();
   other.settings.insert(other.settings.find("\"version\""), "\"later\": 1, ");
   EXPECT_EQ(taking_over_.check(other)->passed_over, std::vector<std::string>{"later"});
 }
 
-TEST_F(TakingOverTest, RefusesSettingsThatCannotBeUsedHere) {
+TEST_F(TakingOverTest, RejectsUnusableSettings) {
   spare::Content other = content();
   other.settings = R"({"version": 9})";
   const auto checked = taking_over_.check(other);

@@ -64,13 +64,13 @@ class UpdatesTest : public testing::Test {
   Updates updates_{loop_, writer_, state_.path(), run_.path(), [this] { return under_way_; }};
 };
 
-TEST_F(UpdatesTest, LeaveNothingOfAnUploadThatAPowerCutBrokeOff) {
+TEST_F(UpdatesTest, DeleteAnInterruptedUploadAtStart) {
   const std::string half = state_.put(std::string(update::kBundleFile) + ".part", "half of a bundle");
   const Updates after(loop_, writer_, state_.path(), run_.path(), [] { return ""; });
   EXPECT_FALSE(fs::exists(half));
 }
 
-TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
+TEST_F(UpdatesTest, ShowTheStatusOfAditUpdate) {
   say({.running = {"adit-board", "0.1.0", "A", "B"},
        .refusal = "the update is older",
        .doing = "installing",
@@ -85,7 +85,7 @@ TEST_F(UpdatesTest, TellWhatAditUpdateTells) {
   EXPECT_TRUE(updates_.running());
 }
 
-TEST_F(UpdatesTest, SayWhereThereAreNone) {
+TEST_F(UpdatesTest, ReportIfAditUpdateIsMissing) {
   fs::remove(run_ / host::kStatusFile);
   EXPECT_FALSE(updates_.update().managed || updates_.update().runs_here);
   EXPECT_THAT(updates_.update().why, HasSubstr("adit-update does not run here"));
@@ -100,7 +100,7 @@ TEST_F(UpdatesTest, SayWhereThereAreNone) {
   EXPECT_FALSE(asked());
 }
 
-TEST_F(UpdatesTest, ShowTheNewerVersionThatAptHas) {
+TEST_F(UpdatesTest, ShowANewerVersionFromApt) {
   EXPECT_EQ(updates_.update().newer, std::nullopt);
   EXPECT_EQ(updates_.update().newer_why, "") << "no apt here";
   const std::string file = run_.put(update::kNewerFile, "\n");
@@ -120,7 +120,7 @@ TEST_F(UpdatesTest, ShowTheNewerVersionThatAptHas) {
   EXPECT_THAT(updates_.update().newer_why, HasSubstr(file));
 }
 
-TEST_F(UpdatesTest, LeaveAWholeBundleAndAskForIt) {
+TEST_F(UpdatesTest, StoreAWholeBundleAndRequestIt) {
   std::string bundle;
   for (int i = 0; i < 300'000; ++i) bundle += std::to_string(i);
   ASSERT_TRUE(upload(bundle, bundle.size(), true));
@@ -133,7 +133,7 @@ TEST_F(UpdatesTest, LeaveAWholeBundleAndAskForIt) {
   EXPECT_FALSE(fs::exists(state_ / "update.raucb.part"));
 }
 
-TEST_F(UpdatesTest, TakeOneAtATime) {
+TEST_F(UpdatesTest, AcceptOneAtATime) {
   auto first = updates_.receive(100, false, [] {});
   ASSERT_TRUE(first);
   EXPECT_EQ(updates_.update().doing, "receiving");
@@ -149,14 +149,14 @@ TEST_F(UpdatesTest, TakeOneAtATime) {
   EXPECT_TRUE(updates_.receive(100, false, [] {}));
 }
 
-TEST_F(UpdatesTest, AskForNothingWhereABundleCameShort) {
+TEST_F(UpdatesTest, RejectATruncatedBundle) {
   EXPECT_THAT(upload("abc", 5).error().sentence, HasSubstr("got 3 of 5 bytes"));
   EXPECT_FALSE(asked());
   EXPECT_TRUE(fs::is_empty(state_.path()));
   EXPECT_EQ(updates_.update().doing, "");
 }
 
-TEST_F(UpdatesTest, RefuseWhatTheDiskHasNoRoomFor) {
+TEST_F(UpdatesTest, RejectABundleLargerThanTheDisk) {
   const std::uint64_t free = fs::space(state_.path()).available;
   const auto refused = updates_.receive(free, false, [] {});
   ASSERT_FALSE(refused);
@@ -164,7 +164,7 @@ TEST_F(UpdatesTest, RefuseWhatTheDiskHasNoRoomFor) {
   EXPECT_THAT(refused.error().sentence, HasSubstr("the disk has room for"));
 }
 
-TEST_F(UpdatesTest, SayThatABundleCannotBeWritten) {
+TEST_F(UpdatesTest, ReportAWriteError) {
   fs::create_directory(state_ / "update.raucb.part");
   EXPECT_THAT(upload("abc", 3).error().sentence, HasSubstr("cannot write the bundle"));
   EXPECT_FALSE(asked());
@@ -190,7 +190,7 @@ class NoLargerFiles {
   void (*before_)(int);
 };
 
-TEST_F(UpdatesTest, GiveTheRoomBackAtOnceWhereTheDiskIsFullBeforeTheEnd) {
+TEST_F(UpdatesTest, FreeTheDiskAtOnceIfItFillsUp) {
   const std::string part = state_ / "update.raucb.part";
   const NoLargerFiles full(500'000);
   bool may_go_on = true;
@@ -210,7 +210,7 @@ TEST_F(UpdatesTest, GiveTheRoomBackAtOnceWhereTheDiskIsFullBeforeTheEnd) {
   EXPECT_FALSE(asked());
 }
 
-TEST_F(UpdatesTest, AreOverOnceAditUpdateHasAnswered) {
+TEST_F(UpdatesTest, EndWithTheAnswerOfAditUpdate) {
   ASSERT_TRUE(updates_.install_from_stick(true));
   const auto request = asked();
   ASSERT_TRUE(request);
@@ -222,7 +222,7 @@ TEST_F(UpdatesTest, AreOverOnceAditUpdateHasAnswered) {
   EXPECT_EQ(updates_.update().refusal, "no stick has an update");
 }
 
-TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {
+TEST_F(UpdatesTest, RestartDuringAReportOnlyIfConfirmed) {
   under_way_ = "report 7 is being sent";
   EXPECT_EQ(updates_.restart(false).error().sentence, "report 7 is being sent");
   EXPECT_FALSE(asked());
@@ -231,7 +231,7 @@ TEST_F(UpdatesTest, RestartOnlyOnTheOperatorsWordWhileAReportIsUnderWay) {
   EXPECT_EQ(updates_.update().doing, "restarting");
 }
 
-TEST_F(UpdatesTest, GoBackOrStayWhereAnotherSlotRunsThanWasGoodLast) {
+TEST_F(UpdatesTest, OfferGoBackAndStayInAnUnexpectedSlot) {
   EXPECT_EQ(updates_.go_back(true).error().sentence, update::kNoStray);
   EXPECT_EQ(updates_.stay().error().status, icd::Status::Conflict);
   EXPECT_FALSE(asked());
@@ -245,13 +245,13 @@ TEST_F(UpdatesTest, GoBackOrStayWhereAnotherSlotRunsThanWasGoodLast) {
   EXPECT_EQ(updates_.update().doing, "restarting");
 }
 
-TEST_F(UpdatesTest, Stay) {
+TEST_F(UpdatesTest, RequestToStayInTheSlot) {
   say({.stray = "slot B runs, with 0.1.0"});
   ASSERT_TRUE(updates_.stay());
   EXPECT_EQ(asked()->what, update::Request::What::Stay);
 }
 
-TEST_F(UpdatesTest, TakeNoOtherWhileWhatRunsIsOnTrial) {
+TEST_F(UpdatesTest, RejectAnotherDuringATrial) {
   say({.running = {"adit-board", "0.2.0", "B", "A"}, .trial = true});
   for (const auto& refused : {upload("x", 1), updates_.install_from_stick(false)}) {
     ASSERT_FALSE(refused);
@@ -262,7 +262,7 @@ TEST_F(UpdatesTest, TakeNoOtherWhileWhatRunsIsOnTrial) {
   EXPECT_TRUE(updates_.restart(false));
 }
 
-TEST_F(UpdatesTest, RestartWhereNothingIsUnderWay) {
+TEST_F(UpdatesTest, RestartIfNothingIsInFlight) {
   EXPECT_TRUE(updates_.restart(false));
 }
 

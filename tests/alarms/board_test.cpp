@@ -25,7 +25,7 @@ auto id_is(const char* id) {
   return Field(&Alarm::id, id);
 }
 
-TEST(Board, ShowsBadBeforeAskBeforeWaitThenTheOldestFirst) {
+TEST(Board, SortsBySeverityThenByAge) {
   Condition older = kSilent;
   older.id = "robot_silent:uav4";
   older.since = 60;
@@ -34,7 +34,7 @@ TEST(Board, ShowsBadBeforeAskBeforeWaitThenTheOldestFirst) {
                           id_is("reports_left")));
 }
 
-TEST(Board, KnowsSinceWhenItIsSo) {
+TEST(Board, RecordsTheStartOfAnAlarm) {
   Board board;
   board.take({kFew, kSilent}, 100);
   const auto shown = board.shown({kFew, kSilent}, 160);
@@ -42,7 +42,7 @@ TEST(Board, KnowsSinceWhenItIsSo) {
   EXPECT_EQ(shown[1].since, 100) << "as it was found";
 }
 
-TEST(Board, BeginsAnAlarmAnewThatIsOfAnotherSeverity) {
+TEST(Board, RestartsAnAlarmOfAnotherSeverity) {
   Board board;
   board.take({kFew}, 100);
   Condition none = kFew;
@@ -52,7 +52,7 @@ TEST(Board, BeginsAnAlarmAnewThatIsOfAnotherSeverity) {
   EXPECT_EQ(board.shown({none}, 164)[0].since, 160) << "few were left since 100, none since 160";
 }
 
-TEST(Board, RemembersTheLastThatWent) {
+TEST(Board, RemembersTheLastEndedAlarms) {
   Board board;
   board.take({kSilent}, 100);
   board.take({}, 111);
@@ -70,7 +70,7 @@ TEST(Board, RemembersTheLastThatWent) {
   EXPECT_EQ(board.over().front().until, 299) << "the newest first";
 }
 
-TEST(Board, KeepsWhatIsAcknowledgedQuietWhileItStaysAsItIs) {
+TEST(Board, AcknowledgedAlarmStaysQuietWhileUnchanged) {
   Board board;
   board.take({kSilent, kHeld}, 100);
   ASSERT_TRUE(board.acknowledge(kSilent.id, 100));
@@ -88,7 +88,7 @@ Board acknowledged_on(const Condition& seen) {
   return board;
 }
 
-TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
+TEST(Board, AcknowledgedAlarmReturnsIfWorseOrRepeated) {
   Condition few = kFew;
   few.degree = 2;
   Board board = acknowledged_on(few);
@@ -107,7 +107,7 @@ TEST(Board, TellsOfWhatGotWorseOrCameAgain) {
   EXPECT_FALSE(board.shown({kSilent}, 106)[0].acknowledged) << "it came again";
 }
 
-TEST(Board, CountsFromTheLowestDegreeSinceItWasAcknowledged) {
+TEST(Board, ComparesWithTheLowestDegreeSinceAcknowledgement) {
   Condition few = kFew;
   few.degree = 5;
   Board board = acknowledged_on(few);
@@ -118,7 +118,7 @@ TEST(Board, CountsFromTheLowestDegreeSinceItWasAcknowledged) {
   EXPECT_FALSE(board.shown({few}, 102)[0].acknowledged) << "four of them were not seen";
 }
 
-TEST(Board, AcknowledgesNothingThatIsNotThere) {
+TEST(Board, RejectsAcknowledgementOfAnAbsentAlarm) {
   Board board;
   EXPECT_FALSE(board.acknowledge("robot_silent:uav5", 100));
 }
@@ -139,7 +139,7 @@ bool is_quiet(Board& board, const Condition& condition, double now) {
   return board.shown({condition}, now).front().acknowledged;
 }
 
-TEST(Board, KnowsAfterARestartWhatWasAcknowledgedAndStillIsSo) {
+TEST(Board, AcknowledgementSurvivesARestart) {
   Board board = after_a_restart(kHeld, 130);
   board.take({}, 131);
   EXPECT_EQ(board.acknowledged().size(), 1u) << "it may need some seconds to be found again";
@@ -152,7 +152,7 @@ TEST(Board, KnowsAfterARestartWhatWasAcknowledgedAndStillIsSo) {
   EXPECT_FALSE(is_quiet(board, kHeld, 5002)) << "it came again";
 }
 
-TEST(Board, HidesNothingNewByWhatWasAcknowledgedBeforeARestart) {
+TEST(Board, OldAcknowledgementHidesNoNewAlarm) {
   Condition few = kFew;
   few.degree = 2;
   Condition worse = few, bad = few, otherwise = few, another = few;
@@ -179,7 +179,7 @@ TEST(Board, HidesNothingNewByWhatWasAcknowledgedBeforeARestart) {
   EXPECT_FALSE(is_quiet(went, few, 133)) << "it came again";
 }
 
-TEST(Board, WaitsUntilAnAlarmThatGrowsIsWhatItWas) {
+TEST(Board, AcknowledgementWaitsForTheSameAlarmAfterARestart) {
   Condition both{.id = "command_post_unreachable", .headline = {"Command Post", "unreachable"}, .degree = 2};
   Condition one = both;
   one.headline.subject = "Scoring";
@@ -189,7 +189,7 @@ TEST(Board, WaitsUntilAnAlarmThatGrowsIsWhatItWas) {
   EXPECT_TRUE(is_quiet(board, both, 134));
 }
 
-TEST(Acknowledged, AreBoundedHoweverManyThereAre) {
+TEST(Acknowledged, AreBounded) {
   Board board;
   std::vector<Condition> many;
   for (int i = 0; i < 100; ++i)
@@ -201,7 +201,7 @@ TEST(Acknowledged, AreBoundedHoweverManyThereAre) {
   EXPECT_LT(write_acknowledged(board.acknowledged()).size(), 100'000u);
 }
 
-TEST(Acknowledged, AreNoneWhereTheFileIsNotWhole) {
+TEST(Acknowledged, RejectATruncatedFile) {
   const std::string good = write_acknowledged(
       {{.id = "messages_rejected", .severity = Severity::Ask, .degree = 2, .what = "2 are", .at = 7}});
   ASSERT_EQ(read_acknowledged(good).value().front().degree, 2u);
@@ -210,7 +210,7 @@ TEST(Acknowledged, AreNoneWhereTheFileIsNotWhole) {
   EXPECT_FALSE(read_acknowledged(R"({"version":1,"acknowledged":[{"id":7}]})"));
 }
 
-TEST(Words, SayAgesAndThePast) {
+TEST(Words, ShowAgesAndPastForms) {
   EXPECT_EQ(age_text(59.9), "59 s");
   EXPECT_EQ(age_text(-1), "0 s");
   EXPECT_EQ(age_text(720), "12 min");
@@ -221,7 +221,7 @@ TEST(Words, SayAgesAndThePast) {
   EXPECT_EQ((Headline{"All 20 robots", "silent", true}.past()), "All 20 robots were silent");
 }
 
-TEST(Board, ShowsWhatLastsAsLongAsItDidWhereTheTimeOfDayIsSet) {
+TEST(Board, DurationsSurviveAClockStep) {
   Board board;
   board.take({kHeld, kFew}, 100);
   board.take({kFew}, 110);

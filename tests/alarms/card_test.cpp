@@ -160,7 +160,7 @@ std::set<std::string> kinds_in_readme() {
   return kinds;
 }
 
-TEST(AlarmsCard, HasEachConditionInItsWords) {
+TEST(AlarmsCard, NamesEachCondition) {
   const std::string card = text_of("board/card.html");
   for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
     const std::string part = rows(static_cast<Side>(side));
@@ -185,7 +185,7 @@ std::string troubles(Side side) {
   return cells;
 }
 
-TEST(AlarmsTroubles, HaveARowForEachKindInItsWords) {
+TEST(AlarmsTroubles, HaveARowForEachKind) {
   const std::string page = text_of("firmware/rules/alarms/TROUBLE.md");
   for (std::size_t side = 0; side < std::size(kSideWords); ++side) {
     const std::string title = std::string("\n<!-- ") + std::string(kSideWords[side]) + " -->\n";
@@ -201,7 +201,7 @@ TEST(AlarmsTroubles, HaveARowForEachKindInItsWords) {
   }
 }
 
-TEST(AlarmsCard, LeavesNoneOut) {
+TEST(AlarmsCard, IsComplete) {
   std::set<std::string> made;
   for (const Condition& each : all()) made.insert(kind_of(each.id));
   std::set<std::string> told = kinds_in_readme();

@@ -172,7 +172,7 @@ const ConditionCase kConditionCases[] = {
      [](Facts& facts) { facts.cables[0].carrier = {}; }},
 };
 
-TEST(Conditions, AreNoneWhereAllIsWell) {
+TEST(Conditions, AreEmptyIfAllIsWell) {
   EXPECT_THAT(conditions_of(well()), IsEmpty());
   EXPECT_THAT(conditions_of({}), IsEmpty()) << "nothing is known yet";
   Facts used = well();
@@ -180,7 +180,7 @@ TEST(Conditions, AreNoneWhereAllIsWell) {
   EXPECT_THAT(conditions_of(used), IsEmpty());
 }
 
-TEST(Conditions, AreEachFoundAloneAndSayWhatToDo) {
+TEST(Conditions, AreEachFoundAndSayWhatToDo) {
   for (const ConditionCase& each : kConditionCases) {
     Facts facts = well();
     each.make(facts);
@@ -196,7 +196,7 @@ TEST(Conditions, AreEachFoundAloneAndSayWhatToDo) {
   }
 }
 
-TEST(Conditions, AreHeadlinesOfAtMostSevenWords) {
+TEST(Conditions, HaveHeadlinesOfAtMostSevenWords) {
   for (const ConditionCase& each : kConditionCases) {
     const std::string what = each.what;
     EXPECT_LE(std::ranges::count(what, ' '), 6) << what;
@@ -216,7 +216,7 @@ Facts busy() {
   return facts;
 }
 
-TEST(Causes, HideWhatFollowsFromThem) {
+TEST(Causes, HideTheirConsequences) {
   Facts facts = busy();
   both_down<PostTrouble::Silent>(facts);
   const auto found = conditions_of(facts);
@@ -224,7 +224,7 @@ TEST(Causes, HideWhatFollowsFromThem) {
   EXPECT_EQ(found[0].hides, 22u) << "20 maps and 2 reports";
 }
 
-TEST(Causes, AreTheCableBeforeTheEndpoint) {
+TEST(Causes, PreferTheCableToTheEndpoint) {
   Facts facts = busy();
   both_down<PostTrouble::Unreachable>(facts);
   facts.cables[1].carrier = false;
@@ -233,7 +233,7 @@ TEST(Causes, AreTheCableBeforeTheEndpoint) {
   EXPECT_EQ(found[0].hides, 23u);
 }
 
-TEST(Causes, AreTheExchangedCablesBeforeBothEndpointsAndTheRobots) {
+TEST(Causes, PreferExchangedCablesToEndpointsAndRobots) {
   for (const auto trouble : {PostTrouble::Unreachable, PostTrouble::Silent, PostTrouble::NoToken}) {
     Facts facts = busy();
     for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
@@ -248,7 +248,7 @@ TEST(Causes, AreTheExchangedCablesBeforeBothEndpointsAndTheRobots) {
   }
 }
 
-TEST(Causes, AreNoExchangedCablesWhileAnEndpointIsHeardAtItsOwnPort) {
+TEST(Causes, ExcludeExchangedCablesWhileAnEndpointAnswers) {
   for (const auto trouble : {PostTrouble::None, PostTrouble::Refusing, PostTrouble::Foreign,
                              PostTrouble::Failing, PostTrouble::Throttling}) {
     Facts facts = well();
@@ -259,7 +259,7 @@ TEST(Causes, AreNoExchangedCablesWhileAnEndpointIsHeardAtItsOwnPort) {
   }
 }
 
-TEST(Causes, OfOneEndpointHideNothingOfTheOther) {
+TEST(Causes, OfOneEndpointDoNotHideTheOther) {
   Facts facts = busy();
   down(facts, PostTrouble::Unreachable, 0);
   EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("command_post_unreachable", "maps_behind"));
@@ -269,7 +269,7 @@ TEST(Causes, OfOneEndpointHideNothingOfTheOther) {
               ElementsAre("command_post_failing", "report_in_doubt:1", "report_in_doubt:2"));
 }
 
-TEST(Causes, NeverHideWhatOnlyTheOperatorDecides) {
+TEST(Causes, DoNotHideDecisionsOfTheOperator) {
   Facts facts = well();
   both_down<PostTrouble::Silent>(facts);
   facts.cables[1].carrier = false;
@@ -280,7 +280,7 @@ TEST(Causes, NeverHideWhatOnlyTheOperatorDecides) {
                                                         "reports_left", "messages_rejected"));
 }
 
-TEST(Causes, OfThrottlingHideNothing) {
+TEST(Causes, ThrottlingHidesNothing) {
   Facts facts = well();
   down(facts, PostTrouble::Throttling, 1);
   facts.streams[0].behind = 30;
@@ -296,7 +296,7 @@ TEST(Robots, AreNotBlamedWhileTheEndpointIsDown) {
   EXPECT_EQ(found[0].hides, 20u);
 }
 
-TEST(Robots, ThatAreAllSilentAreOneCondition) {
+TEST(Robots, AllSilentAreOneCondition) {
   Facts facts = well(20);
   for (auto& [name, robot] : facts.robots) robot = {.gap = 1, .quiet = 60, .silent = true};
   const auto found = conditions_of(facts);
@@ -308,14 +308,14 @@ TEST(Robots, ThatAreAllSilentAreOneCondition) {
   EXPECT_EQ(conditions_of(facts).size(), 19u);
 }
 
-TEST(Robots, AreSilentBecauseTheTeamsCableIsOut) {
+TEST(Robots, AreNotBlamedWhileTheTeamCableIsOut) {
   Facts facts = well(2);
   facts.robots["uav1"].silent = true;
   facts.cables[0].carrier = false;
   EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("cable_out:team"));
 }
 
-TEST(Maps, OfManyThatAreBehindAreOneCondition) {
+TEST(Maps, OfManyRobotsBehindAreOneCondition) {
   Facts facts = well(6);
   for (Stream& stream : facts.streams) {
     if (stream.is_map()) stream.behind = 30;
@@ -325,7 +325,7 @@ TEST(Maps, OfManyThatAreBehindAreOneCondition) {
   EXPECT_EQ(found[0].headline.now(), "Maps of 6 robots are behind");
 }
 
-TEST(Maps, AreNotBehindForTakingTurns) {
+TEST(Maps, AreNotBehindWhileTakingTurns) {
   Facts facts = well(6);
   facts.turn = 20;
   for (Stream& stream : facts.streams) {
@@ -334,7 +334,7 @@ TEST(Maps, AreNotBehindForTakingTurns) {
   EXPECT_THAT(conditions_of(facts), IsEmpty());
 }
 
-TEST(Maps, AreNotBehindForWhatTheEndpointDidNotTake) {
+TEST(Maps, AreNotBehindJustAfterAnOutage) {
   Facts facts = well(1);
   facts.streams[0].behind = 300;
   facts.endpoints[1].well_for = 20;
@@ -349,7 +349,7 @@ TEST(Maps, AreNotBehindForWhatTheEndpointDidNotTake) {
   EXPECT_THAT(ids_of(conditions_of(facts)), ElementsAre("map_behind:uav1")) << "scoring takes no maps";
 }
 
-TEST(Queue, NamesThreeWhoAreRefusedForAMinute) {
+TEST(Queue, NamesThreeRejectedClientsForAMinute) {
   Facts facts = well();
   facts.streams = {{.kind = "cloud", .no_room = 61},
                    {.kind = "cloud", .robot = "r1", .no_room = 60},
@@ -360,7 +360,7 @@ TEST(Queue, NamesThreeWhoAreRefusedForAMinute) {
   EXPECT_THAT(conditions_of(facts)[0].why, HasSubstr("r1 cloud, markers, g0 grid and 8 more"));
 }
 
-TEST(ReportsToDecide, AreToldOneByOneUpToSoMany) {
+TEST(ReportsToDecide, AreListedUpToALimit) {
   Facts facts = well();
   for (std::int64_t number = 1; number <= 12; ++number)
     facts.reports.push_back({.number = number, .is = ReportFact::Is::Held, .note = "all are"});
@@ -370,14 +370,14 @@ TEST(ReportsToDecide, AreToldOneByOneUpToSoMany) {
   EXPECT_EQ(find(found, "report_held:more").degree, 2u);
 }
 
-TEST(ReportsToDecide, WaitForAditWhileItAsks) {
+TEST(ReportsToDecide, WaitWhileAditAsks) {
   Facts facts = well();
   facts.reports.push_back(
       {.number = 3, .is = ReportFact::Is::InDoubt, .asking = true, .note = "no answer came"});
   EXPECT_EQ(conditions_of(facts)[0].severity, Severity::Wait);
 }
 
-TEST(RejectedMessages, GetWorseByEachNewOneAlsoWhenNoMoreAreKept) {
+TEST(RejectedMessages, GetWorseByEachNewOneEvenIfFull) {
   Facts facts = well();
   facts.messages_rejected = 100;
   facts.newest_rejected = 100;

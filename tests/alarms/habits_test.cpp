@@ -28,19 +28,19 @@ class HabitsTest : public testing::Test {
   std::uint64_t count_ = 1;
 };
 
-TEST_F(HabitsTest, BlameARobotThatSaysNothingForLongerThanTheLeast) {
+TEST_F(HabitsTest, BlameARobotSilentBeyondTheMinimum) {
   speaks("uav5", 1, 20);
   EXPECT_FALSE(is_silent_after("uav5", 30));
   EXPECT_TRUE(is_silent_after("uav5", 31));
 }
 
-TEST_F(HabitsTest, LetASlowRobotBeSlow) {
+TEST_F(HabitsTest, AllowASlowRobotItsGaps) {
   speaks("ugv1", 40, 10);
   EXPECT_FALSE(is_silent_after("ugv1", 190));
   EXPECT_TRUE(is_silent_after("ugv1", 210));
 }
 
-TEST_F(HabitsTest, GoByTheLongestGapsOfAnUnevenRobot) {
+TEST_F(HabitsTest, FollowTheLongestGapsOfAnUnevenRobot) {
   for (int i = 0; i < 5; ++i) {
     speaks("ugv1", 1, 10);
     speaks("ugv1", 40, 1);
@@ -48,7 +48,7 @@ TEST_F(HabitsTest, GoByTheLongestGapsOfAnUnevenRobot) {
   EXPECT_FALSE(is_silent_after("ugv1", 60)) << "it pauses for 40 s now and then";
 }
 
-TEST_F(HabitsTest, BlameARobotThatSpokeBeforeTheServiceBeganAndSaysNothingSince) {
+TEST_F(HabitsTest, BlameAKnownRobotSilentSinceARestart) {
   habits_.expect("uav5", now_);
   EXPECT_FALSE(is_silent_after("uav5", 30));
   EXPECT_TRUE(is_silent_after("uav5", 31));
@@ -65,7 +65,7 @@ TEST_F(HabitsTest, BlameARobotThatSpokeBeforeTheServiceBeganAndSaysNothingSince)
   EXPECT_FALSE(is_silent_after("uav6", 100)) << "it was heard";
 }
 
-TEST_F(HabitsTest, OutliveARestartOfTheService) {
+TEST_F(HabitsTest, SurviveARestart) {
   speaks("uav5", 1, 20);
   Habits next;
   next.carry_on("uav5", *habits_.of("uav5"), 1);  // one message that was queued before
@@ -78,30 +78,30 @@ TEST_F(HabitsTest, OutliveARestartOfTheService) {
   EXPECT_FALSE(next.robots(rules_, now_ + 62).contains("uav5")) << "it comes back";
 }
 
-TEST_F(HabitsTest, SayNothingOfWhoHasNone) {
+TEST_F(HabitsTest, IgnoreRobotsWithoutHabits) {
   speaks("uav5", 1, Habits::kMessages - 2);
   EXPECT_THAT(habits_.robots(rules_, now_ + 100), IsEmpty());
 }
 
-TEST_F(HabitsTest, AreNotMadeOfASilence) {
+TEST_F(HabitsTest, ExcludeSilences) {
   speaks("uav5", 1, 20);
   speaks("uav5", 300, 1);
   speaks("uav5", 1, 20);
   EXPECT_TRUE(is_silent_after("uav5", 31));
 }
 
-TEST_F(HabitsTest, ForgetWhoWasSwitchedOff) {
+TEST_F(HabitsTest, ForgetRobotsThatWereSwitchedOff) {
   speaks("uav5", 1, 20);
   EXPECT_TRUE(is_silent_after("uav5", rules_.away - 1));
   EXPECT_FALSE(is_silent_after("uav5", rules_.away + 1));
 }
 
-TEST_F(HabitsTest, AreOfNoRobotWhereTheMapIsMerged) {
+TEST_F(HabitsTest, ExcludeTheMergedMap) {
   speaks("", 1, 20);
   EXPECT_THAT(habits_.robots(rules_, now_), IsEmpty());
 }
 
-TEST_F(HabitsTest, GiveThePlaceOfRobotsThatWereSwitchedOffToOthers) {
+TEST_F(HabitsTest, ReplaceRobotsThatWereSwitchedOff) {
   for (std::size_t robot = 0; robot < Habits::kMost; ++robot) speaks("r" + std::to_string(robot), 1, 1);
   speaks("uav5", 1, 20);
   EXPECT_FALSE(habits_.of("uav5"));
@@ -110,7 +110,7 @@ TEST_F(HabitsTest, GiveThePlaceOfRobotsThatWereSwitchedOffToOthers) {
   EXPECT_TRUE(habits_.robots(rules_, now_).contains("uav5"));
 }
 
-TEST_F(HabitsTest, AreOfSoManyRobotsAtMost) {
+TEST_F(HabitsTest, LimitTheNumberOfRobots) {
   for (int robot = 0; robot < 1000; ++robot) speaks("r" + std::to_string(robot), 1, 1);
   for (int robot = 0; robot < 1000; ++robot) speaks("r" + std::to_string(robot), 1, 5);
   EXPECT_LE(habits_.robots({.least = 1e9, .times = 5, .away = 1e9}, now_).size(), Habits::kMost);
@@ -118,7 +118,7 @@ TEST_F(HabitsTest, AreOfSoManyRobotsAtMost) {
 
 constexpr std::size_t kRoom = 100u << 20;
 
-TEST(Growth, IsToldOfOnceItHasGoneOnForAWhile) {
+TEST(Growth, IsReportedOnceItLasts) {
   Growth growth;
   double now = 1000;
   for (int second = 0; second < 120; ++second)
@@ -127,14 +127,14 @@ TEST(Growth, IsToldOfOnceItHasGoneOnForAWhile) {
   EXPECT_FALSE(growth.grows(now + Growth::kTold + Growth::kStep)) << "it is over";
 }
 
-TEST(Growth, IsNotWhatOneLargeMapDoes) {
+TEST(Growth, IgnoresOneLargeMap) {
   Growth growth;
   double now = 1000;
   for (int second = 0; second < 120; ++second) growth.look(second % 20 < 10 ? kRoom / 2 : 0, kRoom, now++);
   EXPECT_FALSE(growth.grows(now));
 }
 
-TEST(Growth, OfLittleIsNone) {
+TEST(Growth, IgnoresSmallGrowth) {
   Growth growth;
   double now = 1000;
   for (std::size_t second = 0; second < 120; ++second) growth.look(second << 10, kRoom, now++);

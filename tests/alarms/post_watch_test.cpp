@@ -36,12 +36,12 @@ class PostWatchTest : public testing::Test {
   double now_ = 1000;
 };
 
-TEST_F(PostWatchTest, OfAPostThatAnswersSaysNothing) {
+TEST_F(PostWatchTest, AnsweringEndpointHasNoTrouble) {
   answers(200, 20);
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, CallsAPostSilentThatTakesAndDoesNotAnswer) {
+TEST_F(PostWatchTest, EndpointWithoutAnswersIsSilent) {
   answers(200, 3);
   seen_[0].busy = true;
   lasts(14);
@@ -53,7 +53,7 @@ TEST_F(PostWatchTest, CallsAPostSilentThatTakesAndDoesNotAnswer) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, TellsForHowLongItHasTakenAgainWhatItCouldNot) {
+TEST_F(PostWatchTest, TellsHowLongTheEndpointHasRecovered) {
   answers(200, 3);
   EXPECT_EQ(watch_.endpoint(now_).well_for, std::nullopt) << "it always took all";
   answers(500, 8);
@@ -69,7 +69,7 @@ TEST_F(PostWatchTest, TellsForHowLongItHasTakenAgainWhatItCouldNot) {
   EXPECT_EQ(watch_.endpoint(now_).well_for, 3) << "another place takes what waited for the one before";
 }
 
-TEST_F(PostWatchTest, GoesOnCallingItSilentWhereEachRequestRunsOutOfTime) {
+TEST_F(PostWatchTest, EndpointStaysSilentWhileRequestsTimeOut) {
   for (int i = 0; i < 4; ++i) {
     seen_[0].busy = true;
     seen_[0].sent += 300;
@@ -86,7 +86,7 @@ TEST_F(PostWatchTest, GoesOnCallingItSilentWhereEachRequestRunsOutOfTime) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, DoesNotCallItSilentWhileBytesLeave) {
+TEST_F(PostWatchTest, EndpointIsNotSilentDuringAnUpload) {
   seen_[0].busy = true;
   for (int i = 0; i < 60; ++i) {
     seen_[0].sent += 10'000;
@@ -97,7 +97,7 @@ TEST_F(PostWatchTest, DoesNotCallItSilentWhileBytesLeave) {
   EXPECT_EQ(trouble(), Silent);
 }
 
-TEST_F(PostWatchTest, CallsAPostUnreachableOnceItIsForSure) {
+TEST_F(PostWatchTest, EndpointWithoutConnectionIsUnreachable) {
   seen_[0].connected = false;
   seen_[0].said = "connecting to 10.100.1.200:8000: Connection refused";
   lasts(2);
@@ -111,7 +111,7 @@ TEST_F(PostWatchTest, CallsAPostUnreachableOnceItIsForSure) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, CallsAPostThatClosesAfterEachErrorFailing) {
+TEST_F(PostWatchTest, EndpointThatClosesAfterErrorsIsFailing) {
   for (int i = 0; i < 4; ++i) {
     answers(500, 1);
     seen_[0].connected = false;
@@ -120,13 +120,13 @@ TEST_F(PostWatchTest, CallsAPostThatClosesAfterEachErrorFailing) {
   EXPECT_EQ(trouble(), Failing) << "it is reached each time";
 }
 
-TEST_F(PostWatchTest, CallsAnIdleConnectionNothing) {
+TEST_F(PostWatchTest, IdleConnectionIsNoTrouble) {
   seen_[0].connected = false;
   lasts(60);
   EXPECT_EQ(trouble(), None) << "nothing was to be sent";
 }
 
-TEST_F(PostWatchTest, KnowsWhoRefusesAndWhoIsAnother) {
+TEST_F(PostWatchTest, DistinguishesRefusingAndForeignEndpoints) {
   answers(401, 1);
   EXPECT_EQ(trouble(), Refusing);
   answers(403, 1);
@@ -139,7 +139,7 @@ TEST_F(PostWatchTest, KnowsWhoRefusesAndWhoIsAnother) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, CallsAPostFailingThatAnswersWithErrorsAlone) {
+TEST_F(PostWatchTest, EndpointWithOnlyErrorAnswersIsFailing) {
   answers(500, 7);
   EXPECT_EQ(trouble(), Failing);
   EXPECT_EQ(watch_.endpoint(now_).said, "it answered 500");
@@ -147,12 +147,12 @@ TEST_F(PostWatchTest, CallsAPostFailingThatAnswersWithErrorsAlone) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, DoesNotCallItFailingForWhatItRefuses) {
+TEST_F(PostWatchTest, EndpointThatRejectsMessagesIsNotFailing) {
   answers(422, 20);
   EXPECT_EQ(trouble(), None) << "that is the message's fault";
 }
 
-TEST_F(PostWatchTest, TellsOfThrottlingAgainAndAgain) {
+TEST_F(PostWatchTest, SeveralThrottledAnswersAreTrouble) {
   answers(429, 2);
   EXPECT_EQ(trouble(), None) << "now and then it is how Adit finds the rate";
   answers(429, 1);
@@ -161,19 +161,19 @@ TEST_F(PostWatchTest, TellsOfThrottlingAgainAndAgain) {
   EXPECT_EQ(trouble(), None);
 }
 
-TEST_F(PostWatchTest, ForgetsTheOtherPlace) {
+TEST_F(PostWatchTest, ForgetsTheFormerEndpoint) {
   answers(500, 20);
   watch_.forget();
   lasts(1);
   EXPECT_EQ(trouble(), None);
 }
 
-class TwoWays : public PostWatchTest {
+class TwoConnections : public PostWatchTest {
  protected:
-  TwoWays() : PostWatchTest(2) {}
+  TwoConnections() : PostWatchTest(2) {}
 };
 
-TEST_F(TwoWays, DoNotBlameThePostForTheMapsOfOne) {
+TEST_F(TwoConnections, OneFailingConnectionIsNoTroubleOfTheEndpoint) {
   for (int i = 0; i < 30; ++i) {
     answers(500, 1, 0);
     answers(200, 1, 1);
@@ -183,7 +183,7 @@ TEST_F(TwoWays, DoNotBlameThePostForTheMapsOfOne) {
   EXPECT_EQ(trouble(), Failing) << "nothing else has been taken for long";
 }
 
-TEST_F(TwoWays, BlameItWhereBothFail) {
+TEST_F(TwoConnections, BothFailingConnectionsAreTroubleOfTheEndpoint) {
   for (int i = 0; i < 5; ++i) {
     answers(500, 1, 0);
     answers(500, 1, 1);

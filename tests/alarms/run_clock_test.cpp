@@ -9,7 +9,7 @@ TEST(RunClock, IsUnknownBeforeTheFirstStatus) {
   EXPECT_FALSE(RunClock().at(1000));
 }
 
-TEST(RunClock, GoesOnAfterASingleStatusAndIsAnEstimateOnceThatIsOld) {
+TEST(RunClock, RunsOnAfterOneStatusAndBecomesAnEstimate) {
   RunClock clock;
   clock.heard(754, 1000);
   EXPECT_EQ(clock.at(1002), (ShownClock{.seconds = 756, .age = 2, .runs = true}));
@@ -32,7 +32,7 @@ constexpr Row kRows[] = {
     {"another run, which has not begun", 754, 0, 2, false},
 };
 
-TEST(RunClock, StandsIfTheLastStatusesShowIt) {
+TEST(RunClock, StopsIfTheLastStatusesAreEqual) {
   for (const Row& row : kRows) {
     RunClock clock;
     clock.heard(row.first, 1000);
@@ -45,7 +45,7 @@ TEST(RunClock, StandsIfTheLastStatusesShowIt) {
   }
 }
 
-TEST(RunClock, ThatStandsGoesOnAgainWithTheFirstStatusThatShowsIt) {
+TEST(RunClock, ResumesWithTheFirstDifferentStatus) {
   RunClock clock;
   for (const double at : {1000.0, 1002.0, 1003.0}) clock.heard(754, at);
   EXPECT_FALSE(clock.at(1003)->runs) << "two in one second say nothing against it";

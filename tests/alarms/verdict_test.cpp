@@ -7,12 +7,12 @@
 namespace adit::alarms {
 namespace {
 
-TEST(Verdict, OfMapsThatAllArriveSaysHowOldTheyAre) {
+TEST(Verdict, TellsTheAgeOfArrivingMaps) {
   const Verdict verdict = verdict_of(well(20));
   EXPECT_EQ(verdict, (Verdict{Level::Good, "Every map arrives", "20 robots, oldest 22 s"}));
 }
 
-TEST(Verdict, CountsNoMapThatIsNotSentAnyMore) {
+TEST(Verdict, IgnoresMapsThatAreNoLongerSent) {
   Facts facts = well(2);
   facts.streams.push_back({.kind = "cloud", .robot = "uav1", .forwarded = 600.0, .last_status = 200});
   EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 4 s");
@@ -20,13 +20,13 @@ TEST(Verdict, CountsNoMapThatIsNotSentAnyMore) {
   EXPECT_EQ(verdict_of(facts).why, "2 robots, oldest 9 s") << "of one robot's maps the oldest";
 }
 
-TEST(Verdict, NamesTheRobotThatIsSilent) {
+TEST(Verdict, NamesASilentRobot) {
   Facts facts = well(20);
   facts.robots["uav5"].silent = true;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "19 of 20 arrive", "not uav5; oldest other 22 s"}));
 }
 
-TEST(Verdict, NamesARobotOfWhichNothingWasHeardSinceTheServiceBegan) {
+TEST(Verdict, NamesARobotSilentSinceARestart) {
   Facts facts = well(3);
   facts.robots["uav9"] = {.quiet = 40, .silent = true};
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "3 of 4 arrive", "not uav9; oldest other 5 s"}));
@@ -34,7 +34,7 @@ TEST(Verdict, NamesARobotOfWhichNothingWasHeardSinceTheServiceBegan) {
   EXPECT_EQ(verdict_of(facts).what, "Every map arrives") << "it sends none";
 }
 
-TEST(Verdict, NamesThreeAtMost) {
+TEST(Verdict, NamesAtMostThreeRobots) {
   Facts facts = well(6);
   for (auto& [name, robot] : facts.robots) robot.silent = name != "uav6";
   EXPECT_EQ(verdict_of(facts),
@@ -44,20 +44,20 @@ TEST(Verdict, NamesThreeAtMost) {
   EXPECT_EQ(verdict_of(facts).level, Level::Bad);
 }
 
-TEST(Verdict, IsAsOldAsTheFigureThatItsLevelFollows) {
+TEST(Verdict, ShowsTheAgeThatDecidesItsLevel) {
   Facts facts = well(3);
   facts.streams[0].forwarded = 540;  // it paused, and its newest map is on its way
   facts.streams[0].behind = 2;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Good, "Every map arrives", "3 robots, oldest 5 s"}));
 }
 
-TEST(Verdict, IsThatMapsAreLateWhereNoneIsGivenUp) {
+TEST(Verdict, TellsThatMapsAreLate) {
   Facts facts = well(3);
   facts.streams[0].behind = 11;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Wait, "Maps are late", "uav1"}));
 }
 
-TEST(Verdict, IsThatNothingArrivesWhileTheEndpointIsDown) {
+TEST(Verdict, TellsThatNoMapArrivesDuringAnOutage) {
   Facts facts = well(20);
   facts.endpoints[1].trouble = PostTrouble::Silent;
   facts.endpoints[1].since = kNow - 72;
@@ -66,29 +66,29 @@ TEST(Verdict, IsThatNothingArrivesWhileTheEndpointIsDown) {
   EXPECT_EQ(verdict_of(facts).level, Level::Good) << "it takes them all the same";
 }
 
-TEST(Verdict, DoesNotSaySinceWhenThereHasBeenNoToken) {
+TEST(Verdict, HasNoDurationIfTheTokenIsMissing) {
   Facts facts = well(3);
   facts.endpoints[1].trouble = PostTrouble::NoToken;
   EXPECT_EQ(verdict_of(facts),
             (Verdict{Level::Bad, "No map arrives", "the mapping token is missing; the box keeps all maps"}));
 }
 
-TEST(Verdict, OfNoMapsIsNone) {
+TEST(Verdict, IsEmptyWithoutMaps) {
   EXPECT_EQ(verdict_of(well(0)),
             (Verdict{Level::Quiet, "No map yet", "no robot has sent one since the box started"}));
 }
 
-TEST(Verdict, SaysSinceWhenNothingNewCame) {
+TEST(Verdict, TellsTheTimeSinceTheLastNewMap) {
   Facts facts = well(2);
   for (Stream& stream : facts.streams) stream.forwarded = *stream.forwarded + 600;
   EXPECT_EQ(verdict_of(facts), (Verdict{Level::Quiet, "Every map arrived", "no new map for 10 min"}));
 }
 
-TEST(Verdict, OfOneRobotNeedsNoCount) {
+TEST(Verdict, OmitsTheCountOfOneRobot) {
   EXPECT_EQ(verdict_of(well(1)), (Verdict{Level::Good, "Every map arrives", "1 robot, 3 s"}));
 }
 
-TEST(Verdict, CountsTheMergedMapAsNoRobot) {
+TEST(Verdict, DoesNotCountTheMergedMapAsARobot) {
   Facts facts = well(2);
   facts.streams.push_back({.kind = "grid", .robot = "", .forwarded = 9.0, .last_status = 200});
   EXPECT_EQ(verdict_of(facts).why, "2 robots and the merged map, oldest 9 s");
@@ -111,13 +111,13 @@ class StandingTest : public testing::Test {
   PostTrouble& mapping_ = facts_.endpoints[1].trouble;
 };
 
-TEST_F(StandingTest, IsThatOfTheStreamWhereNothingLargerIsWrong) {
+TEST_F(StandingTest, IsThatOfTheStreamWithoutOtherFaults) {
   expect(Arrival::UpToDate, Level::Good);
   robot_.silent = true;
   expect(Arrival::Silent, Level::Bad);
 }
 
-TEST_F(StandingTest, BlamesNoRobotWhileTheMappingEndpointTakesNothing) {
+TEST_F(StandingTest, BlamesNoRobotWhileMappingIsDown) {
   for (const PostTrouble trouble : {PostTrouble::NoToken, PostTrouble::Unreachable, PostTrouble::Foreign,
                                     PostTrouble::Refusing, PostTrouble::Silent, PostTrouble::Failing}) {
     mapping_ = trouble;
@@ -135,7 +135,7 @@ TEST_F(StandingTest, BlamesNoRobotWhileTheMappingEndpointTakesNothing) {
   }
 }
 
-TEST_F(StandingTest, BlamesNoRobotForWhatTheEndpointDidNotTakeUntilItsTurnHasCome) {
+TEST_F(StandingTest, BlamesNoRobotJustAfterAnOutage) {
   facts_.turn = 20;
   facts_.endpoints[1].well_for = 29;
   stream_ = {.kind = "grid", .robot = stream_.robot, .behind = 200, .forwarded = 200, .failed = true};
@@ -154,7 +154,7 @@ TEST_F(StandingTest, BlamesNoRobotForWhatTheEndpointDidNotTakeUntilItsTurnHasCom
   expect(Arrival::NotArriving, Level::Bad);
 }
 
-TEST_F(StandingTest, IsItsOwnWhileItIsOnlyScoringThatDoesNotAnswerOrMappingThatThrottles) {
+TEST_F(StandingTest, BlamesTheRobotDuringScoringOutageOrThrottling) {
   stream_.behind = 200;
   facts_.endpoints[0].trouble = PostTrouble::Unreachable;
   expect(Arrival::NotArriving, Level::Bad);
@@ -162,7 +162,7 @@ TEST_F(StandingTest, IsItsOwnWhileItIsOnlyScoringThatDoesNotAnswerOrMappingThatT
   expect(Arrival::NotArriving, Level::Bad);
 }
 
-TEST_F(StandingTest, BlamesNoRobotForTheTeamsCable) {
+TEST_F(StandingTest, BlamesNoRobotForTheTeamCable) {
   robot_.silent = true;
   facts_.cables = {{.is_team = true, .interface = "team0", .carrier = false}};
   expect(Arrival::UpToDate, Level::Good);

@@ -61,7 +61,7 @@ TEST_F(PageTest, ServesItsFilesWithTheirTypes) {
   EXPECT_EQ(get_file("/icon.svg").content_type, "image/svg+xml");
 }
 
-TEST_F(PageTest, EachPageHasOneStyleAndOneScriptThatAreServed) {
+TEST_F(PageTest, EachPageHasOneStyleAndOneScript) {
   static const std::regex style_link("rel=\"stylesheet\""), module("type=\"module\"");
   for (const char* path : {"/", "/display", "/setup", "/system", "/login.html"}) {
     const std::string html = get_file(path).body;
@@ -73,14 +73,14 @@ TEST_F(PageTest, EachPageHasOneStyleAndOneScriptThatAreServed) {
   }
 }
 
-TEST_F(PageTest, GivesAScriptTheWordsOfTheArtifactTypes) {
+TEST_F(PageTest, GivesAScriptTheArtifactTypes) {
   const std::string text = get_file(script()).body;
   for (const std::string_view type : icd::kArtifactTypes)
     EXPECT_THAT(text, HasSubstr('"' + std::string(type) + '"'));
   EXPECT_EQ(text.find("artifact_types.inc"), std::string::npos);
 }
 
-TEST_F(PageTest, ServesWhatIsEmbeddedUnderGzipOrInflated) {
+TEST_F(PageTest, ServesEmbeddedFilesPackedOrInflated) {
   ASSERT_GT(site::embedded_files().size(), 10U);
   for (const site::File& file : site::embedded_files()) {
     const std::string path(file.path);
@@ -95,7 +95,7 @@ TEST_F(PageTest, ServesWhatIsEmbeddedUnderGzipOrInflated) {
   }
 }
 
-TEST_F(PageTest, SendsAFileAgainOnlyWhereItChanged) {
+TEST_F(PageTest, SendsAFileAgainOnlyIfItChanged) {
   const auto first = get_file("/"), packed = get_packed("/");
   EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
   const auto again = get_file("/", header(first, "ETag"));
@@ -108,7 +108,7 @@ TEST_F(PageTest, SendsAFileAgainOnlyWhereItChanged) {
   EXPECT_EQ(get_file("/", "\"old\"").body, first.body);
 }
 
-TEST_F(PageTest, LetsABrowserKeepForGoodOnlyWhatIsNamedByItsContent) {
+TEST_F(PageTest, MarksOnlyFilesNamedByContentImmutable) {
   for (const std::string& path : {style(), script()}) {
     EXPECT_THAT(path, testing::ContainsRegex("^/index[.][0-9a-f]{12}[.](css|js)$"));
     EXPECT_EQ(header(get_file(path), "Cache-Control"), "public, max-age=31536000, immutable");
@@ -117,7 +117,7 @@ TEST_F(PageTest, LetsABrowserKeepForGoodOnlyWhatIsNamedByItsContent) {
     EXPECT_EQ(header(get_file(path), "Cache-Control"), "no-cache") << path;
 }
 
-TEST_F(PageTest, PacksLongAnswersForWhomTheyAreGzip) {
+TEST_F(PageTest, PacksLongAnswersForClientsThatAcceptGzip) {
   source.now = *scene("reports", 1000, 0);
   const auto plain = get_file("/adit/run"), packed = get_packed("/adit/run");
   EXPECT_EQ(header(plain, "Content-Encoding"), "");
@@ -127,7 +127,7 @@ TEST_F(PageTest, PacksLongAnswersForWhomTheyAreGzip) {
   EXPECT_EQ(header(get_packed("/adit/session"), "Content-Encoding"), "") << "it is short";
 }
 
-TEST(TakesGzip, GoesByTheCodingAndItsWeight) {
+TEST(AcceptsGzip, FollowsTheCodingAndItsWeight) {
   for (const char* yes : {"gzip", "GZIP", "deflate, gzip", "br;q=1.0, gzip;q=0.8", "*", "x-gzip",
                           "gzip ; q=0.001", "*;q=0, gzip"})
     EXPECT_TRUE(takes_gzip(yes)) << yes;
@@ -136,7 +136,7 @@ TEST(TakesGzip, GoesByTheCodingAndItsWeight) {
     EXPECT_FALSE(takes_gzip(no)) << no;
 }
 
-TEST_F(PageTest, EveryAnswerKeepsTheBrowserFromLoadingAnythingElse) {
+TEST_F(PageTest, EveryAnswerForbidsForeignContent) {
   for (const std::string& path :
        {std::string("/"), script(), std::string("/adit/run"), std::string("/nothing")}) {
     const auto answer = get_file(path);
@@ -147,7 +147,7 @@ TEST_F(PageTest, EveryAnswerKeepsTheBrowserFromLoadingAnythingElse) {
   }
 }
 
-TEST_F(PageTest, HasNoScriptAndNoStyleThatItsPolicyWouldForbid) {
+TEST_F(PageTest, HasNoInlineScriptOrStyle) {
   const std::string html = get_file("/").body;
   EXPECT_EQ(html.find("<style"), std::string::npos);
   EXPECT_EQ(html.find(" style="), std::string::npos);
@@ -155,7 +155,7 @@ TEST_F(PageTest, HasNoScriptAndNoStyleThatItsPolicyWouldForbid) {
   EXPECT_EQ(html.find("http"), std::string::npos) << "every byte is served by the box itself";
 }
 
-TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
+TEST_F(PageTest, AnswersUnknownPathsWithAJsonString) {
   for (const char* path :
        {"/nothing", "/page", "/../login.html", "/files/login.html", "/page.js", "/adit/", "/adit/run/", ""}) {
     const auto answer = get_file(path);
@@ -165,7 +165,7 @@ TEST_F(PageTest, AnswersAnythingElseWithAJsonString) {
   }
 }
 
-TEST_F(PageTest, TakesNothingButGet) {
+TEST_F(PageTest, AcceptsOnlyGet) {
   for (const char* path : {"/", "/icon.svg"}) {
     for (const char* method : {"POST", "DELETE", "OPTIONS"}) {
       const auto answer = get_file(path, "", method);
@@ -175,7 +175,7 @@ TEST_F(PageTest, TakesNothingButGet) {
   }
 }
 
-TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
+TEST_F(PageTest, GivesTheRunAsUncachedJson) {
   source.now = *scene("calm", 1000, 0);
   const auto answer = get_file("/adit/run");
   EXPECT_EQ(answer.content_type, "application/json");
@@ -184,7 +184,7 @@ TEST_F(PageTest, GivesTheRunAsJsonThatNobodyKeeps) {
 }
 
 /// Tokens that are set while the page is open, too.
-TEST_F(PageTest, StrikesTokensOutOfThePatchesOfAnOpenPage) {
+TEST_F(PageTest, RedactsTokensInPatches) {
   source.now = *scene("calm", 1000, 0);
   open("GET", "/adit/events", {kByToken}, std::nullopt);
   ASSERT_TRUE(responder->streaming);

@@ -34,7 +34,7 @@ class BoxRoutesTest : public OnPage {
   }
 };
 
-TEST_F(BoxRoutesTest, TellTheLogOldestFirst) {
+TEST_F(BoxRoutesTest, ShowTheLogOldestFirst) {
   const json said = json::parse(get("/adit/log").body);
   EXPECT_EQ(said["last"], 4);
   EXPECT_EQ(said["records"][1], (json{{"seq", 2},
@@ -46,7 +46,7 @@ TEST_F(BoxRoutesTest, TellTheLogOldestFirst) {
                                    "the ledger cannot be written"));
 }
 
-TEST_F(BoxRoutesTest, TellOfTheLogWhatIsAskedFor) {
+TEST_F(BoxRoutesTest, FilterTheLog) {
   EXPECT_THAT(log("?level=error"), ElementsAre("the ledger cannot be written"));
   EXPECT_THAT(log("?level=warning"),
               ElementsAre("the Command Post refused a state", "the ledger cannot be written"));
@@ -59,7 +59,7 @@ TEST_F(BoxRoutesTest, TellOfTheLogWhatIsAskedFor) {
   EXPECT_EQ(json::parse(get("/adit/log?since=99").body)["last"], 4) << "the box was restarted";
 }
 
-TEST_F(BoxRoutesTest, SayWhatIsWrongWithAFilter) {
+TEST_F(BoxRoutesTest, NameTheFaultOfAFilter) {
   EXPECT_EQ(get("/adit/log?level=loud").status, Status::BadRequest);
   EXPECT_THAT(get("/adit/log?level=loud").body, HasSubstr("level: expected error, warning"));
   for (const char* since : {"x", "-1", "1.5", "18446744073709551616"}) {
@@ -76,7 +76,7 @@ TEST_F(BoxRoutesTest, GiveTheLogAsAFile) {
   EXPECT_EQ(answer.content_type, "text/plain; charset=utf-8");
 }
 
-TEST_F(BoxRoutesTest, TellWhatTheBoxIsMadeOf) {
+TEST_F(BoxRoutesTest, ShowThePartsOfTheBox) {
   box.self.started = loop.wall_now() - 60;
   box.self.kernel = "Linux 6.1.0 aarch64";
   box.self.parts = {{.name = "zlib", .version = "1.2.13", .licence = "Zlib"}};
@@ -96,7 +96,7 @@ TEST_F(BoxRoutesTest, CountTheSessionsInTheMetrics) {
   EXPECT_THAT(get("/metrics").body, HasSubstr("adit_sessions{role=\"viewer\"} 1\n"));
 }
 
-TEST_F(BoxRoutesTest, PackABundleOfAllThatIsKnown) {
+TEST_F(BoxRoutesTest, PackADiagnosticBundle) {
   const auto answer = get("/adit/bundle");
   ASSERT_EQ(answer.status, Status::Ok);
   EXPECT_EQ(answer.content_type, "application/gzip");

@@ -20,14 +20,14 @@ std::size_t size_of(const std::vector<BundleFile>& files) {
                          [](std::size_t sum, const BundleFile& file) { return sum + file.body.size(); });
 }
 
-TEST(CutTo, LeavesAloneWhatFits) {
+TEST(CutTo, KeepsFilesThatFit) {
   std::vector<BundleFile> files = {{"a", std::string(600, 'a')}, {"b", std::string(400, 'b')}};
   cut_to(files, 1000);
   EXPECT_EQ(files[0].body, std::string(600, 'a'));
   EXPECT_EQ(files[1].body, std::string(400, 'b'));
 }
 
-TEST(CutTo, CutsTheLargestFromTheirBeginningAndSaysSo) {
+TEST(CutTo, CutsTheBeginningOfTheLargestFiles) {
   std::vector<BundleFile> files = {{"small", "all of it"},
                                    {"log", std::string(5000, 'l') + "the end"},
                                    {"reports", std::string(9000, 'r')}};
@@ -43,7 +43,7 @@ TEST(CutTo, CutsTheLargestFromTheirBeginningAndSaysSo) {
   EXPECT_THAT(cut, StartsWith("[the first " + std::to_string(9000 - left) + " of 9000 bytes are cut off"));
 }
 
-TEST(CutTo, CutsNoCharacterInTwo) {
+TEST(CutTo, SplitsNoCharacter) {
   std::string body;
   for (int i = 0; i < 1000; ++i) body += "\xe2\x82\xac";
   for (std::size_t most = 500; most < 506; ++most) {
@@ -55,7 +55,7 @@ TEST(CutTo, CutsNoCharacterInTwo) {
   }
 }
 
-TEST(Bundle, IsNeverLargerThanItsLimitEvenWhereNothingCanBePacked) {
+TEST(Bundle, StaysWithinItsLimitIfNothingCanBePacked) {
   std::mt19937_64 random(1);
   std::string noise(70'000, '\0');  // more than gzip looks back
   for (char& byte : noise) byte = static_cast<char>(random());
@@ -94,7 +94,7 @@ int unpack(const Folder& folder, const icd::ChunkedBytes& archive) {
                          .c_str());
 }
 
-TEST(Ustar, IsReadByTar) {
+TEST(Ustar, IsReadableByTar) {
   const Folder folder;
   Ustar archive;
   archive.add("adit/run.json", "{\"now\":1}\n", 1'700'000'000);
@@ -113,13 +113,13 @@ TEST(Ustar, IsReadByTar) {
             std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
 }
 
-TEST(Ustar, HoldsNothingButItsEndWithoutFiles) {
+TEST(Ustar, HasOnlyItsEndWithoutFiles) {
   const Folder folder;
   EXPECT_EQ(Ustar{}.finish().to_string(), std::string(1024, '\0'));
   EXPECT_EQ(unpack(folder, Ustar{}.finish()), 0);
 }
 
-TEST(Ustar, CutsANameThatIsTooLongForTheFormat) {
+TEST(Ustar, CutsALongName) {
   const Folder folder;
   Ustar archive;
   archive.add(std::string(150, 'n'), "text", -5);

@@ -226,7 +226,7 @@ TEST(Bytes, OfTheMap) {
   EXPECT_EQ(text.size(), 3228u);
 }
 
-TEST(Bytes, OfWhoIsLoggedIn) {
+TEST(Bytes, OfTheSession) {
   EXPECT_EQ(codec::to_json(std::vector{SessionRow{.number = 3,
                                                   .role = access::Role::Operator,
                                                   .address = "10.0.0.7",

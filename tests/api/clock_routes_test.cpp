@@ -18,19 +18,19 @@ class ClockRoutesTest : public OnPage {
   }
 };
 
-TEST_F(ClockRoutesTest, TellTheTimeOfDayAndWhoSetIt) {
+TEST_F(ClockRoutesTest, ShowTheTimeOfDayAndItsSource) {
   const auto answer = get("/adit/clock");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_THAT(answer.body, HasSubstr(R"("source":"last_known")"));
   EXPECT_THAT(answer.body, HasSubstr(R"("is_set":false)"));
 }
 
-TEST_F(ClockRoutesTest, SetItToTheTimeThatIsPosted) {
+TEST_F(ClockRoutesTest, SetThePostedTime) {
   EXPECT_EQ(post("/adit/clock", R"({"time": 1800000000.25})").status, icd::Status::Ok);
   EXPECT_THAT(clock.set, ElementsAre(1800000000.25));
 }
 
-TEST_F(ClockRoutesTest, RefuseWhatIsNoTimeAndNameTheField) {
+TEST_F(ClockRoutesTest, RejectAnInvalidTimeWithTheFieldsName) {
   for (const char* body : {"{}", R"({"time": "now"})", R"({"time": null})"}) {
     const auto answer = post("/adit/clock", body);
     EXPECT_EQ(answer.status, icd::Status::UnprocessableEntity) << body;
@@ -40,7 +40,7 @@ TEST_F(ClockRoutesTest, RefuseWhatIsNoTimeAndNameTheField) {
   EXPECT_THAT(clock.set, IsEmpty());
 }
 
-TEST_F(ClockRoutesTest, SayWhyItIsNotSet) {
+TEST_F(ClockRoutesTest, TellWhyTheClockIsNotSet) {
   clock.outcome = std::unexpected(icd::Refusal{icd::Status::Conflict, "adit-clock does not run here"});
   const auto answer = post("/adit/clock", R"({"time": 1800000000})");
   EXPECT_EQ(answer.status, icd::Status::Conflict);

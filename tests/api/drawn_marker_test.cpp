@@ -34,7 +34,7 @@ auto near(double x, double y) {
                Field(&FlatPoint::y, FloatNear(static_cast<float>(y), 1e-4F)));
 }
 
-TEST(DrawnMarker, HasItsPointsWhereThePosePutsThem) {
+TEST(DrawnMarker, AppliesThePoseToItsPoints) {
   icd::Marker line = marker(MarkerType::LineStrip, {{1, 0, 0}, {0, 2, 0}, {0, 0, 3}});
   line.pose.position = {10, 20, 5};
   const double half = std::numbers::pi / 4;
@@ -46,7 +46,7 @@ TEST(DrawnMarker, HasItsPointsWhereThePosePutsThem) {
   EXPECT_EQ(drawn(line).point_count, 3u);
 }
 
-TEST(DrawnMarker, HasPointsOnlyWhereItsShapeIsMadeOfThem) {
+TEST(DrawnMarker, HasPointsOnlyIfItsShapeUsesThem) {
   for (const auto type : {MarkerType::Cube, MarkerType::Sphere, MarkerType::Cylinder,
                           MarkerType::TextViewFacing, MarkerType::MeshResource}) {
     EXPECT_THAT(drawn(marker(type, along_x(5))).points, IsEmpty());
@@ -57,7 +57,7 @@ TEST(DrawnMarker, HasPointsOnlyWhereItsShapeIsMadeOfThem) {
   EXPECT_THAT(drawn(marker(MarkerType::TriangleList, along_x(8))).points, SizeIs(6));
 }
 
-TEST(DrawnMarker, ScalesTheCornersOfTrianglesAndNothingElse) {
+TEST(DrawnMarker, ScalesOnlyCornersOfTriangles) {
   for (const auto type : {MarkerType::TriangleList, MarkerType::LineStrip}) {
     icd::Marker each = marker(type, {{1, 1, 0}, {2, 1, 0}, {2, 2, 0}});
     each.scale = {3, 0, 1};
@@ -66,7 +66,7 @@ TEST(DrawnMarker, ScalesTheCornersOfTrianglesAndNothingElse) {
   }
 }
 
-TEST(DrawnMarker, ThinsWhatHasMorePointsThanAMapShows) {
+TEST(DrawnMarker, ThinsAMarkerWithTooManyPoints) {
   for (const auto type : {MarkerType::LineStrip, MarkerType::LineList, MarkerType::CubeList,
                           MarkerType::SphereList, MarkerType::Points, MarkerType::TriangleList}) {
     const auto shown = drawn(marker(type, along_x(icd::kMostMarkerPoints - 1)));
@@ -78,7 +78,7 @@ TEST(DrawnMarker, ThinsWhatHasMorePointsThanAMapShows) {
   EXPECT_EQ(pairs.points[3].x, pairs.points[2].x + 1) << "a line keeps both of its ends";
 }
 
-TEST(DrawnMarker, ThinsAStripByTheWayAndKeepsItsEnds) {
+TEST(DrawnMarker, ThinsAStripAlongItsLengthAndKeepsItsEnds) {
   auto points = along_x(20'000, 0);  // it stood for long
   for (const auto& point : along_x(5000)) points.push_back(point);
   const auto shown = drawn(marker(MarkerType::LineStrip, points));
@@ -90,7 +90,7 @@ TEST(DrawnMarker, ThinsAStripByTheWayAndKeepsItsEnds) {
   EXPECT_THAT(drawn(marker(MarkerType::LineStrip, along_x(5000, 0))).points, SizeIs(2)) << "it only stood";
 }
 
-TEST(DrawnMarker, HasAColourForEachPartThatIsLeft) {
+TEST(DrawnMarker, HasAColourForEachRemainingPart) {
   auto list = marker(MarkerType::LineList, along_x(4));
   list.colors = {{1, 0, 0, 1}, {1, 0, 0, 1}, {0, 1, 0, 1}, {0, 1, 0, 1}};
   EXPECT_THAT(drawn(list).colors, ElementsAre(icd::Color{1, 0, 0, 1}, icd::Color{0, 1, 0, 1}));
@@ -107,7 +107,7 @@ TEST(DrawnMarker, HasAColourForEachPartThatIsLeft) {
   EXPECT_THAT(drawn(marker(MarkerType::Points, along_x(5))).colors, IsEmpty());
 }
 
-TEST(DrawnMarker, HasNoColoursWhereTheyFitNeitherPointsNorTriangles) {
+TEST(DrawnMarker, DropsColoursWhoseCountDoesNotFit) {
   for (const auto type : {MarkerType::LineStrip, MarkerType::LineList, MarkerType::Points, MarkerType::Arrow,
                           MarkerType::TriangleList}) {
     auto odd = marker(type, along_x(9));
@@ -125,7 +125,7 @@ std::vector<icd::Point> between(double far, std::size_t count) {
   return points;
 }
 
-TEST(DrawnMarker, IsBoundedAndMadeOfNumbersHoweverFarItReaches) {
+TEST(DrawnMarker, IsBoundedAndFiniteAtAnyDistance) {
   for (const double far : {1e30, 1e39, 1e200, 1e308}) {
     for (const auto type : {MarkerType::LineStrip, MarkerType::LineList, MarkerType::TriangleList}) {
       auto each = marker(type, between(far, 5000));
@@ -143,7 +143,7 @@ TEST(DrawnMarker, IsBoundedAndMadeOfNumbersHoweverFarItReaches) {
   }
 }
 
-TEST(DrawnMarker, IsBoundedInItsWords) {
+TEST(DrawnMarker, LimitsItsText) {
   icd::Marker mesh = marker(MarkerType::MeshResource);
   for (const auto& [url, name] : {std::pair{"package://artifacts/meshes/fire.ext.dae", "fire.ext"},
                                   {"file:///drill", "drill"},

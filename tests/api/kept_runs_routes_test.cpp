@@ -19,7 +19,7 @@ class KeptRunsRoutesTest : public OnPage {
   }
 };
 
-TEST_F(KeptRunsRoutesTest, ListTheRunsAndWhatIsKeptOfOne) {
+TEST_F(KeptRunsRoutesTest, ListRunsAndShowOne) {
   EXPECT_THAT(get("/adit/runs").body, HasSubstr("\"course\":\"alpha\""));
   EXPECT_THAT(get("/adit/runs/3").body, HasSubstr("\"key\":\"3\""));
   EXPECT_THAT(get("/adit/runs/3/tracks").body, HasSubstr("ugv1"));
@@ -27,14 +27,14 @@ TEST_F(KeptRunsRoutesTest, ListTheRunsAndWhatIsKeptOfOne) {
   EXPECT_THAT(get("/adit/runs/3/history").body, HasSubstr("\"at\":[]"));
 }
 
-TEST_F(KeptRunsRoutesTest, KnowNoOtherRun) {
+TEST_F(KeptRunsRoutesTest, RejectAnUnknownRun) {
   for (const char* path : {"/adit/runs/9", "/adit/runs/9/map", "/adit/runs/9/tracks", "/adit/runs/9/history",
                            "/adit/runs/9/report.html", "/adit/runs/3/map/grid/a/0/0/0.png"})
     EXPECT_EQ(get(path).status, icd::Status::NotFound) << path;
   EXPECT_EQ(get("/adit/runs/3/map?since=x").status, icd::Status::BadRequest);
 }
 
-TEST_F(KeptRunsRoutesTest, PrintTheReportsOfThatRunAlone) {
+TEST_F(KeptRunsRoutesTest, PrintOnlyTheReportsOfThatRun) {
   source.details[1].row.number = 1;
   source.details[1].row.run = 3;
   source.details[2].row.number = 2;

@@ -103,7 +103,7 @@ class LiveTest : public testing::Test {
   std::optional<intake::Answer> refusal;
 };
 
-TEST_F(LiveTest, SendsOneEventAtOnceThatIsTheRunAsJson) {
+TEST_F(LiveTest, SendsTheRunAsJsonAtOnce) {
   source.now.version = "1.2.3";
   const auto page = open();
   ASSERT_THAT(page->sent, SizeIs(1));
@@ -114,7 +114,7 @@ TEST_F(LiveTest, SendsOneEventAtOnceThatIsTheRunAsJson) {
   EXPECT_EQ(nlohmann::json::parse(event.substr(event.find('{')))["version"], "1.2.3");
 }
 
-TEST_F(LiveTest, SendsNoMoreEventsASecondThanAllowedHoweverMuchChanges) {
+TEST_F(LiveTest, LimitsEventsPerSecond) {
   const auto page = open();
   for (int i = 0; i < 100; ++i) {
     change();
@@ -124,7 +124,7 @@ TEST_F(LiveTest, SendsNoMoreEventsASecondThanAllowedHoweverMuchChanges) {
   EXPECT_LE(page->sent.size(), 1 + Live::kEventsPerSecond + 1);
 }
 
-TEST_F(LiveTest, TellsOnceASecondOfWhatNeedsNoOperator) {
+TEST_F(LiveTest, SendsMinorChangesOnceASecond) {
   const auto page = open();
   for (int i = 0; i < 300; ++i) {
     change_in_the_queue();
@@ -136,7 +136,7 @@ TEST_F(LiveTest, TellsOnceASecondOfWhatNeedsNoOperator) {
   EXPECT_THAT(page->sent.back(), HasSubstr("\"queued_bytes\":300"));
 }
 
-TEST_F(LiveTest, TellsOfReportsAndAlarmsThatComeAfterAPauseWithoutDelay) {
+TEST_F(LiveTest, SendsReportsAndAlarmsWithoutDelay) {
   source.now = team(1, 1);
   const auto page = open();
   pass(milliseconds{300});
@@ -153,7 +153,7 @@ TEST_F(LiveTest, TellsOfReportsAndAlarmsThatComeAfterAPauseWithoutDelay) {
   EXPECT_THAT(page->sent[2], HasSubstr("queued_bytes")) << "an event has all that changed";
 }
 
-TEST_F(LiveTest, TellsTheLastOfManyChanges) {
+TEST_F(LiveTest, SendsTheLastOfManyChanges) {
   const auto page = open();
   source.now.version = "old";
   live.changed();
@@ -164,14 +164,14 @@ TEST_F(LiveTest, TellsTheLastOfManyChanges) {
   EXPECT_NE(page->sent[1].find("\"new\""), std::string::npos);
 }
 
-TEST_F(LiveTest, SaysSomethingWithinFiveSecondsThoughNothingChanges) {
+TEST_F(LiveTest, SendsAHeartbeatWithinFiveSeconds) {
   static_assert(Live::kHeartbeat < milliseconds{5000});
   const auto page = open();
   pass(Live::kHeartbeat + milliseconds{100});
   EXPECT_THAT(page->sent, SizeIs(testing::Ge(2)));
 }
 
-TEST_F(LiveTest, AsksForNothingWhileNoPageIsOpen) {
+TEST_F(LiveTest, ReadsNothingWithoutAnOpenPage) {
   live.changed();
   pass(milliseconds{300});
   EXPECT_EQ(source.asked, 0);
@@ -184,7 +184,7 @@ TEST_F(LiveTest, AsksForNothingWhileNoPageIsOpen) {
   EXPECT_EQ(source.asked, asked) << "the page that has gone is forgotten";
 }
 
-TEST_F(LiveTest, AsksOnceForAllPages) {
+TEST_F(LiveTest, ReadsTheViewOnceForAllPages) {
   const std::vector pages = {open(), open(), open()};
   const int asked = source.asked;
   change();
@@ -193,7 +193,7 @@ TEST_F(LiveTest, AsksOnceForAllPages) {
   for (const auto& page : pages) EXPECT_THAT(page->sent, SizeIs(2));
 }
 
-TEST_F(LiveTest, EndsForWhoMayNotStay) {
+TEST_F(LiveTest, EndsWithTheSession) {
   const auto page = open();
   welcome = false;
   pass(Live::kHeartbeat + milliseconds{100});
@@ -201,7 +201,7 @@ TEST_F(LiveTest, EndsForWhoMayNotStay) {
   EXPECT_EQ(page.use_count(), 1) << "the stream has been dropped, and so ended";
 }
 
-TEST_F(LiveTest, TellsATimeThatGoesOnByTheHeartbeatAlone) {
+TEST_F(LiveTest, SendsRunningTimesOnlyWithTheHeartbeat) {
   const auto page = open();
   for (int i = 0; i < 2; ++i) {
     source.now.now += 0.25;
@@ -215,7 +215,7 @@ TEST_F(LiveTest, TellsATimeThatGoesOnByTheHeartbeatAlone) {
   EXPECT_THAT(page->sent[1], StartsWith("event: patch\ndata: {\"now\":"));
 }
 
-TEST_F(LiveTest, TellsOfOneRobotsPoseInFewBytesWhateverTheListsLengths) {
+TEST_F(LiveTest, SendsOnePoseInFewBytes) {
   source.now = team(20, 1000);
   const auto page = open();
   EXPECT_GT(page->sent[0].size(), 250'000);
@@ -233,7 +233,7 @@ TEST_F(LiveTest, TellsOfOneRobotsPoseInFewBytesWhateverTheListsLengths) {
   EXPECT_LT(page->sent[1].size(), 180);
 }
 
-TEST_F(LiveTest, TellsAgesInWholeSeconds) {
+TEST_F(LiveTest, SendsAgesInWholeSeconds) {
   source.now = team(20, 0);
   std::optional<double>& standing = source.now.standings.emplace_back().age;
   source.now.activities[0].age = source.now.activities[1].behind = source.now.robots[2].age = standing = 7.2;
@@ -252,7 +252,7 @@ TEST_F(LiveTest, TellsAgesInWholeSeconds) {
       HasSubstr(R"("rows":{"0":{"age":8.0},"1":{"behind":8.0}}},"standings":{"rows":{"0":{"age":8.0}})"));
 }
 
-TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {
+TEST_F(LiveTest, SendsOneReportInFewBytes) {
   source.now = team(20, 1000);
   const auto page = open();
   ReportRow report = source.now.reports.front();
@@ -273,7 +273,7 @@ TEST_F(LiveTest, TellsOfOneReportInFewBytesHoweverManyThereAre) {
 }
 
 /// Times are told by another clock than they are kept by: the last digits differ each time.
-TEST_F(LiveTest, TellsNothingOfTimesThatDifferByLessThanIsTold) {
+TEST_F(LiveTest, SendsNoTimesThatDifferBelowTheirPrecision) {
   source.now = team(4, 20);
   source.now.reports[3].position->x = 0.123456789;
   const auto page = open();
@@ -285,7 +285,7 @@ TEST_F(LiveTest, TellsNothingOfTimesThatDifferByLessThanIsTold) {
   EXPECT_THAT(page->sent, SizeIs(1));
 }
 
-TEST_F(LiveTest, TellsAPageThatIsSlowTheViewAnewInThePlaceOfWhatWaits) {
+TEST_F(LiveTest, SendsASlowPageAWholeViewInsteadOfPatches) {
   source.now = team(6, 200);
   const auto slow = open(), fast = open();
   const std::size_t whole = slow->sent[0].size();
@@ -305,7 +305,7 @@ TEST_F(LiveTest, TellsAPageThatIsSlowTheViewAnewInThePlaceOfWhatWaits) {
 }
 
 /// Whoever opens when, and whoever is slow: each page has what there is.
-TEST_F(LiveTest, GivesEveryPageEveryView) {
+TEST_F(LiveTest, SendsEachViewToEachPage) {
   struct OfPage {
     std::shared_ptr<FakeStream> stream;
     std::size_t read = 0;
@@ -333,7 +333,7 @@ TEST_F(LiveTest, GivesEveryPageEveryView) {
   }
 }
 
-TEST_F(LiveTest, LeavesTheRobotsTheirConnections) {
+TEST_F(LiveTest, ReservesConnectionsForRobots) {
   std::vector<std::shared_ptr<FakeStream>> pages;
   pages.reserve(Live::kMostPages);
   for (std::size_t i = 0; i < Live::kMostPages; ++i) pages.push_back(open());

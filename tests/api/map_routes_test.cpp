@@ -31,7 +31,7 @@ class MapRoutesTest : public OnPage {
   void SetUp() override { source.mosaic = drawn_scene(); }
 };
 
-TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
+TEST_F(MapRoutesTest, DescribesTilesAndColours) {
   const json map = json::parse(get_file("/adit/map").body);
   EXPECT_EQ(map["version"], source.mosaic.version());
   EXPECT_EQ(map["tile_side"], 256);
@@ -43,7 +43,7 @@ TEST_F(MapRoutesTest, TellsHowTilesAreCutAndColoured) {
   EXPECT_TRUE(map["wiped"].is_null());
 }
 
-TEST_F(MapRoutesTest, TellsTheAreaThatGridsCover) {
+TEST_F(MapRoutesTest, ShowsTheAreaCoveredByGrids) {
   const json covered = json::parse(get_file("/adit/covered").body);
   picture::CoveredArea area;
   area.update(area.changes(source.mosaic));
@@ -56,7 +56,7 @@ TEST_F(MapRoutesTest, TellsTheAreaThatGridsCover) {
   EXPECT_EQ(covered["robots"][0]["square_metres"], covered["square_metres"]);
 }
 
-TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
+TEST_F(MapRoutesTest, ListsLayersAndTheirTiles) {
   const json layers = json::parse(get_file("/adit/map").body)["layers"];
   ASSERT_EQ(layers.size(), 2);
   EXPECT_EQ(layers[0]["robot"], "");
@@ -79,7 +79,7 @@ TEST_F(MapRoutesTest, TellsEachLayerAndItsTiles) {
   }
 }
 
-TEST_F(MapRoutesTest, EveryTileThatItTellsOfIsThere) {
+TEST_F(MapRoutesTest, ServesEachListedTile) {
   const json map = json::parse(get_file("/adit/map").body);
   for (const json& layer : map["layers"]) {
     ASSERT_FALSE(layer["tiles"].empty());
@@ -98,7 +98,7 @@ TEST_F(MapRoutesTest, EveryTileThatItTellsOfIsThere) {
   }
 }
 
-TEST_F(MapRoutesTest, TellsOnlyOfWhatChangedSince) {
+TEST_F(MapRoutesTest, ListsOnlyTilesChangedSince) {
   const auto before = source.mosaic.version();
   const json same = json::parse(get_file("/adit/map?since=" + std::to_string(before)).body);
   EXPECT_TRUE(same["layers"][0]["tiles"].empty());
@@ -110,7 +110,7 @@ TEST_F(MapRoutesTest, TellsOnlyOfWhatChangedSince) {
   EXPECT_EQ(wiped["layers"][0]["tiles"][0]["blank"], true);
 }
 
-TEST_F(MapRoutesTest, SendsATileAgainOnlyWhereItChanged) {
+TEST_F(MapRoutesTest, SendsATileAgainOnlyIfItChanged) {
   const auto first = get_file("/adit/map/grid/-/1/0/0.png");
   ASSERT_EQ(first.status, icd::Status::Ok);
   EXPECT_EQ(header(first, "Cache-Control"), "no-cache");
@@ -128,7 +128,7 @@ TEST_F(MapRoutesTest, SendsATileAgainOnlyWhereItChanged) {
   EXPECT_EQ(header(get_file("/adit/map/grid/-/1/0/0.png?at=" + until), "Adit-Since"), until);
 }
 
-TEST_F(MapRoutesTest, SpreadsAnyHeightsAskedForOverTheColours) {
+TEST_F(MapRoutesTest, SpreadsTheRequestedHeightsOverTheColours) {
   const auto usual = get_file("/adit/map/cloud/ugv1/0/0/0.png");
   const auto spread = get_file("/adit/map/cloud/ugv1/0/0/0.png?low=-1&high=7");
   ASSERT_EQ(spread.status, icd::Status::Ok);
@@ -136,7 +136,7 @@ TEST_F(MapRoutesTest, SpreadsAnyHeightsAskedForOverTheColours) {
   EXPECT_EQ(spread.body.substr(900), usual.body.substr(900)) << "only the palette differs";
 }
 
-TEST_F(MapRoutesTest, ColoursATileAsItIsAskedTo) {
+TEST_F(MapRoutesTest, ColoursATileAsRequested) {
   for (const std::string tile : {"/adit/map/grid/-/0/0/0.png", "/adit/map/cloud/ugv1/0/0/0.png"}) {
     const auto usual = get_file(tile), own = get_file(tile + "?from=0a0b0c&to=F0E0D0");
     ASSERT_EQ(own.status, icd::Status::Ok) << tile;
@@ -146,7 +146,7 @@ TEST_F(MapRoutesTest, ColoursATileAsItIsAskedTo) {
   }
 }
 
-TEST_F(MapRoutesTest, HasNothingElsewhere) {
+TEST_F(MapRoutesTest, RejectsUnknownTiles) {
   for (const char* path :
        {"/adit/map/", "/adit/map/grid", "/adit/map/grid/-/0/0/0", "/adit/map/grid/-/0/0/0.jpg",
         "/adit/map/state/-/0/0/0.png", "/adit/map/grid/-/0/0/0/0.png", "/adit/map/grid/-/0/0/.png",
@@ -159,7 +159,7 @@ TEST_F(MapRoutesTest, HasNothingElsewhere) {
   }
 }
 
-TEST_F(MapRoutesTest, RefusesNumbersThatAreNone) {
+TEST_F(MapRoutesTest, RejectsInvalidNumbers) {
   for (const char* target :
        {"/adit/map?since=x", "/adit/map?since=-1", "/adit/map?since=1.5", "/adit/map/grid/-/0/0/0.png?at=now",
         "/adit/map/grid/-/0/0/0.png?at=nan", "/adit/map/cloud/ugv1/0/0/0.png?low=inf",
@@ -170,13 +170,13 @@ TEST_F(MapRoutesTest, RefusesNumbersThatAreNone) {
   }
 }
 
-TEST_F(MapRoutesTest, TakesHeadForGet) {
+TEST_F(MapRoutesTest, AnswersHeadLikeGet) {
   for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png"}) {
     EXPECT_EQ(get_file(path, "", "HEAD").status, icd::Status::Ok);
   }
 }
 
-TEST_F(MapRoutesTest, KeepsTheBrowserFromLoadingAnythingElse) {
+TEST_F(MapRoutesTest, ForbidsForeignContent) {
   for (const char* path : {"/adit/map", "/adit/map/grid/-/0/0/0.png", "/adit/map/nothing"}) {
     EXPECT_THAT(header(get_file(path), "Content-Security-Policy"), StartsWith("default-src 'none'")) << path;
   }

@@ -21,13 +21,13 @@ Measured measured(const std::string& name) {
   return measured;
 }
 
-TEST(Metrics, KeepToTheFormatWhateverTheRunIsLike) {
+TEST(Metrics, FollowTheFormatForAnyRun) {
   for (const char* name : {"empty", "calm", "trouble", "reports", "hostile"}) {
     EXPECT_THAT(faults_of(write_metrics(measured(name))), IsEmpty()) << name;
   }
 }
 
-TEST(Metrics, CarryWhatTheViewSays) {
+TEST(Metrics, ShowTheValuesOfTheView) {
   Measured all = measured("calm");
   all.view.run =
       icd::RunStatus{.score = 7, .run_clock = 750, .remaining_reports = 18, .current_team = "adit"};
@@ -96,7 +96,7 @@ TEST(Metrics, CarryWhatTheViewSays) {
   EXPECT_THAT(text, Not(HasSubstr("adit_updates_accepted_age_seconds{"))) << "none was accepted";
 }
 
-TEST(Metrics, CountReportsByTheirStates) {
+TEST(Metrics, CountReportsByState) {
   Measured all = measured("empty");
   all.reports.in[static_cast<std::size_t>(dispatch::ReportState::Queued)] = 2;
   all.reports.asking = 1;
@@ -107,7 +107,7 @@ TEST(Metrics, CountReportsByTheirStates) {
   EXPECT_THAT(text, HasSubstr("adit_reports_asking 1\n"));
 }
 
-TEST(Exposition, EscapesWhatCouldForgeASample) {
+TEST(Exposition, EscapesTextThatCouldForgeASample) {
   Exposition out;
   out.gauge("adit_x", "One line\nof \\ help.");
   out.sample({{"robot", "a\"} 1\nadit_y 2\\"}}, 0.5);
@@ -117,7 +117,7 @@ TEST(Exposition, EscapesWhatCouldForgeASample) {
   EXPECT_THAT(faults_of(out.text()), IsEmpty());
 }
 
-TEST(ExpositionGrammar, FindsWhatIsWrong) {
+TEST(ExpositionGrammar, FindsFaults) {
   const std::string head = "# HELP a_x X.\n# TYPE a_x gauge\n";
   EXPECT_THAT(faults_of(head + "a_x 1\n"), IsEmpty());
   for (const char* wrong :

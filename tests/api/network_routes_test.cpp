@@ -24,7 +24,7 @@ const network::Numbers kRead = {
 
 class NetworkRoutesTest : public OnPage {};
 
-TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
+TEST_F(NetworkRoutesTest, ShowTheInterfaces) {
   network.view = {
       .now = 1000,
       .managed = true,
@@ -51,7 +51,7 @@ TEST_F(NetworkRoutesTest, TellWhatTheInterfacesHave) {
     "last": null, "last_why": ""})"));
 }
 
-TEST_F(NetworkRoutesTest, TellEachAddressOfTheCommandPostsSide) {
+TEST_F(NetworkRoutesTest, ShowEachAddressOfTheCommandPostSide) {
   network.view.command_post = {{0x0a64010a, 24}, {0x0a64020a, 16}};
   network.view.gateway = 0x0a640101;
   const json shown = json::parse(get("/adit/network").body);
@@ -62,13 +62,13 @@ TEST_F(NetworkRoutesTest, TellEachAddressOfTheCommandPostsSide) {
   EXPECT_TRUE(shown["team"]["address"].is_null());
 }
 
-TEST_F(NetworkRoutesTest, TakeOneAddressAsItWasWrittenBeforeThereWereSeveral) {
+TEST_F(NetworkRoutesTest, AcceptTheOldFormOfASingleAddress) {
   post("/adit/network", R"({"team":{"address":"192.168.8.11","prefix":24},)"
                         R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":"10.100.1.1"}})");
   EXPECT_THAT(network.wanted, ElementsAre(kRead));
 }
 
-TEST_F(NetworkRoutesTest, TellOfAChangeThatWaits) {
+TEST_F(NetworkRoutesTest, ShowAPendingChange) {
   network.view.pending = PendingNetwork{1234.5, kRead, std::nullopt, "http://192.168.8.11:8000"};
   network.view.last = "reverted";
   network.view.last_why = "the change was not confirmed within 90 s";
@@ -96,7 +96,7 @@ TEST_F(NetworkRoutesTest, CheckWithoutChangingAnything) {
   EXPECT_EQ(json::parse(post("/adit/network/check", "{").body)["errors"][0]["path"], "");
 }
 
-TEST_F(NetworkRoutesTest, ChangeWhatPassesTheCheck) {
+TEST_F(NetworkRoutesTest, ApplyAChangeThatPassesTheCheck) {
   EXPECT_EQ(post("/adit/network", kNumbers).status, icd::Status::Ok);
   EXPECT_THAT(network.wanted, ElementsAre(kRead));
   network.findings.errors = {{"team.address", "overlaps"}, {"team.prefix", "no"}};
@@ -110,7 +110,7 @@ TEST_F(NetworkRoutesTest, ChangeWhatPassesTheCheck) {
   EXPECT_EQ(post("/adit/network", kNumbers).status, icd::Status::Conflict);
 }
 
-TEST_F(NetworkRoutesTest, ConfirmByTheAddressThatWasAsked) {
+TEST_F(NetworkRoutesTest, ConfirmByTheAddressOfTheRequest) {
   local = "192.168.8.11";
   post("/adit/network/confirm");
   EXPECT_THAT(network.confirmed, ElementsAre("192.168.8.11"));
@@ -134,7 +134,7 @@ TEST_F(NetworkRoutesTest, RunOneTestAtATime) {
   EXPECT_EQ(post("/adit/test").status, icd::Status::Conflict);
 }
 
-TEST_F(NetworkRoutesTest, TryWhatIsNamedBeforeItIsApplied) {
+TEST_F(NetworkRoutesTest, TestTheNamedEndpointBeforeItIsApplied) {
   post("/adit/test", R"({"course":"B","scoring":{"address":"10.100.2.200","port":8001,"token":"typed-1"},)"
                      R"("mapping":{"port":9000,"token":null}})");
   ASSERT_TRUE(test.tried.scoring && test.tried.mapping);
@@ -152,7 +152,7 @@ TEST_F(NetworkRoutesTest, TryWhatIsNamedBeforeItIsApplied) {
   EXPECT_FALSE(test.tried.is_applied());
 }
 
-TEST_F(NetworkRoutesTest, TryNothingElseThanWasMeant) {
+TEST_F(NetworkRoutesTest, RejectAMalformedTest) {
   const auto refusal = [this](const char* body, icd::Status status = icd::Status::UnprocessableEntity) {
     const auto answer = post("/adit/test", body);
     EXPECT_EQ(answer.status, status) << body;
@@ -172,7 +172,7 @@ TEST_F(NetworkRoutesTest, TryNothingElseThanWasMeant) {
   EXPECT_EQ(refusal("{}"), "\"scoring.address: expected one\"");
 }
 
-TEST(NetworkRoutesOnAServer, SeeTheAddressThatAConnectionCameTo) {
+TEST(NetworkRoutesOnAServer, SeeTheLocalAddressOfAConnection) {
   std::unique_ptr<Api> api;
   Forward forward;
   Doubles doubles;

@@ -39,7 +39,7 @@ class ReportRoutesTest : public OnPage {
   intake::Answer compose(const std::string& body) { return post("/adit/reports", body); }
 };
 
-TEST_F(ReportRoutesTest, GiveThoseOfOneRun) {
+TEST_F(ReportRoutesTest, GiveReportsOfOneRun) {
   source.details[7].row.run = 1;
   source.now.run_number = 2;
   const auto numbers = [&](const std::string& run) {
@@ -60,7 +60,7 @@ TEST_F(ReportRoutesTest, GiveThoseOfOneRun) {
   }
 }
 
-TEST_F(ReportRoutesTest, GiveAllReportsAsJsonThatNobodyKeeps) {
+TEST_F(ReportRoutesTest, GiveAllReportsAsUncachedJson) {
   const auto answer = get("/adit/reports");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_EQ(answer.content_type, "application/json");
@@ -86,7 +86,7 @@ TEST_F(ReportRoutesTest, WriteThousandsInManyTurnsOfTheLoop) {
   EXPECT_EQ(reports[999]["number"], 1000);
 }
 
-TEST_F(ReportRoutesTest, GiveAllReportsAsAFileForSpreadsheets) {
+TEST_F(ReportRoutesTest, GiveAllReportsAsCsv) {
   const auto answer = get("/adit/reports.csv");
   EXPECT_EQ(answer.content_type, "text/csv; charset=utf-8; header=present");
   EXPECT_EQ(header(answer, "Content-Disposition"), "attachment; filename=\"adit-reports.csv\"");
@@ -94,7 +94,7 @@ TEST_F(ReportRoutesTest, GiveAllReportsAsAFileForSpreadsheets) {
   EXPECT_EQ(answer.body, csv_header() + csv_line(source.details[7].row) + csv_line(source.details[12].row));
 }
 
-TEST_F(ReportRoutesTest, GiveAReportWithItsHistoryAndItsAnswer) {
+TEST_F(ReportRoutesTest, GiveAReportWithItsHistoryAndAnswer) {
   const json report = json::parse(get("/adit/reports/12").body);
   EXPECT_EQ(report["number"], 12);
   EXPECT_EQ(report["history"],
@@ -103,7 +103,7 @@ TEST_F(ReportRoutesTest, GiveAReportWithItsHistoryAndItsAnswer) {
   EXPECT_EQ(report["answer"], "{\"score_change\": 1}");
 }
 
-TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
+TEST_F(ReportRoutesTest, PassOnTheOperatorsAction) {
   EXPECT_EQ(post("/adit/reports/7/send").body, "{\"report\":7}");
   post("/adit/reports/12/withdraw");
   post("/adit/reports/12/hold");
@@ -117,7 +117,7 @@ TEST_F(ReportRoutesTest, PassOnTheOperatorsWord) {
   EXPECT_THAT(decisions.decided.back(), Pair(7, Action::Resubmit));
 }
 
-TEST_F(ReportRoutesTest, TakeAReportThatTheOperatorComposed) {
+TEST_F(ReportRoutesTest, AcceptAReportFromTheOperator) {
   const auto answer = compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0})");
   EXPECT_EQ(static_cast<int>(answer.status), 202);
   EXPECT_EQ(answer.body, "{\"report\":41}");
@@ -144,7 +144,7 @@ TEST_F(ReportRoutesTest, CorrectAReportByTheRulesOfANewOne) {
             icd::Status::NotFound);
 }
 
-TEST_F(ReportRoutesTest, LeaveOutANameThatIsNoRobotsAndSayWhy) {
+TEST_F(ReportRoutesTest, DropAnInvalidRobotNameAndTellWhy) {
   EXPECT_EQ(compose(R"({"type":"Drill","x":1.5,"y":-2,"z":0,"name":"spot1"})").body, "{\"report\":41}");
   EXPECT_EQ(compose(R"({"type":"Drill","x":9,"y":-2,"z":0,"name":7})").body,
             R"({"report":41,"left_out":"name: expected a string, got a whole number"})");
@@ -153,7 +153,7 @@ TEST_F(ReportRoutesTest, LeaveOutANameThatIsNoRobotsAndSayWhy) {
   EXPECT_EQ(decisions.reported[1].first.robot, std::nullopt);
 }
 
-TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
+TEST_F(ReportRoutesTest, NameTheWrongFieldOfAComposedReport) {
   const std::pair<const char*, const char*> wrong[] = {
       {R"({"type":"Lamp","x":0,"y":0,"z":0})", "type: expected one of"},
       {R"({"type":"Rope","x":"0","y":0,"z":0})", "x: expected"},
@@ -169,21 +169,21 @@ TEST_F(ReportRoutesTest, NameTheFieldOfAComposedReportThatIsWrong) {
   EXPECT_THAT(decisions.reported, IsEmpty());
 }
 
-TEST_F(ReportRoutesTest, SayWhyAComposedReportWasNotTaken) {
+TEST_F(ReportRoutesTest, TellWhyAComposedReportWasRejected) {
   decisions.outcome = std::unexpected("1000 reports are queued already; this report was not accepted");
   const auto answer = compose(R"({"type":"Rope","x":0,"y":0,"z":0})");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(json::parse(answer.body), "1000 reports are queued already; this report was not accepted");
 }
 
-TEST_F(ReportRoutesTest, SayWhyAActionCannotBe) {
+TEST_F(ReportRoutesTest, TellWhyAnActionFails) {
   decisions.outcome = std::unexpected("report 7 is answered: it is finished and cannot be withdrawn");
   const auto answer = post("/adit/reports/7/withdraw");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(json::parse(answer.body), "report 7 is answered: it is finished and cannot be withdrawn");
 }
 
-TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherActions) {
+TEST_F(ReportRoutesTest, RejectUnknownReportsAndActions) {
   for (const auto& answer : {get("/adit/reports/8"), post("/adit/reports/8/send")}) {
     EXPECT_EQ(answer.status, icd::Status::NotFound);
     EXPECT_EQ(json::parse(answer.body), "there is no report 8");
@@ -196,14 +196,14 @@ TEST_F(ReportRoutesTest, KnowNoOtherReportsAndNoOtherActions) {
   EXPECT_THAT(decisions.decided, IsEmpty());
 }
 
-TEST_F(ReportRoutesTest, TakeAnyOfTheTokens) {
+TEST_F(ReportRoutesTest, AcceptEachToken) {
   EXPECT_EQ(request("POST", "/adit/runs",
                     {{"Authorization", "bearer scoring-1"}, {"Content-Type", "application/json"}})
                 .status,
             icd::Status::Ok);
 }
 
-TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
+TEST_F(ReportRoutesTest, LimitTheBody) {
   EXPECT_EQ(post("/adit/reports/7/send", std::string(65536, ' ')).status, icd::Status::Ok);
   const auto chunked = open("POST", "/adit/reports/7/send", kJsonByToken, std::nullopt);
   ASSERT_NE(chunked, nullptr);
@@ -216,7 +216,7 @@ TEST_F(ReportRoutesTest, TakeAnyBodyButAnEndlessOne) {
   EXPECT_EQ(decisions.decided.size(), 1u);
 }
 
-TEST(ReportRoutesOnAServer, DoAActionAndShowIt) {
+TEST(ReportRoutesOnAServer, ApplyAndShowAnAction) {
   std::unique_ptr<Api> api;
   Forward forward;
   Doubles doubles;

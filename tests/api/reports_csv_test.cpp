@@ -47,20 +47,20 @@ std::string note_cell(std::string note) {
   return text.substr(before.size(), text.size() - before.size() - 3);
 }
 
-TEST(ReportsCsv, HasALineOfNamesAndOneForEachReport) {
+TEST(ReportsCsv, HasAHeaderAndALineForEachReport) {
   EXPECT_EQ(csv({}), kHeader);
   EXPECT_EQ(csv({row()}), std::string(kHeader) +
                               "7,1,Survivor,85.75,-4.5,0.25,10.0.0.5,2019-08-20T14:03:05.125Z,"
                               "2019-08-20T14:03:06.000Z,answered,no,no,,201,scored,1,,spot1\r\n");
 }
 
-TEST(ReportsCsv, GivesAReportThatIsLostNoPlace) {
+TEST(ReportsCsv, HasNoPositionForALostReport) {
   ReportRow lost = row();
   lost.position.reset();
   EXPECT_THAT(csv({lost}), HasSubstr("7,1,Survivor,,,,10.0.0.5,"));
 }
 
-TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
+TEST(ReportsCsv, ShowsReconciledAnswersZeroPointsAndRepeats) {
   ReportRow settled = row();
   settled.state = "settled";
   settled.score_change = 0;
@@ -72,13 +72,13 @@ TEST(ReportsCsv, TellsFoundOutAnswersZeroPointsAndRepeats) {
   EXPECT_THAT(csv({settled}), HasSubstr(",in_doubt,yes,yes,"));
 }
 
-TEST(ReportsCsv, QuotesWhatWouldEndACell) {
+TEST(ReportsCsv, QuotesCellsWithSeparators) {
   EXPECT_EQ(note_cell("a, b"), "\"a, b\"");
   EXPECT_EQ(note_cell("said \"no\""), "\"said \"\"no\"\"\"");
   EXPECT_EQ(note_cell("two\r\nlines\tand\x1b[2J"), "two  lines and [2J");
 }
 
-TEST(ReportsCsv, LetsNoSpreadsheetTakeATextForAFormula) {
+TEST(ReportsCsv, DefusesFormulas) {
   for (const std::string formula : {"=1+1", "+1", "-1", "@SUM(A1)", "  =1", "\uff1d1+1"}) {
     EXPECT_EQ(note_cell(formula), "'" + formula);
   }
@@ -87,7 +87,7 @@ TEST(ReportsCsv, LetsNoSpreadsheetTakeATextForAFormula) {
   EXPECT_EQ(note_cell("1 = 1"), "1 = 1");
 }
 
-TEST(ReportsCsv, IsUtf8WhateverTheTextsHold) {
+TEST(ReportsCsv, IsUtf8ForAnyText) {
   EXPECT_EQ(note_cell("caf\xc3\xa9"), "caf\xc3\xa9");
   EXPECT_EQ(note_cell("\xff\xc3(\xe2\x82"), "\xef\xbf\xbd\xef\xbf\xbd(\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(note_cell("a\xc2\x9b"

@@ -104,7 +104,7 @@ const Visitor kVisitors[] = {
      only_what_is_open},
 };
 
-TEST(Routes, LetInWhomTheTableSays) {
+TEST(Routes, EnforceTheTableOfRights) {
   for (const Visitor& visitor : kVisitors) {
     for (const Route& route : routes()) {
       Asked page;
@@ -117,7 +117,7 @@ TEST(Routes, LetInWhomTheTableSays) {
   }
 }
 
-TEST(Routes, DoNothingForWhomTheyDoNotLetIn) {
+TEST(Routes, HaveNoEffectWithoutRights) {
   for (const Visitor& visitor : kVisitors) {
     for (const Route& route : routes()) {
       if (visitor.told(route) == 0) continue;
@@ -137,7 +137,7 @@ TEST(Routes, DoNothingForWhomTheyDoNotLetIn) {
   }
 }
 
-TEST(Routes, OpenThePasswordAloneToAnybodyWhileSetUpIsOpenAndAtTheFirstStart) {
+TEST(Routes, OpenOnlyThePasswordDuringSetUp) {
   for (const bool first_start : {false, true}) {
     for (const Route& route : routes()) {
       Asked page;
@@ -151,7 +151,7 @@ TEST(Routes, OpenThePasswordAloneToAnybodyWhileSetUpIsOpenAndAtTheFirstStart) {
   }
 }
 
-TEST(Routes, TakeNoOtherMethodAndNameThoseThereAre) {
+TEST(Routes, RejectOtherMethodsWithAnAllowHeader) {
   for (const Route& route : routes()) {
     std::string allowed;
     for (const Route& each : routes()) {
@@ -174,7 +174,7 @@ TEST(Routes, TakeNoOtherMethodAndNameThoseThereAre) {
   }
 }
 
-TEST(Routes, TakeABodyOfTheirTypeAndNotALongerOne) {
+TEST(Routes, CheckTypeAndLengthOfBodies) {
   for (const Route& route : routes()) {
     if (route.method == "GET") continue;
     Asked page;
@@ -199,7 +199,7 @@ TEST(Routes, TakeABodyOfTheirTypeAndNotALongerOne) {
   }
 }
 
-TEST(Routes, AreBehindTheLoginWhereThereAreNone) {
+TEST(Routes, UnknownPathsRequireALogin) {
   Asked page;
   for (const char* path : {"/adit/", "/adit/nothing", "/adit/reports/7/history"}) {
     EXPECT_EQ(page.request("GET", path, {}).status, Status::Unauthorized) << path;
@@ -216,7 +216,7 @@ void collect(const json& value, std::set<std::string>& references) {
   }
 }
 
-TEST(Description, HasEachRouteWithWhoMayAndTheParametersOfItsPath) {
+TEST(Description, HasTheRightsAndParametersOfEachRoute) {
   Asked page;
   const json whole = json::parse(page.request("GET", "/adit/openapi.json", {}).body);
   EXPECT_EQ(whole["openapi"], "3.1.0");
@@ -247,7 +247,7 @@ TEST(Description, HasEachRouteWithWhoMayAndTheParametersOfItsPath) {
   }
 }
 
-TEST(Description, IsForAnybodyAndSentOnce) {
+TEST(Description, IsPublicAndCached) {
   Asked page;
   const auto answer = page.request("GET", "/adit/openapi.json", {});
   EXPECT_EQ(answer.content_type, "application/json");

@@ -18,7 +18,7 @@ class RunRoutesTest : public OnPage {
   intake::Answer identify(const std::string& body) { return post("/adit/identify", body); }
 };
 
-TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsRejectedMessages) {
+TEST_F(RunRoutesTest, PassOnActionsOnRejectedMessages) {
   const auto sent = post("/adit/rejected/7/send");
   EXPECT_EQ(sent.status, icd::Status::Ok);
   EXPECT_EQ(sent.body, R"({"rejected":7})");
@@ -27,14 +27,14 @@ TEST_F(RunRoutesTest, PassTheOperatorsWordOnWhatIsRejectedMessages) {
               ElementsAre(Pair(7, RejectedAction::Send), Pair(8, RejectedAction::Discard)));
 }
 
-TEST_F(RunRoutesTest, SayWhyNothingIsDoneWithWhatIsRejectedMessages) {
+TEST_F(RunRoutesTest, TellWhyAnActionOnARejectedMessageFails) {
   decisions.rejected_trouble = "something newer was sent since";
   const auto answer = post("/adit/rejected/7/send");
   EXPECT_EQ(answer.status, icd::Status::Conflict);
   EXPECT_EQ(answer.body, R"("something newer was sent since")");
 }
 
-TEST_F(RunRoutesTest, KnowNothingRejectedMessagesByWhatIsNoNumber) {
+TEST_F(RunRoutesTest, RejectInvalidNumbersOfRejectedMessages) {
   for (const char* const wrong :
        {"/adit/rejected/", "/adit/rejected/7", "/adit/rejected/x/send", "/adit/rejected/7/hold",
         "/adit/rejected/-1/send", "/adit/rejected/7/send/more"}) {
@@ -43,7 +43,7 @@ TEST_F(RunRoutesTest, KnowNothingRejectedMessagesByWhatIsNoNumber) {
   EXPECT_TRUE(decisions.decided_messages.empty());
 }
 
-TEST_F(RunRoutesTest, BeginALedgerInsteadOfOneThatCannotBeRead) {
+TEST_F(RunRoutesTest, ReplaceAnUnreadableLedger) {
   EXPECT_EQ(post("/adit/ledger/new").body, R"({"kept_as":"ledger.damaged-1"})");
   decisions.ledger = std::unexpected(icd::Refusal{icd::Status::Conflict, "the ledger can be read"});
   const auto answer = post("/adit/ledger/new");
@@ -51,14 +51,14 @@ TEST_F(RunRoutesTest, BeginALedgerInsteadOfOneThatCannotBeRead) {
   EXPECT_EQ(answer.body, R"("the ledger can be read")");
 }
 
-TEST_F(RunRoutesTest, MakeTheLightsBlinkAndSayUntilWhen) {
+TEST_F(RunRoutesTest, BlinkTheLightsAndTellUntilWhen) {
   const auto answer = identify(R"({"seconds": 12.5})");
   EXPECT_EQ(answer.status, icd::Status::Ok);
   EXPECT_EQ(nlohmann::json::parse(answer.body)["identify_until"], 1012.5);
   EXPECT_EQ(decisions.identified, 12.5);
 }
 
-TEST_F(RunRoutesTest, NameTheFieldOfABlinkThatIsWrong) {
+TEST_F(RunRoutesTest, NameTheWrongFieldOfABlink) {
   for (const char* wrong : {R"({"seconds": 0})", R"({"seconds": 60.5})", R"({"seconds": -1})",
                             R"({"seconds": "10"})", R"({"seconds": null})", "{}"}) {
     const auto answer = identify(wrong);

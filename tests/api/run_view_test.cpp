@@ -17,7 +17,7 @@ namespace {
 
 using nlohmann::json;
 
-TEST(RunView, HasNoPlaceForAReportThatIsLost) {
+TEST(RunView, HasNoPositionForALostReport) {
   RunView view = *scene("trouble", 1000.5, 3);
   view.reports[0].position.reset();
   const json parsed = json::parse(codec::to_json(view));
@@ -26,7 +26,7 @@ TEST(RunView, HasNoPlaceForAReportThatIsLost) {
 }
 
 /// One for page, `adit status`, metrics and alarms.
-TEST(RunView, HasTheAgesThatTheAlarmsGoBy) {
+TEST(RunView, HasTheAgesThatAlarmsUse) {
   RunView view;
   view.activities.resize(2);
   view.activities[0].last_forwarded = view.activities[0].behind_since = 975;
@@ -41,7 +41,7 @@ TEST(RunView, HasTheAgesThatTheAlarmsGoBy) {
   EXPECT_EQ(view.robots[0].age, 0) << "never negative";
 }
 
-TEST(RunView, SaysHowOldTheRobotsOwnDataIsAndNotWhenItWasForwarded) {
+TEST(RunView, ShowsTheAgeOfRobotDataNotOfItsDelivery) {
   RunView view;
   view.activities.resize(2);
   for (ActivityRow& row : view.activities) row.robot = "r";
@@ -82,7 +82,7 @@ const struct {
     {"nothing heard while the endpoint is down", {}, "", true, alarms::PostTrouble::Silent},
 };
 
-TEST(RunView, SaysHowARobotStands) {
+TEST(RunView, ShowsTheStandingOfARobot) {
   for (const auto& each : kStandings) {
     alarms::Facts facts{.now = 1000, .robots = {{"r", {.silent = each.silent}}}, .streams = each.streams};
     facts.endpoints = {{.name = "mapping", .trouble = each.mapping}};
@@ -111,7 +111,7 @@ std::string standing_of(const EndpointRow& row, const alarms::Facts& facts = {})
   return icd::sentence(alarms::kLevelWords[level], " ", view.endpoints[0].word);
 }
 
-TEST(RunView, SaysHowAnEndpointStands) {
+TEST(RunView, ShowsTheStandingOfAnEndpoint) {
   using enum alarms::PostTrouble;
   EndpointRow row{.name = "mapping"};
   EXPECT_EQ(standing_of(row), "wait not connected");
@@ -133,7 +133,7 @@ TEST(RunView, SaysHowAnEndpointStands) {
   EXPECT_EQ(standing_of(row, {.network = {.exchanged = alarms::ExchangedAddress{}}}), "bad cables exchanged");
 }
 
-TEST(RunViewJson, WritesWhatIsAbsentAsNull) {
+TEST(RunViewJson, WritesAbsentValuesAsNull) {
   RunView view = *scene("empty", 0, 0);
   view.activities.emplace_back();
   view.reports.emplace_back();
@@ -145,7 +145,7 @@ TEST(RunViewJson, WritesWhatIsAbsentAsNull) {
   EXPECT_TRUE(parsed.at("reports")[0].at("score_change").is_null());
 }
 
-TEST(RunViewJson, IsOneLineOfJsonWhateverTheTextsHold) {
+TEST(RunViewJson, IsOneLineOfJsonForAnyText) {
   RunView view = *scene("hostile", 1000, 0);
   view.alarms.front().why = std::string("two\nlines\r\n\n\xc3(\0\x01\x7f\xed\xa0\x80");
   view.sent_mbit = std::numeric_limits<double>::quiet_NaN();

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 class SceneRoutesTest : public OnPage {};
 
-TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
+TEST_F(SceneRoutesTest, GiveChangedMarkers) {
   DrawnMarker marker = drawn_marker();
   marker.colors.push_back({0, 0, 0, 0.25});
   source.marker_changes = {.version = 1'793'000'123'456,
@@ -45,7 +45,7 @@ TEST_F(SceneRoutesTest, GiveTheMarkersThatChanged) {
                                             {"gone", {{{"ns", "path"}, {"id", 7}}}}}));
 }
 
-TEST_F(SceneRoutesTest, GiveWhereRobotsWere) {
+TEST_F(SceneRoutesTest, GiveTracksOfRobots) {
   source.robot_tracks = {{"r1", {{.at = 100.126, .position = {1.234, 5, -6}, .heading = 3.14159}}}};
   const auto answer = get("/adit/tracks?since=90.5");
   EXPECT_EQ(source.since_time, 90.5);
@@ -64,7 +64,7 @@ std::vector<TrackPose> each_second(int count, To to) {
   return poses;
 }
 
-TEST_F(SceneRoutesTest, LeaveOutPosesThatInterpolationGives) {
+TEST_F(SceneRoutesTest, OmitPosesThatInterpolationGives) {
   const auto times_of = [this](std::vector<TrackPose> poses) {
     source.robot_tracks = {{"r1", std::move(poses)}};
     std::vector<int> seconds;
@@ -97,7 +97,7 @@ TEST_F(SceneRoutesTest, LeaveOutPosesThatInterpolationGives) {
   EXPECT_THAT(times_of(stepped), ElementsAre(0, 1, -10));
 }
 
-TEST_F(SceneRoutesTest, CompressTheTracksOfTwentyRobotsAtTheirMost) {
+TEST_F(SceneRoutesTest, CompressTheLongestTracksOfTwentyRobots) {
   const auto poses = each_second(
       4000, [](int i) { return TrackPose{.position = {i % 97 / 7.0, i % 89 / 3.0, i % 7 / 9.0}}; });
   for (int i = 0; i < 20; ++i) source.robot_tracks.push_back({"r" + std::to_string(i), poses});
@@ -105,7 +105,7 @@ TEST_F(SceneRoutesTest, CompressTheTracksOfTwentyRobotsAtTheirMost) {
   EXPECT_EQ(header(answer, "Content-Encoding"), "gzip");
 }
 
-TEST_F(SceneRoutesTest, NameWhatIsNoNumber) {
+TEST_F(SceneRoutesTest, NameAnInvalidNumber) {
   for (const char* wrong : {"/adit/markers?since=x", "/adit/markers?since=-1", "/adit/markers?since=1.5",
                             "/adit/tracks?since=x", "/adit/tracks?since=inf", "/adit/tracks?since=nan"}) {
     const auto answer = get(wrong);

@@ -56,7 +56,7 @@ class SessionRoutesTest : public OnPage {
   json session(const Browser& browser = {}) { return json::parse(get("/adit/session", browser).body); }
 };
 
-TEST_F(SessionRoutesTest, TellAnybodyWhoHeIs) {
+TEST_F(SessionRoutesTest, TellAnyClientItsRole) {
   EXPECT_EQ(session(),
             (json{{"role", nullptr}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
   const Browser mine = log_in("correct horse");
@@ -69,7 +69,7 @@ TEST_F(SessionRoutesTest, TellAnybodyWhoHeIs) {
             (json{{"role", "operator"}, {"csrf", nullptr}, {"first_start", false}, {"set_up_open", false}}));
 }
 
-TEST_F(SessionRoutesTest, GiveACookieThatNoScriptReadsAndNoOtherSiteSends) {
+TEST_F(SessionRoutesTest, SetAStrictHttpOnlyCookie) {
   const auto answer = post("/adit/login", {{"password", "correct horse"}});
   EXPECT_THAT(header(answer, "Set-Cookie"),
               AllOf(StartsWith("adit="), EndsWith("; HttpOnly; SameSite=Strict; Path=/; Max-Age=604800")));
@@ -77,7 +77,7 @@ TEST_F(SessionRoutesTest, GiveACookieThatNoScriptReadsAndNoOtherSiteSends) {
   EXPECT_EQ(json::parse(answer.body)["role"], "operator");
 }
 
-TEST_F(SessionRoutesTest, EndASessionWhenItLogsOut) {
+TEST_F(SessionRoutesTest, EndASessionAtLogout) {
   const Browser mine = log_in("correct horse"), other = log_in("correct horse");
   const auto answer = post("/adit/logout", json::object(), mine);
   EXPECT_EQ(answer.status, Status::Ok);
@@ -86,13 +86,13 @@ TEST_F(SessionRoutesTest, EndASessionWhenItLogsOut) {
   EXPECT_EQ(get("/adit/run", other).status, Status::Ok);
 }
 
-TEST_F(SessionRoutesTest, ReplaceTheSessionOfABrowserThatLogsInAgain) {
+TEST_F(SessionRoutesTest, ReplaceTheSessionAtANewLogin) {
   const Browser mine = log_in("look, do not touch");
   EXPECT_EQ(post("/adit/login", {{"password", "correct horse"}}, mine).status, Status::Ok);
   EXPECT_EQ(get("/adit/run", mine).status, Status::Unauthorized);
 }
 
-TEST_F(SessionRoutesTest, SlowDownWhoGuessesWithoutEvenChecking) {
+TEST_F(SessionRoutesTest, RejectGuessesUncheckedAfterFive) {
   for (int i = 0; i < 5; ++i) {
     const auto answer = post("/adit/login", {{"password", "guess"}});
     EXPECT_EQ(answer.status, Status::Forbidden);
@@ -127,7 +127,7 @@ class GuessedAtTest : public SessionRoutesTest {
   }
 };
 
-TEST_F(GuessedAtTest, SayToAStrangerWhenItsTurnIs) {
+TEST_F(GuessedAtTest, TellUnknownClientsWhenToRetry) {
   guess_from_everywhere();
   const auto answer = try_to("");
   EXPECT_EQ(answer.status, Status::TooManyRequests);
@@ -136,7 +136,7 @@ TEST_F(GuessedAtTest, SayToAStrangerWhenItsTurnIs) {
                 " s, or press the box's button and try again at once");
 }
 
-TEST_F(GuessedAtTest, LetInABrowserThatHasBeenInBefore) {
+TEST_F(GuessedAtTest, AdmitAKnownDevice) {
   const std::string device = device_after_login();
   ASSERT_THAT(device, StartsWith("adit-device="));
   guess_from_everywhere();
@@ -146,20 +146,20 @@ TEST_F(GuessedAtTest, LetInABrowserThatHasBeenInBefore) {
       << "it keeps the one it has";
 }
 
-TEST_F(GuessedAtTest, KeepRoomForABrowserThatHasBeenInBefore) {
+TEST_F(GuessedAtTest, ReserveRoomForAKnownDevice) {
   const std::string device = device_after_login();
   EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", device}})), intake::Shown::Enough);
   EXPECT_EQ(api.shown(FakeHead("POST", "/adit/login", {{"Cookie", "adit-device=guessed"}})),
             intake::Shown::Nothing);
 }
 
-TEST_F(GuessedAtTest, LetInWhoHasPressedTheButton) {
+TEST_F(GuessedAtTest, AdmitTheClientThatPressedTheButton) {
   guess_from_everywhere();
   keys.at_box = true;
   EXPECT_EQ(try_to("").status, Status::Ok);
 }
 
-TEST_F(GuessedAtTest, KnowNoBrowserOnceThePasswordIsAnother) {
+TEST_F(GuessedAtTest, ForgetDevicesOfAnOldPassword) {
   const std::string device = device_after_login();
   const Browser mine = log_in("correct horse");
   ASSERT_EQ(post("/adit/password",
@@ -170,7 +170,7 @@ TEST_F(GuessedAtTest, KnowNoBrowserOnceThePasswordIsAnother) {
   EXPECT_EQ(try_to(device).status, Status::TooManyRequests);
 }
 
-TEST_F(GuessedAtTest, GiveTheOperatorsBrowserItsOwnAfterTheViewers) {
+TEST_F(GuessedAtTest, GiveAnOperatorADeviceAfterAViewers) {
   auto answer = post("/adit/login", {{"password", "look, do not touch"}});
   ASSERT_EQ(std::ranges::count(answer.headers, "Set-Cookie", &intake::Header::name), 2);
   const std::string viewers = keys.devices_.all().back().id.reveal();
@@ -179,7 +179,7 @@ TEST_F(GuessedAtTest, GiveTheOperatorsBrowserItsOwnAfterTheViewers) {
   EXPECT_EQ(keys.devices_.all().back().role, access::Role::Operator);
 }
 
-TEST_F(SessionRoutesTest, CallNoPasswordWrongWhileTheyCannotBeRead) {
+TEST_F(SessionRoutesTest, RejectLoginWith503WhilePasswordsAreUnreadable) {
   keys.unread_ = "the passwords cannot be read: access.json: Input/output error";
   const intake::Answer answer = post("/adit/login", {{"password", "correct horse"}});
   EXPECT_EQ(answer.status, Status::ServiceUnavailable);
@@ -187,7 +187,7 @@ TEST_F(SessionRoutesTest, CallNoPasswordWrongWhileTheyCannotBeRead) {
   EXPECT_EQ(keys.checked, 0);
 }
 
-TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnceAndAnswerEachWhenItIsChecked) {
+TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnce) {
   keys.slow = true;
   const Headers headers = of({});
   std::vector<std::shared_ptr<FakeResponder>> all;
@@ -200,7 +200,7 @@ TEST_F(SessionRoutesTest, CheckFewPasswordsAtOnceAndAnswerEachWhenItIsChecked) {
   for (const auto& each : all) EXPECT_EQ(each->answered->status, Status::Ok);
 }
 
-TEST_F(SessionRoutesTest, SetTheFirstPasswordWithTheCodeAlone) {
+TEST_F(SessionRoutesTest, SetTheFirstPasswordWithOnlyTheCode) {
   keys.operator_.reset();
   EXPECT_EQ(session()["first_start"], true);
   EXPECT_EQ(post("/adit/login", {{"password", "anything"}}).status, Status::Conflict);
@@ -224,7 +224,7 @@ TEST_F(SessionRoutesTest, SetTheFirstPasswordWithTheCodeAlone) {
   EXPECT_EQ(session(log_in("a new password"))["role"], "operator");
 }
 
-TEST_F(SessionRoutesTest, SetANewPasswordWithNothingElseOnceTheButtonOpenedSetUp) {
+TEST_F(SessionRoutesTest, SetAPasswordWithoutCredentialsDuringSetUp) {
   const Browser old = log_in("correct horse"), viewer = log_in("look, do not touch");
   const json body = {{"role", "operator"}, {"password", "a new password"}};
   EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "not before";
@@ -249,7 +249,7 @@ TEST_F(SessionRoutesTest, SetANewPasswordWithNothingElseOnceTheButtonOpenedSetUp
   EXPECT_EQ(post("/adit/password", body).status, Status::Unauthorized) << "it is good once";
 }
 
-TEST_F(SessionRoutesTest, OpenNothingElseWhileSetUpIsOpen) {
+TEST_F(SessionRoutesTest, OpenNoOtherRouteDuringSetUp) {
   keys.set_up = true;
   for (const char* path : {"/adit/reset", "/adit/logout", "/adit/sessions/1/end", "/adit/runs"}) {
     EXPECT_EQ(post(path, {{"password", "a new password"}}).status, Status::Unauthorized) << path;
@@ -268,7 +268,7 @@ TEST_F(SessionRoutesTest, OpenNothingElseWhileSetUpIsOpen) {
   EXPECT_EQ(keys.operator_, "correct horse");
 }
 
-TEST_F(SessionRoutesTest, SetNoPasswordOnceSetUpIsClosedWhileItIsOnItsWay) {
+TEST_F(SessionRoutesTest, RejectAPasswordIfSetUpClosedMeanwhile) {
   keys.set_up = true;
   const auto late = open("POST", "/adit/password", of({}), std::nullopt);
   ASSERT_NE(late, nullptr);
@@ -279,7 +279,7 @@ TEST_F(SessionRoutesTest, SetNoPasswordOnceSetUpIsClosedWhileItIsOnItsWay) {
   EXPECT_EQ(keys.operator_, "correct horse");
 }
 
-TEST_F(SessionRoutesTest, AskForNoCodeAtTheFirstStartWhileSetUpIsOpen) {
+TEST_F(SessionRoutesTest, RequireNoCodeDuringSetUpAtTheFirstStart) {
   keys.operator_.reset();
   keys.set_up = true;
   EXPECT_EQ(
@@ -291,7 +291,7 @@ TEST_F(SessionRoutesTest, AskForNoCodeAtTheFirstStartWhileSetUpIsOpen) {
   EXPECT_EQ(keys.operator_, "a new password");
 }
 
-TEST_F(SessionRoutesTest, SlowDownWhoGuessesTheCode) {
+TEST_F(SessionRoutesTest, LimitGuessesOfTheCode) {
   keys.operator_.reset();
   json body = {{"role", "operator"}, {"code", "11111111"}, {"password", "a new password"}};
   for (int i = 0; i < 5; ++i) EXPECT_EQ(post("/adit/password", body).status, Status::Forbidden);
@@ -299,7 +299,7 @@ TEST_F(SessionRoutesTest, SlowDownWhoGuessesTheCode) {
   EXPECT_EQ(post("/adit/password", body).status, Status::TooManyRequests);
 }
 
-TEST_F(SessionRoutesTest, LetNobodyInBetweenTheCodeAndThePasswordWhileTheFirstIsSet) {
+TEST_F(SessionRoutesTest, RejectTheCodeIfAPasswordWasSetMeanwhile) {
   keys.operator_.reset();
   const auto late = open("POST", "/adit/password", of({}), std::nullopt);
   ASSERT_NE(late, nullptr);
@@ -309,7 +309,7 @@ TEST_F(SessionRoutesTest, LetNobodyInBetweenTheCodeAndThePasswordWhileTheFirstIs
   EXPECT_EQ(responder->answered->status, Status::Unauthorized);
 }
 
-TEST_F(SessionRoutesTest, LetTheOperatorChangeBothPasswordsWithHisOwn) {
+TEST_F(SessionRoutesTest, OperatorChangesBothPasswordsWithTheOwnOne) {
   const Browser mine = log_in("correct horse"), other = log_in("correct horse"),
                 viewer = log_in("look, do not touch");
   json change = {{"role", "operator"}, {"current", "wrong"}, {"password", "a new password"}};
@@ -331,7 +331,7 @@ TEST_F(SessionRoutesTest, LetTheOperatorChangeBothPasswordsWithHisOwn) {
   EXPECT_EQ(post("/adit/password", change, mine).status, Status::UnprocessableEntity);
 }
 
-TEST_F(SessionRoutesTest, ShowTheOperatorAllSessionsAndEndWhichHeSays) {
+TEST_F(SessionRoutesTest, ListAndEndSessionsForTheOperator) {
   const Browser viewer = log_in("look, do not touch"), mine = log_in("correct horse");
   const json all = json::parse(get("/adit/sessions", mine).body);
   ASSERT_EQ(all.size(), 2u);
@@ -348,7 +348,7 @@ TEST_F(SessionRoutesTest, ShowTheOperatorAllSessionsAndEndWhichHeSays) {
   EXPECT_EQ(post(path, json::object(), mine).status, Status::NotFound);
 }
 
-TEST_F(SessionRoutesTest, RefuseWhatTheyDoNotUnderstand) {
+TEST_F(SessionRoutesTest, RejectMalformedRequests) {
   for (const char* body : {"", "{", "[]", "{}", R"({"password":7})", R"({"password":null})"}) {
     const auto answer = ask("POST", "/adit/login", of({}), body);
     EXPECT_TRUE(answer.status == Status::BadRequest || answer.status == Status::UnprocessableEntity) << body;

@@ -21,7 +21,7 @@ class SettingsRoutesTest : public OnPage {
   json shown() { return json::parse(get("/adit/settings").body); }
 };
 
-TEST_F(SettingsRoutesTest, ShowTheWholeSettingsWhatAFormNeedsAndNoToken) {
+TEST_F(SettingsRoutesTest, ShowAllSettingsButNoToken) {
   const json said = shown();
   EXPECT_EQ(said["settings"], json::parse(settings::file_of(setup.now)));
   EXPECT_EQ(said["tag"], settings::tag_of(setup.now));
@@ -61,13 +61,13 @@ TEST_F(SettingsRoutesTest, TellThatAChangeIsBeingApplied) {
   EXPECT_EQ(shown()["applying"], true);
 }
 
-TEST_F(SettingsRoutesTest, TellWhyTheLastChangeIsNotInUse) {
+TEST_F(SettingsRoutesTest, TellWhyTheLastChangeWasReverted) {
   EXPECT_EQ(shown()["trouble"], "");
   setup.why = "the last change was reverted: no such interface";
   EXPECT_EQ(shown()["trouble"], setup.why);
 }
 
-TEST_F(SettingsRoutesTest, SayWhenToTryAgainWhereAnotherChangeIsBeingAppliedAndThereAlone) {
+TEST_F(SettingsRoutesTest, SendRetryAfterOnlyWhileAChangeIsApplied) {
   json said = shown();
   const json change = {{"settings", said["settings"]}, {"base", said["tag"]}};
   const json stale = {{"settings", said["settings"]}, {"base", "another"}};
@@ -83,7 +83,7 @@ TEST_F(SettingsRoutesTest, SayWhenToTryAgainWhereAnotherChangeIsBeingAppliedAndT
   EXPECT_THAT(answer.headers, testing::Not(testing::Contains(testing::FieldsAre("Retry-After", "1"))));
 }
 
-TEST_F(SettingsRoutesTest, LeaveItToTheBoxWhetherAChangeThatIsNoneHasToBeSaved) {
+TEST_F(SettingsRoutesTest, PassOnUnchangedSettings) {
   setup.refusal = icd::Refusal{Status::Conflict, "another change is being applied: try again"};
   EXPECT_EQ(post("/adit/course", {{"name", ""}}).status, Status::Conflict);
 }
@@ -106,7 +106,7 @@ TEST_F(SettingsRoutesTest, CheckWithoutChangingAnything) {
   EXPECT_EQ(setup.saves, 0);
 }
 
-TEST_F(SettingsRoutesTest, SaveWhatIsGoodAndSayWhatChanges) {
+TEST_F(SettingsRoutesTest, SaveGoodSettingsAndListTheChanges) {
   json said = shown();
   said["settings"]["team"]["connections"] = 65;
   const auto answer = post("/adit/settings", {{"settings", said["settings"]}, {"base", said["tag"]}});
@@ -124,7 +124,7 @@ TEST_F(SettingsRoutesTest, SaveWhatIsGoodAndSayWhatChanges) {
             (json{{"changes", json::array()}, {"warnings", json::array()}}));
 }
 
-TEST_F(SettingsRoutesTest, SaveNoPortThatNobodyWouldFindAgain) {
+TEST_F(SettingsRoutesTest, RejectPortZero) {
   json said = shown();
   said["settings"]["team"]["listen"].push_back({{"address", "10.0.0.1"}, {"port", 0}});
   const auto checked = post("/adit/settings/check", {{"settings", said["settings"]}});
@@ -135,7 +135,7 @@ TEST_F(SettingsRoutesTest, SaveNoPortThatNobodyWouldFindAgain) {
   EXPECT_EQ(setup.saves, 0);
 }
 
-TEST_F(SettingsRoutesTest, RefuseWhatIsNotGoodWithEveryErrorAndSaveNothing) {
+TEST_F(SettingsRoutesTest, RejectBadSettingsWithAllErrors) {
   const json said = shown();
   json settings = said["settings"];
   settings["team"]["connections"] = "many";
@@ -149,7 +149,7 @@ TEST_F(SettingsRoutesTest, RefuseWhatIsNotGoodWithEveryErrorAndSaveNothing) {
   EXPECT_EQ(setup.saves, 0);
 }
 
-TEST_F(SettingsRoutesTest, RefuseBodiesThatAreNotWhatIsAskedForAndNameTheField) {
+TEST_F(SettingsRoutesTest, RejectMalformedBodiesWithTheFieldsName) {
   const json good = shown()["settings"];
   const struct {
     const char* path;
@@ -200,7 +200,7 @@ TEST_F(SettingsRoutesTest, SetAndRemoveATokenWithoutShowingIt) {
                                      std::pair("scoring", "removed")));
 }
 
-TEST_F(SettingsRoutesTest, SwitchTheCourseByItsNameAndBackToNone) {
+TEST_F(SettingsRoutesTest, SwitchTheCourseByNameAndBackToNone) {
   EXPECT_EQ(json::parse(post("/adit/course", {{"name", "A"}}).body),
             (json{{"changes", {{{"path", "command_post.course"}, {"from", ""}, {"to", "A"}}}},
                   {"warnings", {"reports go elsewhere"}}}));
@@ -209,7 +209,7 @@ TEST_F(SettingsRoutesTest, SwitchTheCourseByItsNameAndBackToNone) {
   EXPECT_EQ(setup.now.command_post.course, "");
 }
 
-TEST_F(SettingsRoutesTest, ResetWithTheOperatorsPasswordAlone) {
+TEST_F(SettingsRoutesTest, ResetOnlyWithTheOperatorsPassword) {
   EXPECT_EQ(post("/adit/reset", {{"password", "look, do not touch"}}).status, Status::Forbidden)
       << "the viewer's";
   EXPECT_EQ(post("/adit/reset", json::object()).status, Status::UnprocessableEntity);
@@ -221,7 +221,7 @@ TEST_F(SettingsRoutesTest, ResetWithTheOperatorsPasswordAlone) {
   EXPECT_EQ(setup.resets, 1);
 }
 
-TEST_F(SettingsRoutesTest, SlowDownWhoGuessesThePasswordByResetting) {
+TEST_F(SettingsRoutesTest, LimitGuessesOfThePasswordByReset) {
   for (int i = 0; i < 5; ++i) {
     EXPECT_EQ(post("/adit/reset", {{"password", "guess"}}).status, Status::Forbidden);
   }
@@ -229,7 +229,7 @@ TEST_F(SettingsRoutesTest, SlowDownWhoGuessesThePasswordByResetting) {
   EXPECT_EQ(setup.resets, 0);
 }
 
-TEST_F(SettingsRoutesTest, PassOnWhyAChangeIsNotMade) {
+TEST_F(SettingsRoutesTest, TellWhyAChangeFails) {
   setup.refusal = {Status::ServiceUnavailable, "cannot store the change: No space left on device"};
   json said = shown();
   said["settings"]["team"]["connections"] = 65;

@@ -19,14 +19,14 @@ class SpareRoutesTest : public OnPage {
   }
 };
 
-TEST_F(SpareRoutesTest, ShowsHowTheBoxStands) {
+TEST_F(SpareRoutesTest, ShowsTheStateOfTheBox) {
   spare.view.standby = true;
   spare.view.code = "1234 5678 9012 3456";
   EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("standby":true)"));
   EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("code":"1234 5678 9012 3456")"));
 }
 
-TEST_F(SpareRoutesTest, PassesTheOperatorsWordOn) {
+TEST_F(SpareRoutesTest, PassesOnTheOperatorsAction) {
   for (const char* const path : {"standby", "resume", "forget"})
     EXPECT_EQ(post(std::string("/adit/spare/") + path).status, Status::Ok) << path;
   EXPECT_EQ(post("/adit/spare/open", R"({"code":"1234"})").status, Status::Ok);
@@ -37,7 +37,7 @@ TEST_F(SpareRoutesTest, PassesTheOperatorsWordOn) {
   EXPECT_EQ(refused.body, "\"it does not rest\"");
 }
 
-TEST_F(SpareRoutesTest, TakesOverOnlyWhereTheFirstBoxIsUnplugged) {
+TEST_F(SpareRoutesTest, TakesOverOnlyIfTheFirstBoxIsUnplugged) {
   for (const char* const body : {"{}", R"({"unplugged":false})", R"({"unplugged":0})", "[]", "x"})
     EXPECT_NE(post("/adit/spare/take-over", body).status, Status::Ok) << body;
   EXPECT_THAT(spare.asked, IsEmpty());
@@ -51,7 +51,7 @@ TEST_F(SpareRoutesTest, GivesTheExportAsAFile) {
   EXPECT_EQ(answer.content_type, "application/octet-stream");
 }
 
-TEST_F(SpareRoutesTest, TellsWhatTheStickHas) {
+TEST_F(SpareRoutesTest, ListsTheStick) {
   EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("stick":null)"));
   spare.view.stick = StickRow{.hindrance = "",
                               .doing = "",
@@ -61,7 +61,7 @@ TEST_F(SpareRoutesTest, TellsWhatTheStickHas) {
   EXPECT_THAT(get("/adit/spare").body, HasSubstr(R"("box":"10.0.0.1")"));
 }
 
-TEST_F(SpareRoutesTest, HasExportsWrittenToTheStickAndReadFromIt) {
+TEST_F(SpareRoutesTest, WritesAndReadsExportsOnTheStick) {
   EXPECT_EQ(post("/adit/spare/to-stick").status, Status::Ok);
   EXPECT_EQ(post("/adit/spare/from-stick", R"({"name":"a.adit-spare"})").status, Status::Ok);
   EXPECT_THAT(spare.asked, ElementsAre("export to the stick", "take a.adit-spare"));
@@ -72,7 +72,7 @@ TEST_F(SpareRoutesTest, HasExportsWrittenToTheStickAndReadFromIt) {
   EXPECT_EQ(spare.asked.size(), 3U);
 }
 
-TEST_F(SpareRoutesTest, TakesInAnExportAndRefusesWhatIsNoneByItsFirstBytes) {
+TEST_F(SpareRoutesTest, RejectsOtherFilesByTheirFirstBytes) {
   const std::string whole = std::string("adit-spare\1\0", 12) + std::string(1000, 'x');
   EXPECT_EQ(take(whole).status, Status::Ok);
   EXPECT_EQ(spare.file, whole);
@@ -83,7 +83,7 @@ TEST_F(SpareRoutesTest, TakesInAnExportAndRefusesWhatIsNoneByItsFirstBytes) {
   EXPECT_EQ(spare.file, whole);
 }
 
-TEST_F(SpareRoutesTest, TakesInNothingThatIsTooLarge) {
+TEST_F(SpareRoutesTest, RejectsAnExportThatIsTooLarge) {
   const auto sink = open("POST", "/adit/spare/take", {kByToken, {"Content-Type", "application/octet-stream"}},
                          spare::kLargestExport + 1);
   EXPECT_EQ(sink, nullptr);

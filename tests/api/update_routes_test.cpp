@@ -24,7 +24,7 @@ class UpdateRoutesTest : public OnPage {
   }
 };
 
-TEST_F(UpdateRoutesTest, TellWhatRuns) {
+TEST_F(UpdateRoutesTest, ShowTheRunningVersion) {
   updates.view.managed = true;
   updates.view.running = {"adit-qemu-virt", "0.1.0", "A", "B"};
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body), json::parse(R"({
@@ -33,7 +33,7 @@ TEST_F(UpdateRoutesTest, TellWhatRuns) {
     "newer": null, "newer_why": null})"));
 }
 
-TEST_F(UpdateRoutesTest, TellOfAnUpdate) {
+TEST_F(UpdateRoutesTest, ShowAnUpdate) {
   updates.view.why = "RAUC does not run here";
   updates.view.doing = "installing";
   updates.view.progress = 40;
@@ -66,7 +66,7 @@ std::vector<std::uint8_t> head(std::uint8_t used = 40) {
   return bytes;
 }
 
-TEST_F(UpdateRoutesTest, HandABundleOnAsItComes) {
+TEST_F(UpdateRoutesTest, PassOnABundleInPieces) {
   const auto exchange = open("POST", "/adit/update?again=1", kBytes, 51);
   ASSERT_TRUE(exchange);
   EXPECT_EQ(updates.received.size, 51u);
@@ -86,7 +86,7 @@ TEST_F(UpdateRoutesTest, HandABundleOnAsItComes) {
   EXPECT_TRUE(json::parse(responder->answered->body).contains("version"));
 }
 
-TEST_F(UpdateRoutesTest, RefuseWhatIsNoBundleByItsFirstBytes) {
+TEST_F(UpdateRoutesTest, RejectOtherFilesByTheirFirstBytes) {
   std::vector<std::uint8_t> image = head(), cut = head(60);
   image[0] = 0xfd;
   for (const auto& [bytes, why] :
@@ -104,7 +104,7 @@ TEST_F(UpdateRoutesTest, RefuseWhatIsNoBundleByItsFirstBytes) {
   }
 }
 
-TEST_F(UpdateRoutesTest, RefuseWhatIsShorterThanABundlesBeginningAtItsEnd) {
+TEST_F(UpdateRoutesTest, RejectAFileShorterThanTheSignature) {
   const auto exchange = open("POST", "/adit/update", kBytes, 4);
   EXPECT_TRUE(exchange->on_body(std::span<const std::uint8_t>(head()).first(4)));
   EXPECT_FALSE(responder->answered);
@@ -113,7 +113,7 @@ TEST_F(UpdateRoutesTest, RefuseWhatIsShorterThanABundlesBeginningAtItsEnd) {
   EXPECT_TRUE(updates.received.dropped);
 }
 
-TEST_F(UpdateRoutesTest, SayWhyABundleCouldNotBeTaken) {
+TEST_F(UpdateRoutesTest, TellWhyABundleWasRejected) {
   const auto exchange = open("POST", "/adit/update", kBytes, 48);
   EXPECT_FALSE(updates.received.again);
   exchange->on_body(head());
@@ -125,13 +125,13 @@ TEST_F(UpdateRoutesTest, SayWhyABundleCouldNotBeTaken) {
   EXPECT_EQ(ask("POST", "/adit/update", "x", kBytes).body, R"("another comes")");
 }
 
-TEST_F(UpdateRoutesTest, ForgetABundleWhoseSenderWentAway) {
+TEST_F(UpdateRoutesTest, DropABundleWhoseSenderDisconnects) {
   const auto exchange = open("POST", "/adit/update", kBytes, 6);
   exchange->on_gone();
   EXPECT_TRUE(updates.received.dropped);
 }
 
-TEST_F(UpdateRoutesTest, RefuseABodyThatIsNoBundle) {
+TEST_F(UpdateRoutesTest, RejectAnInvalidLengthOrOption) {
   const auto refused = [this](std::vector<intake::Header> headers, std::optional<std::uint64_t> length,
                               const std::string& target = "/adit/update") {
     EXPECT_FALSE(open("POST", target, std::move(headers), length));
@@ -144,7 +144,7 @@ TEST_F(UpdateRoutesTest, RefuseABodyThatIsNoBundle) {
   EXPECT_EQ(updates.received.size, 0u);
 }
 
-TEST_F(UpdateRoutesTest, InstallFromTheStickAndRestartOnTheOperatorsWord) {
+TEST_F(UpdateRoutesTest, InstallFromTheStickAndRestartOnRequest) {
   EXPECT_EQ(ask("POST", "/adit/update/stick").status, icd::Status::Ok);
   EXPECT_EQ(ask("POST", "/adit/update/stick", R"({"again": true})").status, icd::Status::Ok);
   EXPECT_THAT(updates.sticks, ElementsAre(false, true));
@@ -156,7 +156,7 @@ TEST_F(UpdateRoutesTest, InstallFromTheStickAndRestartOnTheOperatorsWord) {
   EXPECT_THAT(updates.restarts, ElementsAre(false, true));
 }
 
-TEST_F(UpdateRoutesTest, GoBackToTheSlotThatWasGoodLastOrStay) {
+TEST_F(UpdateRoutesTest, GoBackToTheExpectedSlotOrStay) {
   updates.view.stray = "slot B runs, with 0.1.0";
   EXPECT_EQ(json::parse(ask("GET", "/adit/update").body)["stray"], "slot B runs, with 0.1.0");
   EXPECT_EQ(ask("POST", "/adit/update/back", R"({"anyway": true})").status, icd::Status::Ok);
@@ -165,7 +165,7 @@ TEST_F(UpdateRoutesTest, GoBackToTheSlotThatWasGoodLastOrStay) {
   EXPECT_EQ(updates.stays, 1);
 }
 
-TEST_F(UpdateRoutesTest, RefuseAActionThatIsNotWellSaid) {
+TEST_F(UpdateRoutesTest, RejectAMalformedAction) {
   for (const char* path : {"/adit/update/stick", "/adit/update/restart", "/adit/update/back"}) {
     EXPECT_EQ(ask("POST", path, "{").status, icd::Status::BadRequest) << path;
     EXPECT_EQ(ask("POST", path, "[]").status, icd::Status::UnprocessableEntity) << path;

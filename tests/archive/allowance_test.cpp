@@ -10,7 +10,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Allowance, IsLessThanAMegabyteInAnyMinuteHoweverItIsUsed) {
+TEST(Allowance, NeverExceedsAMegabyteAMinute) {
   std::mt19937 random{7};
   for (int day = 0; day < 50; ++day) {
     Allowance allowance;
@@ -30,7 +30,7 @@ TEST(Allowance, IsLessThanAMegabyteInAnyMinuteHoweverItIsUsed) {
   }
 }
 
-TEST(Allowance, LetsTheLargestRecordGo) {
+TEST(Allowance, AllowsTheLargestRecord) {
   Allowance allowance;
   loop::Instant now{1h};
   EXPECT_GE(allowance.at(now), kLargestRecord);
@@ -39,7 +39,7 @@ TEST(Allowance, LetsTheLargestRecordGo) {
   EXPECT_GE(allowance.at(now + 10s), kLargestRecord);
 }
 
-TEST(Allowance, ThatWasOverspentIsPaidBackFirst) {
+TEST(Allowance, IsRepaidAfterOverspending) {
   Allowance allowance;
   loop::Instant now{1h};
   allowance.spend(allowance.at(now) + static_cast<std::size_t>(Allowance::kASecond));

@@ -52,7 +52,7 @@ class ArchiveTest : public testing::Test {
   std::vector<api::Track> tracks;
 };
 
-TEST_F(ArchiveTest, GivesTheNextLifeThePictureTheTracksAndThePlots) {
+TEST_F(ArchiveTest, RestoresPictureTracksAndPlotsAfterARestart) {
   live(run.head);
   EXPECT_TRUE(picture.layers().empty());
   run.draw(3);
@@ -68,7 +68,7 @@ TEST_F(ArchiveTest, GivesTheNextLifeThePictureTheTracksAndThePlots) {
   EXPECT_EQ(plots.attention[0].sentence, "no token");
 }
 
-TEST_F(ArchiveTest, GivesTheNextLifeEarlierTimes) {
+TEST_F(ArchiveTest, RestoresEarlierTimesAfterARestart) {
   live(run.head);
   run.draw(1);
   write();
@@ -84,7 +84,7 @@ TEST_F(ArchiveTest, GivesTheNextLifeEarlierTimes) {
   EXPECT_NE(shown(picture), before);
 }
 
-TEST_F(ArchiveTest, KeepsThePictureOfAnEndedRunAsItWasShown) {
+TEST_F(ArchiveTest, KeepsThePictureOfAnEndedRun) {
   live(run.head);
   run.draw(100);  // more than is written at once
   write();
@@ -100,7 +100,7 @@ TEST_F(ArchiveTest, KeepsThePictureOfAnEndedRunAsItWasShown) {
   EXPECT_EQ(kept, shown(run.easel.mosaic));
 }
 
-TEST_F(ArchiveTest, WritesALineOnceWhereTheTilesAfterItCannotBeWritten) {
+TEST_F(ArchiveTest, WritesALineOnceIfItsTilesCannotBeWritten) {
   live(run.head);
   fs::create_directory(folder / "runs/3/map-00000001");  // in the place of the tiles' file
   run.draw(1);
@@ -117,7 +117,7 @@ TEST_F(ArchiveTest, WritesALineOnceWhereTheTilesAfterItCannotBeWritten) {
   EXPECT_EQ(shown(picture), shown(run.easel.mosaic));
 }
 
-TEST_F(ArchiveTest, GivesTheNextLifeAllThatItHasByTheTimeOfDayAsItWasSet) {
+TEST_F(ArchiveTest, RestoresAllTimesAfterAClockStep) {
   run.easel.now = 1e9;
   run.tracks[0].poses[0].at = 1e9;
   for (const double step : {3e8, -6e8}) {
@@ -145,7 +145,7 @@ TEST_F(ArchiveTest, GivesTheNextLifeAllThatItHasByTheTimeOfDayAsItWasSet) {
   }
 }
 
-TEST_F(ArchiveTest, WritesNothingForARunAtRestUntilOtherDataGo) {
+TEST_F(ArchiveTest, WritesNothingForAnIdleRunUntilOtherDataComes) {
   live(run.head);
   const auto tick = [&] {
     archive->tick(run.seen());
@@ -172,7 +172,7 @@ TEST_F(ArchiveTest, WritesNothingForARunAtRestUntilOtherDataGo) {
   EXPECT_EQ(archive->history(0).at.size(), 2U);
 }
 
-TEST_F(ArchiveTest, KeepsEachRunByItself) {
+TEST_F(ArchiveTest, KeepsRunsApart) {
   live(run.head);
   run.draw(2);
   write();
@@ -187,7 +187,7 @@ TEST_F(ArchiveTest, KeepsEachRunByItself) {
   EXPECT_TRUE(picture.layers().empty()) << "another ledger's run 3";
 }
 
-TEST_F(ArchiveTest, ListsThePresentRunFromItsBegin) {
+TEST_F(ArchiveTest, ListsThePresentRunFromItsStart) {
   live(run.head);
   ASSERT_TRUE(loop::turn_until_idle(loop, archive->thread()));
   const api::RunList all = archive->list();
@@ -196,7 +196,7 @@ TEST_F(ArchiveTest, ListsThePresentRunFromItsBegin) {
   EXPECT_TRUE(all.runs[0].is_present);
 }
 
-TEST_F(ArchiveTest, HasThePresentRunAsItIsNowNotAsItWasWrittenLast) {
+TEST_F(ArchiveTest, ShowsThePresentRunAsItIsNow) {
   live(run.head);
   write();
   run.facts.score = 7;
@@ -212,7 +212,7 @@ TEST_F(ArchiveTest, HasThePresentRunAsItIsNowNotAsItWasWrittenLast) {
   EXPECT_THAT(html, testing::HasSubstr("<dt>Score</dt><dd>7</dd>"));
 }
 
-TEST_F(ArchiveTest, TellsWhenARunBeganByTheTimeOfDayThatItsEndIsToldBy) {
+TEST_F(ArchiveTest, TellsStartAndEndOfARunByOneClock) {
   constexpr double kMonth = 30 * 86400;
   live(run.head);
   run.clock_ahead = kMonth;
@@ -237,7 +237,7 @@ TEST_F(ArchiveTest, TellsWhenARunBeganByTheTimeOfDayThatItsEndIsToldBy) {
   EXPECT_EQ(archive->list().runs.at(0).key, "3") << "it is the same run still";
 }
 
-TEST_F(ArchiveTest, KeepsHowARunStoodWhenTheNextBegan) {
+TEST_F(ArchiveTest, KeepsTheFactsOfAnEndedRun) {
   live(run.head);
   write();
   run.facts.score = 7;
@@ -249,7 +249,7 @@ TEST_F(ArchiveTest, KeepsHowARunStoodWhenTheNextBegan) {
   EXPECT_EQ(archive->list().runs.at(1).score, 7);
 }
 
-TEST_F(ArchiveTest, ListsRunsTheLatestFirstAndForgetsOneThatIsNotThePresentOne) {
+TEST_F(ArchiveTest, ListsTheLatestRunFirstAndDeletesOldRuns) {
   live(run.head);
   write();
   live({.run = 4, .began = 2000, .post = run.head.post});
@@ -276,7 +276,7 @@ TEST_F(ArchiveTest, ListsRunsTheLatestFirstAndForgetsOneThatIsNotThePresentOne) 
   EXPECT_FALSE(fs::exists(folder / "runs/3"));
 }
 
-TEST_F(ArchiveTest, ReadsARunToBeLookedAtAgain) {
+TEST_F(ArchiveTest, ReadsAnEndedRun) {
   live(run.head);
   run.draw(2);
   write();
@@ -303,7 +303,7 @@ TEST_F(ArchiveTest, ReadsARunToBeLookedAtAgain) {
   EXPECT_EQ(*read, nullptr);
 }
 
-TEST_F(ArchiveTest, WritesNoMoreAtOnceThanIsAllowed) {
+TEST_F(ArchiveTest, StaysWithinTheWriteAllowance) {
   live(run.head);
   run.draw(100);  // some 4 kB each, and their coarser levels
   write();
@@ -315,7 +315,7 @@ TEST_F(ArchiveTest, WritesNoMoreAtOnceThanIsAllowed) {
   EXPECT_LT(stored() - before, 8192U) << "there was no time for more";
 }
 
-TEST_F(ArchiveTest, SaysWhyNothingIsKeptAndGoesOn) {
+TEST_F(ArchiveTest, TellsWhyNothingIsStoredAndContinues) {
   std::ofstream(folder / "runs") << "a file where the folder should be";
   live(run.head);
   EXPECT_NE(archive->trouble(), "");
@@ -324,7 +324,7 @@ TEST_F(ArchiveTest, SaysWhyNothingIsKeptAndGoesOn) {
   EXPECT_NE(archive->trouble(), "");
 }
 
-TEST_F(ArchiveTest, KeepsTheRunOnceTheDiskHasRoomForIt) {
+TEST_F(ArchiveTest, StoresTheRunOnceTheDirectoryIsWritable) {
   std::ofstream(folder / "runs") << "a file where the folder should be";
   live(run.head);
   fs::remove(folder / "runs");

@@ -48,7 +48,7 @@ class Damage : public testing::Test {
   std::size_t tiles = 0;
 };
 
-TEST_F(Damage, OfOneBitTakesOneRecordAtMost) {
+TEST_F(Damage, OfOneBitLosesAtMostOneRecord) {
   ASSERT_EQ(sound(file), tiles);
   const std::size_t head = record_of(run.head).size();
   for (std::size_t at = head; at < file.size(); at += 37) {
@@ -58,7 +58,7 @@ TEST_F(Damage, OfOneBitTakesOneRecordAtMost) {
   }
 }
 
-TEST_F(Damage, OfTheHeadTakesWhatCannotBeKnownToFit) {
+TEST_F(Damage, OfTheHeadLosesItsTiles) {
   std::string damaged = file;
   damaged[20] ^= 1;
   EXPECT_EQ(sound(damaged), 0U);
@@ -68,7 +68,7 @@ TEST_F(Damage, OfTheHeadTakesWhatCannotBeKnownToFit) {
   EXPECT_EQ(told.files().size(), tiles);
 }
 
-TEST_F(Damage, ByACutLeavesWhatWasBefore) {
+TEST_F(Damage, ByACutLeavesEarlierRecords) {
   std::size_t before = 0;
   for (std::size_t cut = 0; cut <= file.size(); cut += 101) {
     const std::size_t now = sound(file.substr(0, cut));
@@ -77,7 +77,7 @@ TEST_F(Damage, ByACutLeavesWhatWasBefore) {
   }
 }
 
-TEST_F(Damage, IsCountedAndATornEndIsNone) {
+TEST_F(Damage, IsCountedWithoutATornEnd) {
   Told torn(0), damaged(0);
   torn.tell(file.substr(0, file.size() - 1), 1);
   EXPECT_EQ(torn.damaged(), 0u);
@@ -86,7 +86,7 @@ TEST_F(Damage, IsCountedAndATornEndIsNone) {
   EXPECT_EQ(damaged.damaged(), 2u) << "the one at its end, too";
 }
 
-TEST_F(Damage, AllOverIsNoCrash) {
+TEST_F(Damage, EverywhereDoesNotCrash) {
   std::mt19937 random{5};
   for (int i = 0; i < 300; ++i) {
     std::string damaged = file;
@@ -98,7 +98,7 @@ TEST_F(Damage, AllOverIsNoCrash) {
   }
 }
 
-TEST_F(Damage, WithARightChecksumIsStillNoTile) {
+TEST_F(Damage, WithARightChecksumIsRejected) {
   for (const std::string_view bytes : {std::string_view("no zlib at all"), std::string_view("x")}) {
     auto lie = std::make_shared<picture::Packed>();
     lie->deflated.assign(bytes.begin(), bytes.end());
@@ -107,7 +107,7 @@ TEST_F(Damage, WithARightChecksumIsStillNoTile) {
   }
 }
 
-TEST_F(Damage, RecordsOfAnotherRunAreNotMixedIn) {
+TEST_F(Damage, RecordsOfAnotherRunAreIgnored) {
   Told told(picture::Mosaic::kBudget);
   told.tell(record_of(Head{.run = 9, .began = 1}), 1);
   told.tell(file, 2);
@@ -115,7 +115,7 @@ TEST_F(Damage, RecordsOfAnotherRunAreNotMixedIn) {
 }
 
 // A write that failed halfway tells its lines again.
-TEST_F(Damage, AStepOfTheClockThatWasWrittenTwiceIsOne) {
+TEST_F(Damage, AClockStepWrittenTwiceCountsOnce) {
   constexpr std::uint64_t kLines = 0;
   const std::string step = record_of(Step{.seconds = 50, .when = 7});
   const std::string later = record_of(Step{.seconds = 50, .when = 8});

@@ -25,7 +25,7 @@ class DueTilesTest : public testing::Test {
   DueTiles due;
 };
 
-TEST_F(DueTilesTest, AreThoseThatChangedAndEachOnce) {
+TEST_F(DueTilesTest, AreTheChangedOnesOnceEach) {
   run.draw(1);
   due.look(run.easel.mosaic);
   EXPECT_EQ(due.at(1000).size(), 3U) << "one of each level";
@@ -37,7 +37,7 @@ TEST_F(DueTilesTest, AreThoseThatChangedAndEachOnce) {
   EXPECT_THAT(places(due.at(2000)), testing::Not(testing::Contains(TileAt{0, 0, 0})));
 }
 
-TEST_F(DueTilesTest, OfACoarserLevelRestLonger) {
+TEST_F(DueTilesTest, OfCoarserLevelsAreDueLater) {
   run.draw(1);
   due.look(run.easel.mosaic);
   write_all(1000);
@@ -49,7 +49,7 @@ TEST_F(DueTilesTest, OfACoarserLevelRestLonger) {
   EXPECT_THAT(places(due.at(1100)), testing::Contains(TileAt{1, 0, 0}));
 }
 
-TEST_F(DueTilesTest, ThatWereNeverWrittenComeFirstThenThoseOfLongestAgo) {
+TEST_F(DueTilesTest, NeverWrittenComeFirstThenTheOldest) {
   run.draw(3);
   due.look(run.easel.mosaic);
   for (const auto& [at, when] : {std::pair(1, 1000.0), std::pair(0, 1010.0)})
@@ -64,14 +64,14 @@ TEST_F(DueTilesTest, ThatWereNeverWrittenComeFirstThenThoseOfLongestAgo) {
   EXPECT_THAT(finest, testing::ElementsAre(TileAt{0, 2, 0}, TileAt{0, 1, 0}, TileAt{0, 0, 0}));
 }
 
-TEST_F(DueTilesTest, AreDueAgainWhereTheWriteFailed) {
+TEST_F(DueTilesTest, AreDueAgainAfterAFailedWrite) {
   run.draw(1);
   due.look(run.easel.mosaic);
   write_all(1000, 1, std::nullopt);
   EXPECT_EQ(due.at(2000).size(), 3U);
 }
 
-TEST_F(DueTilesTest, ThatChangedWhileTheyWereWrittenAreDueOnceMore) {
+TEST_F(DueTilesTest, ChangedDuringTheWriteAreDueAgain) {
   run.draw(1);
   due.look(run.easel.mosaic);
   for (const TileKey& key : due.at(1000)) due.being_written(key, 1, 1000);
@@ -82,7 +82,7 @@ TEST_F(DueTilesTest, ThatChangedWhileTheyWereWrittenAreDueOnceMore) {
   EXPECT_THAT(places(due.at(2000)), testing::Contains(TileAt{0, 0, 0}));
 }
 
-TEST_F(DueTilesTest, OfAFileThatIsToGoAreWrittenAgainFirst) {
+TEST_F(DueTilesTest, OfAFileToDeleteAreWrittenAgainFirst) {
   run.draw(1);
   due.look(run.easel.mosaic);
   write_all(1000, 1, 1);
@@ -93,7 +93,7 @@ TEST_F(DueTilesTest, OfAFileThatIsToGoAreWrittenAgainFirst) {
   EXPECT_TRUE(due.leave(1)) << "nothing newest is in it";
 }
 
-TEST_F(DueTilesTest, ThatAreWrittenAlreadyAreNotDueInTheNextLife) {
+TEST_F(DueTilesTest, WrittenBeforeARestartAreNotDue) {
   run.draw(2);
   std::map<TileKey, std::uint64_t> files;
   files[{run.easel.layer, {0, 0, 0}}] = 4;
@@ -103,7 +103,7 @@ TEST_F(DueTilesTest, ThatAreWrittenAlreadyAreNotDueInTheNextLife) {
   EXPECT_FALSE(due.leave(4));
 }
 
-TEST_F(DueTilesTest, OfTheRunBeforeAreNone) {
+TEST_F(DueTilesTest, OfAnEarlierRunAreDropped) {
   run.draw(1);
   run.easel.mosaic.wipe(++run.easel.now);
   due.begin(run.easel.mosaic, {});

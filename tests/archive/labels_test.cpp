@@ -16,7 +16,7 @@ using testing::IsEmpty;
 
 constexpr Box kFrame{10, 20, 110, 90};
 
-TEST(Labels, AreBesideTheirSignsAndMoveAwayFromOthers) {
+TEST(Labels, AreBesideTheirSignsAndAvoidOthers) {
   Labels labels{kFrame};
   const auto right = labels.place(50, 50, 1, 10, 3), left = labels.place(50, 50, 1, 10, 3);
   ASSERT_TRUE(right && left);
@@ -26,7 +26,7 @@ TEST(Labels, AreBesideTheirSignsAndMoveAwayFromOthers) {
   EXPECT_EQ(left->bottom - left->top, 3);
 }
 
-TEST(Labels, StayWithinTheFrameOrAreLeftOut) {
+TEST(Labels, StayWithinTheFrameOrAreOmitted) {
   Labels labels{kFrame};
   const auto corner = labels.place(kFrame.right, kFrame.top, 1, 10, 3);
   ASSERT_TRUE(corner);
@@ -35,7 +35,7 @@ TEST(Labels, StayWithinTheFrameOrAreLeftOut) {
 }
 
 /// A thousand signs at random places, or all at one place.
-TEST(Labels, NeverOverlapAndNeverCoverASign) {
+TEST(Labels, OverlapNoLabelAndNoSign) {
   for (const double spread : {100.0, 12.0, 0.0}) {
     std::mt19937 random{11};
     std::uniform_real_distribution<double> part{0, 1};
@@ -78,7 +78,7 @@ TEST(Ticks, AreMultiplesOfOneTwoOrFive) {
   EXPECT_EQ(decimals_of(ticks(0, 60, 6)), 0);
 }
 
-TEST(Ticks, AreFewWhateverTheRange) {
+TEST(Ticks, AreFewForAnyRange) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const auto& [low, high] : std::vector<std::pair<double, double>>{
            {0, 0}, {1, -1}, {0, kInfinity}, {-kInfinity, 0}, {0, std::nan("")}})

@@ -11,7 +11,7 @@ loop::Instant at(int second) {
   return loop::Instant{} + std::chrono::hours(1) + seconds(second);
 }
 
-TEST(Lines, ABoxAtRestWritesOnceInTwoAndAHalfMinutes) {
+TEST(Lines, AreWrittenEach150SecondsOnAnIdleBox) {
   Lines lines;
   int writes = 0;
   for (int second = 0; second < 600; ++second) {
@@ -23,7 +23,7 @@ TEST(Lines, ABoxAtRestWritesOnceInTwoAndAHalfMinutes) {
   EXPECT_EQ(writes, 4);
 }
 
-TEST(Lines, NewsAreDueAtOnceAndTakeTheOthersAlong) {
+TEST(Lines, AreDueAtOnceWithNews) {
   Lines lines;
   lines.add("1", false);
   EXPECT_EQ(lines.take(at(0)), "1");
@@ -35,7 +35,7 @@ TEST(Lines, NewsAreDueAtOnceAndTakeTheOthersAlong) {
   EXPECT_FALSE(lines.is_due(at(600))) << "there is nothing to write";
 }
 
-TEST(Lines, AFailedWriteIsDueAgainWithItsRecordsFirst) {
+TEST(Lines, OfAFailedWriteAreDueAgainFirst) {
   Lines lines;
   lines.add("1", false);
   const std::string taken = lines.take(at(0));
@@ -45,7 +45,7 @@ TEST(Lines, AFailedWriteIsDueAgainWithItsRecordsFirst) {
   EXPECT_EQ(lines.take(at(1)), "12");
 }
 
-TEST(Lines, WhatFindsNoRoomInAWriteIsDueStill) {
+TEST(Lines, BeyondTheWriteLimitStayDue) {
   Lines lines;
   for (int i = 0; i < 3; ++i) lines.add(std::string(kLargestRecord / 2, 'x'), false);
   EXPECT_EQ(lines.take(at(0)).size(), kLargestRecord / 2 * 2);

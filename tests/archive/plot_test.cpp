@@ -26,7 +26,7 @@ TEST(Plot, LeavesAGapForUnknownValues) {
   EXPECT_EQ(std::ranges::count(curve, 'M'), 2) << curve;
 }
 
-TEST(Plot, HoldsAValueUntilTheNextAndTheEnd) {
+TEST(Plot, HoldsAValueUntilTheNextOrTheEnd) {
   Plot held = plot({0, 30, 60}, {0, 100, 100});
   held.is_held = true;
   EXPECT_THAT(drawn(held), HasSubstr("M14.00 51.00L55.00 51.00L55.00 "));
@@ -46,7 +46,7 @@ TEST(Plot, KeepsPeaksOfManyValues) {
   EXPECT_THAT(peak, HasSubstr(">100</text>"));
 }
 
-TEST(Plot, IsLeftOutWithoutValues) {
+TEST(Plot, IsOmittedWithoutValues) {
   EXPECT_EQ(drawn(plot({}, {})), "");
   EXPECT_EQ(drawn(plot({0, 1}, {{}, {}})), "");
   EXPECT_THAT(drawn(plot({5}, {0})), Not(HasSubstr("nan")));

@@ -24,14 +24,14 @@ std::string written(const Records& records) {
   return bytes;
 }
 
-TEST(ArchiveRecord, IsReadAsItWasWritten) {
+TEST(ArchiveRecord, ReadsBackTheSame) {
   EXPECT_EQ(records_in(written(kThree)), kThree);
   EXPECT_EQ(records_in(""), Records{});
   const Records largest = {std::string(kLargestRecord, '\xA7')};
   EXPECT_EQ(records_in(written(largest)), largest);
 }
 
-TEST(ArchiveRecord, ThatIsDamagedIsTheOnlyOneThatIsLost) {
+TEST(ArchiveRecord, DamagedIsLostAlone) {
   const std::string bytes = written(kThree);
   for (std::size_t at = 0; at < bytes.size(); ++at) {
     std::string damaged = bytes;
@@ -45,7 +45,7 @@ TEST(ArchiveRecord, ThatIsDamagedIsTheOnlyOneThatIsLost) {
   }
 }
 
-TEST(ArchiveRecord, ThatIsTornIsPassedOverWhateverFollows) {
+TEST(ArchiveRecord, TornIsSkipped) {
   const std::string bytes = written(kThree), more = framed("later");
   for (std::size_t cut = 0; cut < bytes.size(); ++cut) {
     Records whole;
@@ -59,7 +59,7 @@ TEST(ArchiveRecord, ThatIsTornIsPassedOverWhateverFollows) {
   }
 }
 
-TEST(ArchiveRecord, IsSoughtForAWhileInAFileThatIsDamagedAllOver) {
+TEST(ArchiveRecord, SearchInADamagedFileIsBounded) {
   std::string bytes;
   for (int i = 0; i < 100'000; ++i) bytes += framed("x").substr(0, 8) + std::string("\x00\x00\x01\x00", 4);
   EXPECT_EQ(records_in(bytes + framed("x")), Records{}) << "each costs the checksum of 64 KiB";

@@ -29,7 +29,7 @@ class RunFolderTest : public testing::Test {
   ARun run;
 };
 
-TEST_F(RunFolderTest, NeverTakesMuchMoreThanItMayAndKeepsWhatIsNewest) {
+TEST_F(RunFolderTest, StaysWithinItsSizeAndKeepsTheNewest) {
   RunFolder files(folder.path(), run.head);
   std::uint64_t most = 0;
   for (int i = 0; i < 100; ++i) {
@@ -48,7 +48,7 @@ TEST_F(RunFolderTest, NeverTakesMuchMoreThanItMayAndKeepsWhatIsNewest) {
   EXPECT_EQ(told.picture().tile(run.easel.layer, {0, 0, 0}, 1001).tile, nullptr) << "the earliest is gone";
 }
 
-TEST_F(RunFolderTest, GoesOnInTheFileOfTheLifeBefore) {
+TEST_F(RunFolderTest, ContinuesTheFileAfterARestart) {
   for (int life = 0; life < 5; ++life)
     ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(8 * life), kMost));
   std::size_t files = 0;
@@ -58,14 +58,14 @@ TEST_F(RunFolderTest, GoesOnInTheFileOfTheLifeBefore) {
 }
 
 /// Without its size, an error could cut it.
-TEST_F(RunFolderTest, AddsNothingToAFileWhoseSizeIsUnknown) {
+TEST_F(RunFolderTest, AppendsNothingToAFileOfUnknownSize) {
   std::filesystem::create_symlink(folder / "map-00000001", folder / "map-00000001");
   const auto written = RunFolder(folder.path(), run.head).write(tiles(0), kMost);
   ASSERT_TRUE(written) << written.error();
   EXPECT_GT(written->bytes, std::size_t{900} << 10) << "it counts as full";
 }
 
-TEST_F(RunFolderTest, SaysWhoseRunItIsInAFileThatADeathLeftEmpty) {
+TEST_F(RunFolderTest, WritesTheHeadIntoAFileLeftEmptyByACrash) {
   std::ofstream(folder / "map-00000001");
   ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(0), kMost));
   Told told(picture::Mosaic::kBudget);
@@ -74,7 +74,7 @@ TEST_F(RunFolderTest, SaysWhoseRunItIsInAFileThatADeathLeftEmpty) {
   EXPECT_EQ(told.files().begin()->second, 1U);
 }
 
-TEST_F(RunFolderTest, GoesOnBehindTheFilesThatItCouldNotSeeAtFirst) {
+TEST_F(RunFolderTest, ContinuesAfterFilesUnreadableAtFirst) {
   const std::string path = folder / "5";
   std::ofstream(path) << "no folder";
   RunFolder files(path, run.head);
@@ -87,7 +87,7 @@ TEST_F(RunFolderTest, GoesOnBehindTheFilesThatItCouldNotSeeAtFirst) {
   EXPECT_EQ(written->file, 3U);
 }
 
-TEST_F(RunFolderTest, SaysThatAFileCannotBeRemoved) {
+TEST_F(RunFolderTest, ReportsAFileThatCannotBeRemoved) {
   std::filesystem::create_directory(folder / "map-00000001");
   ASSERT_TRUE(RunFolder(folder.path(), run.head).write(tiles(0), kMost));
   const auto written = RunFolder(folder.path(), run.head).write(tiles(8), 0);
@@ -95,7 +95,7 @@ TEST_F(RunFolderTest, SaysThatAFileCannotBeRemoved) {
   EXPECT_NE(written.error().find("map-00000001"), std::string::npos) << written.error();
 }
 
-TEST_F(RunFolderTest, RemovesItsFirstFileButNeverTheLastOne) {
+TEST_F(RunFolderTest, RemovesItsFirstFileButNotTheLast) {
   RunFolder files(folder.path(), run.head);
   std::uint64_t first = 0;
   for (int i = 0; first == 0; ++i) first = files.write(tiles(8 * i), kMost)->first_file;

@@ -38,7 +38,7 @@ std::vector<api::ReportDetail> hostile_reports() {
   return {report};
 }
 
-TEST(RunReport, SaysScoreReportsMapCoverageRobotsAndWhatNeededTheOperator) {
+TEST(RunReport, ShowsScoreReportsMapRobotsAndAlarms) {
   const std::string html = run_report(hostile_run(), hostile_reports());
   for (const char* part :
        {"<dt>Score</dt><dd>5</dd>", "Reports", "<td>robot1</td>", "answered", "+1",
@@ -47,7 +47,7 @@ TEST(RunReport, SaysScoreReportsMapCoverageRobotsAndWhatNeededTheOperator) {
     EXPECT_THAT(html, HasSubstr(part));
 }
 
-TEST(RunReport, IsNothingButWhatItSaysWhateverNamesAndNotesHold) {
+TEST(RunReport, EscapesHostileNamesAndNotes) {
   const std::string html = run_report(hostile_run(), hostile_reports());
   EXPECT_THAT(html, Not(HasSubstr("<script")));
   EXPECT_THAT(html, Not(HasSubstr("alert('")));
@@ -56,7 +56,7 @@ TEST(RunReport, IsNothingButWhatItSaysWhateverNamesAndNotesHold) {
   EXPECT_THAT(html, Not(HasSubstr("src=")));
 }
 
-TEST(RunReport, DrawsChosenColoursAndTellsRobotsOfOneColourApartByTheirLines) {
+TEST(RunReport, DrawsChosenColoursAndDistinctLines) {
   api::KeptRun kept{{}, picture::Mosaic(), {}, {}, {}};
   for (const char* robot : {"r1", "r2", "r3", "r4"})
     kept.tracks.push_back({robot, {{1000.0 + static_cast<double>(kept.tracks.size()), {}, 0}}});
@@ -71,7 +71,7 @@ TEST(RunReport, DrawsChosenColoursAndTellsRobotsOfOneColourApartByTheirLines) {
                                           "#6b56a3 2.7 0.9 0.7 0.9"));
 }
 
-TEST(RunReport, GivesFortyRobotsDifferentColours) {
+TEST(RunReport, DrawsFortyRobotsDifferently) {
   api::KeptRun kept{{}, picture::Mosaic(), {}, {}, {}};
   for (int i = 0; i < 40; ++i) kept.tracks.push_back({"r" + std::to_string(i), {{1000.0 + i, {}, 0}}});
   const std::string drawn = drawn_map(kept, {});
@@ -82,7 +82,7 @@ TEST(RunReport, GivesFortyRobotsDifferentColours) {
   EXPECT_EQ(colours.size(), 40U);
 }
 
-TEST(RunReport, ListsRobotsByTheNumbersInTheirNames) {
+TEST(RunReport, SortsRobotsByTheNumbersInTheirNames) {
   api::KeptRun kept{{}, picture::Mosaic(), {}, {}, {}};
   kept.facts.robots = {"r10", "r2", "r1"};
   const std::string html = run_report(kept, {});
@@ -90,7 +90,7 @@ TEST(RunReport, ListsRobotsByTheNumbersInTheirNames) {
   EXPECT_LT(html.find("<td>r2</td>"), html.find("<td>r10</td>"));
 }
 
-TEST(RunReport, OfARunOfWhichNothingIsKnownIsWhole) {
+TEST(RunReport, IsCompleteForAnEmptyRun) {
   const std::string html = run_report({{}, picture::Mosaic(), {}, {}}, {});
   EXPECT_THAT(html, HasSubstr("No reports."));
   EXPECT_THAT(html, HasSubstr("No map, track or place of a report is stored."));
@@ -107,7 +107,7 @@ api::ReportDetail report_at(std::int64_t number, double x, double y, std::int64_
   return report;
 }
 
-TEST(RunReport, ShowsReportsAtOnePlaceAsOneSignWithTheirNumber) {
+TEST(RunReport, JoinsReportsAtOnePlaceIntoOneSign) {
   const api::KeptRun run{{}, picture::Mosaic(), {}, {}};
   const std::string map = drawn_map(
       run, {report_at(1, 0, 0), report_at(2, 0.1, 0, 1), report_at(3, 0, 0.1), report_at(4, 100, 50)});
@@ -117,7 +117,7 @@ TEST(RunReport, ShowsReportsAtOnePlaceAsOneSignWithTheirNumber) {
   EXPECT_THAT(map, HasSubstr(">4 Drill</text>"));
 }
 
-TEST(RunReport, SaysOfARobotWithoutAGridThatItHasNone) {
+TEST(RunReport, TellsIfARobotHasNoGrid) {
   ARun run;
   run.easel.draw(picture::cloud_of({{1, 1, 0}, {2, 2, 0}}));
   const std::string html = run_report({run.facts, std::move(run.easel.mosaic), run.tracks, {}}, {});
@@ -125,7 +125,7 @@ TEST(RunReport, SaysOfARobotWithoutAGridThatItHasNone) {
   EXPECT_THAT(html, HasSubstr("<dt>Covered area</dt><dd>no grid</dd>"));
 }
 
-TEST(RunReport, SaysThatARobotsMapNeverArrivedRatherThanAnAge) {
+TEST(RunReport, TellsIfAMapNeverArrived) {
   ARun run;
   api::KeptRun kept{run.facts, picture::Mosaic(), run.tracks, {.at = {1000, 1002}}};
   kept.history.robots = {{"ugv1", {std::nullopt, std::nullopt}}};
@@ -135,14 +135,14 @@ TEST(RunReport, SaysThatARobotsMapNeverArrivedRatherThanAnAge) {
   EXPECT_THAT(run_report(kept, {}), HasSubstr("<td class=\"n\">never there</td>"));
 }
 
-TEST(RunReport, StaysSmallHoweverMuchWasMapped) {
+TEST(RunReport, StaysSmallForALargeMap) {
   ARun run;
   run.draw(100);
   const api::KeptRun kept{run.facts, std::move(run.easel.mosaic), {}, {}};
   EXPECT_LT(run_report(kept, {}).size(), std::size_t{5} << 20);
 }
 
-TEST(Html, TimesAndNumbersAreFiniteOrNotThere) {
+TEST(Html, OmitsInvalidTimesAndNumbers) {
   EXPECT_EQ(lasted(3723), "1:02:03");
   EXPECT_EQ(lasted(-1), "-");
   EXPECT_EQ(fixed(1.0 / 0.0, 1), "-");

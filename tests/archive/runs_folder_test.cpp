@@ -38,7 +38,7 @@ class RunsFolderTest : public testing::Test {
   RunsFolder runs{folder.path()};
 };
 
-TEST_F(RunsFolderTest, TheOldestRunsGoFirstAndNeverThePresentOne) {
+TEST_F(RunsFolderTest, DeletesTheOldestRunsButNotThePresentOne) {
   run(1, 1000, 1000);
   run(2, 2000, 1000);
   run(3, 3000, 1000);
@@ -51,7 +51,7 @@ TEST_F(RunsFolderTest, TheOldestRunsGoFirstAndNeverThePresentOne) {
   EXPECT_THAT(keys(), ElementsAre("1"));
 }
 
-TEST_F(RunsFolderTest, WhichIsTheOldestIsNotForTheTimeOfDayToSay) {
+TEST_F(RunsFolderTest, SortsByStampNotByTimeOfDay) {
   run(1, 1000, 1000, 1e6);
   run(2, 2000, 1000);
   EXPECT_THAT(keys(), ElementsAre("2", "1"));
@@ -59,7 +59,7 @@ TEST_F(RunsFolderTest, WhichIsTheOldestIsNotForTheTimeOfDayToSay) {
   EXPECT_THAT(keys(), ElementsAre("2"));
 }
 
-TEST_F(RunsFolderTest, ARunOfAReleaseThatWroteNoStampIsOrderedByTheTimeOfDay) {
+TEST_F(RunsFolderTest, SortsRunsWithoutAStampByTimeOfDay) {
   run(1, 1000, 10);
   run(2, 2000, 10);
   const std::string facts = runs.folder_of("2") + "/facts.json";
@@ -70,7 +70,7 @@ TEST_F(RunsFolderTest, ARunOfAReleaseThatWroteNoStampIsOrderedByTheTimeOfDay) {
   EXPECT_EQ(runs.facts_of("2").value()->last, 2010);
 }
 
-TEST_F(RunsFolderTest, ARunWhoseFactsAreDamagedIsKnownByItsFiles) {
+TEST_F(RunsFolderTest, RecognizesARunWithDamagedFactsByItsFiles) {
   const std::string key = run(5, 1000, 10);
   std::ofstream(runs.folder_of(key) + "/facts.json") << "{\"version\": 1";
   const auto rows = runs.list();
@@ -81,7 +81,7 @@ TEST_F(RunsFolderTest, ARunWhoseFactsAreDamagedIsKnownByItsFiles) {
 }
 
 /// Where there is a folder in its place, a file cannot be read.
-TEST_F(RunsFolderTest, ARunThatCannotBeReadIsNotTakenForANewOne) {
+TEST_F(RunsFolderTest, RejectsAnUnreadableRunInsteadOfANewOne) {
   const std::string path = runs.folder_of(run(5, 1000, 10));
   for (const char* name : {"/facts.json", "/lines-00000001"}) {
     fs::remove(path + name);
@@ -92,7 +92,7 @@ TEST_F(RunsFolderTest, ARunThatCannotBeReadIsNotTakenForANewOne) {
   EXPECT_THAT(begun.error(), testing::HasSubstr(path));
 }
 
-TEST_F(RunsFolderTest, ARunWhoseFilesCannotBeListedDoesNotTakeNoRoom) {
+TEST_F(RunsFolderTest, ReportsARunWhoseFilesCannotBeListed) {
   const std::string path = runs.folder_of(run(5, 1000, 10));
   for (const char* open : {"", "/runs", "/runs/5", "/runs/5/facts.json"})
     fs::permissions(folder.path() + open, fs::perms{0755});
@@ -105,13 +105,13 @@ TEST_F(RunsFolderTest, ARunWhoseFilesCannotBeListedDoesNotTakeNoRoom) {
   EXPECT_EQ(facts.error(), path + ": Permission denied");
 }
 
-TEST_F(RunsFolderTest, AFolderWhoseRunNobodyKnowsIsNotGoneOnWith) {
+TEST_F(RunsFolderTest, DoesNotContinueADirectoryOfAnUnknownRun) {
   const std::string path = runs.folder_of(run(5, 1000, 10));
   for (const char* name : {"/facts.json", "/lines-00000001"}) std::ofstream(path + name) << "damaged";
   EXPECT_EQ(*runs.begin({.run = 5, .began = 1000, .post = "here:1"}), "5-2");
 }
 
-TEST_F(RunsFolderTest, WhatADeathLeftOfARemovalGoes) {
+TEST_F(RunsFolderTest, CompletesARemovalAfterACrash) {
   fs::create_directories(folder / "runs/gone-7");
   std::ofstream(folder / "runs/gone-7/map-00000001") << "x";
   run(1, 1000, 10);
@@ -120,7 +120,7 @@ TEST_F(RunsFolderTest, WhatADeathLeftOfARemovalGoes) {
   EXPECT_THAT(keys(), ElementsAre("1"));
 }
 
-TEST_F(RunsFolderTest, AKeyIsANumberAndNoPath) {
+TEST_F(RunsFolderTest, RejectsAPathAsAKey) {
   for (const char* key : {"1", "12-2", "123456789"}) EXPECT_TRUE(RunsFolder::is_key(key)) << key;
   for (const char* key :
        {"", "..", "1/2", "a", "1-", "-1", "1-2-3", "gone-1", "1111111111111111111111111111111"})

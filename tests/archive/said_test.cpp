@@ -32,7 +32,7 @@ std::optional<Of> again(const Of& one) {
   return read_again ? std::optional(std::get<Of>(*read_again)) : std::nullopt;
 }
 
-TEST(Said, ATileComesBackAsItWas) {
+TEST(RecordBody, TileReadsBackTheSame) {
   const auto read = again(kTile);
   ASSERT_TRUE(read);
   EXPECT_EQ(read->layer, kTile.layer);
@@ -43,7 +43,7 @@ TEST(Said, ATileComesBackAsItWas) {
   EXPECT_EQ(again(TileState{kTile.layer, kTile.at, 1, nullptr})->tile, nullptr);
 }
 
-TEST(Said, ALayerComesBackAsItWas) {
+TEST(RecordBody, LayerReadsBackTheSame) {
   picture::LayerView view;
   view.layer = {"r", picture::Kind::Grid};
   view.bounds = picture::Area{-1, -2, 3, 4};
@@ -59,7 +59,7 @@ TEST(Said, ALayerComesBackAsItWas) {
   EXPECT_FALSE(again(picture::LayerView{})->bounds);
 }
 
-TEST(Said, PosesSamplesAndWhatNeedsTheOperatorComeBackAsTheyWere) {
+TEST(RecordBody, PosesSamplesAndAlarmsReadBackTheSame) {
   const auto track =
       again(api::Track{"ugv1", {{.at = 1, .position = {2, 3, 4}, .heading = 5}, {.at = 6, .position = {}}}});
   ASSERT_TRUE(track);
@@ -81,7 +81,7 @@ TEST(Said, PosesSamplesAndWhatNeedsTheOperatorComeBackAsTheyWere) {
   EXPECT_EQ(again(Wiped{7})->stamp, 7);
 }
 
-TEST(Said, TilesOfAnotherCutDoNotFit) {
+TEST(RecordBody, TilesOfAnotherGeometryDoNotFit) {
   const Head head{.run = 5, .began = 6, .post = "here:1"};
   EXPECT_TRUE(again(head)->tiles_fit());
   Head other = head;
@@ -90,14 +90,14 @@ TEST(Said, TilesOfAnotherCutDoNotFit) {
   EXPECT_EQ(again(other)->post, "here:1");
 }
 
-TEST(Said, WhatIsTooLongIsCutBetweenCharacters) {
+TEST(RecordBody, LongTextIsCutBetweenCharacters) {
   std::string sentence(kMostText - 1, 'a');
   sentence += "\u00fc and more";
   EXPECT_EQ(again(api::AttentionStep{1, true, sentence})->sentence, std::string(kMostText - 1, 'a'));
 }
 
 /// Whatever bytes there are: read in full, or not at all.
-TEST(Said, IsNothingWhereABytesIsWrongOrMissing) {
+TEST(RecordBody, WrongOrMissingBytesAreRejected) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(again(Wiped{kNone}));
   EXPECT_FALSE(again(Wiped{-1}));

@@ -9,7 +9,7 @@ namespace {
 
 using testing::ElementsAre;
 
-TEST(Samples, AreListsOfOneLengthAndARobotWithoutAMapHasNone) {
+TEST(Samples, HaveListsOfOneLength) {
   Samples samples;
   samples.add(Sample{.at = 10, .sent_mbit = 1, .map_ages = {{"a", 3}}});
   samples.add(Sample{.at = 12, .sent_mbit = 2, .scoring_ms = 9, .map_ages = {{"b", 1}}});
@@ -21,7 +21,7 @@ TEST(Samples, AreListsOfOneLengthAndARobotWithoutAMapHasNone) {
   EXPECT_THAT(samples.since(10).at, ElementsAre(12));
 }
 
-TEST(Samples, AreWantedEachTwoSecondsAndNeverBackInTime) {
+TEST(Samples, AreDueEachTwoSecondsAndNeverBackInTime) {
   Samples samples;
   EXPECT_TRUE(samples.wants(10));
   samples.add(Sample{.at = 10});
@@ -31,7 +31,7 @@ TEST(Samples, AreWantedEachTwoSecondsAndNeverBackInTime) {
   EXPECT_THAT(samples.since(0).at, ElementsAre(10));
 }
 
-TEST(Samples, AreThinnedOutEvenlyAndNo429IsLost) {
+TEST(Samples, AreThinnedEvenlyAndKeepEach429) {
   Samples samples;
   constexpr int kMany = 20'000;
   for (int i = 0; i < kMany; ++i) samples.add(Sample{.at = 2.0 * (i + 1), .throttled = 1});
@@ -43,7 +43,7 @@ TEST(Samples, AreThinnedOutEvenlyAndNo429IsLost) {
   EXPECT_GT(all.spacing, Samples::kSpacing);
 }
 
-TEST(Attention, IsToldAsItComesAndGoes) {
+TEST(Attention, IsRecordedAtItsStartAndEnd) {
   Attention attention;
   EXPECT_EQ(attention.look({"a", "b"}, 1).size(), 2U);
   EXPECT_TRUE(attention.look({"b", "a"}, 2).empty());
@@ -55,7 +55,7 @@ TEST(Attention, IsToldAsItComesAndGoes) {
   EXPECT_EQ(steps[1].at, 3);
 }
 
-TEST(Attention, ThatStoodWhenALifeEndedGoesInTheNextOne) {
+TEST(Attention, OfAnEarlierProcessEndsAfterARestart) {
   Attention attention;
   attention.go_on({{1, true, "a"}, {2, true, "b"}, {3, false, "a"}});
   const auto steps = attention.look({}, 4);
@@ -63,7 +63,7 @@ TEST(Attention, ThatStoodWhenALifeEndedGoesInTheNextOne) {
   EXPECT_EQ(steps[0].sentence, "b");
 }
 
-TEST(Samples, GoOnWhereTheTimeOfDayIsSetBack) {
+TEST(Samples, ContinueAfterAClockStepBack) {
   Samples samples;
   samples.add(Sample{.at = 100});
   samples.add(api::AttentionStep{100, true, "it"});

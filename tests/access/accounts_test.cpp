@@ -10,7 +10,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-TEST(Accounts, AreReadAsTheyWereWritten) {
+TEST(Accounts, ReadBackTheSame) {
   for (const Accounts& accounts : {Accounts{}, Accounts{.viewer = {}, .operator_ = "$y$j9T$a$b"},
                                    Accounts{.viewer = "$y$j9T$c$d", .operator_ = "$y$j9T$a$b"}}) {
     EXPECT_EQ(read_accounts(write_accounts(accounts)), accounts);
@@ -19,7 +19,7 @@ TEST(Accounts, AreReadAsTheyWereWritten) {
             "{\"version\":1,\"operator\":\"$y$x\",\"viewer\":null}\n");
 }
 
-TEST(Accounts, ThatAreDamagedAreNone) {
+TEST(Accounts, AreRejectedIfDamaged) {
   for (const char* text :
        {"", "null", "[]", "{}", "{\"version\":2,\"operator\":\"$y$x\"}", "{\"version\":1,\"operator\":7}",
         "{\"version\":1,\"operator\":\"a secret\"}", "{\"version\":1,\"operator\":\"$y$x\",\"oper"}) {
@@ -29,7 +29,7 @@ TEST(Accounts, ThatAreDamagedAreNone) {
   }
 }
 
-TEST(Accounts, KnowWhosePasswordItIs) {
+TEST(Accounts, FindTheRoleOfAPassword) {
   const Accounts accounts{.viewer = hash("look, do not touch", {1}).value(),
                           .operator_ = hash("correct horse", {2}).value()};
   EXPECT_EQ(role_of("correct horse", accounts), Role::Operator);

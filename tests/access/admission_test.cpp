@@ -45,7 +45,7 @@ class VerdictTest : public testing::Test {
   std::string viewers_cookie, viewers_csrf, operators_cookie, operators_csrf;
 };
 
-TEST_F(VerdictTest, IsNoForThoseWhoShowNothing) {
+TEST_F(VerdictTest, RejectsUnauthenticatedClients) {
   EXPECT_EQ(verdict(get(), Role::Viewer), Status::Unauthorized);
   EXPECT_EQ(verdict(post(), Role::Operator), Status::Unauthorized);
   Request request = get();
@@ -55,7 +55,7 @@ TEST_F(VerdictTest, IsNoForThoseWhoShowNothing) {
   }
 }
 
-TEST_F(VerdictTest, LetsAViewerLookAndAnOperatorDo) {
+TEST_F(VerdictTest, ViewersReadAndOperatorsAct) {
   struct Case {
     const char* method;
     bool by_operator;
@@ -76,7 +76,7 @@ TEST_F(VerdictTest, LetsAViewerLookAndAnOperatorDo) {
   }
 }
 
-TEST_F(VerdictTest, WantsTheSessionsOwnCsrfTokenForWhateverChangesAnything) {
+TEST_F(VerdictTest, RequiresTheSessionsCsrfTokenForChanges) {
   Request request = post();
   request.cookie = operators_cookie;
   for (const std::string& csrf : {std::string(), std::string("0"), viewers_csrf, operators_csrf + "0"}) {
@@ -91,7 +91,7 @@ TEST_F(VerdictTest, WantsTheSessionsOwnCsrfTokenForWhateverChangesAnything) {
   EXPECT_EQ(verdict(request, Role::Operator), Status::Ok);
 }
 
-TEST_F(VerdictTest, TakesAnyOfTheTokensForAnOperatorWithoutCsrf) {
+TEST_F(VerdictTest, AcceptsEachTokenAsOperatorWithoutCsrf) {
   Request request = post();
   for (const char* good : {"Bearer team-1", "bearer scoring-1"}) {
     request.authorization = good;
@@ -108,7 +108,7 @@ TEST_F(VerdictTest, TakesAnyOfTheTokensForAnOperatorWithoutCsrf) {
   EXPECT_EQ(verdict(request, Role::Viewer), Status::Unauthorized) << "no token is no open door";
 }
 
-TEST_F(VerdictTest, IsNoForPagesFromElsewhereWhateverTheyShow) {
+TEST_F(VerdictTest, RejectsPagesOfOtherOrigins) {
   Request request = post();
   request.cookie = operators_cookie;
   request.csrf = operators_csrf;
@@ -127,7 +127,7 @@ TEST_F(VerdictTest, IsNoForPagesFromElsewhereWhateverTheyShow) {
   EXPECT_EQ(verdict(request, Role::Viewer), Status::Forbidden);
 }
 
-TEST_F(VerdictTest, IsNoOnceTheSessionHasEnded) {
+TEST_F(VerdictTest, RejectsAnEndedSession) {
   Request request = get();
   request.cookie = operators_cookie;
   const auto visitor = admit(request, Role::Viewer, tokens, sessions, kNow);

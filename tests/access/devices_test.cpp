@@ -29,7 +29,7 @@ TEST(Devices, AreKnownByTheirIds) {
   EXPECT_EQ(devices.find(id(3)), nullptr);
 }
 
-TEST(Devices, OfARoleAreFewAndTheOneNotSeenForLongestGoes) {
+TEST(Devices, AreLimitedPerRoleAndTheLongestUnseenGoes) {
   Devices devices;
   devices.add(secret(200), Role::Operator);
   for (std::uint8_t i = 0; i < Devices::kMostOfRole; ++i) devices.add(secret(i), Role::Viewer);
@@ -59,7 +59,7 @@ TEST(Devices, EndWithThePasswordOfTheirRole) {
   EXPECT_EQ(changes, 6) << "nothing to be kept";
 }
 
-TEST(Devices, AreReadAsTheyAreWritten) {
+TEST(Devices, ReadBackTheSame) {
   Devices devices;
   devices.add(secret(1), Role::Operator);
   devices.add(secret(2), Role::Viewer);
@@ -72,7 +72,7 @@ TEST(Devices, AreReadAsTheyAreWritten) {
   EXPECT_NE(again.find(id(1)), nullptr);
 }
 
-TEST(Devices, WrittenUnderAnotherPasswordAreKnownNoMore) {
+TEST(Devices, OfAnOldPasswordAreForgotten) {
   Devices devices;
   devices.add(secret(1), Role::Operator);
   devices.add(secret(2), Role::Viewer);
@@ -90,7 +90,7 @@ TEST(Devices, WrittenUnderAnotherPasswordAreKnownNoMore) {
   EXPECT_EQ(known_to({}), std::vector<Role>());
 }
 
-TEST(Devices, OfABrokenFileAreRefusedWithoutShowingThem) {
+TEST(Devices, OfADamagedFileAreRejectedButNotShown) {
   const std::string whole =
       write_devices({{.number = 1, .role = Role::Operator, .id = as_token(secret(7))}}, kAccounts);
   for (const std::string& text :

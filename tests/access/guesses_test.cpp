@@ -27,7 +27,7 @@ constexpr Wait turn(Duration left) {
   return {left, true};
 }
 
-TEST(Guesses, LeaveFiveTriesFree) {
+TEST(Guesses, FiveAreFree) {
   Guesses guesses;
   for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kAtOnce) << i;
   EXPECT_EQ(guesses.begin(kOne, kStart), pause(1s));
@@ -46,7 +46,7 @@ TEST(Guesses, DoubleTheWaitUpToAMinute) {
   }
 }
 
-TEST(Guesses, AreForgivenByTheOperatorsPassword) {
+TEST(Guesses, AreClearedByTheOperatorsPassword) {
   Guesses guesses;
   for (int i = 0; i < 5; ++i) EXPECT_EQ(guesses.begin(kOne, kStart), kAtOnce);
   guesses.succeeded(kOne, Role::Operator);
@@ -54,7 +54,7 @@ TEST(Guesses, AreForgivenByTheOperatorsPassword) {
   EXPECT_NE(guesses.begin(kOne, kStart + 10s), kAtOnce);
 }
 
-TEST(Guesses, OfTheOperatorsAreNoneOfWhoHasTheViewers) {
+TEST(Guesses, OfTheOperatorsAreNotClearedByTheViewers) {
   for (const std::uint64_t device : {0, 3}) {
     Guesses guesses;
     const Guesser viewer{.address = "10.0.0.5", .device = device};
@@ -67,7 +67,7 @@ TEST(Guesses, OfTheOperatorsAreNoneOfWhoHasTheViewers) {
   }
 }
 
-TEST(Guesses, AreOneASecondInAll) {
+TEST(Guesses, AreOneASecondInTotal) {
   std::mt19937_64 random{7};
   Guesses guesses;
   int tries = 0;
@@ -78,7 +78,7 @@ TEST(Guesses, AreOneASecondInAll) {
 }
 
 /// 120 addresses that ask all the time, and one that does as it is told.
-TEST(Guesses, GiveEachAddressItsTurnAndSayWhen) {
+TEST(Guesses, GiveEachAddressATurnAtAKnownTime) {
   Guesses guesses;
   const auto all_ask = [&](Instant now) {
     for (int i = 0; i < 120; ++i) (void)guesses.begin(stranger(i), now);
@@ -109,7 +109,7 @@ TEST(Guesses, KeepATurnForSomeSeconds) {
   }
 }
 
-TEST(Guesses, LetAKnownDeviceTryAtOnce) {
+TEST(Guesses, AllowAKnownDeviceAtOnce) {
   Guesses guesses;
   for (Instant now = kStart; now < kStart + 1min; now += 100ms) {
     for (int i = 0; i < 300; ++i) (void)guesses.begin(stranger(i), now);
@@ -120,7 +120,7 @@ TEST(Guesses, LetAKnownDeviceTryAtOnce) {
   EXPECT_EQ(guesses.begin({.address = "10.0.0.5", .device = 2}, kStart + 1min), kAtOnce) << "another device";
 }
 
-TEST(Guesses, LetWhoIsAtTheBoxTryAtOnceAndNobodyWhoWasWrong) {
+TEST(Guesses, AllowAClientAtTheBoxUnlessItGuessedWrong) {
   Guesses guesses;
   for (int i = 0; i < 120; ++i) (void)guesses.begin(stranger(i), kStart);
   EXPECT_TRUE(guesses.begin(kOne, kStart).for_others);
@@ -130,7 +130,7 @@ TEST(Guesses, LetWhoIsAtTheBoxTryAtOnceAndNobodyWhoWasWrong) {
   EXPECT_TRUE(guesses.begin(guessing, kStart).for_others);
 }
 
-TEST(Guesses, HaveNoTurnFurtherAwayThanTheirNumber) {
+TEST(Guesses, LimitTheWaitByTheNumberOfGuessers) {
   Guesses guesses;
   for (Instant now = kStart; now < kStart + 10s; now += 10ms) {
     const auto number = static_cast<std::uint64_t>((now - kStart) / 10ms);
@@ -138,7 +138,7 @@ TEST(Guesses, HaveNoTurnFurtherAwayThanTheirNumber) {
   }
 }
 
-TEST(Guesses, AreForgottenAfterAQuietQuarterOfAnHour) {
+TEST(Guesses, AreForgottenAfterFifteenQuietMinutes) {
   Guesses guesses;
   for (int i = 0; i < 5; ++i) (void)guesses.begin(kOne, kStart);
   EXPECT_NE(guesses.begin(kOne, kStart), kAtOnce);

@@ -9,7 +9,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-TEST(Password, HasTenToAHundredAndTwentyEightCharacters) {
+TEST(Password, Has10To128Characters) {
   EXPECT_FALSE(check_new("123456789"));
   EXPECT_TRUE(check_new("1234567890"));
   EXPECT_TRUE(check_new("gr\xc3\xbc\xc3\x9f Gott!"));  // 10 characters in 12 bytes
@@ -21,7 +21,7 @@ TEST(Password, HasTenToAHundredAndTwentyEightCharacters) {
   EXPECT_EQ(check_new("short").error(), "expected 10 to 128 characters, got 5");
 }
 
-TEST(Password, IsHashedByYescryptWithASaltOfItsOwn) {
+TEST(Password, IsHashedByYescryptWithItsOwnSalt) {
   const auto one = hash("correct horse", {1}), other = hash("correct horse", {2});
   ASSERT_TRUE(one && other);
   EXPECT_THAT(*one, StartsWith("$y$j9T$"));
@@ -30,7 +30,7 @@ TEST(Password, IsHashedByYescryptWithASaltOfItsOwn) {
   EXPECT_EQ(hash("correct horse", {1}), one);
 }
 
-TEST(Password, MatchesItsHashAndNoOther) {
+TEST(Password, MatchesOnlyItsHash) {
   const std::string hashed = hash("correct horse", {1}).value();
   EXPECT_TRUE(matches("correct horse", hashed));
   for (const std::string& wrong :

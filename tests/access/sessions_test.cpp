@@ -38,7 +38,7 @@ TEST(Secrets, AreWrittenInHexadecimal) {
   EXPECT_EQ(as_token(secret).reveal(), "0f" + std::string(60, '0') + "a0");
 }
 
-TEST_F(SessionsTest, AreFoundByTheirIdAlone) {
+TEST_F(SessionsTest, AreFoundOnlyByTheirId) {
   const Session mine = begin(Role::Operator, kStart);
   const Session* const found = sessions.find(mine.id.reveal(), kStart);
   ASSERT_NE(found, nullptr);
@@ -51,7 +51,7 @@ TEST_F(SessionsTest, AreFoundByTheirIdAlone) {
   }
 }
 
-TEST_F(SessionsTest, EndTwelveHoursAfterTheyWereSeenLast) {
+TEST_F(SessionsTest, EndAfterTwelveIdleHours) {
   const Session session = begin(Role::Viewer, kStart);
   EXPECT_TRUE(lives(session, kStart + 12h - 1s));
   EXPECT_TRUE(lives(session, kStart + 23h)) << "being seen puts it off";
@@ -59,13 +59,13 @@ TEST_F(SessionsTest, EndTwelveHoursAfterTheyWereSeenLast) {
   EXPECT_FALSE(lives(session, kStart + 35h)) << "for good";
 }
 
-TEST_F(SessionsTest, EndSevenDaysAfterTheyBeganHoweverOftenSeen) {
+TEST_F(SessionsTest, EndAfterSevenDays) {
   const Session session = begin(Role::Operator, kStart);
   for (auto age = 1h; age < 7 * 24h; age += 1h) ASSERT_TRUE(sessions.still(session.number, kStart + age));
   EXPECT_FALSE(sessions.still(session.number, kStart + 7 * 24h));
 }
 
-TEST_F(SessionsTest, AreAtMostSixtyFourAndTheOneIdleForLongestGoes) {
+TEST_F(SessionsTest, AreAtMost64AndTheLongestIdleGoes) {
   std::vector<Session> all;
   for (int i = 0; i < 64; ++i) all.push_back(begin(Role::Viewer, kStart + i * 1s));
   EXPECT_TRUE(lives(all[0], kStart + 100s));
@@ -88,14 +88,14 @@ TEST_F(SessionsTest, EndOneByOneOrByRole) {
   EXPECT_FALSE(lives(viewer, kStart));
 }
 
-TEST_F(SessionsTest, KeepTheBeginningOfTheBrowsersNameAsPlainText) {
+TEST_F(SessionsTest, KeepTheBrowsersNameAsShortPlainText) {
   EXPECT_EQ(begin(Role::Viewer, kStart, "a\x1b[2Jb\xc3\xa9\n").agent, "a?[2Jb???");
   EXPECT_EQ(begin(Role::Viewer, kStart, std::string(300, 'x')).agent,
             std::string(Sessions::kLongestAgent, 'x'));
 }
 
 /// Laws, over many random steps.
-TEST_F(SessionsTest, NeverShareAnIdOrANumberAndNeverOutliveTheirTime) {
+TEST_F(SessionsTest, HaveUniqueIdsAndEndInTime) {
   std::set<std::string> ids;
   std::set<std::uint64_t> numbers;
   std::vector<Session> known;
@@ -121,7 +121,7 @@ TEST_F(SessionsTest, NeverShareAnIdOrANumberAndNeverOutliveTheirTime) {
   EXPECT_GT(known.size(), 900u);
 }
 
-TEST_F(SessionsTest, OfViewersMakeNoOperatorGo) {
+TEST_F(SessionsTest, OfViewersDisplaceNoOperator) {
   const Session mine = begin(Role::Operator, kStart);
   for (std::size_t i = 0; i < 2 * Sessions::kMost; ++i) begin(Role::Viewer, kStart + 1h);
   EXPECT_TRUE(lives(mine, kStart + 2h));
@@ -154,7 +154,7 @@ class SessionFileTest : public testing::Test {
   Sessions sessions;
 };
 
-TEST_F(SessionFileTest, HoldsAllThatIsKnownOfASession) {
+TEST_F(SessionFileTest, HoldsAllMembersOfASession) {
   const Session mine = begin(sessions, Role::Operator, kStart);
   const Session other = begin(sessions, Role::Viewer, kStart + 1ns);
   Sessions after = restored(kStart + 1h);
@@ -170,20 +170,20 @@ TEST_F(SessionFileTest, HoldsAllThatIsKnownOfASession) {
   EXPECT_EQ(read_sessions(written())->boot, "boot-1");
 }
 
-TEST_F(SessionFileTest, GivesNobodyMoreTimeThanHeHad) {
+TEST_F(SessionFileTest, ExtendsNoSession) {
   const Session mine = begin(sessions, Role::Operator, kStart);
   Sessions early = restored(kStart + 12h - 1s), late = restored(kStart + 12h);
   EXPECT_NE(early.find(mine.id.reveal(), kStart + 12h - 1s), nullptr);
   EXPECT_EQ(late.find(mine.id.reveal(), kStart + 12h), nullptr);
 }
 
-TEST_F(SessionFileTest, OfAClockThatHasRestartedIsForgotten) {
+TEST_F(SessionFileTest, FromAnotherBootIsDropped) {
   const Session mine = begin(sessions, Role::Operator, kStart);
   Sessions after = restored(kStart - 1s);
   EXPECT_EQ(after.find(mine.id.reveal(), kStart - 1s), nullptr);
 }
 
-TEST_F(SessionFileTest, NeverLetsANumberBeGivenTwice) {
+TEST_F(SessionFileTest, KeepsNumbersUnique) {
   begin(sessions, Role::Operator, kStart);
   const Session second = begin(sessions, Role::Operator, kStart);
   sessions.end(second.number);
@@ -191,7 +191,7 @@ TEST_F(SessionFileTest, NeverLetsANumberBeGivenTwice) {
   EXPECT_GT(begin(after, Role::Operator, kStart).number, second.number);
 }
 
-TEST_F(SessionFileTest, IsWrittenWheneverSomebodyComesOrGoes) {
+TEST_F(SessionFileTest, IsWrittenAtEachLoginAndLogout) {
   int told = 0;
   Sessions watched([&told] { ++told; });
   const Session mine = begin(watched, Role::Operator, kStart);
@@ -206,7 +206,7 @@ TEST_F(SessionFileTest, IsWrittenWheneverSomebodyComesOrGoes) {
   EXPECT_EQ(told, 3);
 }
 
-TEST_F(SessionFileTest, ThatIsNoneSaysWhyAndShowsNothingOfWhatIsInIt) {
+TEST_F(SessionFileTest, IfDamagedTellsWhyButShowsNoSecret) {
   const Session mine = begin(sessions, Role::Operator, kStart);
   const std::string good = written();
   const auto replaced = [&good](const std::string& from, const std::string& to) {

@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::string_view_literals;
 
-TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
+TEST(RequestHeaders, AcceptsOnlyHostNamesThatDnsCannotForge) {
   for (const char* host :
        {"10.0.0.1", "10.0.0.1:8000", "192.168.7.11:80", "[fd00::1]", "[fd00::1]:8000", "[::1]:1", "localhost",
         "localhost:8000", "LocalHost", "adit.local", "Adit.Local:8000", "adit12.local", "pc-17.local:8000"}) {
@@ -45,7 +45,7 @@ TEST(Whence, OnlyWhatNoDnsCanForgeNamesThisBox) {
   }
 }
 
-TEST(Whence, AnOriginIsThePageOfTheVeryHostAndPort) {
+TEST(RequestHeaders, ComparesHostAndPortOfAnOrigin) {
   struct Case {
     const char *origin, *host;
     bool same;
@@ -61,7 +61,7 @@ TEST(Whence, AnOriginIsThePageOfTheVeryHostAndPort) {
   }
 }
 
-TEST(Whence, ACookieIsFoundByItsWholeName) {
+TEST(RequestHeaders, FindsACookieByItsWholeName) {
   EXPECT_EQ(cookie_in("adit=1", "adit"), "1");
   EXPECT_EQ(cookie_in("theme=dark; adit=1; x=2", "adit"), "1");
   EXPECT_EQ(cookie_in("theme=dark;adit=1 ", "adit"), "1");

@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(Window, IsOpenForItsLengthOnceItWasOpened) {
+TEST(Window, IsOpenForItsLength) {
   const Instant start{};
   Window window;
   EXPECT_EQ(window.left(start), std::nullopt);
@@ -25,7 +25,7 @@ TEST(Window, IsClosedByItsUse) {
   EXPECT_EQ(window.left(Instant{} + 1s), std::nullopt);
 }
 
-TEST(Window, CountsAgainWhenItIsOpenedAgain) {
+TEST(Window, RestartsIfOpenedAgain) {
   Window window;
   window.open(Instant{}, 10min);
   window.open(Instant{} + 9min, 10min);

@@ -81,7 +81,7 @@ class ApplierTest : public testing::Test {
   const network::Endpoints by_gateway{{0x0a6402c8}};
 };
 
-TEST_F(ApplierTest, TakesAwayThatItIsToForgetOnceItHasForgotten) {
+TEST_F(ApplierTest, DeletesAForgetRequestOnceDone) {
   folder.put("state/confirmed.json", network::write_kept(network::numbers()));
   EXPECT_TRUE(runs_well());
   folder.put("wanted/forget.json", codec::write_file(network::Forget{kNonce}));
@@ -90,7 +90,7 @@ TEST_F(ApplierTest, TakesAwayThatItIsToForgetOnceItHasForgotten) {
   EXPECT_TRUE(fs::is_empty(options.wanted));
 }
 
-TEST_F(ApplierTest, TakesAwayARequestToForgetThatIsNone) {
+TEST_F(ApplierTest, DeletesAnInvalidForgetRequest) {
   folder.put("state/confirmed.json", network::write_kept(network::numbers()));
   for (const std::string text : {"", "{}", "[]"}) {
     folder.put("wanted/forget.json", text);
@@ -103,7 +103,7 @@ TEST_F(ApplierTest, TakesAwayARequestToForgetThatIsNone) {
   EXPECT_TRUE(fs::exists(options.state + "/confirmed.json"));
 }
 
-TEST_F(ApplierTest, SaysWhereARequestCannotBeTakenAway) {
+TEST_F(ApplierTest, ReportsARequestThatCannotBeDeleted) {
   fs::create_directory(options.wanted + "/word.json");
   const pid_t child = fork();
   if (child == 0) {  // what is mounted on cannot be taken away
@@ -120,7 +120,7 @@ TEST_F(ApplierTest, SaysWhereARequestCannotBeTakenAway) {
   EXPECT_TRUE(runs_well()) << "once it can be";
 }
 
-TEST_F(ApplierTest, SaysWhyItCouldNotSeekAnAddress) {
+TEST_F(ApplierTest, ReportsAFailedAddressProbe) {
   options.team = options.command_post = "none0";
   EXPECT_TRUE(runs_well());
   ask(network::kProbeFile, network::Probe{kNonce, "10.100.1.200"});
@@ -131,7 +131,7 @@ TEST_F(ApplierTest, SaysWhyItCouldNotSeekAnAddress) {
   EXPECT_THAT((*probed)->not_sought, testing::StartsWith("none0: "));
 }
 
-TEST_F(ApplierTest, HearsAWordThatCameInTimeWhileItWasBusy) {
+TEST_F(ApplierTest, AcceptsAConfirmationThatCameWhileBusy) {
   EXPECT_TRUE(runs_well());
   want(network::kLeastWithin);
   Life life(options);
@@ -143,7 +143,7 @@ TEST_F(ApplierTest, HearsAWordThatCameInTimeWhileItWasBusy) {
   EXPECT_EQ(status().kept, tried);
 }
 
-TEST_F(ApplierTest, HearsAWordThatCameInTimeThoughItIsStopped) {
+TEST_F(ApplierTest, AcceptsAConfirmationThatCameBeforeStop) {
   EXPECT_TRUE(runs_well());
   want();
   Life life(options);
@@ -152,9 +152,9 @@ TEST_F(ApplierTest, HearsAWordThatCameInTimeThoughItIsStopped) {
   EXPECT_EQ(status().ended, network::Ended::Confirmed);
 }
 
-class NetworkdFailsTest : public ApplierTest {
+class NetworkdFailureTest : public ApplierTest {
  protected:
-  NetworkdFailsTest() {
+  NetworkdFailureTest() {
     folder.put("state/confirmed.json", network::write_kept(kept));
     EXPECT_TRUE(runs_well());
     before = reloads();
@@ -171,7 +171,7 @@ class NetworkdFailsTest : public ApplierTest {
   std::size_t before = 0;
 };
 
-TEST_F(NetworkdFailsTest, AsAChangeIsRevertedAfterAKill) {
+TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedAfterAKill) {
   want();
   EXPECT_TRUE(Life(options).started);
   break_networkd();
@@ -184,7 +184,7 @@ TEST_F(NetworkdFailsTest, AsAChangeIsRevertedAfterAKill) {
   EXPECT_FALSE(status().pending);
 }
 
-TEST_F(NetworkdFailsTest, AsAChangeIsRevertedAndTheServiceIsStopped) {
+TEST_F(NetworkdFailureTest, WhileAChangeIsRevertedBeforeAStop) {
   want();
   {
     Life life(options);
@@ -199,7 +199,7 @@ TEST_F(NetworkdFailsTest, AsAChangeIsRevertedAndTheServiceIsStopped) {
   expect_reload_by_the_next_start();
 }
 
-TEST_F(NetworkdFailsTest, AsItIsToLeadToOtherEndpoints) {
+TEST_F(NetworkdFailureTest, WhileRoutesChange) {
   break_networkd();
   ask(network::kEndpointsFile, by_gateway);
   EXPECT_FALSE(runs_well());
@@ -208,7 +208,7 @@ TEST_F(NetworkdFailsTest, AsItIsToLeadToOtherEndpoints) {
   EXPECT_EQ(status().endpoints, by_gateway);
 }
 
-TEST_F(NetworkdFailsTest, AsItIsToLeadToOtherEndpointsWhileAChangeWaits) {
+TEST_F(NetworkdFailureTest, WhileRoutesChangeDuringAPendingChange) {
   want();
   Life life(options);
   break_networkd();
@@ -222,7 +222,7 @@ TEST_F(NetworkdFailsTest, AsItIsToLeadToOtherEndpointsWhileAChangeWaits) {
   EXPECT_EQ(reloads(), before + 2);
 }
 
-TEST_F(NetworkdFailsTest, AsAllIsToBeForgotten) {
+TEST_F(NetworkdFailureTest, WhileAllIsForgotten) {
   break_networkd();
   ask(network::kForgetFile, network::Forget{kNonce});
   EXPECT_FALSE(runs_well());

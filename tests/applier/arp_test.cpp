@@ -24,12 +24,12 @@ std::vector<std::uint8_t> packet(std::uint8_t operation, const Mac& sender, std:
   return bytes;
 }
 
-TEST(AnArpProbe, AsksFromNobodysAddress) {
+TEST(ArpProbe, HasNoSenderAddress) {
   const auto probe = arp_probe(kOurMac, kOurAddress);
   EXPECT_EQ(std::vector(probe.begin(), probe.end()), packet(1, kOurMac, 0, kOurAddress));
 }
 
-TEST(AClaim, IsWhateverComesFromTheAddress) {
+TEST(AddressClaim, IsAnyPacketFromTheAddress) {
   EXPECT_EQ(claimant(packet(2, kOther, kOurAddress, kTheirAddress), kOurAddress, kOurMac), kOther)
       << "a reply";
   EXPECT_EQ(claimant(packet(1, kOther, kOurAddress, kTheirAddress), kOurAddress, kOurMac), kOther)
@@ -40,7 +40,7 @@ TEST(AClaim, IsWhateverComesFromTheAddress) {
       << "a probe at the same time";
 }
 
-TEST(AClaim, IsNothingElse) {
+TEST(AddressClaim, IsNoOtherPacket) {
   EXPECT_EQ(claimant(packet(1, kOurMac, 0, kOurAddress), kOurAddress, kOurMac), std::nullopt) << "one's own";
   EXPECT_EQ(claimant(packet(2, kOurMac, kOurAddress, kTheirAddress), kOurAddress, kOurMac), std::nullopt);
   EXPECT_EQ(claimant(packet(1, kOther, kTheirAddress, kOurAddress), kOurAddress, kOurMac), std::nullopt)

@@ -69,14 +69,14 @@ class ClockSetterTest : public testing::Test {
   std::vector<double> set, chip;
 };
 
-TEST_F(ClockSetterTest, SetsTheTimeThatItHasBecomeSinceItWasAskedFor) {
+TEST_F(ClockSetterTest, AddsTheTimeSinceTheRequest) {
   ask(1.8e9, 97.5);
   EXPECT_EQ(work(),
             (clock::Status{.boot = boot, .nonce = kAsker, .refusal = "", .source = Source::Operator}));
   EXPECT_THAT(set, ElementsAre(1.8e9 + 2.5));
 }
 
-TEST_F(ClockSetterTest, RefusesWhatIsOutOfBoundsOldOrNoRequest) {
+TEST_F(ClockSetterTest, RejectsOldAndInvalidRequests) {
   ask(1e9, 97.5);
   EXPECT_THAT(work().refusal, HasSubstr("time:"));
   ask(1.8e9, 5);
@@ -88,7 +88,7 @@ TEST_F(ClockSetterTest, RefusesWhatIsOutOfBoundsOldOrNoRequest) {
   EXPECT_THAT(set, IsEmpty());
 }
 
-TEST_F(ClockSetterTest, RefusesWhatWasAskedForInAnEarlierStart) {
+TEST_F(ClockSetterTest, RejectsARequestOfAnotherBoot) {
   ask(1.8e9, 97.5);
   boot = "c";
   const clock::Status told = work();
@@ -97,7 +97,7 @@ TEST_F(ClockSetterTest, RefusesWhatWasAskedForInAnEarlierStart) {
   EXPECT_THAT(set, IsEmpty());
 }
 
-TEST_F(ClockSetterTest, TellsWhatHinderedIt) {
+TEST_F(ClockSetterTest, TellsWhyItFailed) {
   trouble = "Operation not permitted";
   ask(1.8e9, 97.5);
   const clock::Status told = work();
@@ -105,7 +105,7 @@ TEST_F(ClockSetterTest, TellsWhatHinderedIt) {
   EXPECT_EQ(told.source, Source::None) << "it is not set";
 }
 
-TEST_F(ClockSetterTest, KnowsAChipThatAgreesWithTheClock) {
+TEST_F(ClockSetterTest, RecognizesAChipThatAgreesWithTheClock) {
   EXPECT_EQ(work().source, Source::None);
   fs::remove(folder / "status/status.json");
   folder.put("chip/since_epoch", "1500000000\n");
@@ -119,7 +119,7 @@ TEST_F(ClockSetterTest, KnowsAChipThatAgreesWithTheClock) {
   EXPECT_EQ(work().source, Source::None) << "in 2103";
 }
 
-TEST_F(ClockSetterTest, WritesNoGuessIntoTheChip) {
+TEST_F(ClockSetterTest, WritesNoGuessToTheChip) {
   for (const Source guess : {Source::LastKnown, Source::Robots}) {
     ask(1.8e9, 99, guess);
     work();
@@ -133,14 +133,14 @@ TEST_F(ClockSetterTest, WritesNoGuessIntoTheChip) {
   EXPECT_THAT(chip, ElementsAre(1.8e9 + 1, 1.8e9 + 1, 1.8e9 + 1));
 }
 
-TEST_F(ClockSetterTest, WritesNothingIntoTheChipWhereTheClockCannotBeSet) {
+TEST_F(ClockSetterTest, LeavesTheChipIfTheClockCannotBeSet) {
   trouble = "Operation not permitted";
   ask(1.8e9, 99);
   work();
   EXPECT_THAT(chip, IsEmpty());
 }
 
-TEST_F(ClockSetterTest, HasChronydMeasureAndKeepTheClockOnceItsTimeWasTaken) {
+TEST_F(ClockSetterTest, LetsChronydSetTheClockOnceItsTimeWasAccepted) {
   ask({.server = "10.0.0.5", .clients = ""});
   EXPECT_EQ(work().ntp.server, "10.0.0.5");
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
@@ -159,7 +159,7 @@ TEST_F(ClockSetterTest, HasChronydMeasureAndKeepTheClockOnceItsTimeWasTaken) {
   EXPECT_EQ(orders(), "restart adit-ntp.service\n");
 }
 
-TEST_F(ClockSetterTest, HasChronydMeasureAgainWhereAnotherServerIsAsked) {
+TEST_F(ClockSetterTest, LetsChronydOnlyMeasureANewServer) {
   ask({.server = "10.0.0.5", .clients = ""});
   ask(1.8e9, 99, Source::Ntp, "10.0.0.5");
   EXPECT_EQ(work().server, "10.0.0.5");
@@ -173,7 +173,7 @@ TEST_F(ClockSetterTest, HasChronydMeasureAgainWhereAnotherServerIsAsked) {
   EXPECT_EQ(chrony("chrony.options"), "CHRONYD=\n");
 }
 
-TEST_F(ClockSetterTest, HasChronydGiveTheTimeOnceItIsSet) {
+TEST_F(ClockSetterTest, LetsChronydServeTheTimeOnceSet) {
   ask({.server = "", .clients = "10.0.0.0/24"});
   work();
   EXPECT_THAT(chrony("chrony.conf"), HasSubstr("port 0"));
@@ -183,7 +183,7 @@ TEST_F(ClockSetterTest, HasChronydGiveTheTimeOnceItIsSet) {
   EXPECT_EQ(orders(), "restart adit-ntp.service\nrestart adit-ntp.service\n");
 }
 
-TEST_F(ClockSetterTest, StopsChronydThatItStartedAndNoOther) {
+TEST_F(ClockSetterTest, StopsOnlyItsOwnChronyd) {
   ask(clock::Ntp{});
   work();
   EXPECT_EQ(orders(), "");
@@ -195,7 +195,7 @@ TEST_F(ClockSetterTest, StopsChronydThatItStartedAndNoOther) {
   EXPECT_FALSE(fs::exists(folder / "status/chrony.conf"));
 }
 
-TEST_F(ClockSetterTest, TellsWhyChronydDoesNotRunAndTriesAgainWhereItIsAskedAgain) {
+TEST_F(ClockSetterTest, TellsWhyChronydFailsAndRetriesOnRequest) {
   have_systemctl("echo not found >&2; exit 5");
   ask({.server = "10.0.0.5", .clients = ""});
   EXPECT_THAT(work().trouble, HasSubstr("not found"));
@@ -204,7 +204,7 @@ TEST_F(ClockSetterTest, TellsWhyChronydDoesNotRunAndTriesAgainWhereItIsAskedAgai
   EXPECT_EQ(work().trouble, "");
 }
 
-TEST_F(ClockSetterTest, TakesNoNtpThatIsNone) {
+TEST_F(ClockSetterTest, RejectsInvalidNtpSettings) {
   for (const char* text : {"{}", "null", R"({"format":1,"server":"10.0.0.5\nallow","clients":""})"}) {
     folder.put("wanted/ntp.json", text);
     EXPECT_EQ(work().ntp, clock::Ntp{}) << text;
@@ -212,7 +212,7 @@ TEST_F(ClockSetterTest, TakesNoNtpThatIsNone) {
   EXPECT_EQ(orders(), "");
 }
 
-TEST_F(ClockSetterTest, RemembersWhoSetItUntilTheMachineRestarts) {
+TEST_F(ClockSetterTest, RemembersTheSourceUntilTheNextBoot) {
   ask(1.8e9, 99, Source::CommandPost);
   work();
   EXPECT_EQ(work().source, Source::CommandPost);

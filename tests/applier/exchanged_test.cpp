@@ -18,9 +18,9 @@ ArpPacket from(std::uint32_t address, const Mac& sender = kPost) {
   return {.asks = false, .sender = sender, .from = address, .about = 0};
 }
 
-class ExchangedTest : public testing::Test {
+class ExchangedCablesTest : public testing::Test {
  protected:
-  ExchangedTest() { exchanged.set_sought({kScoring, kMapping}, {kOurs}, now); }
+  ExchangedCablesTest() { exchanged.set_sought({kScoring, kMapping}, {kOurs}, now); }
 
   /// So long, with whoever is there answering what he is asked.
   void pass(seconds time, bool is_at_team, bool is_at_post) {
@@ -46,7 +46,7 @@ class ExchangedTest : public testing::Test {
   std::size_t asked_at_post = 0;
 };
 
-TEST_F(ExchangedTest, AreWhereTheCommandPostAnswersAtTheTeamsPortAlone) {
+TEST_F(ExchangedCablesTest, AreFoundIfTheCommandPostAnswersOnlyAtTheTeamPort) {
   pass(seconds(10), true, false);
   EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));
   pass(std::chrono::minutes(5), true, false);
@@ -55,7 +55,7 @@ TEST_F(ExchangedTest, AreWhereTheCommandPostAnswersAtTheTeamsPortAlone) {
   EXPECT_THAT(found(), IsEmpty());
 }
 
-TEST_F(ExchangedTest, AreNotWhereItAnswersAtItsOwnPort) {
+TEST_F(ExchangedCablesTest, AreNotFoundIfItAnswersAtItsOwnPort) {
   pass(std::chrono::minutes(2), false, true);
   EXPECT_THAT(found(), IsEmpty());
   EXPECT_EQ(asked_at_post, 0u) << "nobody is asked there without a cause";
@@ -64,7 +64,7 @@ TEST_F(ExchangedTest, AreNotWhereItAnswersAtItsOwnPort) {
   EXPECT_THAT(found(), IsEmpty()) << "both cables are in one network, or somebody pretends";
 }
 
-TEST_F(ExchangedTest, AreNotForWhatIsHeardOnce) {
+TEST_F(ExchangedCablesTest, AreNotFoundAfterASinglePacket) {
   pass(std::chrono::minutes(1), false, false);
   exchanged.hear_at_team(from(kScoring), now);
   for (seconds waited(0); waited < network::kTakenFor; waited += seconds(1)) {
@@ -74,7 +74,7 @@ TEST_F(ExchangedTest, AreNotForWhatIsHeardOnce) {
   EXPECT_THAT(found(), IsEmpty());
 }
 
-TEST_F(ExchangedTest, AreNotForWhatThisMachineSays) {
+TEST_F(ExchangedCablesTest, IgnorePacketsOfThisMachine) {
   for (int i = 0; i < 60; ++i) {
     exchanged.hear_at_team(from(kScoring, kOurs), now);
     pass(seconds(1), false, false);
@@ -82,7 +82,7 @@ TEST_F(ExchangedTest, AreNotForWhatThisMachineSays) {
   EXPECT_THAT(found(), IsEmpty());
 }
 
-TEST_F(ExchangedTest, AreFoundAgainAsACableComes) {
+TEST_F(ExchangedCablesTest, AreSoughtAgainWhenACableComes) {
   pass(std::chrono::minutes(2), false, false);
   EXPECT_EQ(exchanged.wake(), std::nullopt) << "nobody is asked any more";
   exchanged.ask_again(now);
@@ -90,7 +90,7 @@ TEST_F(ExchangedTest, AreFoundAgainAsACableComes) {
   EXPECT_THAT(found(), ElementsAre(kScoring, kMapping));
 }
 
-TEST_F(ExchangedTest, AskAtTheCommandPostsPortAsSeldomHoweverMuchIsHeard) {
+TEST_F(ExchangedCablesTest, LimitProbesAtTheCommandPostPort) {
   pass(std::chrono::minutes(1), false, false);
   asked_at_post = 0;
   const auto began = now;
@@ -114,25 +114,25 @@ network::Status status(const char* gateway = nullptr) {
   return status;
 }
 
-TEST(Sought, AreTheEndpointsOnTheLinkAndTheGatewayToTheOthers) {
+TEST(SoughtAddresses, AreEndpointsOnTheLinkAndTheGateway) {
   const std::vector team = {subnet("192.168.7.11/24")};
   EXPECT_THAT(sought_in(status(), {}, team), ElementsAre(kScoring, kMapping));
   EXPECT_THAT(sought_in(status("10.100.1.1"), {}, team), ElementsAre(0x0a640101u, kScoring, kMapping));
   EXPECT_THAT(sought_in({}, {}, team), IsEmpty());
 }
 
-TEST(Sought, AreByTheBoxsOwnAddressesWhereNobodySetThem) {
+TEST(SoughtAddresses, FollowTheBoxsAddressesIfNoneIsSet) {
   network::Status other = status();
   other.kept.reset();
   EXPECT_THAT(sought_in(other, {subnet("10.100.1.10/24")}, {}), ElementsAre(kScoring, kMapping));
   EXPECT_THAT(sought_in(other, {}, {}), IsEmpty());
 }
 
-TEST(Sought, AreNoneThatMayBeARobotsWhereTheNetworksOverlap) {
+TEST(SoughtAddresses, ExcludeAddressesInOverlappingNetworks) {
   EXPECT_THAT(sought_in(status(), {}, {subnet("169.254.3.4/16"), subnet("10.100.1.11/24")}), IsEmpty());
 }
 
-TEST(Sought, AreBounded) {
+TEST(SoughtAddresses, AreBounded) {
   network::Status many = status();
   many.endpoints.addresses.clear();
   for (std::uint32_t i = 0; i < network::kMostEndpoints; ++i)

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 constexpr const char* kName = "adit-a-20261123T231600Z.adit-spare";
 
-TEST(ExportFile, IsReadAsItWasWritten) {
+TEST(ExportFile, ReadsBackTheSame) {
   const host::Folder stick;
   ASSERT_TRUE(write_export(stick.path(), kName, "one"));
   ASSERT_TRUE(write_export(stick.path(), kName, "another")) << "in its place";
@@ -25,7 +25,7 @@ TEST(ExportFile, IsReadAsItWasWritten) {
   EXPECT_FALSE(fs::exists(stick / kUnfinished));
 }
 
-TEST(ExportFile, LeavesNothingBesideWhatAStickHadBefore) {
+TEST(ExportFile, DeletesUnfinishedFilesOnly) {
   const host::Folder stick;
   stick.put("photo", "of a cave");
   stick.put(kUnfinished, "from the day when it was pulled out");
@@ -34,7 +34,7 @@ TEST(ExportFile, LeavesNothingBesideWhatAStickHadBefore) {
   EXPECT_TRUE(fs::exists(stick / "photo"));
 }
 
-TEST(ExportFile, TakesTheNameOfNoFolderAndFollowsNoLink) {
+TEST(ExportFile, ReplacesNoDirectoryAndFollowsNoLink) {
   const host::Folder stick, elsewhere;
   fs::create_directory(stick / kName);
   EXPECT_FALSE(write_export(stick.path(), kName, "one"));
@@ -47,7 +47,7 @@ TEST(ExportFile, TakesTheNameOfNoFolderAndFollowsNoLink) {
   EXPECT_TRUE(fs::is_empty(elsewhere.path()));
 }
 
-TEST(ExportFile, IsAPlainOneOfBoundedSize) {
+TEST(ExportFile, IsARegularFileOfBoundedSize) {
   const host::Folder stick, elsewhere;
   const std::string secret = elsewhere.put("secret", "of the box");
   fs::create_symlink(secret, stick / "link.adit-spare");

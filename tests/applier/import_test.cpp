@@ -87,7 +87,7 @@ class ImportTest : public testing::Test {
   const network::Numbers numbers = network::numbers("10.0.0.1/24", "10.100.1.10/24", "10.100.1.1");
 };
 
-TEST_F(ImportTest, TakesAllThatWasBroughtAndSaysSo) {
+TEST_F(ImportTest, ImportsAllFilesAndReportsThem) {
   bring_all();
   import();
   expect_all_taken();
@@ -101,7 +101,7 @@ TEST_F(ImportTest, TakesAllThatWasBroughtAndSaysSo) {
   EXPECT_TRUE(on_card("network.json.taken"));
 }
 
-TEST_F(ImportTest, TakesNothingTwice) {
+TEST_F(ImportTest, ImportsNothingTwice) {
   bring_all();
   import();
   const std::string said = taken();
@@ -111,7 +111,7 @@ TEST_F(ImportTest, TakesNothingTwice) {
   EXPECT_EQ(taken(), said);
 }
 
-TEST_F(ImportTest, TakesAllAgainAtEachStartWhereItCannotBeKept) {
+TEST_F(ImportTest, RepeatsAtEachStartIfNothingCanBeStored) {
   fs::create_directory(folder / "notices");
   folder.put("notices/state", "the state partition is unusable");
   bring_all();
@@ -130,7 +130,7 @@ TEST_F(ImportTest, TakesAllAgainAtEachStartWhereItCannotBeKept) {
   expect_all_taken();
 }
 
-TEST_F(ImportTest, TakesEachAlone) {
+TEST_F(ImportTest, ImportsEachFileAlone) {
   bring("secrets/team.token", "team-1");
   import();
   EXPECT_EQ(state("secrets/team.token"), "team-1\n");
@@ -141,14 +141,14 @@ TEST_F(ImportTest, TakesEachAlone) {
   EXPECT_TRUE(fs::exists(options.network + "/confirmed.json"));
 }
 
-TEST_F(ImportTest, TakesNumbersAsTheBoxItselfKeepsThem) {
+TEST_F(ImportTest, ImportsAddressesAsTheBoxStoresThem) {
   bring("network.json", network::write_kept(numbers));
   import();
   EXPECT_EQ(network::read_kept(text(options.network + "/confirmed.json")), numbers);
   expect_refused("network.json", R"({"format": 2, "numbers": {}})", "adit/network.json: ");
 }
 
-TEST_F(ImportTest, SaysNothingWhereNothingWasBrought) {
+TEST_F(ImportTest, ReportsNothingWithoutFiles) {
   import();
   EXPECT_FALSE(on_card("taken.txt"));
   fs::remove_all(options.card);
@@ -156,7 +156,7 @@ TEST_F(ImportTest, SaysNothingWhereNothingWasBrought) {
   EXPECT_FALSE(fs::exists(options.state));
 }
 
-TEST_F(ImportTest, TakesByteOrderMarksAndLineEndsOfOtherSystems) {
+TEST_F(ImportTest, AcceptsByteOrderMarksAndCrLf) {
   bring("settings.json", "\xef\xbb\xbf" + settings::sample());
   bring("secrets/team.token", "\xef\xbb\xbfteam-1\r\n");
   import();
@@ -164,7 +164,7 @@ TEST_F(ImportTest, TakesByteOrderMarksAndLineEndsOfOtherSystems) {
   EXPECT_EQ(state("secrets/team.token"), "team-1\n");
 }
 
-TEST_F(ImportTest, RefusesSettingsByThePathOfWhatIsWrong) {
+TEST_F(ImportTest, RejectsSettingsWithThePathOfTheFault) {
   expect_refused("settings.json", settings::sample(R"(, "interfce": "darpa0")"),
                  "command_post.interfce: no such key");
   expect_refused("settings.json", settings::sample("", R"(, "connections": 0)"), "team.connections: ");
@@ -173,7 +173,7 @@ TEST_F(ImportTest, RefusesSettingsByThePathOfWhatIsWrong) {
   expect_refused("settings.json", std::string(70000, ' '), "large");
 }
 
-TEST_F(ImportTest, RefusesNumbersByThePathOfWhatIsWrong) {
+TEST_F(ImportTest, RejectsAddressesWithThePathOfTheFault) {
   const std::string good = network::json_of(numbers);
   const auto with = [&good](const std::string& what, const std::string& by) {
     std::string text = good;
@@ -187,7 +187,7 @@ TEST_F(ImportTest, RefusesNumbersByThePathOfWhatIsWrong) {
   expect_refused("network.json", std::string(70000, ' '), "large");
 }
 
-TEST_F(ImportTest, TakesTheCodeThatTheFirstPasswordAsksFor) {
+TEST_F(ImportTest, ImportsTheCodeForTheFirstPassword) {
   bring("secrets/label.code", "12345678\r\n");
   import();
   EXPECT_EQ(state(access::kCodeFile), "12345678\n");
@@ -197,7 +197,7 @@ TEST_F(ImportTest, TakesTheCodeThatTheFirstPasswordAsksFor) {
     expect_refused("secrets/label.code", bad, "expected 8 digits");
 }
 
-TEST_F(ImportTest, RefusesTokensWithoutShowingThem) {
+TEST_F(ImportTest, RejectsTokensWithoutShowingThem) {
   for (const std::string bad : {"", " \r\n", "two words", "tok\xc3\xa9n", "a\nb"}) {
     expect_refused("secrets/mapping.token", bad, "expected one token of 1 to 256 visible ASCII characters");
   }
@@ -209,7 +209,7 @@ TEST_F(ImportTest, RefusesTokensWithoutShowingThem) {
   expect_refused("secrets/scoring.token.txt", "token-1", "unknown name");
 }
 
-TEST_F(ImportTest, TellsAllThatIsWrongAtOnce) {
+TEST_F(ImportTest, ReportsAllFaultsAtOnce) {
   bring("settings.json", settings::sample(R"(, "a": 1, "b": 2)"));
   bring("network.json", "[]");
   bring("secrets/x", "");
@@ -218,7 +218,7 @@ TEST_F(ImportTest, TellsAllThatIsWrongAtOnce) {
                              HasSubstr("adit/network.json"), HasSubstr("adit/secrets/x")));
 }
 
-TEST_F(ImportTest, TakesPlainFilesAlone) {
+TEST_F(ImportTest, ImportsOnlyRegularFiles) {
   folder.put("elsewhere", settings::sample());
   ASSERT_EQ(symlink((folder / "elsewhere").c_str(), (options.card + "/settings.json").c_str()), 0);
   ASSERT_EQ(mkfifo((options.card + "/network.json").c_str(), 0600), 0);
@@ -234,13 +234,13 @@ TEST_F(ImportTest, TakesPlainFilesAlone) {
   EXPECT_THAT(taken(), HasSubstr("adit/secrets: expected a directory"));
 }
 
-TEST_F(ImportTest, IsNotKeptBusyByACardFullOfFiles) {
+TEST_F(ImportTest, StaysFastForACardFullOfFiles) {
   for (int i = 0; i < 300; ++i) bring("secrets/" + std::to_string(i), "");
   import();
   EXPECT_THAT(taken(), HasSubstr("adit/secrets: holds more than 256 files"));
 }
 
-TEST_F(ImportTest, LeavesOtherFilesAloneAndSaysWhatItTakes) {
+TEST_F(ImportTest, KeepsOtherFilesAndListsWhatItImports) {
   bring("settings.json.txt", settings::sample());
   bring("._settings.json", "");
   bring("secrets/._team.token", "");
@@ -260,7 +260,7 @@ TEST_F(ImportTest, PutsSettingsOnTrial) {
   EXPECT_EQ(state("settings.json.before"), "those before") << "of two, the last that worked";
 }
 
-TEST_F(ImportTest, KnowsTheCoursesOfTheSettingsThatAreInForce) {
+TEST_F(ImportTest, AcceptsTokensOfCoursesInTheSettings) {
   bring("secrets/course.A.scoring.token", "token-1");
   import();
   EXPECT_THAT(taken(), HasSubstr("unknown name"));
@@ -270,7 +270,7 @@ TEST_F(ImportTest, KnowsTheCoursesOfTheSettingsThatAreInForce) {
   EXPECT_EQ(state("secrets/course.A.scoring.token"), "token-1\n");
 }
 
-TEST_F(ImportTest, KnowsTheCoursesOfSettingsThatALaterAditSaved) {
+TEST_F(ImportTest, AcceptsTokensOfCoursesInLaterSettings) {
   fs::create_directories(options.state);
   std::ofstream(options.state + "/settings.json") << settings::sample("", R"(, "of_later": 1)", kCourse);
   bring("secrets/course.A.scoring.token", "token-1");
@@ -278,7 +278,7 @@ TEST_F(ImportTest, KnowsTheCoursesOfSettingsThatALaterAditSaved) {
   EXPECT_EQ(state("secrets/course.A.scoring.token"), "token-1\n");
 }
 
-TEST_F(ImportTest, TakesSettingsOnceThoughAFolderIsInTheWay) {
+TEST_F(ImportTest, ImportsSettingsOnceDespiteADirectoryInTheWay) {
   fs::create_directories(options.card + "/settings.json.taken/of/somebody");
   bring("settings.json", settings::sample());
   import();
@@ -286,7 +286,7 @@ TEST_F(ImportTest, TakesSettingsOnceThoughAFolderIsInTheWay) {
   EXPECT_TRUE(fs::is_regular_file(options.card + "/settings.json.taken"));
 }
 
-TEST_F(ImportTest, GivesWhatItTakesToWhomTheStateBelongs) {
+TEST_F(ImportTest, GivesFilesToTheOwnerOfTheState) {
   if (geteuid() != 0) GTEST_SKIP() << "needs root";
   fs::create_directories(options.state);
   ASSERT_EQ(chown(options.state.c_str(), 64001, 64002), 0);
@@ -301,7 +301,7 @@ TEST_F(ImportTest, GivesWhatItTakesToWhomTheStateBelongs) {
   }
 }
 
-TEST_F(ImportTest, IsLedNowhereByTheStateOfAnother) {
+TEST_F(ImportTest, FollowsNoLinksInAForeignState) {
   fs::create_directories(options.state);
   fs::create_directory(folder / "elsewhere");
   ASSERT_EQ(symlink((folder / "elsewhere").c_str(), (options.state + "/secrets").c_str()), 0);
@@ -312,7 +312,7 @@ TEST_F(ImportTest, IsLedNowhereByTheStateOfAnother) {
   EXPECT_TRUE(on_card("secrets/team.token"));
 }
 
-TEST_F(ImportTest, TakesNothingFromACardThatCannotBeWritten) {
+TEST_F(ImportTest, ImportsNothingFromAReadOnlyCard) {
   bring_all();
   fs::create_directory(options.card + "/taken.txt");  // no file can take its place
   const auto done = Import(options).run();
@@ -321,14 +321,14 @@ TEST_F(ImportTest, TakesNothingFromACardThatCannotBeWritten) {
   EXPECT_FALSE(fs::exists(options.state));
 }
 
-TEST_F(ImportTest, WipesTokensBeforeTheyAreUnlinked) {
+TEST_F(ImportTest, WipesTokensBeforeUnlinking) {
   bring("secrets/team.token", "team-token-1");
   fs::create_hard_link(options.card + "/secrets/team.token", folder / "the-same-blocks");
   import();
   EXPECT_EQ(text(folder / "the-same-blocks"), std::string(12, '\0'));
 }
 
-TEST_F(ImportTest, TakesAllOfItAfterAPowerCutAtAnyPoint) {
+TEST_F(ImportTest, CompletesAfterAPowerCutAtAnyPoint) {
   int cuts = 0;
   for (bool was_cut = true; was_cut; ++cuts) {
     for (const std::string& path : {options.card, options.state, options.network}) fs::remove_all(path);

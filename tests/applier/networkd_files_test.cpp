@@ -84,7 +84,7 @@ class NetworkdFilesTest : public testing::Test {
 constexpr const char* kBothTried[] = {"04-adit-team.network", "04-adit-command-post.network"};
 constexpr const char* kBothKept[] = {"05-adit-team.network", "05-adit-command-post.network"};
 
-TEST_F(NetworkdFilesTest, TryBesideWhatIsKept) {
+TEST_F(NetworkdFilesTest, StoreATrialBesideTheConfirmedFiles) {
   ASSERT_TRUE(files->settle());
   EXPECT_EQ(reloads(), 0u);
   ASSERT_TRUE(files->apply(first));
@@ -96,7 +96,7 @@ TEST_F(NetworkdFilesTest, TryBesideWhatIsKept) {
   EXPECT_EQ(reloads(), 2u);
 }
 
-TEST_F(NetworkdFilesTest, KeepWithoutDisturbingAnything) {
+TEST_F(NetworkdFilesTest, ConfirmWithoutAReload) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
   EXPECT_EQ(in(options.networkd).size(), 4u);
@@ -118,7 +118,7 @@ TEST_F(NetworkdFilesTest, TouchOnlyTheInterfaceThatChanges) {
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
 
-TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
+TEST_F(NetworkdFilesTest, RejectAnAddressInUse) {
   NetworkdFiles watchful(options, &somebody);
   EXPECT_EQ(watchful.apply(second).error(), "192.168.8.11 is already in use on team0, by 02:00:00:00:00:09");
   EXPECT_THAT(in(options.networkd), IsEmpty());
@@ -126,7 +126,7 @@ TEST_F(NetworkdFilesTest, TakeNoAddressThatSomebodyElseHas) {
   EXPECT_TRUE(watchful.apply(first));
 }
 
-TEST_F(NetworkdFilesTest, RefuseAChangeIfTheFileInUseCannotBeRead) {
+TEST_F(NetworkdFilesTest, RejectAChangeIfTheFileInUseIsUnreadable) {
   ASSERT_TRUE(files->settle());
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
@@ -139,7 +139,7 @@ TEST_F(NetworkdFilesTest, RefuseAChangeIfTheFileInUseCannotBeRead) {
   EXPECT_FALSE(files->lead_to({.addresses = {1}}));
 }
 
-TEST_F(NetworkdFilesTest, GoBackToWhatWasConfirmedInThisVeryStart) {
+TEST_F(NetworkdFilesTest, RevertToWhatThisProcessConfirmed) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
   ASSERT_TRUE(files->apply(second));
@@ -157,7 +157,7 @@ TEST_F(NetworkdFilesTest, LoseAnUnconfirmedChangeInAPowerCut) {
   EXPECT_THAT(in(options.networkd), IsEmpty());
 }
 
-TEST_F(NetworkdFilesTest, TakeAnUnconfirmedChangeBackAfterAKill) {
+TEST_F(NetworkdFilesTest, RevertAnUnconfirmedChangeAfterAKill) {
   ASSERT_TRUE(files->apply(first));
   restart(false);
   EXPECT_TRUE(files->found_a_change());
@@ -165,7 +165,7 @@ TEST_F(NetworkdFilesTest, TakeAnUnconfirmedChangeBackAfterAKill) {
   EXPECT_EQ(reloads(), 2u);
 }
 
-TEST_F(NetworkdFilesTest, FinishAKeepingThatWasCutOff) {
+TEST_F(NetworkdFilesTest, CompleteAnInterruptedConfirmation) {
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
   std::ofstream(options.networkd + "/05-adit-team.network") << network::team_file("team0", first);
@@ -176,7 +176,7 @@ TEST_F(NetworkdFilesTest, FinishAKeepingThatWasCutOff) {
   EXPECT_EQ(text_of("05-adit-command-post.network"), network::command_post_file("darpa0", second, {}));
 }
 
-TEST_F(NetworkdFilesTest, HaveWhatTheBoxCameWithUntilSomethingIsConfirmed) {
+TEST_F(NetworkdFilesTest, UseFactoryAddressesUntilAChangeIsConfirmed) {
   come_with(first);
   restart(true);
   EXPECT_EQ(files->kept(), first);
@@ -189,7 +189,7 @@ TEST_F(NetworkdFilesTest, HaveWhatTheBoxCameWithUntilSomethingIsConfirmed) {
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", second));
 }
 
-TEST_F(NetworkdFilesTest, ForgetWhatWasConfirmed) {
+TEST_F(NetworkdFilesTest, ForgetConfirmedAddresses) {
   come_with(first);
   restart(true);
   ASSERT_TRUE(files->lead_to({{0x0a6402c8}}));
@@ -203,14 +203,14 @@ TEST_F(NetworkdFilesTest, ForgetWhatWasConfirmed) {
   EXPECT_EQ(text_of("05-adit-team.network"), network::team_file("team0", first));
 }
 
-TEST_F(NetworkdFilesTest, ForgetAllWhereTheBoxCameWithNothing) {
+TEST_F(NetworkdFilesTest, ForgetAllWithoutFactoryAddresses) {
   ASSERT_TRUE(files->apply(first));
   ASSERT_TRUE(files->keep(first));
   EXPECT_EQ(files->forget().value(), std::nullopt);
   EXPECT_THAT(in(options.networkd), IsEmpty());
 }
 
-TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWithoutAChange) {
+TEST_F(NetworkdFilesTest, RouteToNewEndpoints) {
   const network::Numbers routed = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
   const network::Endpoints elsewhere{{0x0a6402c8}}, near{{0x0a6401c8}};
   ASSERT_TRUE(files->apply(routed));
@@ -231,7 +231,7 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWithoutAChange) {
             network::command_post_file("darpa0", routed, elsewhere.addresses));
 }
 
-TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWhileAChangeIsTried) {
+TEST_F(NetworkdFilesTest, RouteToNewEndpointsDuringATrial) {
   come_with(first);
   restart(true);
   const network::Numbers routed = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.1.1");
@@ -244,7 +244,7 @@ TEST_F(NetworkdFilesTest, LeadToOtherEndpointsWhileAChangeIsTried) {
   EXPECT_THAT(in(options.networkd), UnorderedElementsAreArray(kBothKept));
 }
 
-TEST_F(NetworkdFilesTest, SayWhatDidNotWorkAndTryItAgain) {
+TEST_F(NetworkdFilesTest, ReportAFailureAndRetry) {
   folder.put("broken", "");
   EXPECT_THAT(files->apply(first).error(), HasSubstr("networkctl reload: exit status 1"));
   EXPECT_FALSE(files->revert());
@@ -260,7 +260,7 @@ TEST_F(NetworkdFilesTest, SayWhatDidNotWorkAndTryItAgain) {
   EXPECT_THAT(files->lead_to({{1}}).error(), HasSubstr(options.state));
 }
 
-TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndHaveWhatTheBoxCameWith) {
+TEST_F(NetworkdFilesTest, RenameADamagedConfirmationAndUseFactoryAddresses) {
   come_with(first);
   ASSERT_TRUE(files->apply(second));
   ASSERT_TRUE(files->keep(second));
@@ -272,7 +272,7 @@ TEST_F(NetworkdFilesTest, SetADamagedConfirmationAsideAndHaveWhatTheBoxCameWith)
   EXPECT_TRUE(files->apply(second));
 }
 
-TEST_F(NetworkdFilesTest, HaveAddressesThoughNothingCanBeRead) {
+TEST_F(NetworkdFilesTest, UseFactoryAddressesIfNothingIsReadable) {
   come_with(first);
   fs::create_directory(options.state + "/confirmed.json");
   EXPECT_FALSE(files->settle()) << "what is in use stays in use";

@@ -13,7 +13,7 @@ std::expected<Options, std::string> parse(const std::vector<const char*>& words)
   return parse_options(words);
 }
 
-TEST(AditNetworkOptions, HaveTheServicesOwnFolders) {
+TEST(AditNetworkOptions, DefaultToTheServicesDirectories) {
   const auto options = parse({});
   ASSERT_TRUE(options);
   EXPECT_EQ(options->wanted, "/var/lib/private/adit");
@@ -22,18 +22,18 @@ TEST(AditNetworkOptions, HaveTheServicesOwnFolders) {
   EXPECT_EQ(parse({"--networkd", "/tmp/x", "--team", "eth0.7"})->networkd, "/tmp/x");
 }
 
-TEST(AditNetworkOptions, MayAskForNothingButTheFilesOfTheStart) {
+TEST(AditNetworkOptions, SelectOnlyTheFilesOfTheStart) {
   EXPECT_FALSE(parse({})->start);
   EXPECT_TRUE(parse({"--start", "--team", "eth0"})->start);
 }
 
-TEST(AditNetworkOptions, MayAskForTheWatchAlone) {
+TEST(AditNetworkOptions, SelectOnlyTheWatch) {
   EXPECT_TRUE(parse({"--watch", "--status", "/tmp/x"})->watch);
   EXPECT_EQ(parse({"--watch"})->told, "/run/adit-network");
   EXPECT_THAT(parse({"--watch", "--start"}).error(), HasSubstr("exclude each other"));
 }
 
-TEST(AditNetworkOptions, AreRefusedByTheirWord) {
+TEST(AditNetworkOptions, AreRejectedByName) {
   EXPECT_THAT(parse({"--wnated", "x"}).error(), HasSubstr("--wnated"));
   EXPECT_THAT(parse({"--wanted"}).error(), HasSubstr("--wanted wants a value"));
   EXPECT_THAT(parse({"--factory", ""}).error(), HasSubstr("--factory wants a value"));

@@ -38,9 +38,9 @@ Bytes packet(bool asks, const Mac& sender, std::uint32_t from, std::uint32_t abo
   return bytes;
 }
 
-class TakersTest : public testing::Test {
+class AddressConflictsTest : public testing::Test {
  protected:
-  TakersTest() {
+  AddressConflictsTest() {
     takers.set_own({kAddress, kAnother}, {kOwn, kOwnOther}, now);
     takers.take_due(now);
     for (const seconds gap : Takers::kFirstGaps) takers.take_due(now += gap);
@@ -61,7 +61,7 @@ class TakersTest : public testing::Test {
   Takers takers;
 };
 
-TEST_F(TakersTest, AreWhoeverSaysSomethingFromTheAddress) {
+TEST_F(AddressConflictsTest, AreOtherMachinesThatUseTheAddress) {
   const std::pair<const char*, Bytes> cases[] = {
       {"an answer", packet(kAnswers, kFirst, kAddress, kElsewhere)},
       {"a question", packet(kAsks, kFirst, kAddress, kElsewhere)},
@@ -77,7 +77,7 @@ TEST_F(TakersTest, AreWhoeverSaysSomethingFromTheAddress) {
   }
 }
 
-TEST_F(TakersTest, AreNobodyElse) {
+TEST_F(AddressConflictsTest, AreNoOtherMachines) {
   Bytes tagged = packet(kAnswers, kFirst, kAddress, kElsewhere);
   tagged.insert(tagged.begin(), {0x81, 0, 0, 5});
   Bytes no_arp(46, 0);
@@ -103,7 +103,7 @@ TEST_F(TakersTest, AreNobodyElse) {
   }
 }
 
-TEST_F(TakersTest, NameTheFirstOfSeveralUntilItIsNotHeardAnyMore) {
+TEST_F(AddressConflictsTest, NameTheFirstOfSeveralWhileItIsHeard) {
   hear(packet(kAnswers, kFirst, kAddress, kElsewhere));
   for (seconds waited(0); waited < network::kTakenFor; waited += seconds(1)) {
     hear(packet(kAnswers, kSecond, kAddress, kElsewhere));
@@ -115,7 +115,7 @@ TEST_F(TakersTest, NameTheFirstOfSeveralUntilItIsNotHeardAnyMore) {
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAddress, kSecond)));
 }
 
-TEST_F(TakersTest, AreForgottenWithTheAddress) {
+TEST_F(AddressConflictsTest, AreForgottenWithTheAddress) {
   hear(packet(kAnswers, kFirst, kAddress, kElsewhere));
   hear(packet(kAnswers, kFirst, kAnother, kElsewhere));
   takers.set_own({kAnother, kElsewhere}, {kOwn}, now);
@@ -124,7 +124,7 @@ TEST_F(TakersTest, AreForgottenWithTheAddress) {
   EXPECT_THAT(taken(), ElementsAre(std::pair(kAnother, kFirst)));
 }
 
-TEST_F(TakersTest, AreAskedForAsAnAddressComesAndThenNeverWithoutACause) {
+TEST_F(AddressConflictsTest, AreProbedForANewAddressOnly) {
   Takers fresh;
   EXPECT_EQ(fresh.wake(), std::nullopt);
   fresh.set_own({kAddress}, {kOwn}, now);
@@ -142,7 +142,7 @@ TEST_F(TakersTest, AreAskedForAsAnAddressComesAndThenNeverWithoutACause) {
   EXPECT_THAT(fresh.take_due(now), ElementsAre(kAddress)) << "the cable came";
 }
 
-TEST_F(TakersTest, AreNotLostBetweenTheFirstQuestions) {
+TEST_F(AddressConflictsTest, AreNotLostBetweenTheFirstProbes) {
   Takers fresh;
   const auto began = now;
   fresh.set_own({kAddress}, {kOwn}, now);
@@ -155,7 +155,7 @@ TEST_F(TakersTest, AreNotLostBetweenTheFirstQuestions) {
   }
 }
 
-TEST_F(TakersTest, AreAskedForAgainOnlyWhileThereAreAny) {
+TEST_F(AddressConflictsTest, AreProbedAgainOnlyWhilePresent) {
   hear(packet(kAnswers, kFirst, kAddress, kElsewhere));
   const auto heard = now;
   std::vector<seconds> asked;
@@ -167,7 +167,7 @@ TEST_F(TakersTest, AreAskedForAgainOnlyWhileThereAreAny) {
   EXPECT_THAT(taken(), IsEmpty());
 }
 
-TEST_F(TakersTest, WhoProbesIsAskedSinceItMayHaveTheAddressAllTheSame) {
+TEST_F(AddressConflictsTest, AreSoughtAfterAForeignProbe) {
   hear(packet(kAsks, kFirst, 0, kAnother));
   EXPECT_THAT(takers.take_due(now), ElementsAre(kAnother));
   hear(packet(kAnswers, kFirst, kAnother, 0));
@@ -175,7 +175,7 @@ TEST_F(TakersTest, WhoProbesIsAskedSinceItMayHaveTheAddressAllTheSame) {
 }
 
 /// Somebody who sends a thousand packets a second, each of another machine.
-TEST_F(TakersTest, AreFilledByNobodyAndAskSeldom) {
+TEST_F(AddressConflictsTest, AreBoundedAndProbedSeldom) {
   const auto began = now;
   std::size_t asked = 0;
   for (std::uint32_t i = 0; i < 60000; ++i) {
@@ -221,7 +221,7 @@ class ArpFilter : public testing::Test {
   loop::FileDescriptor sends, hears;
 };
 
-TEST_F(ArpFilter, LetsThroughWhatIsFromOurAddressesOrProbesForThem) {
+TEST_F(ArpFilter, PassesPacketsFromOurAddressesAndProbesForThem) {
   set({kAddress, kAnother});
   for (const std::uint32_t ours : {kAddress, kAnother}) {
     EXPECT_TRUE(is_heard(packet(kAnswers, kFirst, ours, kElsewhere)));
@@ -242,13 +242,13 @@ TEST_F(ArpFilter, LetsThroughWhatIsFromOurAddressesOrProbesForThem) {
   }
 }
 
-TEST_F(ArpFilter, LetsNothingThroughWhereThereIsNoAddress) {
+TEST_F(ArpFilter, PassesNothingWithoutAnAddress) {
   set({});
   EXPECT_FALSE(is_heard(packet(kAnswers, kFirst, kAddress, kElsewhere)));
   EXPECT_FALSE(is_heard(packet(kAsks, kFirst, 0, 0)));
 }
 
-TEST_F(ArpFilter, HasRoomForAsManyAddressesAsAreWatched) {
+TEST_F(ArpFilter, HoldsAllWatchedAddresses) {
   std::vector<std::uint32_t> many(2 * Takers::kMost);  // the box's own, and the Command Post's
   std::iota(many.begin(), many.end(), 0x0c000000u);
   set(many);

@@ -21,7 +21,7 @@ TEST(Cloud, ShowsTheHighestPointOfEachPixel) {
   EXPECT_EQ(easel.seen(1.4, 2.1), 0);
 }
 
-TEST(Cloud, OnlyRisesOverTimeSoThatTheOrderOfCloudsDoesNotMatter) {
+TEST(Cloud, IsDrawnTheSameInAnyOrder) {
   const auto low = cloud_of({{1, 1, -2}, {2, 2, 4}}), high = cloud_of({{1, 1, 6}, {2, 2, 0}});
   Easel one, other;
   one.draw(low), one.draw(high);
@@ -31,7 +31,7 @@ TEST(Cloud, OnlyRisesOverTimeSoThatTheOrderOfCloudsDoesNotMatter) {
   EXPECT_EQ(one.seen(2, 2), height_index(4));
 }
 
-TEST(Cloud, LiesWhereItsOriginPutsIt) {
+TEST(Cloud, IsDrawnAtItsOrigin) {
   Easel easel;  // a quarter turn about z, and up by 2
   easel.draw(cloud_of({{1, 0.1, 0.5}}, icd::Pose{{10, 20, 2}, turned_by(std::numbers::pi / 2)}));
   EXPECT_EQ(easel.seen(9.9, 21), height_index(2.5));
@@ -81,7 +81,7 @@ icd::MapUpdate laid_out(const Layout& layout, const std::vector<icd::Point>& poi
   return with_data({icd::RobotName::parse("ugv1"), cloud, {}}, bytes);
 }
 
-TEST(Cloud, IsTheSameWhateverItsLayoutAndItsCompression) {
+TEST(Cloud, IsDrawnTheSameInAnyLayoutAndCompression) {
   std::mt19937_64 random{5};
   std::uniform_real_distribution<float> metres{-100, 100};
   std::vector<icd::Point> points;
@@ -101,7 +101,7 @@ TEST(Cloud, IsTheSameWhateverItsLayoutAndItsCompression) {
   }
 }
 
-TEST(Cloud, LeavesOutAndCountsWhatIsNoPlaceInTheWorld) {
+TEST(Cloud, OmitsAndCountsPointsOutsideTheWorld) {
   Easel easel;
   const auto drawing = easel.draw(cloud_of({{1, 1, 1},
                                             {kNan, 1, 1},
@@ -118,7 +118,7 @@ TEST(Cloud, LeavesOutAndCountsWhatIsNoPlaceInTheWorld) {
   EXPECT_EQ(easel.seen(-8192, 1), height_index(1)) << "the world's own border";
 }
 
-TEST(Cloud, TellsItsHeightsWithoutTheFewThatStandOut) {
+TEST(Cloud, TellsItsHeightsWithoutOutliers) {
   std::vector<icd::Point> points;
   for (int i = 0; i < 1000; ++i) points.push_back({i * 0.3, 0, 1 + i * 0.004});
   points.push_back({0, 50, 30}), points.push_back({1, 50, -19});
@@ -134,7 +134,7 @@ TEST(Cloud, TellsItsHeightsWithoutTheFewThatStandOut) {
   EXPECT_GE(one->high, 2.1);
 }
 
-TEST(Cloud, OfVeryManyPointsSomeAreLookedAtEvenly) {
+TEST(Cloud, SamplesALargeCloudEvenly) {
   const icd::PointCloud2 cloud = icd::xyz();
   const std::size_t points = kMostPoints + kMostPoints / 8;
   std::vector<std::uint8_t> bytes(points * cloud.point_step);  // all at y = z = 0

@@ -50,7 +50,7 @@ TEST(CoveredArea, CountsAPlaceOfTwoRobotsOnce) {
   EXPECT_THAT(seen.of, ElementsAre(Pair("uav1", 64), Pair("ugv1", 64)));
 }
 
-TEST(CoveredArea, HasNoRobotWithCloudsOnly) {
+TEST(CoveredArea, OmitsRobotsWithOnlyClouds) {
   Easel easel;
   easel.draw(cloud_of({{1, 1, 0}, {2, 2, 0}}));
   const Covered seen = covered(easel.mosaic);
@@ -69,7 +69,7 @@ TEST(CoveredArea, ForgetsAnEarlierRun) {
   EXPECT_THAT(area.now().of, IsEmpty());
 }
 
-TEST(CoveredArea, SaysThatTheAreaIsLargerIfAGridIsNotInThePicture) {
+TEST(CoveredArea, IsIncompleteIfAGridIsMissing) {
   Easel easel;
   easel.draw(square("ugv1", 0, 0, 8));
   easel.mosaic.missed({"uav1", Kind::Cloud}, 2000);
@@ -117,7 +117,7 @@ TEST(CoveredArea, IsTheUnionOfAllSquares) {
   EXPECT_EQ(covered_over_time(easel.mosaic).back().second, all.size());
 }
 
-TEST(CoveredOverTime, GrowsWithEachGridThatShowsMore) {
+TEST(CoveredOverTime, GrowsWithEachLargerGrid) {
   Easel easel;
   easel.draw(square("ugv1", 0, 0, 8));
   easel.draw(square("uav1", 1, 0, 8));

@@ -10,7 +10,7 @@ namespace {
 constexpr double kTwentieth = 0.05;
 
 /// Maps as MapPicture draws and keeps them, and their finer tiles.
-class Fine : public testing::Test {
+class FineLevels : public testing::Test {
  protected:
   void forward(const icd::MapUpdate& map) {
     easel.draw(map);
@@ -55,7 +55,7 @@ class Fine : public testing::Test {
   Pixels pixels_{};
 };
 
-TEST_F(Fine, EachCellOfAGridOfFiveCentimetresIsAPixel) {
+TEST_F(FineLevels, EachFiveCentimetreCellIsAPixel) {
   std::mt19937_64 random{21};
   constexpr int kWidth = 700;
   Cells cells(std::size_t{kWidth} * kWidth);
@@ -70,7 +70,7 @@ TEST_F(Fine, EachCellOfAGridOfFiveCentimetresIsAPixel) {
   }
 }
 
-TEST_F(Fine, AWallOfOneCellIsNoThickerThanThat) {
+TEST_F(FineLevels, WallOfOneCellIsOneCellThick) {
   Cells cells(200 * 200, 0);
   for (std::size_t x = 0; x < 200; ++x) cells[100 * 200 + x] = 100;
   forward(grid_at(0, 0, 200, kTwentieth, cells));
@@ -80,7 +80,7 @@ TEST_F(Fine, AWallOfOneCellIsNoThickerThanThat) {
   EXPECT_EQ(seen(1, 4.97), kFree);
 }
 
-TEST_F(Fine, CellsLargerThanPixelsAreWhole) {
+TEST_F(FineLevels, CellsLargerThanPixelsAreWhole) {
   Cells cells(50 * 50, 0);
   cells[10 * 50 + 20] = 100;
   forward(grid_at(0, 0, 50, 0.2, cells));
@@ -92,7 +92,7 @@ TEST_F(Fine, CellsLargerThanPixelsAreWhole) {
   }
 }
 
-TEST_F(Fine, TheFinestLevelHasCellsOfACentimetre) {
+TEST_F(FineLevels, FinestLevelHasOneCentimetreCells) {
   Cells cells(500 * 500, 0);
   cells[200 * 500 + 100] = 100;
   forward(grid_at(0, 0, 500, 0.01, cells));
@@ -102,7 +102,7 @@ TEST_F(Fine, TheFinestLevelHasCellsOfACentimetre) {
   EXPECT_EQ(seen(1.03, 2.03, -1), kOccupied) << "the most occupied of a pixel";
 }
 
-TEST_F(Fine, AnAskewGridIsDrawnWithoutGaps) {
+TEST_F(FineLevels, TurnedGridIsDrawnWithoutGaps) {
   forward(grid_of(200, 0.1, {{5, 5, 0}, turned_by(0.5)}, Cells(200 * 200, 0)));
   for (double along = 0.2; along < 19.8; along += 0.05) {
     const double x = 5 + along * std::cos(0.5) - 10 * std::sin(0.5),
@@ -111,7 +111,7 @@ TEST_F(Fine, AnAskewGridIsDrawnWithoutGaps) {
   }
 }
 
-TEST_F(Fine, ALaterGridReplacesWhereItKnows) {
+TEST_F(FineLevels, LaterGridReplacesItsKnownCells) {
   forward(grid_at(0, 0, 100, kTwentieth, Cells(100 * 100, 100)));
   Cells part(40 * 40, 0);
   part[0] = kUnknown;
@@ -121,7 +121,7 @@ TEST_F(Fine, ALaterGridReplacesWhereItKnows) {
   EXPECT_EQ(seen(1, 1), kOccupied);
 }
 
-TEST_F(Fine, WhatIsNotKeptAnyMoreIsAsCoarseAsItWas) {
+TEST_F(FineLevels, DiscardedGridsAreDrawnCoarsely) {
   forward(grid_at(0, 0, 100, kTwentieth, Cells(100 * 100, 100)));
   grids.clear();
   Cells part(100 * 100, kUnknown);
@@ -133,7 +133,7 @@ TEST_F(Fine, WhatIsNotKeptAnyMoreIsAsCoarseAsItWas) {
   EXPECT_EQ(seen(4.975, 4.975), kOccupied);
 }
 
-TEST_F(Fine, ThereIsNothingFinerWhereNoGridLies) {
+TEST_F(FineLevels, NoTilesOutsideGrids) {
   forward(grid_at(0, 0, 100, kTwentieth, Cells(100 * 100, 0)));
   EXPECT_NE(tile({-1, 0, 0}), nullptr);
   EXPECT_EQ(tile({-1, 1, 0}), nullptr);
@@ -141,7 +141,7 @@ TEST_F(Fine, ThereIsNothingFinerWhereNoGridLies) {
   EXPECT_EQ(tile({-2, 4, 4}), nullptr);
 }
 
-TEST_F(Fine, KnowsWhateverTheBaseKnows) {
+TEST_F(FineLevels, HasAllCellsOfTheBase) {
   std::mt19937_64 random{22};
   const auto any = [&](int low, int high) { return std::uniform_int_distribution{low, high}(random); };
   for (int round = 0; round < 6; ++round) {
@@ -164,7 +164,7 @@ TEST_F(Fine, KnowsWhateverTheBaseKnows) {
   }
 }
 
-TEST_F(Fine, AGridThatCannotBeReadIsPassedOver) {
+TEST_F(FineLevels, UnreadableGridIsSkipped) {
   const auto sound = forwarded_grid(grid_at(0, 0, 100, kTwentieth, Cells(100 * 100, 0)));
   ForwardedGrid damaged = *forwarded_grid(grid_at(0, 0, 100, kTwentieth, Cells(100 * 100, 100)));
   damaged.data.bytes = icd::ChunkedBytes{Cells{1, 2, 3}};
@@ -174,7 +174,7 @@ TEST_F(Fine, AGridThatCannotBeReadIsPassedOver) {
   EXPECT_EQ(pixels[index_of(50, 50)], kFree);
 }
 
-TEST_F(Fine, HostileGridsEndInTime) {
+TEST_F(FineLevels, HostileGridsEndInTime) {
   const Cells cells(10'000, 0);
   for (const double resolution : {1e-300, 1e-9, 1e-3, 0.2, 0.5}) {
     for (const double x : {0.0, -8191.9, 1e9, 1e300}) {
@@ -189,7 +189,7 @@ TEST_F(Fine, HostileGridsEndInTime) {
   }
 }
 
-TEST(TilesOfFinerLevels, LieInThoseOfTheNextCoarser) {
+TEST(TilesOfFinerLevels, LieInTilesOfTheNextCoarserLevel) {
   EXPECT_EQ(coarser({-1, 4, -1}), (TileAt{0, 0, -1}));
   EXPECT_EQ(coarser({-1, 5, -5}), (TileAt{0, 1, -1}));
   EXPECT_EQ(coarser({-2, -6, 0}), (TileAt{-1, -2, 0}));

@@ -19,7 +19,7 @@ icd::MapUpdate square(double x, double y, std::uint32_t side, double resolution 
   return grid_at(x, y, side, resolution, Cells(std::size_t{side} * side, value));
 }
 
-class Forwarded : public testing::Test {
+class ForwardedGridsTest : public testing::Test {
  protected:
   bool take(const icd::MapUpdate& map) {
     layer = layer_of(map);
@@ -32,7 +32,7 @@ class Forwarded : public testing::Test {
   std::uint64_t number = 100;
 };
 
-TEST_F(Forwarded, AGridTakesThePlaceOfWhatLiesWithinIt) {
+TEST_F(ForwardedGridsTest, ReplaceGridsInsideThem) {
   take(square(0, 0, 20));
   take(square(-0.52, -0.51, 40));
   EXPECT_EQ(kept(), 1U) << "though not on the same lattice";
@@ -45,7 +45,7 @@ TEST_F(Forwarded, AGridTakesThePlaceOfWhatLiesWithinIt) {
   EXPECT_EQ(grids.newest_in(layer, kNear), number);
 }
 
-TEST_F(Forwarded, OneThatIsTurnedTakesThePlaceOfWhatLiesWithinItsOwnSides) {
+TEST_F(ForwardedGridsTest, TurnedGridReplacesGridsInsideIt) {
   take(square(0, 0, 10));
   take(grid_of(40, 0.05, {{0.5, -0.7, 0}, turned_by(0.785398)}, Cells(1600, 0)));
   EXPECT_EQ(kept(), 1U);
@@ -54,14 +54,14 @@ TEST_F(Forwarded, OneThatIsTurnedTakesThePlaceOfWhatLiesWithinItsOwnSides) {
   EXPECT_EQ(kept({-1, -1, 2, 2}), 2U) << "its corner reaches out";
 }
 
-TEST_F(Forwarded, TheSameOnceMoreChangesNothing) {
+TEST_F(ForwardedGridsTest, RepeatedGridChangesNothing) {
   EXPECT_TRUE(take(square(0, 0, 20)));
   EXPECT_FALSE(take(gzipped(square(0, 0, 20))));
   EXPECT_EQ(grids.newest_in(layer, kNear), 101U);
   EXPECT_TRUE(take(square(0, 0, 20, 0.05, 100)));
 }
 
-TEST_F(Forwarded, TellsHowFineTheyAreAndWhatChanged) {
+TEST_F(ForwardedGridsTest, TellTheirResolutionAndChanges) {
   EXPECT_FALSE(grids.finer({"ugv1", Kind::Grid}, 0));
   take(square(0, 0, 20, 0.2));
   EXPECT_EQ(grids.finer(layer, 0)->level, -1);
@@ -77,7 +77,7 @@ TEST_F(Forwarded, TellsHowFineTheyAreAndWhatChanged) {
   EXPECT_FALSE(grids.finer(layer, 103)->area);
 }
 
-TEST_F(Forwarded, GridsNoFinerThanTheBaseAreNotKeptAlone) {
+TEST_F(ForwardedGridsTest, CoarseGridsAreNotKeptAlone) {
   EXPECT_FALSE(take(square(0, 0, 20, 0.25)));
   EXPECT_EQ(grids.bytes(), 0U);
   take(square(0, 0, 20, 0.1));
@@ -86,7 +86,7 @@ TEST_F(Forwarded, GridsNoFinerThanTheBaseAreNotKeptAlone) {
   EXPECT_EQ(forwarded_grid(cloud_of({{0, 0, 0}})), nullptr);
 }
 
-TEST_F(Forwarded, WhatCannotBeKeptLeavesNothingOlderInItsPlace) {
+TEST_F(ForwardedGridsTest, DroppedGridRemovesOlderOnesInItsPlace) {
   std::mt19937_64 random{23};
   Cells noise(std::size_t{2400} * 2400);
   for (auto& cell : noise) cell = static_cast<std::uint8_t>(random() % 101);
@@ -100,7 +100,7 @@ TEST_F(Forwarded, WhatCannotBeKeptLeavesNothingOlderInItsPlace) {
   }
 }
 
-TEST_F(Forwarded, TwentyRobotsWithManyGridsStayWithinTheBudgetAndTheOldestGoFirst) {
+TEST_F(ForwardedGridsTest, StayWithinTheBudgetAndDropTheOldest) {
   std::mt19937_64 random{24};
   Cells noise(300 * 300);
   for (auto& cell : noise) cell = static_cast<std::uint8_t>(random() % 101);
@@ -117,7 +117,7 @@ TEST_F(Forwarded, TwentyRobotsWithManyGridsStayWithinTheBudgetAndTheOldestGoFirs
   EXPECT_EQ(grids.bytes(), 0U);
 }
 
-TEST_F(Forwarded, ForOneBlockNoMoreCellsAreLookedAtThanASmallBoardHasTimeFor) {
+TEST_F(ForwardedGridsTest, LimitTheCellsReadForABlock) {
   for (int i = 0; i < 6; ++i) {
     ForwardedGrid grid = *forwarded_grid(square(-0.3 * i, 0, 20));
     grid.data.raw_size = ForwardedGrids::kMostCells / 4;  // as if it had so many
@@ -129,7 +129,7 @@ TEST_F(Forwarded, ForOneBlockNoMoreCellsAreLookedAtThanASmallBoardHasTimeFor) {
   EXPECT_EQ(some.back()->grid.origin.position.x, -1.5) << "the last ones";
 }
 
-TEST_F(Forwarded, AWordOnWhatAGridTakesHasNoLargerPieceInIt) {
+TEST_F(ForwardedGridsTest, ReleaseTheBufferOfTheirMessage) {
   auto map = gzipped(square(0, 0, 20));
   const std::vector<std::uint8_t> bytes = map.data.bytes.to_vector();
   auto released = std::make_shared<std::vector<std::uint8_t>>(bytes);

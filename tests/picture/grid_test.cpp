@@ -5,7 +5,7 @@
 namespace adit::picture {
 namespace {
 
-TEST(Grid, ShowsEachCellWhereItLies) {
+TEST(Grid, DrawsEachCellInItsPlace) {
   Easel easel;
   easel.draw(grid_at(10, -4, 3, 0.25, {0, 50, 100, kUnknown, 7, kUnknown}));
   EXPECT_EQ(easel.seen(10.1, -3.9), kFree);
@@ -16,7 +16,7 @@ TEST(Grid, ShowsEachCellWhereItLies) {
   EXPECT_EQ(easel.seen(9.9, -3.9), 0) << "outside";
 }
 
-TEST(Grid, ItsTopRowIsTheFirstOfThePicture) {
+TEST(Grid, TopRowIsTheFirstOfThePicture) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100, 0}));
   const Pixels pixels = easel.pixels({0, 0, 0});
@@ -24,7 +24,7 @@ TEST(Grid, ItsTopRowIsTheFirstOfThePicture) {
   EXPECT_EQ(pixels[254 * 256], kFree);
 }
 
-TEST(Grid, OccupiedWinsOverFreeAndFreeOverUnknownInAPixel) {
+TEST(Grid, OccupiedHidesFreeAndFreeHidesUnknown) {
   Easel easel;
   Cells cells(25, kUnknown);  // one pixel of 5 x 5 cells
   cells[3] = 0;
@@ -35,7 +35,7 @@ TEST(Grid, OccupiedWinsOverFreeAndFreeOverUnknownInAPixel) {
   EXPECT_EQ(easel.seen(0.1, 0.1), kOccupied);
 }
 
-TEST(Grid, UnknownLeavesWhatWasThereAndAnythingElseReplacesIt) {
+TEST(Grid, KnownCellsReplaceEarlierOnes) {
   Easel easel;
   easel.draw(grid_at(0, 0, 3, 0.25, {100, 100, 0}));
   easel.draw(grid_at(0, 0, 3, 0.25, {kUnknown, 0, 100}));
@@ -44,7 +44,7 @@ TEST(Grid, UnknownLeavesWhatWasThereAndAnythingElseReplacesIt) {
   EXPECT_EQ(easel.seen(0.6, 0.1), kOccupied);
 }
 
-TEST(Grid, ValuesThatTheIcdDoesNotHaveAreUnknown) {
+TEST(Grid, ValuesOutsideTheIcdAreUnknown) {
   Easel easel;
   easel.draw(grid_at(0, 0, 3, 0.25, {101, 254, 0}));
   EXPECT_EQ(easel.seen(0.1, 0.1), 0);
@@ -62,14 +62,14 @@ TEST(Grid, TellsItsAreaToAPixel) {
   EXPECT_EQ(easel.draw(grid_at(0, 0, 1, 0.25, {kUnknown})).area, std::nullopt);
 }
 
-TEST(Grid, TheSameGridAgainChangesNoTile) {
+TEST(Grid, RepeatedGridChangesNoTile) {
   Easel easel;
   const auto map = grid_at(-3, 7, 40, 0.1, Cells(4000, 100));
   EXPECT_FALSE(easel.draw(map).tiles.empty());
   EXPECT_TRUE(easel.draw(map).tiles.empty());
 }
 
-TEST(Grid, AGridThatGrowsDoesNotFlicker) {  // 0.1 m: centres lie on the borders of pixels of 0.25 m
+TEST(Grid, GrowingGridDoesNotFlicker) {  // 0.1 m: centres lie on the borders of pixels of 0.25 m
   Easel easel;
   const auto wall = [](int more) {  // the same wall at x = 5 in a grid that began `more` cells further left
     Cells cells;
@@ -110,7 +110,7 @@ std::uint8_t expected(const icd::OccupancyGrid& grid, const Cells& cells, int px
   return highest;
 }
 
-TEST(Grid, ShowsTheCellsWhoseCentresLieInAPixelOrTheOneItsOwnCentreLiesIn) {
+TEST(Grid, PixelsShowCellsCentredInThemOrAtTheirCentre) {
   std::mt19937_64 random{7};
   const auto any = [&](int low, int high) { return std::uniform_int_distribution{low, high}(random); };
   for (const double resolution : {0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.5, 1.0}) {

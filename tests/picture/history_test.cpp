@@ -25,7 +25,7 @@ int shown(const History& history, double stamp) {
   return version == nullptr ? -1 : static_cast<int>(version->tile->crc);
 }
 
-TEST(History, ShowsWhatWasThereAsOfATime) {
+TEST(History, ShowsTheTileOfATime) {
   const History history = over(10, 1);
   EXPECT_EQ(shown(history, 999.9), -1);
   EXPECT_EQ(shown(history, 1000), 0);
@@ -35,7 +35,7 @@ TEST(History, ShowsWhatWasThereAsOfATime) {
   EXPECT_EQ(history.newest().number, 9U);
 }
 
-TEST(History, NeverShowsWhatIsOlderThanItsSpacingOrNewerThanTheTime) {
+TEST(History, ShowsTilesWithinItsSpacing) {
   for (const double spacing : {1.0, 2.0, 4.0, 16.0}) {
     const History history = over(100, spacing);
     for (int second = 0; second < 100; ++second) {
@@ -47,7 +47,7 @@ TEST(History, NeverShowsWhatIsOlderThanItsSpacingOrNewerThanTheTime) {
   }
 }
 
-TEST(History, ThinnedOutIsAsIfItHadBeenThinAllAlong) {
+TEST(History, ThinnedIsLikeThinFromTheStart) {
   History history = over(100, 1);
   for (const double spacing : {2.0, 4.0, 8.0, 64.0, 1e11}) {
     history.thin(spacing);
@@ -60,7 +60,7 @@ TEST(History, ThinnedOutIsAsIfItHadBeenThinAllAlong) {
   EXPECT_EQ(history.first().number, 99U);
 }
 
-TEST(History, CostsWhatItsTilesHold) {
+TEST(History, CostIsThatOfItsTiles) {
   History history;
   history.add({1, 1, tile(1, 5000)}, 1);
   const std::size_t one = history.cost();

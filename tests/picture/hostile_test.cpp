@@ -18,7 +18,7 @@ std::size_t base_tiles(const Drawing& drawing) {
   return count;
 }
 
-TEST(HostileGrid, OfAnySizeAndPlaceTakesNoMoreThanTheMostTiles) {
+TEST(HostileGrid, OfAnySizeAndPlaceIsLimitedInTiles) {
   const Cells cells(10'000, 0);
   for (const double resolution : {kSmallest, 1e-300, 1e-9, 1e-3, 1.0, 1e3, 1e9, 1e300, kLargest}) {
     for (const double x : {0.0, -8191.9, 1e9, kLargest, -kLargest}) {
@@ -39,7 +39,7 @@ TEST(HostileGrid, OfAnySizeAndPlaceTakesNoMoreThanTheMostTiles) {
   }
 }
 
-TEST(HostileGrid, LyingFarOutIsLeftOutAndCounted) {
+TEST(HostileGrid, FarOutsideIsOmittedAndCounted) {
   EXPECT_EQ(draw(grid_at(1e9, 0, 10, 0.1, Cells(100, 0)), {})->left_out, 100U);
   EXPECT_EQ(draw(grid_at(0, -1e9, 10, 0.1, Cells(100, 100)), {})->left_out, 100U);
   EXPECT_EQ(draw(grid_at(1e9, 0, 10, 0.1, Cells(100, kUnknown)), {})->left_out, 0U) << "nothing was known";
@@ -48,19 +48,19 @@ TEST(HostileGrid, LyingFarOutIsLeftOutAndCounted) {
   EXPECT_EQ(half->area, (Area{8190, 0, 8192, 0.25}));
 }
 
-TEST(HostileGrid, ThatStandsUprightIsALine) {
+TEST(HostileGrid, UprightIsALine) {
   const auto drawing = draw(grid_of(40, 0.25, {{0, 0, 0}, {1, 0, 0, 1}}, Cells(1600, 0)), {});
   ASSERT_TRUE(drawing && drawing->area);
   EXPECT_LE(drawing->area->top - drawing->area->bottom, 0.5);
 }
 
-TEST(HostileGrid, WithARowOfMillionsOfCellsIsNotDrawn) {
+TEST(HostileGrid, WithMillionsOfColumnsIsNotDrawn) {
   const Cells cells(kMostColumns + 1, 0);
   const auto map = grid_at(0, 0, static_cast<std::uint32_t>(cells.size()), 1e-3, cells);
   EXPECT_EQ(draw(map, {})->left_out, cells.size());
 }
 
-TEST(HostileGrid, WithMoreOrFewerCellsThanItSaysHarmsNothing) {
+TEST(HostileGrid, WithAWrongCountOfCellsIsHarmless) {
   auto more = grid_at(0, 0, 4, 0.25, Cells(16, 0));
   std::get<icd::OccupancyGrid>(more.msg).height = 2;
   EXPECT_EQ(draw(more, {})->area, (Area{0, 0, 1, 0.5}));
@@ -69,14 +69,14 @@ TEST(HostileGrid, WithMoreOrFewerCellsThanItSaysHarmsNothing) {
   EXPECT_EQ(draw(fewer, {})->area, (Area{0, 0, 1, 1}));
 }
 
-TEST(HostileGrid, TurnedWithHugeCellsSetsNoMoreThanTheMostPixels) {
+TEST(HostileGrid, TurnedWithHugeCellsIsLimitedInPixels) {
   const auto map = grid_of(1000, 15, {{-7500, -7500, 0}, turned_by(0.1)}, Cells(1'000'000, 0));
   const auto drawing = draw(map, {});
   EXPECT_LE(base_tiles(*drawing), Sheet::kMostTiles);
   EXPECT_GT(drawing->left_out, 0U);
 }
 
-TEST(HostileCloud, OfPointsAllOverTheWorldTakesNoMoreThanTheMostTiles) {
+TEST(HostileCloud, AcrossTheWorldIsLimitedInTiles) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> anywhere{-kWorldMetres, kWorldMetres};
   std::vector<icd::Point> points;
@@ -86,7 +86,7 @@ TEST(HostileCloud, OfPointsAllOverTheWorldTakesNoMoreThanTheMostTiles) {
   EXPECT_GT(drawing->left_out, 19'000U);
 }
 
-TEST(HostileCloud, WithAnOriginOutOfAllBoundsIsLeftOut) {
+TEST(HostileCloud, WithAHugeOriginIsOmitted) {
   for (const double far : {1e30, kLargest, -kLargest}) {
     const auto map =
         cloud_of({{far, far, far}, {1, 1, 1}}, icd::Pose{{far, far, far}, {1e-300, 1e300, 1, 1e300}});
@@ -97,7 +97,7 @@ TEST(HostileCloud, WithAnOriginOutOfAllBoundsIsLeftOut) {
   }
 }
 
-TEST(HostileData, ThatIsNoGzipIsAnErrorAndNoDrawing) {
+TEST(HostileData, OfAnotherFormatIsAnError) {
   for (const std::size_t cut : {std::size_t{0}, std::size_t{5}, std::size_t{20}}) {
     auto map = gzipped(grid_at(0, 0, 100, 0.25, Cells(10'000, 0)));
     auto bytes = map.data.bytes.to_vector();
@@ -109,7 +109,7 @@ TEST(HostileData, ThatIsNoGzipIsAnErrorAndNoDrawing) {
   }
 }
 
-TEST(HostileData, ThatInflatesToMoreThanItSaysIsAnError) {
+TEST(HostileData, LargerThanDeclaredIsAnError) {
   auto map = gzipped(grid_at(0, 0, 100, 0.25, Cells(1'000'000, 0)));
   map.data.raw_size = 10'000;
   EXPECT_FALSE(draw(map, {}));

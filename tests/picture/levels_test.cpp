@@ -66,13 +66,13 @@ TEST_F(Levels, AgreeWithTheBaseAfterClouds) {
   }
 }
 
-TEST_F(Levels, WhatAGridClearedIsClearedAtAllOfThem) {
+TEST_F(Levels, ClearedCellsAreClearedAtEach) {
   easel.draw(grid_at(0, 0, 4, 0.25, Cells(16, 100)));
   easel.draw(grid_at(0, 0, 4, 0.25, Cells(16, 0)));
   for (int level = 0; level < kLevels; ++level) EXPECT_EQ(easel.seen(0.5, 0.5, level), kFree) << level;
 }
 
-TEST_F(Levels, AreFoundWestAndSouthOfTheOriginToo) {
+TEST_F(Levels, AreRightWestAndSouthOfTheOrigin) {
   easel.draw(grid_at(-300.25, -5.25, 1, 0.25, {100}));
   for (int level = 0; level < kLevels; ++level) {
     EXPECT_EQ(easel.seen(-300.2, -5.2, level), kOccupied) << level;

@@ -49,7 +49,7 @@ TEST(Mosaic, HasALayerForEachRobotAndKind) {
   EXPECT_EQ(easel.seen(5.1, 5.1), 0) << "what another robot saw";
 }
 
-TEST(Mosaic, ShowsHowItWasAtAnEarlierTime) {
+TEST(Mosaic, ShowsAnEarlierTime) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));  // at 1001
   easel.draw(grid_at(0, 0, 1, 0.25, {0}));
@@ -63,7 +63,7 @@ TEST(Mosaic, ShowsHowItWasAtAnEarlierTime) {
   EXPECT_TRUE(easel.mosaic.tile(easel.layer, {0, 0, 0}, 1003).newest);
 }
 
-TEST(Mosaic, GoesAlongWithAClockThatIsSet) {
+TEST(Mosaic, FollowsAClockStep) {
   for (const double step : {3e8, -3e8}) {
     Easel easel;
     easel.now = 1e9;
@@ -81,7 +81,7 @@ TEST(Mosaic, GoesAlongWithAClockThatIsSet) {
   }
 }
 
-TEST(Mosaic, TellsWhichTilesChangedSinceAVersion) {
+TEST(Mosaic, ListsTilesChangedSinceAVersion) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));
   const auto before = easel.mosaic.version();
@@ -97,7 +97,7 @@ TEST(Mosaic, TellsWhichTilesChangedSinceAVersion) {
   EXPECT_TRUE(easel.mosaic.layers(easel.mosaic.version())[0].tiles.empty());
 }
 
-TEST(Mosaic, ItsVersionGrowsWithEveryChangeAndOverRestarts) {
+TEST(Mosaic, VersionGrowsWithEachChangeAndRestart) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));
   const auto first = easel.mosaic.version();
@@ -111,7 +111,7 @@ TEST(Mosaic, ItsVersionGrowsWithEveryChangeAndOverRestarts) {
   EXPECT_EQ(easel.mosaic.layers()[0].last, 1002);
 }
 
-TEST(Mosaic, GoesOnFromAnEarlierOneThoughTheTimeOfDayWasSetBackSince) {
+TEST(Mosaic, ContinuesAnEarlierOneAfterAClockStepBack) {
   Easel earlier, easel;
   earlier.draw(grid_at(0, 0, 1, 0.25, {100}));  // at 1001
   easel.now = 500;
@@ -121,7 +121,7 @@ TEST(Mosaic, GoesOnFromAnEarlierOneThoughTheTimeOfDayWasSetBackSince) {
   EXPECT_EQ(easel.mosaic.layers()[0].last, 1001) << "a time that runs backward is the last one again";
 }
 
-TEST(Mosaic, AWipeBlanksEverythingFromThenOnAndNothingBefore) {
+TEST(Mosaic, WipeBlanksOnlyLaterTimes) {
   Easel easel;
   easel.draw(grid_at(0, 0, 1, 0.25, {100}));
   const auto before = easel.mosaic.version();
@@ -160,7 +160,7 @@ TEST(Mosaic, StaysWithinItsBudgetAndKeepsTheNewest) {
   EXPECT_GT(easel.mosaic.bytes(), kBudget / 4) << "and makes use of it";
 }
 
-TEST(Mosaic, WhatItThinsOutIsStillSpreadOverAllTheTime) {
+TEST(Mosaic, ThinsEvenlyOverTime) {
   constexpr std::size_t kBudget = 400'000;
   Easel easel{kBudget};
   for (unsigned i = 0; i < 100; ++i) easel.draw(noisy(i));  // from 1001 on, one a second
@@ -173,7 +173,7 @@ TEST(Mosaic, WhatItThinsOutIsStillSpreadOverAllTheTime) {
   EXPECT_GE(states.size(), 50 / easel.mosaic.spacing());
 }
 
-TEST(Mosaic, RefusesADrawingWhoseNewestTilesDoNotFit) {
+TEST(Mosaic, RejectsADrawingBeyondItsBudget) {
   Easel easel{60'000};
   easel.draw(noisy(1));
   const auto version = easel.mosaic.version();
@@ -189,7 +189,7 @@ TEST(Mosaic, RefusesADrawingWhoseNewestTilesDoNotFit) {
   EXPECT_GT(easel.mosaic.version(), version);
 }
 
-TEST(Mosaic, CountsTheMapsThatWereNotDrawn) {
+TEST(Mosaic, CountsMapsNotDrawn) {
   Mosaic mosaic;
   mosaic.missed({"ugv1", Kind::Cloud}, 5);
   mosaic.missed({"ugv1", Kind::Cloud}, 6);
@@ -197,7 +197,7 @@ TEST(Mosaic, CountsTheMapsThatWereNotDrawn) {
   EXPECT_EQ(mosaic.layers()[0].missed, 2U);
 }
 
-TEST(Mosaic, TakesNoMoreLayersThanItMay) {
+TEST(Mosaic, LimitsItsLayers) {
   Easel easel;
   for (std::size_t i = 0; i < Mosaic::kMostLayers; ++i) {
     easel.draw(of(icd::sentence("r", i).c_str(), grid_at(0, 0, 1, 0.25, {0})));

@@ -98,7 +98,7 @@ double contrast(double a, double b) {
   return (std::max(a, b) + 0.05) / (std::min(a, b) + 0.05);
 }
 
-TEST(Png, IsDecodedToTheSamePixelsAndColours) {
+TEST(Png, DecodesToTheSamePixelsAndColours) {
   Packer packer;
   for (const Pixels& pixels : {Pixels{}, noise(1, 255), noise(2, 1), noise(3, 101)}) {
     const auto palette = cloud_palette();
@@ -116,12 +116,12 @@ TEST(Png, IsDecodedToTheSamePixelsAndColours) {
   }
 }
 
-TEST(Png, OnlyWhatIsNotKnownIsTransparent) {
+TEST(Png, OnlyUnknownPixelsAreTransparent) {
   Packer packer;
   EXPECT_EQ(decode_png(write_png(*packer.pack({}), grid_palette())).alpha, std::string(1, '\0'));
 }
 
-TEST(Png, OfAGridHasAColourForEachOfItsIndicesAndNoMore) {
+TEST(Png, OfAGridHasExactlyTheColoursOfItsIndices) {
   EXPECT_EQ(grid_palette().size(), 102U);
 }
 
@@ -139,7 +139,7 @@ TEST(Packer, PacksTileAfterTileAndUnpacksThem) {
   }
 }
 
-TEST(Packer, TilesThatDifferHaveOtherChecksums) {
+TEST(Packer, DifferentTilesHaveDifferentChecksums) {
   Packer packer;
   Pixels one{}, other{};
   other[77] = 1;
@@ -147,7 +147,7 @@ TEST(Packer, TilesThatDifferHaveOtherChecksums) {
   EXPECT_EQ(packer.pack(one)->crc, packer.pack(one)->crc);
 }
 
-TEST(Palette, HeightsGrowLighterAllTheWay) {
+TEST(Palette, HigherIsLighter) {
   for (const auto& palette : {cloud_palette(), cloud_palette(-2, 5)}) {
     for (std::size_t i = 2; i < palette.size(); ++i) {
       EXPECT_GE(lightness(palette[i]) + 0.002, lightness(palette[i - 1])) << i;
@@ -156,7 +156,7 @@ TEST(Palette, HeightsGrowLighterAllTheWay) {
   }
 }
 
-TEST(Palette, FreeAndOccupiedStandOutFromEachOtherAndFromBothGrounds) {
+TEST(Palette, FreeAndOccupiedContrastOnBothBackgrounds) {
   const double dark = lightness({0x0c, 0x0f, 0x11}), light = lightness({0xf3, 0xf1, 0xec});  // page.css
   const double free = lightness(grid_palette()[kFree]), occupied = lightness(grid_palette()[kOccupied]);
   EXPECT_GT(contrast(free, occupied), 3);
@@ -165,7 +165,7 @@ TEST(Palette, FreeAndOccupiedStandOutFromEachOtherAndFromBothGrounds) {
   EXPECT_GT(contrast(occupied, dark), 2.5);
 }
 
-TEST(Palette, AHeightHasOneIndexWhateverElseIsDrawn) {
+TEST(Palette, EachHeightHasOneIndex) {
   EXPECT_EQ(height_index(-1000), 1);
   EXPECT_EQ(height_index(kLowest), 1);
   EXPECT_EQ(height_index(kHighest), 255);
@@ -175,7 +175,7 @@ TEST(Palette, AHeightHasOneIndexWhateverElseIsDrawn) {
   }
 }
 
-TEST(Palette, SpreadsTheColoursOverTheHeightsAskedFor) {
+TEST(Palette, SpreadsTheColoursOverTheRequestedHeights) {
   const auto palette = cloud_palette(0, 4);
   EXPECT_EQ(palette[height_index(-3)], palette[height_index(-8)]);
   EXPECT_EQ(palette[height_index(4.5)], height_ramp().back());

@@ -55,7 +55,7 @@ class Recorded : public testing::Test {
   Easel easel;
 };
 
-TEST_F(Recorded, AGridsKnownPixelsAreThoseOfItsKnownCells) {
+TEST_F(Recorded, GridHasExactlyTheKnownCellsAsPixels) {
   const auto map = recorded_grid(folder() / "grids/ecn_batS.pgm", 0.02);
   const auto& grid = std::get<icd::OccupancyGrid>(map.msg);
   ASSERT_EQ(grid.width, 1598U);
@@ -78,7 +78,7 @@ TEST_F(Recorded, AGridsKnownPixelsAreThoseOfItsKnownCells) {
   for (const auto& [at, index] : expected) ASSERT_EQ(easel.pixel(0, at.first, at.second), index);
 }
 
-TEST_F(Recorded, AScanFillsATileAndItsHeightsAreARoomsHeights) {
+TEST_F(Recorded, ScanHasTheSizeAndHeightsOfARoom) {
   const std::string bytes = content(folder() / "clouds/fast_gicp_251370668.pcd");
   const auto begin = bytes.find("DATA binary\n") + 12;
   icd::PointCloud2 cloud;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-TEST(TurnedGrid, AQuarterTurnPutsItsRowsAlongMinusX) {
+TEST(TurnedGrid, QuarterTurnPutsItsRowsAlongMinusX) {
   Easel easel;
   easel.draw(grid_of(3, 0.25, {{20, 5, 0}, turned_by(kPi / 2)}, {100, 0, 20, kUnknown, 0, 40}));
   EXPECT_EQ(easel.seen(19.875, 5.125), kOccupied);
@@ -18,7 +18,7 @@ TEST(TurnedGrid, AQuarterTurnPutsItsRowsAlongMinusX) {
   EXPECT_EQ(easel.seen(19.625, 5.125), 0);
 }
 
-TEST(TurnedGrid, AHalfTurnPutsItBelowAndLeftOfItsOrigin) {
+TEST(TurnedGrid, HalfTurnPutsItBelowAndLeftOfItsOrigin) {
   Easel easel;
   easel.draw(grid_of(2, 0.25, {{0, 0, 0}, turned_by(kPi)}, {100, 0, 20, 40}));
   EXPECT_EQ(easel.seen(-0.125, -0.125), kOccupied);
@@ -34,7 +34,7 @@ icd::Point place(const icd::OccupancyGrid& grid, double yaw, double column, doub
           grid.origin.position.y + x * std::sin(yaw) + y * std::cos(yaw), 0};
 }
 
-TEST(TurnedGrid, EveryKnownCellIsSeenAtItsCentreAndNothingIsSeenFarFromOne) {
+TEST(TurnedGrid, ShowsEachKnownCellAndNothingElse) {
   std::mt19937_64 random{3};
   const auto any = [&](int low, int high) { return std::uniform_int_distribution{low, high}(random); };
   for (const double resolution : {0.03, 0.05, 0.1, 0.17, 0.2, 0.25, 0.4, 1.0}) {
@@ -72,7 +72,7 @@ TEST(TurnedGrid, EveryKnownCellIsSeenAtItsCentreAndNothingIsSeenFarFromOne) {
   }
 }
 
-TEST(TurnedGrid, HasNoGapsWhateverItsCells) {
+TEST(TurnedGrid, HasNoGapsForAnyCellSize) {
   for (const double resolution : {0.05, 0.17, 0.18, 0.25, 0.3, 0.7, 2.0, 9.0}) {
     for (const double yaw : {0.01, 0.5, kPi / 4, 1.2, -2.0}) {
       const auto side = static_cast<std::uint32_t>(std::ceil(20 / resolution));

@@ -18,7 +18,7 @@ std::string report(const std::string& state, bool asking = false) {
   return Server::ok(codec::to_json(detail));
 }
 
-TEST(Actions, AreAskedForByTheirNames) {
+TEST(Actions, SendRequestsByTheirNames) {
   const Server server({{"GET /adit/reports/7", report("held")},
                        {"POST /adit/reports/7/send", Server::ok("{\"report\":7}")},
                        {"POST /adit/reports/7/hold", Server::ok("{\"report\":7}")},
@@ -53,7 +53,7 @@ TEST(Actions, CorrectTheNamedFieldsOfAReport) {
               HasSubstr("the report's number: expected"));
 }
 
-TEST(Actions, AreAskedForOfWhatIsRejectedMessages) {
+TEST(Actions, OnRejectedMessagesSendRequests) {
   api::RunView view = sample_view();
   view.rejected = {{.number = 3,
                     .kind = "cloud",
@@ -100,13 +100,13 @@ TEST(Actions, MakeTheLightsFlash) {
   EXPECT_EQ(say(other, {"identify"}).exit, Exit::Unable);
 }
 
-TEST(Actions, ShowTheTokenToAditAlone) {
+TEST(Actions, SendTheTokenOnlyToAdit) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
   say(server, {"run", "new"});
   EXPECT_THAT(server.request(), HasSubstr("\r\nAuthorization: Bearer sesame-1\r\n"));
 }
 
-TEST(Actions, GoOnAfterOneThatCannotBe) {
+TEST(Actions, ContinueAfterAFailedOne) {
   const Server server(
       {{"GET /adit/reports/7", report("held")},
        {"GET /adit/reports/8", report("answered")},
@@ -121,7 +121,7 @@ TEST(Actions, GoOnAfterOneThatCannotBe) {
   EXPECT_EQ(outcome.err, "adit: report 8 is answered: to send it again, resubmit it\n");
 }
 
-TEST(Actions, OnAReportInDoubtAreAskedAboutFirst) {
+TEST(Actions, OnAReportInDoubtNeedConfirmation) {
   const Server server({{"GET /adit/reports/3", report("in_doubt")},
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   std::string asked;
@@ -138,7 +138,7 @@ TEST(Actions, OnAReportInDoubtAreAskedAboutFirst) {
   EXPECT_THAT(server.request(), testing::StartsWith("POST "));
 }
 
-TEST(Actions, OnAReportInDoubtAreRefusedWhereThereIsNobodyToAsk) {
+TEST(Actions, OnAReportInDoubtFailWithoutATerminal) {
   const Server server({{"GET /adit/reports/3", report("in_doubt", true)},
                        {"POST /adit/reports/3/send", Server::ok("{\"report\":3}")}});
   const Outcome refused = say(server, {"reports", "send", "3"});
@@ -149,7 +149,7 @@ TEST(Actions, OnAReportInDoubtAreRefusedWhereThereIsNobodyToAsk) {
   EXPECT_EQ(say(server, {"reports", "send", "3", "--yes"}).out, "report 3 is queued\n");
 }
 
-TEST(Actions, OnOtherReportsAreNotAskedAbout) {
+TEST(Actions, OnOtherReportsNeedNoConfirmation) {
   std::string asked;
   for (const char* const state : {"held", "rejected", "withdrawn"}) {
     const Server server({{"GET /adit/reports/3", report(state)},
@@ -159,7 +159,7 @@ TEST(Actions, OnOtherReportsAreNotAskedAbout) {
   EXPECT_EQ(asked, "");
 }
 
-TEST(Actions, OfAReportThatIsNotThereAreRefused) {
+TEST(Actions, OnAnUnknownReportFail) {
   const Server server(
       {{"POST /adit/reports/8/settle", Server::reply("404 Not Found", "\"there is no report 8\"")}});
   const Outcome outcome = say(server, {"reports", "settle", "8"});
@@ -167,7 +167,7 @@ TEST(Actions, OfAReportThatIsNotThereAreRefused) {
   EXPECT_EQ(outcome.err, "adit: there is no report 8\n");
 }
 
-TEST(Actions, StopWhereTheTokenIsNotGood) {
+TEST(Actions, StopAfterAWrongToken) {
   const Server server(
       Server::reply("401 Unauthorized", "\"Authorization: expected Bearer and the team's token\""));
   const Outcome outcome = say(server, {"reports", "send", "7", "8"});
@@ -175,7 +175,7 @@ TEST(Actions, StopWhereTheTokenIsNotGood) {
   EXPECT_THAT(outcome.err, testing::MatchesRegex("adit: Adit rejects the token in /.*\n"));
 }
 
-TEST(Actions, WhoseAnswerIsLostMayHaveBeenDone) {
+TEST(Actions, MayBeDoneIfTheAnswerIsLost) {
   const Server server("");
   const Outcome outcome = say(server, {"reports", "resubmit", "7"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
@@ -183,7 +183,7 @@ TEST(Actions, WhoseAnswerIsLostMayHaveBeenDone) {
   EXPECT_THAT(say(server, {"reports", "send", "7", "--yes"}).err, HasSubstr("see adit reports show 7\n"));
 }
 
-TEST(Actions, OfAnAditThatIsNotThereWereNotDone) {
+TEST(Actions, AreNotDoneIfAditIsUnreachable) {
   std::string at;
   {
     at = Server("").at();
@@ -195,7 +195,7 @@ TEST(Actions, OfAnAditThatIsNotThereWereNotDone) {
   EXPECT_THAT(outcome.err, Not(HasSubstr("may have been done")));
 }
 
-TEST(Actions, AreNotAskedForWithATokenThatCannotBeRead) {
+TEST(Actions, SendNothingIfTheTokenIsUnreadable) {
   const Server server({{"POST /adit/runs", Server::ok("{\"run\":2}")}});
   const Outcome outcome =
       run(std::vector<std::string_view>{"run", "new", "--at", server.at(), "--token-file", "/none"});

@@ -28,14 +28,14 @@ Options status_of_a_box() {
   return parse_options(std::vector<std::string_view>{"status"}).value();
 }
 
-TEST(Status, ShowsWhatAditAnswers) {
+TEST(Status, ShowsTheAnswerOfAdit) {
   const Outcome outcome = asked(codec::to_json(sample_view()), {"status"});
   EXPECT_EQ(outcome.err, "");
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_EQ(outcome.out, status_text(sample_view(), false));
 }
 
-TEST(Status, ReadsEveryMemberThatThePageWrites) {
+TEST(Status, ReadsEachMemberOfTheApi) {
   api::RunView view = sample_view();
   view.refusals = {{.at = 998,
                     .uri = "/map/update",
@@ -67,7 +67,7 @@ TEST(Status, NamesNewerVersions) {
             status_text(sample_view(), false) + "cannot ask for newer versions: not now\n");
 }
 
-TEST(Status, IsFineWhereAllAlarmsMayPass) {
+TEST(Status, IsFineIfAllAlarmsMayPass) {
   api::RunView view = sample_view();
   view.alarms = {{.id = "reports_left", .severity = alarms::Severity::Wait, .what = "5 reports are left"}};
   EXPECT_EQ(asked(codec::to_json(view), {"status"}).exit, Exit::Fine);
@@ -75,12 +75,12 @@ TEST(Status, IsFineWhereAllAlarmsMayPass) {
   EXPECT_EQ(asked(codec::to_json(view), {"status"}).exit, Exit::Attention);
 }
 
-TEST(Status, GivesScriptsWhatAditSaid) {
+TEST(Status, GivesScriptsTheAnswerOfAdit) {
   const std::string json = codec::to_json(sample_view());
   EXPECT_EQ(asked(json, {"status", "--json"}).out, json + "\n");
 }
 
-TEST(Ask, SaysThatTheAnswerIsNotAdits) {
+TEST(Ask, RejectsAnAnswerOfAnotherProgram) {
   for (const std::string answer : {"", "hello", "[]", "{}", R"({"now": "noon"})"}) {
     const Outcome outcome = asked(answer, {"status"});
     EXPECT_EQ(outcome.exit, Exit::Unable) << answer;
@@ -89,7 +89,7 @@ TEST(Ask, SaysThatTheAnswerIsNotAdits) {
   }
 }
 
-TEST(Ask, PassesOnWhatAnErrorSays) {
+TEST(Ask, PassesOnTheSentenceOfAnError) {
   const auto status_of = [](const std::string& reply) { return say(Server(reply), {"status"}).err; };
   EXPECT_THAT(status_of(Server::reply("404 Not Found", "{}")),
               HasSubstr("is not Adit, or is another version (HTTP status 404)"));
@@ -99,7 +99,7 @@ TEST(Ask, PassesOnWhatAnErrorSays) {
               HasSubstr("adit: Adit rejects the token in /"));
 }
 
-TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
+TEST(Ask, WithoutATokenExplainsHowToNameOne) {
   const Server server(Server::ok(codec::to_json(sample_view())));
   Options options = status_of_a_box();
   options.at = server.at();
@@ -114,7 +114,7 @@ TEST(Ask, WithoutATokenSaysHowToNameOneAndAsksNothing) {
   EXPECT_EQ(server.request(), "");
 }
 
-TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
+TEST(Ask, PrefersTheAddressInSavedSettings) {
   const Server server(Server::ok(codec::to_json(sample_view())));
   const TokenFile token;
   char saved[] = "/tmp/adit-saved-XXXXXX";
@@ -132,7 +132,7 @@ TEST(Ask, LooksForAditWhereTheSavedSettingsHaveItBeforeTheGiven) {
   std::filesystem::remove(saved);
 }
 
-TEST(Ask, NeedsTheSavedSettingsIfTheyAreThere) {
+TEST(Ask, FailsIfSavedSettingsAreUnreadable) {
   const TokenFile token;
   const host::Folder folder;
   Options options = status_of_a_box();
@@ -156,7 +156,7 @@ class Variable {
   const char* name_;
 };
 
-TEST(Ask, TakesAddressAndTokenFromTheEnvironment) {
+TEST(Ask, ReadsAddressAndTokenFromTheEnvironment) {
   const Server server(Server::ok(codec::to_json(sample_view())));
   const TokenFile token;
   const std::string at = server.at(), file = token.path();
@@ -176,7 +176,7 @@ TEST(Ask, TakesAddressAndTokenFromTheEnvironment) {
             "adit: /none: No such file or directory\n");
 }
 
-TEST(Ask, SaysThatItDoesNotKnowWhereAditIs) {
+TEST(Ask, TellsThatTheAddressIsUnknown) {
   const Outcome outcome = run(std::vector<std::string_view>{"status", "--settings", "/none.json"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err,

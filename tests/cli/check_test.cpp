@@ -39,7 +39,7 @@ constexpr const char* kWrong = R"({"version": 1,
                    "mapping": {"address": "10.100.1.201", "port": 8000}},
   "team": {"listen": [{"address": "0.0.0.0", "port": 8000}]}})";
 
-TEST_F(Check, TellsEveryErrorByItsPath) {
+TEST_F(Check, NamesEachErrorByItsPath) {
   const Outcome outcome = check(kWrong);
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_EQ(
@@ -51,7 +51,7 @@ TEST_F(Check, TellsEveryErrorByItsPath) {
           "  command_post.scoring.address: missing; expected an IPv4 or IPv6 address\n");
 }
 
-TEST_F(Check, SaysWhatGoodSettingsComeTo) {
+TEST_F(Check, SummarizesGoodSettings) {
   const Outcome outcome =
       run(std::vector<std::string_view>{"check", ADIT_SOURCE_DIR "/firmware/rules/settings/example.json"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
@@ -65,7 +65,7 @@ TEST_F(Check, SaysWhatGoodSettingsComeTo) {
             "ADIT_BUTTON\n");
 }
 
-TEST_F(Check, SaysTheSameToScripts) {
+TEST_F(Check, GivesScriptsTheSameAsJson) {
   const Outcome wrong = check(R"({"version": 2})", {"--json"});
   EXPECT_EQ(wrong.exit, Exit::Attention);
   EXPECT_EQ(wrong.out,
@@ -82,7 +82,7 @@ constexpr const char* kGood = R"({"version": 1,
                    "mapping": {"address": "10.99.1.201", "port": 8000}},
   "team": {"listen": [{"address": "TEAM", "port": 8000}]}})";
 
-TEST_F(Check, WarnsOfATeamsNetworkThatOverlapsTheCommandPosts) {  // ICD 3
+TEST_F(Check, WarnsOfOverlappingNetworks) {  // ICD 3
   const auto warnings = [this](const std::string& team, const std::string& more = "") {
     std::string json = kGood;
     json.replace(json.find("TEAM"), 4, team);
@@ -102,7 +102,7 @@ TEST_F(Check, WarnsOfATeamsNetworkThatOverlapsTheCommandPosts) {  // ICD 3
               HasSubstr("allowed, but a robot cannot reach both"));
 }
 
-TEST_F(Check, WarnsOfATokenOfTheCommandPostsThatHasNot16Characters) {  // ICD 4
+TEST_F(Check, WarnsOfATokenWithoutSixteenCharacters) {  // ICD 4
   std::string json = kGood;
   json.replace(json.find("TEAM"), 4, "10.0.0.1");
   const std::string secrets = folder_ / "secrets";
@@ -132,13 +132,13 @@ TEST_F(Check, WarnsOfATokenOfTheCommandPostsThatHasNot16Characters) {  // ICD 4
   EXPECT_THAT(run(options, {}).out, HasSubstr("cannot check the tokens: " + secrets + "/mapping.token"));
 }
 
-TEST_F(Check, SaysThatItCannotReadTheFile) {
+TEST_F(Check, ReportsAnUnreadableFile) {
   const Outcome outcome = run(std::vector<std::string_view>{"check", "/none.json"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.err, "adit: /none.json: No such file or directory\n");
 }
 
-TEST_F(Check, NeverLetsTheFileSteerTheTerminal) {
+TEST_F(Check, EscapesTerminalSequences) {
   const Outcome outcome = check("{\"version\": 1, \"\x1b]0;owned\x07\": 1}");
   EXPECT_THAT(outcome.out, AllOf(Not(HasSubstr("\x1b")), HasSubstr("not JSON")));
 }

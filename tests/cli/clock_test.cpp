@@ -21,7 +21,7 @@ std::string clock_view(double now, const char* source, bool is_set, const char* 
                     R"(","ntp":"","is_kept":false})");
 }
 
-TEST(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
+TEST(ClockCommand, ShowsTheTimeOfDayAndItsSource) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here(), "command_post", true)}});
   const Outcome outcome = say(server, {"clock"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
@@ -30,7 +30,7 @@ TEST(ClockCommand, TellsTheTimeOfDayAndWhoSetIt) {
   EXPECT_THAT(say(server, {"clock", "--json"}).out, HasSubstr("\"source\":\"command_post\""));
 }
 
-TEST(ClockCommand, SaysHowToSetItWhereItIsNot) {
+TEST(ClockCommand, TellsHowToSetTheClock) {
   const Server server({{"GET /adit/clock", clock_view(time_of_here() - 7300, "last_known", false)}});
   const Outcome outcome = say(server, {"clock", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
@@ -38,13 +38,13 @@ TEST(ClockCommand, SaysHowToSetItWhereItIsNot) {
   EXPECT_THAT(outcome.out, HasSubstr("adit clock set"));
 }
 
-TEST(ClockCommand, TellsWhyItWasNotSet) {
+TEST(ClockCommand, TellsWhyTheClockWasNotSet) {
   const Server server(
       {{"GET /adit/clock", clock_view(time_of_here(), "none", false, "cannot set the clock: no")}});
   EXPECT_THAT(say(server, {"clock"}).out, HasSubstr("Not set: cannot set the clock: no"));
 }
 
-TEST(ClockCommand, SetsItToThisComputersTime) {
+TEST(ClockCommand, SetsTheTimeOfThisComputer) {
   const Server server({{"POST /adit/clock", clock_view(time_of_here(), "operator", true)}});
   const Outcome outcome = say(server, {"clock", "set"});
   EXPECT_EQ(outcome.exit, Exit::Fine);

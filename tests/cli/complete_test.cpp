@@ -48,7 +48,7 @@ class Completion : public testing::Test {
   Server server_{answers()};
 };
 
-TEST_F(Completion, ListsReportsThatAWordCanBeSaidOf) {
+TEST_F(Completion, ListsReportsThatAllowAnAction) {
   EXPECT_EQ(listed({"reports"}).out,
             "3\tSurvivor, answered\n4\tSurvivor, in doubt\n5\tCell\\x0aPhone, held\n");
   EXPECT_EQ(listed({"reports", "show"}).out, listed({"reports"}).out);
@@ -65,7 +65,7 @@ TEST_F(Completion, ListsRejectedMessagesCoursesAndRuns) {
   EXPECT_EQ(listed({"runs"}).out, "2\tthe present run\n") << "and none that a shell would run";
 }
 
-TEST(CompletionOfKeys, AsksNobody) {
+TEST(CompletionOfKeys, SendsNoRequest) {
   const Outcome lines = run(std::vector<std::string_view>{"complete", "keys"});
   const auto keys = api::key_rows();
   const auto review = std::ranges::find(keys, "reports.review", &api::KeyRow::path);
@@ -76,7 +76,7 @@ TEST(CompletionOfKeys, AsksNobody) {
   EXPECT_EQ(json.out, codec::to_json(keys) + "\n");
 }
 
-TEST(CompletionOfReports, WithoutAnAditIsNone) {
+TEST(CompletionOfReports, IsEmptyWithoutAdit) {
   TokenFile token;
   std::string at;
   {

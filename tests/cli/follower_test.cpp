@@ -56,7 +56,7 @@ class Following {
   Follower follower_{adit_};
 };
 
-TEST(Follower, TakesTheViewWholeAndThenWhatChanges) {
+TEST(Follower, ReadsTheWholeViewAndThenItsChanges) {
   api::RunView now = sample_view();
   now.run->remaining_reports = 3;
   now.reports.insert(now.reports.begin(), now.reports.front())->number = 4;
@@ -71,13 +71,13 @@ TEST(Follower, TakesTheViewWholeAndThenWhatChanges) {
   EXPECT_EQ(server.request().substr(0, 21), "GET /adit/events HTTP");
 }
 
-TEST(Follower, AsksAgainWhereTheEventsEnd) {
+TEST(Follower, ReconnectsIfTheEventsEnd) {
   const Server server(stream(whole(sample_view())));
   Following following(server);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(following.left(), "18");
 }
 
-TEST(Follower, AsksForTheViewAloneWhereThereAreNoEventsToBeHad) {
+TEST(Follower, PollsTheViewIfEventsAreRejected) {
   const Server server(Server::Answers{
       {"GET /adit/events", Server::reply("503 Service Unavailable", "\"as many pages are open as ...\"")},
       {"GET /adit/run", Server::ok(codec::to_json(sample_view()))}});
@@ -85,7 +85,7 @@ TEST(Follower, AsksForTheViewAloneWhereThereAreNoEventsToBeHad) {
   for (int i = 0; i < 2; ++i) EXPECT_EQ(following.left(), "18");
 }
 
-TEST(Follower, SaysWhyThereIsNoView) {
+TEST(Follower, TellsWhyThereIsNoView) {
   const auto said = [](const std::string& answer) {
     const Server server(answer);
     return Following(server).left();
@@ -99,14 +99,14 @@ TEST(Follower, SaysWhyThereIsNoView) {
   EXPECT_THAT(said(""), HasSubstr("did not answer"));
 }
 
-TEST(Follower, SaysThatNobodyIsThere_AndTriesAgain) {
+TEST(Follower, ReportsThatAditIsUnreachableAndRetries) {
   std::optional<Server> server(std::in_place, "");
   Following following(*server);
   server.reset();
   for (int i = 0; i < 2; ++i) EXPECT_THAT(following.left(), HasSubstr("Connection refused"));
 }
 
-TEST(Follower, TakesALongSilenceForALoss) {
+TEST(Follower, TreatsALongSilenceAsALoss) {
   const Server server(stream(whole(sample_view())), true);
   Following following(server);
   EXPECT_EQ(following.left(), "18");
@@ -131,7 +131,7 @@ std::vector<std::string> events(std::size_t piece) {
   return all;
 }
 
-TEST(EventReader, GivesEachWholeEventThatHasData_HoweverItCame) {
+TEST(EventReader, GivesEachWholeEventFromAnyPieces) {
   const std::vector<std::string> all = {" {\"now\":1}", "patch {\"now\":2}", " {\"now\":3}"};
   for (std::size_t piece = 1; piece <= kStream.size(); ++piece) EXPECT_EQ(events(piece), all) << piece;
 }

@@ -36,7 +36,7 @@ std::string request_for(const HttpRequest& request) {
   return server.request();
 }
 
-TEST(HttpClient, AsksForTheTargetWithItsToken) {
+TEST(HttpClient, RequestsTheTargetWithItsToken) {
   const std::string request = request_for(get("/adit/run"));
   EXPECT_THAT(request, StartsWith("GET /adit/run HTTP/1.1\r\nHost: 127.0.0.1:"));
   EXPECT_THAT(request, HasSubstr("\r\nAuthorization: Bearer secret\r\n"));
@@ -52,7 +52,7 @@ TEST(HttpClient, PostsABodyOrNone) {
   EXPECT_THAT(request_for(post), AllOf(HasSubstr("\r\nContent-Length: 2\r\n"), EndsWith("\r\n\r\n{}")));
 }
 
-TEST(HttpClient, GivesAnErrorsStatusAndBody) {
+TEST(HttpClient, GivesStatusAndBodyOfAnError) {
   const Server server(Server::reply("409 Conflict", "\"no\""));
   const auto reply = http_ask(server.address(), get("/"), kPatience);
   ASSERT_TRUE(reply.has_value());
@@ -60,19 +60,19 @@ TEST(HttpClient, GivesAnErrorsStatusAndBody) {
   EXPECT_EQ(reply->body, "\"no\"");
 }
 
-TEST(HttpClient, TakesABodyInChunksAndOneThatEndsWithTheConnection) {
+TEST(HttpClient, ReadsChunkedBodiesAndBodiesUntilClose) {
   EXPECT_EQ(body_of("HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n3\r\nabc\r\n2\r\nde\r\n0\r\n\r\n"),
             "abcde");
   EXPECT_EQ(body_of("HTTP/1.1 200 OK\r\n\r\nto the end"), "to the end");
   EXPECT_EQ(body_of(Server::ok("")), "");
 }
 
-TEST(HttpClient, TakesALargeBody) {
+TEST(HttpClient, ReadsALargeBody) {
   const std::string body(3u << 20, 'x');
   EXPECT_EQ(body_of(Server::ok(body)).size(), body.size());
 }
 
-TEST(HttpClient, SaysWhyThereIsNoBody) {
+TEST(HttpClient, TellsWhyThereIsNoBody) {
   EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{}"),
               HasSubstr("in the middle of its answer"));
   EXPECT_THAT(body_of(""), HasSubstr("did not answer"));
@@ -81,7 +81,7 @@ TEST(HttpClient, SaysWhyThereIsNoBody) {
   EXPECT_THAT(body_of("HTTP/1.1 200 OK\r\nContent-Length: 8388609\r\n\r\n"), HasSubstr("too long"));
 }
 
-TEST(HttpClient, NamesTheAddressThatNobodyListensAt) {
+TEST(HttpClient, NamesAnUnreachableAddress) {
   settings::Address address;
   {
     address = Server("").address();
@@ -93,7 +93,7 @@ TEST(HttpClient, NamesTheAddressThatNobodyListensAt) {
             "cannot reach Adit at 127.0.0.1:" + std::to_string(address.port) + ": Connection refused");
 }
 
-TEST(HttpClient, GivesUpOnAServerThatSaysNothing) {
+TEST(HttpClient, TimesOutOnASilentServer) {
   for (const std::string answer : {"", "HTTP/1.1 200 OK\r\nContent-Length: 9\r\n\r\n{}"}) {
     const Server server(answer, true);
     const auto reply = http_ask(server.address(), get("/"), milliseconds(400));

@@ -40,7 +40,7 @@ class LedgerDump : public testing::Test {
   const std::string directory_ = state_ / "ledger";
 };
 
-TEST_F(LedgerDump, PrintsEachRecordWithAllMembersAlsoWhileAditRuns) {
+TEST_F(LedgerDump, PrintsAllMembersEvenWhileAditRuns) {
   auto ledger = ledger::Ledger::open(state_.path());
   const std::vector<dispatch::Report> steps{report(dispatch::ReportState::Queued),
                                             report(dispatch::ReportState::Sending)};
@@ -61,7 +61,7 @@ TEST_F(LedgerDump, PrintsEachRecordWithAllMembersAlsoWhileAditRuns) {
       "\n");
 }
 
-TEST_F(LedgerDump, SaysWhatIsMissingOrUnknown) {
+TEST_F(LedgerDump, TellsMissingAndUnknownRecords) {
   {
     const auto directory = store::Directory::lock(directory_);
     store::Log log(*directory, ledger::Ledger::kKeeping);
@@ -87,7 +87,7 @@ TEST_F(LedgerDump, SaysWhatIsMissingOrUnknown) {
   EXPECT_THAT(outcome.err, EndsWith("adit: record 3 cannot be understood\n"));
 }
 
-TEST_F(LedgerDump, IsNeverEmptyBecauseAFileCannotBeRead) {
+TEST_F(LedgerDump, FailsIfAFileCannotBeRead) {
   const auto fails = [&](const std::string& why) {
     const Outcome outcome = dump(directory_);
     EXPECT_EQ(outcome.exit, Exit::Unable);
@@ -101,7 +101,7 @@ TEST_F(LedgerDump, IsNeverEmptyBecauseAFileCannotBeRead) {
   fails("log-00000001.0123456789abcdef: ");
 }
 
-TEST(LedgerNew, IsAskedForOnceTheOperatorConfirms) {
+TEST(LedgerNew, NeedsConfirmation) {
   const Server server({{"POST /adit/ledger/new", Server::ok(R"({"kept_as":"ledger.damaged-1"})")}});
   EXPECT_THAT(say(server, {"ledger", "new"}).err,
               HasSubstr("a report may be sent twice. It was not done; to do it, add --yes"));

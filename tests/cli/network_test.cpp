@@ -32,7 +32,7 @@ TEST(NetworkCommand, ShowsBothSides) {
   EXPECT_THAT(say(server, {"network", "--json"}).out, HasSubstr("\"managed\":true"));
 }
 
-TEST(NetworkCommand, ShowsHowTheTeamsSideComesByItsAddress) {
+TEST(NetworkCommand, ShowsTheAddressModeOfTheTeamSide) {
   const auto with = [](const char* team) {
     return Server::ok(
         std::string(R"({"now":1000,"managed":true,"why":"","runs_here":true,"team":)") + team +
@@ -47,7 +47,7 @@ TEST(NetworkCommand, ShowsHowTheTeamsSideComesByItsAddress) {
   EXPECT_THAT(say(none, {"network"}).out, HasSubstr("team0  link-local  none\n"));
 }
 
-TEST(NetworkCommand, ShowsAChangeThatWaits) {
+TEST(NetworkCommand, ShowsAPendingChange) {
   const Server server({{"GET /adit/network", view(kPending, "null")}});
   const Outcome outcome = say(server, {"network", "show"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
@@ -57,7 +57,7 @@ TEST(NetworkCommand, ShowsAChangeThatWaits) {
   EXPECT_THAT(outcome.out, HasSubstr("Confirm it at http://192.168.8.11:8000"));
 }
 
-TEST(NetworkCommand, ShowsNoChangeWithoutItsAddresses) {
+TEST(NetworkCommand, RejectsAChangeWithoutAddresses) {
   const Server server(
       {{"GET /adit/network", view(R"({"until":1042,"previous":null,"page":"http://a"})", "null")}});
   const Outcome outcome = say(server, {"network"});
@@ -66,14 +66,14 @@ TEST(NetworkCommand, ShowsNoChangeWithoutItsAddresses) {
   EXPECT_THAT(outcome.err, HasSubstr("it is another version: pending.team: "));
 }
 
-TEST(NetworkCommand, ShowsHowTheLastChangeEndedAndWhyNoneCanBeMade) {
+TEST(NetworkCommand, ShowsTheLastChangeAndWhyNoneIsPossible) {
   const Server server({{"GET /adit/network", view("null", "\"reverted\"", false)}});
   const Outcome outcome = say(server, {"network"});
   EXPECT_THAT(outcome.out, HasSubstr("Last change: reverted, nobody confirmed it\n"));
   EXPECT_THAT(outcome.out, HasSubstr("Adit cannot change the addresses: it is set elsewhere\n"));
 }
 
-TEST(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
+TEST(NetworkCommand, ConfirmsOrRevertsAndShowsTheOutcome) {
   const Server server({{"POST /adit/network/confirm", view(kPending, "null")},
                        {"POST /adit/network/revert", view(kPending, "null")},
                        {"GET /adit/network", view("null", "\"confirmed\"")}});
@@ -85,7 +85,7 @@ TEST(NetworkCommand, SaysTheOperatorsWordAndWhatBecameOfIt) {
   EXPECT_EQ(reverted.out, "the change is confirmed: nobody confirmed it\n");
 }
 
-TEST(NetworkCommand, SaysWhyAWordCannotBe) {
+TEST(NetworkCommand, TellsWhyAnActionFails) {
   const Server server(
       {{"POST /adit/network/confirm", Server::reply("409 Conflict", "\"no change waits to be confirmed\"")}});
   const Outcome outcome = say(server, {"network", "confirm"});
@@ -95,7 +95,7 @@ TEST(NetworkCommand, SaysWhyAWordCannotBe) {
   EXPECT_THAT(say(Server(Server::ok("{}")), {"network"}).err, HasSubstr("it is another version"));
 }
 
-TEST(NetworkCommand, TakesNoOtherWords) {
+TEST(NetworkCommand, RejectsUnknownWords) {
   EXPECT_THAT(run(std::vector<std::string_view>{"network", "apply"}).err,
               HasSubstr("expected show, confirm or revert, got apply"));
   EXPECT_THAT(run(std::vector<std::string_view>{"network", "show", "all"}).err,
@@ -114,7 +114,7 @@ std::string tested(const std::string& clock, bool running = false,
                     clock + R"(","said":"7 s behind","advice":"Set it."}]}]})");
 }
 
-TEST(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
+TEST(NetworkCommand, PrintsTestStepsAndFailsIfOneIsBad) {
   const Server server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", tested("bad")}});
   const Outcome outcome = say(server, {"test"});
   EXPECT_EQ(outcome.exit, Exit::Attention) << outcome.err;
@@ -126,7 +126,7 @@ TEST(NetworkCommand, PrintsTheStepsOfATestAndFailsWhereOneIsBad) {
   EXPECT_THAT(say(server, {"test", "--json"}).out, HasSubstr("\"running\":false"));
 }
 
-TEST(NetworkCommand, SaysThatATestWasCutShort) {
+TEST(NetworkCommand, TellsThatATestWasInterrupted) {
   constexpr const char* kKnowsOfNone =
       R"({"number":0,"running":false,"applied":true,"outdated":false,"course":"","endpoints":[]})";
   for (const std::string& left : {Server::ok(kKnowsOfNone), tested("waiting")}) {
@@ -137,7 +137,7 @@ TEST(NetworkCommand, SaysThatATestWasCutShort) {
   }
 }
 
-TEST(NetworkCommand, JoinsATestThatRuns) {
+TEST(NetworkCommand, JoinsARunningTest) {
   const Server server({{"POST /adit/test", Server::reply("409 Conflict", "\"a test is running\"")},
                        {"GET /adit/test", tested("skipped")}});
   const Outcome outcome = say(server, {"test"});
@@ -147,7 +147,7 @@ TEST(NetworkCommand, JoinsATestThatRuns) {
   EXPECT_EQ(say(Server(Server::reply("503 Service Unavailable", "\"no\"")), {"test"}).exit, Exit::Unable);
 }
 
-TEST(NetworkCommand, ReportsNoResultOfOtherValues) {
+TEST(NetworkCommand, RejectsResultsOfOtherValues) {
   const auto test = [](const std::string& of) {
     return say(
         Server({{"POST /adit/test", tested("running", true)}, {"GET /adit/test", tested("good", false, of)}}),
@@ -161,7 +161,7 @@ TEST(NetworkCommand, ReportsNoResultOfOtherValues) {
   EXPECT_EQ(tried.err, "adit: a test of other values is running: try again when it has ended\n");
 }
 
-TEST(NetworkCommand, TriesWhatIsNamedBeforeItIsApplied) {
+TEST(NetworkCommand, TestsTheNamedEndpointBeforeItIsApplied) {
   const TokenFile typed("typed-token-1");
   const std::string file = typed.path();
   // What runs already is something else, and is not joined.

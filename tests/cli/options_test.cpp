@@ -29,7 +29,7 @@ const CommandRow* command(std::string_view name) {
   return &*std::ranges::find(commands(), name, &CommandRow::name);
 }
 
-TEST(Options, TakeACommandAndItsOptionsInAnyOrder) {
+TEST(Options, AcceptCommandAndOptionsInAnyOrder) {
   for (const Words& words :
        {Words{"status", "--json", "--at", "10.0.0.1:80"}, {"--at", "10.0.0.1:80", "--json", "status"}}) {
     const Options options = parsed(words);
@@ -41,12 +41,12 @@ TEST(Options, TakeACommandAndItsOptionsInAnyOrder) {
   EXPECT_EQ(parsed({"reports", "--settings", "x.json"}).settings, "x.json");
 }
 
-TEST(Options, TakeTheFileToCheckAsAWord) {
+TEST(Options, AcceptTheFileToCheckAsAWord) {
   EXPECT_EQ(parsed({"check", "new.json"}).argument(), "new.json");
   EXPECT_EQ(parsed({"check"}).argument(), "");
 }
 
-TEST(Options, TakeTheOperatorsWord) {
+TEST(Options, AcceptTheOperatorsActions) {
   const Options options = parsed({"reports", "settle", "7", "--token-file", "t", "12"});
   EXPECT_EQ(command_of(options), "reports settle");
   EXPECT_EQ(options.numbers, (std::vector<std::int64_t>{7, 12}));
@@ -58,7 +58,7 @@ TEST(Options, TakeTheOperatorsWord) {
   EXPECT_EQ(parsed({"identify", "60"}).numbers, std::vector<std::int64_t>{60});
 }
 
-TEST(Options, TakeWhichReportsAndHow) {
+TEST(Options, AcceptSelectionAndFormatOfReports) {
   EXPECT_EQ(parsed({"reports"}).run, std::nullopt);
   EXPECT_FALSE(parsed({"reports"}).all_runs);
   EXPECT_EQ(parsed({"reports", "--run", "2"}).run, 2);
@@ -68,7 +68,7 @@ TEST(Options, TakeWhichReportsAndHow) {
   EXPECT_TRUE(parsed({"reports", "export", "--json"}).json);
 }
 
-TEST(Options, TakeWhatIsToBeDoneToTheSettings) {
+TEST(Options, AcceptActionsOnTheSettings) {
   EXPECT_EQ(parsed({"settings"}).word(), "show");
   for (const char* const verb : {"show", "export"}) EXPECT_EQ(parsed({"settings", verb}).word(), verb);
   const Options options = parsed({"settings", "apply", "box.json", "--at", "10.0.0.1:80"});
@@ -83,7 +83,7 @@ TEST(Options, TakeWhatIsToBeDoneToTheSettings) {
             (Arguments{"reports.review", "all"}));
 }
 
-TEST(Options, NameTheWordThatIsWrong) {
+TEST(Options, NameTheWrongWord) {
   const struct {
     Words words;
     const char* sentence;
@@ -148,7 +148,7 @@ TEST(Options, NameTheWordThatIsWrong) {
   }
 }
 
-TEST(Options, AreOfTheWordsThatTakeThem) {
+TEST(Options, BelongToTheirCommands) {
   EXPECT_TRUE(parsed({"reports", "send", "7", "--yes"}).yes);
   EXPECT_EQ(parsed({"settings", "show", "reports.review"}).argument(), "reports.review");
   EXPECT_EQ(parsed({"complete", "reports", "settle"}).argument(), "settle");
@@ -159,7 +159,7 @@ TEST(Options, AreOfTheWordsThatTakeThem) {
   EXPECT_THAT(help_about(command("reports")), testing::HasSubstr("with send: do not ask"));
 }
 
-TEST(Version, IsToldWhateverElseIsSaid) {
+TEST(Version, IsShownDespiteOtherWords) {
   EXPECT_TRUE(parsed({"--version"}).version);
   for (const Words& words : {Words{"--version"}, {"status", "--version"}}) {
     EXPECT_THAT(run(words).out, testing::MatchesRegex("adit [0-9]+\\.[0-9]+\\.[0-9]+\n"));
@@ -167,7 +167,7 @@ TEST(Version, IsToldWhateverElseIsSaid) {
   }
 }
 
-TEST(Help, IsGivenForTheCommandAskedAbout) {
+TEST(Help, IsGivenForTheNamedCommand) {
   for (const Words& words : {Words{"--help"}, {"-h"}, {"help"}})
     EXPECT_EQ(run(words).out, help_about(nullptr));
   for (const Words& words : {Words{"check", "--help"}, {"help", "check"}, {"check", "--at", "x", "-h"}}) {
@@ -181,7 +181,7 @@ TEST(Help, IsGivenForTheCommandAskedAbout) {
   EXPECT_EQ(run(Words{"help", "status"}).out, help_about(command("status")));
 }
 
-TEST(Command, OfAWrongLineSaysSoAndWhereHelpIs) {
+TEST(Command, WithAFaultNamesItAndTheHelp) {
   const Outcome outcome = run(Words{"st\x1b[2Jatus"});
   EXPECT_EQ(outcome.exit, Exit::Unable);
   EXPECT_EQ(outcome.out, "");

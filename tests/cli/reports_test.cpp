@@ -42,7 +42,7 @@ Outcome asked(const std::vector<api::ReportRow>& rows, std::vector<std::string_v
   return say(server, std::move(words));
 }
 
-TEST(Reports, ListThePresentRunAndWhatIsLeftOfEarlierOnes) {
+TEST(Reports, ListThePresentRunAndUnfinishedEarlierOnes) {
   const auto rows = two_runs();
   const Outcome outcome = asked(rows, {"reports"});
   EXPECT_EQ(outcome.err, "");
@@ -76,7 +76,7 @@ TEST(Reports, AreAListForScripts) {
             codec::to_json(std::vector<api::ReportRow>{rows[3], rows[2], rows[1]}) + "\n");
 }
 
-TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
+TEST(Reports, NeedAttentionIfOneAwaitsTheOperator) {
   EXPECT_EQ(asked(two_runs(), {"reports", "--run", "2"}).exit, Exit::Attention)
       << "though it is of another run";
   EXPECT_EQ(asked({report(4, 2, "in_doubt")}, {"reports"}).exit, Exit::Attention);
@@ -91,7 +91,7 @@ TEST(Reports, NeedTheOperatorWhereOneWaitsForHisWord) {
   EXPECT_EQ(asked({undoable}, {"reports"}).exit, Exit::Fine);
 }
 
-TEST(Reports, ShowOneOrSayThatThereIsNone) {
+TEST(Reports, ShowOneOrTellThatItIsUnknown) {
   const Outcome outcome = asked(two_runs(), {"reports", "show", "4"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
   EXPECT_THAT(outcome.out, testing::AllOf(HasSubstr("report    4\n"), HasSubstr("queued  posted\n")));
@@ -102,7 +102,7 @@ TEST(Reports, ShowOneOrSayThatThereIsNone) {
   EXPECT_EQ(none.err, "adit: there is no report 5\n");
 }
 
-TEST(Reports, AreExportedAsTheyAre) {
+TEST(Reports, AreExportedUnchanged) {
   const auto rows = two_runs();
   EXPECT_EQ(asked(rows, {"reports", "export"}).out, csv_of(rows));
   EXPECT_EQ(asked(rows, {"reports", "export", "--csv"}).out, csv_of(rows));
@@ -110,7 +110,7 @@ TEST(Reports, AreExportedAsTheyAre) {
   EXPECT_EQ(asked(rows, {"reports", "export"}).exit, Exit::Fine);
 }
 
-TEST(Reports, OfAnotherVersionAreNotGuessedAt) {
+TEST(Reports, OfAnotherVersionAreRejected) {
   const Server server({{"GET /adit/run", Server::ok(codec::to_json(sample_view()))},
                        {"GET /adit/reports", Server::ok("[{\"number\": 1}]")}});
   const Outcome outcome = say(server, {"reports"});

@@ -39,7 +39,7 @@ TEST(ReportsText, HasARowForEachReport) {
       "60 s ago\n");
 }
 
-TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
+TEST(ReportsText, HasNoPositionForALostReport) {
   api::ReportRow lost = in_state("in_doubt");
   lost.position = {};
   lost.position.reset();
@@ -47,7 +47,7 @@ TEST(ReportsText, HasNoPlaceForAReportThatIsLost) {
   EXPECT_THAT(report_text({.row = lost, .history = {}, .answer = ""}, false), HasSubstr("lost"));
 }
 
-TEST(ReportsText, SaysThatThereAreNone) {
+TEST(ReportsText, TellsThatThereAreNone) {
   EXPECT_EQ(reports_text({}, {}, 1000, false), "No reports so far.\n");
   EXPECT_EQ(
       reports_text({}, {.of_other_runs = 12}, 1000, false),
@@ -58,7 +58,7 @@ TEST(ReportsText, SaysThatThereAreNone) {
               testing::EndsWith("\n2 older reports are not listed\n"));
 }
 
-TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
+TEST(ReportsText, EscapesTerminalSequences) {
   api::ReportRow report = in_state("\x1b[2J");
   report.type = report.sender = report.note = "\x1b[2J\n";
   EXPECT_EQ(reports_text({report}, {}, 1000, false).find('\x1b'), std::string::npos);
@@ -66,7 +66,7 @@ TEST(ReportsText, NeverLetsOthersSteerTheTerminal) {
             std::string::npos);
 }
 
-TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
+TEST(StateText, NamesTheAwaitedDecision) {
   api::ReportRow doubt = in_state("in_doubt");
   EXPECT_EQ(life_of(doubt), "in doubt");
   EXPECT_TRUE(needs_the_operator(doubt));
@@ -81,14 +81,14 @@ TEST(LifeOf, TellsWhoseWordIsWaitedFor) {
   EXPECT_FALSE(needs_the_operator(undoable));
 }
 
-TEST(LifeOf, IsTheStatesWord) {
+TEST(StateText, IsTheWordOfTheState) {
   for (const std::string_view word : dispatch::kStateWords) {
     if (word != "in_doubt") EXPECT_EQ(life_of(in_state(std::string(word))), word);
   }
   EXPECT_EQ(life_of(in_state("a later one")), "a later one");
 }
 
-TEST(SaidOf, IsTheAnswerInWords) {
+TEST(AnswerText, IsTheAnswerInWords) {
   api::ReportRow report = in_state("answered");
   EXPECT_EQ(said_of(report), "scored");
   report.reconciled = true;
@@ -99,7 +99,7 @@ TEST(SaidOf, IsTheAnswerInWords) {
   EXPECT_EQ(said_of(report), "error 422");
 }
 
-TEST(LifeOf, IsExplainedInTheHelp) {
+TEST(StateText, IsExplainedInTheHelp) {
   for (const auto& row : dispatch::report_life()) {
     api::ReportRow report = in_state(std::string(dispatch::name_of(row.from)));
     EXPECT_THAT(help_of("reports"), HasSubstr("\n  " + life_of(report) + " "));
@@ -108,7 +108,7 @@ TEST(LifeOf, IsExplainedInTheHelp) {
   }
 }
 
-TEST(ReportText, TellsAllOfOneReport) {
+TEST(ReportText, ShowsAllOfOneReport) {
   api::ReportRow report = in_state("settled");
   report.received = 1566309785.125;
   report.reconciled = true;
@@ -142,7 +142,7 @@ TEST(ReportText, HasTheSentenceOfARejection) {
   EXPECT_THAT(report_text(detail, false), HasSubstr("  message   no such type\n"));
 }
 
-TEST(ReportText, OffersTheActionsThatCanBe) {
+TEST(ReportText, OffersThePossibleActions) {
   const auto actions = [](const std::string& state) {
     const std::string text = report_text({in_state(state), {}, ""}, false);
     const auto begin = text.find("actions   ");

@@ -77,7 +77,7 @@ class Runs : public testing::Test {
   host::Folder folder_;
 };
 
-TEST_F(Runs, AreListedTheLatestFirst) {
+TEST_F(Runs, AreListedLatestFirst) {
   const Outcome listed = say({});
   EXPECT_EQ(listed.exit, Exit::Fine);
   EXPECT_THAT(
@@ -100,7 +100,7 @@ TEST_F(Runs, AreShownOneByOne) {
   EXPECT_THAT(say({"show"}).err, StartsWith("adit: a run's key is missing after show\n"));
 }
 
-TEST_F(Runs, HaveAReportThatIsPrintedOrWrittenToAFile) {
+TEST_F(Runs, HaveAReportForScreenOrFile) {
   EXPECT_EQ(say({"report", "1-2"}).out, "<!doctype html><title>Run 1</title>");
   const std::string to = folder_ / "run.html";
   EXPECT_EQ(say({"report", "1-2", "--to", to}).out, "wrote the report of run 1-2 to " + to + "\n");
@@ -113,7 +113,7 @@ TEST_F(Runs, HaveAReportThatIsPrintedOrWrittenToAFile) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "none"));
 }
 
-TEST_F(Runs, AreDeletedOnlyWhereThatIsMeant) {
+TEST_F(Runs, AreDeletedOnlyIfConfirmed) {
   std::string asked;
   const Outcome kept = say({"delete", "1-2"}, answering(false, asked));
   EXPECT_EQ(

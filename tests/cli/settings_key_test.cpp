@@ -44,12 +44,12 @@ std::string text_of_key(const std::string& name) {
   return keys ? text_of(*keys, false) : keys.error().sentence;
 }
 
-TEST(AKey, IsShownWithItsValueAndWhatItMayBe) {
+TEST(SettingsKey, IsShownWithItsValueAndBounds) {
   EXPECT_EQ(text_of_key("reports.review"),
             "  reports.review  off\n  What is held.\n  allowed: \"off\" or \"all\"; default: off\n");
 }
 
-TEST(AKey, OfAListIsShownForEachItem) {
+TEST(SettingsKey, OfAListIsShownForEachItem) {
   EXPECT_EQ(text_of_key("robots[].alias"),
             "  robots[0].alias  husky\n  robots[1].alias  (empty)\n  Its alias.\n  allowed: text; default: "
             "(empty)\n");
@@ -57,7 +57,7 @@ TEST(AKey, OfAListIsShownForEachItem) {
             "  courses[].name  (none)\n  A course.\n  allowed: letters; required\n");
 }
 
-TEST(AKey, MayBeTheBeginningOfSeveral) {
+TEST(SettingsKey, MayBeThePrefixOfSeveral) {
   EXPECT_EQ(keys_named(answer(), "reports")->size(), 2);
   EXPECT_EQ(keys_named(answer(), "robots")->size(), 2);
   EXPECT_EQ(keys_named(answer(), "robots[]")->size(), 2);
@@ -65,7 +65,7 @@ TEST(AKey, MayBeTheBeginningOfSeveral) {
               HasSubstr(R"("values":{"robots[0].name":"r1","robots[1].name":"r2"})"));
 }
 
-TEST(AKey, ThatIsNoneIsAskedAbout) {
+TEST(SettingsKey, UnknownHasASuggestion) {
   EXPECT_EQ(text_of_key("reports.reviw"),
             "no such settings key: reports.reviw; did you mean reports.review?");
   EXPECT_EQ(text_of_key("xyzzy"), "no such settings key: xyzzy");

@@ -40,7 +40,7 @@ class SettingsCommand : public testing::Test {
   std::string settings_ = "/tmp/adit-settings-XXXXXX";
 };
 
-TEST_F(SettingsCommand, ShowsWhatDiffersFromTheDefaultsAndWhichTokensAreSet) {
+TEST_F(SettingsCommand, ShowsChangedSettingsAndWhichTokensAreSet) {
   const Server server({{"GET /adit/settings", Server::ok(shown())}});
   const Outcome outcome = say(server, {"settings"});
   EXPECT_EQ(outcome.exit, Exit::Fine);
@@ -65,7 +65,7 @@ TEST_F(SettingsCommand, ChecksAFileWithoutChangingAnything) {
   EXPECT_THAT(server.request(), HasSubstr(std::string(R"({"settings":)") + kFile + "}"));
 }
 
-TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
+TEST_F(SettingsCommand, AppliesAFileOnTheTagItRead) {
   const Server server({{"GET /adit/settings", Server::ok(shown())},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
                        {"POST /adit/settings", Server::ok(kNone)}});
@@ -75,7 +75,7 @@ TEST_F(SettingsCommand, AppliesAFileToTheSettingsThatItSaw) {
   EXPECT_THAT(server.posted(), HasSubstr(R"("base":"0123456789abcdef"})"));
 }
 
-TEST_F(SettingsCommand, SaysWhyAnAcceptedChangeIsNotInUse) {
+TEST_F(SettingsCommand, TellsWhyAnAcceptedChangeIsNotInUse) {
   const std::string reverted = shown("the last change was reverted: x");
   const Server server({{"GET /adit/settings", Server::ok(reverted)},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
@@ -89,7 +89,7 @@ TEST_F(SettingsCommand, SaysWhyAnAcceptedChangeIsNotInUse) {
   }
 }
 
-TEST_F(SettingsCommand, TellsNoTroubleOfAnEarlierChangeIfNothingChanges) {
+TEST_F(SettingsCommand, HidesEarlierTroubleIfNothingChanges) {
   const std::string earlier = shown("the last change was reverted: x");
   const Server server({{"GET /adit/settings", Server::ok(earlier)},
                        {"POST /adit/settings/check", Server::ok(kNone)},
@@ -137,7 +137,7 @@ TEST_F(SettingsCommand, NamesEachErrorOfAFileAndAppliesNothing) {
   }
 }
 
-TEST_F(SettingsCommand, SaysThatSomebodyElseChangedThem) {
+TEST_F(SettingsCommand, TellsThatTheSettingsChangedMeanwhile) {
   const Server server({{"GET /adit/settings", Server::ok(shown())},
                        {"POST /adit/settings/check", Server::ok(kChanges)},
                        {"POST /adit/settings", Server::reply("409 Conflict", "\"somebody else has\"")}});
@@ -146,7 +146,7 @@ TEST_F(SettingsCommand, SaysThatSomebodyElseChangedThem) {
   EXPECT_EQ(outcome.err, "adit: somebody else has\n");
 }
 
-TEST_F(SettingsCommand, SaysWhatIsWrongWithAFileThatIsNone) {
+TEST_F(SettingsCommand, NamesTheFaultOfAnInvalidFile) {
   const Server server({{"POST /adit/settings/check", Server::ok(kChanges)}});
   EXPECT_EQ(say(server, {"settings", "check", "/none.json"}).err,
             "adit: /none.json: No such file or directory\n");

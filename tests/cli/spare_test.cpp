@@ -39,7 +39,7 @@ class SpareCommand : public testing::Test {
   const std::string export_ = folder_ / "box.adit-spare";
 };
 
-TEST_F(SpareCommand, TellsHowTheBoxStands) {
+TEST_F(SpareCommand, ShowsTheStateOfTheBox) {
   const Server at_work({{"GET /adit/spare", Server::ok(kAtWork)}});
   EXPECT_EQ(say(at_work, {}).exit, Exit::Fine);
   const Server standby({{"GET /adit/spare", Server::ok(kStandby)}});
@@ -49,14 +49,14 @@ TEST_F(SpareCommand, TellsHowTheBoxStands) {
             "This box is on standby: its spare takes over\nCode of its export: 1234 5678 9012 3456\n");
 }
 
-TEST_F(SpareCommand, AsksBeforeItPutsTheBoxToRest) {
+TEST_F(SpareCommand, NeedsConfirmationForStandby) {
   const Server server({{"GET /adit/spare", Server::ok(kAtWork)}});
   const Outcome outcome = say(server, {"export", export_});
   EXPECT_EQ(outcome.exit, Exit::Attention);
   EXPECT_THAT(outcome.err, HasSubstr("It was not done; to do it, add --yes"));
 }
 
-TEST_F(SpareCommand, WritesTheExportAndTellsItsCode) {
+TEST_F(SpareCommand, WritesTheExportAndShowsItsCode) {
   const Server server({{"POST /adit/spare/standby", Server::ok(kAtWork)},
                        {"GET /adit/spare/export", Server::ok("a sealed file")},
                        {"GET /adit/spare", Server::ok(kStandby)}});
@@ -67,7 +67,7 @@ TEST_F(SpareCommand, WritesTheExportAndTellsItsCode) {
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(file), {}), "a sealed file");
 }
 
-TEST_F(SpareCommand, RefusesWhatIsNoExportBeforeItIsSent) {
+TEST_F(SpareCommand, RejectsAnInvalidExportBeforeSending) {
   const Server server(Server::Answers{});
   const std::string other = folder_.put("other", "PK a zip file of more bytes");
   EXPECT_THAT(say(server, {"take", other, "--code", "1234567890123456"}).err,
@@ -76,7 +76,7 @@ TEST_F(SpareCommand, RefusesWhatIsNoExportBeforeItIsSent) {
   EXPECT_THAT(say(server, {"take", other}).err, HasSubstr("the code of the export is missing: give --code"));
 }
 
-TEST_F(SpareCommand, PutsNoBoxToRestWhoseStickCouldNotBeWritten) {
+TEST_F(SpareCommand, StaysInServiceIfTheStickCannotBeWritten) {
   const Server without({{"GET /adit/spare", Server::ok(kNoStick)}});
   const Outcome outcome = say(without, {"export", "--stick", "--yes"});
   EXPECT_EQ(outcome.exit, Exit::Attention);
@@ -85,7 +85,7 @@ TEST_F(SpareCommand, PutsNoBoxToRestWhoseStickCouldNotBeWritten) {
   EXPECT_THAT(say(pc, {"export", "--stick", "--yes"}).err, HasSubstr("cannot use a stick"));
 }
 
-TEST_F(SpareCommand, TellsWhatIsOnTheStickAndTakesTheOneThatIsNamed) {
+TEST_F(SpareCommand, ListsTheStickAndImportsTheNamedExport) {
   const Server server(
       {{"POST /adit/spare/from-stick", Server::reply("409 Conflict", R"("it cannot be read")")},
        {"GET /adit/spare", Server::ok(kStick)}});
@@ -96,7 +96,7 @@ TEST_F(SpareCommand, TellsWhatIsOnTheStickAndTakesTheOneThatIsNamed) {
               HasSubstr("it cannot be read"));
 }
 
-TEST_F(SpareCommand, IsOfAFileOrOfTheStick) {
+TEST_F(SpareCommand, AcceptsAFileOrTheStick) {
   const Server server(Server::Answers{});
   EXPECT_THAT(say(server, {"export"}).err, HasSubstr("a file or --stick is missing after export"));
   EXPECT_THAT(say(server, {"take"}).err, HasSubstr("a file or --stick is missing after take"));
@@ -104,7 +104,7 @@ TEST_F(SpareCommand, IsOfAFileOrOfTheStick) {
   EXPECT_THAT(say(server, {"resume", "--stick"}).err, HasSubstr("spare resume does not take --stick"));
 }
 
-TEST_F(SpareCommand, ShowsWhatIsInItAndTakesOverOnlyWhereThatIsMeant) {
+TEST_F(SpareCommand, ShowsTheExportAndTakesOverOnlyIfConfirmed) {
   const std::string file = folder_.put("it", std::string("adit-spare\1\0 and more", 21));
   const Server server({{"POST /adit/spare/take-over", Server::ok(kAtWork)},
                        {"POST /adit/spare/take", Server::ok(kAtWork)},

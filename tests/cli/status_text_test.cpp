@@ -13,7 +13,7 @@ using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
 
-TEST(StatusText, TellsAGoodRunOnOneScreen) {
+TEST(StatusText, ShowsAGoodRunOnOneScreen) {
   EXPECT_EQ(status_text(sample_view(), false),
             "Run   12:34   47:25 to go   score 7   18 reports left   team cave_club   (heard 0.4 s ago)\n"
             "Link  12.3 of 100 Mbit/s   3.4 MB of maps queued\n"
@@ -39,7 +39,7 @@ TEST(StatusText, MarksAnEstimateOfTheRunClock) {
   EXPECT_THAT(status_text(view, false), StartsWith("Run   12:34   47:26 to go ")) << "it stands";
 }
 
-TEST(StatusText, BeginsWithTheAlarmsInShapeAndWord) {
+TEST(StatusText, BeginsWithTheAlarms) {
   api::RunView view = sample_view();
   view.alarms = {
       {.id = "robot_silent:r2", .since = 906, .what = "r2 is silent", .why = "its habit is 2 s", .hides = 3},
@@ -61,7 +61,7 @@ TEST(StatusText, BeginsWithTheAlarmsInShapeAndWord) {
   EXPECT_THAT(text, HasSubstr("\nMaps  1 of 2 arrive: not r2\n"));
 }
 
-TEST(StatusText, SaysHowAnEndpointStandsAndWhy) {
+TEST(StatusText, ShowsTheStandingOfAnEndpoint) {
   api::RunView view = sample_view();
   view.endpoints[1].word = "unreachable";
   view.endpoints[1].trouble = "Connection refused";
@@ -69,13 +69,13 @@ TEST(StatusText, SaysHowAnEndpointStandsAndWhy) {
               testing::ContainsRegex("8000  unreachable  .*  Connection refused\n"));
 }
 
-TEST(StatusText, OfAnAditThatHasHeardNothingIsStillWhole) {
+TEST(StatusText, IsCompleteBeforeTheFirstMessage) {
   EXPECT_EQ(
       status_text({}, false),
       "Run   no status from the Command Post yet\nLink  0 of 0 Mbit/s   0 B of maps queued\nReports  0\n");
 }
 
-TEST(StatusText, ShowsTheLatestRefusals) {
+TEST(StatusText, ShowsTheLatestRejections) {
   api::RunView view = sample_view();
   view.refusals = {{.at = 998,
                     .uri = "/map/update",
@@ -88,7 +88,7 @@ TEST(StatusText, ShowsTheLatestRefusals) {
           "Rejected from clients, newest first\n  2 s ago  10.0.0.7  /map/update  422  msg.info.width: "));
 }
 
-TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
+TEST(StatusText, EscapesTerminalSequences) {
   api::RunView view = sample_view();
   view.run->current_team = "\x1b]0;a\x07";
   view.activities[0].robot = "\x1b[2J";
@@ -101,7 +101,7 @@ TEST(StatusText, NeverLetsOthersSteerTheTerminal) {
   EXPECT_THAT(status_text(view, false), Not(HasSubstr("\x1b")));
 }
 
-TEST(StatusText, SaysHowFarTheCommandPostIsBehindAndWhatWasRefused) {
+TEST(StatusText, ShowsBacklogAndRejectionsOfARobot) {
   api::RunView view = sample_view();
   view.activities[0].word = "33 s behind";
   view.activities[0].queued = 247;
@@ -117,7 +117,7 @@ TEST(StatusText, IsExplainedInTheHelp) {
   }
 }
 
-TEST(StatusText, SaysWhatBecomesOfARobotsClouds) {
+TEST(StatusText, ShowsTheTreatmentOfARobotsClouds) {
   api::RunView view = sample_view();
   api::ActivityRow& row = view.activities[0];
   row.kind = "cloud", row.clouds = "parts", row.precision = "exact";

@@ -17,7 +17,7 @@ TEST(Table, AlignsItsColumns) {
             "  robot_long  12345  422: no\n");
 }
 
-TEST(Table, LeavesNoSpaceAtTheEndOfALine) {
+TEST(Table, HasNoTrailingSpaces) {
   Table table({{"a"}, {"b", Align::Right}, {"c"}});
   table.add({{"x"}, {""}, {""}});
   table.add({{""}, {"22"}, {"z"}});
@@ -27,14 +27,14 @@ TEST(Table, LeavesNoSpaceAtTheEndOfALine) {
             "     22  z\n");
 }
 
-TEST(Table, KeepsItsColumnsWhereTextIsPainted) {
+TEST(Table, KeepsItsColumnsIfTextIsColoured) {
   Table table({{}, {}});
   table.add({{"NO", Tone::Bad}, {"x"}});
   table.add({{"late"}, {"y"}});
   EXPECT_EQ(table.written(true), "  \033[1;31mNO\033[0m    x\n  late  y\n");
 }
 
-TEST(Table, ShowsWhatOthersWroteEscaped) {
+TEST(Table, EscapesForeignText) {
   Table table(std::vector<Table::Column>(1));
   table.add({{"\033[2Jr1\n"}});
   EXPECT_EQ(table.written(true), "  \\x1b[2Jr1\\x0a\n");

@@ -41,7 +41,7 @@ class FindToken : public testing::Test {
   const std::string& folder_ = folders_[1];
 };
 
-TEST_F(FindToken, TakesASavedTokenBeforeTheSameThatWasGiven) {
+TEST_F(FindToken, PrefersASavedTokenToTheGivenOne) {
   write("team.token", "given-1");
   std::ofstream(folders_[0] + "/scoring.token") << "saved-scoring";
   EXPECT_EQ(found(), "given-1") << "the team's first";
@@ -49,7 +49,7 @@ TEST_F(FindToken, TakesASavedTokenBeforeTheSameThatWasGiven) {
   EXPECT_EQ(found(), "saved-team");
 }
 
-TEST_F(FindToken, TakesTheTeamsBeforeTheScoringToken) {
+TEST_F(FindToken, PrefersTheTeamToken) {
   EXPECT_EQ(found(), "none");
   write("scoring.token", "scoring-1\n");
   EXPECT_EQ(found(), "scoring-1");
@@ -60,7 +60,7 @@ TEST_F(FindToken, TakesTheTeamsBeforeTheScoringToken) {
   EXPECT_EQ((*find_token("", folders_))->file, team);
 }
 
-TEST_F(FindToken, StopsAtASavedTokenThatIsEmptyAndAtAnUnreadableOne) {
+TEST_F(FindToken, FailsAtAnEmptyOrUnreadableToken) {
   write("team.token", "given-1");
   const std::string saved = folders_[0] + "/team.token";
   std::ofstream(saved) << '\n';
@@ -70,13 +70,13 @@ TEST_F(FindToken, StopsAtASavedTokenThatIsEmptyAndAtAnUnreadableOne) {
   EXPECT_THAT(found(), testing::StartsWith("error: " + saved + ": is not a regular file; "));
 }
 
-TEST_F(FindToken, TakesTheFileThatIsNamed) {
+TEST_F(FindToken, ReadsTheNamedFile) {
   write("team.token", "team-1");
   const std::string mine = write("mine", "\tmine-1\r\n");
   EXPECT_EQ((*find_token(mine, folders_))->token.reveal(), "mine-1");
 }
 
-TEST_F(FindToken, NamesTheFileAndNeverWhatIsInIt) {
+TEST_F(FindToken, NamesTheFileButNotItsContent) {
   const std::string two = write("two", "sesame one");
   const auto token = find_token(two, folders_);
   ASSERT_FALSE(token.has_value());

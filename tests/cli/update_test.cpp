@@ -24,14 +24,14 @@ Outcome say_update(const Server& server, std::vector<std::string_view> words) {
   return say(server, words);
 }
 
-TEST(Update, SaysWhichSlotRuns) {
+TEST(Update, ShowsTheRunningSlot) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box("")))}});
   const Outcome told = say_update(server, {});
   EXPECT_EQ(told.out, "0.1.0 runs, in slot A (an update goes into slot B) of adit-a-board\n");
   EXPECT_EQ(told.exit, Exit::Fine);
 }
 
-TEST(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
+TEST(Update, ShowsAnUnexpectedSlotAndBothChoices) {
   const Server server({{"GET /adit/update", Server::ok(codec::to_json(a_box(kWhy)))}});
   const Outcome told = say_update(server, {});
   EXPECT_THAT(told.out, HasSubstr("An unexpected slot runs: " + std::string(kWhy)));
@@ -40,7 +40,7 @@ TEST(Update, SaysThatAnotherSlotRunsAndBothWaysOn) {
   EXPECT_EQ(told.exit, Exit::Attention);
 }
 
-TEST(Update, OfAPcIsApts) {
+TEST(Update, OnAPcRefersToApt) {
   api::UpdateView pc;
   pc.why = "adit-update does not run here";
   const auto said_of = [&pc] {
@@ -58,7 +58,7 @@ TEST(Update, OfAPcIsApts) {
   EXPECT_EQ(said_of().exit, Exit::Fine);
 }
 
-TEST(Update, GoesBackOrStaysWhereItIsAskedTo) {
+TEST(Update, GoesBackOrStaysOnRequest) {
   const std::string after = Server::ok(codec::to_json(a_box("")));
   const Server server({{"POST /adit/update/back", after}, {"POST /adit/update/stay", after}});
   EXPECT_EQ(say_update(server, {"--back"}).out, "the box restarts into the slot that was good last\n");

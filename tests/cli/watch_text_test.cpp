@@ -30,11 +30,11 @@ api::RunView later() {
   return view;
 }
 
-TEST(Watching, SaysNothingWhereOnlyTheClockGoesOn) {
+TEST(Watching, PrintsNothingIfOnlyTheClockChanges) {
   EXPECT_THAT(changed(sample_view(), later()), IsEmpty());
 }
 
-TEST(Watching, TellsWhatNeedsTheOperatorAndWhatNoLonger) {
+TEST(Watching, PrintsAlarmsAndTheirEnd) {
   api::RunView now = later();
   now.alarms = {{.id = "report_in_doubt:7", .what = "Report 7 is in doubt", .why = "no answer came"}};
   EXPECT_EQ(changed(sample_view(), now), "ALARM  Report 7 is in doubt: no answer came\n");
@@ -42,7 +42,7 @@ TEST(Watching, TellsWhatNeedsTheOperatorAndWhatNoLonger) {
   EXPECT_THAT(changed(now, now), IsEmpty());
 }
 
-TEST(Watching, TellsOfTheRun) {
+TEST(Watching, PrintsChangesOfTheRun) {
   api::RunView now = later();
   now.run->score = 8;
   now.run->remaining_reports = 17;
@@ -52,7 +52,7 @@ TEST(Watching, TellsOfTheRun) {
   EXPECT_EQ(changed(sample_view(), now), "run 2 begins\nrun: no status from the Command Post yet\n");
 }
 
-TEST(Watching, TellsOfReports) {
+TEST(Watching, PrintsChangesOfReports) {
   api::RunView now = later();
   now.reports.front().state = "settled";
   now.reports.front().reconciled = true;
@@ -66,7 +66,7 @@ TEST(Watching, TellsOfReports) {
             "report 4 Survivor: held (a near duplicate of report 3)\n");
 }
 
-TEST(Watching, TellsOfEndpointsAndRobots) {
+TEST(Watching, PrintsChangesOfEndpointsAndRobots) {
   api::RunView now = later();
   now.endpoints[1].word = "unreachable";
   now.endpoints[1].trouble = "no route to host";
@@ -78,19 +78,19 @@ TEST(Watching, TellsOfEndpointsAndRobots) {
   EXPECT_EQ(changed(now, later()), "mapping endpoint: connected\nr1, grid: arrives\n");
 }
 
-TEST(Watching, SaysNothingOfARobotThatIsLateInItsTurn) {
+TEST(Watching, PrintsNothingForARobotLateInItsTurn) {
   api::RunView now = later();
   now.activities[0].arrival = alarms::Arrival::Late;
   EXPECT_THAT(changed(sample_view(), now), IsEmpty());
 }
 
-TEST(Watching, CannotBeForgedByWhatOthersWrote) {
+TEST(Watching, EscapesForeignText) {
   api::RunView now = later();
   now.alarms = {{.id = "x", .what = "from\x1b[2J\na robot"}};
   EXPECT_EQ(changed(sample_view(), now), "ALARM  from\\x1b[2J\\x0aa robot\n");
 }
 
-TEST(AScreen, ShowsWhatFits) {
+TEST(Screen, ShowsTheLinesThatFit) {
   EXPECT_EQ(fitted("one\ntwo\n", 5, 10), "one\ntwo");
   EXPECT_EQ(fitted("one\ntwo\nthree\n", 2, 20), "one\n... 2 more lines");
   EXPECT_EQ(fitted("one\ntwo\nthree\n", 1, 20), "... 3 more lines");
@@ -98,7 +98,7 @@ TEST(AScreen, ShowsWhatFits) {
   EXPECT_EQ(fitted("", 3, 20), "");
 }
 
-TEST(AScreen, CutsLinesByWhatIsSeenOfThem) {
+TEST(Screen, CutsLinesByTheirVisibleWidth) {
   EXPECT_EQ(fitted("abcdef\n", 3, 4), "abcd\033[0m");
   EXPECT_EQ(fitted("Höhle\n", 3, 5), "Höhle");
   EXPECT_EQ(fitted("Höhlen\n", 3, 2), "Hö\033[0m");

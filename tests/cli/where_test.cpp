@@ -16,14 +16,14 @@ settings::Team team(const Address& address, const std::string& interface) {
   return team;
 }
 
-TEST(ParseAddress, TakesBothFamilies) {
+TEST(ParseAddress, AcceptsBothFamilies) {
   EXPECT_EQ(parse_address("10.0.0.1:8000").value(), (Address{"10.0.0.1", 8000}));
   EXPECT_EQ(parse_address("[fd00::1]:65535").value(), (Address{"fd00::1", 65535}));
   EXPECT_EQ(parse_address("10.0.0.1").value(), (Address{"10.0.0.1", 8000}));
   EXPECT_EQ(parse_address("[fd00::1]").value(), (Address{"fd00::1", 8000}));
 }
 
-TEST(ParseAddress, RefusesWhatIsNone) {
+TEST(ParseAddress, RejectsInvalidAddresses) {
   for (const std::string text :
        {"", ":", "8000", "[", "]", "[]", "10.0.0.1:", "10.0.0.1:0", "10.0.0.1:65536", "10.0.0.1:+1",
         "10.0.0:80", "host:80", "fd00::1:80", "[10.0.0.1]:80", "[10.0.0.1]", "fd00::1", "10.0.0.1:80 "}) {
@@ -33,29 +33,29 @@ TEST(ParseAddress, RefusesWhatIsNone) {
   }
 }
 
-TEST(ParseAddress, ReadsBackWhatIsWritten) {
+TEST(ParseAddress, ReadsBackTheSame) {
   for (const Address& address : {Address{"10.0.0.1", 1}, Address{"fd00::1", 8000}}) {
     EXPECT_EQ(parse_address(written(address)).value(), address);
   }
 }
 
-TEST(Reach, IsTheAddressThatAditListensAt) {
+TEST(AditAddress, IsTheListeningAddress) {
   EXPECT_EQ(reach(team({"10.0.0.1", 8000}, "team0")).value(), (Address{"10.0.0.1", 8000}));
 }
 
-TEST(Reach, IsLoopbackWhereAditListensEverywhere) {
+TEST(AditAddress, IsLoopbackIfAditListensEverywhere) {
   EXPECT_EQ(reach(team({"0.0.0.0", 8000}, "")).value(), (Address{"127.0.0.1", 8000}));
   EXPECT_EQ(reach(team({"::", 8000}, "")).value(), (Address{"::1", 8000}));
   EXPECT_EQ(reach(team({"0:0::0", 8000}, "")).value(), (Address{"::1", 8000}));
 }
 
-TEST(Reach, IsAnAddressOfTheInterfaceThatAditIsBoundTo) {
+TEST(AditAddress, IsAnAddressOfTheBoundInterface) {
   EXPECT_EQ(reach(team({"0.0.0.0", 8000}, "lo")).value(), (Address{"127.0.0.1", 8000}));
   EXPECT_EQ(reach(team({"0.0.0.0", 8000}, "nosuch0")).error(),
             "interface nosuch0 (team.interface) has no address");
 }
 
-TEST(Reach, CannotBeToldOfAnyFreePort) {
+TEST(AditAddress, IsUnknownForAnyFreePort) {
   EXPECT_THAT(reach(team({"0.0.0.0", 0}, "")).error(), HasSubstr("--at ADDR:PORT"));
 }
 

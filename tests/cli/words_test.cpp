@@ -7,7 +7,7 @@
 namespace adit::cli {
 namespace {
 
-TEST(Words, SayATimeInItsUnit) {
+TEST(Words, ShowATimeInItsUnit) {
   EXPECT_EQ(duration(-1), "0 s");
   EXPECT_EQ(duration(0.44), "0.4 s");
   EXPECT_EQ(duration(9.96), "10 s");
@@ -25,7 +25,7 @@ TEST(Words, ShowARunClock) {
   EXPECT_EQ(clock(-5), "0:00");
 }
 
-TEST(Words, SayASizeInItsUnit) {
+TEST(Words, ShowASizeInItsUnit) {
   EXPECT_EQ(size(0), "0 B");
   EXPECT_EQ(size(999), "999 B");
   EXPECT_EQ(size(64400), "64 kB");
@@ -34,7 +34,7 @@ TEST(Words, SayASizeInItsUnit) {
   EXPECT_EQ(size(std::numeric_limits<std::uint64_t>::max()), "18446744073709.6 MB");
 }
 
-TEST(Words, LeaveOutDigitsThatSayNothing) {
+TEST(Words, OmitNeedlessDigits) {
   EXPECT_EQ(decimal(12.5, 2), "12.5");
   EXPECT_EQ(decimal(100, 1), "100");
   EXPECT_EQ(decimal(-0.001, 2), "0");
@@ -42,7 +42,7 @@ TEST(Words, LeaveOutDigitsThatSayNothing) {
   EXPECT_EQ(decimal(std::numeric_limits<double>::max(), 2).size(), 309u);
 }
 
-TEST(Words, ArePaintedOnlyWhereThereIsColour) {
+TEST(Words, AreColouredOnlyIfSupported) {
   EXPECT_EQ(painted("NO", Tone::Bad, false), "NO");
   EXPECT_EQ(painted("NO", Tone::Bad, true), "\033[1;31mNO\033[0m");
   EXPECT_EQ(painted("yes", Tone::Plain, true), "yes");

@@ -39,7 +39,7 @@ class ButtonWatchTest : public testing::Test {
   std::optional<ButtonWatch> button;
 };
 
-TEST_F(ButtonWatchTest, TellsOfAPressOnceItIsOver) {
+TEST_F(ButtonWatchTest, ReportsAPressOnRelease) {
   watch();
   set(true);
   EXPECT_TRUE(presses.empty());
@@ -60,7 +60,7 @@ TEST_F(ButtonWatchTest, IgnoresABounce) {
   EXPECT_TRUE(presses.empty());
 }
 
-TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
+TEST_F(ButtonWatchTest, ShowsWhenToRelease) {
   watch();
   lights.set(State::Serving, true);
   wire.set(true);
@@ -73,7 +73,7 @@ TEST_F(ButtonWatchTest, ShowsWhenItIsTimeToLetGoAndWhenItIsNot) {
   EXPECT_EQ(presses, std::vector{Press::ShowAddress});
 }
 
-TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
+TEST_F(ButtonWatchTest, IgnoresAStuckButton) {
   wire.pressed = true;
   watch();
   time.pass(loop, 3200ms);
@@ -82,7 +82,7 @@ TEST_F(ButtonWatchTest, DoesNothingWhileTheButtonIsStuck) {
   EXPECT_TRUE(presses.empty());
 }
 
-TEST_F(ButtonWatchTest, ForgetsAPressWhereTheButtonCannotBeReadAnyMore) {
+TEST_F(ButtonWatchTest, CancelsAPressIfTheButtonFails) {
   watch();
   set(true);
   time.pass(loop, 3200ms);
@@ -95,7 +95,7 @@ TEST_F(ButtonWatchTest, ForgetsAPressWhereTheButtonCannotBeReadAnyMore) {
   EXPECT_TRUE(presses.empty()) << "that it is lost is no release";
 }
 
-TEST_F(ButtonWatchTest, LooksAgainForAButtonThatCouldNotBeRead) {
+TEST_F(ButtonWatchTest, RetriesAButtonThatCouldNotBeRead) {
   wire.broken = true;
   watch();
   wire.broken = false;
@@ -107,7 +107,7 @@ TEST_F(ButtonWatchTest, LooksAgainForAButtonThatCouldNotBeRead) {
   EXPECT_EQ(presses, std::vector{Press::Identify});
 }
 
-TEST_F(ButtonWatchTest, IgnoresAButtonThatIsPressedWhenItIsBackUntilItIsLetGo) {
+TEST_F(ButtonWatchTest, IgnoresAButtonPressedAtItsReturn) {
   watch();
   wire.broken = true;
   set(true);
@@ -122,20 +122,20 @@ TEST_F(ButtonWatchTest, IgnoresAButtonThatIsPressedWhenItIsBackUntilItIsLetGo) {
   EXPECT_EQ(presses, std::vector{Press::Identify});
 }
 
-TEST_F(ButtonWatchTest, IsNoneWhereThereIsNoLine) {
+TEST_F(ButtonWatchTest, WorksWithoutALine) {
   button.emplace(loop, nullptr, lights, [this](Press press) { presses.push_back(press); });
   time.pass(loop, 50ms);
   EXPECT_TRUE(presses.empty());
 }
 
-TEST_F(ButtonWatchTest, LetsItsLineGo) {
+TEST_F(ButtonWatchTest, ReleasesItsLine) {
   watch();
   EXPECT_TRUE(wire.open);
   button.reset();
   EXPECT_FALSE(wire.open);
 }
 
-TEST_F(ButtonWatchTest, GoesOnWithAnotherLine) {
+TEST_F(ButtonWatchTest, ContinuesWithAnotherLine) {
   watch();
   button->let_go();
   EXPECT_FALSE(wire.open);

@@ -45,7 +45,7 @@ std::string why_not(const api::Candidate& candidate) {
   return tried.error().sentence;
 }
 
-TEST(TriedOf, NothingThatIsNamedIsWhatIsInUse) {
+TEST(TestCandidate, EmptyMeansTheSettingsInUse) {
   const Tried plain = good({});
   EXPECT_EQ(plain.post.scoring, (Address{"10.100.1.200", 8000}));
   EXPECT_EQ(plain.scoring->reveal(), "common-scoring");
@@ -55,7 +55,7 @@ TEST(TriedOf, NothingThatIsNamedIsWhatIsInUse) {
   EXPECT_EQ(course.mapping->reveal(), "common-mapping");
 }
 
-TEST(TriedOf, ACourseHasItsAddressesAndItsTokens) {
+TEST(TestCandidate, CourseHasItsAddressesAndTokens) {
   const Tried there = good({.course = "B", .scoring = {}, .mapping = {}});
   EXPECT_EQ(there.post.scoring, (Address{"10.100.2.200", 8000}));
   EXPECT_EQ(there.scoring->reveal(), "own-scoring");
@@ -67,7 +67,7 @@ TEST(TriedOf, ACourseHasItsAddressesAndItsTokens) {
               HasSubstr("course: no course is called C"));
 }
 
-TEST(TriedOf, WhatIsTypedCountsInsteadOfWhatIsSet) {
+TEST(TestCandidate, TypedValuesReplaceTheSettings) {
   api::Candidate typed;
   typed.scoring = {.address = "10.100.3.200", .port = {}, .token = token("typed-scoring")};
   typed.mapping = {.address = {}, .port = 9000, .token = {}};
@@ -83,7 +83,7 @@ TEST(TriedOf, WhatIsTypedCountsInsteadOfWhatIsSet) {
   }
 }
 
-TEST(TriedOf, RefusesWhatCouldNotBeSaved) {
+TEST(TestCandidate, UnsavableValuesAreRejected) {
   const auto address = [](const char* text) {
     api::Candidate typed;
     typed.mapping = {.address = text, .port = {}, .token = {}};

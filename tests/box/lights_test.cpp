@@ -35,7 +35,7 @@ class LightsTest : public testing::Test {
   Lights lights{loop, std::make_unique<WatchedLines>(seen)};
 };
 
-TEST_F(LightsTest, SetTheLinesOnlyWhenSomethingChanges) {
+TEST_F(LightsTest, SetTheLinesOnlyAfterAChange) {
   be_well();
   const std::size_t changes = seen.shown.size();
   EXPECT_EQ(seen.shown.back(), (Lit{true, true, true, false}));
@@ -50,7 +50,7 @@ TEST_F(LightsTest, AreAllDarkAtFirst) {
   EXPECT_EQ(seen.shown.back(), Lit{});
 }
 
-TEST_F(LightsTest, BlinkByTheLoopsTimer) {
+TEST_F(LightsTest, BlinkByTheTimerOfTheLoop) {
   be_well();
   lights.set(State::NeedsOperator, true);
   seen.shown.clear();
@@ -59,7 +59,7 @@ TEST_F(LightsTest, BlinkByTheLoopsTimer) {
   for (std::size_t i = 1; i < 8; ++i) EXPECT_NE(seen.shown[i][kAttention], seen.shown[i - 1][kAttention]);
 }
 
-TEST_F(LightsTest, KeepTheirTimeWhileTheyAreToldTheSameOverAndOver) {
+TEST_F(LightsTest, KeepTheirRhythmWhileTheSameIsRepeated) {
   lights.set(State::NeedsOperator, true);
   seen.shown.clear();
   for (int i = 0; i < 101; ++i) {
@@ -69,7 +69,7 @@ TEST_F(LightsTest, KeepTheirTimeWhileTheyAreToldTheSameOverAndOver) {
   EXPECT_EQ(seen.shown.size(), 8u);
 }
 
-TEST_F(LightsTest, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheOthersAgain) {
+TEST_F(LightsTest, FlashTogetherWhileIdentified) {
   be_well();
   lights.set_for(State::Identify, 3s);
   constexpr panel::Lights kTwice = {Pattern::Twice, Pattern::Twice, Pattern::Twice, Pattern::Twice};
@@ -88,7 +88,7 @@ TEST_F(LightsTest, AllFlashTogetherWhileTheBoxIsIdentifiedAndThenTellOfTheOthers
   EXPECT_EQ(seen.shown.back(), (Lit{true, true, false, false}));
 }
 
-TEST_F(LightsTest, PlayDigitsOnceFromTheirBeginningOnAttentionAlone) {
+TEST_F(LightsTest, PlayDigitsOnceOnTheAttentionLight) {
   be_well();
   time.pass(loop, 30ms);
   const Lit dark{}, digit{false, false, false, true}, well{true, true, true, false};
@@ -103,7 +103,7 @@ TEST_F(LightsTest, PlayDigitsOnceFromTheirBeginningOnAttentionAlone) {
   EXPECT_EQ(seen.shown, all);
 }
 
-TEST_F(LightsTest, ClearAStateThatWouldEndByItself) {
+TEST_F(LightsTest, ClearATimedStateEarly) {
   lights.set(State::Serving, true);
   lights.set_for(State::Identify, 1h);
   lights.set(State::Identify, false);
@@ -111,14 +111,14 @@ TEST_F(LightsTest, ClearAStateThatWouldEndByItself) {
   EXPECT_EQ(lights.shown()[kHealth], Pattern::On);
 }
 
-TEST_F(LightsTest, GoOnAfterThePanelFails) {
+TEST_F(LightsTest, ContinueAfterThePanelFails) {
   seen.fail = true;
   lights.set(State::Serving, true);
   lights.set(State::ScoringConnected, true);
   EXPECT_EQ(seen.shown.size(), 2u);
 }
 
-TEST_F(LightsTest, AreTriedAgainAfterThePanelFailedThoughNothingChanges) {
+TEST_F(LightsTest, RetryAFailedPanelWithoutAChange) {
   seen.fail = true;
   lights.set(State::Serving, true);
   EXPECT_EQ(lights.trouble(), "gpiochip0: gone");
@@ -134,7 +134,7 @@ TEST_F(LightsTest, AreTriedAgainAfterThePanelFailedThoughNothingChanges) {
   EXPECT_EQ(lights.trouble(), "");
 }
 
-TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
+TEST_F(LightsTest, RepeatAsAHeartbeatIfWatched) {
   WatchedLines::Seen watched{.shown = {}, .is_watched = true};
   be_well();
   lights.let_go();
@@ -159,14 +159,14 @@ TEST_F(LightsTest, AreToldOverAndOverWhereSomebodyWatchesWhetherTheLoopTurns) {
   EXPECT_TRUE(watched.shown.empty());
 }
 
-TEST_F(LightsTest, AreNotToldTheSameAgainWhereNobodyWatches) {
+TEST_F(LightsTest, DoNotRepeatUnlessWatched) {
   be_well();
   const std::size_t told = seen.shown.size();
   lights.beat();
   EXPECT_EQ(seen.shown.size(), told);
 }
 
-TEST_F(LightsTest, ShowTheSameOnOtherLines) {
+TEST_F(LightsTest, ShowTheSameOnNewLines) {
   be_well();
   WatchedLines::Seen other;
   lights.let_go();

@@ -32,7 +32,7 @@ class LinksTest : public testing::Test {
   int changes = 0, backs = 0;
 };
 
-TEST_F(LinksTest, AreShownAsTheyAre) {
+TEST_F(LinksTest, ShowEachCarrier) {
   carriers["darpa0"] = false;
   const Links links = make();
   const auto rows = links.rows();
@@ -43,18 +43,18 @@ TEST_F(LinksTest, AreShownAsTheyAre) {
   EXPECT_EQ(rows[1].carrier, false);
 }
 
-TEST_F(LinksTest, AreToldWhereThereIsNoSuchInterface) {
+TEST_F(LinksTest, ShowAMissingInterface) {
   carriers["team0"] = std::nullopt;
   EXPECT_EQ(make().rows()[0].carrier, std::nullopt);
 }
 
-TEST_F(LinksTest, AreNoneWhereTheSettingsNameNone) {
+TEST_F(LinksTest, AreEmptyWithoutInterfacesInTheSettings) {
   settings = {};
   const Links links = make();
   EXPECT_THAT(links.rows(), IsEmpty());
 }
 
-TEST_F(LinksTest, TellWhenTheCommandPostsCableIsBack) {
+TEST_F(LinksTest, ReportTheReturnOfTheCommandPostCable) {
   Links links = make();
   links.look();
   EXPECT_EQ(changes, 0);
@@ -76,9 +76,9 @@ TEST_F(LinksTest, TellWhenTheCommandPostsCableIsBack) {
 }
 
 /// What the kernel's end of a socket says, and that it breaks.
-class ToldLinksTest : public LinksTest {
+class LinkEventsTest : public LinksTest {
  protected:
-  ToldLinksTest() {
+  LinkEventsTest() {
     std::array<int, 2> ends{};
     EXPECT_EQ(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_NONBLOCK, 0, ends.data()), 0);
     kernel = loop::FileDescriptor(ends[0]);
@@ -92,7 +92,7 @@ class ToldLinksTest : public LinksTest {
   loop::FileDescriptor kernel, ours;
 };
 
-TEST_F(ToldLinksTest, LookAsSoonAsTheKernelTellsOfAChange) {
+TEST_F(LinkEventsTest, ReadTheCarrierAtEachKernelEvent) {
   const Links links = make(std::move(ours));
   carriers["darpa0"] = false;
   turn();
@@ -109,7 +109,7 @@ TEST_F(ToldLinksTest, LookAsSoonAsTheKernelTellsOfAChange) {
   EXPECT_EQ(backs, 1);
 }
 
-TEST_F(ToldLinksTest, GoOnLookingEachSecondWhereTheKernelTellsNothingMore) {
+TEST_F(LinkEventsTest, PollIfKernelEventsFail) {
   kernel = {};
   Links links = make(std::move(ours));
   turn();
@@ -120,7 +120,7 @@ TEST_F(ToldLinksTest, GoOnLookingEachSecondWhereTheKernelTellsNothingMore) {
   EXPECT_EQ(changes, 1);
 }
 
-TEST_F(LinksTest, AreThoseThatTheSettingsNameByNow) {
+TEST_F(LinksTest, FollowTheSettings) {
   Links links = make();
   settings.command_post.interface = "darpa1";
   carriers["darpa1"] = false;

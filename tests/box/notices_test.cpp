@@ -30,19 +30,19 @@ class NoticesTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(NoticesTest, AreTheFirstLinesOfTheFilesInTheOrderOfTheirNames) {
+TEST_F(NoticesTest, AreTheFirstLinesOfFilesInOrder) {
   write("state", "the state partition is unusable\nand more\n");
   write("clock", "the clock has stopped");
   EXPECT_THAT(read_notices(folder_), ElementsAre(Pair("clock", "the clock has stopped"),
                                                  Pair("state", "the state partition is unusable")));
 }
 
-TEST_F(NoticesTest, AreNoneWhereThereIsNoFolderOrNothingInIt) {
+TEST_F(NoticesTest, AreEmptyWithoutFiles) {
   EXPECT_THAT(read_notices(folder_), IsEmpty());
   EXPECT_THAT(read_notices(folder_ / "absent"), IsEmpty());
 }
 
-TEST_F(NoticesTest, SayWhatCannotBeRead) {
+TEST_F(NoticesTest, NameUnreadableFiles) {
   std::filesystem::create_directory(folder_ / "folder");
   ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   write("empty", "");
@@ -51,7 +51,7 @@ TEST_F(NoticesTest, SayWhatCannotBeRead) {
   EXPECT_THAT(read_notices(folder_ / "empty"), ElementsAre(Pair("notices", StartsWith("cannot list "))));
 }
 
-TEST_F(NoticesTest, AreFewAndShortWhateverIsThere) {
+TEST_F(NoticesTest, AreLimitedInNumberAndLength) {
   for (int i = 0; i < 20; ++i) write("notice" + std::to_string(i), std::string(10'000, 'x'));
   const auto notices = read_notices(folder_);
   EXPECT_THAT(notices, SizeIs(8));

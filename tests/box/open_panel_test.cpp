@@ -26,7 +26,7 @@ class OpenPanelTest : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(OpenPanelTest, SimulatesLightsAndButtonWhereNoLineIsNamed) {
+TEST_F(OpenPanelTest, SimulatesThePanelWithoutNamedLines) {
   const panel::Held opened = open_panel({}, {.socket = "", .folder = folder_.string()});
   ASSERT_TRUE(opened.lines->set({true, false, false, false}).has_value());
   EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
@@ -34,7 +34,7 @@ TEST_F(OpenPanelTest, SimulatesLightsAndButtonWhereNoLineIsNamed) {
   EXPECT_TRUE(std::filesystem::is_fifo(folder_ / "panel.button"));
 }
 
-TEST_F(OpenPanelTest, ShowsTheLightsOfLinesThatCannotBeHadAndSaysSoAndSimulatesNoButton) {
+TEST_F(OpenPanelTest, SimulatesLightsButNoButtonIfLinesFail) {
   settings::Panel settings;
   settings.chip = std::string("no-such-chip");  // GCC 12 warns of a plain literal here
   settings.health = "H";
@@ -51,7 +51,7 @@ TEST_F(OpenPanelTest, ShowsTheLightsOfLinesThatCannotBeHadAndSaysSoAndSimulatesN
   }
 }
 
-TEST_F(OpenPanelTest, GoesWithoutABoardWhereThereIsNone) {
+TEST_F(OpenPanelTest, WorksWithoutABoard) {
   for (const char* const file : {"", "/absent/board.json"}) {
     const KnownBoard known = read_board(file);
     EXPECT_EQ(known.board.name, "");
@@ -59,14 +59,14 @@ TEST_F(OpenPanelTest, GoesWithoutABoardWhereThereIsNone) {
   }
 }
 
-TEST_F(OpenPanelTest, ReadsWhatTheBoardIs) {
+TEST_F(OpenPanelTest, ReadsTheBoard) {
   const KnownBoard known = read_board(board(R"({"name": "b", "title": "B", "panel": {"health": "H"}})"));
   EXPECT_EQ(known.trouble, "");
   EXPECT_EQ(known.board.name, "b");
   EXPECT_EQ(known.board.panel->health, "H");
 }
 
-TEST_F(OpenPanelTest, SaysWhatIsWrongWithABoardAndGoesWithoutIt) {
+TEST_F(OpenPanelTest, ReportsAndIgnoresAnInvalidBoard) {
   const std::string file = board(R"({"name": "b", "title": "B", "panel": {"helth": "H"}})");
   const KnownBoard known = read_board(file);
   EXPECT_EQ(known.board.name, "");

@@ -17,14 +17,14 @@ void expect(const TestStep& step, const std::string& state, const std::string& s
   EXPECT_EQ(step.advice.empty(), state != "bad") << "what is bad can be helped: " << step.advice;
 }
 
-TEST(TheLinkStep, LooksForACarrier) {
+TEST(LinkStep, ChecksTheCarrier) {
   expect(link("darpa0", true), "good", "darpa0 has a carrier");
   expect(link("darpa0", false), "bad", "darpa0 has no carrier");
   expect(link("darpa0", std::nullopt), "bad", "there is no interface darpa0");
   expect(link("", true), "skipped", "command_post.interface");
 }
 
-TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
+TEST(AddressStep, FindsAddressConflicts) {
   network::Probed probed{.nonce = "", .address = "10.100.1.10"};
   expect(address("darpa0", kOwn, probed, ""), "good",
          "darpa0 has 10.100.1.10/24, without an address conflict");
@@ -44,7 +44,7 @@ TEST(TheAddressStep, LooksForOthersWhoHaveIt) {
   expect(address("", kOwn, std::nullopt, ""), "skipped", "command_post.interface");
 }
 
-TEST(TheCablesStep, LooksForTheCommandPostAtBothPorts) {
+TEST(CablesStep, SeeksTheCommandPostAtBothPorts) {
   network::Probed probed{.nonce = "", .found_on = "darpa0"};
   expect(cables("darpa0", "team0", "10.100.1.200", probed), "good", "10.100.1.200 is at darpa0");
   probed.found_on = "team0";
@@ -58,7 +58,7 @@ TEST(TheCablesStep, LooksForTheCommandPostAtBothPorts) {
   expect(cables("darpa0", "team0", "10.100.1.200", std::nullopt), "skipped", "could not check");
 }
 
-TEST(TheReachStep, TellsHowConnectingFails) {
+TEST(ReachStep, TellsHowConnectingFails) {
   const std::string at = "10.100.1.200:8000";
   expect(reach(at, 0, ""), "good", "10.100.1.200:8000 accepts a connection");
   expect(reach(at, 0, "\"x\" is no IP address"), "bad", "is no IP address");
@@ -85,7 +85,7 @@ TestStep with_status(Asked asked, int status, const std::string& body = "\"a sen
 constexpr const char* kRun =
     R"({"score": 1, "run_clock": 2.5, "remaining_reports": 44, "current_team": "subt"})";
 
-TEST(TheTokenStep, OfScoringReadsTheAnswerToAStatus) {
+TEST(TokenStep, OfScoringReadsTheAnswerToAStatus) {
   expect(with_status(Asked::Scoring, 200, kRun), "good", "the scoring token is accepted");
   for (const char* body : {R"({"hello": "world"})", "null", "[]", R"("a sentence")", ""})
     expect(with_status(Asked::Scoring, 200, body), "bad", "not the status of a run");
@@ -99,7 +99,7 @@ TEST(TheTokenStep, OfScoringReadsTheAnswerToAStatus) {
   expect(no_token(Asked::Scoring), "bad", "there is no scoring token");
 }
 
-TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
+TEST(TokenStep, OfMappingIsGoodIfOnlyTheBodyIsRejected) {
   for (const int status : {200, 201, 400, 415, 422})
     expect(with_status(Asked::Mapping, status), "good", "is accepted");
   for (const int status : {401, 403})
@@ -110,19 +110,19 @@ TEST(TheTokenStep, OfMappingIsGoodWhereOnlyTheQuestionIsWrong) {
   expect(with_status(Asked::Mapping, 429), "skipped", "too many requests");
 }
 
-TEST(TheTokenStep, TellsOfTheSlashThatTheEndpointWants) {
+TEST(TokenStep, TellsThatTheEndpointRequiresASlash) {
   const uplink::Answered taken{.status = 200, .content_type = "", .body = kRun, .retry_after = std::nullopt};
   EXPECT_THAT(token(Asked::Scoring, taken, true).said, HasSubstr("slash"));
   EXPECT_THAT(token(Asked::Scoring, taken).said, testing::Not(HasSubstr("slash")));
 }
 
-TEST(TheTokenStep, TellsWhyNoAnswerCame) {
+TEST(TokenStep, TellsWhyNoAnswerCame) {
   expect(token(Asked::Scoring, uplink::NeverSent{"connecting: Connection refused"}), "bad",
          "Connection refused");
   expect(token(Asked::Mapping, uplink::InDoubt{"the peer was silent"}), "bad", "the peer was silent");
 }
 
-TEST(TheClockStep, AllowsTwoSeconds) {
+TEST(ClockStep, AllowsTwoSeconds) {
   const auto at = [](double now) { return clock(std::chrono::sys_seconds(std::chrono::seconds(1000)), now); };
   for (const double now : {998.0, 999.5, 1000.0, 1000.99, 1001.0, 1003.0}) expect(at(now), "good", "agrees");
   expect(at(997.4), "bad", "3 s behind");
@@ -131,7 +131,7 @@ TEST(TheClockStep, AllowsTwoSeconds) {
   expect(clock(std::nullopt, 1000), "skipped", "have no Date");
 }
 
-TEST(TheClockStep, FallsBackOnTheRunClock) {
+TEST(ClockStep, FallsBackToTheRunClock) {
   expect(run_clock(10.0, 11.5), "good", "the run clock moves");
   expect(run_clock(0.0, 0.0), "skipped", "the run clock stands at 0 s");
   expect(run_clock(10.0, std::nullopt), "skipped", "no run clock");

@@ -18,7 +18,7 @@ const Ntp kBoth{.server = "10.0.0.5", .clients = "10.0.0.0/24"};
 constexpr Source kSources[] = {Source::None, Source::LastKnown, Source::Robots, Source::CommandPost,
                                Source::Chip, Source::Operator,  Source::Ntp};
 
-TEST(Chrony, IsBoundToTheTeamsNetworkAndTakesNoOrders) {
+TEST(Chrony, IsBoundToTheTeamNetworkWithoutACommandPort) {
   for (const Ntp& ntp : {kAsks, kGives, kBoth}) {
     for (const Source source : kSources) {
       const std::string text = chrony_for(ntp, source, "team7").configuration;
@@ -28,7 +28,7 @@ TEST(Chrony, IsBoundToTheTeamsNetworkAndTakesNoOrders) {
   }
 }
 
-TEST(Chrony, SetsNoClockUntilItsTimeWasTakenAndThenKeepsItWithinAMinute) {
+TEST(Chrony, SetsTheClockOnlyOnceItsTimeWasAccepted) {
   for (const Source source : kSources) {
     const Chrony chrony = chrony_for(kAsks, source, "team0");
     EXPECT_THAT(chrony.configuration, HasSubstr("\nserver 10.0.0.5 iburst"));
@@ -40,7 +40,7 @@ TEST(Chrony, SetsNoClockUntilItsTimeWasTakenAndThenKeepsItWithinAMinute) {
       << "its server is asked no more";
 }
 
-TEST(Chrony, GivesNobodyATimeThatIsNotSet) {
+TEST(Chrony, ServesNoUnsetTime) {
   for (const Ntp& ntp : {kGives, kBoth}) {
     for (const Source source : kSources) {
       const Chrony chrony = chrony_for(ntp, source, "team0");
@@ -53,7 +53,7 @@ TEST(Chrony, GivesNobodyATimeThatIsNotSet) {
   EXPECT_THAT(chrony_for(kAsks, Source::Operator, "team0").configuration, HasSubstr("\nport 0\n"));
 }
 
-TEST(Chrony, LetsInNobodyButWhomItSpeaksWith) {
+TEST(Chrony, AdmitsOnlyItsServerAndClients) {
   const Chrony chrony = chrony_for(kAsks, Source::Operator, "team0");
   EXPECT_THAT(chrony.firewall, HasSubstr("flush set inet adit ntp_servers\n"));
   EXPECT_THAT(chrony.firewall, HasSubstr("flush set inet adit ntp_clients\n"));
@@ -75,7 +75,7 @@ std::vector<std::uint8_t> told() {
   return bytes;
 }
 
-TEST(Tracking, IsReadAsChronydTellsIt) {
+TEST(Tracking, IsReadFromTheReplyOfChronyd) {
   const auto tracking = read_tracking(told(), 7);
   ASSERT_TRUE(tracking);
   EXPECT_EQ(tracking->server, 0x0a000005U);
@@ -83,7 +83,7 @@ TEST(Tracking, IsReadAsChronydTellsIt) {
   EXPECT_NEAR(tracking->behind, 7775999, 1e-3);
 }
 
-TEST(Tracking, IsOfNobodyWhereNobodyIsHeard) {
+TEST(Tracking, HasNoServerIfNoneIsHeard) {
   auto silent = told();
   silent[55] = 3;  // "Not synchronised"
   ASSERT_TRUE(read_tracking(silent, 7));
@@ -94,7 +94,7 @@ TEST(Tracking, IsOfNobodyWhereNobodyIsHeard) {
   EXPECT_EQ(read_tracking(local, 7)->server, 0U);
 }
 
-TEST(Tracking, IsNoOtherMessage) {
+TEST(Tracking, IsReadFromNoOtherMessage) {
   EXPECT_FALSE(read_tracking(told(), 8)) << "the reply to another request";
   for (const std::size_t at : {0U, 1U, 5U, 7U, 9U}) {
     auto other = told();
@@ -108,7 +108,7 @@ TEST(Tracking, IsNoOtherMessage) {
   }
 }
 
-TEST(Tracking, IsAskedForByANumberInAsManyBytesAsTheReplyHas) {
+TEST(Tracking, RequestHasANumberAndTheLengthOfTheReply) {
   const auto request = tracking_request(0x01020304);
   EXPECT_EQ(request.size(), told().size());
   EXPECT_EQ((std::vector<std::uint8_t>{request.begin(), request.begin() + 12}),

@@ -17,7 +17,7 @@ Request request() {
           .boot = "b"};
 }
 
-TEST(ClockMessages, AreReadAsTheyWereWritten) {
+TEST(ClockMessages, ReadBackTheSame) {
   const auto read_request = codec::read_file<Request>(codec::write_file(request()));
   ASSERT_TRUE(read_request) << read_request.error();
   EXPECT_EQ(read_request->time, 1.8e9);
@@ -26,7 +26,7 @@ TEST(ClockMessages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(codec::read_file<Status>(codec::write_file(status)), status);
 }
 
-TEST(ClockMessages, ARequestThatIsNoneIsRefusedWithTheNameOfItsFault) {
+TEST(ClockMessages, InvalidRequestIsRejectedWithTheField) {
   std::string wrong = codec::write_file(request());
   wrong.replace(wrong.find("operator"), 8, "anybodys");
   EXPECT_THAT(codec::read_file<Request>(wrong).error(), HasSubstr("source"));
@@ -34,7 +34,7 @@ TEST(ClockMessages, ARequestThatIsNoneIsRefusedWithTheNameOfItsFault) {
   EXPECT_FALSE(codec::read_file<Request>("1.8e9"));
 }
 
-TEST(ClockMessages, NtpIsAskedForByAddressesAlone) {
+TEST(ClockMessages, NtpAcceptsOnlyAddresses) {
   const Ntp both{.server = "10.0.0.5", .clients = "10.0.0.0/24"};
   EXPECT_EQ(codec::read_file<Ntp>(codec::write_file(both)), both);
   EXPECT_EQ(codec::read_file<Ntp>(codec::write_file(Ntp{})), Ntp{});
@@ -48,7 +48,7 @@ TEST(ClockMessages, NtpIsAskedForByAddressesAlone) {
         << clients;
 }
 
-TEST(ClockMessages, ARequestCountsForAMinuteOfTheSameStart) {
+TEST(ClockMessages, RequestIsValidForAMinuteOfTheSameBoot) {
   EXPECT_EQ(hindrance(request(), 100, kStatus), "");
   EXPECT_EQ(hindrance(request(), 160, kStatus), "");
   EXPECT_THAT(hindrance(request(), 161, kStatus), HasSubstr("at:"));
@@ -56,7 +56,7 @@ TEST(ClockMessages, ARequestCountsForAMinuteOfTheSameStart) {
   EXPECT_THAT(hindrance(request(), 100, {.boot = "c"}), HasSubstr("boot:")) << "as long after its begin";
 }
 
-TEST(ClockMessages, AServersTimeCountsWhileThatServerIsAsked) {
+TEST(ClockMessages, NtpTimeIsValidOnlyFromTheSetServer) {
   Request told = request();
   told.source = Source::Ntp;
   told.server = "10.0.0.5";
@@ -64,7 +64,7 @@ TEST(ClockMessages, AServersTimeCountsWhileThatServerIsAsked) {
   EXPECT_THAT(hindrance(told, 100, {.boot = "b", .ntp = {.server = "10.0.0.6"}}), HasSubstr("server:"));
 }
 
-TEST(ClockMessages, AServerThatIsAskedNoMoreCountsAsTheOperator) {
+TEST(ClockMessages, FormerNtpServerIsTrustedLikeTheOperator) {
   Status status{.source = Source::Ntp, .server = "10.0.0.5", .ntp = {.server = "10.0.0.5"}};
   EXPECT_EQ(status.trusted(), Source::Ntp);
   for (const char* next : {"10.0.0.6", ""}) {
@@ -75,7 +75,7 @@ TEST(ClockMessages, AServerThatIsAskedNoMoreCountsAsTheOperator) {
   EXPECT_EQ(status.trusted(), Source::Robots);
 }
 
-TEST(ClockMessages, NoTimeOutOfBoundsIsTaken) {
+TEST(ClockMessages, TimesOutOfBoundsAreRejected) {
   for (const double time : {0.0, kEarliest - 1, kLatest, 1e300}) {
     Request wrong = request();
     wrong.time = time;

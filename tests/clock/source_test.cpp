@@ -12,7 +12,7 @@ using enum Source;
 constexpr double kNow = 1.8e9;
 constexpr Source kAll[] = {None, LastKnown, Robots, CommandPost, Chip, Operator, Ntp};
 
-TEST(Source, TheMoreTrustedSetsTheClockEitherWay) {
+TEST(Source, MoreTrustedSetsTheClockEitherWay) {
   for (const double time : {kNow - 1e6, kNow + 1e6}) {
     EXPECT_EQ(to_be_set(LastKnown, {CommandPost, time}, kNow), time);
     EXPECT_EQ(to_be_set(Chip, {Operator, time}, kNow), time);
@@ -21,7 +21,7 @@ TEST(Source, TheMoreTrustedSetsTheClockEitherWay) {
   }
 }
 
-TEST(Source, NobodyButTheOperatorSetsItTwice) {
+TEST(Source, OnlyTheOperatorSetsItTwice) {
   for (const Source present : kAll) {
     for (const Source offering : kAll) {
       if (offering > present) continue;
@@ -31,7 +31,7 @@ TEST(Source, NobodyButTheOperatorSetsItTwice) {
   }
 }
 
-TEST(Source, WhatWasKnownLastAndRobotsSetItAheadAlone) {
+TEST(Source, LastKnownTimeAndRobotsSetItOnlyAhead) {
   for (const Source source : {LastKnown, Robots}) {
     EXPECT_EQ(to_be_set(None, {source, kNow + 60}, kNow), kNow + 60);
     EXPECT_FALSE(to_be_set(None, {source, kNow - 60}, kNow));
@@ -39,19 +39,19 @@ TEST(Source, WhatWasKnownLastAndRobotsSetItAheadAlone) {
   }
 }
 
-TEST(Source, RobotsSetItNoFurtherThanABoxLies) {
+TEST(Source, RobotsSetItAheadByABoundedStep) {
   EXPECT_TRUE(to_be_set(LastKnown, {Robots, kNow + kRobotsMost}, kNow));
   EXPECT_FALSE(to_be_set(LastKnown, {Robots, kNow + kRobotsMost + 1}, kNow));
 }
 
-TEST(Source, NoTimeBeforeTheBuildOrBeyondTheCenturyIsTaken) {
+TEST(Source, RejectsTimesBeforeTheBuildAndAfterTheCentury) {
   for (const double time : {-1.0, 0.0, kEarliest - 1, kLatest, std::numeric_limits<double>::infinity(),
                             std::numeric_limits<double>::quiet_NaN()})
     EXPECT_FALSE(to_be_set(None, {Operator, time}, kNow)) << time;
   EXPECT_TRUE(to_be_set(None, {Operator, kEarliest}, kNow));
 }
 
-TEST(Source, ABoxWithoutAClockKnowsThatItsTimeIsNotSet) {
+TEST(Source, GuessedTimesDoNotCountAsSet) {
   EXPECT_FALSE(is_set(None) || is_set(LastKnown) || is_set(Robots));
   EXPECT_TRUE(is_set(CommandPost) && is_set(Chip) && is_set(Operator) && is_set(Ntp));
 }

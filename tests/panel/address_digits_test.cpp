@@ -32,19 +32,19 @@ TEST(AddressDigits, CanBeCountedTwice) {
   }
 }
 
-TEST(AddressDigits, BeginDarkAndEndDarkSoThatNoFlashRunsIntoAnother) {
+TEST(AddressDigits, BeginAndEndDark) {
   const auto steps = address_digits("10.0.0.1");
   EXPECT_FALSE(steps.front().lit);
   EXPECT_FALSE(steps.back().lit);
   for (std::size_t i = 1; i < steps.size(); ++i) EXPECT_TRUE(!steps[i].lit || !steps[i - 1].lit) << i;
 }
 
-TEST(AddressDigits, AreOverSoonEnoughToBeWaitedFor) {
+TEST(AddressDigits, EndSoon) {
   EXPECT_LT(length_of(address_digits("10.0.0.1")), 1min);
   EXPECT_LT(length_of(address_digits("192.168.108.90")), 3min);
 }
 
-TEST(AddressDigits, OfWhatIsNoAddressAreDark) {
+TEST(AddressDigits, OfAnInvalidAddressAreDark) {
   for (const Step& step : address_digits("fe80::")) EXPECT_TRUE(!step.lit || step.length == 200ms);
   EXPECT_EQ(counted(address_digits("")), "");
 }

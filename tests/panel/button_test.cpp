@@ -46,7 +46,7 @@ class HeldButton : public testing::Test {
   Presses presses;
 };
 
-TEST_F(HeldButton, MeansWhatItsLengthSaysAtEachBoundary) {
+TEST_F(HeldButton, ActsByItsLengthAtEachBoundary) {
   struct Case {
     milliseconds length;
     Presses presses;
@@ -65,7 +65,7 @@ TEST_F(HeldButton, MeansWhatItsLengthSaysAtEachBoundary) {
   for (const Case& row : kCases) EXPECT_EQ(of(row.length), row.presses) << row.length.count();
 }
 
-TEST_F(HeldButton, IsNoPressWhereItOnlyBounces) {
+TEST_F(HeldButton, IgnoresABounce) {
   EXPECT_EQ(of(29ms), Presses{});
   for (int ms = 0; ms < 200; ms += 5) level(ms % 10 == 0, 1s + milliseconds(ms));
   until(kEver);
@@ -73,7 +73,7 @@ TEST_F(HeldButton, IsNoPressWhereItOnlyBounces) {
   EXPECT_EQ(button.phase(), Phase::Idle);
 }
 
-TEST_F(HeldButton, IsOnePressThoughItsContactsBounceAtBothEnds) {
+TEST_F(HeldButton, IsOnePressDespiteBounces) {
   for (const auto& [pressed, at] : std::vector<std::pair<bool, milliseconds>>{{true, 1000ms},
                                                                               {false, 1003ms},
                                                                               {true, 1005ms},
@@ -90,7 +90,7 @@ TEST_F(HeldButton, IsOnePressThoughItsContactsBounceAtBothEnds) {
   EXPECT_EQ(presses, Presses{Press::Identify});
 }
 
-TEST_F(HeldButton, GoesOnWhereItsContactOpensForAnInstant) {
+TEST_F(HeldButton, ContinuesIfItsContactOpensBriefly) {
   level(true, 1s);
   level(false, 5s);
   level(true, 5s + 20ms);
@@ -98,7 +98,7 @@ TEST_F(HeldButton, GoesOnWhereItsContactOpensForAnInstant) {
   EXPECT_EQ(presses, Presses{Press::Reset});
 }
 
-TEST_F(HeldButton, ShowsWhatLettingGoWouldDo) {
+TEST_F(HeldButton, ShowsTheEffectOfARelease) {
   level(true, 1s);
   until(1s + 30ms);
   EXPECT_EQ(button.phase(), Phase::Pressed);
@@ -118,7 +118,7 @@ TEST_F(HeldButton, ShowsWhatLettingGoWouldDo) {
   EXPECT_EQ(button.phase(), Phase::Ignored);
 }
 
-TEST_F(HeldButton, ResetsOnceHoweverLongItIsHeld) {
+TEST_F(HeldButton, ResetsOnce) {
   level(true, 1s);
   until(kEver);
   EXPECT_EQ(presses, Presses{Press::Reset});
@@ -132,12 +132,12 @@ TEST_F(HeldButton, ResetsOnceHoweverLongItIsHeld) {
   EXPECT_EQ(presses.back(), Press::Identify) << "and is a button again";
 }
 
-class Stuck : public HeldButton {
+class StuckButton : public HeldButton {
  protected:
-  Stuck() : HeldButton(true) {}
+  StuckButton() : HeldButton(true) {}
 };
 
-TEST_F(Stuck, DoesNothingUntilItWasLetGo) {
+TEST_F(StuckButton, DoesNothingUntilReleased) {
   until(kEver);
   EXPECT_EQ(presses, Presses{});
   EXPECT_EQ(button.phase(), Phase::Ignored);
@@ -150,7 +150,7 @@ TEST_F(Stuck, DoesNothingUntilItWasLetGo) {
   EXPECT_EQ(presses, Presses{Press::ShowAddress});
 }
 
-TEST_F(Stuck, IsStillStuckWhereItOnlyBounces) {
+TEST_F(StuckButton, StaysStuckAfterABounce) {
   level(false, 1s);
   level(true, 1s + 10ms);
   until(kEver);
@@ -160,7 +160,7 @@ TEST_F(Stuck, IsStillStuckWhereItOnlyBounces) {
 
 // A loop that is late.
 
-TEST(LateButton, NeverResetsByAReleaseThatIsSeenLate) {
+TEST(LateButton, DoesNotResetByALateRelease) {
   Button button(false, Instant{});
   button.level(true, Instant(1s));
   button.advance(Instant(1s + 30ms));
@@ -170,7 +170,7 @@ TEST(LateButton, NeverResetsByAReleaseThatIsSeenLate) {
   EXPECT_EQ(button.phase(), Phase::Idle);
 }
 
-TEST(LateButton, DoesNotResetWhileALetGoMayBeABounce) {
+TEST(LateButton, DoesNotResetWhileAReleaseMayBeABounce) {
   Button button(false, Instant{});
   button.level(true, Instant(1s));
   button.advance(Instant(10s));
@@ -181,7 +181,7 @@ TEST(LateButton, DoesNotResetWhileALetGoMayBeABounce) {
   EXPECT_EQ(button.phase(), Phase::Idle);
 }
 
-TEST(LateButton, SettlesALevelThatHasLastedBeforeTheNext) {
+TEST(LateButton, SettlesALastingLevelBeforeTheNext) {
   Button button(false, Instant{});
   button.level(true, Instant(1s));
   button.level(false, Instant(2s));

@@ -85,7 +85,7 @@ TEST(PanelCard, HasTheTableOfTheStates) {
       << states() << "</tbody>";
 }
 
-TEST(PanelCard, DrawsThePatternsAsTheyAre) {
+TEST(PanelCard, DrawsThePatterns) {
   EXPECT_NE(text_of("board/card.html").find("<tbody class=\"patterns\">\n" + patterns() + "</tbody>"),
             std::string::npos)
       << "put this into board/card.html:\n<tbody class=\"patterns\">\n"

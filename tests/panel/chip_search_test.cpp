@@ -27,11 +27,11 @@ class ChipSearch : public testing::Test {
   }
 };
 
-TEST_F(ChipSearch, PassesOverAChipThatCannotBeOpened) {
+TEST_F(ChipSearch, SkipsAnUnopenableChip) {
   for (const std::string chip : {"", "gpiochip2", "leds"}) EXPECT_EQ(open_health_of(chip), "") << chip;
 }
 
-TEST_F(ChipSearch, NamesTheChipThatCannotBeOpenedIfNoOtherFits) {
+TEST_F(ChipSearch, NamesAnUnopenableChipIfNoOtherFits) {
   EXPECT_EQ(open_health_of("", "HELTH"),
             "panel: line HELTH (health) of any chip: /dev/gpiochip0: Permission denied");
   EXPECT_EQ(open_health_of("gpiochip0"), "panel: chip gpiochip0: /dev/gpiochip0: Permission denied");
@@ -40,7 +40,7 @@ TEST_F(ChipSearch, NamesTheChipThatCannotBeOpenedIfNoOtherFits) {
   EXPECT_EQ(open_health_of("lights"), "panel: chip lights: No such file or directory");
 }
 
-TEST_F(ChipSearch, SaysThatTheChipsCannotBeListed) {
+TEST_F(ChipSearch, ReportsThatChipsCannotBeListed) {
   fake_gpio().lists_with = EACCES;
   EXPECT_EQ(open_health_of("leds"), "panel: chip leds: /dev: Permission denied");
   EXPECT_EQ(open_health_of(""), "panel: line HEALTH (health) of any chip: /dev: Permission denied");

@@ -17,7 +17,7 @@ settings::Panel panel_at(const std::string& chip) {
   return settings;
 }
 
-TEST(OpenGpio, NamesAChipThatThereIsNot) {
+TEST(OpenGpio, NamesAMissingChip) {
   for (const std::string chip : {"no-such-chip", "/dev/gpiochip-none"}) {
     const auto lines = open_gpio(panel_at(chip), "aditd");
     ASSERT_FALSE(lines.has_value());

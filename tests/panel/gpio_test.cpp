@@ -57,7 +57,7 @@ TEST_F(Gpio, SetsEachLightsOwnLine) {
   EXPECT_TRUE(line("HEALTH").output);
 }
 
-TEST_F(Gpio, FindsItsChipByNameLabelOrPathAndWithNoneNamedByItsLines) {
+TEST_F(Gpio, FindsItsChipByNameLabelPathOrLines) {
   for (const std::string chip : {"gpiochip1", "9030000.pl061", "/dev/gpiochip1", ""}) {
     settings_.chip = chip;
     const auto lines = open();
@@ -71,7 +71,7 @@ TEST_F(Gpio, FindsItsChipByNameLabelOrPathAndWithNoneNamedByItsLines) {
   EXPECT_EQ(fake_gpio().open, 0);
 }
 
-TEST_F(Gpio, TakesTheLinesOfSeveralChipsWhereNoneIsNamed) {
+TEST_F(Gpio, UsesLinesOfSeveralChipsIfNoneIsNamed) {
   settings_.chip = "";
   settings_.mapping = "ELSEWHERE";
   {
@@ -85,7 +85,7 @@ TEST_F(Gpio, TakesTheLinesOfSeveralChipsWhereNoneIsNamed) {
   EXPECT_EQ(fake_gpio().open, 0);
 }
 
-TEST_F(Gpio, DrivesALineLowToLightItWhereTheSettingsSaySo) {
+TEST_F(Gpio, DrivesActiveLowLines) {
   settings_.active_low = true;
   const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
@@ -95,7 +95,7 @@ TEST_F(Gpio, DrivesALineLowToLightItWhereTheSettingsSaySo) {
   EXPECT_TRUE(level("SCORING"));
 }
 
-TEST_F(Gpio, LetsAllLinesGoDarkAtTheEnd) {
+TEST_F(Gpio, IsDarkAtTheEnd) {
   for (const bool active_low : {false, true}) {
     settings_.active_low = active_low;
     {
@@ -111,7 +111,7 @@ TEST_F(Gpio, LetsAllLinesGoDarkAtTheEnd) {
   }
 }
 
-TEST_F(Gpio, LeavesOutALightWithoutALine) {
+TEST_F(Gpio, OmitsALightWithoutALine) {
   settings_.scoring = "";
   const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
@@ -120,7 +120,7 @@ TEST_F(Gpio, LeavesOutALightWithoutALine) {
   EXPECT_TRUE(level("MAPPING"));
 }
 
-TEST_F(Gpio, NamesALineThatThereIsNotAndLetsTheOthersGo) {
+TEST_F(Gpio, NamesAMissingLineAndReleasesTheOthers) {
   settings_.mapping = "MAPING";
   for (const std::string chip : {"gpiochip1", ""}) {
     settings_.chip = chip;
@@ -134,7 +134,7 @@ TEST_F(Gpio, NamesALineThatThereIsNotAndLetsTheOthersGo) {
   }
 }
 
-TEST_F(Gpio, NamesAChipThatThereIsNot) {
+TEST_F(Gpio, NamesAMissingChip) {
   for (const std::string chip : {"gpiochip7", "/dev/gpiochip7", "label"}) {
     settings_.chip = chip;
     EXPECT_EQ(open().error(), "panel: chip " + chip + ": No such file or directory");
@@ -142,7 +142,7 @@ TEST_F(Gpio, NamesAChipThatThereIsNot) {
   }
 }
 
-TEST_F(Gpio, SaysThatAChipCannotBeOpenedIfTheLineMayBeOnIt) {
+TEST_F(Gpio, NamesAnUnopenableChipThatMayHaveTheLine) {
   settings_.chip = "";
   fake_gpio().chips["/dev/gpiochip1"].opens_with = EACCES;
   const auto lines = open();
@@ -153,7 +153,7 @@ TEST_F(Gpio, SaysThatAChipCannotBeOpenedIfTheLineMayBeOnIt) {
   EXPECT_EQ(open_button().error(), "panel: chip /dev/gpiochip1: Permission denied");
 }
 
-TEST_F(Gpio, NamesALineThatSomebodyElseHas) {
+TEST_F(Gpio, NamesALineInUse) {
   line("ATTENTION").requested = true;
   const auto lines = open();
   ASSERT_FALSE(lines.has_value());
@@ -161,7 +161,7 @@ TEST_F(Gpio, NamesALineThatSomebodyElseHas) {
   EXPECT_TRUE(line("ATTENTION").requested) << "what is another's is left alone";
 }
 
-TEST_F(Gpio, SetsTheOtherLightsWhereOneFails) {
+TEST_F(Gpio, SetsTheOtherLightsIfOneFails) {
   const auto lines = open();
   ASSERT_TRUE(lines.has_value()) << lines.error();
   line("HEALTH").fails_with = EIO;
@@ -171,7 +171,7 @@ TEST_F(Gpio, SetsTheOtherLightsWhereOneFails) {
   EXPECT_TRUE(level("ATTENTION"));
 }
 
-TEST_F(Gpio, ReadsTheButtonByItsLevelHoweverManyEdgesCame) {
+TEST_F(Gpio, ReadsTheButtonByItsLevelNotItsEdges) {
   line("BUTTON").descriptor = 7;
   const auto button = open_button();
   ASSERT_TRUE(button.has_value()) << button.error();
@@ -186,7 +186,7 @@ TEST_F(Gpio, ReadsTheButtonByItsLevelHoweverManyEdgesCame) {
   EXPECT_FALSE((*button)->pressed().value());
 }
 
-TEST_F(Gpio, PullsTheButtonToWhereItIsNotPressed) {
+TEST_F(Gpio, PullsTheButtonToItsReleasedLevel) {
   {
     const auto button = open_button();
     EXPECT_TRUE(line("BUTTON").active_low);
@@ -200,14 +200,14 @@ TEST_F(Gpio, PullsTheButtonToWhereItIsNotPressed) {
   EXPECT_TRUE((*button)->pressed().value()) << "the wire is high";
 }
 
-TEST_F(Gpio, TakesTheButtonOfAChipThatKnowsNoPull) {
+TEST_F(Gpio, UsesAButtonOfAChipWithoutPull) {
   fake_gpio().chips["/dev/gpiochip1"].knows_pull = false;
   const auto button = open_button();
   ASSERT_TRUE(button.has_value()) << button.error();
   EXPECT_EQ(line("BUTTON").pull, 0);
 }
 
-TEST_F(Gpio, SaysWhyTheButtonCannotBeHadOrRead) {
+TEST_F(Gpio, TellsWhyTheButtonFails) {
   line("BUTTON").requested = true;
   EXPECT_EQ(open_button().error(), "panel: line BUTTON (button) of chip gpiochip1: Device or resource busy");
   line("BUTTON").requested = false;

@@ -70,7 +70,7 @@ class KeeperTest : public testing::Test {
   std::optional<Keeper> keeper_;
 };
 
-TEST_F(KeeperTest, TellsThatTheLightsCannotBeSetAndThatTheyCanAgain) {
+TEST_F(KeeperTest, ReportsFailureAndRecoveryOfTheLights) {
   begin();
   const Held held = connect();
   seen_.fail = true;
@@ -90,7 +90,7 @@ TEST_F(KeeperTest, TellsThatTheLightsCannotBeSetAndThatTheyCanAgain) {
   EXPECT_EQ(said("the lights work again"), 1);
 }
 
-TEST_F(KeeperTest, TellsOfAPress) {
+TEST_F(KeeperTest, ReportsAPress) {
   begin();
   const Held held = connect();
   EXPECT_EQ(held.button->pressed(), false);
@@ -100,7 +100,7 @@ TEST_F(KeeperTest, TellsOfAPress) {
   EXPECT_EQ(held.button->pressed(), false);
 }
 
-TEST_F(KeeperTest, APressComesToNothingWhereTheButtonIsLost) {
+TEST_F(KeeperTest, LostButtonCancelsAPress) {
   begin();
   const Held held = connect();
   set(true);
@@ -115,7 +115,7 @@ TEST_F(KeeperTest, APressComesToNothingWhereTheButtonIsLost) {
   EXPECT_EQ(said("button works again"), 1);
 }
 
-TEST_F(KeeperTest, AButtonThatIsLostWithoutAWordWhileItIsHeldIsNoticedAtTheNextBeat) {
+TEST_F(KeeperTest, SilentlyLostButtonIsNoticedAtTheNextBeat) {
   begin();
   const Held held = connect();
   set(true);
@@ -125,7 +125,7 @@ TEST_F(KeeperTest, AButtonThatIsLostWithoutAWordWhileItIsHeldIsNoticedAtTheNextB
   EXPECT_TRUE(time_.pass_until(loop_, [&] { return !held.button->pressed().has_value(); }));
 }
 
-TEST_F(KeeperTest, AButtonThatIsPressedWhenItIsBackIsNoneUntilItIsLetGo) {
+TEST_F(KeeperTest, ReturnedButtonNeedsARelease) {
   begin();
   const Held held = connect();
   wire_.broken = true;
@@ -140,14 +140,14 @@ TEST_F(KeeperTest, AButtonThatIsPressedWhenItIsBackIsNoneUntilItIsLetGo) {
   EXPECT_EQ(held.button->pressed(), true);
 }
 
-TEST_F(KeeperTest, WhoeverComesIsToldOfAButtonThatIsLost) {
+TEST_F(KeeperTest, NewClientIsToldOfALostButton) {
   wire_.broken = true;
   begin();
   const Held held = connect();
   EXPECT_FALSE(held.button->pressed().has_value());
 }
 
-TEST_F(KeeperTest, APressComesToNothingWhereAditPanelGoes) {
+TEST_F(KeeperTest, EndOfAditPanelCancelsAPress) {
   begin();
   const Held held = connect();
   set(true);

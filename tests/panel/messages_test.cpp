@@ -10,7 +10,7 @@ std::string error_of(std::string_view text) {
   return parsed ? "" : parsed.error();
 }
 
-TEST(Messages, AreReadAsTheyAreWritten) {
+TEST(Messages, ReadBackTheSame) {
   const Lit lit{true, false, false, true};
   EXPECT_EQ(message_of(ToLight{lit}), "lit 1001");
   const auto light = parse_message("lit 1001");
@@ -48,14 +48,14 @@ TEST(Messages, CarryASimulatedPanel) {
 }
 
 /// The longest that the settings allow: a chip of 255 characters would be cut.
-TEST(Messages, AreNoLongerThanTheySay) {
+TEST(Messages, StayWithinTheirLimit) {
   settings::Panel panel;
   panel.chip = std::string(255, 'c');
   panel.health = panel.scoring = panel.mapping = panel.attention = panel.button = std::string(31, 'h');
   EXPECT_LE(message_of(ToUse{panel}).size(), kLongestMessage);
 }
 
-TEST(Messages, ThatAreNoneAreRefusedWithAReason) {
+TEST(Messages, InvalidAreRejectedWithAReason) {
   for (const std::string_view text : {"", "lit", "lit1001", "END", "end ", "fault", "\xff\xfe", "button 1"}) {
     EXPECT_EQ(error_of(text), "unknown message") << text;
   }
@@ -69,7 +69,7 @@ TEST(Messages, ThatAreNoneAreRefusedWithAReason) {
   EXPECT_EQ(error_of("panel " + std::string(kLongestMessage, ' ')), "the message is too long");
 }
 
-TEST(Messages, OfTheOtherWayAreReadAsTheyAreWritten) {
+TEST(Messages, OfTheOtherDirectionReadBackTheSame) {
   for (const std::string_view text :
        {"button 1", "button 0", "button gone", "lights 1", "lights 0 panel: line H: No such device"}) {
     const auto said = parse_said(text);
@@ -81,7 +81,7 @@ TEST(Messages, OfTheOtherWayAreReadAsTheyAreWritten) {
   EXPECT_EQ(parse_said("lights 1"), Said(LightsAre{}));
 }
 
-TEST(Messages, OfTheOtherWayThatAreNoneAreRefused) {
+TEST(Messages, OfTheOtherDirectionAreRejectedIfInvalid) {
   const std::string longest(LightsAre::kLongest, 'x');
   EXPECT_TRUE(parse_said("lights 0 " + longest));
   for (const std::string& text :
@@ -93,7 +93,7 @@ TEST(Messages, OfTheOtherWayThatAreNoneAreRefused) {
   }
 }
 
-TEST(Messages, TellATroubleAsFarAsItCanBeTold) {
+TEST(Messages, TruncateALongTrouble) {
   EXPECT_EQ(message_of(LightsAre{"a\tb\xff"}), "lights 0 a?b?");
   EXPECT_EQ(message_of(LightsAre{std::string(5000, 'x')}),
             "lights 0 " + std::string(LightsAre::kLongest, 'x'));

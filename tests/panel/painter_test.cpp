@@ -27,7 +27,7 @@ class PainterTest : public testing::Test {
   Instant now_ = Instant{} + 1h;
 };
 
-TEST_F(PainterTest, SetsWhatChangesAndConfirmsWhatDoesNot) {
+TEST_F(PainterTest, SetsChangesAtOnceAndRepeatsTheRest) {
   EXPECT_TRUE(painter_.is_blank());
   EXPECT_EQ(shown_for(Painter::kConfirm, kWell), times(1, kWell));
   EXPECT_FALSE(painter_.is_blank());
@@ -36,7 +36,7 @@ TEST_F(PainterTest, SetsWhatChangesAndConfirmsWhatDoesNot) {
   EXPECT_EQ(painter_.trouble(), "");
 }
 
-TEST_F(PainterTest, SetsAgainWhatCouldNotBeSetAtABoundedPace) {
+TEST_F(PainterTest, RetriesAFailureAtABoundedPace) {
   shown_for(1s, kWell);
   seen_.fail = true;
   EXPECT_EQ(shown_for(2 * Painter::kAgain, kOther), times(2, kOther));
@@ -46,7 +46,7 @@ TEST_F(PainterTest, SetsAgainWhatCouldNotBeSetAtABoundedPace) {
   EXPECT_EQ(shown_for(Painter::kAgain, kOther), times(1, kOther));
 }
 
-TEST_F(PainterTest, IsInTroubleUntilAllWentWellForAWhile) {
+TEST_F(PainterTest, StaysInTroubleUntilItWorksForAWhile) {
   seen_.fail = true;
   shown_for(1s, kWell);
   seen_.fail = false;
@@ -61,7 +61,7 @@ TEST_F(PainterTest, IsInTroubleUntilAllWentWellForAWhile) {
   EXPECT_EQ(painter_.trouble(), "");
 }
 
-TEST_F(PainterTest, ShowsAllOnOtherLines) {
+TEST_F(PainterTest, ShowsAllOnNewLines) {
   seen_.fail = true;
   shown_for(1s, kWell);
   WatchedLines::Seen other;

@@ -22,7 +22,7 @@ std::pair<Milliseconds, int> lit_and_turns(Pattern pattern) {
   return {lit, turned_on};
 }
 
-TEST(Patterns, BlinkAsTheReadmeDrawsThem) {
+TEST(Patterns, MatchTheReadme) {
   EXPECT_EQ(lit_and_turns(Pattern::Off), std::pair(0ms, 0));
   EXPECT_EQ(lit_and_turns(Pattern::On), std::pair(2000ms, 0));
   EXPECT_EQ(lit_and_turns(Pattern::Slow), std::pair(1000ms, 2));
@@ -41,7 +41,7 @@ TEST(Patterns, DifferInMoreThanColour) {
   EXPECT_EQ(all.size(), kPatterns.size() - 1);
 }
 
-TEST(Patterns, AreSeenWithinTwoSeconds) {
+TEST(Patterns, AreVisibleWithinTwoSeconds) {
   for (const Pattern pattern : kPatterns) EXPECT_LE(length_of(steps_of(pattern)), 2s) << name_of(pattern);
 }
 
@@ -52,7 +52,7 @@ TEST(Patterns, BeginLit) {
   }
 }
 
-TEST(Steps, SayWhenTheNextBegins) {
+TEST(Steps, TellWhenTheNextBegins) {
   const Step kSteps[] = {{true, 100ms}, {false, 300ms}};
   EXPECT_EQ(repeated(kSteps, 0ms).lasts, 100ms);
   EXPECT_EQ(repeated(kSteps, 99ms).lasts, 1ms);
@@ -64,7 +64,7 @@ TEST(Steps, SayWhenTheNextBegins) {
   EXPECT_EQ(repeated(steps_of(Pattern::On), 5s).lasts, std::nullopt) << "nobody has to be woken for it";
 }
 
-TEST(Frame, LastsUntilTheFirstOfItsLightsChanges) {
+TEST(Frame, LastsUntilItsFirstLightChanges) {
   const Frame frame = frame_of({Pattern::On, Pattern::Slow, Pattern::Fast, Pattern::Off}, 1100ms);
   EXPECT_EQ(frame.lit, (Lit{true, true, true, false}));
   EXPECT_EQ(frame.lasts, 25ms);

@@ -26,7 +26,7 @@ TEST(PanelReadme, HasTheTableOfTheStates) {
       << table_of_states();
 }
 
-TEST(PanelReadme, DrawsThePatternsAsTheyAre) {
+TEST(PanelReadme, DrawsThePatterns) {
   EXPECT_NE(text_of("firmware/doors/panel/README.md").find("](patterns.svg)"), std::string::npos);
   EXPECT_TRUE(text_of("firmware/doors/panel/patterns.svg") == drawing())
       << "put this into firmware/doors/panel/patterns.svg:\n"

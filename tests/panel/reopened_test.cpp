@@ -23,9 +23,9 @@ constexpr Lit kWell{true, true, true, false};
 constexpr const char* kChip = "/dev/gpiochip0";
 constexpr const char* kNames[] = {"HEALTH", "SCORING", "MAPPING", "ATTENTION"};
 
-class Reopened : public testing::Test {
+class ReopenedChip : public testing::Test {
  protected:
-  Reopened() {
+  ReopenedChip() {
     fake_gpio() = {};
     for (const std::string name : {"HEALTH", "SCORING", "MAPPING", "ATTENTION", "BUTTON"})
       fake_gpio().chips[kChip].lines[name];
@@ -94,7 +94,7 @@ class Reopened : public testing::Test {
   int tries_ = 0;
 };
 
-TEST_F(Reopened, LinesOfAChipThatVanishesAreOpenedAgainWhenItIsBack) {
+TEST_F(ReopenedChip, LinesOfALostChipAreReopened) {
   const auto held = lines();
   EXPECT_EQ(set_for(*held, 5s), "");
   EXPECT_EQ(tries_, 1);
@@ -111,7 +111,7 @@ TEST_F(Reopened, LinesOfAChipThatVanishesAreOpenedAgainWhenItIsBack) {
   EXPECT_EQ(lit(), "1110");
 }
 
-TEST_F(Reopened, LinesOfAChipThatComesLateAreOpenedThen) {
+TEST_F(ReopenedChip, LinesOfALateChipAreOpened) {
   vanish();
   const auto held = lines();
   EXPECT_EQ(set_for(*held, 1s), "panel: chip gpiochip0: No such file or directory");
@@ -120,7 +120,7 @@ TEST_F(Reopened, LinesOfAChipThatComesLateAreOpenedThen) {
   EXPECT_EQ(lit(), "1110");
 }
 
-TEST_F(Reopened, LinesThatFailForAMomentAreKept) {
+TEST_F(ReopenedChip, LinesThatFailBrieflyAreKept) {
   const auto held = lines();
   EXPECT_EQ(set_for(*held, 1s), "");
   for (int i = 0; i < 3; ++i) {
@@ -132,7 +132,7 @@ TEST_F(Reopened, LinesThatFailForAMomentAreKept) {
   EXPECT_EQ(tries_, 1);
 }
 
-TEST_F(Reopened, AButtonThatVanishesIsNoticedThoughNobodyTouchesItAndOpenedAgain) {
+TEST_F(ReopenedChip, LostButtonIsNoticedUntouchedAndReopened) {
   const auto held = button();
   EXPECT_EQ(held->pressed(), false);
   const int descriptor = held->descriptor();
@@ -147,7 +147,7 @@ TEST_F(Reopened, AButtonThatVanishesIsNoticedThoughNobodyTouchesItAndOpenedAgain
   EXPECT_EQ(held->descriptor(), descriptor);
 }
 
-TEST_F(Reopened, AButtonThatComesBackAtOnceWasLostAllTheSame) {
+TEST_F(ReopenedChip, BrieflyLostButtonCountsAsLost) {
   const auto held = button();
   line("BUTTON").level = false;
   EXPECT_EQ(held->pressed(), true);
@@ -158,7 +158,7 @@ TEST_F(Reopened, AButtonThatComesBackAtOnceWasLostAllTheSame) {
   EXPECT_EQ(look(*held), true);
 }
 
-TEST_F(Reopened, AButtonOfAChipThatComesLateIsOpenedThen) {
+TEST_F(ReopenedChip, ButtonOfALateChipIsOpened) {
   vanish();
   const auto held = button();
   EXPECT_EQ(look(*held).error(), "panel: chip gpiochip0: No such file or directory");
@@ -166,7 +166,7 @@ TEST_F(Reopened, AButtonOfAChipThatComesLateIsOpenedThen) {
   EXPECT_EQ(look(*held), false);
 }
 
-TEST_F(Reopened, WhatIsHeldOfNamedLinesComesLateToo) {
+TEST_F(ReopenedChip, NamedLinesOfALateChipAreHeld) {
   vanish();
   const Held held = hold(settings_, "adit-panel", "", [](const std::string& why) { FAIL() << why; });
   EXPECT_EQ(held.lines->set(kWell).error(), "panel: chip gpiochip0: No such file or directory");

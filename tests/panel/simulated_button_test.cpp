@@ -35,7 +35,7 @@ class SimulatedButtonTest : public testing::Test {
   std::filesystem::path folder_, fifo_;
 };
 
-TEST_F(SimulatedButtonTest, IsPressedAndLetGoByItsLines) {
+TEST_F(SimulatedButtonTest, IsPressedAndReleasedByTextLines) {
   const auto button = simulated_button(fifo_);
   ASSERT_TRUE(button.has_value()) << button.error();
   EXPECT_FALSE((*button)->pressed().value());
@@ -51,7 +51,7 @@ TEST_F(SimulatedButtonTest, IsPressedAndLetGoByItsLines) {
   EXPECT_FALSE((*button)->pressed().value());
 }
 
-TEST_F(SimulatedButtonTest, IgnoresWhateverElseComes) {
+TEST_F(SimulatedButtonTest, IgnoresOtherText) {
   const auto button = simulated_button(fifo_);
   for (const std::string& text :
        {std::string("PRESS\n"), std::string(" press\n"), std::string("press \n"), std::string("\n\n"),
@@ -63,7 +63,7 @@ TEST_F(SimulatedButtonTest, IgnoresWhateverElseComes) {
   EXPECT_TRUE((*button)->pressed().value());
 }
 
-TEST_F(SimulatedButtonTest, IsForItsUserAloneAndGoneAtTheEnd) {
+TEST_F(SimulatedButtonTest, IsPrivateAndRemovedAtTheEnd) {
   {
     const auto button = simulated_button(fifo_);
     struct stat status{};
@@ -74,7 +74,7 @@ TEST_F(SimulatedButtonTest, IsForItsUserAloneAndGoneAtTheEnd) {
   EXPECT_FALSE(std::filesystem::exists(fifo_));
 }
 
-TEST_F(SimulatedButtonTest, TakesThePlaceOfWhatAnEarlierOneLeft) {
+TEST_F(SimulatedButtonTest, ReplacesTheFileOfAnEarlierOne) {
   std::ofstream(fifo_) << "press\n";
   const auto button = simulated_button(fifo_);
   ASSERT_TRUE(button.has_value()) << button.error();
@@ -83,7 +83,7 @@ TEST_F(SimulatedButtonTest, TakesThePlaceOfWhatAnEarlierOneLeft) {
   EXPECT_FALSE(simulated_button(folder_ / "link").value()->pressed().value());
 }
 
-TEST_F(SimulatedButtonTest, SaysWhyItCannotBe) {
+TEST_F(SimulatedButtonTest, TellsWhyItCannotBeCreated) {
   EXPECT_EQ(simulated_button(folder_ / "later/panel.button").error(),
             "panel: " + (folder_ / "later/panel.button").string() + ": No such file or directory");
 }

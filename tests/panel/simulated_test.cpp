@@ -11,13 +11,13 @@
 namespace adit::panel {
 namespace {
 
-class Simulated : public testing::Test {
+class SimulatedLights : public testing::Test {
  protected:
-  Simulated() {
+  SimulatedLights() {
     std::string name = (std::filesystem::temp_directory_path() / "adit-panel-XXXXXX").string();
     folder_ = mkdtemp(name.data());
   }
-  ~Simulated() override { std::filesystem::remove_all(folder_); }
+  ~SimulatedLights() override { std::filesystem::remove_all(folder_); }
   std::string shown() const {
     std::ifstream stream(folder_ / "panel");
     return {std::istreambuf_iterator<char>(stream), {}};
@@ -25,7 +25,7 @@ class Simulated : public testing::Test {
   std::filesystem::path folder_;
 };
 
-TEST_F(Simulated, WritesWhatIsLit) {
+TEST_F(SimulatedLights, WritesTheLitLights) {
   const auto lines = simulated(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, false, true, false}).has_value());
   EXPECT_EQ(shown(), "health on\nscoring off\nmapping on\nattention off\n");
@@ -33,7 +33,7 @@ TEST_F(Simulated, WritesWhatIsLit) {
   EXPECT_EQ(shown(), "health off\nscoring on\nmapping off\nattention on\n");
 }
 
-TEST_F(Simulated, ReplacesTheFileSoThatNobodyReadsHalfOfIt) {
+TEST_F(SimulatedLights, ReplacesTheFileAtomically) {
   const auto lines = simulated(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, true, true, true}).has_value());
   std::ifstream reader(folder_ / "panel");
@@ -43,7 +43,7 @@ TEST_F(Simulated, ReplacesTheFileSoThatNobodyReadsHalfOfIt) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder_), {}), 1);
 }
 
-TEST_F(Simulated, WritesOnlyWhereSomethingChanges) {
+TEST_F(SimulatedLights, WritesOnlyChanges) {
   const auto lines = simulated(folder_ / "panel");
   ASSERT_TRUE(lines->set({true, false, false, false}).has_value());
   std::filesystem::remove(folder_ / "panel");
@@ -53,12 +53,12 @@ TEST_F(Simulated, WritesOnlyWhereSomethingChanges) {
   EXPECT_TRUE(std::filesystem::exists(folder_ / "panel"));
 }
 
-TEST_F(Simulated, IsDarkAtTheEnd) {
+TEST_F(SimulatedLights, IsDarkAtTheEnd) {
   ASSERT_TRUE(simulated(folder_ / "panel")->set({true, true, true, true}).has_value());
   EXPECT_EQ(shown(), "health off\nscoring off\nmapping off\nattention off\n");
 }
 
-TEST_F(Simulated, SaysThatItCannotWriteAndTriesAgain) {
+TEST_F(SimulatedLights, ReportsAWriteErrorAndRetries) {
   const auto lines = simulated(folder_ / "later/panel");
   const auto set = lines->set({true, false, false, false});
   ASSERT_FALSE(set.has_value());

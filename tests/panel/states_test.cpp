@@ -33,7 +33,7 @@ Lights all(Pattern pattern) {
   return {pattern, pattern, pattern, pattern};
 }
 
-TEST(States, OfABoxThatIsWellAreThreeSteadyLights) {
+TEST(States, OfAHealthyBoxAreThreeSteadyLights) {
   EXPECT_EQ(shown(kWellStates), (Lights{kOn, kOn, kOn, kOff}));
 }
 
@@ -50,7 +50,7 @@ TEST(States, AreShownEachOnItsOwnLight) {
   EXPECT_EQ(well_but({State::SetUpOpen}), (Lights{kOn, kOn, kOn, kSlow}));
 }
 
-TEST(States, OfHigherPriorityHideOthersOnTheirLightsAlone) {
+TEST(States, OfHigherPriorityHideOthersOnlyOnTheirLights) {
   EXPECT_EQ(well_but({State::ScoringFailing, State::ReportWaiting}), (Lights{kOn, kFast, kOn, kOff}));
   EXPECT_EQ(well_but({State::CommandPostUnplugged, State::ScoringFailing, State::MappingFailing}),
             (Lights{kOn, kFlash, kFlash, kOff}))
@@ -60,7 +60,7 @@ TEST(States, OfHigherPriorityHideOthersOnTheirLightsAlone) {
   EXPECT_EQ(shown({State::NotServing, State::TeamUnplugged}), (Lights{kFlash, kOff, kOff, kOff}));
 }
 
-TEST(States, ThatAreWholePicturesHideAllOthers) {
+TEST(States, OfWholePicturesHideAllOthers) {
   States states;
   for (const StateRow& row : state_table()) states.set(row.state, row.state != State::Fault);
   EXPECT_EQ(states.shown(), all(Pattern::Rush));
@@ -74,7 +74,7 @@ TEST(States, ThatAreWholePicturesHideAllOthers) {
   EXPECT_EQ(states.shown(), (Lights{kWink, kFlash, kFlash, kSlow}));
 }
 
-TEST(States, AreGoneOnceTheyAreCleared) {
+TEST(States, AreGoneOnceCleared) {
   States states;
   EXPECT_TRUE(states.set(State::NeedsOperator, true));
   EXPECT_FALSE(states.set(State::NeedsOperator, true)) << "nothing new";
@@ -83,7 +83,7 @@ TEST(States, AreGoneOnceTheyAreCleared) {
   EXPECT_EQ(states.shown(), all(kOff));
 }
 
-TEST(StateTable, HasNoTwoRowsThatLookAlike) {
+TEST(StateTable, HasDistinctRows) {
   std::set<std::array<int, kLights.size()>> pictures;
   std::set<std::string_view> names;
   for (const StateRow& row : state_table()) {
@@ -98,7 +98,7 @@ TEST(StateTable, HasNoTwoRowsThatLookAlike) {
 }
 
 /// Of the states that leave the other lights alone, no two show the same on a light.
-TEST(StateTable, SaysOneThingByAPatternOfALight) {
+TEST(StateTable, HasOneMeaningPerPatternOfALight) {
   for (const Light light : kLights) {
     std::set<Pattern> seen;
     for (const StateRow& row : state_table()) {
@@ -110,7 +110,7 @@ TEST(StateTable, SaysOneThingByAPatternOfALight) {
   }
 }
 
-TEST(StateTable, LeavesADarkHealthLightToABoxThatIsNotRunning) {
+TEST(StateTable, HasADarkHealthLightOnlyIfNotRunning) {
   for (const StateRow& row : state_table()) {
     if (row.state == State::Address) continue;  // it ends by itself
     EXPECT_NE(row.patterns[index_of(Light::Health)], std::optional(kOff)) << row.name;

@@ -26,7 +26,7 @@ class WatchedTest : public testing::Test {
   Watched watched{kItBegan};
 };
 
-TEST_F(WatchedTest, IsDarkUntilTheFirstTells) {
+TEST_F(WatchedTest, IsDarkUntilTheFirstMessage) {
   EXPECT_EQ(watched.frame(kItBegan + 40s).lit, kNoneLit);
   watched.came(kItBegan + 40s);
   EXPECT_EQ(watched.frame(kItBegan + 80s).lit, kNoneLit) << "counted from when it came";
@@ -34,12 +34,12 @@ TEST_F(WatchedTest, IsDarkUntilTheFirstTells) {
   EXPECT_EQ(watched.frame(kItBegan + 81s).lit, kAllWell);
 }
 
-TEST_F(WatchedTest, ShowsTheFaultWhereNobodyComes) {
+TEST_F(WatchedTest, ShowsAFaultIfNoProcessConnects) {
   EXPECT_FALSE(watched.is_faulty(kItBegan + Watched::kStart - 1ms));
   EXPECT_TRUE(blinks_fault(kItBegan + Watched::kStart));
 }
 
-TEST_F(WatchedTest, AsksAgainWhenSilenceWouldBeAFault) {
+TEST_F(WatchedTest, WakesWhenSilenceBecomesAFault) {
   watched.lights(kAllWell, kItBegan);
   const Frame frame = watched.frame(kItBegan + 1s);
   EXPECT_EQ(frame.lit, kAllWell);
@@ -48,14 +48,14 @@ TEST_F(WatchedTest, AsksAgainWhenSilenceWouldBeAFault) {
   EXPECT_TRUE(blinks_fault(kItBegan + Watched::kSilence));
 }
 
-TEST_F(WatchedTest, GoesOnAfterAHangThatEnds) {
+TEST_F(WatchedTest, RecoversAfterAHang) {
   watched.lights(kAllWell, kItBegan);
   EXPECT_TRUE(watched.is_faulty(kItBegan + 10s));
   watched.lights(kAllWell, kItBegan + 10s);
   EXPECT_EQ(watched.frame(kItBegan + 10s).lit, kAllWell);
 }
 
-TEST_F(WatchedTest, ShowsADeathAtOnceAndUntilTheNextOneTells) {
+TEST_F(WatchedTest, ShowsACrashUntilTheNextProcessReports) {
   watched.lights(kAllWell, kItBegan);
   watched.gone(kItBegan + 100ms);
   EXPECT_TRUE(blinks_fault(kItBegan + 100ms));
@@ -67,7 +67,7 @@ TEST_F(WatchedTest, ShowsADeathAtOnceAndUntilTheNextOneTells) {
   EXPECT_EQ(watched.frame(kItBegan + 11min).lit, kAllWell);
 }
 
-TEST_F(WatchedTest, IsDarkAfterAnEndThatWasTold) {
+TEST_F(WatchedTest, IsDarkAfterAnAnnouncedEnd) {
   watched.lights(kAllWell, kItBegan);
   watched.ends(kItBegan + 1s);
   watched.gone(kItBegan + 1s);
@@ -78,13 +78,13 @@ TEST_F(WatchedTest, IsDarkAfterAnEndThatWasTold) {
   EXPECT_TRUE(watched.is_faulty(kItBegan + 24h + Watched::kStart)) << "it came, and never told anything";
 }
 
-TEST_F(WatchedTest, ShowsTheDeathOfOneThatNeverTold) {
+TEST_F(WatchedTest, ShowsACrashBeforeTheFirstMessage) {
   watched.came(kItBegan);
   watched.gone(kItBegan + 1s);
   EXPECT_TRUE(blinks_fault(kItBegan + 1s));
 }
 
-TEST_F(WatchedTest, BlinksOnWhereAHungOneIsKilled) {
+TEST_F(WatchedTest, StaysFaultyIfAHungProcessIsKilled) {
   watched.lights(kAllWell, kItBegan);
   const Instant hung = kItBegan + Watched::kSilence;
   const Frame before = watched.frame(hung + 600ms);

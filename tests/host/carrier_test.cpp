@@ -8,7 +8,7 @@
 namespace adit::host {
 namespace {
 
-TEST(Carrier, IsWhatTheKernelSays) {
+TEST(Carrier, IsThatOfTheKernel) {
   const Folder net;
   std::filesystem::create_directory(net / "darpa0");
   net.put("darpa0/carrier", "1\n");
@@ -17,7 +17,7 @@ TEST(Carrier, IsWhatTheKernelSays) {
   EXPECT_EQ(carrier_in(net.path(), "darpa0"), false);
 }
 
-TEST(Carrier, OfNoInterfaceAtAllIsAlwaysThere) {
+TEST(Carrier, WithoutAnInterfaceIsPresent) {
   EXPECT_EQ(carrier(""), true);
 }
 
@@ -25,7 +25,7 @@ TEST(Carrier, OfAnUnknownInterfaceIsUnknown) {
   EXPECT_EQ(carrier("nosuch0"), std::nullopt);
 }
 
-TEST(Carrier, NeverFollowsANameThatIsAPath) {
+TEST(Carrier, FollowsNoPathInAName) {
   const Folder net;
   std::filesystem::create_directory(net / "sub");
   std::filesystem::create_directory(net / "sub/eth0");

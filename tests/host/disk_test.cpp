@@ -41,7 +41,7 @@ class WearTest : public testing::Test {
   Folder folder_;
 };
 
-TEST_F(WearTest, IsWhatTheEmmcOfThePartitionReports) {
+TEST_F(WearTest, IsThatOfTheEmmcOfThePartition) {
   reports("0x01 0x0a\n", "0x02\n");
   const auto found = wear();
   ASSERT_TRUE(found) << found.error();
@@ -57,7 +57,7 @@ TEST_F(WearTest, IsFoundWithoutAPartition) {
   EXPECT_EQ(found->life, 11u);
 }
 
-TEST_F(WearTest, IsNotReportedByCardsAndVirtualDisks) {
+TEST_F(WearTest, IsZeroForCardsAndVirtualDisks) {
   const auto of_card = wear();
   ASSERT_TRUE(of_card) << of_card.error();
   EXPECT_EQ(of_card->life, 0u);
@@ -65,7 +65,7 @@ TEST_F(WearTest, IsNotReportedByCardsAndVirtualDisks) {
   EXPECT_TRUE(wear()) << "no disk: tmpfs, or a container";
 }
 
-TEST_F(WearTest, IsUnknownIfAFileCannotBeReadOrParsed) {
+TEST_F(WearTest, IsUnknownIfAFileIsUnreadableOrInvalid) {
   for (const char* life : {"", "\n", "0x01\n", "0x01 0x0c\n", "0x01 -1\n", "0x01 0x0a 0x01\n", "0x01 0x0a -",
                            "worn\n", "0x01 0x100000000\n"}) {
     reports(life, "0x01\n");

@@ -28,14 +28,14 @@ TEST(ReadFile, NamesTheFileAndTheReason) {
   EXPECT_EQ(read_file(folder.path()).error(), folder.path() + ": is not a regular file");
 }
 
-TEST(ReadFile, TakesAMebibyteAndNoByteMore) {
+TEST(ReadFile, LimitsTheSizeToOneMebibyte) {
   const Folder folder;
   EXPECT_TRUE(read_file(folder.put("most", std::string(1u << 20, 'x'))).has_value());
   EXPECT_THAT(read_file(folder.put("more", std::string((1u << 20) + 1, 'x'))).error(),
               HasSubstr("too large"));
 }
 
-TEST(MayExist, IsFalseOnlyWhereNothingIsThereForCertain) {
+TEST(MayExist, IsFalseOnlyIfTheFileIsCertainlyAbsent) {
   const Folder folder;
   EXPECT_FALSE(may_exist(folder / "none"));
   EXPECT_FALSE(may_exist(folder / "none/none"));
@@ -45,7 +45,7 @@ TEST(MayExist, IsFalseOnlyWhereNothingIsThereForCertain) {
   EXPECT_TRUE(may_exist(folder / "round")) << "who cannot look there does not know";
 }
 
-TEST(WriteFile, MakesANewFileOfTheModeAskedFor) {
+TEST(WriteFile, CreatesAFileOfTheGivenMode) {
   const Folder folder;
   ASSERT_TRUE(write_file(folder / "new", "text", 0640).has_value());
   EXPECT_EQ(read_file(folder / "new").value(), "text");
@@ -54,7 +54,7 @@ TEST(WriteFile, MakesANewFileOfTheModeAskedFor) {
   EXPECT_EQ(status.st_mode & 07777, 0640u);
 }
 
-TEST(WriteKept, IsReadAsItWasAndEachFlippedBitShows) {
+TEST(WriteKept, ReadsBackTheSameAndDetectsFlippedBits) {
   const Folder folder;
   const std::string text = "{\"port\":8000}\n";
   ASSERT_TRUE(write_kept(folder / "kept", text));
@@ -72,7 +72,7 @@ TEST(WriteKept, IsReadAsItWasAndEachFlippedBitShows) {
   EXPECT_EQ(read_file(folder.put("edited", text)).value(), text) << "by a person";
 }
 
-TEST(WriteFile, ReplacesTheFileRatherThanWritingIntoIt) {
+TEST(WriteFile, ReplacesTheFileAtomically) {
   const Folder folder;
   folder.put("settings", "old");
   std::ifstream reader(folder / "settings");
@@ -83,7 +83,7 @@ TEST(WriteFile, ReplacesTheFileRatherThanWritingIntoIt) {
   EXPECT_EQ(read_file(folder / "settings").value(), "new");
 }
 
-TEST(WriteFile, LeavesNothingBehindWhenItFails) {
+TEST(WriteFile, LeavesNothingIfItFails) {
   const Folder folder;
   std::filesystem::create_directory(folder / "taken");
   const auto written = write_file(folder / "taken", "text", 0600);
@@ -92,7 +92,7 @@ TEST(WriteFile, LeavesNothingBehindWhenItFails) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
 }
 
-TEST(WriteFile, LeavesNothingOfAWriteInTheMidstOfWhichDeathCame) {
+TEST(WriteFile, RemovesTheRestOfAnInterruptedWrite) {
   const Folder folder;
   folder.put("settings.json", "old");
   folder.put("settings.json.writing", "the beginning of a text that is longer than the n");
@@ -105,7 +105,7 @@ TEST(WriteFile, LeavesNothingOfAWriteInTheMidstOfWhichDeathCame) {
   remove_unwritten(folder / "none");
 }
 
-TEST(WriteFile, LeavesOneTemporaryAtMostHoweverOftenDeathComes) {
+TEST(WriteFile, LeavesAtMostOneTemporaryFileAfterCrashes) {
   const Folder folder;
   for (int i = 0; i < 20; ++i) {
     const pid_t child = fork();
@@ -121,7 +121,7 @@ TEST(WriteFile, LeavesOneTemporaryAtMostHoweverOftenDeathComes) {
   EXPECT_LE(names->size(), 2u);
 }
 
-TEST(WriteFile, SaysThatThereIsNoFolder) {
+TEST(WriteFile, ReportsAMissingDirectory) {
   const Folder folder;
   EXPECT_EQ(write_file(folder / "no/file", "text", 0600).error(),
             (folder / "no/file") + ": No such file or directory");

@@ -15,7 +15,7 @@ using testing::Contains;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-TEST(Interfaces, TellLoopbackWithItsAddress) {
+TEST(Interfaces, ListLoopbackWithItsAddress) {
   const auto all = interfaces();
   ASSERT_TRUE(all) << all.error();
   const auto lo = std::ranges::find(*all, "lo", &Interface::name);
@@ -40,7 +40,7 @@ class Ports : public testing::Test {
   Folder folder_;
 };
 
-TEST_F(Ports, TellWhatTheDriverTells) {
+TEST_F(Ports, ShowTheValuesOfTheDriver) {
   const auto port = with("02:00:00:00:00:01", "1000", "full");
   ASSERT_TRUE(port);
   EXPECT_EQ(port->mac, "02:00:00:00:00:01");
@@ -48,7 +48,7 @@ TEST_F(Ports, TellWhatTheDriverTells) {
   EXPECT_EQ(port->duplex, "full");
 }
 
-TEST_F(Ports, TellNothingThatIsNotKnown) {
+TEST_F(Ports, OmitUnknownValues) {
   for (const char* speed : {"-1", "", "0", "fast", "1000x", "99999999999"})
     EXPECT_FALSE(with("02", speed, "unknown")->mbit);
   EXPECT_EQ(with("02", "-1", "unknown")->duplex, "");
@@ -58,7 +58,7 @@ TEST_F(Ports, TellNothingThatIsNotKnown) {
   EXPECT_THAT(local_name(), testing::MatchesRegex("[^.]+\\.local"));
 }
 
-TEST_F(Ports, ThatCannotBeReadAreNotMissing) {
+TEST_F(Ports, UnreadableAreNotMissing) {
   std::filesystem::create_directories(folder_.path() + "/eth0/address");  // a directory cannot be read
   EXPECT_THAT(port_in(folder_.path(), "eth0").error(), testing::HasSubstr("eth0/address"));
 }
@@ -77,7 +77,7 @@ TEST(Routes, AreReadFromTheKernelsTable) {
   EXPECT_EQ(all[1].gateway, "");
 }
 
-TEST(Routes, LeaveOutWhatIsNoRoute) {
+TEST(Routes, SkipOtherEntries) {
   EXPECT_THAT(routes_in(""), IsEmpty());
   EXPECT_THAT(routes_in("lo\tnothing\n\nlo 0 0\n"), IsEmpty());
 }

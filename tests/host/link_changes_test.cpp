@@ -74,15 +74,15 @@ void try_in_a_child(int (*what)()) {
   EXPECT_EQ(WEXITSTATUS(status), 0);
 }
 
-TEST(LinkChanges, AreToldByTheKernel) {
+TEST(LinkChanges, AreReceivedFromTheKernel) {
   try_in_a_child(tell_of_the_loopback);
 }
 
-TEST(LinkChanges, OfAddressesAreToldToWhoAsksForThem) {
+TEST(LinkChanges, OfAddressesAreReceivedOnRequest) {
   try_in_a_child(tell_of_its_address);
 }
 
-TEST(LinkChanges, AreNotTakenFromWhatIsNoSocket) {
+TEST(LinkChanges, RejectADescriptorThatIsNoSocket) {
   EXPECT_FALSE(take_link_changes({}));
 }
 

@@ -26,18 +26,18 @@ TEST(PlainLine, HoldsTimeLevelMessageAndFields) {
             "2026-01-31T12:00:00Z warning: report answered report=7 note=\"run not started\"");
 }
 
-TEST(PlainLine, QuotesWhatWouldReadAsAnotherField) {
+TEST(PlainLine, QuotesTextThatLooksLikeAField) {
   const std::vector<Field> fields = {{"a", ""}, {"b", "x=y"}, {"c", "say \"no\""}, {"d", "C:\\"}};
   EXPECT_EQ(sentence("m", fields), R"(m b="x=y" c="say \"no\"" d=C:\\)");
 }
 
-TEST(PlainLine, LeavesOutWhatThereIsNothingToSayOf) {
+TEST(PlainLine, OmitsEmptyFields) {
   const std::vector<Field> fields = {{"status", ""}, {"why", "late"}};
   EXPECT_EQ(sentence("m", fields), "m why=late");
   EXPECT_EQ(journal_entry(Level::Info, "m", fields).size(), 4);
 }
 
-TEST(PlainLine, CannotBeForgedByWhatAClientSent) {
+TEST(PlainLine, CannotBeForgedByAClient) {
   const std::vector<Field> fields = {{"robot", "r1\n2026-01-31T12:00:00Z info: all is well\r"}};
   const std::string line = plain_line("T", Level::Info, "from \x1b[2J a client\n", fields);
   for (const char c : line) EXPECT_TRUE(c >= 0x20 && c < 0x7f) << line;
@@ -45,13 +45,13 @@ TEST(PlainLine, CannotBeForgedByWhatAClientSent) {
   EXPECT_THAT(line, HasSubstr(R"(r1\x0a2026)"));
 }
 
-TEST(PlainLine, ShowsTheLettersOfAllLanguages) {
+TEST(PlainLine, ShowsLettersOfAllLanguages) {
   const std::vector<Field> fields = {{"robot", "Höhle-\u6d1e"}, {"note", "schöner Tag \U0001f9ed"}};
   EXPECT_EQ(sentence("Fühler", fields), "Fühler robot=Höhle-\u6d1e note=\"schöner Tag \U0001f9ed\"");
   EXPECT_EQ(journal_entry(Level::Info, "Fühler", {}).front(), "MESSAGE=Fühler");
 }
 
-TEST(Escaped, AreBytesThatAreNoUtf8) {
+TEST(EscapedText, EscapesInvalidUtf8) {
   EXPECT_EQ(escaped("a\xff"), R"(a\xff)");
   EXPECT_EQ(escaped("\xc3"), R"(\xc3)") << "half a character";
   EXPECT_EQ(escaped("\xc3(\x80"), R"(\xc3(\x80)");
@@ -60,7 +60,7 @@ TEST(Escaped, AreBytesThatAreNoUtf8) {
   EXPECT_EQ(escaped("\xf4\x90\x80\x80"), R"(\xf4\x90\x80\x80)") << "over U+10FFFF";
 }
 
-TEST(Escaped, AreCharactersThatSteerOrDeceiveATerminal) {
+TEST(EscapedText, EscapesControlAndDeceptiveCharacters) {
   EXPECT_EQ(escaped("\u009b2J"), R"(\xc2\x9b2J)") << "CSI as one character";
   EXPECT_EQ(escaped("a\u202eb"), R"(a\xe2\x80\xaeb)") << "from right to left";
   EXPECT_EQ(escaped("a\u2066b"), R"(a\xe2\x81\xa6b)");
@@ -70,17 +70,17 @@ TEST(Escaped, AreCharactersThatSteerOrDeceiveATerminal) {
   EXPECT_EQ(escaped("\U000e0041"), R"(\xf3\xa0\x81\x81)") << "a tag";
 }
 
-TEST(Escaped, IsAllThatIsNotAsciiWhereATerminalHasNoUtf8) {
+TEST(EscapedText, EscapesAllButAsciiForAnAsciiTerminal) {
   EXPECT_EQ(in_ascii(escaped("Höhle \\")), R"(H\xc3\xb6hle \\)");
 }
 
-TEST(JournalEntry, RecordsEachFieldByItself) {
+TEST(JournalEntry, HasEachFieldApart) {
   EXPECT_THAT(journal_entry(Level::Error, "report answered", kFields),
               ElementsAre("MESSAGE=report answered report=7 note=\"run not started\"", "PRIORITY=3",
                           "SYSLOG_IDENTIFIER=aditd", "ADIT_REPORT=7", "ADIT_NOTE=run not started"));
 }
 
-TEST(JournalEntry, KeepsFieldNamesWithinTheJournalsRules) {
+TEST(JournalEntry, HasValidFieldNames) {
   const std::vector<Field> fields = {{"answer ms", "3"}};
   EXPECT_EQ(journal_entry(Level::Info, "m", fields).back(), "ADIT_ANSWER_MS=3");
 }
@@ -107,7 +107,7 @@ TEST(Log, WritesOneLineToStderr) {
               MatchesRegex("....-..-..T..:..:..Z notice: listening address=10.0.0.1:8000\n"));
 }
 
-TEST(Log, LeavesOutWhatIsTooFine) {
+TEST(Log, OmitsLowerLevels) {
   testing::internal::CaptureStderr();
   log(Level::Debug, "too fine");
   EXPECT_THAT(testing::internal::GetCapturedStderr(), IsEmpty());

@@ -12,7 +12,7 @@ using testing::IsEmpty;
 using testing::Pair;
 using testing::SizeIs;
 
-TEST(Memory, TellsWhatCameAfterANumber) {
+TEST(LogMemory, ListsRecordsAfterANumber) {
   Memory memory;
   memory.keep(1.5, Level::Notice, "first", {});
   memory.keep(2.5, Level::Warning, "second", std::vector<Field>{{"report", "7"}, {"note", ""}});
@@ -27,7 +27,7 @@ TEST(Memory, TellsWhatCameAfterANumber) {
   EXPECT_THAT(memory.after(99), IsEmpty());
 }
 
-TEST(Memory, ForgetsTheOldestFirst) {
+TEST(LogMemory, ForgetsTheOldestFirst) {
   Memory memory;
   for (std::size_t i = 0; i < Memory::kMost + 5; ++i) memory.keep(0, Level::Info, "m", {});
   const auto all = memory.after(0);
@@ -36,7 +36,7 @@ TEST(Memory, ForgetsTheOldestFirst) {
   EXPECT_EQ(all.back().seq, Memory::kMost + 5);
 }
 
-TEST(Memory, HoldsSoManyBytesHoweverLongTheRecordsAre) {
+TEST(LogMemory, IsBoundedForLongRecords) {
   Memory memory;
   const std::vector<Field> fields = {{"why", std::string(1u << 20, 'x')}};
   for (int i = 0; i < 1000; ++i) memory.keep(0, Level::Info, std::string(1u << 16, 'm'), fields);
@@ -52,7 +52,7 @@ TEST(Memory, HoldsSoManyBytesHoweverLongTheRecordsAre) {
   EXPECT_EQ(all.back().seq, 1000);
 }
 
-TEST(Memory, NumbersWhatManyThreadsSayWithoutAGap) {
+TEST(LogMemory, NumbersRecordsOfManyThreadsWithoutAGap) {
   Memory memory;
   {
     std::vector<std::jthread> threads;
@@ -81,7 +81,7 @@ TEST(Log, IsRememberedWithItsFields) {
   EXPECT_GT(now[0].at, 1e9);
 }
 
-TEST(TellConsole, SaysAllThereAndRemembersTheMessageAlone) {
+TEST(TellConsole, ShowsAllButRemembersOnlyTheMessage) {
   const auto before = remembered(0);
   const std::uint64_t last = before.empty() ? 0 : before.back().seq;
   testing::internal::CaptureStderr();

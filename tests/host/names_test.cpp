@@ -31,19 +31,19 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-TEST(NamesIn, AFolderAreAllInOrder) {
+TEST(NamesIn, ListsADirectoryInOrder) {
   const Folder folder;
   for (const char* name : {"b", "a", "c"}) folder.put(name, "");
   EXPECT_THAT(names_in(folder.path()).value(), ElementsAre("a", "b", "c"));
 }
 
-TEST(NamesIn, NoFolderAreNone) {
+TEST(NamesIn, IsEmptyWithoutADirectory) {
   const Folder folder;
   EXPECT_THAT(names_in(folder / "none").value(), IsEmpty());
   EXPECT_EQ(names_in(folder.put("file", "")).error(), "Not a directory");
 }
 
-TEST(NamesIn, AFolderAreSoManyAtMost) {
+TEST(NamesIn, IsBounded) {
   const Folder folder;
   for (const char* name : {"a", "b"}) folder.put(name, "");
   EXPECT_EQ(names_in(folder.path(), 2).value().size(), 2u);
@@ -52,7 +52,7 @@ TEST(NamesIn, AFolderAreSoManyAtMost) {
 }
 
 /// A stick that is pulled out while it is read.
-TEST(NamesIn, AFolderThatCannotBeReadToItsEndAreAnError) {
+TEST(NamesIn, FailsIfADirectoryCannotBeReadToItsEnd) {
   const Folder folder;
   for (const char* name : {"a", "b", "c"}) folder.put(name, "");
   for (int calls = 0; calls < 5; ++calls) {

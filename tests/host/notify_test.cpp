@@ -39,7 +39,7 @@ class Notify : public testing::Test {
   int socket_;
 };
 
-TEST_F(Notify, TellsSystemdHowTheServiceIs) {
+TEST_F(Notify, SendsTheStateToSystemd) {
   notify_ready("serving");
   EXPECT_EQ(heard(), "READY=1\nSTATUS=serving");
   notify_status("2 reports wait");
@@ -58,12 +58,12 @@ TEST_F(Notify, TellsSystemdHowTheServiceIs) {
   unsetenv("WATCHDOG_USEC");
 }
 
-TEST_F(Notify, TakesNoOrdersFromAStatus) {
+TEST_F(Notify, EscapesAStatus) {
   notify_status("from a client\nSTOPPING=1");
   EXPECT_EQ(heard(), "STATUS=from a client\\x0aSTOPPING=1");
 }
 
-TEST_F(Notify, GivesDescriptorsToKeepByName) {
+TEST_F(Notify, StoresDescriptorsByName) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   store_descriptor("listen-team0-10.0.0.1-8000", ends[1]);
@@ -93,7 +93,7 @@ TEST_F(Notify, GivesDescriptorsToKeepByName) {
   EXPECT_EQ(heard(), "FDSTOREREMOVE=1\nFDNAME=listen-team0-10.0.0.1-8000");
 }
 
-TEST(Inherited, IsNothingOutsideSystemdOrWhatIsMeantForAnother) {
+TEST(InheritedDescriptors, IsEmptyOutsideSystemdOrForAnotherProcess) {
   EXPECT_TRUE(inherited().value().empty());
   setenv("LISTEN_FDS", "1", 1);
   setenv("LISTEN_PID", "1", 1);
@@ -104,7 +104,7 @@ TEST(Inherited, IsNothingOutsideSystemdOrWhatIsMeantForAnother) {
   EXPECT_EQ(getenv("LISTEN_FDS"), nullptr) << "a program that is started from here would take it for its own";
 }
 
-TEST(WatchdogWithin, IsWhatSystemdSays) {
+TEST(WatchdogWithin, IsTheValueOfSystemd) {
   unsetenv("WATCHDOG_USEC");
   EXPECT_EQ(watchdog_within(), std::nullopt);
   setenv("WATCHDOG_USEC", "10000000", 1);
@@ -115,7 +115,7 @@ TEST(WatchdogWithin, IsWhatSystemdSays) {
   unsetenv("WATCHDOG_PID");
 }
 
-TEST_F(Notify, SaysNothingOutsideSystemd) {
+TEST_F(Notify, SendsNothingOutsideSystemd) {
   unsetenv("NOTIFY_SOCKET");
   notify_ready("serving");
   EXPECT_EQ(heard(), "");

@@ -21,7 +21,7 @@ TEST(NumberedName, HasAtLeastEightDigits) {
   EXPECT_EQ(numbered_name("", 0), "00000000");
 }
 
-TEST(NumberedName, HasItsNumberReadBack) {
+TEST(NumberedName, ReadsBackItsNumber) {
   for (const std::uint64_t number : {std::uint64_t{0}, std::uint64_t{12}, std::uint64_t{99'999'999},
                                      std::uint64_t{100'000'000}, kLargest}) {
     EXPECT_EQ(number_in(numbered_name("map-", number, ".cbor")), number);
@@ -36,7 +36,7 @@ TEST(NumberedName, IsReadWithAnyNumberOfDigits) {
   EXPECT_EQ(number_in_name("7.json", "", ".json"), 7u);
 }
 
-TEST(NumberedName, IsNotThatOfAnotherFile) {
+TEST(NumberedName, RejectsOtherFiles) {
   for (const char* name :
        {"", "map-", ".cbor", "map-.cbor", "map-1", "1.cbor", "map-1.cbor.damaged", "map-1.cborr",
         "xmap-1.cbor", "map-x.cbor", "map-1x.cbor", "map-x1.cbor", "map-1.0.cbor", "map- 1.cbor",
@@ -49,13 +49,13 @@ TEST(NumberedName, IsNotThatOfAnotherFile) {
   EXPECT_EQ(number_in_name("aba", "ab", "ba"), std::nullopt) << "the two share a letter";
 }
 
-TEST(NumberedName, IsNotOneWhoseNumberIsTooLarge) {
+TEST(NumberedName, RejectsTooLargeANumber) {
   EXPECT_EQ(number_in("map-18446744073709551615.cbor"), kLargest);
   EXPECT_EQ(number_in("map-18446744073709551616.cbor"), std::nullopt);
   EXPECT_EQ(number_in("map-99999999999999999999999.cbor"), std::nullopt);
 }
 
-TEST(NumberedName, IsFoundInAFolderInTheOrderOfNumbers) {
+TEST(NumberedName, IsListedInTheOrderOfNumbers) {
   const Folder folder;
   for (const char* name : {"map-10.cbor", "map-00000009.cbor", "map-100000000.cbor", "map-x.cbor", "map-1"}) {
     folder.put(name, "");

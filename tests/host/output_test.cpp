@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-TEST(Output, IsWhatAProgramSaidOnEitherSide) {
+TEST(Output, HasBothStreams) {
   const Output said =
       output_of({"/bin/sh", "-c", "echo one; echo two >&2; printf three"}, milliseconds(20000));
   EXPECT_EQ(said.out, "one\nthree");
@@ -23,7 +23,7 @@ TEST(Output, IsWhatAProgramSaidOnEitherSide) {
   EXPECT_EQ(said.trouble, "");
 }
 
-TEST(Output, IsToldLineByLineAsItComes) {
+TEST(Output, ArrivesLineByLine) {
   const Folder folder;
   const std::string waits = "echo one; until [ -e " + folder / "heard" + " ]; do sleep 0.02; done; ";
   std::vector<std::string> lines;
@@ -35,7 +35,7 @@ TEST(Output, IsToldLineByLineAsItComes) {
   EXPECT_THAT(lines, ElementsAre("one", "two", ""));
 }
 
-TEST(Output, OfAProgramThatFailsSaysHow) {
+TEST(Output, TellsHowAProgramFailed) {
   EXPECT_EQ(output_of({"/bin/sh", "-c", "exit 3"}, milliseconds(20000)).trouble, "exit status 3");
   EXPECT_EQ(output_of({"/bin/sh", "-c", "kill -9 $$"}, milliseconds(20000)).trouble, "ended by signal 9");
   EXPECT_THAT(output_of({"/no/such"}, milliseconds(20000)).trouble, StartsWith("No such file"));
@@ -44,14 +44,14 @@ TEST(Output, OfAProgramThatFailsSaysHow) {
   EXPECT_EQ(slow.out, "begun\n");
 }
 
-TEST(Output, OfAProgramWhoseExitStatusIsLostSaysSo) {
+TEST(Output, TellsThatTheExitStatusIsLost) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);  // then the kernel keeps no exit status
   const Output output = output_of({"/bin/true"}, milliseconds(20000));
   std::signal(SIGCHLD, before);
   EXPECT_EQ(output.trouble, "the exit status is unknown: No child processes");
 }
 
-TEST(Output, OfAProgramThatTalksWithoutEndKeepsTheLastOfIt) {
+TEST(Output, KeepsTheEndOfEndlessOutput) {
   const Output said = output_of({"/bin/sh", "-c", "head -c 3000000 /dev/zero | tr '\\0' x; echo; echo last"},
                                 milliseconds(20000));
   EXPECT_EQ(said.trouble, "");

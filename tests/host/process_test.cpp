@@ -7,7 +7,7 @@
 namespace adit::host {
 namespace {
 
-TEST(Process, TellsWhatTheKernelCounts) {
+TEST(Process, ShowsTheCountersOfTheKernel) {
   const Process before = process();
   EXPECT_GT(before.resident_bytes, 1u << 20);
   EXPECT_LT(before.resident_bytes, 1u << 30);
@@ -27,7 +27,7 @@ TEST(Kernel, IsNamed) {
   EXPECT_THAT(kernel(), testing::MatchesRegex("Linux .+ .+"));
 }
 
-TEST(Model, HasNoByteOfZeroInIt) {
+TEST(Model, HasNoZeroByte) {
   EXPECT_EQ(model().find('\0'), std::string::npos);
 }
 

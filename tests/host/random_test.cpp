@@ -8,7 +8,7 @@
 namespace adit::host {
 namespace {
 
-TEST(Random, FillsAllThatItIsGivenAndNothingElse) {
+TEST(Random, FillsExactlyItsBuffer) {
   std::array<std::uint8_t, 32> either{};  // of the bits that were ever set
   for (int i = 0; i < 64; ++i) {
     std::array<std::uint8_t, 34> bytes{};

@@ -67,7 +67,7 @@ TEST_F(RootProgramTest, DoesNotRunHereIfItHasNoStatus) {
   EXPECT_THAT(program_.why(), HasSubstr("adit-x does not run here"));
 }
 
-TEST_F(RootProgramTest, StartsAfterABootIfSystemdStartsItsUnit) {
+TEST_F(RootProgramTest, IsStartingAfterABootIfItHasAUnit) {
   const Folder units;
   units.put("adit-x.service", "");
   const RootProgram<Status> program{loop_, "adit-x", requests_.path(), run_.path(), 60s, units.path()};
@@ -83,7 +83,7 @@ TEST_F(RootProgramTest, StartsAfterABootIfSystemdStartsItsUnit) {
   EXPECT_THAT(program.why(), HasSubstr("adit-x does not run here"));
 }
 
-TEST_F(RootProgramTest, WhoseStatusCannotBeReadIsNotOneThatDoesNotRun) {
+TEST_F(RootProgramTest, RunsEvenIfItsStatusIsUnreadable) {
   run_.put(kStatusFile, "{");
   EXPECT_TRUE(program_.runs_here());
   EXPECT_FALSE(program_.status());
@@ -104,7 +104,7 @@ TEST_F(RootProgramTest, IsReadAgainOnceItsStatusIsOld) {
   EXPECT_EQ(program_.status()->nonce, "b");
 }
 
-TEST_F(RootProgramTest, IsWaitedForUntilItsStatusNamesTheRequest) {
+TEST_F(RootProgramTest, IsAwaitedUntilItsStatusNamesTheRequest) {
   tell("");
   const Request request;
   ASSERT_TRUE(program_.ask(kFile, request));
@@ -122,7 +122,7 @@ TEST_F(RootProgramTest, IsWaitedForUntilItsStatusNamesTheRequest) {
   EXPECT_FALSE(program_.waits()) << "a later start of the program knows nothing of it";
 }
 
-TEST_F(RootProgramTest, IsNotWaitedForBeyondItsTime) {
+TEST_F(RootProgramTest, IsNotAwaitedBeyondItsTimeout) {
   const Request request;
   ASSERT_TRUE(program_.ask(kFile, request));
   time_.pass(60s - 1ms);
@@ -138,7 +138,7 @@ TEST_F(RootProgramTest, IsNotWaitedForBeyondItsTime) {
   EXPECT_EQ(program_.trouble(), "") << "it was late, but it was read";
 }
 
-TEST_F(RootProgramTest, IsAskedAgainAfterItDidNotReadARequest) {
+TEST_F(RootProgramTest, AcceptsARequestAfterATimeout) {
   ASSERT_TRUE(program_.ask(kFile, Request{}));
   time_.pass(60s);
   EXPECT_TRUE(program_.check());
@@ -147,7 +147,7 @@ TEST_F(RootProgramTest, IsAskedAgainAfterItDidNotReadARequest) {
   EXPECT_EQ(program_.trouble(), "");
 }
 
-TEST_F(RootProgramTest, WasNotAskedIfTheRequestCannotBeWritten) {
+TEST_F(RootProgramTest, IsNotAwaitedIfTheRequestCannotBeWritten) {
   fs::remove_all(requests_.path());
   EXPECT_FALSE(program_.ask(kFile, Request{}));
   EXPECT_FALSE(program_.waits());
@@ -187,14 +187,14 @@ class AnsweringTest : public RootProgramTest {
   std::vector<std::string> answered_;
 };
 
-TEST_F(AnsweringTest, AnswersUntilNothingIsAskedFor) {
+TEST_F(AnsweringTest, AnswersAllRequests) {
   requests_.put(kFile, codec::write_file(first_));
   EXPECT_TRUE(answer(false));
   EXPECT_THAT(answered_, testing::ElementsAre(first_.nonce, later_.nonce));
   EXPECT_TRUE(fs::is_empty(requests_.path()));
 }
 
-TEST_F(AnsweringTest, DropsWhatWasAskedBeforeTheBoot) {
+TEST_F(AnsweringTest, DropsRequestsFromBeforeTheBoot) {
   requests_.put(kFile, codec::write_file(first_));
   requests_.put(kBeside, "data");
   EXPECT_TRUE(answer(true));
@@ -202,7 +202,7 @@ TEST_F(AnsweringTest, DropsWhatWasAskedBeforeTheBoot) {
   EXPECT_TRUE(fs::is_empty(requests_.path()));
 }
 
-TEST_F(AnsweringTest, HasNoRequestsIfTheirDirectoryIsNotThere) {
+TEST_F(AnsweringTest, HasNoRequestsWithoutTheirDirectory) {
   fs::remove_all(requests_.path());
   EXPECT_TRUE(answer(false));
   std::ofstream(requests_.path()) << "no directory";
@@ -210,7 +210,7 @@ TEST_F(AnsweringTest, HasNoRequestsIfTheirDirectoryIsNotThere) {
   fs::remove(requests_.path());
 }
 
-TEST(StatusFile, KnowsWhetherItIsTheFirstStartSinceTheBoot) {
+TEST(StatusFile, TellsTheFirstStartSinceTheBoot) {
   const Folder run;
   StatusFile file(run / kStatusFile);
   EXPECT_FALSE(file.told<Status>());

@@ -28,7 +28,7 @@ class ReadSecrets : public testing::Test {
   Folder folder_, saved_;
 };
 
-TEST_F(ReadSecrets, GivesEachTokenWithoutTheSpaceAroundIt) {
+TEST_F(ReadSecrets, TrimsEachToken) {
   const auto secrets = read(folder_.path());
   ASSERT_TRUE(secrets.has_value()) << secrets.error();
   EXPECT_EQ(secrets->token("scoring")->reveal(), "flux230{showroom");
@@ -36,7 +36,7 @@ TEST_F(ReadSecrets, GivesEachTokenWithoutTheSpaceAroundIt) {
   EXPECT_EQ(secrets->token("team")->reveal(), "team-token");
 }
 
-TEST_F(ReadSecrets, DoesWithoutATeamToken) {
+TEST_F(ReadSecrets, AllowsAMissingTeamToken) {
   for (const std::string empty : {"", "\n"}) {  // systemd's stand-in for a credential that is not there
     folder_.put("team.token", empty);
     EXPECT_FALSE(read(folder_.path()).value().token("team").has_value());
@@ -45,7 +45,7 @@ TEST_F(ReadSecrets, DoesWithoutATeamToken) {
   EXPECT_FALSE(read(folder_.path()).value().token("team").has_value());
 }
 
-TEST_F(ReadSecrets, KnowsTheCodeOfTheLabelWhereThereIsOne) {
+TEST_F(ReadSecrets, ReadsTheCodeOfTheLabelIfPresent) {
   EXPECT_FALSE(read(folder_.path()).value().label_code.has_value());
   folder_.put("label.code", "\n");  // systemd's stand-in
   EXPECT_FALSE(read(folder_.path()).value().label_code.has_value());
@@ -57,7 +57,7 @@ TEST_F(ReadSecrets, KnowsTheCodeOfTheLabelWhereThereIsOne) {
   }
 }
 
-TEST_F(ReadSecrets, DoesWithoutAnyToken) {
+TEST_F(ReadSecrets, AllowsNoTokens) {
   for (const std::string name : {"scoring", "mapping"}) {
     folder_.put(name + ".token", " \n");
     EXPECT_FALSE(read(folder_.path()).value().token(name).has_value());
@@ -67,7 +67,7 @@ TEST_F(ReadSecrets, DoesWithoutAnyToken) {
   EXPECT_TRUE(read(folder_ / "none").value().tokens.empty()) << "no folder at all";
 }
 
-TEST_F(ReadSecrets, PrefersWhatWasSavedToWhatWasGiven) {
+TEST_F(ReadSecrets, PrefersSavedToGivenTokens) {
   saved_.put("scoring.token", "saved-one");
   saved_.put("course.A.scoring.token", "of-course-a");
   saved_.put("another.token", "nobody asks for it");
@@ -81,7 +81,7 @@ TEST_F(ReadSecrets, PrefersWhatWasSavedToWhatWasGiven) {
   EXPECT_THAT(read(folder_.path())->damaged["scoring"], HasSubstr("chmod 600 " + (saved_ / "scoring.token")));
 }
 
-TEST_F(ReadSecrets, HasNoTokenInPlaceOfASavedOneThatIsDamaged) {
+TEST_F(ReadSecrets, ReplacesNoDamagedSavedToken) {
   saved_.put("mapping.token", "saved-one");
   for (const char* const damaged : {"two words", "", " \n"}) {
     saved_.put("scoring.token", damaged);
@@ -95,7 +95,7 @@ TEST_F(ReadSecrets, HasNoTokenInPlaceOfASavedOneThatIsDamaged) {
   }
 }
 
-TEST_F(ReadSecrets, TellsOfAFileThatCannotBeReadAndHasTheOthers) {
+TEST_F(ReadSecrets, ReportsAnUnreadableFileAndReadsTheOthers) {
   for (const std::string& path : {saved_ / "team.token", folder_ / "label.code"}) {
     std::filesystem::create_directory(path);
     const auto secrets = read(folder_.path());
@@ -106,7 +106,7 @@ TEST_F(ReadSecrets, TellsOfAFileThatCannotBeReadAndHasTheOthers) {
   }
 }
 
-TEST_F(ReadSecrets, RefusesAFileThatOthersMayReadOrWrite) {
+TEST_F(ReadSecrets, RejectsAFileThatOthersMayAccess) {
   for (const mode_t mode : {0640u, 0604u, 0620u, 0602u, 0644u}) {
     for (const std::string name : {"scoring.token", "mapping.token", "team.token"}) {
       chmod((folder_ / name).c_str(), mode);
@@ -118,7 +118,7 @@ TEST_F(ReadSecrets, RefusesAFileThatOthersMayReadOrWrite) {
   }
 }
 
-TEST_F(ReadSecrets, TrustsTheModesOfSystemdsCredentials) {
+TEST_F(ReadSecrets, TrustsTheModesOfSystemdCredentials) {
   chmod((folder_ / "scoring.token").c_str(), 0440);
   setenv("CREDENTIALS_DIRECTORY", folder_.path().c_str(), 1);
   EXPECT_TRUE(read(folder_.path()).has_value());
@@ -127,7 +127,7 @@ TEST_F(ReadSecrets, TrustsTheModesOfSystemdsCredentials) {
   EXPECT_FALSE(read(folder_.path()).has_value());
 }
 
-TEST_F(ReadSecrets, NamesTheFileAndNeverWhatIsInIt) {
+TEST_F(ReadSecrets, NamesTheFileButNotItsContent) {
   for (const std::string& text :
        {std::string("secret one\nsecret two"), std::string(300, 's'), std::string("secret\0", 7),
         std::string("s\xc3\xa9"

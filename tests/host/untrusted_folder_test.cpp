@@ -50,7 +50,7 @@ TEST_F(UntrustedFolderTest, FollowsNoLink) {
   EXPECT_TRUE(is_there("secret"));
 }
 
-TEST_F(UntrustedFolderTest, WaitsForNoFifoAndReadsNoFolder) {
+TEST_F(UntrustedFolderTest, RejectsFifosAndDirectories) {
   ASSERT_EQ(mkfifo((folder / "wanted.json").c_str(), 0600), 0);
   EXPECT_THAT(take("wanted.json").error().why, HasSubstr("is not a regular file"));
   EXPECT_FALSE(is_there("wanted.json"));
@@ -59,7 +59,7 @@ TEST_F(UntrustedFolderTest, WaitsForNoFifoAndReadsNoFolder) {
   EXPECT_FALSE(is_there("wanted.json"));
 }
 
-TEST_F(UntrustedFolderTest, TakesAFolderAwayWithAllThatIsInItAndFollowsNothingThere) {
+TEST_F(UntrustedFolderTest, DeletesADirectoryWithoutFollowingLinks) {
   folder.put("secret", "of root");
   ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
   ASSERT_EQ(mkdir((folder / "wanted.json/deeper").c_str(), 0700), 0);
@@ -71,7 +71,7 @@ TEST_F(UntrustedFolderTest, TakesAFolderAwayWithAllThatIsInItAndFollowsNothingTh
   EXPECT_TRUE(is_there("secret"));
 }
 
-TEST_F(UntrustedFolderTest, TakesTheNameOfAFolderThatIsTooDeepToBeDeleted) {
+TEST_F(UntrustedFolderTest, RenamesADirectoryTooDeepToDelete) {
   int deepest = open(folder.path().c_str(), O_RDONLY | O_DIRECTORY), levels = 0;
   for (const char* name = "wanted.json"; deepest >= 0 && levels < 300; ++levels, name = "d") {
     ASSERT_EQ(mkdirat(deepest, name, 0700), 0);
@@ -92,7 +92,7 @@ TEST_F(UntrustedFolderTest, TakesTheNameOfAFolderThatIsTooDeepToBeDeleted) {
   EXPECT_EQ(take("wanted.json").value(), std::nullopt);
 }
 
-TEST_F(UntrustedFolderTest, SaysSoWhereTheNameStays) {
+TEST_F(UntrustedFolderTest, ReportsANameThatStays) {
   ASSERT_EQ(mkdir((folder / "wanted.json").c_str(), 0700), 0);
   const pid_t child = fork();
   if (child == 0) {  // what is mounted on cannot be taken away
@@ -111,7 +111,7 @@ TEST_F(UntrustedFolderTest, SaysSoWhereTheNameStays) {
       << "nothing beside it";
 }
 
-TEST_F(UntrustedFolderTest, ReadsOnlySoMuch) {
+TEST_F(UntrustedFolderTest, LimitsTheSizeOfAFile) {
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest, ' '));
   EXPECT_EQ(take("wanted.json").value()->size(), UntrustedFolder::kLargest);
   folder.put("wanted.json", std::string(UntrustedFolder::kLargest + 1, ' '));
@@ -119,13 +119,13 @@ TEST_F(UntrustedFolderTest, ReadsOnlySoMuch) {
   EXPECT_FALSE(is_there("wanted.json"));
 }
 
-TEST_F(UntrustedFolderTest, IsNoLinkItself) {
+TEST_F(UntrustedFolderTest, RejectsALinkAsItsDirectory) {
   ASSERT_EQ(symlink(folder.path().c_str(), (folder / "link").c_str()), 0);
   EXPECT_FALSE(UntrustedFolder::open(folder / "link"));
   EXPECT_FALSE(UntrustedFolder::open(folder / "none"));
 }
 
-TEST_F(UntrustedFolderTest, ReadsAFileThatStays) {
+TEST_F(UntrustedFolderTest, ReadsAFileWithoutDeletingIt) {
   folder.put("wanted.json", "{}");
   auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
@@ -136,7 +136,7 @@ TEST_F(UntrustedFolderTest, ReadsAFileThatStays) {
   EXPECT_FALSE(opened->read("word.json"));
 }
 
-TEST_F(UntrustedFolderTest, OpensFoldersInItAndNoLinksToOthers) {
+TEST_F(UntrustedFolderTest, OpensDirectoriesButNoLinks) {
   auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   EXPECT_FALSE(opened->folder("inside").value());
@@ -146,7 +146,7 @@ TEST_F(UntrustedFolderTest, OpensFoldersInItAndNoLinksToOthers) {
   EXPECT_FALSE(opened->folder("link"));
 }
 
-TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
+TEST_F(UntrustedFolderTest, ListsALimitedNumberOfFilesInOrder) {
   auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   for (const char* name : {"b", "a"}) folder.put(name, "");
@@ -157,7 +157,7 @@ TEST_F(UntrustedFolderTest, NamesSoManyFilesInOrder) {
   EXPECT_THAT(opened->names().error(), HasSubstr("more than 256"));
 }
 
-TEST_F(UntrustedFolderTest, WipesAFileAndNothingElse) {
+TEST_F(UntrustedFolderTest, WipesOnlyAFile) {
   auto opened = UntrustedFolder::open(folder.path());
   ASSERT_TRUE(opened);
   folder.put("token", std::string(5000, 'x'));

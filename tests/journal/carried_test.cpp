@@ -57,7 +57,7 @@ Carried again(const Carried& carried) {
   return other;
 }
 
-TEST(Carried, HasPosesUntilTheyWereTaken) {
+TEST(CarriedState, KeepsPosesUntilDelivered) {
   Carried carried;
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
@@ -68,7 +68,7 @@ TEST(Carried, HasPosesUntilTheyWereTaken) {
   EXPECT_THAT(carried.robots(), IsEmpty()) << "the next life may serve another Command Post";
 }
 
-TEST(Carried, HasPosesAsTheyWere) {
+TEST(CarriedState, KeepsPosesUnchanged) {
   const icd::Pose pose{.position = {1.5, -2, 1e-300}, .orientation = {0, 0, 0.6, 0.8}};
   const icd::RobotName name = *icd::RobotName::parse("r1");
   for (const queues::PostedPose& posted :
@@ -81,7 +81,7 @@ TEST(Carried, HasPosesAsTheyWere) {
   }
 }
 
-TEST(Carried, PassesOverPosesThatAreCutShortOrOfNobody) {
+TEST(CarriedState, SkipsTruncatedAndNamelessPoses) {
   Carried carried;
   const std::string poses = store::bytes_of(state("r1", 1, 10));
   for (std::size_t size = 0; size < poses.size(); ++size)
@@ -92,7 +92,7 @@ TEST(Carried, PassesOverPosesThatAreCutShortOrOfNobody) {
   EXPECT_THAT(carried.robots(), IsEmpty());
 }
 
-TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
+TEST(CarriedState, KeepsQueuedPosesIfOthersAreDelivered) {
   Carried carried;
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::Poses, store::bytes_of(state("r2", 2, 11)));
@@ -102,7 +102,7 @@ TEST(Carried, HasThePosesThatWaitWhileOthersAreTaken) {
   EXPECT_THAT(names_in(carried), ElementsAre("r2"));
 }
 
-TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
+TEST(CarriedState, KeepsPosesReceivedDuringASend) {
   Carried carried;
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::StateSent, sent({"r1"}));
@@ -113,7 +113,7 @@ TEST(Carried, HasNewsThatCameWhileOthersWereUnderWay) {
   EXPECT_EQ(carried.robots().begin()->second.posted.pose.position.x, 2);
 }
 
-TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
+TEST(CarriedState, ResendsMessagesInFlightAtARestart) {
   Carried carried;
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::Markers, store::bytes_of(std::vector{marker("a", 1, icd::MarkerAction::Add, 1)}));
@@ -126,7 +126,7 @@ TEST(Carried, HoldsWhatWasUnderWayForNotTakenWhereALifeEnded) {
   EXPECT_THAT(carried.markers().markers, SizeIs(1));
 }
 
-TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
+TEST(CarriedState, ResendsMessagesWhoseAnswerWasNotRecorded) {
   Carried carried;
   tell(carried, Kind::Poses, store::bytes_of(state("r1", 1, 10)));
   tell(carried, Kind::Poses, store::bytes_of(state("r2", 1, 10)));
@@ -142,7 +142,7 @@ TEST(Carried, HoldsForNotTakenWhatWasSentAndOfWhichNoAnswerWasWrittenDown) {
   EXPECT_THAT(carried.markers().markers, ElementsAre(a));
 }
 
-TEST(Carried, HasEachMemberOfAMarker) {
+TEST(CarriedState, KeepsEachMemberOfAMarker) {
   icd::Marker each = marker("a", -1, icd::MarkerAction::Add, 1);
   each.type = 8;
   each.pose.orientation = {0.5, 0.5, 0.5, 0.5};
@@ -162,7 +162,7 @@ TEST(Carried, HasEachMemberOfAMarker) {
   EXPECT_THAT(again(carried).markers().markers, ElementsAre(each, unstamped));
 }
 
-TEST(Carried, HasClocksPacesAndStamps) {
+TEST(CarriedState, KeepsClocksPacesAndStamps) {
   using std::chrono::seconds;
   const pace::Learned learned{
       .earliest = {.first = pace::Instant(seconds(7)), .last = pace::Instant(seconds(8))},
@@ -199,7 +199,7 @@ TEST(Carried, HasClocksPacesAndStamps) {
 }
 
 /// Clocks that are set are recorded; each other stamp of a state is in its poses.
-TEST(Carried, HasTheClocksThatStatesLeft) {
+TEST(CarriedState, KeepsTheClocksOfStates) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> step{-7, 5};
   queues::StampShift live;
@@ -227,7 +227,7 @@ TEST(Carried, HasTheClocksThatStatesLeft) {
   }
 }
 
-TEST(Carried, KnowsWhenRobotsWereHeardUntilTheMachineStartsAgain) {
+TEST(CarriedState, KnowsWhenRobotsWereHeardUntilTheNextBoot) {
   Carried carried;
   tell(carried, Kind::Clock, store::bytes_of(Clock{.boot = "b1", .at = {}, .stamp = 1.5e9}));
   tell(carried, Kind::Heard, store::bytes_of(Heard{.robot = "r1", .messages = 1, .last = 10}));
@@ -247,7 +247,7 @@ TEST(Carried, KnowsWhenRobotsWereHeardUntilTheMachineStartsAgain) {
   EXPECT_THAT(carried.heard(), IsEmpty());
 }
 
-TEST(Carried, KnowsNoInstantsOfAnotherStartOfTheMachine) {
+TEST(CarriedState, DropsTimesOfAnotherBoot) {
   using std::chrono::seconds;
   Carried carried;
   tell(carried, Kind::Clock,
@@ -261,7 +261,7 @@ TEST(Carried, KnowsNoInstantsOfAnotherStartOfTheMachine) {
   EXPECT_THAT(carried.paces(), IsEmpty()) << "its clock may have said anything";
 }
 
-TEST(Carried, PassesOverWhatItDoesNotUnderstand) {
+TEST(CarriedState, SkipsUnknownRecords) {
   Carried carried;
   for (int kind = 0; kind < 256; ++kind) {
     for (const std::string said : {"", "?", "\x01\0\0\0\0\0\0\0"})
@@ -272,7 +272,7 @@ TEST(Carried, PassesOverWhatItDoesNotUnderstand) {
   EXPECT_THAT(carried.markers().markers, IsEmpty());
 }
 
-TEST(Carried, KnowsWhereGridsWerePostedOnceThatIsTold) {
+TEST(CarriedState, KnowsPostedGridAreasOnceRecorded) {
   Carried carried;
   EXPECT_FALSE(carried.grids());
   tell(carried, Kind::Grids);
@@ -289,7 +289,7 @@ TEST(Carried, KnowsWhereGridsWerePostedOnceThatIsTold) {
 
 /// The law: a journal that is read has the messages that are queued, after any course of sending and with a
 /// snapshot at any place.
-TEST(Carried, HasTheQueuedMessages) {
+TEST(CarriedState, KeepsQueuedMessages) {
   std::mt19937_64 random{1};
   const auto pick = [&](int below) { return std::uniform_int_distribution{0, below - 1}(random); };
   const auto any = [&](double x) {

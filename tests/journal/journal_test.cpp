@@ -63,7 +63,7 @@ class JournalTest : public testing::Test {
   fs::path folder_;
 };
 
-TEST_F(JournalTest, GivesTheNextLifeWhatWasAcceptedAndNotTaken) {
+TEST_F(JournalTest, RestoresUndeliveredMessages) {
   {
     const auto journal = life();
     EXPECT_TRUE(journal->accepted(pose(1)));
@@ -80,7 +80,7 @@ TEST_F(JournalTest, GivesTheNextLifeWhatWasAcceptedAndNotTaken) {
   }
 }
 
-TEST_F(JournalTest, IsReadableByNobodyElse) {
+TEST_F(JournalTest, IsPrivate) {
   const auto journal = life();
   struct stat status{};
   ASSERT_EQ(::stat((folder_ / "journal").c_str(), &status), 0);
@@ -91,7 +91,7 @@ TEST_F(JournalTest, IsReadableByNobodyElse) {
 
 /// A kill in the middle of a write: what was answered before is there, what was not may be absent, nothing
 /// else is there.
-TEST_F(JournalTest, HoldsAllThatWasAnsweredWhereverItsFileIsCut) {
+TEST_F(JournalTest, HoldsAllAnsweredMessagesAfterAnyCut) {
   constexpr int kAnswered = 3;
   std::vector<std::uintmax_t> sizes;
   {
@@ -122,7 +122,7 @@ TEST_F(JournalTest, HoldsAllThatWasAnsweredWhereverItsFileIsCut) {
   }
 }
 
-TEST_F(JournalTest, GoesOnBehindARecordThatAKillCut) {
+TEST_F(JournalTest, ContinuesAfterATornRecord) {
   ASSERT_TRUE(life()->accepted(pose(1)));
   std::ofstream(files("log-").front(), std::ios::binary | std::ios::app) << "ADTL torn";
   ASSERT_TRUE(life()->accepted(one_marker(7)));
@@ -131,7 +131,7 @@ TEST_F(JournalTest, GoesOnBehindARecordThatAKillCut) {
 }
 
 /// A delivered record may be one that is missing: what is known waits again.
-TEST_F(JournalTest, TellsAMissingRecordAndCountsNothingBehindItAsDelivered) {
+TEST_F(JournalTest, ReportsAMissingRecordAndDistrustsLaterDeliveries) {
   std::size_t at = 0;
   {
     const auto journal = life();
@@ -152,7 +152,7 @@ TEST_F(JournalTest, TellsAMissingRecordAndCountsNothingBehindItAsDelivered) {
   EXPECT_TRUE(carried.robots().empty());
 }
 
-TEST_F(JournalTest, StaysSmallAndLosesNothingWhenItIsRestarted) {
+TEST_F(JournalTest, StaysSmallAndLosesNothingAtRestarts) {
   constexpr int kMarkers = 40;
   auto journal = life();
   for (int round = 0; round < 100; ++round) {
@@ -175,7 +175,7 @@ TEST_F(JournalTest, StaysSmallAndLosesNothingWhenItIsRestarted) {
   check();
 }
 
-TEST_F(JournalTest, KeepsNothingAndRemovesNothingIfAFileCannotBeRead) {
+TEST_F(JournalTest, ChangesNothingIfAFileCannotBeRead) {
   ASSERT_TRUE(life()->accepted(pose(1)));
   const fs::path unreadable = folder_ / "journal" / "log-00000002.0123456789abcdef";
   fs::create_directory(unreadable);
@@ -219,7 +219,7 @@ class NoRoom {
   sighandler_t handler_ = nullptr;
 };
 
-TEST_F(JournalTest, SaysThatThereIsNoRoomAndKeepsWhatItHas) {
+TEST_F(JournalTest, ReportsAFullDiskAndKeepsItsRecords) {
   const auto journal = life();
   ASSERT_TRUE(journal->accepted(one_marker(1)));
   const auto size = fs::file_size(files("log-").front());
@@ -239,7 +239,7 @@ TEST_F(JournalTest, SaysThatThereIsNoRoomAndKeepsWhatItHas) {
 
 /// What the life before had sent, and of which it knew no answer, waits again; and instants are read by the
 /// clock of this start of the machine.
-TEST_F(JournalTest, SaysThatALifeBeganAlsoWhereThereIsRoomOnlyLater) {
+TEST_F(JournalTest, RecordsTheStartOnceTheDiskHasRoom) {
   {
     const auto journal = life();
     ASSERT_TRUE(journal->accepted(one_marker(1)));
@@ -262,7 +262,7 @@ TEST_F(JournalTest, SaysThatALifeBeganAlsoWhereThereIsRoomOnlyLater) {
 }
 
 /// A DeleteAll that was taken would come again after what was accepted and taken since.
-TEST_F(JournalTest, SaysWhatWasTakenBeforeWhatIsAcceptedOnceThereIsRoom) {
+TEST_F(JournalTest, RecordsDeliveriesFirstOnceTheDiskHasRoom) {
   const auto journal = life();
   ASSERT_TRUE(journal->accepted(one_marker(1)));
   {
@@ -278,7 +278,7 @@ TEST_F(JournalTest, SaysWhatWasTakenBeforeWhatIsAcceptedOnceThereIsRoom) {
   EXPECT_THAT(ids, testing::ElementsAre(2));
 }
 
-TEST_F(JournalTest, SaysNothingOfWhatWasSentAndCameBackWhereThereWasNoRoom) {
+TEST_F(JournalTest, SkipsFailedSendsDuringAFullDisk) {
   const auto journal = life();
   ASSERT_TRUE(journal->accepted(one_marker(1)));
   {
@@ -297,7 +297,7 @@ TEST_F(JournalTest, SaysNothingOfWhatWasSentAndCameBackWhereThereWasNoRoom) {
   EXPECT_TRUE(left().markers().markers.empty());
 }
 
-TEST_F(JournalTest, SaysSoWhereItsFolderCannotBeWritten) {
+TEST_F(JournalTest, ReportsAnUnwritableDirectory) {
   std::ofstream(folder_ / "journal") << "";
   const auto journal = life();
   EXPECT_FALSE(journal->accepted(pose(1)));
@@ -307,7 +307,7 @@ TEST_F(JournalTest, SaysSoWhereItsFolderCannotBeWritten) {
 }
 
 /// What a post pays for it. Printed, not asserted: machines differ.
-TEST_F(JournalTest, CostsLittle) {
+TEST_F(JournalTest, PrintsItsCostPerState) {
   const auto journal = life();
   constexpr int kPosts = 2000;
   std::vector<double> micros;

@@ -108,7 +108,7 @@ TEST_F(DamagedLedger, HasAllIfOneCopyOfARecordIsDamaged) {
   }
 }
 
-TEST_F(DamagedLedger, SaysWhatIsMissingIfBothCopiesOfARecordAreDamaged) {
+TEST_F(DamagedLedger, NamesLostReportsIfBothCopiesAreDamaged) {
   for (std::size_t record = 1; record <= 8; ++record) {
     SCOPED_TRACE(record);
     std::string bytes = log();
@@ -141,7 +141,7 @@ TEST_F(DamagedLedger, HasAllIfAnyByteIsDamaged) {
   }
 }
 
-TEST_F(DamagedLedger, SaysThatItsFileIsCut) {
+TEST_F(DamagedLedger, ReportsATruncatedFile) {
   for (const std::size_t size : {std::size_t{0}, std::size_t{1}, kRecord, 3 * kRecord + 100, 9 * kRecord,
                                  10 * kRecord, log().size() - 1}) {
     SCOPED_TRACE(size);
@@ -152,7 +152,7 @@ TEST_F(DamagedLedger, SaysThatItsFileIsCut) {
   }
 }
 
-TEST_F(DamagedLedger, SaysThatItsDirectoryIsMissing) {
+TEST_F(DamagedLedger, ReportsAMissingDirectory) {
   std::filesystem::remove_all(state_.ledger());
   expect_said(known_,
               "0 reports were read; reports 1 to 4 are lost from the ledger; reports from 5 on may be lost");
@@ -161,17 +161,17 @@ TEST_F(DamagedLedger, SaysThatItsDirectoryIsMissing) {
   EXPECT_EQ(open_or_fail(state_.path()).damage(), "") << "nothing is known of it";
 }
 
-TEST_F(DamagedLedger, SaysThatAnOldCopyIsInItsPlace) {
+TEST_F(DamagedLedger, ReportsAnOldCopyInItsPlace) {
   expect_said({.reports = 6, .log = 1},
               "reports 5 to 6 are lost from the ledger; reports from 7 on may be lost");
   EXPECT_THAT(files_in(state_.ledger() + "/damaged-1"), testing::Contains(testing::Key(file_)));
 }
 
-TEST_F(DamagedLedger, SaysThatItsLastFileIsMissing) {
+TEST_F(DamagedLedger, ReportsAMissingLastFile) {
   expect_said({.reports = known_.reports, .log = 2}, "reports from 5 on may be lost from the ledger");
 }
 
-TEST_F(DamagedLedger, SaysWhichFileIsMissingOfSeveral) {
+TEST_F(DamagedLedger, NamesTheMissingFileOfSeveral) {
   turn_log(state_.ledger());
   {
     auto ledger = open_or_fail(state_.path());
@@ -220,12 +220,12 @@ TEST_F(DamagedLedger, HasAllIfASnapshotIsDamagedOrMissing) {
   }
 }
 
-TEST_F(DamagedLedger, SaysThatARecordCannotBeUnderstood) {
+TEST_F(DamagedLedger, ReportsAnUnknownRecord) {
   append(state_.ledger(), 1, "no steps");
   expect_said(known_, "record 10 cannot be understood");
 }
 
-TEST_F(DamagedLedger, SaysLaterDamageToo) {
+TEST_F(DamagedLedger, ReportsLaterDamage) {
   std::string bytes = log();
   damage(bytes, 5);
   put(bytes);

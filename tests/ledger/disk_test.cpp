@@ -34,7 +34,7 @@ class LedgerOnDisk : public testing::Test {
   store::Disk disk_;
 };
 
-TEST_F(LedgerOnDisk, AFullDiskLeavesRoomForStepsOfKnownReports) {
+TEST_F(LedgerOnDisk, FullDiskHasRoomForStepsOfKnownReports) {
   auto ledger = open();
   disk_.full = 1;
   std::int64_t last = 0;
@@ -54,7 +54,7 @@ TEST_F(LedgerOnDisk, AFullDiskLeavesRoomForStepsOfKnownReports) {
 }
 
 /// A report of any length leaves that room.
-TEST_F(LedgerOnDisk, AFullDiskLeavesRoomBehindALongReport) {
+TEST_F(LedgerOnDisk, FullDiskHasRoomAfterALongReport) {
   auto ledger = open();
   disk_.full = 1;
   ASSERT_TRUE(write(ledger, backpack(1)));
@@ -64,7 +64,7 @@ TEST_F(LedgerOnDisk, AFullDiskLeavesRoomBehindALongReport) {
   for (int step = 0; step < 8; ++step) EXPECT_TRUE(write(ledger, backpack(1))) << step;
 }
 
-TEST_F(LedgerOnDisk, ASpareFileTakesReportsOnAFullDisk) {
+TEST_F(LedgerOnDisk, FullDiskStillFillsASpareFile) {
   auto ledger = open();
   ASSERT_TRUE(keep_up(ledger));
   disk_.full = 1;
@@ -75,7 +75,7 @@ TEST_F(LedgerOnDisk, ASpareFileTakesReportsOnAFullDisk) {
 }
 
 /// The log has no room left, and the process ends: no file says less than it did.
-TEST_F(LedgerOnDisk, AFullDiskAtTheEndOfAFileIsNoDamageAtTheNextStart) {
+TEST_F(LedgerOnDisk, FullDiskAtTheEndOfAFileIsNoDamage) {
   for (const bool is_killed : {false, true}) {
     std::int64_t last = 0;
     {
@@ -106,7 +106,7 @@ TEST_F(LedgerOnDisk, AFullDiskAtTheEndOfAFileIsNoDamageAtTheNextStart) {
   }
 }
 
-TEST_F(LedgerOnDisk, AFullDiskIsAnErrorOfUpkeep) {
+TEST_F(LedgerOnDisk, FullDiskIsAnErrorOfUpkeep) {
   auto ledger = open();
   disk_.full = 1;
   EXPECT_FALSE(keep_up(ledger)) << "no room for a spare file";
@@ -119,7 +119,7 @@ TEST_F(LedgerOnDisk, AFullDiskIsAnErrorOfUpkeep) {
   EXPECT_THAT(files_in(disk_.log()).rbegin()->first, testing::StartsWith("snapshot-"));
 }
 
-TEST_F(LedgerOnDisk, AFullDiskAtTheFirstStart) {
+TEST_F(LedgerOnDisk, FullDiskAtTheFirstStartRejectsReports) {
   disk_.full = 1;
   auto ledger = open();
   EXPECT_THAT(ledger.refusal(), HasSubstr("No space left"));
@@ -131,7 +131,7 @@ TEST_F(LedgerOnDisk, AFullDiskAtTheFirstStart) {
   expect_all(ledger);
 }
 
-TEST_F(LedgerOnDisk, AReadOnlyDiskShowsAllAndTakesNoReport) {
+TEST_F(LedgerOnDisk, ReadOnlyDiskShowsAllAndRejectsReports) {
   {
     ASSERT_TRUE(write(*std::make_unique<Ledger>(open()), backpack(1)));
   }
@@ -155,7 +155,7 @@ TEST_F(LedgerOnDisk, AReadOnlyDiskShowsAllAndTakesNoReport) {
 }
 
 /// Wherever the disk begins to fail and for how long: an error is an error, and success is kept.
-TEST_F(LedgerOnDisk, ADiskThatFailsCostsNoReportThatWasAccepted) {
+TEST_F(LedgerOnDisk, FailingDiskLosesNoAcceptedReport) {
   std::map<std::int64_t, Report> kept;
   for (int start = 0; start < 6; ++start) {
     disk_.start();
@@ -186,7 +186,7 @@ TEST_F(LedgerOnDisk, ADiskThatFailsCostsNoReportThatWasAccepted) {
 
 /// Damage is found while the disk is full: all can be read, nothing is written, and once there is room it
 /// goes on as if it had been there at the start.
-TEST_F(LedgerOnDisk, DamageOnAFullDiskIsSaidAndMendedLater) {
+TEST_F(LedgerOnDisk, DamageOnAFullDiskIsReportedAndRepairedLater) {
   const Known known{.reports = 20, .log = 7};
   Known after;
   std::vector<Report> reports;
@@ -217,7 +217,7 @@ TEST_F(LedgerOnDisk, DamageOnAFullDiskIsSaidAndMendedLater) {
   EXPECT_EQ(ledger.reports(), reports);
 }
 
-TEST_F(LedgerOnDisk, ASnapshotThatFailsAfterDamageLeavesNoFileForEachTry) {
+TEST_F(LedgerOnDisk, FailedSnapshotsLeaveNoFiles) {
   disk_.failing_file = "snapshot-";
   auto ledger = open({.reports = 20, .log = 7});
   for (int i = 0; i < 5; ++i) EXPECT_FALSE(ledger.make_ready());
@@ -278,16 +278,16 @@ class LedgerKilledAtDamage : public testing::Test {
   Known known_;
 };
 
-TEST_F(LedgerKilledAtDamage, SaysAgainThatRecordsAreMissing) {
+TEST_F(LedgerKilledAtDamage, ReportsMissingRecordsAgain) {
   play("gap");
 }
-TEST_F(LedgerKilledAtDamage, SaysAgainThatItsFileIsCut) {
+TEST_F(LedgerKilledAtDamage, ReportsATruncatedFileAgain) {
   play("cut");
 }
-TEST_F(LedgerKilledAtDamage, SaysAgainThatItsLastFileIsMissing) {
+TEST_F(LedgerKilledAtDamage, ReportsAMissingLastFileAgain) {
   play("last");
 }
-TEST_F(LedgerKilledAtDamage, SaysAgainThatItsDirectoryIsMissing) {
+TEST_F(LedgerKilledAtDamage, ReportsAMissingDirectoryAgain) {
   play("gone");
 }
 

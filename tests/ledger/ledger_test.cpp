@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-TEST(Ledger, GivesBackReportsRunsAndHistoriesAfterAStart) {
+TEST(Ledger, RestoresReportsRunsAndHistories) {
   const State state;
   dispatch::Run first{.number = 1, .began = 5}, second{.number = 2, .id = "1.5", .began = 9};
   Report report = backpack(2);
@@ -65,7 +65,7 @@ struct ToLedger final : dispatch::Output {
   Ledger& ledger;
 };
 
-TEST(Ledger, HasACorrectionWithWhatWasPostedAfterAStart) {
+TEST(Ledger, RestoresACorrectedReport) {
   const State state;
   {
     auto ledger = open_or_fail(state.path());
@@ -106,7 +106,7 @@ TEST(Ledger, WritesAllStepsOrNone) {
 }
 
 /// The snapshot stands for the first file, and the records behind it are read.
-TEST(Ledger, KeepsAllThroughFilesThatAreFullAndSnapshots) {
+TEST(Ledger, KeepsAllThroughFullFilesAndSnapshots) {
   const State state;
   std::int64_t last = 0;
   {
@@ -146,7 +146,7 @@ TEST(Ledger, KeepsKindsOfALaterVersionInSnapshots) {
   EXPECT_EQ(record.body, "a later kind");
 }
 
-TEST(Ledger, DoesNotStartIfALaterVersionsRecordMustBeUnderstood) {
+TEST(Ledger, DoesNotOpenWithAMandatoryUnknownRecord) {
   const State state;
   (void)open_or_fail(state.path());
   append(state.ledger(), store::kMustUnderstand | 1, "");
@@ -155,7 +155,7 @@ TEST(Ledger, DoesNotStartIfALaterVersionsRecordMustBeUnderstood) {
   EXPECT_EQ(files_in(state.ledger()), before);
 }
 
-TEST(Ledger, IsReadableByItsOwnerAlone) {
+TEST(Ledger, IsPrivate) {
   const State state;
   const mode_t before = ::umask(0);
   auto ledger = open_or_fail(state.path());
@@ -172,7 +172,7 @@ TEST(Ledger, IsReadableByItsOwnerAlone) {
     EXPECT_EQ(mode(state.ledger() + '/' + name), 0600u);
 }
 
-TEST(Ledger, IsOpenOnceAtATime) {
+TEST(Ledger, OpensOnceAtATime) {
   const State state;
   const auto ledger = open_or_fail(state.path());
   EXPECT_EQ(Ledger::open(state.path()).error().cause, Error::Cause::InUse);
@@ -181,7 +181,7 @@ TEST(Ledger, IsOpenOnceAtATime) {
 }
 
 /// The stamps are written from it: they must not forget the ledger that cannot be read.
-TEST(LedgerThatIsClosed, HasNoReportAndTakesNoneAndForgetsNothing) {
+TEST(ClosedLedger, RejectsReportsAndForgetsNothing) {
   auto ledger = Ledger::closed("x: Input/output error", {.reports = 20, .log = 3});
   EXPECT_TRUE(ledger.is_closed());
   EXPECT_EQ(ledger.refusal(), "x: Input/output error");
@@ -198,7 +198,7 @@ TEST(LedgerThatIsClosed, HasNoReportAndTakesNoneAndForgetsNothing) {
   EXPECT_EQ(ledger.known().log, 3u);
 }
 
-TEST(LedgerThatIsClosed, IsSetAsideForANewOneThatGoesOnWithItsNumbers) {
+TEST(ClosedLedger, IsReplacedByANewOneThatContinuesItsNumbers) {
   const State state;
   {
     auto ledger = open_or_fail(state.path());

@@ -86,7 +86,7 @@ TEST(LedgerRecord, HasTheseBytes) {
             "0000000000");
 }
 
-TEST(LedgerRecord, GivesBackEachMember) {
+TEST(LedgerRecord, ReadsBackEachMember) {
   EXPECT_EQ(report_in(said(full_report())), full_report());
   EXPECT_EQ(run_in(said(full_run())), full_run());
   EXPECT_EQ(report_in(said(backpack(1))), backpack(1));
@@ -97,7 +97,7 @@ TEST(LedgerRecord, GivesBackEachMember) {
   }
 }
 
-TEST(LedgerRecord, GivesBackHostileTextByteForByte) {
+TEST(LedgerRecord, ReadsBackHostileTextUnchanged) {
   for (const std::string& text : {std::string("nul\0inside", 10), std::string("\xff\xfe not UTF-8"),
                                   std::string("ADTL"), std::string(70000, 'x')}) {
     Report report = full_report();
@@ -113,7 +113,7 @@ TEST(LedgerRecord, GivesBackHostileTextByteForByte) {
   }
 }
 
-TEST(LedgerRecord, IsNoneIfItIsCutOrHasMoreOrHasNoNumber) {
+TEST(LedgerRecord, IsRejectedWithAWrongLengthOrNumber) {
   const std::string report = said(full_report()), run = said(full_run()), step = said(Step{10, "queued", ""});
   const std::string whole = said(Steps{.highest = 7, .reports = {{report, step}}, .runs = {run}});
   ASSERT_TRUE(steps_record_in(whole));
@@ -126,7 +126,7 @@ TEST(LedgerRecord, IsNoneIfItIsCutOrHasMoreOrHasNoNumber) {
   EXPECT_FALSE(Ledger::is_copy("ledger.sqlite"));
 }
 
-TEST(LedgerRecord, AStateOfALaterVersionIsInDoubtAndItsWordStays) {
+TEST(LedgerRecord, UnknownStateIsInDoubtAndKeepsItsWord) {
   std::string later = said(full_report());
   later.replace(later.find("answered"), 8, "promised");
   const auto report = report_in(later);
@@ -139,7 +139,7 @@ TEST(LedgerRecord, AStateOfALaterVersionIsInDoubtAndItsWordStays) {
 }
 
 /// This version writes and reads again between two starts of a later one.
-TEST(LedgerRecord, MembersAndKindsOfALaterVersionStayThroughStepsSnapshotsAndDamage) {
+TEST(LedgerRecord, KeepsMembersAndKindsOfALaterVersion) {
   Book book;
   const std::string report = said(full_report(), "its more"), run = said(full_run(), "run's more");
   ASSERT_TRUE(book.apply(kSteps, said(Steps{.highest = 2, .reports = {{report, ""}}, .runs = {run}})));
@@ -167,7 +167,7 @@ TEST(LedgerRecord, MembersAndKindsOfALaterVersionStayThroughStepsSnapshotsAndDam
   EXPECT_THAT(next.records(), testing::Contains(std::pair<std::uint8_t, std::string>(9, "a later kind")));
 }
 
-TEST(LedgerBook, NeverPutsAReportInThePlaceOfAnother) {
+TEST(LedgerBook, ReplacesNoReportByAnother) {
   Book book;
   const std::vector<Report> first{backpack(1)};
   ASSERT_TRUE(book.apply(kSteps, book.record(first, nullptr).value()));
@@ -188,7 +188,7 @@ TEST(LedgerBook, NeverPutsAReportInThePlaceOfAnother) {
   }
 }
 
-TEST(LedgerBook, RefusesAValueThatIsNoNumber) {
+TEST(LedgerBook, RejectsANonFiniteNumber) {
   const auto is_refused = [](const Report& report) { return !Book().record(std::span(&report, 1), nullptr); };
   Report report = backpack(1);
   report.before = icd::RunStatus{0, std::nan(""), 0, ""};
@@ -202,7 +202,7 @@ TEST(LedgerBook, RefusesAValueThatIsNoNumber) {
 }
 
 /// A lost report's number is said, and no number is given out twice.
-TEST(LedgerBook, SaysWhichReportsAreLost) {
+TEST(LedgerBook, NamesLostReports) {
   Book book;
   for (const std::int64_t number : {2, 3, 6}) {
     const Report report =

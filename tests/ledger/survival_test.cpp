@@ -48,7 +48,7 @@ std::vector<std::int64_t> kill_a_recorder(const State& state, std::chrono::micro
   return numbers;
 }
 
-TEST(LedgerSurvives, AKillAtAnyMoment) {
+TEST(LedgerSurvives, AKillAtAnyTime) {
   const State state;
   std::mt19937_64 random(7);
   std::size_t before = 0;

@@ -28,7 +28,7 @@ Report answered(Report report) {
 const dispatch::Run kRun{
     .number = 1, .began = 5, .why = "a first one", .heard = 9, .post = "10.100.1.200:8000"};
 
-TEST(LedgerThatTakesOver, HasEachReportWithItsHistoryAlsoAfterAStart) {
+TEST(LedgerOfATakeOver, HasEachReportWithItsHistory) {
   const State first, spare;
   auto there = open_or_fail(first.path());
   ASSERT_TRUE(there.write(kRun));

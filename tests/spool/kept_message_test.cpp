@@ -20,13 +20,13 @@ icd::ChunkedBytes bytes(const std::string& text) {
   return icd::ChunkedBytes({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()});
 }
 
-class KeptMessageTest : public testing::Test {
+class StoredMessageTest : public testing::Test {
  protected:
   host::Folder folder_;
   const std::string file_ = folder_ / "message.cbor";
 };
 
-TEST_F(KeptMessageTest, IsReadBackAsItWasWritten) {
+TEST_F(StoredMessageTest, ReadsBackTheSame) {
   ASSERT_TRUE(write_whole(file_, codec::write_state_update(state())));
   EXPECT_EQ(read_state(file_), state());
   ASSERT_TRUE(write_whole(file_, codec::write_markers_update(markers())));
@@ -36,7 +36,7 @@ TEST_F(KeptMessageTest, IsReadBackAsItWasWritten) {
   EXPECT_EQ(status.st_mode & 07777, 0600u);
 }
 
-TEST_F(KeptMessageTest, ThatHasNoRoomLeavesTheFileOfThatNameAsItWasAndNoOther) {
+TEST_F(StoredMessageTest, KeepsTheOldFileOnAFullDisk) {
   ASSERT_TRUE(write_whole(file_, bytes("older")));
   const NoFileAbove small(4096);
   const auto written = write_whole(file_, codec::write_map_update(cloud(1000)));
@@ -46,13 +46,13 @@ TEST_F(KeptMessageTest, ThatHasNoRoomLeavesTheFileOfThatNameAsItWasAndNoOther) {
   EXPECT_EQ(host::names_in(folder_.path())->size(), 1u);
 }
 
-TEST_F(KeptMessageTest, ThatCannotHaveItsNameLeavesNoFile) {
+TEST_F(StoredMessageTest, LeavesNoFileIfItCannotBeRenamed) {
   fs::create_directory(file_);
   EXPECT_FALSE(write_whole(file_, bytes("newer")));
   EXPECT_EQ(host::names_in(folder_.path())->size(), 1u);
 }
 
-TEST_F(KeptMessageTest, ThatWasNotWrittenToItsEndIsRemovedAndNothingElse) {
+TEST_F(StoredMessageTest, PartialFilesAloneAreRemoved) {
   folder_.put("message.cbor.part", "half");
   folder_.put("message.cbor", "whole");
   remove_parts(folder_.path());
@@ -60,7 +60,7 @@ TEST_F(KeptMessageTest, ThatWasNotWrittenToItsEndIsRemovedAndNothingElse) {
   remove_parts(folder_ / "none");
 }
 
-TEST_F(KeptMessageTest, IsRefusedWhereItIsCutShortOrOfAnotherKind) {
+TEST_F(StoredMessageTest, IsRejectedIfTruncatedOrOfAnotherKind) {
   const std::string whole = codec::write_state_update(state()).to_string();
   ASSERT_TRUE(write_whole(file_, bytes(whole.substr(0, whole.size() - 1))));
   EXPECT_FALSE(read_state(file_));
@@ -69,14 +69,14 @@ TEST_F(KeptMessageTest, IsRefusedWhereItIsCutShortOrOfAnotherKind) {
   EXPECT_FALSE(read_markers(file_));
 }
 
-TEST_F(KeptMessageTest, ThatCannotBeReadIsNotCalledDamaged) {
+TEST_F(StoredMessageTest, UnreadableIsNotReportedAsDamaged) {
   EXPECT_EQ(read_state(folder_ / "none").error().status, icd::Status::UnprocessableEntity);
   fs::create_directory(file_);
   EXPECT_EQ(read_state(file_).error().status, icd::Status::ServiceUnavailable);
   EXPECT_EQ(read_map(file_).error().status, icd::Status::ServiceUnavailable);
 }
 
-TEST_F(KeptMessageTest, StandsInAFolderThatNobodyElseCanRead) {
+TEST_F(StoredMessageTest, IsInAPrivateDirectory) {
   make_folder_of_ours(folder_ / "a/b");
   struct stat status{};
   ASSERT_EQ(::stat((folder_ / "a/b").c_str(), &status), 0);

@@ -17,7 +17,7 @@ class PartFileTest : public testing::Test {
   const std::string path_ = folder_ / "map";
 };
 
-TEST_F(PartFileTest, HasItsNameOnceItIsGivenAndNotBefore) {
+TEST_F(PartFileTest, HasItsNameOnlyOnceRenamed) {
   PartFile file(path_);
   icd::ChunkedBytes bytes;
   bytes.append(std::vector<std::uint8_t>(200'000, 'x'));
@@ -33,7 +33,7 @@ TEST_F(PartFileTest, HasItsNameOnceItIsGivenAndNotBefore) {
   EXPECT_EQ(host::read_file(path_), "ab" + std::string(200'000, 'x'));
 }
 
-TEST_F(PartFileTest, IsGoneWhereItGetsNoName) {
+TEST_F(PartFileTest, IsDeletedUnlessRenamed) {
   {
     PartFile file(path_), another(path_);
     EXPECT_EQ(file.append("half"), 0);
@@ -42,7 +42,7 @@ TEST_F(PartFileTest, IsGoneWhereItGetsNoName) {
   EXPECT_TRUE(names().empty());
 }
 
-TEST_F(PartFileTest, SaysWhatIsLeftWhereThereIsNoMoreRoom) {
+TEST_F(PartFileTest, KeepsUnwrittenBytesOnAFullDisk) {
   PartFile file(path_);
   icd::ChunkedBytes pieces;  // of one chunk each
   for (const char c : {'a', 'b', 'c'}) {
@@ -57,13 +57,13 @@ TEST_F(PartFileTest, SaysWhatIsLeftWhereThereIsNoMoreRoom) {
   EXPECT_EQ(map.bytes[3000], 'd');
 }
 
-TEST_F(PartFileTest, SaysWhyItCannotBeMade) {
+TEST_F(PartFileTest, TellsWhyItCannotBeCreated) {
   PartFile file(folder_ / "none/map");
   EXPECT_EQ(file.append("x"), ENOENT);
   EXPECT_EQ(file.name(path_), ENOENT);
 }
 
-TEST_F(PartFileTest, ShowsItsBytesForAsLongAsSomebodyHasThem) {
+TEST_F(PartFileTest, MappingOutlivesTheFile) {
   MappedFile map;
   {
     PartFile file(path_);

@@ -41,7 +41,7 @@ icd::MapUpdate grid(const char* name, std::uint8_t value) {
   return codec::read_map_update(std::move(*document), {}).value();
 }
 
-TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
+TEST_F(SpoolTest, StoresMapsInOrderUntilForgotten) {
   Spool spool(folder_ / "waiting");
   for (const std::uint64_t number : {9, 100'000'000, 10})
     ASSERT_TRUE(spool.keep(number, grid("r1", static_cast<std::uint8_t>(number % 100)), 0));
@@ -54,7 +54,7 @@ TEST_F(SpoolTest, GivesBackWhatItKeptByNumberUntilItIsForgotten) {
   EXPECT_EQ(kept[1].first, 100'000'000u);
 }
 
-TEST_F(SpoolTest, KeepsNothingWhereItCouldNotTellWhatALifeBeforeKept) {
+TEST_F(SpoolTest, RejectsMapsUntilItsDirectoryWasRead) {
   const fs::path folder = folder_ / "waiting";
   std::ofstream(folder) << "no folder";
   Spool spool(folder);
@@ -68,7 +68,7 @@ TEST_F(SpoolTest, KeepsNothingWhereItCouldNotTellWhatALifeBeforeKept) {
   EXPECT_TRUE(spool.keep(1, grid("r1", 1), 0)) << "it could be read";
 }
 
-TEST_F(SpoolTest, ReadsOfTheMapsThatItKeptNoData) {
+TEST_F(SpoolTest, StartReadsNoDataOfMaps) {
   Spool spool(folder_);
   for (std::uint64_t number = 1; number <= 3; ++number)
     ASSERT_TRUE(spool.keep(number, cloud(1'000'000), 0));  // of 12 MB
@@ -87,7 +87,7 @@ TEST_F(SpoolTest, ReadsOfTheMapsThatItKeptNoData) {
   EXPECT_FALSE(codec::check_data(kept[3].second)) << "it is damaged, and is to be read for that";
 }
 
-TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
+TEST_F(SpoolTest, RenamesAMapOfAWrongLength) {
   Spool spool(folder_);
   for (const std::uint64_t number : {1, 2, 3}) ASSERT_TRUE(spool.keep(number, cloud(10), 0));
   fs::resize_file(folder_ / "map-00000001.cbor", 100);
@@ -98,7 +98,7 @@ TEST_F(SpoolTest, SetsAsideAMapThatIsCutShortOrLonger) {
   EXPECT_TRUE(fs::exists(folder_ / "map-00000002.cbor.damaged"));
 }
 
-TEST_F(SpoolTest, SetsAMapAsideInWorkOnWhichTwoProcessesEnded) {
+TEST_F(SpoolTest, RenamesAMapThatCrashedTwoProcesses) {
   const fs::path folder = folder_ / "waiting";
   const auto kill_in_work_on = [&folder](const std::vector<std::uint64_t>& numbers) {
     Spool spool(folder);
@@ -126,14 +126,14 @@ TEST_F(SpoolTest, SetsAMapAsideInWorkOnWhichTwoProcessesEnded) {
   EXPECT_TRUE(fs::exists(folder / "map-00000002.cbor.damaged"));
 }
 
-TEST_F(SpoolTest, IsReadableByNobodyElse) {
+TEST_F(SpoolTest, IsPrivate) {
   Spool spool(folder_ / "waiting");
   struct stat status{};
   ASSERT_EQ(::stat((folder_ / "waiting").c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777, 0700u);
 }
 
-TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
+TEST_F(SpoolTest, RenamesADamagedMapAndContinues) {
   Spool spool(folder_);
   ASSERT_TRUE(spool.keep(1, grid("r1", 1), 0));
   ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
@@ -144,7 +144,7 @@ TEST_F(SpoolTest, SetsAsideWhatItCannotReadAndGoesOn) {
   EXPECT_TRUE(fs::exists(folder_ / "map-00000001.cbor.damaged"));
 }
 
-TEST_F(SpoolTest, KeepsAFileThatItCannotReadAndRefusesMapsUntilTheNextStart) {
+TEST_F(SpoolTest, KeepsAnUnreadableFileAndRejectsMaps) {
   Spool spool(folder_);
   ASSERT_TRUE(spool.keep(2, grid("r2", 2), 0));
   fs::create_directory(folder_ / "map-00000001.cbor");  // open succeeds, read fails
@@ -164,14 +164,14 @@ TEST_F(SpoolTest, KeepsAFileThatItCannotReadAndRefusesMapsUntilTheNextStart) {
   EXPECT_EQ(Spool(folder_).read().size(), 1u);
 }
 
-TEST_F(SpoolTest, TakesNothingForAMapThatWasNotWrittenToItsEnd) {
+TEST_F(SpoolTest, IgnoresPartialAndForeignFiles) {
   Spool spool(folder_);
   std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
   std::ofstream(folder_ / "map-x.cbor") << "no number";
   EXPECT_TRUE(spool.read().empty());
 }
 
-TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten) {
+TEST_F(SpoolTest, StoredMapUsesItsFileEvenOnceForgotten) {
   Spool spool(folder_);
   const icd::MapUpdate whole = cloud(40'000);
   const auto kept = spool.keep(7, whole, 0);
@@ -189,14 +189,14 @@ TEST_F(SpoolTest, GivesAMapBackWithItsDataInTheFileWhichLivesOnWhenItIsForgotten
   EXPECT_EQ(*kept, whole);
 }
 
-TEST_F(SpoolTest, KeepsACloudWithoutPoints) {
+TEST_F(SpoolTest, StoresACloudWithoutPoints) {
   Spool spool(folder_);
   const auto kept = spool.keep(1, cloud(0), 0);
   ASSERT_TRUE(kept);
   EXPECT_EQ(*kept, cloud(0));
 }
 
-TEST_F(SpoolTest, RefusesAMapForWhichThereIsNoRoomAndLeavesNoFile) {
+TEST_F(SpoolTest, RejectsAMapWithoutRoomAndLeavesNoFile) {
   Spool spool(folder_);
   const auto kept = spool.keep(1, cloud(1000), std::uint64_t{1} << 62);
   ASSERT_FALSE(kept);
@@ -205,7 +205,7 @@ TEST_F(SpoolTest, RefusesAMapForWhichThereIsNoRoomAndLeavesNoFile) {
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(SpoolTest, LeavesRoomForWhatOthersWriteBesideMaps) {
+TEST_F(SpoolTest, LeavesRoomForOtherFiles) {
   struct statvfs room{};
   ASSERT_EQ(::statvfs(folder_.c_str(), &room), 0);
   const std::uint64_t left = room.f_bavail * room.f_frsize, quarter = room.f_blocks * room.f_frsize / 4;
@@ -220,13 +220,13 @@ TEST_F(SpoolTest, LeavesRoomForWhatOthersWriteBesideMaps) {
   }
 }
 
-TEST_F(SpoolTest, RemovesTheFileOfAMapThatWasNotWrittenToItsEnd) {
+TEST_F(SpoolTest, RemovesPartialFiles) {
   std::ofstream(folder_ / "map-00000003.cbor.part") << "half";
   Spool(folder_).read();
   EXPECT_TRUE(fs::is_empty(folder_));
 }
 
-TEST_F(SpoolTest, RefusesEveryMapWhereItsFolderCannotBeWritten) {
+TEST_F(SpoolTest, RejectsMapsIfItsDirectoryIsUnwritable) {
   std::ofstream(folder_ / "file") << "";
   Spool spool(folder_ / "file" / "waiting");
   EXPECT_NE(spool.trouble(), "");

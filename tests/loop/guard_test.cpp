@@ -33,7 +33,7 @@ class Guard : public testing::Test {
   std::uint64_t before_ = caught_so_far();
 };
 
-TEST_F(Guard, EndsWhatThrowsAndNothingElseWhateverIsThrown) {
+TEST_F(Guard, CatchesAnyException) {
   EXPECT_TRUE(guarded("a test", [] {}));
   EXPECT_FALSE(guarded("a test", [] { throw std::bad_alloc(); }));
   EXPECT_FALSE(guarded("a test", [] { throw std::length_error("too long"); }));
@@ -44,14 +44,14 @@ TEST_F(Guard, EndsWhatThrowsAndNothingElseWhateverIsThrown) {
   EXPECT_NE(told.find("a test: unknown exception\n"), std::string::npos);
 }
 
-TEST_F(Guard, OutlivesALogThatThrowsItself) {
+TEST_F(Guard, SurvivesALogThatThrows) {
   tell_of_caught([](const char*, const char*) { throw std::bad_alloc(); });
   EXPECT_FALSE(guarded("a test", [] { throw std::runtime_error("x"); }));
   EXPECT_EQ(caught(), 1);
 }
 
 /// Whatever is in memory may be half done. What was accepted is on the disk.
-TEST(UncaughtDeathTest, EndsTheProcessAndIsTold) {
+TEST(UncaughtDeathTest, EndsTheProcessAndIsLogged) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const auto run = [](void (*begin)(Loop& loop, Source& timer)) {
     end_by_uncaught();
@@ -66,7 +66,7 @@ TEST(UncaughtDeathTest, EndsTheProcessAndIsTold) {
               testing::ExitedWithCode(1), "the process: .*bad_alloc");
 }
 
-TEST(FaultsDeathTest, AreCountedByExceptionsAndSignalsOfTheProcessItself) {
+TEST(FaultsDeathTest, CountExceptionsAndOwnSignals) {
   GTEST_FLAG_SET(death_test_style, "threadsafe");
   const std::string file = testing::TempDir() + "adit-faults";
   const auto end = [&file](void (*fault)()) {
@@ -82,11 +82,11 @@ TEST(FaultsDeathTest, AreCountedByExceptionsAndSignalsOfTheProcessItself) {
   std::filesystem::remove(file);
 }
 
-TEST(Faults, AreNotCountedInAFileThatCannotBeOpened) {
+TEST(Faults, AreNotCountedIfTheFileCannotBeOpened) {
   EXPECT_EQ(count_faults("/none/adit-faults"), ENOENT);
 }
 
-TEST_F(Guard, EndsTheJobThatThrowsAndTellsWhoeverWaitsForIt) {
+TEST_F(Guard, ReportsAJobThatThrows) {
   Loop loop;
   Workers workers(loop, 1);
   bool done = false, failed = false, next = false;
@@ -100,7 +100,7 @@ TEST_F(Guard, EndsTheJobThatThrowsAndTellsWhoeverWaitsForIt) {
   EXPECT_EQ(caught(), 1);
 }
 
-TEST_F(Guard, RunsTheOneEndOfAJobThatCopesWithEither) {
+TEST_F(Guard, RunsTheCommonEndOfAJobThatThrows) {
   Loop loop;
   Workers workers(loop, 1);
   workers.submit(Urgency::OnTheWay, [] { throw std::bad_alloc(); }, [&] { loop.stop(); });

@@ -40,7 +40,7 @@ class JobQueueTest : public testing::Test {
   Urgency last = Urgency::OnTheWay;
 };
 
-TEST_F(JobQueueTest, WhatIsOnTheWayGoesBeforeWhatCanWait) {
+TEST_F(JobQueueTest, UrgentJobsGoFirst) {
   patient("picture");
   urgent("cloud");
   urgent("grid");
@@ -50,7 +50,7 @@ TEST_F(JobQueueTest, WhatIsOnTheWayGoesBeforeWhatCanWait) {
   EXPECT_EQ(done(4), "");
 }
 
-TEST_F(JobQueueTest, ThoseOfOneUrgencyBeginInTheOrderInWhichTheyCame) {
+TEST_F(JobQueueTest, JobsOfOneUrgencyKeepTheirOrder) {
   for (const char* job : {"a", "b", "c"}) {
     urgent(job);
     patient(job);
@@ -58,7 +58,7 @@ TEST_F(JobQueueTest, ThoseOfOneUrgencyBeginInTheOrderInWhichTheyCame) {
   for (const char* job : {"a", "b", "c", "a", "b", "c"}) EXPECT_EQ(done(1), job);
 }
 
-TEST_F(JobQueueTest, WhatHasWaitedForLongHasATurnAndTheNextWaitsAsLongAgain) {
+TEST_F(JobQueueTest, PatientJobHasATurnAfterALongWait) {
   patient("picture");
   patient("bundle");
   for (int i = 0; i < 20; ++i) urgent("cloud");
@@ -70,7 +70,7 @@ TEST_F(JobQueueTest, WhatHasWaitedForLongHasATurnAndTheNextWaitsAsLongAgain) {
   EXPECT_EQ(done(250), "bundle");
 }
 
-TEST_F(JobQueueTest, HoweverLongWhatCanWaitTakesTheOthersHaveTheirTimeInBetween) {
+TEST_F(JobQueueTest, UrgentJobsHaveTheirShareBetweenPatientOnes) {
   for (int i = 0; i < 50; ++i) patient("bundle");
   int time = 0, work_of_others = 0;
   for (int i = 0; i < 50; ++i) {
@@ -85,7 +85,7 @@ TEST_F(JobQueueTest, HoweverLongWhatCanWaitTakesTheOthersHaveTheirTimeInBetween)
   EXPECT_LT(work_of_others, time) << "and some of the bundles are made";
 }
 
-TEST_F(JobQueueTest, EachBeginsWithinItsNumbersPatienceHoweverMuchIsOnTheWay) {
+TEST_F(JobQueueTest, PatientJobsBeginInTimeUnderLoad) {
   patient("1");
   patient("2");
   patient("3");
@@ -97,7 +97,7 @@ TEST_F(JobQueueTest, EachBeginsWithinItsNumbersPatienceHoweverMuchIsOnTheWay) {
   EXPECT_EQ(begun, "1@100 2@200 3@300 ");
 }
 
-TEST_F(JobQueueTest, OfSeveralWorkersOneIsFreeOfWhatCanWait) {
+TEST_F(JobQueueTest, OneWorkerIsFreeOfPatientJobs) {
   Queue three{3};
   for (int i = 0; i < 3; ++i) three.add("bundle", Urgency::CanWait, kBegin);
   EXPECT_TRUE(three.take(at(1)));
@@ -109,7 +109,7 @@ TEST_F(JobQueueTest, OfSeveralWorkersOneIsFreeOfWhatCanWait) {
   EXPECT_EQ(three.take(at(503))->job, "bundle");
 }
 
-TEST_F(JobQueueTest, WhatCanWaitGivesWayAfterItsTurnAndGoesOnInTheEnd) {
+TEST_F(JobQueueTest, PatientJobYieldsAndContinues) {
   patient("picture");
   ASSERT_EQ(taken(0), "picture");
   EXPECT_FALSE(queue.take_amid(at(0), at(50), at(50))) << "nothing came";
@@ -122,14 +122,14 @@ TEST_F(JobQueueTest, WhatCanWaitGivesWayAfterItsTurnAndGoesOnInTheEnd) {
   EXPECT_FALSE(queue.take_amid(at(110), at(120), at(125)));
 }
 
-TEST_F(JobQueueTest, GivesWayToNothingThatCanWaitItself) {
+TEST_F(JobQueueTest, PatientJobDoesNotYieldToPatientJobs) {
   patient("picture");
   ASSERT_EQ(taken(0), "picture");
   patient("bundle");
   EXPECT_FALSE(queue.take_amid(at(0), at(500), at(500)));
 }
 
-TEST_F(JobQueueTest, HandsOverWhatWaits) {
+TEST_F(JobQueueTest, HandsOverQueuedJobs) {
   patient("picture");
   urgent("cloud");
   Queue other{1};

@@ -44,7 +44,7 @@ TEST(Loop, CallsAWatchWhenBytesCome) {
   EXPECT_TRUE(turn_until(loop, [&] { return events == EPOLLIN; }));
 }
 
-TEST(Loop, WaitsForTheEventsLastAskedFor) {
+TEST(Loop, WaitsForTheLastRequestedEvents) {
   Loop loop;
   const SocketPair pair;
   std::uint32_t events = 0;
@@ -53,7 +53,7 @@ TEST(Loop, WaitsForTheEventsLastAskedFor) {
   EXPECT_TRUE(turn_until(loop, [&] { return events == EPOLLOUT; }));
 }
 
-TEST(Loop, ReportsNotEvenAHangUpWhereNothingIsWaitedFor) {
+TEST(Loop, ReportsNoHangUpWithoutRequestedEvents) {
   Loop loop;
   SocketPair pair;
   int calls = 0;
@@ -79,7 +79,7 @@ TEST(Loop, LetsACallbackDestroyItsOwnSource) {
   EXPECT_EQ(calls, 7);
 }
 
-TEST(Loop, LetsOneCallbackDestroyAnotherThatIsReadyToo) {
+TEST(Loop, LetsACallbackDestroyAnotherReadySource) {
   Loop loop;
   const SocketPair first, second;
   std::optional<Source> a, b;
@@ -102,7 +102,7 @@ TEST(Loop, LetsASourceOutliveIt) {
   source.reset();
 }
 
-TEST(Loop, EndsTheOldWatchWhenASourceIsAssigned) {
+TEST(Loop, AssigningASourceEndsTheOldWatch) {
   Loop loop;
   const SocketPair pair;
   int old_calls = 0, new_calls = 0;
@@ -166,7 +166,7 @@ TEST(Loop, RunsPostedTasksInOrder) {
   EXPECT_EQ(order, (std::vector{0, 1, 2, 3, 4}));
 }
 
-TEST(Loop, ServesSocketsWhileTasksPostTasksForEver) {
+TEST(Loop, ServesSocketsDuringEndlessTasks) {
   Loop loop;
   const SocketPair pair;
   bool read = false;
@@ -178,7 +178,7 @@ TEST(Loop, ServesSocketsWhileTasksPostTasksForEver) {
   EXPECT_TRUE(read);
 }
 
-TEST(Loop, TakesTasksFromManyThreads) {
+TEST(Loop, AcceptsTasksFromManyThreads) {
   Loop loop;
   constexpr int kThreads = 4, kTasks = 2000;
   int ran = 0;  // touched by the loop's thread alone
@@ -196,7 +196,7 @@ TEST(Loop, TakesTasksFromManyThreads) {
   EXPECT_EQ(ran, kThreads * kTasks);
 }
 
-TEST(Loop, ReturnsFromRunAtOnceWhenItWasStoppedBefore) {
+TEST(Loop, RunReturnsAtOnceIfStoppedBefore) {
   Loop loop;
   loop.stop();
   loop.run();
@@ -206,7 +206,7 @@ TEST(Loop, ReturnsFromRunAtOnceWhenItWasStoppedBefore) {
   EXPECT_TRUE(ran);
 }
 
-TEST(Loop, TurnsASignalIntoACall) {
+TEST(Loop, CallsASignalHandler) {
   Loop loop;
   int calls = 0;
   const Source source = loop.signal(SIGUSR1, [&] { ++calls, loop.stop(); });
@@ -215,7 +215,7 @@ TEST(Loop, TurnsASignalIntoACall) {
   EXPECT_EQ(calls, 1);
 }
 
-TEST(Loop, CarriesTheStampOnWithTheMonotonicClock) {
+TEST(Loop, AdvancesTheStampByTheMonotonicClock) {
   const Loop loop;
   const double wall =
       std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -225,7 +225,7 @@ TEST(Loop, CarriesTheStampOnWithTheMonotonicClock) {
   EXPECT_GE(loop.stamp_now() - first, 0.002);
 }
 
-TEST(Loop, GoesOnWithTheStampsOfAnEarlierProcess) {
+TEST(Loop, ContinuesTheStampsOfAnEarlierProcess) {
   Loop loop;
   const double due = loop.stamp_now() + 1000;
   loop.set_stamp(due);

@@ -22,7 +22,7 @@ class RegularFile : public testing::Test {
   }();
 };
 
-TEST_F(RegularFile, IsOpenedAndNothingElseIsWaitedFor) {
+TEST_F(RegularFile, RejectsOtherFilesWithoutBlocking) {
   std::ofstream(folder_ / "file") << "text";
   ASSERT_EQ(::mkfifo((folder_ / "pipe").c_str(), 0600), 0);
   const FileDescriptor socket(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
@@ -41,7 +41,7 @@ TEST_F(RegularFile, IsOpenedAndNothingElseIsWaitedFor) {
   }
 }
 
-TEST_F(RegularFile, IsReadToItsEndUpToTheMostBytes) {
+TEST_F(RegularFile, IsReadUpToALimit) {
   std::ofstream(folder_ / "file") << std::string(100'000, 'x');
   const auto text = read_all(open_regular(folder_ / "file", O_RDONLY), 100'000);
   EXPECT_EQ(text, std::string(100'000, 'x'));
@@ -56,7 +56,7 @@ TEST_F(RegularFile, IsReadToItsEndIfItsSizeIsUnknown) {
   EXPECT_EQ(read_all(open_regular("/proc/self/limits", O_RDONLY), 100'000), whole.str());
 }
 
-TEST_F(RegularFile, IsWrittenInItsPlaceOrSaysWhyNot) {
+TEST_F(RegularFile, IsWrittenInPlaceOrReportsAnError) {
   std::ofstream(folder_ / "file") << std::string(100'000, 'x');
   EXPECT_EQ(write_all(open_regular(folder_ / "file", O_WRONLY).get(), "yz", 99'999), 0);
   const std::string text = read_all(open_regular(folder_ / "file", O_RDONLY), 200'000).value();

@@ -7,7 +7,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-TEST(SimulatedTime, StandsStillButForWhatPasses) {
+TEST(SimulatedTime, AdvancesOnlyByRequest) {
   SimulatedTime time;
   Loop loop;
   const Instant began = loop.now();
@@ -21,7 +21,7 @@ TEST(SimulatedTime, StandsStillButForWhatPasses) {
   EXPECT_EQ(loop.look_at_wall(false), 0) << "no clock step: all clocks run at one rate";
 }
 
-TEST(SimulatedTime, IsThatOfTimers) {
+TEST(SimulatedTime, DrivesTimers) {
   SimulatedTime time;
   Loop loop;
   int calls = 0;
@@ -38,7 +38,7 @@ TEST(SimulatedTime, IsThatOfTimers) {
   EXPECT_FALSE(time.pass_until(loop, [&] { return calls == 105; }, 19ms));
 }
 
-TEST(SimulatedTime, IsTheRealOneAgainAfterwards) {
+TEST(SimulatedTime, EndsWithRealTime) {
   const Instant before = std::chrono::steady_clock::now();
   {
     SimulatedTime().pass(1h);

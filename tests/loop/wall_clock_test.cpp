@@ -24,40 +24,40 @@ class WallClockTest : public testing::Test {
   WallClock clock_{system_, at_};
 };
 
-TEST_F(WallClockTest, IsTheSystemsButForHowFarApartTheTwoAreRead) {
+TEST_F(WallClockTest, FollowsTheSystemDespiteReadJitter) {
   EXPECT_EQ(look(1.004), 0);
   EXPECT_DOUBLE_EQ(now(), kBegan + 1);
   EXPECT_EQ(look(0.996), 0);
   EXPECT_DOUBLE_EQ(now(), kBegan + 2);
 }
 
-TEST_F(WallClockTest, TellsOfALittleStepToo) {
+TEST_F(WallClockTest, ReportsASmallStep) {
   EXPECT_NEAR(look(1 + 0.3), 0.3, 1e-6) << "else whatever was noted before is as much too old";
   EXPECT_DOUBLE_EQ(now(), kBegan + 1.3);
   EXPECT_NEAR(look(1 - 0.4), -0.4, 1e-6);
   EXPECT_DOUBLE_EQ(now(), kBegan + 1.9);
 }
 
-TEST_F(WallClockTest, LosesNoStepThatIsTooLittleToTell) {
+TEST_F(WallClockTest, AccumulatesTinySteps) {
   for (int i = 0; i < 2; ++i) EXPECT_EQ(look(1.004), 0);
   EXPECT_NEAR(look(1.004), 0.012, 1e-6);
   EXPECT_DOUBLE_EQ(now(), kBegan + 3.012);
 }
 
-TEST_F(WallClockTest, TellsByHowMuchSomebodySetIt) {
+TEST_F(WallClockTest, ReportsTheSizeOfAStep) {
   EXPECT_DOUBLE_EQ(look(1 + 3600), 3600);
   EXPECT_DOUBLE_EQ(now(), kBegan + 3601);
   EXPECT_DOUBLE_EQ(look(1 - 86400), -86400);
   EXPECT_EQ(look(), 0);
 }
 
-TEST_F(WallClockTest, DoesNotJumpBetweenTwoLooks) {
+TEST_F(WallClockTest, StaysSteadyBetweenTwoReads) {
   look();
   system_ += 3600;
   EXPECT_DOUBLE_EQ(clock_.now(at_ + milliseconds(500)), kBegan + 1.5);
 }
 
-TEST_F(WallClockTest, IsAheadOfASystemThatIsBehindUntilThatIsSet) {
+TEST_F(WallClockTest, IsAheadOfALateSystemUntilThatIsSet) {
   clock_.set(kBegan + 5000, at_);
   EXPECT_DOUBLE_EQ(now(), kBegan + 5000);
   EXPECT_EQ(look(), 0);
@@ -67,12 +67,12 @@ TEST_F(WallClockTest, IsAheadOfASystemThatIsBehindUntilThatIsSet) {
   EXPECT_DOUBLE_EQ(look(1 + 60), 60);
 }
 
-TEST_F(WallClockTest, TellsTheRestWhereTheSystemIsSetToAnotherTimeThanWasKnown) {
+TEST_F(WallClockTest, ReportsTheDifferenceFromTheKnownTime) {
   clock_.set(kBegan + 5000, at_);
   EXPECT_DOUBLE_EQ(look(1 + 5060), 60);
 }
 
-TEST_F(WallClockTest, GivesWayToASystemThatIsFoundRightAlthoughNobodySetIt) {
+TEST_F(WallClockTest, YieldsToASystemFoundRight) {
   clock_.set(kBegan + 5000, at_);
   EXPECT_NEAR(look(1.004, true), -5000, 0.01) << "it is within what is no step";
   EXPECT_DOUBLE_EQ(now(), kBegan + 1.004);

@@ -54,12 +54,12 @@ class WatchdogTest : public testing::Test {
   Watchdog watchdog{loop, kWithin, [this] { ++fed; }};
 };
 
-TEST_F(WatchdogTest, IsFedFromTheStartAndFarMoreOftenThanItMust) {
+TEST_F(WatchdogTest, IsFedFromTheStartAndOften) {
   EXPECT_EQ(fed, 1);
   EXPECT_EQ(fed_in(8), 8);
 }
 
-TEST_F(WatchdogTest, IsFedByNobodyButTheLoop) {
+TEST_F(WatchdogTest, IsFedOnlyByTheLoop) {
   time.pass(kWithin * 2);
   EXPECT_EQ(fed, 1);
 }
@@ -71,7 +71,7 @@ TEST_F(WatchdogTest, IsFedWhileEveryWorkerAnswers) {
   watchdog.ask_also({});
 }
 
-TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
+TEST_F(WatchdogTest, IsFedWhileWorkersAreBusy) {
   Workers workers(loop, 2);
   watchdog.ask_also({&workers});
   int done = 0;
@@ -86,7 +86,7 @@ TEST_F(WatchdogTest, IsFedWhileWorkersNeverRest) {
   watchdog.ask_also({});
 }
 
-TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
+TEST_F(WatchdogTest, IsFedDuringALongButNotAnEndlessJob) {
   Workers workers(loop, 2);
   watchdog.ask_also({&workers});
   const auto let_go = hang(workers);
@@ -97,7 +97,7 @@ TEST_F(WatchdogTest, IsFedDuringALongJobButStarvesWhenItDoesNotEnd) {
   watchdog.ask_also({});
 }
 
-TEST_F(WatchdogTest, StarvesWhereAWriterHangsThoughTheWorkersAnswer) {
+TEST_F(WatchdogTest, StarvesIfAWriterHangs) {
   Workers workers(loop, 2);
   Writer writer(loop);
   watchdog.ask_also({&workers, &writer});
@@ -109,7 +109,7 @@ TEST_F(WatchdogTest, StarvesWhereAWriterHangsThoughTheWorkersAnswer) {
   watchdog.ask_also({});
 }
 
-TEST_F(WatchdogTest, AsksThoseThatTookOver) {
+TEST_F(WatchdogTest, AsksReplacedWorkers) {
   Workers before(loop, 1);
   watchdog.ask_also({&before});
   const auto let_go = hang(before);

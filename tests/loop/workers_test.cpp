@@ -18,7 +18,7 @@
 namespace adit::loop {
 namespace {
 
-TEST(Workers, WorkOffTheLoopAndFinishOnIt) {
+TEST(Workers, RunJobsOffTheLoopAndFinishOnIt) {
   Loop loop;
   Workers workers(loop, 2);
   const auto here = std::this_thread::get_id();
@@ -65,7 +65,7 @@ class Held {
   std::promise<void> let_go_;
 };
 
-TEST(Workers, DoWhatIsOnTheWayBeforeWhatCanWait) {
+TEST(Workers, RunUrgentJobsFirst) {
   Loop loop;
   Workers workers(loop, 1);
   Held held(workers, Urgency::OnTheWay);
@@ -80,7 +80,7 @@ TEST(Workers, DoWhatIsOnTheWayBeforeWhatCanWait) {
   EXPECT_TRUE(turn_until(loop, [&] { return pictures == 0; }));
 }
 
-TEST(Workers, DoWhatCanWaitHoweverMuchIsOnTheWay) {
+TEST(Workers, RunPatientJobsUnderLoad) {
   Loop loop;
   Workers workers(loop, 1);
   bool drawn = false;
@@ -94,7 +94,7 @@ TEST(Workers, DoWhatCanWaitHoweverMuchIsOnTheWay) {
   EXPECT_TRUE(turn_until(loop, [&] { return drawn; }));
 }
 
-TEST(Workers, DoWhatIsOnTheWayAmidAJobThatGivesWay) {
+TEST(Workers, RunUrgentJobsInsideAYieldingJob) {
   Loop loop;
   Workers workers(loop, 1);
   bool map_done = false, drawn = false, amid = false;
@@ -113,7 +113,7 @@ TEST(Workers, DoWhatIsOnTheWayAmidAJobThatGivesWay) {
   EXPECT_TRUE(amid);
 }
 
-TEST(Workers, HandDataThereAndBackWithoutLocks) {
+TEST(Workers, PassDataWithoutLocks) {
   Loop loop;
   Workers workers(loop, 3);
   int left = 500;
@@ -132,7 +132,7 @@ TEST(Workers, HandDataThereAndBackWithoutLocks) {
   EXPECT_EQ(sum, 100L * 499 * 500 / 2);
 }
 
-TEST(Workers, LetADoneSubmitTheNextJob) {
+TEST(Workers, LetACompletionSubmitTheNextJob) {
   Loop loop;
   Workers workers(loop, 1);
   int rounds = 0;
@@ -145,7 +145,7 @@ TEST(Workers, LetADoneSubmitTheNextJob) {
   EXPECT_EQ(rounds, 50);
 }
 
-TEST(Workers, WaitForARunningJobAndDropTheRestWhenDestroyed) {
+TEST(Workers, DestructorWaitsForTheRunningJobOnly) {
   Loop loop;
   std::atomic<bool> second_ran = true;  // on a busy machine it may, before they are destroyed
   for (int attempt = 0; attempt < 20 && second_ran; ++attempt) {
@@ -173,7 +173,7 @@ TEST(Workers, WaitForARunningJobAndDropTheRestWhenDestroyed) {
   EXPECT_FALSE(second_ran);
 }
 
-TEST(Writer, DoesAllThatWasSubmittedInOrderBeforeItEnds) {
+TEST(Writer, CompletesAllJobsInOrderBeforeItEnds) {
   Loop loop;
   std::vector<int> written;
   bool finished = false;
@@ -214,7 +214,7 @@ int nice_of(Threads&& threads_for) {
   return nice;
 }
 
-TEST(Workers, YieldTheProcessorToTheLoopAndTheWriter) {
+TEST(Workers, RunAtLowerPriorityThanLoopAndWriter) {
   const int of_loop = getpriority(PRIO_PROCESS, 0);
   EXPECT_EQ(nice_of([](Loop& loop) { return std::make_unique<Workers>(loop, 1); }), std::max(of_loop, 10));
   EXPECT_EQ(nice_of([](Loop& loop) -> std::unique_ptr<Workers> { return std::make_unique<Writer>(loop); }),

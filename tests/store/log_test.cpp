@@ -40,7 +40,7 @@ TEST(Frame, HasTheseBytes) {
   EXPECT_EQ(bytes, expected);
 }
 
-TEST(Frame, IsOneInItsPlaceAndItsFileAlone) {
+TEST(Frame, IsValidOnlyInItsPlaceAndFile) {
   const std::string bytes =
       std::string(8, ' ') + written({.kind = 1, .sequence = 1, .body = "a"}, {8, 1}, 7, 8);
   EXPECT_TRUE(parse(bytes, 8, 7));
@@ -49,7 +49,7 @@ TEST(Frame, IsOneInItsPlaceAndItsFileAlone) {
   EXPECT_FALSE(parse(bytes.substr(0, bytes.size() - 1), 8, 7));
 }
 
-TEST_F(LogTest, GivesBackEachKindAndBody) {
+TEST_F(LogTest, ReadsBackEachKindAndBody) {
   {
     auto opened = small_.open();
     ASSERT_TRUE(opened.log.append(1, "", Durability::Now));
@@ -68,7 +68,7 @@ TEST_F(LogTest, GivesBackEachKindAndBody) {
   EXPECT_THAT(opened.contents.notes, IsEmpty());
 }
 
-TEST_F(LogTest, WhatOneProcessDroppedStaysDroppedForTheNext) {
+TEST_F(LogTest, DroppedRecordsStayDropped) {
   small_.fill({"a"}, Durability::Now);
   small_.fill({"b", "c"}, Durability::Soon);
   files_ = small_.files();
@@ -79,7 +79,7 @@ TEST_F(LogTest, WhatOneProcessDroppedStaysDroppedForTheNext) {
   EXPECT_THAT(bodies(small_.open().contents), ElementsAre("a", "d"));
 }
 
-TEST_F(LogTest, OneDamagedCopyIsToldAndWrittenAgain) {
+TEST_F(LogTest, DamagedCopyIsReportedAndRewritten) {
   small_.fill({"a", "b"}, Durability::Now);
   files_ = small_.files();
   damage(files_.begin()->first, 1024, 10);
@@ -92,7 +92,7 @@ TEST_F(LogTest, OneDamagedCopyIsToldAndWrittenAgain) {
 }
 
 /// A kill or a power cut tore it: nothing followed from it.
-TEST_F(LogTest, OneTornCopyOfTheLastRecordIsNoDamage) {
+TEST_F(LogTest, TornCopyOfTheLastRecordIsNoDamage) {
   small_.fill({"a", "b"}, Durability::Now);
   files_ = small_.files();
   damage(files_.begin()->first, 2 * 1024 + 512, 512);
@@ -102,7 +102,7 @@ TEST_F(LogTest, OneTornCopyOfTheLastRecordIsNoDamage) {
 }
 
 /// A start writes into the file, and may be killed before a snapshot stands for what is left.
-TEST_F(LogTest, AFileThatIsCutIsToldAtEachStart) {
+TEST_F(LogTest, TruncatedFileIsReportedAtEachStart) {
   small_.fill({"a"}, Durability::Now);
   for (const std::size_t size : {0, 700, 2048}) {
     files_ = small_.files();
@@ -113,7 +113,7 @@ TEST_F(LogTest, AFileThatIsCutIsToldAtEachStart) {
   }
 }
 
-TEST_F(LogTest, TakesAllLogsIfTheFirstSnapshotIsDamaged) {
+TEST_F(LogTest, ReadsAllLogsIfTheFirstSnapshotIsDamaged) {
   small_.fill({"a"}, Durability::Now);
   small_.snapshot({"A"});
   small_.fill({"b"}, Durability::Now);
@@ -126,7 +126,7 @@ TEST_F(LogTest, TakesAllLogsIfTheFirstSnapshotIsDamaged) {
   EXPECT_THAT(opened.contents.notes, ElementsAre(HasSubstr("a damaged snapshot")));
 }
 
-TEST_F(LogTest, GoesBackToTheSnapshotBeforeIfTheLastOneIsDamaged) {
+TEST_F(LogTest, UsesThePreviousSnapshotIfTheLastIsDamaged) {
   small_.fill({"a"}, Durability::Now);
   small_.snapshot({"A"});
   small_.fill({"b"}, Durability::Now);
@@ -141,7 +141,7 @@ TEST_F(LogTest, GoesBackToTheSnapshotBeforeIfTheLastOneIsDamaged) {
   EXPECT_THAT(opened.contents.notes, ElementsAre(HasSubstr("a damaged snapshot")));
 }
 
-TEST_F(LogTest, ASpareFileIsTheNextOne) {
+TEST_F(LogTest, SpareFileIsTheNextOne) {
   small_.fill({"a"}, Durability::Now);
   ASSERT_TRUE(make_spare(small_.open().directory, small_.keeping, false));
   std::string spare;
@@ -154,7 +154,7 @@ TEST_F(LogTest, ASpareFileIsTheNextOne) {
               testing::AllOf(testing::StartsWith("log-00000002"), testing::EndsWith(spare)));
 }
 
-TEST_F(LogTest, WhatCannotBeReadIsAnErrorAndStaysAsItIs) {
+TEST_F(LogTest, UnreadableFileIsAnErrorAndIsKept) {
   small_.fill({"a"}, Durability::Now);
   files_ = small_.files();
   const std::string name = files_.begin()->first, path = small_.path() + '/' + name;
@@ -168,7 +168,7 @@ TEST_F(LogTest, WhatCannotBeReadIsAnErrorAndStaysAsItIs) {
   EXPECT_THAT(Directory::look(small_.path()).error().what, HasSubstr("No such file"));
 }
 
-TEST_F(LogTest, WhatALaterVersionWroteIsLeftAlone) {
+TEST_F(LogTest, FileOfALaterVersionIsKept) {
   small_.fill({"a"}, Durability::Now);
   files_ = small_.files();
   const std::string name = files_.begin()->first;
@@ -183,14 +183,14 @@ TEST_F(LogTest, WhatALaterVersionWroteIsLeftAlone) {
   EXPECT_EQ(small_.read().error().cause, Error::Cause::Newer);
 }
 
-TEST_F(LogTest, OneProcessAtATimeWritesIt) {
+TEST_F(LogTest, IsWrittenByOneProcessAtATime) {
   const auto opened = small_.open();
   EXPECT_EQ(Directory::lock(small_.path()).error().cause, Error::Cause::InUse);
   EXPECT_TRUE(Directory::look(small_.path()));
 }
 
 /// A peer that knows the format cannot put a record into the log by what it sends.
-TEST_F(LogTest, BytesWithinARecordAreNoFrame) {
+TEST_F(LogTest, FrameInsideARecordIsIgnored) {
   const std::string forged =
       written({.kind = 1, .sequence = 9, .process = 99, .body = "forged"}, kSmall.layout, 0, 2048);
   small_.fill({std::string(472, 'x') + forged, "b"}, Durability::Now);

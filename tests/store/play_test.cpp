@@ -178,15 +178,15 @@ void play(bool on_disk) {
   EXPECT_THAT(failed, testing::IsEmpty());
 }
 
-TEST(PlayLog, KeepsOnADiskWhatItAcceptedThroughKillsCutsAndFailures) {
+TEST(PlayLog, SurvivesKillsPowerCutsAndFailuresOnDisk) {
   play(true);
 }
 
-TEST(PlayLog, KeepsInMemoryWhatItAcceptedThroughKillsAndFailures) {
+TEST(PlayLog, SurvivesKillsAndFailuresInMemory) {
   play(false);
 }
 
-TEST(TheLog, LeavesNoFileThatItCannotOpen) {
+TEST(LogFiles, LeavesNoFileThatItCannotOpen) {
   Disk disk(Random(1, "disk"));
   disk.start();
   const auto directory = Directory::lock(disk.log()).value();

@@ -61,13 +61,13 @@ class SweepLog : public testing::Test {
   std::vector<std::string> all_;
 };
 
-TEST_F(SweepLog, OnADiskOneFlippedBitCostsNothing) {
+TEST_F(SweepLog, FlippedBitOnDiskLosesNothing) {
   make(kSmall);
   for_each_byte([](std::string& bytes, std::size_t at) { bytes[at] ^= static_cast<char>(1 << at % 8); },
                 [&] { expect_all(); });
 }
 
-TEST_F(SweepLog, OnADiskNoFlippedBitOfTheLastRecordCostsIt) {
+TEST_F(SweepLog, FlippedBitOnDiskKeepsTheLastRecord) {
   make(kSmall);
   const auto log =
       std::ranges::find_if(files_, [](const auto& file) { return file.first.starts_with("snapshot"); });
@@ -82,13 +82,13 @@ TEST_F(SweepLog, OnADiskNoFlippedBitOfTheLastRecordCostsIt) {
   }
 }
 
-TEST_F(SweepLog, OnADiskAFileThatIsCutIsTold) {
+TEST_F(SweepLog, TruncatedFileOnDiskIsReported) {
   make(kSmall);
   for_each_byte([](std::string& bytes, std::size_t at) { bytes.resize(at); }, [&] { expect_told(); });
 }
 
 /// But for the last one: who uses the log knows its number.
-TEST_F(SweepLog, AMissingFileIsTold) {
+TEST_F(SweepLog, MissingFileIsReported) {
   make(kSmall);
   const auto missing = std::next(files_.begin());  // the first one is older than the snapshot
   ASSERT_THAT(missing->first, testing::StartsWith("log-00000002"));
@@ -97,7 +97,7 @@ TEST_F(SweepLog, AMissingFileIsTold) {
 }
 
 /// But for the last record: it may have been torn.
-TEST_F(SweepLog, InMemoryADamagedRecordIsToldAndAllOthersAreRead) {
+TEST_F(SweepLog, DamagedRecordInMemoryIsReportedAndLostAlone) {
   make({kInMemory, 0, false});
   all_.pop_back();
   for_each_byte([](std::string& bytes, std::size_t at) { bytes[at] ^= static_cast<char>(1 << at % 8); },

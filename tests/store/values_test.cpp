@@ -47,7 +47,7 @@ const Whole kWhole{.text = "a\xff",
                    .time = std::chrono::nanoseconds(-5),
                    .at = std::chrono::steady_clock::time_point(std::chrono::seconds(6))};
 
-TEST(Values, ComeBackAsTheyWere) {
+TEST(Values, ReadBackTheSame) {
   Whole other{.text = "x", .parts = {{1, 2}}};
   double real = 0;
   ASSERT_TRUE(read(bytes_of(kWhole, 7.5), other, real));
@@ -55,7 +55,7 @@ TEST(Values, ComeBackAsTheyWere) {
   EXPECT_EQ(real, 7.5);
 }
 
-TEST(Values, AreReadInFullOrNotAtAll) {
+TEST(Values, AreReadWhollyOrNotAtAll) {
   const std::string bytes = bytes_of(kWhole);
   Whole other;
   for (std::size_t cut = 0; cut < bytes.size(); ++cut)
@@ -63,7 +63,7 @@ TEST(Values, AreReadInFullOrNotAtAll) {
   EXPECT_FALSE(read(bytes + 'x', other));
 }
 
-TEST(Reader, GivesNothingBehindTheEnd) {
+TEST(Reader, ReturnsNothingAfterTheEnd) {
   const std::string bytes = bytes_of(1u);
   Reader reader(bytes);
   EXPECT_EQ(reader.read<std::uint64_t>(), 1u);
@@ -72,7 +72,7 @@ TEST(Reader, GivesNothingBehindTheEnd) {
   EXPECT_FALSE(reader.ok()) << "there is no more";
 }
 
-TEST(Reader, DoesNotReadPastTheEndIfALengthIsWrong) {
+TEST(Reader, DoesNotReadPastTheEndForAWrongLength) {
   for (const std::string_view huge : {std::string_view("\xff\xff\xff\xff\xff\xff\xff\xff text", 13)}) {
     std::string text;
     std::vector<int> list;

@@ -18,13 +18,13 @@ auto of(const char* address) {
   return Field(&alarms::Crowd::address, address);
 }
 
-TEST(Crowding, OfNobodySaysNothing) {
+TEST(Crowding, IsEmptyAtFirst) {
   Crowding crowding;
   EXPECT_THAT(crowding.crowds(kFirst), IsEmpty());
   EXPECT_THAT(crowding.to_log(kFirst), IsEmpty());
 }
 
-TEST(Crowding, IsToldOfWhileItGoesOnWithTheAddressThatHasMost) {
+TEST(Crowding, NamesTheBusiestAddressWhileItLasts) {
   Crowding crowding;
   crowding.ended(Ended::GaveWay, "10.0.0.7", kFirst);
   for (int i = 0; i < 5; ++i) crowding.ended(Ended::GaveWay, "10.0.0.9", kFirst + 30s);
@@ -36,7 +36,7 @@ TEST(Crowding, IsToldOfWhileItGoesOnWithTheAddressThatHasMost) {
   EXPECT_THAT(crowding.crowds(kFirst + 9min), ElementsAre(of("10.0.0.7"))) << "the rest is long ago";
 }
 
-TEST(Crowding, TellsOfWrongTokens) {
+TEST(Crowding, ReportsWrongTokens) {
   Crowding crowding;
   for (int i = 0; i < 1786; ++i) crowding.ended(Ended::WrongToken, "10.0.0.7", kFirst);
   EXPECT_THAT(crowding.crowds(kFirst), ElementsAre(Field(&alarms::Crowd::is, alarms::Crowd::Is::WrongToken)));
@@ -45,7 +45,7 @@ TEST(Crowding, TellsOfWrongTokens) {
   EXPECT_EQ(lines.front().times, 1786u);
 }
 
-TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinuteWithItsNumber) {
+TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinute) {
   Crowding crowding;
   const auto times = [&](loop::Instant now) {
     std::vector<std::uint64_t> numbers;
@@ -60,7 +60,7 @@ TEST(Crowding, IsLoggedAtOnceAndThenOnceAMinuteWithItsNumber) {
   EXPECT_THAT(times(kFirst + 10min), IsEmpty());
 }
 
-TEST(Crowding, OfIdleAndSlowConnectionsIsCountedAlone) {
+TEST(Crowding, OnlyCountsIdleAndSlowConnections) {
   Crowding crowding;
   crowding.ended(Ended::Idle, "10.0.0.8", kFirst);
   crowding.ended(Ended::Slow, "10.0.0.8", kFirst);
@@ -70,7 +70,7 @@ TEST(Crowding, OfIdleAndSlowConnectionsIsCountedAlone) {
   EXPECT_THAT(crowding.crowds(kFirst), IsEmpty());
 }
 
-TEST(Crowding, RemembersOnlySoManyAddresses) {
+TEST(Crowding, LimitsItsAddresses) {
   Crowding crowding;
   for (int i = 0; i < 10'000; ++i) crowding.ended(Ended::GaveWay, std::to_string(i), kFirst);
   crowding.ended(Ended::GaveWay, "0", kFirst);

@@ -24,7 +24,7 @@ class FileReturnTest : public testing::Test {
   int back_ = 0;
 };
 
-TEST_F(FileReturnTest, IsSaidOnce) {
+TEST_F(FileReturnTest, IsReportedOnce) {
   const FileReturn waits(loop_, writer_, can_be_read_, std::chrono::seconds{0}, [&] { ++back_; });
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
   for (int i = 0; i < 20; ++i) loop_.turn(std::chrono::milliseconds{5});
@@ -32,7 +32,7 @@ TEST_F(FileReturnTest, IsSaidOnce) {
 }
 
 /// A gateway that restarts for nothing turns clients away.
-TEST_F(FileReturnTest, IsNotSaidWhileAFileCannotBeRead) {
+TEST_F(FileReturnTest, IsNotReportedWhileAFileIsUnreadable) {
   const std::string in_the_way = folder_.path() + "/ledger";
   std::ofstream(in_the_way) << "no directory";
   const FileReturn waits(loop_, writer_, can_be_read_, std::chrono::seconds{0}, [&] { ++back_; });
@@ -42,7 +42,7 @@ TEST_F(FileReturnTest, IsNotSaidWhileAFileCannotBeRead) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
 }
 
-TEST_F(FileReturnTest, IsWaitedForByADiskThatTakesLongAndNotByTheLoop) {
+TEST_F(FileReturnTest, SlowDiskDoesNotBlockTheLoop) {
   bool turned = false;
   std::promise<void> let_go;
   writer_.submit([until = let_go.get_future().share()] { until.wait(); }, [] {});
@@ -55,7 +55,7 @@ TEST_F(FileReturnTest, IsWaitedForByADiskThatTakesLongAndNotByTheLoop) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return back_ > 0; }));
 }
 
-TEST(FileRest, IsTwiceAsLongEachTimeAndBounded) {
+TEST(FileRetryDelay, DoublesUpToALimit) {
   std::chrono::seconds rest = FileReturn::kRest;
   EXPECT_EQ(longer(rest), 2 * rest);
   for (int i = 0; i < 20; ++i) rest = longer(rest);

@@ -87,7 +87,7 @@ class ListenersTest : public testing::Test {
   Listeners listeners_{loop_, sockets_, handler_, guesses_, nullptr};
 };
 
-TEST_F(ListenersTest, ConnectionsOfASocketThatStaysLiveOn) {
+TEST_F(ListenersTest, ConnectionsOfAKeptSocketContinue) {
   ASSERT_TRUE(serve());
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);
@@ -98,7 +98,7 @@ TEST_F(ListenersTest, ConnectionsOfASocketThatStaysLiveOn) {
   EXPECT_EQ(answer_to(other), kAnswered);
 }
 
-TEST_F(ListenersTest, WhoIsConnectedToASocketThatGoesIsServedForAWhileAndNobodyElse) {
+TEST_F(ListenersTest, ClosedSocketServesItsConnectionsForAWhile) {
   ASSERT_TRUE(serve());
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);
@@ -112,7 +112,7 @@ TEST_F(ListenersTest, WhoIsConnectedToASocketThatGoesIsServedForAWhileAndNobodyE
   EXPECT_EQ(client.heard(), "");
 }
 
-TEST_F(ListenersTest, OtherBoundsCountForWhoeverConnectsFromThenOn) {
+TEST_F(ListenersTest, NewLimitsApplyToNewConnections) {
   ASSERT_TRUE(serve());
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);
@@ -126,7 +126,7 @@ TEST_F(ListenersTest, OtherBoundsCountForWhoeverConnectsFromThenOn) {
   EXPECT_EQ(listeners_.connections(), 2u);
 }
 
-TEST_F(ListenersTest, WhatCannotBeListenedAtLeavesTheOthersAsTheyAre) {
+TEST_F(ListenersTest, UnusableAddressKeepsTheOtherSockets) {
   ASSERT_TRUE(serve());
   Client client(port());
   EXPECT_EQ(answer_to(client), kAnswered);

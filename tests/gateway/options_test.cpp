@@ -11,7 +11,7 @@ std::expected<Options, std::string> parse(const std::vector<const char*>& words)
   return command_line::read(command_line_of, words);
 }
 
-TEST(Options, AreTheThreeThatTheServiceNeeds) {
+TEST(Options, AreTheThreeRequiredOnes) {
   const auto options = parse({"--settings", "a.json", "--secrets", "b", "--state", "c"});
   ASSERT_TRUE(options);
   EXPECT_EQ(options->settings, "a.json");
@@ -19,7 +19,7 @@ TEST(Options, AreTheThreeThatTheServiceNeeds) {
   EXPECT_EQ(options->state, "c");
 }
 
-TEST(Options, MayNameTheBoardAndTheFoldersOfOthers) {
+TEST(Options, MayNameTheBoardAndOtherDirectories) {
   const auto options = parse({"--settings", "a", "--secrets", "b", "--state", "c", "--board", "d",
                               "--network", "e", "--notices", "f", "--block", "g"});
   ASSERT_TRUE(options);
@@ -31,14 +31,14 @@ TEST(Options, MayNameTheBoardAndTheFoldersOfOthers) {
   EXPECT_EQ(parse({"--board"}).error(), "--board wants a value");
 }
 
-TEST(Options, NameWhatIsMissingOrUnknown) {
+TEST(Options, NameMissingAndUnknownOnes) {
   EXPECT_EQ(parse({"--settings", "a"}).error(), "--secrets DIR is missing");
   EXPECT_EQ(parse({"--settings"}).error(), "--settings wants a value");
   EXPECT_EQ(parse({"--setings", "a"}).error(), "unknown word '--setings'; did you mean --settings?");
   EXPECT_EQ(parse({}).error(), "--settings FILE is missing");
 }
 
-TEST(Options, HelpAndVersionNeedNothingElse) {
+TEST(Options, HelpAndVersionNeedNoOthers) {
   EXPECT_TRUE(parse({"--help"})->help);
   EXPECT_TRUE(parse({"--version"})->version);
 }

@@ -29,14 +29,14 @@ std::vector<std::int64_t> latest(const std::vector<ReportState>& states, std::si
   return numbers;
 }
 
-TEST(LatestReports, AreTheNewestAndNewestFirst) {
+TEST(LatestReports, AreTheNewestFirst) {
   const std::vector all{ReportState::Answered, ReportState::Rejected, ReportState::Withdrawn};
   EXPECT_THAT(latest(all, 5), ElementsAre(3, 2, 1));
   EXPECT_THAT(latest(all, 2), ElementsAre(3, 2));
   EXPECT_THAT(latest({}, 2), ElementsAre());
 }
 
-TEST(LatestReports, HaveEachThatWaitsForSomething_HoweverOldItIs) {
+TEST(LatestReports, IncludeAllUnfinishedReports) {
   const std::vector all{ReportState::InDoubt, ReportState::Answered, ReportState::Held, ReportState::Answered,
                         ReportState::Answered};
   EXPECT_THAT(latest(all, 3), ElementsAre(5, 3, 1));
@@ -44,7 +44,7 @@ TEST(LatestReports, HaveEachThatWaitsForSomething_HoweverOldItIs) {
   EXPECT_THAT(latest(all, 1), ElementsAre(3));
 }
 
-TEST(ReadAnswers, AreReadAnewWhereTheyAreOthers) {
+TEST(ReadAnswers, AreReadAgainAfterAChange) {
   ReadAnswers answers;
   dispatch::Report report{.number = 7};
   EXPECT_FALSE(answers.of(report));
@@ -61,7 +61,7 @@ TEST(ReadAnswers, AreReadAnewWhereTheyAreOthers) {
   EXPECT_FALSE(answers.of(report));
 }
 
-TEST(ReadAnswers, AreOfEachReportByItself_HoweverManyThereAre) {
+TEST(ReadAnswers, AreKeptPerReport) {
   ReadAnswers answers;
   const auto report = [](std::int64_t number) {
     return dispatch::Report{

@@ -14,13 +14,13 @@ using testing::IsEmpty;
 
 constexpr loop::Instant kStart{100h};
 
-TEST(Roster, OfNobodyWelcomesEverybody) {
+TEST(Roster, WithoutRobotsAcceptsAll) {
   Roster roster(std::vector<settings::Robot>{});
   EXPECT_FALSE(roster.posted("anybody", kStart));
   EXPECT_THAT(roster.unknown(kStart), IsEmpty());
 }
 
-TEST(Roster, TellsOfEachUnknownRobotOnceAndForAsLongAsItPosts) {
+TEST(Roster, ReportsAnUnknownRobotWhileItPosts) {
   Roster roster(std::vector<settings::Robot>{{"ugv1", "husky"}, {"ugv2", ""}});
   EXPECT_FALSE(roster.posted("ugv1", kStart));
   EXPECT_TRUE(roster.posted("uvg1", kStart));
@@ -29,7 +29,7 @@ TEST(Roster, TellsOfEachUnknownRobotOnceAndForAsLongAsItPosts) {
   EXPECT_THAT(roster.unknown(kStart + 3min), IsEmpty());
 }
 
-TEST(Roster, RemembersOnlySoManyAndForgetsTheSilentFirst) {
+TEST(Roster, LimitsUnknownRobotsAndForgetsTheSilentFirst) {
   Roster roster(std::vector<settings::Robot>{{"ugv1", ""}});
   for (std::size_t i = 0; i < 2 * Roster::kMostUnknown; ++i) roster.posted(icd::sentence("x", i), kStart);
   EXPECT_EQ(roster.unknown(kStart).size(), Roster::kMostUnknown);
@@ -37,7 +37,7 @@ TEST(Roster, RemembersOnlySoManyAndForgetsTheSilentFirst) {
   EXPECT_THAT(roster.unknown(kStart + Roster::kRecent), ElementsAre("y"));
 }
 
-TEST(Roster, ForgetsThatARobotWasUnknownOnceItIsSetUp) {
+TEST(Roster, ForgetsAnUnknownRobotOnceItIsSetUp) {
   Roster roster(std::vector<settings::Robot>{{"ugv1", ""}});
   roster.posted("ugv2", kStart);
   roster.posted("x", kStart);

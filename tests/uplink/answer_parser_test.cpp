@@ -102,7 +102,7 @@ State feed(AnswerParser& parser, const Case& c, std::size_t portion) {
   return state;
 }
 
-TEST_P(AnswerParserCases, AreReadAlikeHoweverTheyAreCut) {
+TEST_P(AnswerParserCases, AreReadTheSameInAnyPieces) {
   const Case& c = GetParam();
   for (std::size_t portion = 1; portion <= c.bytes.size() + 1; ++portion) {
     SCOPED_TRACE(portion);
@@ -140,7 +140,7 @@ TEST(AnswerParser, ReadsRetryAfterInSecondsAndIgnoresDates) {
     EXPECT_EQ(retry_after(none), std::nullopt) << none;
 }
 
-TEST(AnswerParser, GivesTheContentTypeAsItCame) {
+TEST(AnswerParser, GivesTheContentTypeUnchanged) {
   AnswerParser parser(kLongest);
   ASSERT_EQ(
       parser.feed("HTTP/1.1 500 Oops\r\ncontent-TYPE: text/html; charset=utf-8\r\nContent-Length: 0\r\n\r\n"),
@@ -148,7 +148,7 @@ TEST(AnswerParser, GivesTheContentTypeAsItCame) {
   EXPECT_EQ(parser.take().content_type, "text/html; charset=utf-8");
 }
 
-TEST(AnswerParser, TakesAnAnswerThatIsLongButNotTooLong) {
+TEST(AnswerParser, AcceptsAnAnswerOfExactlyTheLimit) {
   const std::string body(kLongest, 'x');
   AnswerParser parser(kLongest);
   EXPECT_EQ(
@@ -157,7 +157,7 @@ TEST(AnswerParser, TakesAnAnswerThatIsLongButNotTooLong) {
   EXPECT_EQ(parser.take().body, body);
 }
 
-TEST(AnswerParser, GivesAnAnswerThatGoesOnInParts_HoweverLongAllOfItIs) {
+TEST(AnswerParser, StreamsAnAnswerOfAnyLength) {
   for (const bool is_chunked : {false, true}) {
     AnswerParser parser(kLongest);
     EXPECT_EQ(parser.status(), 0);
@@ -180,7 +180,7 @@ TEST(AnswerParser, GivesAnAnswerThatGoesOnInParts_HoweverLongAllOfItIs) {
 }
 
 /// Who answered is told by it.
-TEST(AnswerParser, KnowsTheStatusOfAnAnswerThatIsTooLong) {
+TEST(AnswerParser, KnowsTheStatusOfATooLongAnswer) {
   const std::string long_body(2 * kLongest, 'x');
   const std::pair<std::string, int> cases[] = {
       {"HTTP/1.1 302 Found\r\nContent-Length: 30000000000\r\n\r\n", 302},
@@ -196,7 +196,7 @@ TEST(AnswerParser, KnowsTheStatusOfAnAnswerThatIsTooLong) {
   }
 }
 
-TEST(AnswerParser, RefusesAnswersThatNeverEnd) {
+TEST(AnswerParser, RejectsEndlessAnswers) {
   const std::pair<std::string, std::string> endless[] = {
       {"", "HTTP/1.1 100 Continue\r\n\r\n"},                                    // interim answers
       {"HTTP/1.1 200 OK\r\n", "X-Field: 0123456789\r\n"},                       // a head
@@ -214,7 +214,7 @@ TEST(AnswerParser, RefusesAnswersThatNeverEnd) {
   }
 }
 
-TEST(AnswerParser, AnExceptionIsAFaultOfThatAnswerAlone) {
+TEST(AnswerParser, ExceptionFailsOnlyThatAnswer) {
   AnswerParser parser(kLongest);
   ScarceMemory scarce(0, 1);
   const State state = parser.feed("HTTP/1.1 200 OK\r\nContent-Length: 4\r\n\r\nnull");
@@ -222,14 +222,14 @@ TEST(AnswerParser, AnExceptionIsAFaultOfThatAnswerAlone) {
   EXPECT_EQ(state, State::Malformed);
 }
 
-TEST(AnHttpDate, IsTheSecondsSince1970) {
+TEST(HttpDate, IsSecondsSince1970) {
   const auto date = http_date("Sun, 06 Nov 1994 08:49:37 GMT");
   ASSERT_TRUE(date);
   EXPECT_EQ(date->time_since_epoch().count(), 784111777);
   EXPECT_EQ(http_date("Thu, 01 Jan 1970 00:00:00 GMT")->time_since_epoch().count(), 0);
 }
 
-TEST(AnHttpDate, IsNothingElse) {
+TEST(HttpDate, IsRejectedInOtherForms) {
   for (const char* text :
        {"", "Sunday, 06-Nov-94 08:49:37 GMT", "Sun Nov  6 08:49:37 1994", "Sun, 06 Nov 1994 08:49:37 UTC",
         "Sun, 31 Feb 1994 08:49:37 GMT", "Sun, 00 Nov 1994 08:49:37 GMT", "Sun, 06 Nox 1994 08:49:37 GMT",
@@ -239,7 +239,7 @@ TEST(AnHttpDate, IsNothingElse) {
   }
 }
 
-TEST(AnHttpDate, ComesWithAnAnswer) {
+TEST(HttpDate, IsReadFromAnAnswer) {
   AnswerParser parser(Request::kLongestAnswer);
   ASSERT_EQ(
       parser.feed("HTTP/1.1 200 OK\r\nDate: Sun, 06 Nov 1994 08:49:37 GMT\r\nContent-Length: 0\r\n\r\n"),

@@ -51,7 +51,7 @@ class TwoRequests : public Asking {
   Connections connections_{loop_, peer_.endpoint(), token()};
 };
 
-TEST_F(TwoRequests, TheSecondIsServedOnceTheFirstIsAnswered) {
+TEST_F(TwoRequests, SecondIsServedOnceTheFirstIsAnswered) {
   ASSERT_TRUE(one_has_arrived());
   send(post(megabytes(2)));  // more than a connection holds that nobody reads
   EXPECT_FALSE(connections_.is_ready()) << "for a third";
@@ -68,7 +68,7 @@ TEST_F(TwoRequests, TheSecondIsServedOnceTheFirstIsAnswered) {
 }
 
 /// It takes the connection that is left.
-TEST_F(TwoRequests, AThirdGoesAheadOfTheSecond) {
+TEST_F(TwoRequests, ThirdGoesAheadOfTheSecond) {
   ASSERT_TRUE(one_has_arrived());
   send(post("second"));
   let_.release();
@@ -82,7 +82,7 @@ TEST_F(TwoRequests, AThirdGoesAheadOfTheSecond) {
   EXPECT_EQ(peer_.begun(), 3);
 }
 
-TEST_F(TwoRequests, AConnectionThatWasNotNeededEnds) {
+TEST_F(TwoRequests, UnusedConnectionEnds) {
   ASSERT_TRUE(one_has_arrived());
   let_.release();
   ASSERT_TRUE(is_told(0));
@@ -94,7 +94,7 @@ TEST_F(TwoRequests, AConnectionThatWasNotNeededEnds) {
   EXPECT_EQ(peer_.begun(), 1) << "the first one is kept";
 }
 
-TEST_F(TwoRequests, SilenceCountsForTheSecondOnceTheFirstIsAnswered) {
+TEST_F(TwoRequests, TimeoutOfTheSecondStartsAfterTheFirst) {
   ASSERT_TRUE(one_has_arrived());
   Request second = post("second");
   second.answer_within = patient(milliseconds(1000));
@@ -107,7 +107,7 @@ TEST_F(TwoRequests, SilenceCountsForTheSecondOnceTheFirstIsAnswered) {
   EXPECT_EQ(status_of(1), 200) << why(*outcomes_[1]);
 }
 
-TEST_F(TwoRequests, ThereIsNoneWhereASecondConnectionIsRefused) {
+TEST_F(TwoRequests, RefusedSecondConnectionLeavesOneRequest) {
   Peer closed({[this](Wire& wire) { serve(wire); }});
   Connections connections(loop_, closed.endpoint(), token());
   bool told = false;
@@ -119,7 +119,7 @@ TEST_F(TwoRequests, ThereIsNoneWhereASecondConnectionIsRefused) {
 }
 
 /// Or a kept connection would be closed and made again by each look.
-TEST_F(TwoRequests, ASecondConnectionIsTriedOnceForEachRequest) {
+TEST_F(TwoRequests, SecondConnectionIsTriedOncePerRequest) {
   const ListeningPeer hangs_up({[this](Wire& wire) { serve(wire); }, [](Wire&) {}});
   Connections connections(loop_, hangs_up.endpoint(), token());
   bool told = false;

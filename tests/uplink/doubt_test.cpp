@@ -73,7 +73,7 @@ const Doubt kDoubts[] = {
 
 class RequestsInDoubt : public Asking, public testing::WithParamInterface<Doubt> {};
 
-TEST_P(RequestsInDoubt, AreSentOnceAndSayWhy) {
+TEST_P(RequestsInDoubt, AreSentOnceAndTellWhy) {
   const ListeningPeer peer(GetParam().script);
   Connection connection(loop_, peer.endpoint(), token());
   Request request = post("x");
@@ -105,14 +105,14 @@ class DoubtfulRequests : public Asking {
   }
 };
 
-TEST_F(DoubtfulRequests, AreThoseWhosePeerNeverReads) {
+TEST_F(DoubtfulRequests, HaveAPeerThatNeverReads) {
   std::promise<void> over;
   const ListeningPeer peer([&over](Wire&) { over.get_future().wait(); });
   expect_doubt(peer, kSilent, milliseconds(200));
   over.set_value();
 }
 
-TEST_F(DoubtfulRequests, AreThoseWhosePeerReadsNothingAndDribbles) {
+TEST_F(DoubtfulRequests, HaveAPeerThatDribblesWithoutReading) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_some(1);
     for (int i = 0; i < 200 && wire.write("H"); ++i) std::this_thread::sleep_for(milliseconds(5));
@@ -123,12 +123,12 @@ TEST_F(DoubtfulRequests, AreThoseWhosePeerReadsNothingAndDribbles) {
   EXPECT_TRUE(std::holds_alternative<InDoubt>(ask(connection, std::move(request))));
 }
 
-TEST_F(DoubtfulRequests, AreThoseResetHalfWay) {
+TEST_F(DoubtfulRequests, WereResetHalfWay) {
   const ListeningPeer peer([](Wire& wire) { wire.read_some(1 << 16), wire.reset(); });
   expect_doubt(peer, "");
 }
 
-TEST_F(DoubtfulRequests, AreThoseWhoseEarlyAnswerEndsInAReset) {
+TEST_F(DoubtfulRequests, HaveAnEarlyAnswerThatEndsInAReset) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_head();
     wire.write("HTTP/1.1 400 Bad Request\r\n\r\nthis has no length, and its end ");
@@ -139,7 +139,7 @@ TEST_F(DoubtfulRequests, AreThoseWhoseEarlyAnswerEndsInAReset) {
 }
 
 /// A 2xx is a promise about a whole request.
-TEST_F(DoubtfulRequests, AreThoseTakenHalfWayByAPeerThatResets) {
+TEST_F(DoubtfulRequests, WereAcceptedHalfWayAndReset) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_some(1 << 16);
     wire.write(answer("200 OK", "null"));
@@ -147,7 +147,7 @@ TEST_F(DoubtfulRequests, AreThoseTakenHalfWayByAPeerThatResets) {
   expect_doubt(peer, "answered 200 before");
 }
 
-TEST_F(DoubtfulRequests, AreThoseTakenHalfWayByAPeerThatReadsNoMore) {
+TEST_F(DoubtfulRequests, WereAcceptedHalfWayAndNotReadOn) {
   std::promise<void> over;
   const ListeningPeer peer([&over](Wire& wire) {
     wire.read_head();
@@ -159,7 +159,7 @@ TEST_F(DoubtfulRequests, AreThoseTakenHalfWayByAPeerThatReadsNoMore) {
 }
 
 /// The kernel has taken all of it, and the peer's has not.
-TEST_F(DoubtfulRequests, AreThoseTakenBeforeTheyHaveArrived) {
+TEST_F(DoubtfulRequests, WereAcceptedBeforeTheyArrived) {
   std::promise<void> has_left;
   Peer peer({[&has_left](Wire& wire) {
     wire.read_head();
@@ -182,7 +182,7 @@ TEST_F(DoubtfulRequests, AreThoseTakenBeforeTheyHaveArrived) {
 }
 
 /// Whether a connection that `use` uses and then leaves ended in a reset, for the peer of this script.
-class Endings : public Asking {
+class ConnectionEnds : public Asking {
  protected:
   bool was_reset(const Peer::Script& script, const std::function<void(Connection&)>& use) {
     bool reset = false;
@@ -199,7 +199,7 @@ class Endings : public Asking {
   }
 };
 
-TEST_F(Endings, LeaveNothingOfARequestInDoubtThatMightArriveLater) {
+TEST_F(ConnectionEnds, ResetARequestInDoubt) {
   const auto deaf = [](Wire&) { std::this_thread::sleep_for(milliseconds(400)); };
   for (const std::string& body : {std::string("a report"), megabytes(1)}) {
     EXPECT_TRUE(was_reset(deaf, [&](Connection& connection) {
@@ -210,7 +210,7 @@ TEST_F(Endings, LeaveNothingOfARequestInDoubtThatMightArriveLater) {
   }
 }
 
-TEST_F(Endings, LeaveNothingOfARequestThatNobodyWaitsForAnyMore) {
+TEST_F(ConnectionEnds, ResetAnAbandonedRequest) {
   std::atomic<bool> came = false;
   const auto silent = [&](Wire& wire) { wire.read_request(), came = true; };
   EXPECT_TRUE(was_reset(silent, [&](Connection& connection) {
@@ -219,7 +219,7 @@ TEST_F(Endings, LeaveNothingOfARequestThatNobodyWaitsForAnyMore) {
   }));
 }
 
-TEST_F(Endings, AreInGoodOrderAfterAnAnswer) {
+TEST_F(ConnectionEnds, AreOrderlyAfterAnAnswer) {
   for (const char* field : {"", "Connection: close\r\n"}) {
     const auto answers = [&](Wire& wire) {
       wire.read_request();
@@ -231,7 +231,7 @@ TEST_F(Endings, AreInGoodOrderAfterAnAnswer) {
   }
 }
 
-TEST_F(DoubtfulRequests, AreThoseOnAKeptConnectionThatClosesWithoutAnAnswer) {
+TEST_F(DoubtfulRequests, WereOnAKeptConnectionClosedUnanswered) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_request();
     wire.write(answer("200 OK", "null"));

@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-class HeldBack : public Asking {
+class HeldBackByte : public Asking {
  protected:
   /// Answers, so long after the whole request was there.
   Peer::Script answers_after(milliseconds pause) {
@@ -26,7 +26,7 @@ class HeldBack : public Asking {
   std::atomic<loop::Instant> whole_ = loop::Instant{};
 };
 
-TEST_F(HeldBack, AllButALittleLeavesAtOnce) {
+TEST_F(HeldBackByte, AllButALittleLeavesAtOnce) {
   const ListeningPeer peer(answers_after({}));
   Connection connection(loop_, peer.endpoint(), token());
   const std::string body = megabytes(3);
@@ -39,7 +39,7 @@ TEST_F(HeldBack, AllButALittleLeavesAtOnce) {
   EXPECT_LT(connection.sent_bytes(), body.size());
 }
 
-TEST_F(HeldBack, TheLastByteLeavesNoSoonerThanItMay) {
+TEST_F(HeldBackByte, LastByteIsNotSentEarly) {
   for (const std::size_t size : {0u, 1u, 1024u, 300'000u}) {
     const ListeningPeer peer(answers_after({}));
     Request request = post(std::string(size, 'x'));
@@ -54,7 +54,7 @@ TEST_F(HeldBack, TheLastByteLeavesNoSoonerThanItMay) {
   }
 }
 
-TEST_F(HeldBack, ThePeerIsNotSilentMeanwhile) {
+TEST_F(HeldBackByte, DelayDoesNotCountAsSilence) {
   const ListeningPeer peer(answers_after({}));
   Request request = post("body");
   request.answer_within = patient(milliseconds(1000));
@@ -64,7 +64,7 @@ TEST_F(HeldBack, ThePeerIsNotSilentMeanwhile) {
 
 /// Where the kernel had to send something twice, the answer's time is taken, for nobody knows better: then
 /// once more. It does so for nearly each large body on a busy machine, so this one is small.
-TEST_F(HeldBack, TheTimeOfTheAnswerIsNotWhenTheLastByteLeft) {
+TEST_F(HeldBackByte, SendTimeOfTheLastByteIsNotTheAnswerTime) {
   for (int tries = 0; tries < 10; ++tries) {
     const ListeningPeer peer(answers_after(milliseconds(400)));
     const loop::Instant begin = loop_.now();

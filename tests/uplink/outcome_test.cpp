@@ -20,7 +20,7 @@ using testing::HasSubstr;
 
 class AnsweredRequests : public Asking {};
 
-TEST_F(AnsweredRequests, AreThoseRefusedWhileTheirBodyIsStillOnItsWay) {
+TEST_F(AnsweredRequests, WereRejectedDuringTheirBody) {
   const std::string body = megabytes(20);
   for (int round = 0; round < 10; ++round) {
     const ListeningPeer peer([](Wire& wire) {
@@ -37,7 +37,7 @@ TEST_F(AnsweredRequests, AreThoseRefusedWhileTheirBodyIsStillOnItsWay) {
   }
 }
 
-TEST_F(AnsweredRequests, AreThoseRefusedEarlyByAPeerThatStaysAndReadsNoMore) {
+TEST_F(AnsweredRequests, WereRejectedEarlyByAPeerThatStopsReading) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_head();
     wire.write(answer("413 Content Too Large", "\"too large\""));
@@ -47,7 +47,7 @@ TEST_F(AnsweredRequests, AreThoseRefusedEarlyByAPeerThatStaysAndReadsNoMore) {
 }
 
 /// A 2xx counts once the whole request is there.
-TEST_F(AnsweredRequests, AreThoseTakenEarlyByAPeerThatReadsOn) {
+TEST_F(AnsweredRequests, WereAcceptedEarlyByAPeerThatReadsOn) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_head();
     wire.write(answer("200 OK", "null"));
@@ -62,7 +62,7 @@ TEST_F(AnsweredRequests, AreThoseTakenEarlyByAPeerThatReadsOn) {
   EXPECT_FALSE(connection.connected()) << "nobody looked for what came behind the answer";
 }
 
-TEST_F(AnsweredRequests, AreThoseTakenEarlyWhoseLastByteIsHeldBack) {
+TEST_F(AnsweredRequests, WereAcceptedBeforeAHeldBackByte) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_head();
     wire.write(answer("200 OK", "null"));
@@ -76,7 +76,7 @@ TEST_F(AnsweredRequests, AreThoseTakenEarlyWhoseLastByteIsHeldBack) {
   EXPECT_GE(got.sent.last, not_before);
 }
 
-TEST_F(AnsweredRequests, DoNotTellTheTokenToWhoeverReadsTheAnswerOfAnEchoingServer) {
+TEST_F(AnsweredRequests, RedactTheTokenOfAnEchoingServer) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_request();
     wire.write(answer("401 Unauthorized", std::string("\"Authorization: Bearer ") + kToken + "\""));
@@ -84,7 +84,7 @@ TEST_F(AnsweredRequests, DoNotTellTheTokenToWhoeverReadsTheAnswerOfAnEchoingServ
   EXPECT_EQ(answered(ask(peer.endpoint(), post("{}"))).body, "\"Authorization: Bearer [token]\"");
 }
 
-TEST_F(AnsweredRequests, AreThoseWhosePeerReadsSlowlyButReads) {
+TEST_F(AnsweredRequests, MayHaveASlowPeer) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_slowly(patient(milliseconds(25)));
     wire.read_request();
@@ -105,7 +105,7 @@ TEST_F(AnsweredRequests, KeepAnAnswerThatIsNoJson) {
   EXPECT_EQ(got.body, "<html>Oops</html>");
 }
 
-TEST_F(AnsweredRequests, WaitBehindInterimAnswers) {
+TEST_F(AnsweredRequests, SkipInterimAnswers) {
   const ListeningPeer peer([](Wire& wire) {
     wire.read_request();
     wire.write("HTTP/1.1 102 Processing\r\n\r\n");
@@ -115,13 +115,13 @@ TEST_F(AnsweredRequests, WaitBehindInterimAnswers) {
   EXPECT_EQ(answered(ask(peer.endpoint(), post("x"))).status, 201);
 }
 
-TEST_F(AnsweredRequests, TakeAChunkedAnswer) {
+TEST_F(AnsweredRequests, AcceptAChunkedAnswer) {
   const ListeningPeer peer(
       always("HTTP/1.1 200 OK\r\nTransfer-Encoding: chunked\r\n\r\n2\r\nnu\r\n2\r\nll\r\n0\r\n\r\n"));
   EXPECT_EQ(answered(ask(peer.endpoint(), post("x"))).body, "null");
 }
 
-TEST_F(AnsweredRequests, GetANewConnectionWhereTheKeptOneWasClosedMeanwhile) {
+TEST_F(AnsweredRequests, ReconnectIfTheKeptConnectionWasClosed) {
   const std::function<void(Wire&)> ways_to_close[] = {
       [](Wire& wire) { wire.close(); }, [](Wire& wire) { wire.reset(); },
       [](Wire& wire) { wire.write(answer("408 Request Timeout", "\"too slow\"", "Connection: close\r\n")); }};
@@ -156,13 +156,13 @@ class UnsentRequests : public Asking {
   }
 };
 
-TEST_F(UnsentRequests, AreThoseOfARefusedConnection) {
+TEST_F(UnsentRequests, HadARefusedConnection) {
   const Peer peer({});  // bound, but it does not listen
   const auto port = std::to_string(peer.endpoint().port);
   EXPECT_EQ(never_sent(peer.endpoint()), "connecting to 127.0.0.1:" + port + ": Connection refused");
 }
 
-TEST_F(UnsentRequests, AreThoseOfAnAbsentInterfaceWhichIsNamed) {
+TEST_F(UnsentRequests, NameAnAbsentInterface) {
   const ListeningPeer peer(always(answer("200 OK", "null")));
   Endpoint endpoint = peer.endpoint();
   endpoint.interface = "absent0";
@@ -170,7 +170,7 @@ TEST_F(UnsentRequests, AreThoseOfAnAbsentInterfaceWhichIsNamed) {
   EXPECT_EQ(peer.begun(), 0);
 }
 
-TEST_F(UnsentRequests, AreThoseToWhatIsNoAddress) {
+TEST_F(UnsentRequests, HadAnInvalidAddress) {
   for (const char* address : {"", "command-post.example", "10.100.1", "10.100.1.300", "::g"}) {
     Endpoint endpoint;
     endpoint.address = address;
@@ -179,7 +179,7 @@ TEST_F(UnsentRequests, AreThoseToWhatIsNoAddress) {
   }
 }
 
-TEST_F(UnsentRequests, AreThoseThatFoundNobodyInTime) {
+TEST_F(UnsentRequests, DidNotConnectInTime) {
   // A full backlog: the kernel ignores further connections.
   const loop::FileDescriptor listener(::socket(AF_INET, SOCK_STREAM, 0));
   ASSERT_TRUE(listener);
@@ -200,7 +200,7 @@ TEST_F(UnsentRequests, AreThoseThatFoundNobodyInTime) {
   EXPECT_THAT(never_sent(endpoint), HasSubstr("no answer in time"));
 }
 
-TEST_F(UnsentRequests, AreThoseWhosePeerClosesTheNewConnectionAtOnce) {
+TEST_F(UnsentRequests, HadANewConnectionClosedAtOnce) {
   const ListeningPeer peer([](Wire&) {});
   Connection connection(loop_, peer.endpoint(), token());
   std::string sentence;
@@ -214,7 +214,7 @@ TEST_F(UnsentRequests, AreThoseWhosePeerClosesTheNewConnectionAtOnce) {
   EXPECT_THAT(sentence, AllOf(HasSubstr("closed the new connection"), HasSubstr("(0 of ")));
 }
 
-TEST_F(UnsentRequests, AreThoseWhoseKeptConnectionIsGoneAndNoNewOneIsToBeHad) {
+TEST_F(UnsentRequests, LostTheirConnectionAndCouldNotReconnect) {
   auto peer = std::make_unique<ListeningPeer>([](Wire& wire) {
     wire.read_request();
     wire.write(answer("200 OK", "null"));

@@ -26,7 +26,7 @@ struct Listener {
   }
 };
 
-TEST_F(ConnectionRequests, AreWhatTheMeasuredServersTake) {
+TEST_F(ConnectionRequests, AreInTheFormThatServersAccept) {
   Listener listener;
   std::string authority;
   {
@@ -42,7 +42,7 @@ TEST_F(ConnectionRequests, AreWhatTheMeasuredServersTake) {
                                   "Content-Type: application/cbor\r\nContent-Length: 4\r\n\r\nbody");
 }
 
-TEST_F(ConnectionRequests, HaveNoLengthWithoutABodyToSpeakOf) {
+TEST_F(ConnectionRequests, HaveNoLengthWithoutABody) {
   Listener listener;
   {
     const ListeningPeer peer(listener.script());
@@ -52,7 +52,7 @@ TEST_F(ConnectionRequests, HaveNoLengthWithoutABodyToSpeakOf) {
   EXPECT_THAT(listener.request, Not(HasSubstr("Content-")));
 }
 
-TEST_F(ConnectionRequests, OfAnEmptyPostSayThatItIsEmpty) {
+TEST_F(ConnectionRequests, OfAnEmptyPostHaveLengthZero) {
   Listener listener;
   {
     const ListeningPeer peer(listener.script());
@@ -61,7 +61,7 @@ TEST_F(ConnectionRequests, OfAnEmptyPostSayThatItIsEmpty) {
   EXPECT_THAT(listener.request, HasSubstr("\r\nContent-Length: 0\r\n"));
 }
 
-TEST_F(ConnectionRequests, ArriveByteForByteHoweverTheirBodyIsCut) {
+TEST_F(ConnectionRequests, ArriveUnchangedInAnyPieces) {
   const std::string all = megabytes(5);
   icd::ChunkedBytes body;
   for (std::size_t at = 0, size = 1; at < all.size(); size = size * 3 + 1) {  // chunks of many sizes
@@ -96,7 +96,7 @@ TEST_F(ConnectionRequests, FollowEachOtherOnOneConnection) {
   EXPECT_TRUE(connection.connected());
 }
 
-TEST_F(ConnectionRequests, GetANewConnectionAfterAnAnswerThatEndsIt) {
+TEST_F(ConnectionRequests, ReconnectAfterAnAnswerThatClosed) {
   const std::string endings[] = {answer("200 OK", "null", "Connection: close\r\n"),
                                  "HTTP/1.0 200 OK\r\nContent-Length: 4\r\n\r\nnull",
                                  answer("429 Too Many Requests", "\"slow\""),
@@ -121,7 +121,7 @@ TEST_F(ConnectionRequests, GetANewConnectionAfterAnAnswerThatEndsIt) {
   }
 }
 
-TEST_F(ConnectionRequests, CanBeSentFromWithinDone) {
+TEST_F(ConnectionRequests, CanBeSentFromACompletion) {
   const ListeningPeer peer(always(answer("200 OK", "null")));
   Connection connection(loop_, peer.endpoint(), token());
   int answers = 0;
@@ -133,7 +133,7 @@ TEST_F(ConnectionRequests, CanBeSentFromWithinDone) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return answers == 5; }));
 }
 
-TEST_F(ConnectionRequests, MayDestroyTheirConnectionInDone) {
+TEST_F(ConnectionRequests, MayDestroyTheirConnectionInACompletion) {
   const auto destroy_in_done = [&](const Endpoint& endpoint, Request request) {
     auto connection = std::make_unique<Connection>(loop_, endpoint, token());
     connection->keep_warm();
@@ -161,7 +161,7 @@ TEST_F(ConnectionRequests, MayDestroyTheirConnectionInDone) {
   destroy_in_done(silent.endpoint(), std::move(impatient));
 }
 
-TEST_F(ConnectionRequests, NeverCallDoneOnceTheirConnectionIsGone) {
+TEST_F(ConnectionRequests, AreNotCompletedOnceTheirConnectionIsGone) {
   const ListeningPeer peer(
       [](Wire& wire) { wire.read_head(), wire.write("HTTP/1.1 20"), wire.wait_for_close(); });
   for (int turns = 0; turns < 12; ++turns) {  // connecting, sending, waiting, reading
@@ -174,7 +174,7 @@ TEST_F(ConnectionRequests, NeverCallDoneOnceTheirConnectionIsGone) {
   }
 }
 
-TEST_F(ConnectionRequests, GoByIpv6Too) {
+TEST_F(ConnectionRequests, AlsoUseIpv6) {
   Listener listener;
   try {
     const ListeningPeer peer(std::vector{listener.script()}, "::1");
@@ -187,7 +187,7 @@ TEST_F(ConnectionRequests, GoByIpv6Too) {
   }
 }
 
-TEST_F(ConnectionRequests, GoByTheInterfaceTheyAreBoundTo) {
+TEST_F(ConnectionRequests, UseTheBoundInterface) {
   const ListeningPeer peer(always(answer("200 OK", "null")));
   Endpoint endpoint = peer.endpoint();
   endpoint.interface = "lo";

@@ -12,7 +12,7 @@ struct Redirect {
   bool expected;
 };
 
-TEST(ARedirectToTheSlash, IsToTheSamePlaceAndPathWithASlash) {
+TEST(SlashRedirect, AddsOnlyASlashToTheTarget) {
   for (const Redirect& each : {
            Redirect{301, "/map/update/", kAuthority, "/map/update", true},
            {302, "/map/update/", kAuthority, "/map/update", true},
@@ -71,7 +71,7 @@ TEST(ARedirectToTheSlash, IsToTheSamePlaceAndPathWithASlash) {
   }
 }
 
-class AnAnswer : public Asking {
+class RedirectAnswer : public Asking {
  protected:
   bool wants_slash(const std::string& fields) {
     const ListeningPeer peer(always(answer("308 Permanent Redirect", "<html>", fields)));
@@ -79,14 +79,14 @@ class AnAnswer : public Asking {
   }
 };
 
-TEST_F(AnAnswer, TellsOfTheSlashByItsLocation) {
+TEST_F(RedirectAnswer, TellsTheSlashByItsLocation) {
   EXPECT_TRUE(wants_slash("Location: /map/update/\r\n"));
   EXPECT_TRUE(wants_slash("location:/map/update/ \r\n"));
   EXPECT_FALSE(wants_slash(""));
   EXPECT_FALSE(wants_slash("Location: http://127.0.0.1:1/map/update/\r\n"));
 }
 
-TEST_F(AnAnswer, IsComparedWithThePlaceThatWasAsked) {
+TEST_F(RedirectAnswer, IsComparedWithTheRequestedTarget) {
   const ListeningPeer peer([](Wire& wire) { wire.write(without_slash(wire.read_request())); });
   EXPECT_TRUE(answered(ask(peer.endpoint(), post("a map"))).wants_slash);
 }

@@ -55,7 +55,7 @@ TEST(Socket, SendsLargerBurstsAtAFasterPace) {
   EXPECT_LE(segments(11'800'000'000), 2);
 }
 
-TEST(Socket, IsPacedByTheKernelWhereAPaceIsAskedFor) {
+TEST(Socket, IsPacedByTheKernelOnRequest) {
   const ListeningPeer peer([](Wire& wire) { wire.wait_for_close(); });
   Endpoint endpoint = peer.endpoint();
   EXPECT_EQ(option<std::uint64_t>(socket_of(endpoint), SOL_SOCKET, SO_MAX_PACING_RATE), ~std::uint64_t{0});
@@ -66,7 +66,7 @@ TEST(Socket, IsPacedByTheKernelWhereAPaceIsAskedFor) {
   }
 }
 
-TEST(Socket, HoldsLittleThatIsNotOnItsWay) {
+TEST(Socket, BuffersLittleUnsentData) {
   const ListeningPeer peer([](Wire& wire) { wire.wait_for_close(); });
   Endpoint endpoint = peer.endpoint();
   EXPECT_EQ(option<int>(socket_of(endpoint), IPPROTO_TCP, TCP_NOTSENT_LOWAT), 64 * 1024);
@@ -76,7 +76,7 @@ TEST(Socket, HoldsLittleThatIsNotOnItsWay) {
   EXPECT_EQ(option<int>(socket_of(endpoint), IPPROTO_TCP, TCP_NOTSENT_LOWAT), 25'000);
 }
 
-TEST(Socket, NamesItsPeerAsHttpDoes) {
+TEST(Socket, NamesItsPeerAsInHttp) {
   const auto authority = [](const char* address, std::uint16_t port) {
     Endpoint endpoint;
     endpoint.address = address;

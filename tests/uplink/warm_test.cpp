@@ -42,7 +42,7 @@ TEST_F(WarmConnection, ConnectsAheadOfNeed) {
   EXPECT_EQ(peer.begun(), 1);
 }
 
-TEST_F(WarmConnection, TakesARequestWhileItStillConnects) {
+TEST_F(WarmConnection, AcceptsARequestWhileConnecting) {
   const ListeningPeer peer(always(answer("200 OK", "null")));
   Connection connection(loop_, peer.endpoint(), token());
   connection.keep_warm();
@@ -50,7 +50,7 @@ TEST_F(WarmConnection, TakesARequestWhileItStillConnects) {
   EXPECT_EQ(peer.begun(), 1);
 }
 
-TEST_F(WarmConnection, SaysItsTroubleAndConnectsOnceItCan) {
+TEST_F(WarmConnection, ReportsTroubleAndConnectsLater) {
   Peer peer({always(answer("200 OK", "null"))});
   Connection connection(loop_, peer.endpoint(), token());
   connection.keep_warm();
@@ -62,7 +62,7 @@ TEST_F(WarmConnection, SaysItsTroubleAndConnectsOnceItCan) {
   EXPECT_EQ(connection.trouble(), "");
 }
 
-TEST_F(WarmConnection, WaitsForNoPauseWhereTheWayMayBeBack) {
+TEST_F(WarmConnection, RetriesAtOnceIfTheNetworkMayBeBack) {
   EXPECT_TRUE(is_quick([&](Connection& connection) {
     connection.hurry();
     EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
@@ -71,7 +71,7 @@ TEST_F(WarmConnection, WaitsForNoPauseWhereTheWayMayBeBack) {
   }));
 }
 
-TEST_F(WarmConnection, DoesNotHammerAPeerThatClosesAtOnce) {
+TEST_F(WarmConnection, RetriesSlowlyIfThePeerCloses) {
   const ListeningPeer peer([](Wire&) {});
   Connection connection(loop_, peer.endpoint(), token());
   const loop::Instant began = loop_.now();
@@ -81,7 +81,7 @@ TEST_F(WarmConnection, DoesNotHammerAPeerThatClosesAtOnce) {
   EXPECT_LE(peer.begun(), 1 + (loop_.now() - began) / std::chrono::seconds(1));
 }
 
-TEST_F(WarmConnection, ConnectsAgainAfterAnAnswerThatEndsIt) {
+TEST_F(WarmConnection, ReconnectsAfterAnAnswerThatClosed) {
   const ListeningPeer peer(always(answer("422 No", "\"no\"")));
   Connection connection(loop_, peer.endpoint(), token());
   connection.keep_warm();
@@ -90,13 +90,13 @@ TEST_F(WarmConnection, ConnectsAgainAfterAnAnswerThatEndsIt) {
   EXPECT_TRUE(loop::turn_until(loop_, [&] { return connection.connected(); }));
 }
 
-TEST_F(WarmConnection, DoesNotMakeARequestWaitForItsPause) {
+TEST_F(WarmConnection, RequestsDoNotWaitForARetry) {
   EXPECT_TRUE(is_quick([&](Connection& connection) {
     EXPECT_EQ(answered(ask(connection, get())).status, 200);
   })) << "it waited for the next attempt";
 }
 
-TEST_F(WarmConnection, DiesQuietly) {
+TEST_F(WarmConnection, EndsQuietly) {
   const ListeningPeer peer(always(answer("200 OK", "null")));
   for (int turns = 0; turns < 6; ++turns) {
     Connection connection(loop_, peer.endpoint(), token());

@@ -16,7 +16,7 @@ Bytes counted(std::size_t size, std::uint8_t first = 0) {
   return bytes;
 }
 
-TEST(ChunkedBytes, GiveBackWhatWasAppendedWhateverThePieces) {
+TEST(ChunkedBytes, KeepAppendedBytesOfAnyPieces) {
   std::mt19937_64 random(1);
   for (int round = 0; round < 50; ++round) {
     Bytes expected;
@@ -41,7 +41,7 @@ TEST(ChunkedBytes, GiveBackWhatWasAppendedWhateverThePieces) {
   }
 }
 
-TEST(ChunkedBytes, FillAChunkBeforeTheyStartAnother) {
+TEST(ChunkedBytes, FillAChunkBeforeTheNext) {
   ChunkedBytes bytes;
   const Bytes piece = counted(100);
   for (int i = 0; i < 1000; ++i) bytes.append(piece);
@@ -56,7 +56,7 @@ TEST(ChunkedBytes, ShareTheirChunksWithACopy) {
   EXPECT_EQ(copy.chunks()[1]->data(), original.chunks()[1]->data());
 }
 
-TEST(ChunkedBytes, NeverChangeAChunkThatSomebodyElseCanSee) {
+TEST(ChunkedBytes, DoNotChangeASharedChunk) {
   ChunkedBytes original(counted(10));
   ChunkedBytes copy = original;
   const ChunkedBytes::Chunk held = original.chunks()[0];
@@ -71,7 +71,7 @@ TEST(ChunkedBytes, NeverChangeAChunkThatSomebodyElseCanSee) {
   EXPECT_EQ(copy.to_vector().back(), three.back());
 }
 
-TEST(ChunkedBytes, GrowTheirLastChunkAgainOnceTheyAreAloneWithIt) {
+TEST(ChunkedBytes, GrowTheirLastChunkOnceUnshared) {
   const Bytes piece = counted(10);
   ChunkedBytes bytes(piece);
   {
@@ -84,7 +84,7 @@ TEST(ChunkedBytes, GrowTheirLastChunkAgainOnceTheyAreAloneWithIt) {
   EXPECT_EQ(bytes.size(), 30U);
 }
 
-TEST(ChunkedBytes, TakeAChunkOverWithoutACopy) {
+TEST(ChunkedBytes, AppendAChunkWithoutACopy) {
   Bytes chunk = counted(1000);
   const auto* where = chunk.data();
   ChunkedBytes bytes;
@@ -92,7 +92,7 @@ TEST(ChunkedBytes, TakeAChunkOverWithoutACopy) {
   EXPECT_EQ(bytes.chunks()[0]->data(), where);
 }
 
-TEST(ChunkedBytes, CutAChunkThatIsTooLargeToBeTakenOver) {
+TEST(ChunkedBytes, SplitATooLargeChunk) {
   ChunkedBytes bytes;
   bytes.append(counted(ChunkedBytes::kChunk + 1));
   EXPECT_EQ(bytes.chunks().size(), 2U);
@@ -136,14 +136,14 @@ TEST(ChunkedBytes, ArePoppedChunkByChunkFromTheFront) {
   EXPECT_EQ(bytes.to_vector(), four);
 }
 
-TEST(ChunkedBytes, FreeAPoppedChunkOnceNobodyHoldsIt) {
+TEST(ChunkedBytes, FreeAPoppedChunkOnceUnshared) {
   ChunkedBytes bytes(counted(2 * ChunkedBytes::kChunk));
   const std::weak_ptr<const void> first = bytes.chunks()[0].owner();
   bytes.pop_front();
   EXPECT_TRUE(first.expired());
 }
 
-TEST(ChunkedBytes, ShowBytesOfAnOwnerWithoutACopyAndKeepItAlive) {
+TEST(ChunkedBytes, ReferToBytesOfAnOwnerAndKeepItAlive) {
   auto owner = std::make_shared<const Bytes>(counted(2 * ChunkedBytes::kChunk + 5));
   const std::weak_ptr<const Bytes> alive = owner;
   ChunkedBytes bytes(counted(3));
@@ -160,7 +160,7 @@ TEST(ChunkedBytes, ShowBytesOfAnOwnerWithoutACopyAndKeepItAlive) {
   EXPECT_EQ(copy.to_vector().size(), 2 * ChunkedBytes::kChunk + 12);
 }
 
-TEST(ChunkedBytes, AreEqualWhereTheirBytesAreHoweverTheyAreCut) {
+TEST(ChunkedBytes, AreEqualIfTheirBytesAreEqual) {
   ChunkedBytes cut;
   cut.append(Bytes{1, 2});
   cut.append(Bytes{3});

@@ -12,7 +12,7 @@ double length_of(const Quaternion& q) {
   return std::hypot(std::hypot(q.x, q.y, q.z), q.w);
 }
 
-TEST(Rotation, IsOfLengthOneHoweverLongTheQuaternionIs) {
+TEST(Rotation, IsNormalized) {
   for (const double length :
        {1e-5, 0.5, 1 - 2e-6, 1 + 2e-6, 3.0, 1e200, std::numeric_limits<double>::max()}) {
     const auto rotation = rotation_of({0.36 * length, -0.48 * length, 0.64 * length, 0.48 * length});
@@ -25,7 +25,7 @@ TEST(Rotation, IsOfLengthOneHoweverLongTheQuaternionIs) {
   }
 }
 
-TEST(Rotation, KeepsTheBitsOfAQuaternionThatIsOfLengthOneButForNoise) {
+TEST(Rotation, KeepsAnAlmostNormalQuaternionExactly) {
   for (const double length : {1 - 0.9e-6, 1.0, 1 + 0.9e-6}) {
     const Quaternion given{0.36 * length, -0.48 * length, 0.64 * length, 0.48 * length};
     EXPECT_EQ(rotation_of(given), given) << length;
@@ -39,7 +39,7 @@ TEST(Rotation, IsTheIdentityForAllZeros) {
   EXPECT_EQ(rotation_of({0, -0.0, 0, 0}), Quaternion{});
 }
 
-TEST(Rotation, IsNoneForWhatIsNotFiniteOrHasNoDirection) {
+TEST(Rotation, RejectsNonFiniteAndZeroLength) {
   using Double = std::numeric_limits<double>;
   for (const double odd : {Double::quiet_NaN(), Double::infinity(), -Double::infinity()}) {
     EXPECT_FALSE(rotation_of({odd, 0, 0, 1}));

@@ -31,7 +31,7 @@ TEST(BearerToken, IsAnyVisibleAscii) {
   EXPECT_TRUE(BearerToken::parse(std::string(256, 'a')).has_value());
 }
 
-TEST(BearerToken, IsNothingThatAHeaderCannotHold) {
+TEST(BearerToken, RejectsBytesThatAHeaderCannotHold) {
   for (const std::string text : {"", "a b", "a\n", "a\r\nX: y", "\x7f", "h\xc3\xa9", " a"}) {
     EXPECT_FALSE(BearerToken::parse(text).has_value()) << testing::PrintToString(text);
   }
@@ -39,7 +39,7 @@ TEST(BearerToken, IsNothingThatAHeaderCannotHold) {
   EXPECT_FALSE(BearerToken::parse(std::string(257, 'a')).has_value());
 }
 
-TEST(BearerToken, IsStruckFromWhatOthersWrote) {
+TEST(BearerToken, IsRedactedInForeignText) {
   std::string text = "got \"team-7\", team-7team-7 and Team-7";
   BearerToken::parse("team-7")->strike_from(text);
   EXPECT_EQ(text, "got \"[token]\", [token][token] and Team-7");
@@ -47,7 +47,7 @@ TEST(BearerToken, IsStruckFromWhatOthersWrote) {
   EXPECT_EQ(text, "got \"[token]\", [token][token] and Team-7") << "too short to be a secret";
 }
 
-TEST(BearerToken, IsStruckHoweverItIsWritten) {
+TEST(BearerToken, IsRedactedInEachEncoding) {
   const auto token = *BearerToken::parse(R"(flux230{"show\room<&)");
   std::string text =
       R"(flux230{"show\room<& flux230{\"show\\room<& flux230{""show\room<& flux230{\\\"show\\\\room<& )" +
@@ -56,7 +56,7 @@ TEST(BearerToken, IsStruckHoweverItIsWritten) {
   EXPECT_EQ(text, "[token] [token] [token] [token] [token]");
 }
 
-TEST(Redaction, StrikesSecretsOutOfHtmlAndLeavesItsMarkup) {
+TEST(Redaction, RedactsHtmlTextButNotMarkup) {
   const auto token = *BearerToken::parse("a<b>&'c\"d");
   const Redaction redaction({token, *BearerToken::parse("table")});
   std::string text = "<table><td>" + in_html("sent " + token.reveal()) + "</td></table>";
@@ -64,7 +64,7 @@ TEST(Redaction, StrikesSecretsOutOfHtmlAndLeavesItsMarkup) {
   EXPECT_EQ(text, "<table><td>sent [token]</td></table>");
 }
 
-TEST(BearerToken, IsStruckWhereASentenceCutsIt) {
+TEST(BearerToken, IsRedactedIfTruncated) {
   const std::string whole(64, 'k');
   const auto token = *BearerToken::parse("0123456789" + whole);
   std::string text = "type: expected one of ICD 3, got " + in_quotes("0123456789" + whole);
@@ -75,7 +75,7 @@ TEST(BearerToken, IsStruckWhereASentenceCutsIt) {
   EXPECT_EQ(text, "0123456789 and 0123456789kk are something else");
 }
 
-TEST(Redaction, StrikesSecretsOutOfJsonAndLeavesItJson) {
+TEST(Redaction, RedactsJsonStringsAndKeepsItJson) {
   const Redaction redaction({*BearerToken::parse("12345678"), *BearerToken::parse("number\"s"),
                              *BearerToken::parse("numbers_"), *BearerToken::parse("grid")});
   std::string text = R"({"numbers_":12345678,"ns":"a12345678","kind":"grid","c":["number\"s","numbers_"]})";
@@ -88,7 +88,7 @@ TEST(Redaction, StrikesSecretsOutOfJsonAndLeavesItJson) {
   }
 }
 
-TEST(BearerToken, MatchesItselfAlone) {
+TEST(BearerToken, MatchesOnlyItself) {
   const auto token = BearerToken::parse("abcabc");
   ASSERT_TRUE(token.has_value());
   EXPECT_TRUE(token->matches("abcabc"));
@@ -97,14 +97,14 @@ TEST(BearerToken, MatchesItselfAlone) {
   }
 }
 
-TEST(TokenIn, TakesTheSchemeInAnyLetterCase) {
+TEST(TokenIn, AcceptsTheSchemeInAnyCase) {
   EXPECT_EQ(token_in("Bearer flux230{showroom"), "flux230{showroom");
   EXPECT_EQ(token_in("bearer abc"), "abc");
   EXPECT_EQ(token_in("BEARER   abc  "), "abc");
   EXPECT_EQ(token_in(" \tBearer\tabc"), "abc");
 }
 
-TEST(TokenIn, IsEmptyWhereThereIsNone) {
+TEST(TokenIn, IsEmptyWithoutAToken) {
   for (const std::string text :
        {"", "Bearer", "Bearer ", "  ", "Basic abc", "Bearerabc", "abc", "\"earer abc"}) {
     EXPECT_EQ(token_in(text), "") << text;
@@ -119,14 +119,14 @@ TEST(RobotName, IsOneToTenLettersDigitsAndUnderscores) {
   }
 }
 
-TEST(RobotName, IsNothingElse) {
+TEST(RobotName, RejectsOtherNames) {
   for (const std::string text : {"", "ABCDEFGHIJK", "a b", "a-b", "h\xc3\xbcsky", "a.b", "a/b", "a\n"}) {
     EXPECT_FALSE(RobotName::parse(text).has_value()) << testing::PrintToString(text);
   }
   EXPECT_FALSE(RobotName::parse(std::string("a\0", 2)).has_value());
 }
 
-TEST(UriOf, KnowsTheFiveFunctionsWithAndWithoutATrailingSlash) {
+TEST(UriOf, KnowsFivePathsWithAndWithoutASlash) {
   for (const Uri uri : kUris) {
     const std::string path(path_of(uri));
     EXPECT_EQ(uri_of(path), uri);
@@ -136,14 +136,14 @@ TEST(UriOf, KnowsTheFiveFunctionsWithAndWithoutATrailingSlash) {
   EXPECT_EQ(path_of(Uri::ArtifactReports), "/api/artifact_reports");  // ICD 5.2
 }
 
-TEST(UriOf, KnowsNoOther) {
+TEST(UriOf, RejectsOtherPaths) {
   for (const std::string path : {"", "/", "/api", "/api/status/x", "/API/status", "api/status",
                                  "/map/update2", "//map/update", "/map//update"}) {
     EXPECT_FALSE(uri_of(path).has_value()) << path;
   }
 }
 
-TEST(ArtifactType, IsFoundInAnyLetterCaseAndGivenInTheIcdsOwn) {
+TEST(ArtifactType, IsFoundInAnyCaseAndGivenAsInTheIcd) {
   for (const std::string_view type : kArtifactTypes) {
     std::string upper(type);
     std::string lower(type);

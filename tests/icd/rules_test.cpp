@@ -45,7 +45,7 @@ struct GridRow {
   const char* sentence;
 };
 
-TEST(GridRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
+TEST(GridRules, TellExpectedAndActualValues) {
   const GridRow rows[] = {
       {"6.3.1", [](auto&) {}, "taken"},
       {"6.3.1", [](auto& g) { g.resolution = 8e-46; }, "taken"},  // becomes the least float32
@@ -94,7 +94,7 @@ TEST(GridRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
   }
 }
 
-TEST(GridRules, NameTheSettingThatAcceptsALargerGridIfOneDoes) {
+TEST(GridRules, NameTheSettingThatWouldAcceptALargerGrid) {
   Rules rules;
   rules.map_bytes = 10'000;
   OccupancyGrid grid = good_grid();
@@ -131,7 +131,7 @@ struct CloudRow {
   const char* sentence;
 };
 
-TEST(CloudRules, EachSayWhatTheyExpectedAndWhatTheyGot) {
+TEST(CloudRules, TellExpectedAndActualValues) {
   const CloudRow rows[] = {
       {"6.3.2", [](auto&) {}, "taken"},
       {"6.3.2 and kills a server", [](auto& c) { c.point_step = 0; },

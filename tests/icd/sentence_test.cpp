@@ -21,7 +21,7 @@ TEST(Sentence, ShowsNumbersInTheFewestDigits) {
   EXPECT_EQ(number_text(-2.2250738585072014e-308), "-2.2250738585072014e-308");
 }
 
-TEST(InQuotes, KeepsASendersTextOnOneLineAndShort) {
+TEST(InQuotes, KeepsForeignTextShortAndOnOneLine) {
   EXPECT_EQ(in_quotes("map"), "\"map\"");
   EXPECT_EQ(in_quotes(""), "\"\"");
   EXPECT_EQ(in_quotes("a\nb\x7f\x1b[2J"), "\"a?b??[2J\"");
@@ -29,7 +29,7 @@ TEST(InQuotes, KeepsASendersTextOnOneLineAndShort) {
   EXPECT_EQ(in_quotes(std::string(4000, 'a')), "\"" + std::string(40, 'a') + "...\"");
 }
 
-TEST(InQuotes, NeverCutsACharacterInTwo) {
+TEST(InQuotes, SplitsNoCharacter) {
   const std::string text = std::string(39, 'a') + "\xc3\xa9\xc3\xa9";
   EXPECT_EQ(in_quotes(text), "\"" + std::string(39, 'a') + "...\"");
   EXPECT_EQ(in_quotes(std::string(100, '\x80')), "\"...\"");

@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::string_view kKnown[] = {"status", "reports", "run", "settings", "at"};
 
-TEST(AMisspeltWord, IsKnownByWhatIsNearest) {
+TEST(Suggestion, IsTheNearestWord) {
   const struct {
     std::string_view word, meant;
   } cases[] = {{"stat", "status"},      // the beginning of it
@@ -16,21 +16,21 @@ TEST(AMisspeltWord, IsKnownByWhatIsNearest) {
   for (const auto& [word, meant] : cases) EXPECT_EQ(nearest(word, kKnown), meant) << word;
 }
 
-TEST(AMisspeltWord, IsLeftAloneWhereNothingIsNear) {
+TEST(Suggestion, IsAbsentIfNoWordIsNear) {
   for (const std::string_view word : {"", "x", "xy", "help", "7", "aaaaaaaaaa"})
     EXPECT_EQ(nearest(word, kKnown), std::nullopt) << word;
   EXPECT_EQ(nearest(std::string("status").append(59, 's'), kKnown), std::nullopt) << "too long to compare";
   EXPECT_EQ(nearest("status", {}), std::nullopt);
 }
 
-TEST(AMisspeltWord, IsNearerWhereFewLettersMayDiffer) {
+TEST(Suggestion, AllowsAtMostTheGivenDifferences) {
   constexpr std::string_view kShort[] = {"vent"};
   EXPECT_EQ(nearest("test", kShort), "vent");
   EXPECT_EQ(nearest("test", kShort, 0), std::nullopt);
   EXPECT_EQ(nearest("vant", kShort, 0), "vent");
 }
 
-TEST(AMisspeltWord, IsAskedFor) {
+TEST(Suggestion, IsWrittenAsAQuestion) {
   EXPECT_EQ(did_you_mean("stat", kKnown), "; did you mean status?");
   EXPECT_EQ(did_you_mean("xyzzy", kKnown), "");
 }

@@ -57,7 +57,7 @@ std::expected<Options, std::string> read(const Words& words) {
   return command_line::read(program_of, words);
 }
 
-TEST(ACommandLine, IsReadByItsTable) {
+TEST(CommandLine, IsReadByItsTable) {
   const auto options =
       read({"--file", "first", "quick", "--more=a", "--more", "b", "--speed=1.5", "--file", "--folder"});
   ASSERT_TRUE(options) << options.error();
@@ -72,7 +72,7 @@ TEST(ACommandLine, IsReadByItsTable) {
   EXPECT_TRUE(read({"-h"})->help);
 }
 
-TEST(ACommandLine, IsRefusedByItsWord) {
+TEST(CommandLine, IsRejectedWithItsWord) {
   const struct {
     Words words;
     const char* sentence;
@@ -103,7 +103,7 @@ TEST(ACommandLine, IsRefusedByItsWord) {
   }
 }
 
-TEST(ACommandLine, MayHaveEmptyValuesAndWordsThatAreNoRows) {
+TEST(CommandLine, MayHaveEmptyValuesAndFreeWords) {
   Options options;
   Program program = program_of(options);
   program.empty = Empty::Taken;
@@ -120,7 +120,7 @@ TEST(ACommandLine, MayHaveEmptyValuesAndWordsThatAreNoRows) {
   EXPECT_EQ(command_line::read(program, Words{"--file", ""}), "--file FILE is missing");
 }
 
-TEST(ACommandLine, IsAnsweredAtOnceWhereThereIsNoWork) {
+TEST(CommandLine, AnswersHelpVersionAndErrorsAtOnce) {
   testing::internal::CaptureStdout();
   testing::internal::CaptureStderr();
   const auto exit_of = [](const Words& words) { return answer(program_of, "1.2.3", read(words)); };

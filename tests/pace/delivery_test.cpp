@@ -82,14 +82,14 @@ class Line {
   double time_ = 10, queue_ = 0, tokens_ = 0, delivered_ = 0, smoothed_ = 0;
 };
 
-TEST(Delivery, IsFullWhereTheLinkIs) {
+TEST(Delivery, MatchesAFullLink) {
   Line line(12.5e6, 0.001);
   EXPECT_NEAR(line.runs(5), kMost, kMost / 100);
   EXPECT_EQ(line.delivery.pace(), kMost);
   EXPECT_NEAR(line.delivery.delivers(), kMost, kMost / 50);
 }
 
-TEST(Delivery, FollowsALinkThatSlowsDownAndComesBack) {
+TEST(Delivery, FollowsALinkThatSlowsDownAndRecovers) {
   Line line(12.5e6, 0.001);
   line.runs(3);
   line.carries = 7.5e6;
@@ -102,7 +102,7 @@ TEST(Delivery, FollowsALinkThatSlowsDownAndComesBack) {
   EXPECT_GT(line.runs(0.5), 0.95 * kMost);
 }
 
-TEST(Delivery, ASenderWithOtherThingsToDoIsNotASlowLink) {
+TEST(Delivery, IgnoresABusySender) {
   Line line(12.5e6, 0.001);
   line.starves = true;
   line.runs(5);
@@ -110,7 +110,7 @@ TEST(Delivery, ASenderWithOtherThingsToDoIsNotASlowLink) {
   EXPECT_EQ(line.delivery.delivers(), kMost);
 }
 
-TEST(Delivery, ALongRoundTripAtTheBeginIsNoSlowLink) {
+TEST(Delivery, IgnoresALongFirstRoundTrip) {
   Delivery delivery(kMost);
   Progress now{.at = at(10), .unsent = 1, .round_trip = std::chrono::milliseconds(40)};
   delivery.begins(now);
@@ -125,7 +125,7 @@ TEST(Delivery, ALongRoundTripAtTheBeginIsNoSlowLink) {
 
 /// Small maps: TCP has sent all of each, and the ACK of the last bytes came late and made the round trip
 /// longer.
-TEST(Delivery, AnEmptySenderWhoseLastAckWasLateIsNoSlowLink) {
+TEST(Delivery, IgnoresALateAcknowledgementOfAnIdleSender) {
   Delivery delivery(kMost);
   Progress now{.at = at(10),
                .in_flight = 1448,
@@ -140,7 +140,7 @@ TEST(Delivery, AnEmptySenderWhoseLastAckWasLateIsNoSlowLink) {
   }
 }
 
-TEST(Delivery, SilenceIsNoSlowLink) {
+TEST(Delivery, IgnoresSilence) {
   Delivery delivery(kMost);
   Progress now{.at = at(10), .unsent = 1, .round_trip = std::chrono::milliseconds(40)};
   delivery.begins(now);
@@ -152,7 +152,7 @@ TEST(Delivery, SilenceIsNoSlowLink) {
 }
 
 /// Whatever the link does: 2 s later 95 % of it is used, and a report waits 30 ms at the most.
-TEST(Delivery, IsBackWithinTwoSecondsOnAnyLink) {
+TEST(Delivery, RecoversWithinTwoSecondsOnAnyLink) {
   for (unsigned seed = 1; seed <= 200; ++seed) {
     std::mt19937 random(seed);
     const auto between = [&](double low, double high) {

@@ -42,7 +42,7 @@ TEST(RateLimit, KeepsFirstBytesApartAndLastBytes) {
   EXPECT_EQ(limit.next(), at(11.62)) << "where nothing is held back";
 }
 
-TEST(RateLimit, AfterA429CountsFromTheAnswerToTheNextRequest) {
+TEST(RateLimit, After429CountsFromTheAnswer) {
   RateLimit limit{1};
   limit.sent(at(10));
   limit.throttled(at(10.1), {});
@@ -56,7 +56,7 @@ TEST(RateLimit, AfterA429CountsFromTheAnswerToTheNextRequest) {
   EXPECT_EQ(next.earliest(), limit.earliest());
 }
 
-TEST(RateLimit, HeedsRetryAfterUpToItsLongestPause) {
+TEST(RateLimit, ObeysRetryAfterUpToALimit) {
   struct Case {
     seconds retry_after;
     double next;
@@ -70,14 +70,14 @@ TEST(RateLimit, HeedsRetryAfterUpToItsLongestPause) {
   }
 }
 
-TEST(RateLimit, NeverStopsForEver) {
+TEST(RateLimit, PausesForALimitedTime) {
   RateLimit limit{1};
   for (int i = 0; i < 100; ++i) limit.throttled(at(i), {});
   EXPECT_GE(hertz(limit, 1), RateLimit::kSlowest);
   EXPECT_LE(limit.next(), at(99 + 30.1));
 }
 
-TEST(RateLimit, GoesOnAsTheOneBeforeHasLearned) {
+TEST(RateLimit, ContinuesWithLearnedValues) {
   RateLimit slowed(1);
   for (int i = 0; i < 40; ++i) slowed.throttled(at(i), {}), slowed.taken(left(i), at(i));
   ASSERT_LT(hertz(slowed, 1), 0.9);
@@ -99,7 +99,7 @@ TEST(RateLimit, GoesOnAsTheOneBeforeHasLearned) {
 }
 
 /// It may have ended a moment before: in one life the spacing counts from there.
-TEST(RateLimit, KeepsItsDistanceFromWhatWasUnderWayWhenTheOneBeforeEnded) {
+TEST(RateLimit, KeepsItsSpacingAfterARestartDuringARequest) {
   RateLimit before(1);
   before.sent(at(3));  // and it took five seconds
   RateLimit next(1);
@@ -111,7 +111,7 @@ TEST(RateLimit, KeepsItsDistanceFromWhatWasUnderWayWhenTheOneBeforeEnded) {
   EXPECT_EQ(known.next(), at(9) + milliseconds{20}) << "how it ended is known";
 }
 
-TEST(RateLimit, IsNotHeldBackForEverByAClockThatWasAnother) {
+TEST(RateLimit, SurvivesTimesOfAnotherClock) {
   for (const double hertz : {1.0, 0.01}) {
     RateLimit next(hertz);
     next.carry_on({.earliest = {.first = at(1e6), .last = at(1e6)}}, at(5));
@@ -119,7 +119,7 @@ TEST(RateLimit, IsNotHeldBackForEverByAClockThatWasAnother) {
   }
 }
 
-TEST(RateLimit, StaysBelowARateThatIsSlowByItself) {
+TEST(RateLimit, StaysBelowASlowRate) {
   RateLimit limit{0.01};
   limit.throttled(at(0), {});
   EXPECT_EQ(hertz(limit, 0.01), 0.01);
@@ -128,7 +128,7 @@ TEST(RateLimit, StaysBelowARateThatIsSlowByItself) {
   EXPECT_FALSE(slowest.ready(at(3600)));
 }
 
-TEST(RateLimit, NoTwoRequestsAreCloserThanAllowedWhateverTheAnswers) {
+TEST(RateLimit, KeepsRequestsApartForAnyAnswers) {
   std::mt19937_64 random{1};
   std::uniform_real_distribution<double> any{0, 1};
   for (const double allowed : {0.5, 1.0, 10.0}) {
@@ -158,14 +158,14 @@ TEST(RateLimit, NoTwoRequestsAreCloserThanAllowedWhateverTheAnswers) {
   }
 }
 
-TEST(Backoff, DoublesFromFirstToMostAndStartsAgainAfterSuccess) {
+TEST(Backoff, DoublesUpToALimitAndRestartsAfterSuccess) {
   Backoff backoff{milliseconds{500}, milliseconds{3000}};
   for (const int wait : {500, 1000, 2000, 3000, 3000}) EXPECT_EQ(backoff.failed(0), milliseconds{wait});
   backoff.succeeded();
   EXPECT_EQ(backoff.failed(0), milliseconds{500});
 }
 
-TEST(Backoff, AddsUpToAQuarterByChance) {
+TEST(Backoff, AddsUpToAQuarterAtRandom) {
   Backoff backoff{milliseconds{1000}, milliseconds{1000}};
   EXPECT_EQ(backoff.failed(0.5), milliseconds{1125});
   std::mt19937_64 random{1};
@@ -177,14 +177,14 @@ TEST(Backoff, AddsUpToAQuarterByChance) {
   }
 }
 
-TEST(Backoff, NeverOverflowsNorExceedsItsMost) {
+TEST(Backoff, StaysWithinItsLimit) {
   Backoff backoff{milliseconds{7}, std::chrono::hours{24 * 365}};
   for (int i = 0; i < 200; ++i) EXPECT_LE(backoff.failed(0), std::chrono::hours{24 * 365});
   Backoff turned_round{milliseconds{500}, milliseconds{100}};
   EXPECT_EQ(turned_round.failed(0), milliseconds{100});
 }
 
-TEST(Budget, KeepsMapsWithinTheLinkWithRoomForReports) {
+TEST(Budget, LeavesRoomForReports) {
   EXPECT_THAT(static_cast<double>(map_bytes_per_second(100)), DoubleNear(11.5e6, 0.05e6));
   for (const double megabit : {0.5, 10.0, 100.0, 1000.0}) {
     const double on_the_wire = static_cast<double>(map_bytes_per_second(megabit)) * 8 * 1538 / 1448;
@@ -198,7 +198,7 @@ TEST(Budget, IsNeverZero) {
   EXPECT_GT(map_bytes_per_second(std::numeric_limits<double>::max()), 0);
 }
 
-TEST(RateLimit, AfterARequestWhoseConnectionWasLongInComingTheSpacingCountsFromItsEnd) {
+TEST(RateLimit, CountsFromTheEndOfALostRequest) {
   RateLimit limit(1);
   limit.sent(at(10));  // its bytes left at 12.8, and nothing came back
   limit.lost(at(12.9));

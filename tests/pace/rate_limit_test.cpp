@@ -78,7 +78,7 @@ Counts counted(const std::vector<Request>& all, double from, double to) {
   return counts;
 }
 
-TEST(RateLimitServers, TheAllowedRateIsBackWithinFiveSecondsOfAStormsEnd) {
+TEST(RateLimitServers, AllowedRateReturnsFiveSecondsAfterAStorm) {
   for (const double length : {1.0, 2.5, 4.0, 9.0, 15.0, 30.0, 55.0, 90.0, 600.0}) {
     for (const double begin : {0.0, 3.3, 10.7}) {
       const double end = begin + length;
@@ -90,24 +90,24 @@ TEST(RateLimitServers, TheAllowedRateIsBackWithinFiveSecondsOfAStormsEnd) {
   }
 }
 
-TEST(RateLimitServers, TwentyOneMapsAreThroughSoonAfterANineSecondStorm) {
+TEST(RateLimitServers, SendTwentyOneMapsSoonAfterAStorm) {
   const auto all = played(storm(0, 9), 9 + 5 + 22);
   EXPECT_GE(counted(all, 9, 1000).taken, 21);
 }
 
-TEST(RateLimitServers, AStormIsAskedOftenEnoughAndNotMore) {
+TEST(RateLimitServers, ReceiveABoundedNumberOfTriesInAStorm) {
   const Counts asked = counted(played(storm(0, 55), 55), 0, 55);
   EXPECT_LE(asked.refused, 18);
   EXPECT_GE(asked.refused, 12);
 }
 
-TEST(RateLimitServers, AfterTwoStormsTheAllowedRateIsBackToo) {
+TEST(RateLimitServers, AllowedRateReturnsAfterTwoStorms) {
   const auto twice = [](double now) { return !(now < 9) && !(now >= 25 && now < 34); };
   const auto all = played(twice, 80);
   EXPECT_GE(counted(all, 39, 69).taken, 28);
 }
 
-TEST(RateLimitServers, RetryAfterIsWaitedForAndThenTheRateIsBack) {
+TEST(RateLimitServers, AllowedRateReturnsAfterRetryAfter) {
   const auto all = played(storm(0, 9), 60, std::chrono::seconds(8));
   ASSERT_GE(all.size(), 3);
   EXPECT_NEAR(all[1].at, 8, 0.1);
@@ -121,7 +121,7 @@ struct Limited {
   double hertz;
 };
 
-TEST(RateLimitServers, ALimitThatLastsIsLearnedAndUsed) {
+TEST(RateLimitServers, LastingLimitIsLearnedAndUsed) {
   const Limited cases[] = {
       {"0.9 a second, counted from the last request", spaced(1 / 0.9, true), 0.9},
       {"0.9 a second, counted from the last taken", spaced(1 / 0.9, false), 0.9},
@@ -141,13 +141,13 @@ TEST(RateLimitServers, ALimitThatLastsIsLearnedAndUsed) {
   }
 }
 
-TEST(RateLimitServers, ALimitThatIsLiftedIsFoundOut) {
+TEST(RateLimitServers, LiftedLimitIsDetected) {
   const auto slow = std::make_shared<Server>(spaced(2, true));
   const auto all = played([slow](double now) { return now >= 120 || (*slow)(now); }, 420);
   EXPECT_GE(counted(all, 360, 420).taken, 56);
 }
 
-TEST(RateLimitServers, AStormThatDoesNotEndIsAskedAsOftenAsItsEndIsToBeFound) {
+TEST(RateLimitServers, EndlessStormIsProbedRegularly) {
   const Counts asked = counted(played(storm(0, 1e9), 600), 120, 600);
   EXPECT_LE(asked.refused, 480 / 4 + 1);
   EXPECT_GE(asked.refused, 480 / 5);
@@ -186,7 +186,7 @@ Counts learns_of_answers(double lives) {
   return counts;
 }
 
-TEST(RateLimitServers, OneThatCountsFromItsAnswersIsLearnedOfAtOnceAndForGood) {
+TEST(RateLimitServers, CountingFromAnswersIsLearnedAtOnce) {
   for (const double lives : {1e9, 12.0, 13.7, 31.0}) {
     const Counts counts = learns_of_answers(lives);
     EXPECT_EQ(counts.refused, 2) << "one at first, and one when it tries for more; " << lives;
@@ -194,7 +194,7 @@ TEST(RateLimitServers, OneThatCountsFromItsAnswersIsLearnedOfAtOnceAndForGood) {
   }
 }
 
-TEST(RateLimit, GoesByARateThatIsAllowedFromNowOn) {
+TEST(RateLimit, AppliesANewRateAtOnce) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.lost(at(0));
@@ -204,7 +204,7 @@ TEST(RateLimit, GoesByARateThatIsAllowedFromNowOn) {
   EXPECT_EQ(rate.next(), at(2));
 }
 
-TEST(RateLimit, KeepsAPauseThatTheServerAskedFor) {
+TEST(RateLimit, NewRateKeepsARequestedPause) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.throttled(at(0), std::chrono::seconds{10});
@@ -212,14 +212,14 @@ TEST(RateLimit, KeepsAPauseThatTheServerAskedFor) {
   EXPECT_EQ(rate.next(), at(10));
 }
 
-TEST(RateLimit, KeepsAPauseOfAnEarlierLifeForAsLongAsAServerMayAskFor) {
+TEST(RateLimit, NewRateBoundsAPauseFromBeforeARestart) {
   RateLimit rate(0.001);
   rate.carry_on({.earliest = {.first = at(900), .last = at(900)}}, at(0));
   rate.allow(1, at(5));
   EXPECT_EQ(rate.next(), at(5) + RateLimit::kLongestPause);
 }
 
-TEST(RateLimit, KeepsWhatItLearnedOfTheServer) {
+TEST(RateLimit, NewRateKeepsLearnedValues) {
   RateLimit rate(10);
   rate.carry_on({.spacing = std::chrono::seconds{2}}, at(0));
   rate.allow(5, at(0));
@@ -230,14 +230,14 @@ TEST(RateLimit, KeepsWhatItLearnedOfTheServer) {
   EXPECT_DOUBLE_EQ(hertz(rate, 10), 10);
 }
 
-TEST(RateLimit, SpacesTheNextFromOneThatLeftAndIsStillToBeAnswered) {
+TEST(RateLimit, SpacesTheNextFromAnUnansweredRequest) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.left({.first = at(0), .last = at(0.9)});
   EXPECT_EQ(rate.earliest(), (Span{.first = at(1.02), .last = at(1.92)}));
 }
 
-TEST(RateLimit, OfTwoUnderWayTheLaterCountsWhicheverIsAnsweredFirst) {
+TEST(RateLimit, OfTwoInFlightTheLaterCounts) {
   for (const bool first_first : {true, false}) {
     RateLimit rate(1);
     rate.sent(at(0));
@@ -254,7 +254,7 @@ TEST(RateLimit, OfTwoUnderWayTheLaterCountsWhicheverIsAnsweredFirst) {
 }
 
 /// What fills a link sends so much at a time.
-TEST(RateLimit, OneThatLeavesForAllOfTheSpacingEndsWhereTheNextMayBegin) {
+TEST(RateLimit, NextMayBeginAtTheEndOfALongSend) {
   RateLimit rate(1);
   rate.sent(at(0));
   const Instant end = at(0) + rate.spacing();
@@ -263,7 +263,7 @@ TEST(RateLimit, OneThatLeavesForAllOfTheSpacingEndsWhereTheNextMayBegin) {
 }
 
 /// Else the answer to it would end a pause that the server asked for since.
-TEST(RateLimit, WhatWasSentBeforeA429DoesNotEndTheStorm) {
+TEST(RateLimit, RequestSentBeforeA429DoesNotEndTheStorm) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.sent(at(1.1), true);
@@ -275,7 +275,7 @@ TEST(RateLimit, WhatWasSentBeforeA429DoesNotEndTheStorm) {
   EXPECT_EQ(rate.next(), at(12.3));
 }
 
-TEST(RateLimit, TwoThatAreThrottledAreOneStorm) {
+TEST(RateLimit, TwoThrottledRequestsAreOneStorm) {
   RateLimit once(1), twice(1);
   once.sent(at(0));
   twice.sent(at(0));
@@ -285,7 +285,7 @@ TEST(RateLimit, TwoThatAreThrottledAreOneStorm) {
   EXPECT_EQ(once.next(), twice.next());
 }
 
-TEST(RateLimit, NothingGoesAheadWhileItIsLearnedHowOften) {
+TEST(RateLimit, NothingGoesAheadWhileTheRateIsLearned) {
   RateLimit rate(1);
   EXPECT_TRUE(rate.may_go_ahead());
   rate.sent(at(0));
@@ -296,7 +296,7 @@ TEST(RateLimit, NothingGoesAheadWhileItIsLearnedHowOften) {
   EXPECT_FALSE(rate.may_go_ahead()) << "it may count from its answers";
 }
 
-TEST(RateLimit, WhatSomebodyElseAsksTakesATurnOfItsOwn) {
+TEST(RateLimit, ForeignRequestTakesItsOwnTurn) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.taken({.first = at(0), .last = at(0)}, at(0.1));
@@ -309,7 +309,7 @@ TEST(RateLimit, WhatSomebodyElseAsksTakesATurnOfItsOwn) {
   EXPECT_EQ(rate.claim(at(9), at(9)), at(9)) << "at once where nothing was sent of late";
 }
 
-TEST(RateLimit, WhatSomebodyElseAsksTeachesNothing) {
+TEST(RateLimit, ForeignRequestTeachesNothing) {
   RateLimit rate(1);
   rate.sent(at(0));
   rate.throttled(at(0.1), {});

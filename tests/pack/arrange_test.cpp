@@ -44,7 +44,7 @@ Bytes inflated(const icd::MapUpdate& map) {
   return out;
 }
 
-TEST(Arrange, MakesASurveySmallerThanItsOrderDoes) {
+TEST(Arrange, MakesASurveySmaller) {
   const icd::MapUpdate map = survey(20'000);
   const icd::MapUpdate arranged = pack(map), as_it_came = pack(map, {.is_arranged = false});
   EXPECT_EQ(std::get<icd::PointCloud2>(arranged.msg).point_step, 16);
@@ -52,7 +52,7 @@ TEST(Arrange, MakesASurveySmallerThanItsOrderDoes) {
   EXPECT_LT(arranged.data.bytes.size(), as_it_came.data.bytes.size() * 9 / 10);
 }
 
-TEST(Arrange, LeavesTheOrderAsItCameWhereACloudIsInAHurry) {
+TEST(Arrange, KeepsTheOrderForLessEffort) {
   const icd::MapUpdate map = survey(20'000);
   const icd::MapUpdate quick = pack(map, {.effort = Effort::Quick}),
                        none = pack(map, {.effort = Effort::None});
@@ -62,7 +62,7 @@ TEST(Arrange, LeavesTheOrderAsItCameWhereACloudIsInAHurry) {
   EXPECT_GT(quick.data.bytes.size(), pack(map).data.bytes.size());
 }
 
-TEST(Arrange, IsAlwaysTheSame) {
+TEST(Arrange, IsDeterministic) {
   const icd::MapUpdate map = survey(3'000);
   EXPECT_EQ(pack(map), pack(map));
 }
@@ -74,7 +74,7 @@ TEST(Arrange, IsTurnedOffByItsSetting) {
   EXPECT_EQ(inflated(packed), map.data.bytes.to_vector());
 }
 
-TEST(Arrange, LeavesPointsWhoseFieldsShareBytesAsTheyAre) {
+TEST(Arrange, KeepsPointsWithOverlappingFields) {
   icd::MapUpdate map = survey(2'000);
   std::get<icd::PointCloud2>(map.msg).fields.push_back({"r", 18, icd::Datatype::Uint8, 1});
   const icd::MapUpdate packed = pack(map);
@@ -83,7 +83,7 @@ TEST(Arrange, LeavesPointsWhoseFieldsShareBytesAsTheyAre) {
   EXPECT_EQ(packed.data.compression, icd::Compression::Gzip);
 }
 
-TEST(Arrange, OfPointsThatGzipDoesNotMakeSmallerDropsPaddingAlone) {
+TEST(Arrange, DropsOnlyPaddingIfGzipDoesNotHelp) {
   const Layout& layout = kLayouts[4];
   const Bytes far = point_of(layout, 5, 6, 7, 9), near = point_of(layout, 1, 2, 3, 8);
   Bytes bytes = far;
@@ -143,13 +143,13 @@ void expect_sorted(Layers layers, std::size_t first, std::size_t second, std::si
   }
 }
 
-TEST(PointOrder, IsByOneCoordinateThenTheOthersAndStable) {
+TEST(PointOrder, IsStableByThreeCoordinates) {
   expect_sorted(Layers::AlongX, 0, 2, 1);
   expect_sorted(Layers::AlongY, 1, 0, 2);
   expect_sorted(Layers::AlongZ, 2, 1, 0);
 }
 
-TEST(PointOrder, HasEachPointOnceWhateverTheCoordinates) {
+TEST(PointOrder, HasEachPointOnceForAnyCoordinates) {
   const double most = std::numeric_limits<double>::max(), least = std::numeric_limits<double>::denorm_min();
   const Places sets[] = {{},
                          {{1, 2, 3}},

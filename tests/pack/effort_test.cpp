@@ -25,7 +25,7 @@ void PrintTo(const Row& row, std::ostream* out) {
 
 class EffortFor : public testing::TestWithParam<Row> {};
 
-TEST_P(EffortFor, ACloudDelaysOthersLeastAndIsThereFirst) {
+TEST_P(EffortFor, ACloudDelaysOthersLeastAndArrivesFirst) {
   const Row& row = GetParam();
   const Hurry hurry{row.megabytes_a_second * kMegabyte, row.slowness, kSlot};
   EXPECT_EQ(effort_for(static_cast<std::size_t>(row.megabytes * kMegabyte), row.quick_to, hurry),
@@ -109,7 +109,7 @@ TEST(Effort, IsFullOnEverySlowLink) {
   }
 }
 
-TEST(Effort, IsFoundOutOfTheCloudItself) {
+TEST(Effort, IsMeasuredOnTheCloud) {
   Generator make{3};
   icd::PointCloud2 padded = icd::xyz();
   padded.point_step = 64;
@@ -130,7 +130,7 @@ TEST(Effort, IsNoneForNoPoints) {
   EXPECT_NO_FATAL_FAILURE((void)effort_for(update_of(icd::xyz(), Bytes(12)), {1, 1, 100}));
 }
 
-TEST(Effort, IsNoneForMoreThanIsPacked) {
+TEST(Effort, IsNoneBeyondTheLimit) {
   icd::MapUpdate cloud = update_of(icd::xyz(), Bytes(12000));
   const auto effort = [&](std::size_t size) {
     cloud.data.raw_size = size;
@@ -153,7 +153,7 @@ void PrintTo(const GridRow& row, std::ostream* out) {
 
 class EffortForAGrid : public testing::TestWithParam<GridRow> {};
 
-TEST_P(EffortForAGrid, IsTheGreatestThatFitsItsSlotOnThisBox) {
+TEST_P(EffortForAGrid, IsTheGreatestThatFitsItsSlot) {
   const auto size = [](double megabytes) { return static_cast<std::size_t>(megabytes * kMegabyte); };
   const GridRow& row = GetParam();
   icd::MapUpdate grid;

@@ -29,7 +29,7 @@ bool has(const std::vector<std::uint32_t>& newer, const std::vector<std::uint32_
   return has_all_points(points(newer), points(older, 7), kStep);
 }
 
-TEST(HasAllPoints, OfACloudThatWasAddedTo) {
+TEST(HasAllPoints, OfAnExtendedCloud) {
   EXPECT_TRUE(has({1, 2, 3}, {1, 2}));
   EXPECT_TRUE(has({1, 2, 3}, {1, 2, 3}));
   EXPECT_TRUE(has({1}, {}));
@@ -41,14 +41,14 @@ TEST(HasAllPoints, InAnyOrder) {
   EXPECT_TRUE(has({3, 1, 2, 1}, {1, 1, 2})) << "each is there";
 }
 
-TEST(HasAllPoints, IsFalseWhereOneIsMissing) {
+TEST(HasAllPoints, IsFalseIfOneIsMissing) {
   EXPECT_FALSE(has({1, 2}, {1, 2, 3}));
   EXPECT_FALSE(has({1, 3, 4}, {1, 2}));
   EXPECT_FALSE(has({}, {1}));
   EXPECT_FALSE(has({4, 5, 6}, {1, 2, 3}));
 }
 
-TEST(HasAllPoints, IsFalseWhereOneByteIsAnother) {
+TEST(HasAllPoints, IsFalseIfOneByteDiffers) {
   for (std::size_t i = 0; i < kStep; ++i) {
     auto bytes = points({1, 2, 3}).bytes.to_vector();
     ++bytes[kStep + i];
@@ -57,7 +57,7 @@ TEST(HasAllPoints, IsFalseWhereOneByteIsAnother) {
   }
 }
 
-TEST(HasAllPoints, FindsTheOnePointOfManyThatIsMissing) {
+TEST(HasAllPoints, FindsOneMissingPointOfMany) {
   std::vector<std::uint32_t> older(20'000), newer;
   for (std::uint32_t i = 0; i < older.size(); ++i) older[i] = i * 977;
   newer = older;
@@ -70,7 +70,7 @@ TEST(HasAllPoints, FindsTheOnePointOfManyThatIsMissing) {
   }
 }
 
-TEST(HasAllPoints, IsWhatSetsSay) {
+TEST(HasAllPoints, MatchesComparisonOfSets) {
   std::mt19937 random{7};
   const auto drawn = [&](std::size_t most) {
     std::vector<std::uint32_t> numbers(random() % (most + 1));
@@ -85,7 +85,7 @@ TEST(HasAllPoints, IsWhatSetsSay) {
   }
 }
 
-TEST(HasAllPoints, LooksAtTooManyFromTheirBeginningAlone) {
+TEST(HasAllPoints, ComparesOnlyPrefixesOfTooManyPoints) {
   std::vector<std::uint32_t> older(kMostComparedPoints);
   for (std::uint32_t i = 0; i < older.size(); ++i) older[i] = i;
   auto newer = older;

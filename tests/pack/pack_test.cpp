@@ -40,7 +40,7 @@ std::vector<std::uint8_t> only_member(const icd::ChunkedBytes& bytes, std::size_
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-TEST(WithoutInvalidPoints, DropsWhatIsNotFiniteWhateverTheLayoutAndTheChunks) {
+TEST(WithoutInvalidPoints, DropsNonFinitePointsOfAnyLayout) {
   std::mt19937_64 random{1};
   for (const Layout& layout : kLayouts) {
     const double largest = layout.datatype == icd::Datatype::Float32
@@ -70,7 +70,7 @@ TEST(WithoutInvalidPoints, DropsWhatIsNotFiniteWhateverTheLayoutAndTheChunks) {
   }
 }
 
-TEST(WithoutInvalidPoints, CopiesNothingWhereAllPointsAreFinite) {
+TEST(WithoutInvalidPoints, CopiesNothingIfAllPointsAreFinite) {
   const Layout& layout = kLayouts[0];
   std::mt19937_64 random{2};
   Bytes all;
@@ -86,7 +86,7 @@ TEST(WithoutInvalidPoints, CopiesNothingWhereAllPointsAreFinite) {
   }
 }
 
-TEST(OnlyInvalidPoints, AreInACloudThatHasPointsAndNoneThatIsFinite) {
+TEST(OnlyInvalidPoints, AreInACloudWithoutFinitePoints) {
   std::mt19937_64 random{3};
   for (const Layout& layout : kLayouts) {
     const auto has_only_invalid = [&](const std::vector<double>& xs) {
@@ -120,7 +120,7 @@ icd::MapUpdate cloud_update(const Layout& layout, const Bytes& bytes) {
   return {{}, cloud_of(layout), {icd::ChunkedBytes{bytes}, icd::Compression::None, bytes.size()}};
 }
 
-TEST(Pack, GzipsACloudsFinitePoints) {
+TEST(Pack, GzipsFinitePoints) {
   const Layout& layout = kLayouts[0];
   Bytes all, valid;
   for (int i = 0; i < 20'000; ++i) {
@@ -135,7 +135,7 @@ TEST(Pack, GzipsACloudsFinitePoints) {
   EXPECT_EQ(inflated(packed.data), valid);
 }
 
-TEST(Pack, LeavesACloudThatGzipDoesNotMakeSmaller) {
+TEST(Pack, KeepsACloudThatGzipDoesNotMakeSmaller) {
   const Layout& layout = kLayouts[0];
   const Bytes one = point_of(layout, 1, 2, 3, 4);
   for (const Bytes& bytes : {one, Bytes{}}) {
@@ -145,7 +145,7 @@ TEST(Pack, LeavesACloudThatGzipDoesNotMakeSmaller) {
   }
 }
 
-TEST(Pack, MakesAnEmptyCloudOfOneWithoutAnyValidPoint) {
+TEST(Pack, EmptiesACloudWithoutValidPoints) {
   const Layout& layout = kLayouts[0];
   const auto packed = pack(cloud_update(layout, point_of(layout, kNan, 0, 0, 0)));
   EXPECT_TRUE(packed.data.bytes.empty());
@@ -153,7 +153,7 @@ TEST(Pack, MakesAnEmptyCloudOfOneWithoutAnyValidPoint) {
   EXPECT_EQ(packed.data.compression, icd::Compression::None);
 }
 
-TEST(Pack, LeavesACloudThatIsCompressedAsItIs) {
+TEST(Pack, KeepsACompressedCloud) {
   auto cloud = cloud_update(kLayouts[0], Bytes{1, 2, 3});
   cloud.data.compression = icd::Compression::Gzip;
   EXPECT_EQ(pack(cloud), cloud);
@@ -178,7 +178,7 @@ std::vector<Grid> grids() {
           Grid("one row", 90'000, 1),  Grid("few cells", 20, 20)};
 }
 
-TEST(PackCells, GivesBackEachCellAndIsNeverLargerThanThey_HoweverTheyAreKept) {
+TEST(PackCells, KeepsEachCellAndNeverGrows) {
   for (const Grid& grid : grids()) {
     for (const icd::MapData& data : {kept(grid), kept_by(1, grid), kept_by(12, grid)}) {
       for (const Effort effort : {Effort::Quick, Effort::Full}) {
@@ -196,7 +196,7 @@ TEST(PackCells, GivesBackEachCellAndIsNeverLargerThanThey_HoweverTheyAreKept) {
   }
 }
 
-TEST(PackCells, TakesLibdeflateIfItIsSmallerAndFullIfThereIsTime) {
+TEST(PackCells, UsesTheSmallestResultForItsEffort) {
   const Grid grid = graded(cave(400, 300, 8));
   EXPECT_EQ(pack_cells(kept(grid), Effort::Full), kept_by(kCellsLevel, grid));
   EXPECT_EQ(pack_cells(kept(grid), Effort::Quick), kept_by(kQuickCellsLevel, grid));
@@ -204,14 +204,14 @@ TEST(PackCells, TakesLibdeflateIfItIsSmallerAndFullIfThereIsTime) {
   EXPECT_EQ(pack_cells(kept_by(12, grid), Effort::Full), kept_by(12, grid));
 }
 
-TEST(PackCells, SendsACellAsItIs) {
+TEST(PackCells, KeepsASingleCell) {
   const Grid grid("one cell", 1, 1);
   const icd::MapData cell{icd::ChunkedBytes(grid.cells), icd::Compression::None, 1};
   EXPECT_EQ(pack_cells(kept(grid), Effort::Full), cell);
   EXPECT_EQ(pack_cells(cell, Effort::Full), cell);
 }
 
-TEST(PackCells, SaysThatDataIsDamaged) {
+TEST(PackCells, ReportsDamagedData) {
   icd::MapData damaged = kept(cave(300, 300, 3));
   std::vector<std::uint8_t> member = damaged.bytes.to_vector();
   member[member.size() / 2] ^= 0x10;

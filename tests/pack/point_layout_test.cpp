@@ -41,7 +41,7 @@ TEST(PointLayout, DropsPaddingBeforeBetweenAndAfterFields) {
   EXPECT_THAT(copied(*tight, 16), ElementsAre(2, 3, 4, 5, 8, 9, 12, 13));
 }
 
-TEST(PointLayout, KeepsTheListOfFieldsAndTheirOrderInAPoint) {
+TEST(PointLayout, KeepsTheOrderOfFields) {
   const auto before = cloud({{"b", 6, Datatype::Uint8, 1}, {"a", 1, Datatype::Uint16, 1}}, 8);
   const auto tight = without_padding(before);
   ASSERT_TRUE(tight);
@@ -50,7 +50,7 @@ TEST(PointLayout, KeepsTheListOfFieldsAndTheirOrderInAPoint) {
   EXPECT_THAT(copied(*tight, 8), ElementsAre(1, 2, 6));
 }
 
-TEST(PointLayout, WithoutAnyPaddingIsAsItWas) {
+TEST(PointLayout, WithoutPaddingIsUnchanged) {
   const auto before = cloud({{"x", 0, Datatype::Float32, 1}, {"y", 4, Datatype::Float64, 1}}, 12);
   const auto tight = without_padding(before);
   ASSERT_TRUE(tight);
@@ -58,7 +58,7 @@ TEST(PointLayout, WithoutAnyPaddingIsAsItWas) {
   EXPECT_EQ(copied(*tight, 12), copied(unchanged(before), 12));
 }
 
-TEST(PointLayout, KeepsAllElseOfACloud) {
+TEST(PointLayout, KeepsAllOtherMembers) {
   auto before = cloud({{"x", 4, Datatype::Float32, 1}}, 12);
   before.header.stamp = 7;
   before.origin = icd::Pose{};
@@ -70,7 +70,7 @@ TEST(PointLayout, KeepsAllElseOfACloud) {
   EXPECT_EQ(after, before);
 }
 
-TEST(PointLayout, IsNotTightenedWhereFieldsShareBytes) {
+TEST(PointLayout, IsUnchangedIfFieldsOverlap) {
   for (const std::uint32_t offset : {12u, 13u, 14u, 15u}) {
     EXPECT_FALSE(
         without_padding(cloud({{"rgb", 12, Datatype::Float32, 1}, {"r", offset, Datatype::Uint8, 1}}, 32)))

@@ -114,7 +114,7 @@ class Rounding : public testing::TestWithParam<std::uint64_t> {
   Generator make{GetParam()};
 };
 
-TEST_P(Rounding, MovesNoPointByMoreThanItSays) {
+TEST_P(Rounding, MovesPointsWithinItsBound) {
   int rounded = 0;
   for (int round = 0; round < 40; ++round) {
     for (const double unit : {kMillimetre, kEightMillimetres}) {
@@ -129,7 +129,7 @@ TEST_P(Rounding, MovesNoPointByMoreThanItSays) {
   EXPECT_GT(rounded, 40);
 }
 
-TEST_P(Rounding, OfATurnedCloudMovesNoPointByMoreThanItSays) {
+TEST_P(Rounding, OfATurnedCloudMovesPointsWithinItsBound) {
   int rounded = 0;
   for (int round = 0; round < 60; ++round) {
     for (const double unit : {kMillimetre, kEightMillimetres}) {
@@ -146,7 +146,7 @@ TEST_P(Rounding, OfATurnedCloudMovesNoPointByMoreThanItSays) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, Rounding, testing::Range<std::uint64_t>(1, 4));
 
-TEST_P(Rounding, ChangesNoFieldButTheCoordinates) {
+TEST_P(Rounding, ChangesOnlyCoordinates) {
   for (int round = 0; round < 10; ++round) {
     const icd::MapUpdate map = make.cloud(make.fields(/*is_bigendian=*/false), make.any(200, 2000),
                                           [&](std::size_t) { return make.on_wall({5, 6, 7}, 40); });
@@ -180,7 +180,7 @@ TEST(RoundingOf, ATunnelMakesItSmaller) {
   EXPECT_LT(coarse, fine * 9 / 10);
 }
 
-TEST(RoundingOf, ACloudLeavesItAsItIsWhereItCannotBeHeld) {
+TEST(RoundingOf, ACloudIsSkippedIfItsBoundCannotBeHeld) {
   const icd::MapUpdate map = tunnel(xyz_and_number(icd::Datatype::Float32));
   icd::MapUpdate big = map, turned = map, far = map, wide = map, endless = map;
   std::get<icd::PointCloud2>(big.msg).is_bigendian = true;
@@ -203,7 +203,7 @@ TEST(RoundingOf, IsPartOfTheArrangement) {
   EXPECT_EQ(pack(map, {.is_arranged = false, .unit = kMillimetre}), pack(map, {.is_arranged = false}));
 }
 
-TEST(RoundingOf, IsForFullEffortAlone) {
+TEST(RoundingOf, IsOnlyForFullEffort) {
   const icd::MapUpdate map = tunnel(xyz_and_number(icd::Datatype::Float32));
   for (const Effort effort : {Effort::None, Effort::Quick})
     EXPECT_EQ(pack(map, {.unit = kMillimetre, .effort = effort}), pack(map, {.effort = effort}));

@@ -44,7 +44,7 @@ void expect_same_points(const icd::MapUpdate& map) {
 
 class SamePoints : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(SamePoints, AreReadOfACloudOfAnyFields) {
+TEST_P(SamePoints, AreInACloudOfAnyFields) {
   Generator make{GetParam()};
   for (int round = 0; round < 6; ++round) {
     const icd::PointCloud2 fields = make.fields(/*is_bigendian=*/false);
@@ -57,7 +57,7 @@ TEST_P(SamePoints, AreReadOfACloudOfAnyFields) {
   }
 }
 
-TEST_P(SamePoints, AreReadWhereCoordinatesAreOfAnyBits) {
+TEST_P(SamePoints, AreInACloudOfAnyCoordinates) {
   Generator make{GetParam()};
   const icd::PointCloud2 fields = make.fields(/*is_bigendian=*/GetParam() % 2 == 0);
   expect_same_points(make.cloud(fields, 500, [&](std::size_t) -> std::array<double, 3> {
@@ -68,7 +68,7 @@ TEST_P(SamePoints, AreReadWhereCoordinatesAreOfAnyBits) {
 
 INSTANTIATE_TEST_SUITE_P(Seeds, SamePoints, testing::Range<std::uint64_t>(1, 6));
 
-TEST(SamePointsOf, ACloudThatIsOrderedInSeveralBlocks) {
+TEST(SamePointsOf, ACloudOfSeveralBlocks) {
   std::mt19937 random{1};
   Bytes bytes(12 * 530'000);
   for (std::size_t at = 0; at < bytes.size(); at += 4) {

@@ -20,7 +20,7 @@ icd::MapData zipped(const std::vector<std::uint8_t>& values) {
           values.size()};
 }
 
-TEST(StitchedCells, LieWhereTheirTilesDo) {
+TEST(StitchedCells, LieInTheirTiles) {
   const std::vector<Tile> tiles = {{cells({1, 2, 3, 4}), 0, 0, 2, 2}, {zipped({5, 6}), 2, 0, 1, 2}};
   const auto data = stitch(3, 2, tiles);
   ASSERT_TRUE(data);
@@ -29,13 +29,13 @@ TEST(StitchedCells, LieWhereTheirTilesDo) {
   EXPECT_EQ(data->compression, icd::Compression::None);
 }
 
-TEST(StitchedCells, AreTheNewestWhetherKnownOrNot) {
+TEST(StitchedCells, AreTheNewestKnownOrUnknown) {
   const std::vector<Tile> tiles = {{cells({1, 2, 3, 4}), 0, 0, 2, 2},
                                    {cells({icd::kUnknownCell, 9}), 1, 0, 1, 2}};
   EXPECT_THAT(stitch(2, 2, tiles)->bytes.to_vector(), ElementsAre(1, icd::kUnknownCell, 3, 9));
 }
 
-TEST(StitchedCells, AreTheSameHoweverTheDataIsCut) {
+TEST(StitchedCells, AreTheSameInAnyPieces) {
   icd::MapData pieces{{}, icd::Compression::None, 6};
   const auto whole = std::make_shared<std::vector<std::uint8_t>>(std::vector<std::uint8_t>{1, 2, 3, 4, 5, 6});
   for (std::size_t i = 0; i < 6; ++i) pieces.bytes.append(whole, std::span(*whole).subspan(i, 1));
@@ -43,12 +43,12 @@ TEST(StitchedCells, AreTheSameHoweverTheDataIsCut) {
               ElementsAre(255, 255, 255, 1, 2, 3, 4, 5, 6));
 }
 
-TEST(StitchedCells, LieOverWhatIsUnderThem) {
+TEST(StitchedCells, LieOverOlderCells) {
   EXPECT_THAT(stitch(3, 1, std::vector<Tile>{{cells({9}), 1, 0, 1, 1}}, {1, 2, 3})->bytes.to_vector(),
               ElementsAre(1, 9, 3));
 }
 
-TEST(StitchedCells, AreRefusedWhereATileIsDamaged) {
+TEST(StitchedCells, AreRejectedIfATileIsDamaged) {
   icd::MapData damaged = zipped({1, 2, 3, 4});
   auto bytes = damaged.bytes.to_vector();
   bytes[bytes.size() / 2] ^= 0x55;

@@ -108,7 +108,7 @@ class Course {
 
 class TakenVoxelsLaws : public testing::TestWithParam<std::uint64_t> {};
 
-TEST_P(TakenVoxelsLaws, EachPostedPointIsThereByOneOfItsVoxel) {
+TEST_P(TakenVoxelsLaws, EachPostedPointHasADeliveredPointOfItsVoxel) {
   Course course{GetParam()};
   course.play(300);
   EXPECT_EQ(course.there(), course.posted());

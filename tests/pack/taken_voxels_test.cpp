@@ -45,7 +45,7 @@ class TakenVoxelsTest : public testing::Test {
   TakenVoxels voxels_;
 };
 
-TEST_F(TakenVoxelsTest, LeavesOutPointsOfVoxelsThatHaveOne) {
+TEST_F(TakenVoxelsTest, OmitsPointsOfDeliveredVoxels) {
   take({0.1, 1.1});
   const auto kept = rest({0.4, 0.6, 1.4, 5});
   EXPECT_EQ(kept.left_out, 2u);
@@ -56,7 +56,7 @@ TEST_F(TakenVoxelsTest, LeavesOutPointsOfVoxelsThatHaveOne) {
   EXPECT_EQ(kept.data.raw_size, expected.size());
 }
 
-TEST_F(TakenVoxelsTest, LeavesNothingOutThatWasNotTakenYet) {
+TEST_F(TakenVoxelsTest, KeepsPointsOfUndeliveredVoxels) {
   EXPECT_EQ(rest({0.1, 0.6, 1.1}).left_out, 0u);
   EXPECT_EQ(rest({0.1}).left_out, 0u) << "that was packed, but nobody said that it was taken";
 }
@@ -68,20 +68,20 @@ TEST_F(TakenVoxelsTest, KeepsTheFirstOfEachVoxelOfACloud) {
   EXPECT_EQ(kept.data.bytes.to_vector(), all);
 }
 
-TEST_F(TakenVoxelsTest, CopiesNothingWhereNothingIsLeftOut) {
+TEST_F(TakenVoxelsTest, CopiesNothingIfNothingIsOmitted) {
   const auto data = data_of(row_of(kLayouts[0], {1, 2, 3}));
   const auto kept = voxels_.leave_out(kR1, cloud_of(kLayouts[0]), data, kEdge);
   EXPECT_EQ(kept.data.bytes.chunks()[0]->data(), data.bytes.chunks()[0]->data());
 }
 
-TEST_F(TakenVoxelsTest, CanLeaveOutAll) {
+TEST_F(TakenVoxelsTest, MayOmitAllPoints) {
   take({0.1});
   const auto kept = rest({0.2, 0.3});
   EXPECT_EQ(kept.left_out, 2u);
   EXPECT_TRUE(kept.data.bytes.empty());
 }
 
-TEST_F(TakenVoxelsTest, AreTheRobotsOwnAndOfOneEdge) {
+TEST_F(TakenVoxelsTest, ArePerRobotAndEdge) {
   take({0.1});
   EXPECT_EQ(rest({0.1}, kR2).left_out, 0u);
   EXPECT_EQ(rest({0.1}, kR1, 0.25).left_out, 0u);
@@ -90,13 +90,13 @@ TEST_F(TakenVoxelsTest, AreTheRobotsOwnAndOfOneEdge) {
   EXPECT_EQ(rest({0.1}).left_out, 0u) << "those of the other edge are forgotten";
 }
 
-TEST_F(TakenVoxelsTest, KeepPointsThatAreInNoVoxel) {
+TEST_F(TakenVoxelsTest, KeepsPointsOutsideAllVoxels) {
   constexpr double kInfinite = std::numeric_limits<double>::infinity();
   take({1e30, kInfinite});
   EXPECT_EQ(rest({1e30, kInfinite}).left_out, 0u);
 }
 
-TEST_F(TakenVoxelsTest, WorkWithEveryLayoutHoweverItIsCut) {
+TEST_F(TakenVoxelsTest, WorksWithAnyLayoutInAnyPieces) {
   std::mt19937_64 random{1};
   for (const Layout& layout : kLayouts) {
     TakenVoxels taken;
@@ -108,14 +108,14 @@ TEST_F(TakenVoxelsTest, WorkWithEveryLayoutHoweverItIsCut) {
   }
 }
 
-TEST_F(TakenVoxelsTest, AreForgotten) {
+TEST_F(TakenVoxelsTest, CanBeForgotten) {
   take({0.1});
   voxels_.forget();
   EXPECT_EQ(rest({0.1}).left_out, 0u);
   EXPECT_EQ(voxels_.bytes(), 0u);
 }
 
-TEST(TakenVoxelsBound, ForgetsTheRobotThatWasSilentForLongestAndThenTheOneItself) {
+TEST(TakenVoxelsBound, ForgetsTheLongestSilentRobotFirst) {
   constexpr std::size_t kMost = 95 << 10;
   TakenVoxels taken{kMost};
   std::vector<VoxelBlock> few(100), many(3'000), too_many(7'000);
@@ -133,7 +133,7 @@ TEST(TakenVoxelsBound, ForgetsTheRobotThatWasSilentForLongestAndThenTheOneItself
   EXPECT_GT(taken.bytes(), 0u);
 }
 
-TEST(VoxelSet, HasWhatWasAddedAndNothingElse) {
+TEST(VoxelSet, HasExactlyTheAddedVoxels) {
   std::mt19937_64 random{1};
   VoxelSet set;
   std::map<std::uint64_t, std::uint64_t> all;
@@ -147,7 +147,7 @@ TEST(VoxelSet, HasWhatWasAddedAndNothingElse) {
   for (const auto& [place, voxels] : all) EXPECT_EQ(set.voxels_at(place), voxels);
 }
 
-TEST(VoxelSet, SaysWhatItWillHoldAndGrowsByHalvesOfThat) {
+TEST(VoxelSet, PredictsItsSizeAndGrowsByHalf) {
   VoxelSet set;
   EXPECT_EQ(set.bytes(), 0u);
   for (std::uint64_t place = 1; place < 5'000; ++place) {
@@ -171,14 +171,14 @@ VoxelBlock plain(double x, double y, double z) {
   return voxel(kLayouts[0], x, y, z);
 }
 
-TEST(Voxels, AreTheSameWhateverTheLayout) {
+TEST(Voxels, AreTheSameForAnyLayout) {
   for (const Layout& layout : kLayouts) {
     EXPECT_EQ(voxel(layout, 1.25, -7.75, 3.5), plain(1.25, -7.75, 3.5)) << layout.what;
     EXPECT_NE(voxel(layout, -7.75, 1.25, 3.5), plain(1.25, -7.75, 3.5)) << layout.what;
   }
 }
 
-TEST(Voxels, HaveTheirLowerSidesAndNotTheirUpper) {
+TEST(Voxels, IncludeTheirLowerButNotTheirUpperSides) {
   EXPECT_EQ(plain(0, 0, 0), plain(0.49, 0.49, 0.49));
   EXPECT_EQ(plain(-0.5, -0.5, -0.5), plain(-0.01, -0.01, -0.01));
   for (const double other : {-0.01, 0.5}) {
@@ -188,7 +188,7 @@ TEST(Voxels, HaveTheirLowerSidesAndNotTheirUpper) {
   }
 }
 
-TEST(Voxels, AreToldApartWithinABlockAndBeyond) {
+TEST(Voxels, AreDistinctWithinABlockAndBeyond) {
   std::uint64_t voxels = 0;
   for (int x = 0; x < 4; ++x) {
     for (int y = 0; y < 4; ++y) {
@@ -204,7 +204,7 @@ TEST(Voxels, AreToldApartWithinABlockAndBeyond) {
   EXPECT_NE(plain(2, 0, 0).place, plain(0, 0, 0).place);
 }
 
-TEST(Voxels, ReachSoFarAndNoFurther) {
+TEST(Voxels, HaveABoundedRange) {
   const Layout& layout = kLayouts[2];  // float64
   const double reach = static_cast<double>(Voxels::kReach) / 2;
   EXPECT_NE(voxel(layout, reach - 0.25, -reach, 0).place, 0u);

@@ -12,7 +12,7 @@ using testing::HasSubstr;
 
 const Running kRunning = {"adit-qemu-virt", "0.2.0", "A", "B"};
 
-TEST(Bundle, IsReadFromWhatRaucSaysOfIt) {
+TEST(Bundle, IsReadFromTheOutputOfRauc) {
   const auto bundle = read_info(
       R"({"compatible":"adit-qemu-virt","version":"0.2.0","description":null,"build":"abc","hooks":[],"images":[]})");
   ASSERT_TRUE(bundle) << bundle.error();
@@ -20,7 +20,7 @@ TEST(Bundle, IsReadFromWhatRaucSaysOfIt) {
   EXPECT_EQ(bundle->version, "0.2.0");
 }
 
-TEST(Bundle, ThatRaucSaysNothingOfIsNone) {
+TEST(Bundle, IsInvalidWithoutOutputOfRauc) {
   for (const char* said :
        {"", "rauc-Message", "[]", "null", "{}", R"({"compatible":"adit-x","version":null})",
         R"({"version":"1.0.0"})", R"({"compatible":3,"version":"1.0.0"})"}) {
@@ -28,7 +28,7 @@ TEST(Bundle, ThatRaucSaysNothingOfIsNone) {
   }
 }
 
-TEST(Bundle, IsToldFromWhatIsNoneByItsFirstBytes) {
+TEST(Bundle, IsRecognizedByItsFirstBytes) {
   std::vector<std::uint8_t> head(kBundleHead);
   head[0] = 'h', head[1] = 's', head[2] = 'q', head[3] = 's', head[41] = 1;  // of 256 bytes
   EXPECT_EQ(not_a_bundle(head, 257), "");
@@ -41,7 +41,7 @@ TEST(Bundle, IsToldFromWhatIsNoneByItsFirstBytes) {
   EXPECT_EQ(not_a_bundle(head, 257), "the file is not an update: expected a file adit-BOARD-VERSION.raucb");
 }
 
-TEST(Running, IsReadFromWhatRaucSaysOfTheBox) {
+TEST(RunningSlot, IsReadFromTheStatusOfRauc) {
   const auto running = read_status(R"({"compatible":"adit-qemu-virt","variant":"","booted":"B",
     "boot_primary":"rootfs.1","slots":[
       {"rootfs.1":{"class":"rootfs","bootname":"B","state":"booted","parent":null}},
@@ -51,7 +51,7 @@ TEST(Running, IsReadFromWhatRaucSaysOfTheBox) {
   EXPECT_EQ(*running, (Running{"adit-qemu-virt", "", "B", "A"}));
 }
 
-TEST(Running, SaysWhetherTheOtherSlotIsNext) {
+TEST(RunningSlot, TellsIfTheOtherSlotIsNext) {
   for (const auto& [primary, next] :
        {std::pair(R"("rootfs.0")", true), std::pair(R"("rootfs.1")", false), std::pair("null", false)}) {
     const auto running = read_status(
@@ -62,7 +62,7 @@ TEST(Running, SaysWhetherTheOtherSlotIsNext) {
   }
 }
 
-TEST(Running, SaysWhetherTheOtherSlotHasTriesLeft) {
+TEST(RunningSlot, TellsIfTheOtherSlotHasTriesLeft) {
   for (const auto& [status, good] :
        {std::pair(R"(,"boot_status":"good")", true), std::pair(R"(,"boot_status":"bad")", false),
         std::pair(R"(,"boot_status":null)", false), std::pair("", false)}) {
@@ -74,7 +74,7 @@ TEST(Running, SaysWhetherTheOtherSlotHasTriesLeft) {
   }
 }
 
-TEST(Running, IsNotKnownWhereRaucKnowsNoOtherSlot) {
+TEST(RunningSlot, IsUnknownWithoutAnotherSlot) {
   for (const char* said :
        {"", "{}", R"({"compatible":"a","booted":"A"})", R"({"compatible":"a","booted":"A","slots":{}})",
         R"({"compatible":"a","booted":null,"slots":[]})",
@@ -85,7 +85,7 @@ TEST(Running, IsNotKnownWhereRaucKnowsNoOtherSlot) {
   }
 }
 
-TEST(Progress, IsTheNumberBeforeThePerCent) {
+TEST(Progress, IsTheNumberBeforeThePercentSign) {
   EXPECT_EQ(percent_in("  0% Installing"), 0);
   EXPECT_EQ(percent_in(" 40% Verifying signature done."), 40);
   EXPECT_EQ(percent_in("100% Installing done."), 100);
@@ -95,7 +95,7 @@ TEST(Progress, IsTheNumberBeforeThePerCent) {
   }
 }
 
-TEST(Fault, IsTheLastThingThatRaucSays) {
+TEST(Fault, IsTheLastLineOfRauc) {
   EXPECT_EQ(fault_in("", "rauc-Message: 15:05:30.310: Reading bundle: x\nfailed to open x\n").sentence,
             "failed to open x");
   EXPECT_EQ(fault_in("installing\n100% Installing failed.\nLastError: No space left on device\nidle\n",
@@ -105,7 +105,7 @@ TEST(Fault, IsTheLastThingThatRaucSays) {
   EXPECT_EQ(fault_in("", std::string(5000, 'x')).sentence.size(), 300u);
 }
 
-TEST(Fault, IsThatTheFileIsDamagedAndWhatToDo) {
+TEST(Fault, TellsADamagedFileAndWhatToDo) {
   for (const std::string& said :
        {"Installation error: Failed updating slot rootfs.1: Failed splicing data: Error reading from file "
         "descriptor: Input/output error",
@@ -120,14 +120,14 @@ TEST(Fault, IsThatTheFileIsDamagedAndWhatToDo) {
               HasSubstr("signed by a key that this box does not accept (RAUC: "));
 }
 
-TEST(Fault, IsThatItIsBusyWhileItInstalls) {
+TEST(Fault, TellsThatRaucIsBusy) {
   const Fault fault =
       fault_in("", "Error retrieving slot status via D-Bus: already processing a different method\n");
   EXPECT_EQ(fault.kind, Fault::Kind::Busy);
   EXPECT_THAT(fault.sentence, testing::HasSubstr("already processing"));
 }
 
-TEST(Hindrance, IsNoneToANewerVersionForThisBoard) {
+TEST(Hindrance, IsAbsentForANewerVersion) {
   for (const char* version : {"0.2.1", "0.3.0-rc.1", "1.0.0"}) {
     EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, false), "") << version;
   }
@@ -139,20 +139,20 @@ TEST(Hindrance, IsAnotherBoard) {
   EXPECT_THAT(hindrance({"", "0.3.0"}, kRunning, true), HasSubstr("another board"));
 }
 
-TEST(Hindrance, IsAnOlderVersionWhateverIsSaid) {
+TEST(Hindrance, IsAnOlderVersionEvenIfConfirmed) {
   for (const char* version : {"0.1.9", "0.2.0-rc.1", "0.0.1"}) {
     EXPECT_EQ(hindrance({"adit-qemu-virt", version}, kRunning, true),
               "the update is older (" + std::string(version) + ") than the running version (0.2.0)");
   }
 }
 
-TEST(Hindrance, IsTheSameVersionUnlessItIsSaidAgain) {
+TEST(Hindrance, IsTheSameVersionUnlessConfirmed) {
   EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, false),
             "0.2.0 is already running: confirm to install it again");
   EXPECT_EQ(hindrance({"adit-qemu-virt", "0.2.0"}, kRunning, true), "");
 }
 
-TEST(Hindrance, IsAVersionThatCannotBeCompared) {
+TEST(Hindrance, IsAnIncomparableVersion) {
   EXPECT_THAT(hindrance({"adit-qemu-virt", "newest"}, kRunning, true),
               HasSubstr("cannot read the update's version"));
   Running unknown = kRunning;
@@ -161,7 +161,7 @@ TEST(Hindrance, IsAVersionThatCannotBeCompared) {
               HasSubstr("cannot read the running version"));
 }
 
-TEST(BundleName, BeginsAndEndsAsUpdatesDo) {
+TEST(BundleName, HasThePrefixAndSuffixOfUpdates) {
   EXPECT_TRUE(is_bundle_name("adit-qemu-virt-0.2.0.raucb"));
   EXPECT_TRUE(is_bundle_name("adit-.raucb"));
   for (const char* other :
@@ -170,14 +170,14 @@ TEST(BundleName, BeginsAndEndsAsUpdatesDo) {
   }
 }
 
-TEST(BundleName, IsPlainOfVisibleAsciiAndSpaces) {
+TEST(BundleName, IsVisibleAsciiAndSpaces) {
   EXPECT_TRUE(is_plain("adit-x 1.0.0 (copy)~.raucb"));
   for (const char* other : {"adit-\xe4.raucb", "adit-\xc3\xa4.raucb", "adit-\n.raucb", "adit-\x7f.raucb"}) {
     EXPECT_FALSE(is_plain(other)) << other;
   }
 }
 
-TEST(BundleName, PromisesTheMoreTheNewerTheVersionForThisBoard) {
+TEST(BundleName, PrefersNewerVersionsForThisBoard) {
   const std::vector<std::string> ascending = {
       "adit-generic-x86_64-9.0.0.raucb", "adit-rock-pi-newest.raucb", "adit-rock-pi-0.9.0.raucb",
       "adit-rock-pi-0.10.0-rc.1.raucb",  "adit-rock-pi-0.10.0.raucb",
@@ -191,7 +191,7 @@ TEST(BundleName, PromisesTheMoreTheNewerTheVersionForThisBoard) {
   }
 }
 
-TEST(BundleName, OfABoardWhoseNameBeginsAlikePromisesNoVersion) {
+TEST(BundleName, HasNoVersionForABoardWithTheSamePrefix) {
   EXPECT_EQ(promise_of("adit-rock-pi-e-9.0.0.raucb", "adit-rock-pi").version, std::nullopt);
   EXPECT_FALSE(promise_of("adit-rock-pies.raucb", "adit-rock-pi").for_this_board);
   EXPECT_FALSE(promise_of("adit-rock-pi.raucb", "adit-rock-pi").for_this_board);

@@ -11,17 +11,17 @@ LastUpdate last_update(Stage stage) {
   return {.stage = stage, .version = "0.2.0", .slot = "B", .boot = "first", .why = "because"};
 }
 
-TEST(LastUpdate, OfAnInstalledUpdateWaitsForTheRestart) {
+TEST(LastUpdate, InstalledWaitsForTheRestart) {
   EXPECT_EQ(settled(last_update(Stage::Installed), kOld, "first"), last_update(Stage::Installed));
   EXPECT_FALSE(on_trial(last_update(Stage::Installed), kOld, "first"));
 }
 
-TEST(LastUpdate, OfAnUpdateThatRunsIsATrial) {
+TEST(LastUpdate, RunningIsATrial) {
   EXPECT_EQ(settled(last_update(Stage::Installed), kNew, "second").stage, Stage::Installed);
   EXPECT_TRUE(on_trial(last_update(Stage::Installed), kNew, "second"));
 }
 
-TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
+TEST(LastUpdate, IsLeftIfTheOldSlotRunsAgain) {
   const LastUpdate left = settled(last_update(Stage::Installed), kOld, "second");
   EXPECT_EQ(left.stage, Stage::Left);
   EXPECT_EQ(left.version, "0.2.0");
@@ -29,7 +29,7 @@ TEST(LastUpdate, SaysThatAnUpdateWasLeftWhenTheOldSlotRunsAgain) {
   EXPECT_FALSE(on_trial(left, kOld, "second"));
 }
 
-TEST(LastUpdate, OfASlotThatRunsIsATrialWhateverWasSeenOfTheEndOfItsWriting) {
+TEST(LastUpdate, RunningIsATrialEvenIfItsEndWasNotSeen) {
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Left}) {
     EXPECT_TRUE(on_trial(last_update(stage), kNew, "second")) << name_of(stage);
     const LastUpdate whole = settled(last_update(stage), kNew, "second");
@@ -41,7 +41,7 @@ TEST(LastUpdate, OfASlotThatRunsIsATrialWhateverWasSeenOfTheEndOfItsWriting) {
   }
 }
 
-TEST(LastUpdate, OfASlotThatRunsWithAnotherVersionIsNoTrialForItWasNotWritten) {
+TEST(LastUpdate, AnotherVersionIsNoTrial) {
   Running before = kNew;
   before.version = "0.1.0";
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed, Stage::Installed}) {
@@ -51,7 +51,7 @@ TEST(LastUpdate, OfASlotThatRunsWithAnotherVersionIsNoTrialForItWasNotWritten) {
   EXPECT_EQ(settled(last_update(Stage::Failed), before, "second"), last_update(Stage::Failed));
 }
 
-TEST(LastUpdate, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
+TEST(LastUpdate, InterruptedIsOverInThisOrTheNextBoot) {
   for (const char* boot : {"first", "second"}) {
     const LastUpdate broken = settled(last_update(Stage::Installing), kOld, boot);
     EXPECT_EQ(broken.stage, Stage::Interrupted) << boot;
@@ -60,7 +60,7 @@ TEST(LastUpdate, OfAnInterruptedInstallationIsOverInThisStartOrTheNext) {
   }
 }
 
-TEST(LastUpdate, OfAnInstallationThatRaucFinishedByItselfWaitsForTheRestart) {
+TEST(LastUpdate, FinishedByRaucWaitsForTheRestart) {
   Running finished = kOld;
   finished.other_next = true;
   for (const Stage stage : {Stage::Installing, Stage::Interrupted, Stage::Failed}) {
@@ -72,7 +72,7 @@ TEST(LastUpdate, OfAnInstallationThatRaucFinishedByItselfWaitsForTheRestart) {
   EXPECT_EQ(settled(last_update(Stage::Good), finished, "first").stage, Stage::Good);
 }
 
-TEST(LastUpdate, ThatIsOverStaysAsItWas) {
+TEST(LastUpdate, EndedStaysUnchanged) {
   for (const Stage stage : {Stage::None, Stage::Good}) {
     for (const Running& running : {kOld, kNew}) {
       EXPECT_EQ(settled(last_update(stage), running, "third"), last_update(stage)) << name_of(stage);
@@ -87,22 +87,22 @@ TEST(LastUpdate, ThatIsOverStaysAsItWas) {
 const Proven kNone, kA = {"A", "0.2.0"};
 const Running kRunsA = {"adit-board", "0.2.0", "A", "B"}, kRunsB = {"adit-board", "0.1.0", "B", "A"};
 
-TEST(Proven, IsWhatRunsWhereNoneWasKnown) {
+TEST(ProvenSlot, IsTheRunningSlotIfUnknown) {
   EXPECT_EQ(proven_now(kNone, kRunsB, false), (Proven{"B", "0.1.0"}));
 }
 
-TEST(Proven, IsAnotherVersionOfTheSameSlot) {
+TEST(ProvenSlot, FollowsANewVersionOfItsSlot) {
   Running newer = kRunsA;
   newer.version = "0.3.0";
   EXPECT_EQ(proven_now(kA, newer, false), (Proven{"A", "0.3.0"}));
 }
 
-TEST(Proven, IsAnotherSlotOnceItHasPassedItsTrialAlone) {
+TEST(ProvenSlot, FollowsASlotOnlyAfterItsTrial) {
   EXPECT_EQ(proven_now(kA, kRunsB, false), kA);
   EXPECT_EQ(proven_now(kA, kRunsB, true), (Proven{"B", "0.1.0"}));
 }
 
-TEST(Proven, AnotherSlotThatRunsIsToldWithBothVersionsAndWhy) {
+TEST(ProvenSlot, UnexpectedSlotIsReportedWithTheReason) {
   EXPECT_EQ(
       stray(kA, kRunsB, false),
       "slot B is running, with 0.1.0, not slot A with 0.2.0, because that slot has used up its starts, by "
@@ -115,7 +115,7 @@ TEST(Proven, AnotherSlotThatRunsIsToldWithBothVersionsAndWhy) {
       "chose the running slot, or the boot loader lost its counts");
 }
 
-TEST(Proven, NothingIsToldOfTheProvenSlotNorOfATrialNorWhereNoneIsKnown) {
+TEST(ProvenSlot, ExpectedSlotAndTrialAreNotReported) {
   EXPECT_EQ(stray(kA, kRunsA, false), "");
   EXPECT_EQ(stray(kA, kRunsB, true), "");
   EXPECT_EQ(stray(kNone, kRunsB, false), "");

@@ -25,7 +25,7 @@ Status a_status() {
           .stick_trouble = "too old"};
 }
 
-TEST(Messages, SayWhatTheyWereGiven) {
+TEST(Messages, ReadBackTheSame) {
   for (const auto what : {Request::What::Install, Request::What::Stick, Request::What::Restart}) {
     const auto request = codec::read_file<Request>(codec::write_file(Request{kNonce, what, true}));
     ASSERT_TRUE(request) << request.error();
@@ -48,7 +48,7 @@ TEST(Messages, SayWhatTheyWereGiven) {
   }
 }
 
-TEST(Messages, WithAnotherWordOrBeyondABoundAreRefused) {
+TEST(Messages, OutsideTheirBoundsAreRejected) {
   json request = json::parse(codec::write_file(Request{kNonce, Request::What::Install, false}));
   request["what"] = "erase";
   EXPECT_THAT(codec::read_file<Request>(request.dump()).error(),

@@ -5,7 +5,7 @@
 namespace adit::update {
 namespace {
 
-TEST(Version, AreInTheOrderThatSemanticVersioningHas) {
+TEST(Version, IsOrderedBySemanticVersioning) {
   const std::vector<std::string> ascending = {"0.0.9",         "0.1.0",
                                               "0.1.1",         "0.2.0-alpha",
                                               "0.2.0-alpha.1", "0.2.0-alpha.beta",
@@ -23,12 +23,12 @@ TEST(Version, AreInTheOrderThatSemanticVersioningHas) {
   }
 }
 
-TEST(Version, WhatStandsAfterThePlusCountsForNothing) {
+TEST(Version, IgnoresBuildMetadata) {
   EXPECT_EQ(Version::parse("1.0.0+a"), Version::parse("1.0.0+b-2.c"));
   EXPECT_EQ(Version::parse("1.0.0-rc.1+a"), Version::parse("1.0.0-rc.1"));
 }
 
-TEST(Version, IsNothingElse) {
+TEST(Version, RejectsOtherForms) {
   for (const char* text : {"",
                            "1",
                            "1.2",

@@ -29,7 +29,7 @@ std::string why_unread(const std::string& text) {
   return read_again ? "" : read_again.error();
 }
 
-TEST(Content, IsReadAsItWasWritten) {
+TEST(Content, ReadsBackTheSame) {
   const auto again = read(write(content()));
   ASSERT_TRUE(again) << again.error();
   EXPECT_EQ(again->about.box, "0123456789abcdef");
@@ -41,13 +41,13 @@ TEST(Content, IsReadAsItWasWritten) {
   EXPECT_EQ(again->tokens.at("course.A.mapping").reveal(), "mapping-token");
 }
 
-TEST(Content, IsRefusedWhereverItIsCutOff) {
+TEST(Content, IsRejectedIfTruncated) {
   const std::string text = write(content());
   for (std::size_t size = 0; size < text.size(); ++size)
     EXPECT_NE(why_unread(text.substr(0, size)), "") << size;
 }
 
-TEST(Content, HasEachPartOnceAndNoOther) {
+TEST(Content, HasEachPartOnce) {
   const std::string text = write(content());
   EXPECT_EQ(why_unread(text + "settings 2\n{}"), "cannot read the export: settings is given twice");
   EXPECT_EQ(why_unread(text + "maps 2\n{}"),
@@ -56,7 +56,7 @@ TEST(Content, HasEachPartOnceAndNoOther) {
   EXPECT_EQ(why_unread("settings 2\n{}ledger 1\nx"), "cannot read the export: about is missing");
 }
 
-TEST(Content, IsNotAskedForMoreThanThereIs) {
+TEST(Content, RejectsInvalidLengths) {
   for (const char* const hostile :
        {"settings 18446744073709551615\n", "settings 18446744073709551616\n", "settings -1\n", "settings \n",
         "settings 3 \nabc", "settings\n", "about 2\n{}", "token: 1\nx"}) {

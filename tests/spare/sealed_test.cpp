@@ -19,7 +19,7 @@ std::string why_not(std::string_view file, std::string_view code = kCode) {
   return content ? "" : content.error();
 }
 
-TEST(Sealed, IsOpenedByItsCodeAlone) {
+TEST(SealedExport, IsOpenedOnlyByItsCode) {
   const std::string content("reports\0and tokens", 18), file = sealed(content);
   EXPECT_EQ(unseal(file, kCode), content);
   EXPECT_EQ(why_not(file, "1234567890123457"),
@@ -27,11 +27,11 @@ TEST(Sealed, IsOpenedByItsCodeAlone) {
   EXPECT_EQ(file.find("tokens"), std::string::npos) << "it is not to be read without";
 }
 
-TEST(Sealed, MayBeEmpty) {
+TEST(SealedExport, MayBeEmpty) {
   EXPECT_EQ(unseal(sealed(""), kCode), "");
 }
 
-TEST(Sealed, IsNotOpenedWithAnyByteOfItChangedOrCutOff) {
+TEST(SealedExport, IsRejectedIfChangedOrTruncated) {
   const std::string file = sealed("a ledger");
   ASSERT_EQ(file.size(), 76U);
   // The first and the last byte of each part: what it is, salt, nonce, content and tag.
@@ -44,7 +44,7 @@ TEST(Sealed, IsNotOpenedWithAnyByteOfItChangedOrCutOff) {
   EXPECT_NE(why_not(file + "x"), "");
 }
 
-TEST(Sealed, ALaterAditsExportIsRefusedByItsFirstBytes) {
+TEST(SealedExport, OfALaterAditIsRejectedByItsFirstBytes) {
   std::string file = sealed("a ledger");
   file[10] = 2;
   const char* const why =
@@ -53,20 +53,20 @@ TEST(Sealed, ALaterAditsExportIsRefusedByItsFirstBytes) {
   EXPECT_EQ(why_not(file), why);
 }
 
-TEST(Sealed, WhatIsNoExportIsRefusedByItsFirstBytes) {
+TEST(SealedExport, OtherFilesAreRejectedByTheirFirstBytes) {
   EXPECT_EQ(not_an_export(sealed("a ledger").substr(0, kExportHead)), "");
   for (const std::string_view other : {"", "adit", "PK\3\4 a zip file", "adit-share\1"})
     EXPECT_EQ(not_an_export(other.substr(0, kExportHead)), "the file is not an export from Adit") << other;
 }
 
-TEST(Code, IsOfSixteenDigitsWhateverIsDrawn) {
+TEST(Code, HasSixteenDigits) {
   std::array<std::uint8_t, kCodeDigits> random{};
   EXPECT_EQ(draw_code(random), "0000000000000000");
   random.fill(0xff);
   EXPECT_EQ(draw_code(random), "5541128671347064") << "2^128 - 1, from its last digit on";
 }
 
-TEST(Code, IsSpokenInGroupsAndTypedAsOneLikes) {
+TEST(Code, IsShownInGroupsAndReadInAnyGrouping) {
   EXPECT_EQ(spoken("1234567890123456"), "1234 5678 9012 3456");
   for (const char* const typed : {"1234567890123456", "1234 5678 9012 3456", "1234-5678-9012-3456 "})
     EXPECT_EQ(code_in(typed), "1234567890123456") << typed;

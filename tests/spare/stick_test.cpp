@@ -9,7 +9,7 @@ namespace {
 
 constexpr const char* kNonce = "0123456789abcdef0123456789abcdef";
 
-TEST(StickMessages, AreReadAsTheyWereWritten) {
+TEST(StickMessages, ReadBackTheSame) {
   const StickRequest request{.nonce = kNonce, .what = StickRequest::What::Write, .name = "a.adit-spare"};
   const auto read = codec::read_file<StickRequest>(codec::write_file(request));
   ASSERT_TRUE(read) << read.error();
@@ -24,7 +24,7 @@ TEST(StickMessages, AreReadAsTheyWereWritten) {
   EXPECT_EQ(codec::read_file<StickStatus>(codec::write_file(status)), status);
 }
 
-TEST(StickMessages, AskForNothingOutsideOfAStick) {
+TEST(StickMessages, NameNothingOutsideTheStick) {
   for (const char* const name : {"../../etc/passwd", "/etc/shadow", "a/b.adit-spare", ".adit-spare", ""}) {
     const StickRequest request{.nonce = kNonce, .what = StickRequest::What::Take, .name = name};
     EXPECT_FALSE(codec::read_file<StickRequest>(codec::write_file(request))) << name;
@@ -46,23 +46,23 @@ std::string chosen(const std::vector<Medium>& media, std::uint64_t size = 1000) 
   return medium ? medium->name : medium.error();
 }
 
-TEST(Medium, IsTheOneStickThatIsIn) {
+TEST(StickPartition, IsTheOnlyStick) {
   EXPECT_EQ(chosen({stick("sda1", "sda", 1000)}), "sda1");
 }
 
-TEST(Medium, IsThePartitionWithTheMostRoom) {
+TEST(StickPartition, IsThePartitionWithTheMostRoom) {
   EXPECT_EQ(chosen({stick("sda1", "sda", 2000), stick("sda2", "sda", 3000), stick("sda3", "sda", 10)}),
             "sda2");
   const Medium unread{.name = "sda2", .disk = "sda"};
   EXPECT_EQ(chosen({unread, stick("sda1", "sda", 2000)}), "sda1") << "not one that cannot be read";
 }
 
-TEST(Medium, IsNoneWhereNobodyCouldSayWhichStickHasIt) {
+TEST(StickPartition, IsNoneIfThereAreSeveralSticks) {
   EXPECT_THAT(chosen({stick("sda1", "sda", 2000), stick("sdb1", "sdb", 3000)}),
               HasSubstr("more than one stick"));
 }
 
-TEST(Medium, IsNoneForAReasonThatIsSaid) {
+TEST(StickPartition, IsNoneWithAReason) {
   EXPECT_EQ(chosen({}), "there is no stick in the box");
   EXPECT_EQ(chosen({{.name = "sda1", .disk = "sda"}}),
             "the box cannot read the stick's file system: expected FAT32 or ext4");

@@ -24,7 +24,7 @@ std::string with(const std::string& more) {
   return R"({"name": "qemu-virt", "title": "QEMU's virt machine")" + more + "}";
 }
 
-TEST(Board, SaysWhatItIsAndWhereItsPanelIs) {
+TEST(Board, HasATitleAndAPanel) {
   const auto board = parse_board(with(R"(, "panel": {"chip": "pl061", "health": "H", "scoring": "S",
       "mapping": "M", "attention": "A", "active_low": true, "button": "B", "button_active_low": false})"));
   ASSERT_TRUE(board) << sentence_of(board.error());
@@ -41,13 +41,13 @@ TEST(Board, SaysWhatItIsAndWhereItsPanelIs) {
   EXPECT_FALSE(board->panel->button_active_low);
 }
 
-TEST(Board, LeavesThePanelToTheSettingsWhereItHasNone) {
+TEST(Board, WithoutAPanelUsesTheSettings) {
   const auto board = parse_board(with(""));
   ASSERT_TRUE(board);
   EXPECT_FALSE(board->panel);
 }
 
-TEST(Board, MayNameLinesOfWhicheverChipHasThem) {
+TEST(Board, MayNameLinesWithoutAChip) {
   const auto board = parse_board(with(R"(, "panel": {"health": "H"})"));
   ASSERT_TRUE(board) << sentence_of(board.error());
   EXPECT_EQ(board->panel->chip, "");
@@ -84,7 +84,7 @@ const BoardCase kBoardCases[] = {
     {with(R"(, "panel": {"health": "H", "button": "H"})"), "panel.button: the same line as panel.health"},
 };
 
-TEST(Board, NamesWhatIsWrongByItsPath) {
+TEST(Board, NamesAFaultByItsPath) {
   for (const BoardCase& row : kBoardCases) {
     const auto errors = board_errors_of(row.json);
     ASSERT_EQ(errors.size(), 1u) << row.json << " " << testing::PrintToString(errors);
@@ -93,7 +93,7 @@ TEST(Board, NamesWhatIsWrongByItsPath) {
   }
 }
 
-TEST(Board, TellsAllThatIsWrongAtOnce) {
+TEST(Board, ReportsAllFaultsAtOnce) {
   EXPECT_THAT(board_errors_of(R"({"panel": {"active_low": "no", "blink": 1}, "name": "A"})"),
               ElementsAre("panel.active_low: expected true or false, got \"no\"",
                           "panel.blink: no such key (keys here: chip, health, scoring, mapping, attention, "
@@ -102,7 +102,7 @@ TEST(Board, TellsAllThatIsWrongAtOnce) {
                           "title: missing"));
 }
 
-TEST(Board, IsDescribedRightByEachBoardOfTheHouse) {
+TEST(Board, FilesInTheSourceAreValid) {
   int boards = 0;
   for (const auto& folder : std::filesystem::directory_iterator(ADIT_SOURCE_DIR "/board")) {
     if (!folder.is_directory()) continue;

@@ -36,7 +36,7 @@ std::string reference() {
   return table;
 }
 
-TEST(SettingsReadme, HoldsTheTableOfAllKeysAsTheParserHasThem) {
+TEST(SettingsReadme, HasTheTableOfAllKeys) {
   EXPECT_NE(text_of("README.md").find(reference()), std::string::npos)
       << "put this table into firmware/rules/settings/README.md:\n"
       << reference();
@@ -67,7 +67,7 @@ codec::Value nested(std::string_view path, codec::Value value) {
   return last ? object : nested(path.substr(0, dot), std::move(object));
 }
 
-TEST(SettingsKeys, EachTakeTheirOwnDefault) {
+TEST(SettingsKeys, AcceptTheirDefaults) {
   const Settings defaults = with_an_item_of_each();
   for (const Key& key : keys()) {
     if (key.required) continue;

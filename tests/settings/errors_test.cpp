@@ -168,21 +168,21 @@ void expect(std::span<const Case> cases) {
   for (const Case& row : cases) EXPECT_THAT(errors_of(row.json), ElementsAre(row.sentence));
 }
 
-TEST(SettingsErrors, NameTheKeyWhatWasExpectedAndWhatCame) {
+TEST(SettingsErrors, NameKeyExpectedAndActualValue) {
   expect(kValues);
 }
-TEST(SettingsErrors, NameAKeyThatIsNoneOrIsGivenTwice) {
+TEST(SettingsErrors, NameUnknownAndRepeatedKeys) {
   expect(kKeys);
 }
-TEST(SettingsErrors, NameSettingsThatContradictOthers) {
+TEST(SettingsErrors, NameContradictions) {
   expect(kContradictions);
 }
 
-TEST(SettingsErrors, NameRobotsAndCoursesThatAreNoneOrMeanTwo) {
+TEST(SettingsErrors, NameInvalidAndAmbiguousRobotsAndCourses) {
   expect(kNames);
 }
 
-TEST(SettingsErrors, ComeAllAtOnceInTheOrderOfTheFile) {
+TEST(SettingsErrors, AreReportedAtOnceInTheOrderOfTheFile) {
   EXPECT_THAT(errors_of(R"({
       "version": 1,
       "panel": {"active_low": 1},
@@ -198,31 +198,31 @@ TEST(SettingsErrors, ComeAllAtOnceInTheOrderOfTheFile) {
                           "command_post.mapping.port: missing; expected 1 to 65535"));
 }
 
-TEST(SettingsErrors, NameEveryRequiredKeyOfAnEmptyFile) {
+TEST(SettingsErrors, NameEachRequiredKeyOfAnEmptyFile) {
   EXPECT_THAT(errors_of("{}"),
               ElementsAre("version: missing; expected 1", HasSubstr("command_post.scoring.address"),
                           HasSubstr("command_post.scoring.port"), HasSubstr("command_post.mapping.address"),
                           HasSubstr("command_post.mapping.port"), HasSubstr("team.listen")));
 }
 
-TEST(SettingsErrors, OfAnotherVersionAreThatAlone) {
+TEST(SettingsErrors, OfAnotherVersionNameOnlyTheVersion) {
   EXPECT_THAT(errors_of(R"({"version": 2, "profiles": []})"), ElementsAre("version: expected 1, got 2"));
   EXPECT_THAT(errors_of(R"({"profiles": [], "version": "1"})"),
               ElementsAre("version: expected 1, got \"1\""));
 }
 
-TEST(SettingsErrors, WithoutAVersionAreToldBesideIt) {
+TEST(SettingsErrors, WithoutAVersionNameAllFaults) {
   EXPECT_THAT(errors_of(R"({"profiles": []})"), SizeIs(testing::Gt(2)));
 }
 
-TEST(SettingsErrors, OfWhatIsNoJsonSayWhereItEnds) {
+TEST(SettingsErrors, OfInvalidJsonNameTheByte) {
   for (const std::string json : {"", "{", "{\"version\": 01}", "{} x", "{\"version\": 1,}"}) {
     EXPECT_THAT(errors_of(json), ElementsAre(HasSubstr("not JSON: "))) << json;
   }
   EXPECT_THAT(errors_of("[]"), ElementsAre("expected an object, got an array"));
 }
 
-TEST(SettingsErrors, RefuseAListOfNoneAndOfTooMany) {
+TEST(SettingsErrors, RejectEmptyAndTooLongLists) {
   const std::string before = R"({"version": 1, "command_post": {"scoring": {"address": "::1", "port": 1},)"
                              R"("mapping": {"address": "::1", "port": 2}}, "team": {"listen": )";
   EXPECT_THAT(errors_of(before + "[]}}"),
@@ -235,7 +235,7 @@ TEST(SettingsErrors, RefuseAListOfNoneAndOfTooMany) {
               ElementsAre("team.listen: expected a list of 1 to 16 items, got 17"));
 }
 
-TEST(SettingsErrors, RefuseToListenTwiceAtOneAddress) {
+TEST(SettingsErrors, RejectListeningTwiceAtOneAddress) {
   const std::string before = R"({"version": 1, "command_post": {"scoring": {"address": "::1", "port": 1},)"
                              R"("mapping": {"address": "::1", "port": 2}}, "team": {"listen": )";
   EXPECT_THAT(errors_of(before + R"([{"address": "::2", "port": 9}, {"address": "::2", "port": 9}]}})"),
@@ -244,7 +244,7 @@ TEST(SettingsErrors, RefuseToListenTwiceAtOneAddress) {
               ElementsAre(HasSubstr("team.listen[0]: the same as an endpoint of the Command Post")));
 }
 
-TEST(SettingsErrors, NeverShowMoreOfAValueThanALine) {
+TEST(SettingsErrors, ShowAtMostALineOfAValue) {
   const auto errors = errors_of(sample(R"(, "interface": ")" + std::string(100000, 'x') + "\""));
   ASSERT_THAT(errors, SizeIs(1));
   EXPECT_THAT(errors[0], AllOf(HasSubstr("xxx..."), SizeIs(testing::Lt(200))));

@@ -105,7 +105,7 @@ Settings running() {
   return settings;
 }
 
-TEST(Restarts, IsWhatASettingChangesAndNothingElse) {
+TEST(Restarts, AreExactlyTheChangedParts) {
   for (const RestartsCase& each : kRestartsCases) {
     Settings next = running();
     each.change(next);
@@ -113,7 +113,7 @@ TEST(Restarts, IsWhatASettingChangesAndNothingElse) {
   }
 }
 
-TEST(Restarts, IsDecidedForEverySetting) {
+TEST(Restarts, CoverEachSetting) {
   for (const Key& key : keys()) {
     if (key.path == "version") continue;
     EXPECT_TRUE(std::ranges::find(kRestartsCases, key.path, &RestartsCase::path) != std::end(kRestartsCases))
@@ -121,11 +121,11 @@ TEST(Restarts, IsDecidedForEverySetting) {
   }
 }
 
-TEST(Restarts, IsNothingWhereNothingIsChanged) {
+TEST(Restarts, AreEmptyWithoutChanges) {
   EXPECT_EQ(restarts_by(running(), running()), kNothing);
 }
 
-TEST(Restarts, IsAllThatSeveralSettingsChange) {
+TEST(Restarts, JoinThoseOfSeveralSettings) {
   Settings next = running();
   next.team.listen.emplace_back("10.9", 9);
   next.command_post.scoring.port = 9;
@@ -133,7 +133,7 @@ TEST(Restarts, IsAllThatSeveralSettingsChange) {
   EXPECT_EQ(restarts_by(running(), next), (Restarts{.listeners = true, .scoring = true}));
 }
 
-TEST(Restarts, IsTheEndpointsOfTheCourseInUse) {
+TEST(Restarts, IncludeTheEndpointsOfTheCourseInUse) {
   Settings now = running(), next = running();
   now.command_post.scoring = {"10.1", 1};
   next.command_post = now.command_post;

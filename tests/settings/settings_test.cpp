@@ -32,7 +32,7 @@ TEST(Settings, NeedOnlyTheAddresses) {
   EXPECT_TRUE(settings.panel.button_active_low);
 }
 
-TEST(Settings, TakeOriginsAsBrowsersWriteThem) {
+TEST(Settings, AcceptOriginsAsBrowsersWriteThem) {
   for (const char* const good : {"", "http://a", "https://a:8443",
                                  "http://station.local http://10.0.0.20:65535", "http://[fd00::1]:3000"}) {
     EXPECT_TRUE(parse(sample("", R"(, "origins": ")" + std::string(good) + R"(")"))) << good;
@@ -63,7 +63,7 @@ TEST(Settings, TakeOriginsAsBrowsersWriteThem) {
   }
 }
 
-TEST(Settings, SetEveryMemberByItsKey) {
+TEST(Settings, SetEachMemberByItsKey) {
   const Settings settings = parsed(R"({
     "version": 1,
     "command_post": {
@@ -141,7 +141,7 @@ TEST(Settings, SetEveryMemberByItsKey) {
   EXPECT_TRUE(network.allow_overlap);
 }
 
-TEST(Settings, InUseHaveTheEndpointsOfTheirCourseAndKnowTheAliases) {
+TEST(Settings, InUseHaveTheEndpointsOfTheCourseAndTheAliases) {
   const std::string rest =
       R"(, "courses": [{"name": "B", "scoring": {"address": "10.100.2.200", "port": 8000},)"
       R"( "mapping": {"address": "10.100.2.201", "port": 8000}}], "robots": [{"name": "ugv1", "alias": "husky"}])";
@@ -153,13 +153,13 @@ TEST(Settings, InUseHaveTheEndpointsOfTheirCourseAndKnowTheAliases) {
   EXPECT_EQ(with_course.rules.aliases.at("husky").text(), "ugv1");
 }
 
-TEST(Settings, TakeAWholeNumberHoweverItIsWritten) {
+TEST(Settings, AcceptAWholeNumberInEachForm) {
   for (const std::string number : {"40", "40.0", "4e1", "4.0E+1"}) {
     EXPECT_EQ(parsed(sample("", R"(, "connections": )" + number)).team.connections, 40u) << number;
   }
 }
 
-TEST(Settings, AreAsPatientWithReportsAsTheRulesOfReportsByThemselves) {
+TEST(Settings, DefaultToTheReportRules) {
   const dispatch::ReportRules rules;
   const Reports reports = parsed(sample()).reports;
   EXPECT_EQ(reports.answer_within, rules.answer_within);
@@ -170,7 +170,7 @@ TEST(Settings, AreAsPatientWithReportsAsTheRulesOfReportsByThemselves) {
   EXPECT_EQ(reports.undo, rules.undo);
 }
 
-TEST(Settings, TakeEachWordOfAChoice) {
+TEST(Settings, AcceptEachWordOfAChoice) {
   const auto review = [](const std::string& word) {
     return parsed(sample("", "", R"(, "reports": {"review": ")" + word + "\"}")).reports.review;
   };
@@ -179,7 +179,7 @@ TEST(Settings, TakeEachWordOfAChoice) {
   EXPECT_EQ(review("all"), dispatch::Review::All);
 }
 
-TEST(Settings, TakeTheEndsOfEveryRange) {
+TEST(Settings, AcceptTheEndsOfEachRange) {
   EXPECT_EQ(parsed(sample(R"(, "rates": {"map_hz": 0.001})")).command_post.rates.map_hz, 0.001);
   EXPECT_EQ(parsed(sample(R"(, "rates": {"map_hz": 1000})")).command_post.rates.map_hz, 1000);
   EXPECT_EQ(parsed(sample(R"(, "interface": "exactly15chars_")")).command_post.interface, "exactly15chars_");

@@ -18,7 +18,7 @@ TEST(Subnet, IsReadAndWritten) {
   EXPECT_EQ(written(subnet("10.0.0.1/0")), "0.0.0.0/0");
 }
 
-TEST(Subnet, IsNothingElse) {
+TEST(Subnet, RejectsOtherForms) {
   for (const char* text : {"",
                            "/",
                            "10.1.1.0",
@@ -54,7 +54,7 @@ TEST(Subnet, KnowsItsEnds) {
   EXPECT_FALSE(host.contains(*ipv4_of("192.168.7.128")));
 }
 
-TEST(Subnets, OverlapWhereOneHoldsTheOther) {
+TEST(Subnets, OverlapIfOneContainsTheOther) {
   const struct {
     const char *a, *b;
     bool overlap;

@@ -32,7 +32,7 @@ std::vector<std::string> sentences(const std::vector<Change>& changes) {
   return all;
 }
 
-TEST(WrittenSettings, AreReadAsTheSame) {
+TEST(WrittenSettings, ReadBackTheSame) {
   for (const std::string& at_top : {std::string(), std::string(kTeamOfTwo)}) {
     const Settings settings =
         settings_of(sample(R"(, "budget_mbit": 0.3)", R"(, "connections": 100)", at_top));
@@ -55,14 +55,14 @@ void gather(const codec::Value& value, const std::string& path, std::vector<std:
   }
 }
 
-TEST(WrittenSettings, HoldEveryKeyInTheOrderOfTheTable) {
+TEST(WrittenSettings, HaveEachKeyInTheOrderOfTheTable) {
   std::vector<std::string> written, known;
   gather(value_of(with_an_item_of_each()), "", written);
   for (const Key& key : keys()) known.emplace_back(key.path);
   EXPECT_EQ(written, known);
 }
 
-TEST(WrittenSettings, StandOnLinesThatPeopleCanRead) {
+TEST(WrittenSettings, AreOnReadableLines) {
   const std::string file = file_of(settings_of(sample("", "", kTeamOfTwo)));
   EXPECT_THAT(file, HasSubstr("{\n  \"version\": 1,\n  \"command_post\": {\n    \"scoring\": "
                               "{\"address\":\"10.100.1.200\",\"port\":8000},\n"));
@@ -71,14 +71,14 @@ TEST(WrittenSettings, StandOnLinesThatPeopleCanRead) {
   EXPECT_TRUE(file.ends_with("\n}\n"));
 }
 
-TEST(SettingsTags, DifferWhereAnySettingDoes) {
+TEST(SettingsTags, DifferIfAnySettingDiffers) {
   const std::string tag = tag_of(settings_of(sample()));
   EXPECT_EQ(tag.size(), 16u);
   EXPECT_NE(tag_of(settings_of(sample(R"(, "budget_mbit": 99)"))), tag);
   EXPECT_NE(tag_of(settings_of(sample("", "", kTeamOfTwo))), tag);
 }
 
-TEST(SettingsChanges, NameEachSettingThatDiffers) {
+TEST(SettingsChanges, NameEachChangedSetting) {
   const Settings before = settings_of(sample());
   EXPECT_THAT(changes(before, before), IsEmpty());
   Settings after = before;
@@ -90,7 +90,7 @@ TEST(SettingsChanges, NameEachSettingThatDiffers) {
                           R"(reports.review: "off" -> "all")"));
 }
 
-TEST(SettingsChanges, KnowAnItemByItsNameAndNotByItsPlace) {
+TEST(SettingsChanges, IdentifyItemsByNameNotByPlace) {
   const Settings before = settings_of(sample("", "", kTeamOfTwo));
   Settings after = before;
   after.robots.erase(after.robots.begin());

@@ -58,7 +58,7 @@ class ChangeTest : public testing::Test {
   Change change{hands, numbers()};
 };
 
-TEST_F(ChangeTest, IsAppliedAtOnceAndPendingUntilItsTime) {
+TEST_F(ChangeTest, IsAppliedAtOnceAndPendingUntilItsDeadline) {
   want();
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24"));
   ASSERT_TRUE(change.status().pending);
@@ -68,7 +68,7 @@ TEST_F(ChangeTest, IsAppliedAtOnceAndPendingUntilItsTime) {
   EXPECT_EQ(change.status().ended, Ended::NotYet);
 }
 
-TEST_F(ChangeTest, IsKeptOnceItIsConfirmed) {
+TEST_F(ChangeTest, IsStoredOnceConfirmed) {
   want();
   confirm(89.999);
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "keep 192.168.8.11/24"));
@@ -80,7 +80,7 @@ TEST_F(ChangeTest, IsKeptOnceItIsConfirmed) {
   EXPECT_EQ(hands.done.size(), 2u) << "nothing comes after it";
 }
 
-TEST_F(ChangeTest, TakesItselfBackInTime) {
+TEST_F(ChangeTest, IsRevertedAtItsDeadline) {
   want();
   change.tick(at(89.999));
   EXPECT_TRUE(change.status().pending);
@@ -92,7 +92,7 @@ TEST_F(ChangeTest, TakesItselfBackInTime) {
   EXPECT_EQ(change.status().kept, numbers());
 }
 
-TEST_F(ChangeTest, IsNotConfirmedTooLate) {
+TEST_F(ChangeTest, RejectsALateConfirmation) {
   want();
   change.tick(at(90));
   confirm(90);
@@ -100,14 +100,14 @@ TEST_F(ChangeTest, IsNotConfirmedTooLate) {
   EXPECT_EQ(change.status().ended, Ended::Reverted);
 }
 
-TEST_F(ChangeTest, IsConfirmedByAWordThatCameWhileNobodyLooked) {
+TEST_F(ChangeTest, AcceptsAConfirmationReadLate) {
   want();
   confirm(94);
   change.tick(at(94));
   EXPECT_EQ(change.status().ended, Ended::Confirmed);
 }
 
-TEST_F(ChangeTest, IsConfirmedByItsOwnNonceAlone) {
+TEST_F(ChangeTest, IsConfirmedOnlyByItsNonce) {
   want();
   change.hear({other, Word::What::Confirm}, at(1));
   change.hear({other, Word::What::Revert}, at(1));
@@ -115,7 +115,7 @@ TEST_F(ChangeTest, IsConfirmedByItsOwnNonceAlone) {
   EXPECT_EQ(hands.done.size(), 1u);
 }
 
-TEST_F(ChangeTest, IsRevertedOnAWord) {
+TEST_F(ChangeTest, IsRevertedOnRequest) {
   want();
   change.hear({nonce, Word::What::Revert}, at(1));
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
@@ -123,7 +123,7 @@ TEST_F(ChangeTest, IsRevertedOnAWord) {
   EXPECT_EQ(change.status().ended_nonce, nonce);
 }
 
-TEST_F(ChangeTest, IsRevertedWhereItsKeeperStops) {
+TEST_F(ChangeTest, IsRevertedAtAStop) {
   change.stop(at(0));
   EXPECT_THAT(hands.done, IsEmpty());
   want();
@@ -132,7 +132,7 @@ TEST_F(ChangeTest, IsRevertedWhereItsKeeperStops) {
   EXPECT_EQ(change.status().ended, Ended::Reverted);
 }
 
-TEST_F(ChangeTest, IsRevertedOnceMoreWhereItsKeeperStopsMeanwhile) {
+TEST_F(ChangeTest, RetriesARevertAtAStop) {
   hands.fail_revert = 1;
   want();
   change.tick(at(90));
@@ -141,7 +141,7 @@ TEST_F(ChangeTest, IsRevertedOnceMoreWhereItsKeeperStopsMeanwhile) {
   EXPECT_EQ(change.status().why, "the change was not confirmed within 90 s");
 }
 
-TEST_F(ChangeTest, IsRevertedAtOnceWhereItCannotBeApplied) {
+TEST_F(ChangeTest, IsRevertedAtOnceIfItCannotBeApplied) {
   hands.fail_apply = true;
   want();
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "revert"));
@@ -149,7 +149,7 @@ TEST_F(ChangeTest, IsRevertedAtOnceWhereItCannotBeApplied) {
   EXPECT_EQ(change.status().why, "the change could not be applied: the disk is full");
 }
 
-TEST_F(ChangeTest, IsRevertedWhereItCannotBeKept) {
+TEST_F(ChangeTest, IsRevertedIfItCannotBeStored) {
   hands.fail_keep = true;
   want();
   confirm(1);
@@ -159,7 +159,7 @@ TEST_F(ChangeTest, IsRevertedWhereItCannotBeKept) {
   EXPECT_THAT(change.status().why, HasSubstr("could not be stored: the disk is full"));
 }
 
-TEST_F(ChangeTest, IsRevertedAgainAndAgainUntilItSucceeds) {
+TEST_F(ChangeTest, RetriesARevertUntilItSucceeds) {
   hands.fail_revert = 2;
   want();
   change.tick(at(90));
@@ -174,7 +174,7 @@ TEST_F(ChangeTest, IsRevertedAgainAndAgainUntilItSucceeds) {
   EXPECT_EQ(change.wake(), std::nullopt);
 }
 
-TEST_F(ChangeTest, IsGivenUpWhereItCannotBeReverted) {
+TEST_F(ChangeTest, IsGivenUpIfItCannotBeReverted) {
   hands.fail_revert = 99;
   want();
   for (double s = 90; s < 200; s += 1) change.tick(at(s));
@@ -183,7 +183,7 @@ TEST_F(ChangeTest, IsGivenUpWhereItCannotBeReverted) {
   EXPECT_THAT(change.status().why, HasSubstr("retrying: the disk is full"));
 }
 
-TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {
+TEST_F(ChangeTest, IsNotReplacedWhilePending) {
   want();
   change.want({other, seconds(90), numbers("192.168.9.11/24")}, at(10));
   EXPECT_EQ(hands.done.size(), 1u);
@@ -191,14 +191,14 @@ TEST_F(ChangeTest, IsNotReplacedWhileItIsPending) {
   EXPECT_EQ(change.wake(), at(90)) << "nor does it last longer";
 }
 
-TEST_F(ChangeTest, ToWhatIsThereAlreadyTouchesNothing) {
+TEST_F(ChangeTest, ToTheSameAddressTouchesNothing) {
   want("192.168.7.11/24");
   EXPECT_THAT(hands.done, IsEmpty());
   EXPECT_EQ(change.status().ended, Ended::Confirmed);
   EXPECT_EQ(change.status().ended_nonce, nonce);
 }
 
-TEST_F(ChangeTest, FollowsAnother) {
+TEST_F(ChangeTest, MayFollowAnother) {
   want();
   confirm(1);
   change.want({other, seconds(10), numbers("192.168.9.11/24")}, at(5));
@@ -208,7 +208,7 @@ TEST_F(ChangeTest, FollowsAnother) {
   EXPECT_EQ(change.status().kept, numbers(kNew)) << "the one that was confirmed";
 }
 
-TEST(AFirstChange, IsRevertedToNothing) {
+TEST(FirstChange, IsRevertedToNothing) {
   FakeHands hands;
   Change change(hands, std::nullopt);
   change.interrupted();
@@ -220,7 +220,7 @@ TEST(AFirstChange, IsRevertedToNothing) {
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.7.11/24", "revert"));
 }
 
-TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
+TEST_F(ChangeTest, IsForgottenWithConfirmedAddresses) {
   change.set_endpoints({{1, 2}});
   want();
   EXPECT_TRUE(change.forget(at(1)));
@@ -233,7 +233,7 @@ TEST_F(ChangeTest, IsForgottenWithAllThatWasConfirmed) {
   EXPECT_THAT(hands.done, ElementsAre("apply 192.168.8.11/24", "forget"));
 }
 
-TEST_F(ChangeTest, IsRevertedWhereAllIsToBeForgottenAndCannotBe) {
+TEST_F(ChangeTest, IsRevertedIfForgettingFails) {
   hands.fail_keep = true;
   want();
   EXPECT_EQ(change.forget(at(1)).error(), "the disk is full");
@@ -242,7 +242,7 @@ TEST_F(ChangeTest, IsRevertedWhereAllIsToBeForgottenAndCannotBe) {
 }
 
 /// A law: whatever comes when, at the end nothing is in use that was not confirmed in time.
-TEST(Changes, NeverLeaveInUseWhatNobodyConfirmed) {
+TEST(Changes, LeaveNoUnconfirmedAddressInUse) {
   std::uint64_t random = 1;
   const auto draw = [&random](std::uint64_t most) {
     random = random * 6364136223846793005u + 1442695040888963407u;

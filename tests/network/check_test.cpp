@@ -30,14 +30,14 @@ std::vector<std::string> errors(const Numbers& wanted, const Circumstances& arou
   return sentences;
 }
 
-TEST(NetworkCheck, HasNothingAgainstWhatIsThere) {
+TEST(NetworkCheck, AcceptsTheCurrentAddresses) {
   const Findings findings = check(numbers(), numbers(), usual());
   EXPECT_THAT(findings.errors, IsEmpty());
   EXPECT_THAT(findings.changes, IsEmpty());
   EXPECT_THAT(findings.warnings, IsEmpty());
 }
 
-TEST(NetworkCheck, TellsWhatBecomesAnother) {
+TEST(NetworkCheck, ListsChanges) {
   const Findings findings =
       check(numbers("192.168.7.11/25", "10.100.1.10/24", "10.100.1.1"), numbers("192.168.7.10/24"), usual());
   ASSERT_THAT(findings.changes, SizeIs(3));
@@ -51,7 +51,7 @@ TEST(NetworkCheck, TellsWhatBecomesAnother) {
       << "all but the gateway, which stays none";
 }
 
-TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
+TEST(NetworkCheck, RejectsATeamInTheCommandPostSubnets) {
   for (const char* team : {"10.1.1.7/24", "10.2.1.7/25", "10.100.7.7/24", "10.0.0.7/8"}) {
     EXPECT_THAT(errors(numbers(team), usual()),
                 ElementsAre(AllOf(HasSubstr("team.address: "),
@@ -66,7 +66,7 @@ TEST(NetworkCheck, RefusesATeamInTheCommandPostsSubnets) {
               ElementsAre(HasSubstr("192.168.7.0/24 overlaps the mapping endpoint 192.168.7.201 on")));
 }
 
-TEST(NetworkCheck, RefusesATeamWhereACourseThatIsNotInUseHasItsEndpoints) {
+TEST(NetworkCheck, RejectsATeamInTheSubnetOfAnotherCourse) {
   Circumstances around = usual();
   around.courses = {{"A", around.command_post.scoring, around.command_post.mapping},
                     {"B", {"10.100.1.200", 8000}, {"192.168.7.201", 8000}}};
@@ -78,7 +78,7 @@ TEST(NetworkCheck, RefusesATeamWhereACourseThatIsNotInUseHasItsEndpoints) {
   EXPECT_THAT(errors(numbers(), around), IsEmpty());
 }
 
-TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
+TEST(NetworkCheck, AllowsAnIntendedOverlapWithAWarning) {
   Circumstances around = usual();
   around.allow_overlap = true;
   const Findings findings = check(numbers("10.100.7.7/24"), numbers(), around);
@@ -87,7 +87,7 @@ TEST(NetworkCheck, AllowsAnOverlapOnPurposeAndSaysSo) {
                                           "allowed, but a robot cannot reach both"));
 }
 
-TEST(NetworkCheck, WarnsOneWhoCutsHimselfOff) {
+TEST(NetworkCheck, WarnsIfTheClientLosesItsConnection) {
   const auto warnings = [](const char* team, const char* asker) {
     Circumstances around = usual();
     around.asker = asker;
@@ -103,7 +103,7 @@ TEST(NetworkCheck, WarnsOneWhoCutsHimselfOff) {
   EXPECT_THAT(warnings("192.168.8.11/24", "fd00::5"), ElementsAre(HasSubstr("cuts you off")));
 }
 
-TEST(NetworkCheck, WarnsOfEndpointsThatAreLost) {
+TEST(NetworkCheck, WarnsOfUnreachableEndpoints) {
   EXPECT_THAT(check(numbers("192.168.7.11/24", "10.100.2.10/24"), numbers(), usual()).warnings,
               ElementsAre("the scoring endpoint 10.100.1.200 cannot be reached: it is in no subnet of "
                           "10.100.2.10/24, and there is no gateway",
@@ -126,7 +126,7 @@ TEST(NetworkCheck, WarnsOfEndpointsThatAreLost) {
       Contains("the scoring endpoint 10.100.1.200 cannot be reached: the box has no address on that side"));
 }
 
-TEST(NetworkCheck, LooksAtEachAddressOfTheCommandPostsSide) {
+TEST(NetworkCheck, ChecksEachAddressOfTheCommandPostSide) {
   Numbers both = numbers("172.16.1.7/24");
   both.command_post.push_back(host("172.16.1.8/24"));
   EXPECT_THAT(errors(both, usual()), ElementsAre(HasSubstr("172.16.1.0/24 overlaps 172.16.1.0/24")));
@@ -138,7 +138,7 @@ TEST(NetworkCheck, LooksAtEachAddressOfTheCommandPostsSide) {
   EXPECT_EQ(changes[0].to, "10.100.1.10/24, 172.16.1.8/24");
 }
 
-TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
+TEST(NetworkCheck, WarnsThatABoxWithoutAFixedAddressIsFoundByName) {
   for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
     const Findings findings = check(with_mode(mode), numbers(), usual());
     EXPECT_THAT(findings.errors, IsEmpty());
@@ -156,7 +156,7 @@ TEST(NetworkCheck, WarnsThatWithoutAnAddressOfItsOwnTheBoxIsFoundByName) {
               ElementsAre(HasSubstr("team.mode: Adit would not be reachable")));
 }
 
-TEST(NetworkCheck, RefusesAnAddressAtWhichNothingListens) {
+TEST(NetworkCheck, RejectsAnAddressWithoutAListener) {
   Circumstances around = usual();
   around.listen = {{"192.168.7.11", 80}};
   EXPECT_THAT(

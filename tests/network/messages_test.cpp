@@ -14,7 +14,7 @@ using testing::HasSubstr;
 
 const std::string kNonce = "0123456789abcdef0123456789abcdef";
 
-TEST(NetworkMessages, SurviveTheirWriting) {
+TEST(NetworkMessages, ReadBackTheSame) {
   const auto wanted = codec::read_file<Wanted>(
       codec::write_file(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
   ASSERT_TRUE(wanted) << wanted.error();
@@ -43,7 +43,7 @@ TEST(NetworkMessages, SurviveTheirWriting) {
   }
 }
 
-TEST(NetworkMessages, TellTheWholeStatus) {
+TEST(NetworkMessages, HaveTheWholeStatus) {
   Status status{.team_interface = "team0", .command_post_interface = "darpa0"};
   EXPECT_EQ(codec::read_file<Status>(codec::write_file(status)), status);
   status.kept = numbers();
@@ -57,7 +57,7 @@ TEST(NetworkMessages, TellTheWholeStatus) {
   EXPECT_EQ(json::parse(codec::write_file(status))["pending"]["until_ms"], 123456);
 }
 
-TEST(NetworkMessages, TellWhoElseHasAnAddress) {
+TEST(NetworkMessages, HaveAddressConflicts) {
   Taken taken;
   EXPECT_EQ(codec::read_file<Taken>(codec::write_file(taken)), taken);
   taken.addresses.push_back(
@@ -90,7 +90,7 @@ TEST(NetworkMessages, TellWhoElseHasAnAddress) {
               HasSubstr("taken: expected at most 32"));
 }
 
-TEST(NetworkMessages, HaveNoTimeThatTheClockDoesNotHave) {
+TEST(NetworkMessages, RejectTimesBeyondTheClock) {
   const Status status{.team_interface = "team0",
                       .command_post_interface = "darpa0",
                       .pending = Pending{kNonce, numbers(), Instant(), std::chrono::seconds(5)}};
@@ -107,7 +107,7 @@ TEST(NetworkMessages, HaveNoTimeThatTheClockDoesNotHave) {
 }
 
 /// What a gateway that has been taken over could write.
-TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
+TEST(NetworkMessages, AreRejectedIfHostile) {
   const json good =
       json::parse(codec::write_file(Wanted{kNonce, std::chrono::milliseconds(90000), numbers()}));
   const std::pair<const char*, const char*> cases[] = {
@@ -144,7 +144,7 @@ TEST(NetworkMessages, AreRefusedWhereTheyAreHostile) {
   EXPECT_FALSE(codec::read_file<Probe>(R"({"format":1,"nonce":")" + kNonce + R"(","sought":"adit.local"})"));
 }
 
-TEST(NetworkMessages, RefuseEndpointsThatAreNone) {
+TEST(NetworkMessages, RejectInvalidEndpoints) {
   const std::pair<const char*, const char*> cases[] = {
       {R"("10.100.1.200")", "endpoints"},
       {R"(["10.100.1"])", "endpoints[0]: expected an IPv4 address"},
@@ -166,7 +166,7 @@ TEST(NetworkMessages, RefuseEndpointsThatAreNone) {
 }
 
 /// What adit-network of an earlier version kept.
-TEST(NetworkMessages, ReadWhatAnEarlierVersionKept) {
+TEST(NetworkMessages, ReadFilesOfAnEarlierVersion) {
   EXPECT_EQ(read_kept(R"({"format":1,"numbers":{"team":{"address":"192.168.7.11","prefix":24},)"
                       R"("command_post":{"address":"10.100.1.10","prefix":24,"gateway":""}}})"),
             numbers());

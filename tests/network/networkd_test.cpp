@@ -20,7 +20,7 @@ Numbers several() {
   return all;
 }
 
-TEST(NetworkdFiles, TakeUpNothingThatANetworkOffers) {
+TEST(NetworkdFiles, IgnoreOffersOfANetwork) {
   for (const std::string& file :
        {team_file("team0", numbers()), team_file("team0", with_mode(Mode::LinkLocal)),
         command_post_file("darpa0", several(), kEndpoints)}) {
@@ -35,7 +35,7 @@ TEST(NetworkdFiles, TakeUpNothingThatANetworkOffers) {
   }
 }
 
-TEST(NetworkdFiles, GiveTheTeamsSideItsAddressALinkLocalOneAndAName) {
+TEST(NetworkdFiles, GiveTheTeamSideAddressesAndAName) {
   const std::string file = team_file("team0", numbers());
   for (const char* line :
        {"[Match]\nName=team0\n", "[Address]\nAddress=192.168.7.11/24\n", "DuplicateAddressDetection=none\n",
@@ -46,7 +46,7 @@ TEST(NetworkdFiles, GiveTheTeamsSideItsAddressALinkLocalOneAndAName) {
   EXPECT_THAT(file, Not(HasSubstr("AddPrefixRoute")));
 }
 
-TEST(NetworkdFiles, TakeFromDhcpAnAddressAlone) {
+TEST(NetworkdFiles, AcceptOnlyAnAddressFromDhcp) {
   const std::string file = team_file("team0", with_mode(Mode::Dhcp));
   for (const char* line : {"DHCP=ipv4\n", "UseGateway=no\n", "UseRoutes=no\n", "UseDNS=no\n", "UseNTP=no\n",
                            "IgnoreCarrierLoss=5s\n", "LinkLocalAddressing=yes\n"}) {
@@ -56,7 +56,7 @@ TEST(NetworkdFiles, TakeFromDhcpAnAddressAlone) {
   EXPECT_THAT(team_file("team0", with_mode(Mode::LinkLocal)), Not(HasSubstr("[Address]")));
 }
 
-TEST(NetworkdFiles, KeepTheCommandPostsSideSilent) {
+TEST(NetworkdFiles, KeepTheCommandPostSideSilent) {
   const std::string file = command_post_file("darpa0", numbers(), {});
   for (const char* line : {"[Match]\nName=darpa0\n", "LinkLocalAddressing=no\n", "MulticastDNS=no\n",
                            "Multicast=no\n", "[Address]\nAddress=10.100.1.10/24\nAddPrefixRoute=no\n"}) {
@@ -68,7 +68,7 @@ TEST(NetworkdFiles, KeepTheCommandPostsSideSilent) {
   EXPECT_THAT(command_post_file("darpa0", none, kEndpoints), Not(HasSubstr("[Address]")));
 }
 
-TEST(NetworkdFiles, HaveTheWaysToTheCommandPostInATableOfTheirOwn) {
+TEST(NetworkdFiles, HaveTheirOwnRoutingTable) {
   const std::string file = command_post_file("darpa0", several(), {});
   for (const char* part :
        {"[Route]\nDestination=10.100.1.0/24\nScope=link\nPreferredSource=10.100.1.10\nTable=230\n",
@@ -80,7 +80,7 @@ TEST(NetworkdFiles, HaveTheWaysToTheCommandPostInATableOfTheirOwn) {
   EXPECT_THAT(file, Not(HasSubstr("PreferredSource=10.100.1.11"))) << "one way to a subnet";
 }
 
-TEST(NetworkdFiles, LeadByTheGatewayToTheEndpointsElsewhereAlone) {
+TEST(NetworkdFiles, RouteOnlyRemoteEndpointsByTheGateway) {
   const std::string file = command_post_file("darpa0", several(), kEndpoints);
   EXPECT_THAT(file, HasSubstr("[Route]\nDestination=10.100.2.201/32\nGateway=10.100.1.1\n"
                               "PreferredSource=10.100.1.10\nTable=230\n"));

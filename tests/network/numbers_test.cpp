@@ -41,7 +41,7 @@ TEST(Numbers, AreReadAndWritten) {
             R"("gateway":""}})");
 }
 
-TEST(Numbers, MayHaveSeveralAddressesOrNoneOnTheCommandPostsSide) {
+TEST(Numbers, MayHaveSeveralCommandPostAddressesOrNone) {
   Numbers all = numbers("192.168.7.11/24", "10.100.1.10/24", "10.100.2.1");
   all.command_post.push_back(host("10.100.2.10/24"));
   EXPECT_EQ(read_numbers(*codec::parse_json(json_of(all))), all) << "the gateway is in the second's subnet";
@@ -56,7 +56,7 @@ TEST(Numbers, MayHaveSeveralAddressesOrNoneOnTheCommandPostsSide) {
   EXPECT_THAT(faults(json_of(all)), ElementsAre("command_post.addresses: expected at most 8, got 9"));
 }
 
-TEST(Numbers, OfOtherModesHaveNoAddressOfTheTeamsSide) {
+TEST(Numbers, OfOtherModesHaveNoTeamAddress) {
   for (const Mode mode : {Mode::Dhcp, Mode::LinkLocal}) {
     EXPECT_EQ(read_numbers(*codec::parse_json(json_of(with_mode(mode)))), with_mode(mode));
     EXPECT_EQ(team_text(with_mode(mode)), name_of(mode));
@@ -75,7 +75,7 @@ TEST(Numbers, NeedNoGateway) {
   }
 }
 
-TEST(Numbers, AreRefusedByTheirPaths) {
+TEST(Numbers, AreRejectedByTheirPaths) {
   const struct {
     const char *team, *post, *sentence;
   } cases[] = {
@@ -149,7 +149,7 @@ TEST(Numbers, AreRefusedByTheirPaths) {
   }
 }
 
-TEST(Numbers, AreRefusedAllAtOnce) {
+TEST(Numbers, AreRejectedAllAtOnce) {
   EXPECT_THAT(faults(R"({"team":{"address":"x","prefix":99},"command_post":3,"more":1})"),
               ElementsAre(StartsWith("team.address: "), StartsWith("team.prefix: "),
                           "command_post: expected an object, got 3", "\"more\": unknown member"));

@@ -7,7 +7,7 @@
 namespace adit::robots {
 namespace {
 
-TEST(SentenceOf, FindsWhatTheServerSaid) {
+TEST(SentenceOf, FindsTheSentenceOfTheServer) {
   const std::pair<const char*, const char*> cases[] = {
       {R"("Missing field: 'y'")", "Missing field: 'y'"},
       {R"({"detail": "Invalid token."})", "Invalid token."},
@@ -20,11 +20,11 @@ TEST(SentenceOf, FindsWhatTheServerSaid) {
   for (const auto& [body, sentence] : cases) EXPECT_EQ(sentence_of(body), sentence);
 }
 
-TEST(SentenceOf, IsShortWhateverTheServerSends) {
+TEST(SentenceOf, IsShortForAnyAnswer) {
   EXPECT_LT(sentence_of(std::string(1 << 20, 'x')).size(), 200u);
 }
 
-TEST(ReportAnswer, IsReadFromTheIcdsExample) {
+TEST(ReportAnswer, IsReadFromTheExampleOfTheIcd) {
   const auto answer = parse_report_answer(
       R"({"url": "http://<ipaddress>:<port>/api/artifact_reports/1", "id": 1, "x": 1011.242, "y": -244.433,
       "z": -10.011, "type": "backpack", "submitted_datetime": "2019-01-01T00:00:00.000000-07:00",
@@ -36,14 +36,14 @@ TEST(ReportAnswer, IsReadFromTheIcdsExample) {
   EXPECT_EQ(answer->score_change, 1);
 }
 
-TEST(ReportAnswer, NamesTheMemberThatClientsMiss) {
+TEST(ReportAnswer, NamesAMissingMember) {
   const auto answer = parse_report_answer(R"({"type": "rope", "x": 1, "y": 2, "z": "3"})");
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error(), "the answer's 'z' is not a number");
   EXPECT_EQ(parse_report_answer("<html>").error(), "the answer is not a JSON object");
 }
 
-TEST(StatusAnswer, TakesTheRunClockUnderBothOfItsNames) {
+TEST(StatusAnswer, ReadsTheRunClockByEitherName) {
   for (const char* clock : {"run_clock", "clock"}) {
     const auto status = parse_status_answer(std::string(R"({"score": 6, "remaining_reports": 14, ")") +
                                             clock + R"(": 721.4, "current_team": "subt"})");
@@ -53,7 +53,7 @@ TEST(StatusAnswer, TakesTheRunClockUnderBothOfItsNames) {
   EXPECT_FALSE(parse_status_answer(R"({"score": 6})"));
 }
 
-TEST(Tally, IsCleanUntilSomethingIsRefusedOtherwiseThanBy429) {
+TEST(Tally, IsCleanUntilAMessageIsRejectedExceptBy429) {
   Tally tally;
   tally.posted(Kind::Grid);
   tally.accepted(Kind::Grid);
@@ -66,13 +66,13 @@ TEST(Tally, IsCleanUntilSomethingIsRefusedOtherwiseThanBy429) {
             std::string::npos);
 }
 
-TEST(Tally, IsNotCleanWhereSomethingFailed) {
+TEST(Tally, IsNotCleanAfterAFailure) {
   Tally tally;
   tally.failed("a.pcd: no points");
   EXPECT_FALSE(tally.clean());
 }
 
-TEST(Tally, DoesNotGrowWithWhatAServerSends) {
+TEST(Tally, IsBoundedForAnyAnswers) {
   Tally tally;
   for (int i = 0; i < 10'000; ++i) tally.refused(Kind::Grid, 500, std::to_string(i));
   EXPECT_LT(tally.summary().size(), 5000u);

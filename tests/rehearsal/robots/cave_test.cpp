@@ -46,11 +46,11 @@ TEST(Cave, IsTheSameForTheSameSeed) {
   }
 }
 
-TEST(Cave, IsAnotherForAnotherSeed) {
+TEST(Cave, DiffersForAnotherSeed) {
   EXPECT_NE(Cave::generate(1).truth_csv(), Cave::generate(2).truth_csv());
 }
 
-TEST(Cave, CanBeWalkedThroughFromTheEntrance) {
+TEST(Cave, IsReachableFromTheEntrance) {
   for (const std::uint64_t seed : kSeeds) {
     const Cave cave = Cave::generate(seed);
     EXPECT_GT(open_cells(cave), 10'000u) << seed;
@@ -58,7 +58,7 @@ TEST(Cave, CanBeWalkedThroughFromTheEntrance) {
   }
 }
 
-TEST(Cave, HasItsEntranceAtTheOriginOfTheDarpaFrame) {
+TEST(Cave, HasItsEntranceAtTheOrigin) {
   const Cave cave = Cave::generate(3);
   EXPECT_TRUE(cave.is_open(cave.entrance()));
   EXPECT_EQ(cave.floor_at(cave.entrance()), 0);
@@ -73,7 +73,7 @@ TEST(Cave, HasRockAllRound) {
   EXPECT_FALSE(cave.is_open({-1, 5}));
 }
 
-TEST(Cave, HoldsTwoArtifactsOfEachTypeOnOpenGroundFarFromEachOther) {
+TEST(Cave, HasTwoDistantArtifactsOfEachType) {
   for (const std::uint64_t seed : kSeeds) {
     const Cave cave = Cave::generate(seed);
     std::map<std::string, int> types;
@@ -103,7 +103,7 @@ TEST(Cave, ShowsItsFirstArtifactFromTheEntrance) {
   }
 }
 
-TEST(Cave, WritesItsTruthAsOneLineForEachArtifact) {
+TEST(Cave, WritesOneLineForEachArtifact) {
   const std::string csv = Cave::generate(5).truth_csv();
   EXPECT_TRUE(csv.starts_with("type,x,y,z\n"));
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 21);

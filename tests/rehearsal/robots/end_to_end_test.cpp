@@ -35,7 +35,7 @@ struct Programs : testing::Test {
   fs::path folder_;
 };
 
-TEST_F(Programs, TheTruthIsWrittenWithoutARun) {
+TEST_F(Programs, TruthIsWrittenWithoutARun) {
   const fs::path csv = folder_ / "truth.csv";
   Program program({ADIT_ROBOTS, "--generate-only", "--seed", "12", "--truth", csv.string()});
   EXPECT_EQ(program.wait(), 0);
@@ -45,7 +45,7 @@ TEST_F(Programs, TheTruthIsWrittenWithoutARun) {
 }
 
 /// It would wait five seconds for an answer. On a busy machine its end may take as long now and then.
-TEST_F(Programs, ATeamThatNobodyAnswersStopsAtOnceAndSaysSo) {
+TEST_F(Programs, UnansweredTeamStopsAtOnceAndTellsSo) {
   Clock::duration took = 1h;
   for (int attempt = 0; attempt < 5 && took > 3s; ++attempt) {
     std::promise<void> arrived;
@@ -68,7 +68,7 @@ TEST_F(Programs, ATeamThatNobodyAnswersStopsAtOnceAndSaysSo) {
   EXPECT_LT(took, 3s);
 }
 
-TEST_F(Programs, ATeamThatCannotConnectFailsAndSaysWhy) {
+TEST_F(Programs, UnconnectedTeamFailsAndTellsWhy) {
   Program program(robots({"--post", "http://127.0.0.1:1", "--for", "1", "--quiet"}));
   const std::string summary = program.rest();
   EXPECT_EQ(program.wait(), 1);
@@ -83,7 +83,7 @@ std::string url_after(const std::string& line, const std::string& word) {
   return "http://" + line.substr(at, line.find_first_of(" \n", at) - at);
 }
 
-TEST_F(Programs, ATeamGetsOnWithACommandPostAsMeasured) {
+TEST_F(Programs, TeamWorksWithACommandPostAsMeasured) {
   const fs::path csv = folder_ / "truth.csv";
   ASSERT_EQ(Program({ADIT_ROBOTS, "--generate-only", "--seed", "2", "--truth", csv.string()}).wait(), 0);
   Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
@@ -100,7 +100,7 @@ TEST_F(Programs, ATeamGetsOnWithACommandPostAsMeasured) {
   EXPECT_EQ(post.wait(), 0);
 }
 
-TEST_F(Programs, ATeamStopsWhenAllIsPosted) {
+TEST_F(Programs, TeamStopsWhenAllIsPosted) {
   Program post({ADIT_REHEARSAL, "--scoring", "127.0.0.1:0", "--mapping", "127.0.0.1:0", "--secrets",
                 folder_.string(), "--control", "127.0.0.1:0", "--as-measured"});
   const std::string line = post.line();

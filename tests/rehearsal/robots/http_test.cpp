@@ -59,7 +59,7 @@ TEST(Connection, IsKeptBetweenRequests) {
 }
 
 /// As the mapping server does after a 4xx.
-TEST(Connection, OpensAgainWhereTheServerPromisedKeepAliveAndClosed) {
+TEST(Connection, ReconnectsIfTheServerClosedDespiteKeepAlive) {
   const Server server([](int connection) {
     read_head(connection);
     answer(connection, kNull);
@@ -71,7 +71,7 @@ TEST(Connection, OpensAgainWhereTheServerPromisedKeepAliveAndClosed) {
   }
 }
 
-TEST(Connection, DoesNotSendAgainWhatMayBeSentOnceOnly) {
+TEST(Connection, DoesNotResendARequestToBeSentOnce) {
   std::atomic<int> requests = 0;
   const Server server([&](int connection) {
     if (!read_head(connection).empty()) ++requests;
@@ -113,7 +113,7 @@ TEST(Connection, StopsAtOnceWhenAsked) {
   EXPECT_LT(std::chrono::steady_clock::now() - start, 30s);
 }
 
-TEST(Connection, SaysWhyThereIsNoAnswer) {
+TEST(Connection, TellsWhyThereIsNoAnswer) {
   const Server garbage([](int connection) {
     read_head(connection);
     answer(connection, "SSH-2.0-OpenSSH\r\n\r\n");

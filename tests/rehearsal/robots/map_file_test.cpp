@@ -60,7 +60,7 @@ struct Folder : testing::Test {
   fs::path path_;
 };
 
-TEST(Pgm, TurnsTheTopRowIntoTheLastAndGreysIntoThree) {
+TEST(Pgm, FlipsRowsAndMapsGreysToThreeValues) {
   const auto grid = parse_pgm("P5\n# CREATOR\n3 2\n255\n"s + "\x00\xfe\xcd"s + "\xff\x59\x5a"s, MapYaml{});
   ASSERT_TRUE(grid) << grid.error();
   EXPECT_EQ(grid->width, 3u);
@@ -83,7 +83,7 @@ TEST(Pgm, ObeysTheYaml) {
   EXPECT_EQ(grid->resolution, 0.1);
 }
 
-TEST(Pgm, SaysWhatIsWrong) {
+TEST(Pgm, NamesTheFault) {
   const std::pair<std::string, const char*> cases[] = {
       {"", "P5"},
       {"P2\n1 1\n255\n0", "P5"},
@@ -102,7 +102,7 @@ TEST(Pgm, SaysWhatIsWrong) {
   }
 }
 
-TEST(MapYaml, NamesTheKeyThatIsWrong) {
+TEST(MapYaml, NamesTheWrongKey) {
   const std::pair<const char*, const char*> cases[] = {
       {"origin: [0, 0, 0]\n", "resolution"},
       {"resolution: 0\norigin: [0, 0, 0]\n", "resolution"},
@@ -148,14 +148,14 @@ TEST(Pcd, ReadsAsciiPointsOfEveryType) {
   EXPECT_EQ(cloud->origin, (Placement{.position = {1, 2, 3}, .orientation = {0, 0, 1, 0}}));
 }
 
-TEST(Pcd, LeavesOutPointsThatAreNoPlace) {
+TEST(Pcd, OmitsNonFinitePoints) {
   const auto cloud = parse_pcd(kPcdHeader + "DATA ascii\nnan nan nan 1\n1 2 3 nan\n");
   ASSERT_TRUE(cloud) << cloud.error();
   EXPECT_EQ(cloud->data.size(), 16u);
   EXPECT_EQ(float_at(*cloud, 0), 1);
 }
 
-TEST(Pcd, SaysWhatIsWrong) {
+TEST(Pcd, NamesTheFault) {
   const std::string good = kPcdHeader + "DATA binary\n" + floats({1, 2, 3, 4, 5, 6, 7, 8});
   ASSERT_TRUE(parse_pcd(good));
   const std::pair<std::string, const char*> cases[] = {
@@ -199,7 +199,7 @@ TEST(Ply, ReadsAsciiAndLittleEndianVertices) {
   EXPECT_EQ(binary->data, ascii->data);
 }
 
-TEST(Ply, SaysWhatIsWrong) {
+TEST(Ply, NamesTheFault) {
   const std::string good = kPlyHeader + "1 2 3 255\n4 5 6 0\n";
   const std::pair<std::string, const char*> cases[] = {
       {"", "the first line is not 'ply'"},
@@ -220,7 +220,7 @@ TEST(Ply, SaysWhatIsWrong) {
   }
 }
 
-TEST(MapFiles, SurviveWhateverIsBrokenInThem) {
+TEST(MapFiles, SurviveAnyDamage) {
   std::mt19937_64 random(7);
   const std::string seeds[] = {
       "P5\n4 4\n255\n" + std::string(16, '\xfe'), kPcdHeader + "DATA binary\n" + std::string(32, 'a'),
@@ -249,7 +249,7 @@ TEST_F(Folder, FindsMapsAtAnyDepthInOrder) {
   EXPECT_FALSE(find_maps(path_ / "nowhere"));
 }
 
-TEST_F(Folder, TakesTheYamlOfThePgmsNameOrTheOneThatNamesIt) {
+TEST_F(Folder, FindsTheYamlByNameOrByItsImage) {
   const fs::path own = write("own.pgm", "P5 1 1 255\n\xfe"), named = write("named.pgm", "P5 1 1 255\n\xfe"),
                  bare = write("bare.pgm", "P5 1 1 255\n\xfe");
   write("own.yaml", "image: elsewhere.pgm\nresolution: 0.5\norigin: [1, 2, 0]\n");
@@ -262,7 +262,7 @@ TEST_F(Folder, TakesTheYamlOfThePgmsNameOrTheOneThatNamesIt) {
   EXPECT_EQ(resolution(bare), 0.05);
 }
 
-TEST_F(Folder, NamesTheFileThatCannotBeLoaded) {
+TEST_F(Folder, NamesAnUnloadableFile) {
   const fs::path broken = write("broken.pcd", "nothing"),
                  empty = write("empty.pcd", replaced(kPcdHeader, "POINTS 2", "POINTS 0") + "DATA ascii\n");
   EXPECT_TRUE(load_map(broken).error().starts_with(broken.string() + ": not a PCD file"));
@@ -273,7 +273,7 @@ TEST_F(Folder, NamesTheFileThatCannotBeLoaded) {
   EXPECT_NE(load_map(path_ / "bad.pgm").error().find("bad.yaml: resolution"), std::string::npos);
 }
 
-TEST(RealMaps, AreLoadedAsTheirReadmeDescribesThem) {
+TEST(RealMaps, MatchTheirReadme) {
   const char* const named = std::getenv("ADIT_MAPS");
   const fs::path folder = named == nullptr ? "" : named;
   if (!fs::exists(folder)) GTEST_SKIP() << "ADIT_MAPS names no folder of recorded maps";

@@ -54,7 +54,7 @@ TEST(MapMaker, DatesEachPointOfACloud) {
   EXPECT_FALSE(team.cloud()) << "no point is new";
 }
 
-TEST(MapMaker, KeepsTheDatesOfAWholeCloudsPointsAndAddsNewOnes) {
+TEST(MapMaker, KeepsTheDatesOfPointsInAWholeCloud) {
   Maker team({.clouds = CloudForm::Whole, .cloud_bytes = 200'000});
   const Cloud first = *team.cloud();
   EXPECT_GE(first.data.size(), 199'000u);
@@ -88,7 +88,7 @@ TEST(MapMaker, RollsAWindowWithTheRobot) {
   EXPECT_NEAR(grid.origin.position.x + 5, team.robot.pose().position.x, 0.21);
 }
 
-TEST(MapMaker, PostsEveryTileOfWhatIsKnownInTurn) {
+TEST(MapMaker, PostsEachKnownTileInTurn) {
   Maker team({.grids = GridForm::Tiles});
   const Cell low = team.robot.map().low(), high = team.robot.map().high();
   const int tiles = (high.x / 40 - low.x / 40 + 1) * (high.y / 40 - low.y / 40 + 1);
@@ -99,7 +99,7 @@ TEST(MapMaker, PostsEveryTileOfWhatIsKnownInTurn) {
   EXPECT_EQ(team.grid()->origin, first.origin);
 }
 
-TEST(MapMaker, MakesNoMapsOfAFormThatIsNone) {
+TEST(MapMaker, MakesNoMapsOfFormNone) {
   Maker team({.grids = GridForm::None, .clouds = CloudForm::None});
   EXPECT_FALSE(team.grid());
   EXPECT_FALSE(team.cloud());

@@ -13,7 +13,7 @@ std::expected<Options, std::string> parsed(std::vector<const char*> arguments) {
   return parse_options(arguments);
 }
 
-TEST(Options, TakeTheContractsCommandLine) {
+TEST(Options, AcceptTheContractsCommandLine) {
   const auto options = parsed({"--post", "http://127.0.0.1:8080", "--secrets", "/tmp", "--robots", "5",
                                "--style", "ros", "--maps", "/maps", "--for", "30"});
   ASSERT_TRUE(options) << options.error();
@@ -25,7 +25,7 @@ TEST(Options, TakeTheContractsCommandLine) {
   EXPECT_EQ(options->run_for->count(), 30);
 }
 
-TEST(Options, HaveThreeRobotsOfMixedStyleWhereNothingIsSaid) {
+TEST(Options, DefaultToThreeRobotsOfMixedStyle) {
   const auto options = parsed({"--post", "http://[::1]:80/", "--secrets", "/tmp"});
   ASSERT_TRUE(options) << options.error();
   EXPECT_EQ(options->post.address, "::1");
@@ -34,7 +34,7 @@ TEST(Options, HaveThreeRobotsOfMixedStyleWhereNothingIsSaid) {
   EXPECT_FALSE(options->run_for);
 }
 
-TEST(Options, NameTheArgumentThatIsWrong) {
+TEST(Options, NameTheWrongArgument) {
   const std::pair<std::vector<const char*>, const char*> cases[] = {
       {{}, "--post"},
       {{"--post", "http://127.0.0.1:80"}, "--secrets"},
@@ -75,7 +75,7 @@ TEST(Options, GiveEachRobotTheNextFormOfMaps) {
   EXPECT_FALSE(options->offers.has_clouds());
 }
 
-TEST(TeamToken, IsTheFilesOneLine) {
+TEST(TeamToken, IsTheOnlyLineOfItsFile) {
   const std::filesystem::path folder = testing::TempDir() + "adit_robots_token_" + std::to_string(getpid());
   std::filesystem::create_directories(folder);
   const std::pair<const char*, bool> cases[] = {{"flux230{showroom", true},

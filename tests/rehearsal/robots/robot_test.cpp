@@ -48,7 +48,7 @@ TEST(Robot, StaysOutOfTheRockAndWalksOn) {
   }
 }
 
-TEST(Robot, FindsMostArtifactsWhenItWalksLongEnoughAndEachOnce) {
+TEST(Robot, FindsMostArtifactsOnceEach) {
   Robot robot(cave(), 5, 0);
   std::vector<int> found(cave().artifacts().size(), 0);
   for (int i = 0; i < 400; ++i) {
@@ -65,7 +65,7 @@ TEST(Robot, SeesTheFirstArtifactBeforeItMoves) {
   EXPECT_NE(std::find(seen.begin(), seen.end(), 0u), seen.end());
 }
 
-TEST(RobotMap, GrowsSoThatEachGridCoversTheOneBefore) {
+TEST(RobotMap, GrowsSoThatEachGridCoversThePrevious) {
   Robot robot(cave(), 6, 2);
   Grid before = robot.map().grid(0);
   for (int second = 1; second < 40; ++second) {

@@ -17,7 +17,7 @@ void replay(const std::vector<Marker>& changes, Scene& scene) {
   }
 }
 
-TEST(MarkerScene, TellsAllThatStandsByItsChangesAlone) {
+TEST(MarkerScene, IsCompleteByItsChanges) {
   MarkerScene scene("r1");
   Scene seen;
   for (int second = 0; second < 300; ++second) {
@@ -33,14 +33,14 @@ TEST(MarkerScene, TellsAllThatStandsByItsChangesAlone) {
   EXPECT_EQ(of_ns["r1/artifact"], 0) << "candidates are deleted in the end";
 }
 
-TEST(MarkerScene, HasNothingToSayWhereNothingChanged) {
+TEST(MarkerScene, HasNoChangesIfNothingChanged) {
   MarkerScene scene("r1");
   scene.pass({}, 0, 0);
   EXPECT_EQ(scene.take_changes().size(), 4u) << "its way, its shape, a node of the path and one for comms";
   EXPECT_TRUE(scene.take_changes().empty());
 }
 
-TEST(MarkerScene, SaysAllThatStandsNowAndThen) {
+TEST(MarkerScene, RepeatsTheWholeSceneNowAndThen) {
   MarkerScene scene("r1");
   scene.pass({}, 0, 0);
   int times = 0;
